@@ -1,0 +1,57 @@
+# Lists that exist twice drift, so these are generated from the files that are there.
+
+# apsis_embed(out VAR files... ): a .cpp with the text of every file, as
+#   extern const std::array<apsis::embedded_text, N> ...  (see core/embedded.hpp)
+function(apsis_embed symbol root out_var)
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${root}/*.toml)
+  list(SORT files)
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/generated/${symbol}.cpp)
+  set(body "")
+  foreach(file IN LISTS files)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    file(READ ${file} text)
+    file(RELATIVE_PATH key ${root} ${file})
+    string(REGEX REPLACE "\\.toml$" "" key ${key})
+    string(APPEND body "    {\"${key}\", R\"apsis_text(${text})apsis_text\"},\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${out} @ONLY CONTENT
+"// Generated from the files of ${symbol}/; do not edit.
+#include <apsis/core/embedded.hpp>
+
+namespace apsis::embedded {
+std::vector<embedded_text> ${symbol}() {
+  return {
+@body@  };
+}
+}  // namespace apsis::embedded
+")
+  set(${out_var} ${out} PARENT_SCOPE)
+endfunction()
+
+# apsis_registry(model out): every file of <room>/<what>s/ named x.cpp defines `make_<what>_x()`; the
+# generated registry.cpp is the one place that knows them all.
+function(apsis_registry room what out_var)
+  file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/${what}s/*.cpp)
+  list(SORT files)
+  set(declarations "")
+  set(entries "")
+  foreach(file IN LISTS files)
+    get_filename_component(stem ${file} NAME_WE)
+    string(APPEND declarations "extern const ${what}_entry ${what}_${stem};\n")
+    string(APPEND entries "      &${what}_${stem},\n")
+  endforeach()
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/generated/${what}_registry.cpp)
+  file(CONFIGURE OUTPUT ${out} @ONLY CONTENT
+"// Generated from the files of ${room}/${what}s/; do not edit.
+#include <apsis/${room}/${what}_registry.hpp>
+
+namespace apsis {
+@declarations@
+std::vector<const ${what}_entry*> ${what}_entries() {
+  return {
+@entries@  };
+}
+}  // namespace apsis
+")
+  set(${out_var} ${out} PARENT_SCOPE)
+endfunction()

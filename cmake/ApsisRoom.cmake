@@ -1,0 +1,29 @@
+# One static library per room of src/apsis. A room may link only the rooms below it, so an include
+# that reaches back does not link and the direction of the data flow is kept by the build.
+#
+#   apsis_room(method DEPENDS core PUBLIC Boost::headers PRIVATE tomlplusplus::tomlplusplus)
+set(APSIS_ROOMS "" CACHE INTERNAL "rooms in the order they are declared")
+
+add_library(apsis_options INTERFACE)
+target_compile_features(apsis_options INTERFACE cxx_std_20)
+target_compile_options(apsis_options INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion
+  $<$<BOOL:${APSIS_WERROR}>:-Werror>
+  $<$<BOOL:${APSIS_NATIVE}>:-march=native>
+  -fno-math-errno)
+
+function(apsis_room name)
+  cmake_parse_arguments(ROOM "" "" "DEPENDS;PUBLIC;PRIVATE;GENERATED" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp
+       ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*/*.cpp)
+  add_library(apsis_${name} STATIC ${sources} ${ROOM_GENERATED})
+  add_library(apsis::${name} ALIAS apsis_${name})
+  set_target_properties(apsis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(apsis_${name} PUBLIC cxx_std_20)
+  target_include_directories(apsis_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  list(TRANSFORM ROOM_DEPENDS PREPEND apsis_)
+  target_link_libraries(apsis_${name} PUBLIC ${ROOM_DEPENDS} ${ROOM_PUBLIC})
+  target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_options> ${ROOM_PRIVATE})
+  set(APSIS_ROOMS ${APSIS_ROOMS} ${name} CACHE INTERNAL "")
+endfunction()

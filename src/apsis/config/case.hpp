@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+enum class formulation { finite_volume, finite_difference };
+
+/// A case as resolved: every key has its value, every name exists. What the keys mean is documented once,
+/// in case_schema.cpp (`apsis show case`).
+struct case_config {
+  std::string source;  ///< file or name of the built-in case
+  std::string title;
+  struct {
+    std::string name;
+    std::string epsilon = "1";  ///< a number or an expression in x; dimensionless Knudsen number, ≥ 0
+    std::string initial;        ///< name of one of the model's initial data; "" takes its first
+    std::map<std::string, double> parameters;  ///< of the model, all of them
+  } model;
+  struct {
+    int cells = 40;
+    std::array<double, 2> domain = {0.0, 1.0};
+    apsis::formulation formulation = apsis::formulation::finite_volume;
+    std::string reconstruction = "weno5-z";
+    std::string limiter = "none";  ///< "none" | "positivity"
+    std::string boundary = "periodic";
+  } space;
+  struct {
+    double max = 0.0;
+    int points = 0;
+    std::string equilibrium = "auto";  ///< "auto" | "formula" | "discrete"
+  } velocity;
+  struct {
+    std::string method;
+    double end = 0.0;
+    std::optional<double> dt, cfl, safety;  ///< exactly one is set
+  } time;
+  struct {
+    double every = 0.0;               ///< time between snapshots; 0: only the end
+    std::vector<std::string> fields;  ///< of the snapshot; empty: all of the model
+    int checkpoint_every = 0;         ///< steps; 0: only when interrupted
+  } output;
+};
+
+/// Parses the text of a case file and applies overrides "dotted.key=value". Strict: unknown or missing keys,
+/// wrong types and values out of range are input_errors with file, line, column and a suggestion.
+case_config parse_case(std::string_view text, const std::string& file,
+                       const std::vector<std::string>& overrides = {});
+
+/// A case file by path, or a built-in case by name ("paper/bgk-mixed").
+case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides = {});
+
+/// Names of the built-in cases, sorted.
+std::vector<std::string> case_names();
+
+}  // namespace apsis

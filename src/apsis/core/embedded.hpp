@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace apsis {
+
+/// A text file that is part of the library: `name` is its path below its folder, without ".toml".
+struct embedded_text {
+  std::string_view name;
+  std::string_view text;
+};
+
+namespace embedded {
+std::vector<embedded_text> methods();  ///< every file of methods/
+std::vector<embedded_text> cases();    ///< every file of cases/
+}  // namespace embedded
+
+}  // namespace apsis

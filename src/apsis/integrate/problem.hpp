@@ -1,0 +1,51 @@
+#pragma once
+
+#include <concepts>
+#include <span>
+
+namespace apsis {
+
+/// One accumulator of a scatter: acc ← (fresh ? 0 : acc) + α u + β T(t, u).
+/// A target may be u itself only if no target of the same call has β ≠ 0.
+template <class State, class Real>
+struct target {
+  State* acc;
+  Real alpha;
+  Real beta;
+  bool fresh;  ///< the old content of acc means nothing (it may even be NaN)
+
+  /// The new value of one element of acc from its old value and the same element of u and T(u).
+  template <class V>
+  V combine(const V& old, const V& u, const V& transport) const {
+    return fresh ? V(alpha * u + beta * transport) : V(old + (alpha * u + beta * transport));
+  }
+};
+
+/// What the integrator needs to know of u' = T(t, u) + Q(u). Two verbs make a scheme; ε, the mesh and the
+/// model stay on the other side. `State` needs to be copyable and swappable, no arithmetic.
+///
+///   scatter(t, u, targets)     for each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u); T is evaluated
+///                              once, and not at all if every β is 0
+///   collide(t, a, b, u)        in place: u ← v with v = u + a Q(v) + b Q̇(v), a ≥ 0, b ≤ 0
+///   forward_euler_step(t, u)   Δt_FE of T for the property to be kept; +infinity if T sets no limit
+template <class P>
+concept problem = requires(P p, const typename P::state& u, typename P::state& v, typename P::real x,
+                           std::span<const target<typename P::state, typename P::real>> targets) {
+  requires std::copyable<typename P::state>;
+  requires std::swappable<typename P::state>;
+  p.scatter(x, u, targets);
+  p.collide(x, x, x, v);
+  { p.forward_euler_step(x, u) } -> std::convertible_to<typename P::real>;
+};
+
+/// A problem that can also evaluate Q, for methods with a stage where Q enters explicitly:
+///   scatter_collision(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)
+template <class P>
+concept problem_with_explicit_collision =
+    problem<P> &&
+    requires(P p, const typename P::state& u, typename P::real x,
+             std::span<const target<typename P::state, typename P::real>> targets) {
+      p.scatter_collision(x, u, targets);
+    };
+
+}  // namespace apsis

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <apsis/method/tableau.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace apsis {
+
+/// What a method integrates, and so which order conditions it must satisfy.
+enum class method_kind {
+  implicit_only,  ///< u' = Q(u): no transport (trees of one colour)
+  imex,           ///< u' = T(u) + Q(u): T explicit, Q implicit (trees of two colours)
+  explicit_only   ///< u' = T(u) + Q(u), both explicit with the same coefficients, A = Â
+};
+
+std::string to_string(method_kind kind);
+
+/// What the file of a method says about it; certified when it is loaded.
+struct method_claims {
+  int order = 0;
+  std::optional<std::string> ssp_coefficient;  ///< as written; "unconditional" for W = 0
+};
+
+/// A time integrator as data. Coefficients exist as the strings of its file (exact rationals "p/q" or
+/// decimals of any length) and are converted to the precision in which they are asked for.
+class method {
+ public:
+  std::string name, title, citation;
+  method_kind kind = method_kind::imex;
+  method_claims claims;
+  shu_osher_form<std::string> exact;  ///< as in the file; "0" where nothing stands
+
+  std::size_t stages() const { return exact.stages(); }
+
+  /// Shu–Osher form in `Real` (float, double, long double or mp_real), each coefficient correctly rounded
+  /// from its exact value. In float, double and long double the convex weights are then set on a common
+  /// grid so that r_i + Σ_j (p_ij + w_ij) is 1 without rounding and no step drifts.
+  template <class Real>
+  shu_osher_form<Real> coefficients() const;
+};
+
+/// The method called `name` from the catalogue (methods/*.toml); certified.
+/// Throws input_error with the nearest name if there is none, claim_error if its claims do not hold.
+const method& find_method(std::string_view name);
+
+/// Names of the catalogue, sorted.
+std::vector<std::string> method_names();
+
+/// A method from the text of a file. `file` is for messages only. Does not certify.
+/// Throws input_error with line and column.
+method parse_method(std::string_view text, const std::string& file);
+
+/// Reads, parses and certifies a file of the user. Throws input_error, io_error or claim_error.
+method load_method_file(const std::string& path);
+
+}  // namespace apsis

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <apsis/model/model.hpp>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// A number that a model can be given in its case file.
+struct model_parameter {
+  std::string name;
+  double value;     ///< default
+  double lowest;    ///< smallest allowed value
+  double highest;   ///< largest allowed value
+  std::string doc;  ///< meaning and unit
+};
+
+/// Velocity grid of a kinetic model: `points` midpoints on [−max, max] per velocity dimension.
+struct velocity_config {
+  double max = 0.0;
+  int points = 0;
+  std::string equilibrium = "auto";  ///< "auto" | "formula" | "discrete"
+};
+
+/// All that a model is made from.
+struct model_config {
+  std::map<std::string, double> parameters;  ///< complete: defaults filled in
+  velocity_config velocity;                  ///< only where the entry has_velocity
+};
+
+/// One equation of the registry: a file of model/models/ defines `extern const model_entry model_<file>`.
+struct model_entry {
+  std::string name;
+  std::string description;  ///< one line with the equation
+  std::string source;       ///< citation
+  bool has_space;           ///< needs the table [space]
+  bool has_velocity;        ///< needs the table [velocity]
+  bool has_epsilon;         ///< takes the key model.epsilon
+  std::vector<model_parameter> parameters;
+  std::vector<std::string> initial;  ///< names of its initial data, default first
+  std::unique_ptr<model> (*make)(const model_config&);
+};
+
+/// Every model, sorted by name (generated).
+std::vector<const model_entry*> model_entries();
+
+/// The entry called `name`; nullptr if there is none.
+const model_entry* find_model(const std::string& name);
+
+}  // namespace apsis

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// What was checked after a step; one row of history.csv. Dimensionless.
+struct step_record {
+  long step = 0;
+  double t = 0.0, dt = 0.0;
+  double min_value = 0.0;                   ///< smallest unknown of the state
+  long negative_values = 0;                 ///< number of unknowns < 0
+  std::vector<double> conservation_defect;  ///< per invariant: |I − I₀| / scale of I₀
+  double entropy = 0.0;                     ///< NaN where the model has none
+  double entropy_change = 0.0;              ///< S^{n+1} − S^n; NaN where the model has none
+};
+
+/// What a run promises because its configuration entails it. A broken promise ends the run (exit code 3).
+struct run_promises {
+  bool positivity = false;    ///< limiter on (or first-order upwind) and Δt ≤ r Δt_FE
+  bool conservation = false;  ///< the model has invariants
+  bool entropy = false;       ///< first-order upwind and Δt ≤ r Δt_FE
+  std::string text() const;   ///< one line for the log
+};
+
+/// Everything about a finished (or interrupted) run.
+struct run_summary {
+  long steps = 0;
+  double dt = 0.0, t = 0.0, wall_s = 0.0;
+  double min_value = 0.0;        ///< over all steps, the initial state included
+  long negative_values = 0;      ///< sum over all steps
+  double conservation_defect = 0.0;
+  double max_entropy_increase = 0.0;
+  long phase_points = 0;
+  double point_stages_per_s = 0.0;
+  bool interrupted = false;
+};
+
+/// Macroscopic fields on the mesh at one time: values[field][cell].
+struct field_table {
+  std::vector<double> x;
+  std::vector<std::string> names, labels;
+  std::vector<std::vector<double>> values;
+};
+
+/// One run of a case. Construction checks everything that can be checked before the first step.
+class simulation {
+ public:
+  /// Throws input_error (for example: v_max too small for the data, mesh smaller than the stencil).
+  explicit simulation(case_config config);
+  ~simulation();
+  simulation(simulation&&) noexcept;
+  simulation& operator=(simulation&&) noexcept;
+
+  const case_config& config() const;
+  const run_promises& promises() const;
+  std::vector<std::string> invariants() const;
+  double t() const;
+  double dt() const;           ///< of the next step
+  long step() const;           ///< steps done
+  long steps_total() const;    ///< estimate from the present dt
+  bool finished() const;
+
+  /// One step. Throws numerical_error with step, time, cell and value; the state is then that of the last
+  /// good step.
+  const step_record& advance();
+  const step_record& last() const;  ///< of the last step, or of the initial state
+  run_summary summary() const;
+
+  field_table fields() const;
+  int cells() const;
+  int components() const;
+  std::vector<double> state() const;       ///< [cells][components], contiguous
+  std::vector<double> velocities() const;  ///< of the components; empty without a velocity grid
+  std::vector<double> epsilon() const;     ///< at the cell centres
+
+  /// Goes on from a saved state; the case must be the same.
+  void restore(const std::vector<double>& state, double t, long step, const run_summary& so_far,
+               const step_record& initial, const step_record& last);
+  const step_record& initial_record() const;
+
+ private:
+  struct impl;
+  std::unique_ptr<impl> impl_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <apsis/method/tableau.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// The order in which a step of a method is carried out, made once from the zero pattern of its Shu–Osher
+/// form, so that no T(u_j) is ever stored and as few state-sized buffers as possible are alive.
+///
+/// Scatter form: as soon as u_j is known, T(u_j) is evaluated once and added to the accumulator of every
+/// later stage that uses it. A multiple p_kj u_j alone does not open an accumulator: it waits until stage k
+/// is opened by some T(u_i) (or by its own turn), and then the buffer of a u_j that nobody else waits for
+/// becomes the accumulator. u^n is kept until the step is complete: a step that fails leaves it untouched.
+class schedule {
+ public:
+  /// What a contribution from stage j (0 is u^n) to accumulator k multiplies.
+  enum class term {
+    weight,          ///< α = r_k (j = 0) or p_kj + w_kj, β = Δt w_kj / r on T(u_j)
+    minus_explicit,  ///< α = −d_kj/d_jj on the explicit part of u_j, before its collision …
+    plus_solved,     ///< … and α = +d_kj/d_jj after it: together Δt d_kj Q(u_j)
+    collision        ///< β = Δt d_kj on Q(u_j), evaluated
+  };
+  struct contribution {
+    int stage;   ///< k
+    int buffer;  ///< of accumulator k
+    std::vector<term> terms;
+    bool fresh;  ///< first contribution to k
+  };
+  enum class action { scatter, scatter_collision, collide };
+  struct instruction {
+    action what;
+    int stage;   ///< j; 0 is u^n
+    int buffer;  ///< that holds u_j (or its explicit part)
+    std::vector<contribution> to;
+  };
+
+  template <class Real>
+  explicit schedule(const shu_osher_form<Real>& m);
+
+  const std::vector<instruction>& instructions() const { return instructions_; }
+  /// State-sized buffers that a step needs, u^n (buffer 0) included.
+  int buffers() const { return buffers_; }
+  int result_buffer() const { return result_; }
+  /// Evaluations of T, of Q (explicit), and implicit solves per step.
+  int transport_evaluations() const { return transports_; }
+  int collision_evaluations() const { return collisions_; }
+  int implicit_solves() const { return solves_; }
+
+ private:
+  struct pattern;
+  class builder;
+  void build(const pattern& p);
+
+  std::vector<instruction> instructions_;
+  int buffers_ = 1, result_ = 0, transports_ = 0, collisions_ = 0, solves_ = 0;
+};
+
+}  // namespace apsis

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/problem.hpp>
+#include <apsis/integrate/schedule.hpp>
+#include <apsis/method/method.hpp>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+
+/// One step of any method on any problem: carries out the method's schedule. The method is data; nothing here
+/// knows its name. Buffers are allocated at the first step as copies of the state.
+template <problem P>
+class stepper {
+ public:
+  using state = typename P::state;
+  using real = typename P::real;
+
+  /// Both are kept by reference/copy: the problem must outlive the stepper.
+  /// Throws input_error if the method evaluates Q explicitly and the problem cannot.
+  stepper(const method& m, P& p) : stepper(m.coefficients<real>(), m.kind, p, m.name) {}
+
+  /// The same from coefficients that are in no file (a method under design, an optimiser).
+  stepper(shu_osher_form<real> coefficients, method_kind kind, P& p, const std::string& name = "method")
+      : problem_(p), m_(std::move(coefficients)), plan_(m_), initial_(initial_weights(m_)) {
+    const auto butcher = to_butcher(m_);
+    // Time is a component of u with derivative 1, integrated by T where there is one (then Q̇ has no ∂_t
+    // part).
+    const auto& a = kind == method_kind::implicit_only ? butcher.A : butcher.A_hat;
+    for (std::size_t i = 0; i < m_.stages(); ++i) {
+      real c(0);
+      for (std::size_t j = 0; j <= i; ++j) c += a(i, j);
+      abscissae_.push_back(c);
+    }
+    if constexpr (!problem_with_explicit_collision<P>) {
+      if (plan_.collision_evaluations() > 0)
+        throw input_error("method '" + name +
+                          "' evaluates Q explicitly (some stage uses Q of a stage without "
+                          "implicit part) and the problem has no scatter_collision; choose an IMEX method");
+    }
+  }
+
+  /// u ← u^{n+1} from u = u^n at time t. Strong guarantee: if a stage fails, u is still u^n.
+  void step(real t, real dt, state& u) {
+    while (static_cast<int>(buffers_.size()) + 1 < plan_.buffers()) buffers_.push_back(u);
+    for (const auto& instruction : plan_.instructions()) execute(instruction, t, dt, u);
+    if (plan_.result_buffer() > 0) {
+      using std::swap;
+      swap(u, buffers_[static_cast<std::size_t>(plan_.result_buffer()) - 1]);
+    }
+  }
+
+  /// SSP coefficient of the explicit part: Δt ≤ r Δt_FE keeps what forward Euler steps of T keep.
+  real r() const { return m_.r; }
+  const schedule& plan() const { return plan_; }
+  P& target_problem() { return problem_; }
+
+ private:
+  using instruction_type = schedule::instruction;
+
+  state& buffer(int b, state& u) { return b == 0 ? u : buffers_[static_cast<std::size_t>(b) - 1]; }
+
+  void execute(const instruction_type& what, real t, real dt, state& u) {
+    const std::size_t j = static_cast<std::size_t>(what.stage);
+    const real stage_time = j == 0 ? t : t + abscissae_[j - 1] * dt;
+    state& source = buffer(what.buffer, u);
+    if (what.what == schedule::action::collide) {
+      problem_.collide(stage_time, dt * m_.D(j - 1, j - 1), dt * dt * m_.ddot[j - 1], source);
+      return;
+    }
+    targets_.clear();
+    for (const auto& to : what.to) targets_.push_back(make_target(what, to, dt, u));
+    const std::span<const target<state, real>> targets(targets_);
+    if (what.what == schedule::action::scatter) {
+      problem_.scatter(stage_time, source, targets);
+    } else if constexpr (problem_with_explicit_collision<P>) {
+      problem_.scatter_collision(stage_time, source, targets);
+    }
+  }
+
+  target<state, real> make_target(const instruction_type& from, const schedule::contribution& to, real dt,
+                                  state& u) {
+    const std::size_t k = static_cast<std::size_t>(to.stage) - 1;
+    const std::size_t j = static_cast<std::size_t>(from.stage) - 1;
+    real alpha(0), beta(0);
+    for (const auto term : to.terms) {
+      switch (term) {
+        case schedule::term::weight:
+          alpha += from.stage == 0 ? initial_[k] : m_.P(k, j) + m_.W(k, j);
+          if (from.stage > 0) beta += dt * (m_.W(k, j) / m_.r);
+          break;
+        case schedule::term::minus_explicit:
+          alpha -= m_.D(k, j) / m_.D(j, j);
+          break;
+        case schedule::term::plus_solved:
+          alpha += m_.D(k, j) / m_.D(j, j);
+          break;
+        case schedule::term::collision:
+          beta += dt * m_.D(k, j);
+          break;
+      }
+    }
+    return {&buffer(to.buffer, u), alpha, beta, to.fresh};
+  }
+
+  P& problem_;
+  shu_osher_form<real> m_;
+  schedule plan_;
+  std::vector<real> initial_, abscissae_;
+  std::vector<state> buffers_;
+  std::vector<target<state, real>> targets_;
+};
+
+}  // namespace apsis

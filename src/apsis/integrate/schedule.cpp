@@ -20,7 +20,7 @@ struct schedule::pattern {
 class schedule::builder {
  public:
   builder(const pattern& p, schedule& out)
-      : p_(p), out_(out), buffer_(p.weight.rows(), -1), done_(p.weight.rows(), p.weight.rows(), 0) {
+      : p_(p), out_(out), buffer_(p.weight.rows(), -1), done_(p.weight.rows(), p.weight.rows()) {
     buffer_[0] = 0;
   }
 

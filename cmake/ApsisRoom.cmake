@@ -9,11 +9,16 @@ target_compile_features(apsis_options INTERFACE cxx_std_20)
 target_compile_options(apsis_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion
   $<$<BOOL:${APSIS_WERROR}>:-Werror>
-  $<$<BOOL:${APSIS_NATIVE}>:-march=native>
   -fno-math-errno)
 
+# Rooms with loops over cells and velocities. Their headers keep no type whose layout depends on the instruction
+# set, so other targets are built for the plain architecture and link with them safely.
+add_library(apsis_kernel_options INTERFACE)
+target_compile_options(apsis_kernel_options INTERFACE
+  -O3 -fopenmp-simd -fno-trapping-math $<$<BOOL:${APSIS_NATIVE}>:-march=native>)
+
 function(apsis_room name)
-  cmake_parse_arguments(ROOM "" "" "DEPENDS;PUBLIC;PRIVATE;GENERATED" ${ARGN})
+  cmake_parse_arguments(ROOM "KERNELS" "" "DEPENDS;PUBLIC;PRIVATE;GENERATED" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp
        ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*/*.cpp)
   add_library(apsis_${name} STATIC ${sources} ${ROOM_GENERATED})
@@ -24,6 +29,7 @@ function(apsis_room name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   list(TRANSFORM ROOM_DEPENDS PREPEND apsis_)
   target_link_libraries(apsis_${name} PUBLIC ${ROOM_DEPENDS} ${ROOM_PUBLIC})
-  target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_options> ${ROOM_PRIVATE})
+  target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_options> ${ROOM_PRIVATE}
+                        $<$<BOOL:${ROOM_KERNELS}>:$<BUILD_INTERFACE:apsis_kernel_options>>)
   set(APSIS_ROOMS ${APSIS_ROOMS} ${name} CACHE INTERNAL "")
 endfunction()

@@ -16,6 +16,10 @@ double model::entropy(const double*) const {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+std::string model::unfit(const double*) const {
+  return "";
+}
+
 const model_entry* find_model(const std::string& name) {
   for (const model_entry* entry : model_entries())
     if (entry->name == name) return entry;

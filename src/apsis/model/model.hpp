@@ -51,9 +51,13 @@ class model {
   virtual void macroscopic(const double* u, double* values) const = 0;
 
   virtual const std::vector<initial_data>& initial() const = 0;
+
+  /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could; "" if it can.
+  virtual std::string unfit(const double* u) const;
 };
 
-/// Q(u) = C(ω)(E(ω) − u) with ω = ℛu and ℛQ = 0 (paper, Properties 3–5): every stage is solved in closed form.
+/// Q(u) = C(ω)(E(ω) − u) with ω = ℛu and ℛQ = 0 (paper, Properties 3–5): every stage is solved in closed
+/// form.
 class relaxation_model : public model {
  public:
   virtual int moment_count() const = 0;

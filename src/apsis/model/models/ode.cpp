@@ -1,0 +1,73 @@
+#include <apsis/model/model_registry.hpp>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+/// u₁' = u₂,  u₂' = f(u₁)(g(u₁) − u₂)/ε with f = 1 + u₁², g = sin u₁ (paper, eq. vdp and its first numerical
+/// test). ω = u₁, E = (u₁, g(u₁)), C = f(u₁); as ε → 0, u₁' = g(u₁). Dimensionless.
+class ode_model final : public relaxation_model {
+ public:
+  int components() const override { return 2; }
+  int space_dimensions() const override { return 0; }
+  bool has_source() const override { return true; }
+  void source(const double* u, double* s) const override {
+    s[0] = u[1];
+    s[1] = 0.0;
+  }
+
+  int moment_count() const override { return 1; }
+  void moments(const double* u, double* omega) const override { omega[0] = u[0]; }
+  bool equilibrium(const double* omega, double* e) const override {
+    e[0] = omega[0];
+    e[1] = std::sin(omega[0]);
+    return std::isfinite(omega[0]);
+  }
+  double rate(const double* omega) const override { return 1.0 + omega[0] * omega[0]; }
+  std::string why_inadmissible(const double* omega) const override {
+    return fmt::format("u1 = {} is not finite", omega[0]);
+  }
+
+  std::vector<std::string> invariants() const override { return {}; }
+  void invariant_densities(const double*, double*) const override {}
+  std::vector<field_name> fields() const override {
+    return {{"u1", "u1 (dimensionless)"}, {"u2", "u2 (dimensionless)"}};
+  }
+  void macroscopic(const double* u, double* values) const override {
+    values[0] = u[0];
+    values[1] = u[1];
+  }
+
+  const std::vector<initial_data>& initial() const override {
+    static const std::vector<initial_data> data = {
+        {"inconsistent", "u = (2, 0), far from equilibrium (paper, ODE model)",
+         [](double, std::span<double> u) {
+           u[0] = 2.0;
+           u[1] = 0.0;
+         }},
+        {"equilibrium", "u = (2, sin 2)", [](double, std::span<double> u) {
+           u[0] = 2.0;
+           u[1] = std::sin(2.0);
+         }}};
+    return data;
+  }
+};
+
+}  // namespace
+
+extern const model_entry model_ode;
+const model_entry model_ode = {
+    "ode",
+    "u1' = u2, u2' = (1 + u1^2)(sin u1 - u2)/epsilon",
+    "Gottlieb, Grant, Hu, Shu: SSP multi-derivative IMEX Runge-Kutta, ODE model",
+    false,
+    false,
+    true,
+    {},
+    {"inconsistent", "equilibrium"},
+    [](const model_config&) -> std::unique_ptr<model> { return std::make_unique<ode_model>(); }};
+
+}  // namespace apsis

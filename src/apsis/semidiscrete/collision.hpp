@@ -1,0 +1,39 @@
+#pragma once
+
+#include <apsis/integrate/problem.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/semidiscrete/sweep.hpp>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// The collision operator Q(u)/ε of a relaxation model on a mesh.
+class collision {
+ public:
+  virtual ~collision() = default;
+
+  /// In place u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², a = Δt d ≥ 0, b = Δt² ḋ ≤ 0. Nonnegative rows stay so.
+  /// Throws numerical_error with the cell where the moments have no equilibrium.
+  virtual void solve(double a, double b, field& u) = 0;
+
+  /// For each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε. Throws numerical_error where ε = 0.
+  virtual void scatter(const field& u, std::span<const target<field, double>> targets) = 0;
+};
+
+/// Point values: the stage solve of every point is closed form,
+///   v = (u + μ E(ω))/(1 + μ), ω = ℛu, μ = aC/ε + |b|(C/ε)²   (paper, proof of Proposition AP).
+/// `epsilon` per cell.
+std::unique_ptr<collision> make_pointwise_collision(const relaxation_model& equation,
+                                                    std::vector<double> epsilon);
+
+/// Cell averages in one space dimension: the same at the three Gauss–Legendre points of every cell, on the
+/// quartic through the reconstructed edges and the neighbouring averages, with ω from the (limited) values at
+/// the point; the new average is the weighted mean. Conserves exactly although ε varies inside the cell.
+/// `epsilon` holds three values per cell, in the order of the points.
+std::unique_ptr<collision> make_cell_average_collision(const relaxation_model& equation, const grid& mesh,
+                                                       stencil how, std::vector<double> epsilon);
+
+}  // namespace apsis

@@ -1,0 +1,30 @@
+#include <apsis/semidiscrete/sweep.hpp>
+
+#include <algorithm>
+
+namespace apsis {
+
+void pencil_block::load(const field& u, const grid& mesh, const stencil& how, int direction, int pencil,
+                        int begin, int end, int halo) {
+  const int ghosts = how.scheme->ghost_width();
+  const int count = end - begin + 2 * halo;
+  width = u.stride();
+  first_edge = begin - halo;
+  first_row = first_edge - ghosts;
+  pencil_rows(u, mesh, direction, pencil, how.boundary, first_row, end + halo + ghosts, rows);
+  const auto needed = static_cast<std::size_t>(count) * static_cast<std::size_t>(width);
+  if (left.size() < needed) {
+    left.resize(needed);
+    right.resize(needed);
+  }
+  how.scheme->edges(rows.data() + ghosts, count, width, left.data(), right.data());
+}
+
+int block_length(int width) {
+  // Two edge rows per cell in half of a 32 KiB first-level cache; long enough that the two recomputed halo
+  // cells of a block cost little.
+  constexpr int doubles = 2048;
+  return std::clamp(doubles / std::max(width, 1), 8, 256);
+}
+
+}  // namespace apsis

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <apsis/core/aligned.hpp>
+#include <apsis/space/boundary.hpp>
+#include <apsis/space/field.hpp>
+#include <apsis/space/grid.hpp>
+#include <apsis/space/reconstruction.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace apsis {
+
+/// How transport and collision see neighbouring cells.
+struct stencil {
+  std::shared_ptr<const reconstruction> scheme;
+  bool positivity_limiter = false;
+  boundary_kind boundary = boundary_kind::periodic;
+};
+
+/// A few consecutive cells of one pencil with their edge values, small enough to stay in the cache. Reused
+/// from block to block: no allocation once it has grown.
+struct pencil_block {
+  /// Cells begin−halo … end−1+halo of a pencil get edge values. Rows reach the ghost cells of the scheme.
+  void load(const field& u, const grid& mesh, const stencil& how, int direction, int pencil, int begin,
+            int end, int halo);
+
+  const double* row(int cell) const { return rows[static_cast<std::size_t>(cell - first_row)]; }
+  double* left_edge(int cell) { return left.data() + offset(cell); }
+  double* right_edge(int cell) { return right.data() + offset(cell); }
+
+  std::vector<const double*> rows;
+  aligned_vector<double> left, right;
+  int first_row = 0, first_edge = 0, width = 0;
+
+ private:
+  std::size_t offset(int cell) const {
+    return static_cast<std::size_t>(cell - first_edge) * static_cast<std::size_t>(width);
+  }
+};
+
+/// Cells per block for rows of `width` numbers.
+int block_length(int width);
+
+}  // namespace apsis

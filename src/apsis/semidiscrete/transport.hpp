@@ -1,0 +1,40 @@
+#pragma once
+
+#include <apsis/integrate/problem.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/semidiscrete/sweep.hpp>
+
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// T(u) = −Σ_k ∂_xk(v_k u) + S(u) with upwind fluxes of reconstructed edge values. For constant speeds the
+/// operator is the same for cell averages (finite volume) and point values (finite difference).
+class transport {
+ public:
+  transport(const model& equation, const grid& mesh, stencil how);
+
+  /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(u). One evaluation of T, none if every β is 0.
+  /// With the positivity limiter and β max|v|/Δx ≤ α/12 no result is negative, in floating point.
+  void scatter(const field& u, std::span<const target<field, double>> targets) const;
+
+  /// Δt_FE = κ / Σ_k (max|v_k|/Δx_k): κ = 1/12 with the positivity limiter (Zhang & Shu 2010), else 1, which
+  /// for first-order upwind keeps positivity, total variation and entropy.
+  double forward_euler_step() const;
+
+ private:
+  void scatter_weights(const field& u, std::span<const target<field, double>> targets) const;
+  void scatter_direction(const field& u, std::span<const target<field, double>> targets, int direction) const;
+
+  const model& equation_;
+  const grid& mesh_;
+  stencil how_;
+  struct line_speeds {
+    aligned_vector<double> per_cell;  ///< |v|/Δx of every component
+    aligned_vector<double> forward;   ///< 1 where v > 0, else 0
+  };
+  std::vector<line_speeds> speeds_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,30 @@
+#include <apsis/space/reconstruction_registry.hpp>
+
+#include <algorithm>
+
+namespace apsis {
+namespace {
+
+/// Both edges are the cell's own value: with upwind fluxes the first-order upwind scheme, monotone and
+/// entropy-decaying up to CFL 1.
+class upwind1 final : public reconstruction {
+ public:
+  int ghost_width() const override { return 1; }
+  int order() const override { return 1; }
+  void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
+    for (int i = 0; i < count; ++i) {
+      std::copy_n(rows[i], width, left + i * width);
+      std::copy_n(rows[i], width, right + i * width);
+    }
+  }
+};
+
+}  // namespace
+
+extern const reconstruction_entry reconstruction_upwind1;
+const reconstruction_entry reconstruction_upwind1 = {
+    "upwind1", "first order upwind: monotone, positive and entropy-decaying to CFL 1",
+    "Courant, Isaacson, Rees (1952)",
+    []() -> std::unique_ptr<reconstruction> { return std::make_unique<upwind1>(); }};
+
+}  // namespace apsis

@@ -1,0 +1,72 @@
+# The front door. `make run` solves the paper's mixed-regime problem and draws it; `make test` checks everything.
+SHELL  := /bin/bash
+PYTHON ?= /usr/bin/python3
+CORES  := $(shell nproc)
+APSIS  := build/release/app/apsis
+export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
+export CTEST_PARALLEL_LEVEL ?= $(CORES)
+
+FORMATTED = $(shell find src app tests bench examples -name '*.[ch]pp' 2>/dev/null)
+
+.DEFAULT_GOAL := help
+.PHONY: help run program figures test test-all test-slow clang asan bench format format-check tidy clean
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' Makefile
+
+run: program ## packages, program, the mixed-regime problem by both methods and the reference, pictures
+	$(APSIS) run paper/bgk-mixed --out results/bgk-mixed
+	$(APSIS) run paper/bgk-mixed time.method=md-imex-3-2 --out results/bgk-mixed-second-order
+	$(APSIS) run paper/bgk-mixed-reference --out results/bgk-mixed-reference
+	$(MAKE) --no-print-directory figures
+
+figures: ## the pictures again, from the results that are there
+	$(PYTHON) python/apsis_plot.py mixed --second results/bgk-mixed-second-order --third results/bgk-mixed \
+	  --reference results/bgk-mixed-reference --out results
+
+program: ## the program only, in build/release/app
+	@scripts/install-packages.sh run
+	cmake --preset release -DAPSIS_TESTS=OFF >/dev/null
+	cmake --build build/release --target app/apsis
+
+test: ## packages, everything built, every test but the slow ones
+	@scripts/install-packages.sh test
+	cmake --preset release -DAPSIS_TESTS=ON -DAPSIS_BENCH=ON >/dev/null
+	cmake --build build/release
+	ctest --preset release -LE slow
+
+test-slow:
+	ctest --preset release -L slow --no-tests=ignore
+
+test-all: test ## test, and: slow tests, clang, sanitizers, clang-tidy, format
+	@scripts/install-packages.sh dev
+	$(MAKE) --no-print-directory test-slow format-check clang tidy asan
+
+clang: ## everything built by clang-19, without a warning
+	cmake --preset clang >/dev/null
+	cmake --build build/clang
+
+asan: ## tests under the address and undefined-behaviour sanitizers
+	cmake --preset asan >/dev/null
+	cmake --build build/asan
+	ctest --preset asan -LE slow
+
+tidy: ## clang-tidy over the library and the program
+	cmake --preset clang >/dev/null
+	cmake --build build/clang --target app/apsis
+	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app)/.*'
+
+bench: program ## micro benchmarks, as fractions of a measured ceiling
+	@scripts/install-packages.sh test
+	cmake --preset release -DAPSIS_BENCH=ON >/dev/null
+	cmake --build build/release --target apsis_bench
+	build/release/bench/apsis_bench
+
+format: ## clang-format over all sources
+	clang-format-19 -i $(FORMATTED)
+
+format-check:
+	clang-format-19 --dry-run --Werror $(FORMATTED)
+
+clean: ## remove what was built and computed
+	rm -rf build results

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# install-packages.sh GROUP: makes sure that the Debian packages of a group of packages.txt are there.
+# Does nothing, and asks for nothing, when they are; never removes a package.
+set -euo pipefail
+here=$(dirname "$(readlink -f "$0")")
+
+packages_of() {
+  local word
+  while read -r word; do
+    case $word in
+      @*) packages_of "${word#@}" ;;
+      *) echo "$word" ;;
+    esac
+  done < <(awk -v group="$1" '$1 == group { for (i = 2; i <= NF; ++i) print $i }' "$here/packages.txt")
+}
+
+installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+group=${1:-run}
+mapfile -t packages < <(packages_of "$group")
+if [ ${#packages[@]} -eq 0 ]; then
+  echo "install-packages.sh: no group '$group' (packages.txt does not name it) valid: run, test, dev" >&2
+  exit 2
+fi
+if ! command -v dpkg-query >/dev/null; then
+  echo "install-packages.sh: cannot check packages (this is not Debian); provide: ${packages[*]}" >&2
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  installed "$package" || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "install-packages.sh: packages are missing (and neither root nor sudo is at hand) as root run:" \
+      "apt-get install ${missing[*]}" >&2
+    exit 2
+  fi
+  root=(sudo)
+fi
+echo "installing: ${missing[*]}"
+"${root[@]}" apt-get update -qq
+"${root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -qq -y --no-install-recommends --no-remove -o Dpkg::Use-Pty=0 "${missing[@]}" >/dev/null

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/problem.hpp>
+
+#include <cmath>
+#include <concepts>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace apsis {
+
+/// A state that is a row of numbers: std::vector, std::array, an Eigen vector, a class with size() and [].
+template <class State>
+concept array_state = std::copyable<State> && requires(State& u, const State& c) {
+  { c.size() } -> std::integral;
+  { u[c.size()] } -> std::convertible_to<long double>;
+};
+
+/// The type of the numbers of an array_state.
+template <array_state State>
+using state_real = std::remove_cvref_t<decltype(std::declval<State&>()[std::declval<const State&>().size()])>;
+
+/// A system without the part that stands here: u' = Q(u) as newton_problem{no_transport{}, G}.
+struct no_transport {
+  template <class Real, class State>
+  void operator()(Real, const State&, State& out) const {
+    using size_type = decltype(out.size());
+    for (size_type i = 0; i < out.size(); ++i) out[i] = state_real<State>(0);
+  }
+};
+
+/// acc ← (fresh ? 0 : acc) + α u + β f for every target, where f = evaluate() is asked for at most once, and
+/// not at all if every β is 0. evaluate() returns a reference to a state as long as u.
+template <array_state State, class Evaluate>
+void accumulate(std::span<const target<State, state_real<State>>> targets, const State& u,
+                const Evaluate& evaluate) {
+  using real = state_real<State>;
+  using size_type = decltype(u.size());
+  const State* f = nullptr;
+  for (const auto& to : targets)
+    if (to.beta != real(0)) f = &evaluate();
+  for (const auto& to : targets) {
+    const State* transport = to.beta != real(0) ? f : nullptr;
+    State& acc = *to.acc;
+    for (size_type i = 0; i < u.size(); ++i)
+      acc[i] = to.combine(real(acc[i]), real(u[i]), transport ? real((*transport)[i]) : real(0));
+  }
+}
+
+/// Throws numerical_error with index and value at the first number that is not finite.
+template <class Row>
+void require_finite(const Row& row, const std::string& what) {
+  using size_type = decltype(row.size());
+  using std::isfinite;
+  for (size_type i = 0; i < row.size(); ++i)
+    if (!isfinite(row[i]))
+      throw numerical_error(what + " is not finite (component " + std::to_string(i) +
+                                "); reduce the time step, or check the functions of the problem",
+                            {-1, std::nan(""), -1, static_cast<double>(row[i])});
+}
+
+}  // namespace apsis

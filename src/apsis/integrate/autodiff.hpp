@@ -1,0 +1,82 @@
+#pragma once
+
+#include <boost/math/differentiation/autodiff.hpp>
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+
+/// First derivatives: x₀ + x₁ s with s² = 0.
+template <class Real>
+using dual = boost::math::differentiation::autodiff_fvar<Real, 1>;
+
+/// Mixed second derivatives: x₀₀ + x₁₀ s + x₀₁ t + x₁₁ s t with s² = t² = 0.
+template <class Real>
+using nested_dual = boost::math::differentiation::autodiff_fvar<Real, 1, 1>;
+
+/// Exact derivatives of u' = G(u) along given directions, where g(u, out) sets out ← G(u) for any scalar
+/// type: both are std::span of Real, dual<Real> or nested_dual<Real>. Elementary functions must be called
+/// so that they are found for these types: `using std::sin; out[0] = sin(u[0]);`.
+template <class Real, class G>
+class vector_field {
+ public:
+  explicit vector_field(G g) : g_(std::move(g)) {}
+
+  /// out ← G(u).
+  void value(std::span<const Real> u, std::span<Real> out) { g_(u, out); }
+
+  /// g ← G(u), g_dot ← Ġ(u) = G'(u) G(u), the second time derivative of a solution.
+  void time_derivatives(std::span<const Real> u, std::span<Real> g, std::span<Real> g_dot) {
+    value(u, g);
+    first_order(u, g);
+    for (std::size_t i = 0; i < u.size(); ++i) g_dot[i] = out1_[i].derivative(1);
+  }
+
+  /// jx ← G'(u) x.
+  void jacobian_product(std::span<const Real> u, std::span<const Real> x, std::span<Real> jx) {
+    first_order(u, x);
+    for (std::size_t i = 0; i < u.size(); ++i) jx[i] = out1_[i].derivative(1);
+  }
+
+  /// jx ← G'(u) x and kx ← Ġ'(u) x = (G'(u)² + G''(u)[·, G]) x: the coefficient of s t in
+  /// G(u + s x + t G(u + s x)). One evaluation in dual and one in nested dual numbers.
+  void second_product(std::span<const Real> u, std::span<const Real> x, std::span<Real> jx,
+                      std::span<Real> kx) {
+    jacobian_product(u, x, jx);
+    const std::size_t n = u.size();
+    const nested_dual<Real> t(Real(0), true);              // the inner variable
+    const nested_dual<Real> s(dual<Real>(Real(0), true));  // a dual becomes the outer variable
+    const nested_dual<Real> st = s * t;
+    in2_.resize(n);
+    out2_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Real g = out1_[i].derivative(0);
+      in2_[i] = s * x[i] + t * g + st * jx[i] + u[i];
+    }
+    const std::span<const nested_dual<Real>> in(in2_);
+    std::span<nested_dual<Real>> out(out2_);
+    g_(in, out);
+    for (std::size_t i = 0; i < n; ++i) kx[i] = out2_[i].derivative(1, 1);
+  }
+
+ private:
+  /// out1_ ← G(u + s x).
+  void first_order(std::span<const Real> u, std::span<const Real> x) {
+    in1_.resize(u.size());
+    out1_.resize(u.size());
+    const dual<Real> s(Real(0), true);
+    for (std::size_t i = 0; i < u.size(); ++i) in1_[i] = s * x[i] + u[i];
+    const std::span<const dual<Real>> in(in1_);
+    std::span<dual<Real>> out(out1_);
+    g_(in, out);
+  }
+
+  G g_;
+  std::vector<dual<Real>> in1_, out1_;
+  std::vector<nested_dual<Real>> in2_, out2_;
+};
+
+}  // namespace apsis

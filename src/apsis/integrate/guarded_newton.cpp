@@ -1,0 +1,269 @@
+#include <apsis/integrate/guarded_newton.hpp>
+
+#include <apsis/core/errors.hpp>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <Eigen/Dense>
+#include <unsupported/Eigen/IterativeSolvers>
+
+namespace apsis::detail {
+
+/// R'(v) as Eigen's iterative solvers want it: something that can be multiplied by a vector.
+template <class Real>
+class newton_operator;
+
+}  // namespace apsis::detail
+
+namespace Eigen::internal {
+template <class Real>
+struct traits<apsis::detail::newton_operator<Real>> : traits<SparseMatrix<Real>> {};
+}  // namespace Eigen::internal
+
+namespace apsis::detail {
+
+template <class Real>
+using column = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+template <class Real>
+std::span<Real> as_span(column<Real>& x) {
+  return {x.data(), static_cast<std::size_t>(x.size())};
+}
+template <class Real>
+std::span<const Real> as_span(const column<Real>& x) {
+  return {x.data(), static_cast<std::size_t>(x.size())};
+}
+
+template <class Real>
+class newton_operator : public Eigen::EigenBase<newton_operator<Real>> {
+ public:
+  using Scalar = Real;
+  using RealScalar = Real;
+  using StorageIndex = int;
+  enum { ColsAtCompileTime = Eigen::Dynamic, MaxColsAtCompileTime = Eigen::Dynamic, IsRowMajor = false };
+
+  newton_operator(stage_equation<Real>& equation, const column<Real>& v) : equation_(equation), v_(v) {}
+  Eigen::Index rows() const { return v_.size(); }
+  Eigen::Index cols() const { return v_.size(); }
+
+  template <class Rhs>
+  Eigen::Product<newton_operator, Rhs, Eigen::AliasFreeProduct> operator*(
+      const Eigen::MatrixBase<Rhs>& x) const {
+    return {*this, x.derived()};
+  }
+
+  column<Real> apply(const column<Real>& x) const {
+    column<Real> y(x.size()), z(x.size());
+    equation_.differential(as_span(v_), as_span(x), as_span(y), as_span(z));
+    return x + y + z;
+  }
+
+ private:
+  stage_equation<Real>& equation_;
+  const column<Real>& v_;
+};
+
+}  // namespace apsis::detail
+
+namespace Eigen::internal {
+template <class Real, class Rhs>
+struct generic_product_impl<apsis::detail::newton_operator<Real>, Rhs, SparseShape, DenseShape, GemvProduct>
+    : generic_product_impl_base<apsis::detail::newton_operator<Real>, Rhs,
+                                generic_product_impl<apsis::detail::newton_operator<Real>, Rhs>> {
+  using Scalar = Real;
+  template <class Dest>
+  static void scaleAndAddTo(Dest& dest, const apsis::detail::newton_operator<Real>& lhs, const Rhs& rhs,
+                            const Scalar& alpha) {
+    dest.noalias() += alpha * lhs.apply(rhs);
+  }
+};
+}  // namespace Eigen::internal
+
+namespace apsis {
+namespace {
+
+using detail::as_span;
+using detail::column;
+
+template <class Real>
+using square = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+
+template <class Real>
+constexpr Real singular_below = Real(45) * std::numeric_limits<Real>::epsilon();
+
+[[noreturn]] void fail_singular(int iteration, double measure) {
+  throw numerical_error(fmt::format(
+      "the stage equation is singular to working precision (relative smallest singular value {:.2g} "
+      "at Newton iteration {}; a stage with d = 0 is singular where Δt λ = ±i/√|ḋ| for an "
+      "eigenvalue λ of G'); change the time step, or use a method with d > 0 at every stage",
+      measure, iteration));
+}
+
+/// Solves R'(v) Δ = −r by LU. Rows and columns are scaled by the terms of R' before they cancel, so that the
+/// test for singularity sees cancellation and neither stiffness nor units.
+template <class Real>
+column<Real> dense_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
+                        int iteration) {
+  const Eigen::Index n = v.size();
+  square<Real> m(n, n), terms(n, n);
+  column<Real> x = column<Real>::Zero(n), y(n), z(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    x[k] = Real(1);
+    equation.differential(as_span<Real>(v), as_span<Real>(std::as_const(x)), as_span(y), as_span(z));
+    m.col(k) = x + y + z;
+    terms.col(k) = x + y.cwiseAbs() + z.cwiseAbs();
+    x[k] = Real(0);
+  }
+  if (!m.allFinite())
+    throw numerical_error(fmt::format(
+        "the derivative of the stage equation is not finite (Newton iteration {}); check that G is "
+        "differentiable on the admissible set",
+        iteration));
+  const column<Real> rows = terms.rowwise().maxCoeff().cwiseInverse();
+  const column<Real> cols = (rows.asDiagonal() * terms).colwise().maxCoeff().cwiseInverse().transpose();
+  const square<Real> scaled = rows.asDiagonal() * m * cols.asDiagonal();
+  const Real norm = scaled.cwiseAbs().colwise().sum().maxCoeff();
+  const Eigen::PartialPivLU<square<Real>> lu(scaled);
+  const Real smallest = norm > Real(0) ? lu.rcond() * norm : Real(0);
+  if (!(smallest >= singular_below<Real>)) fail_singular(iteration, static_cast<double>(smallest));
+  return -(cols.asDiagonal() * lu.solve(rows.asDiagonal() * r));
+}
+
+/// The same by GMRES; the linear system needs only a few digits, Newton's method repeats it.
+template <class Real>
+column<Real> krylov_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
+                         int iteration) {
+  const detail::newton_operator<Real> jacobian(equation, v);
+  Eigen::GMRES<detail::newton_operator<Real>, Eigen::IdentityPreconditioner> gmres(jacobian);
+  gmres.set_restart(60);
+  gmres.setMaxIterations(600);
+  gmres.setTolerance(Real(1e-6));
+  // The right-hand side is brought to size 1: GMRES squares it, and small residuals would underflow.
+  const Real size = r.template lpNorm<Eigen::Infinity>();
+  const column<Real> step = gmres.solve(-r / size) * size;
+  column<Real> y(v.size()), z(v.size());
+  equation.differential(as_span<Real>(v), as_span<Real>(step), as_span(y), as_span(z));
+  const Real applied = (step + y + z).norm();
+  const Real terms = (step.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs()).norm();
+  if (applied < singular_below<Real> * terms) fail_singular(iteration, static_cast<double>(applied / terms));
+  if (!step.allFinite() || !((step + y + z + r).norm() <= Real(0.1) * r.norm()))
+    throw numerical_error(fmt::format(
+        "GMRES does not solve the linear system of Newton iteration {} (nearly singular, or too stiff "
+        "without a preconditioner); reduce the time step, or use linear_solver::dense",
+        iteration));
+  return step;
+}
+
+template <class Real>
+class newton {
+ public:
+  newton(stage_equation<Real>& equation, std::span<Real> start, const newton_options& options)
+      : equation_(equation),
+        options_(options),
+        v_(Eigen::Map<column<Real>>(start.data(), static_cast<Eigen::Index>(start.size()))),
+        r_(v_.size()),
+        trial_(v_.size()),
+        trial_r_(v_.size()) {}
+
+  newton_report solve(std::span<Real> out) {
+    inside_ = equation_.admissible(as_span<Real>(std::as_const(v_)));
+    norm_ = evaluate(v_, r_);
+    if (!std::isfinite(norm_)) fail_at_start();
+    while (norm_ > Real(0) && iterate()) {
+    }
+    if (!inside_)
+      throw numerical_error(
+          "the stage equation has no admissible root near its explicit part (Newton's method ends outside "
+          "the admissible set); reduce the time step, or use an unconditionally SSP method",
+          {-1, std::nan(""), -1, static_cast<double>(v_[0])});
+    Eigen::Map<column<Real>>(out.data(), v_.size()) = v_;
+    return {iteration_, static_cast<double>(norm_), static_cast<double>(step_)};
+  }
+
+ private:
+  Real evaluate(const column<Real>& v, column<Real>& r) {
+    equation_.residual(as_span<Real>(v), as_span(r));
+    return r.allFinite() ? r.norm() : std::numeric_limits<Real>::infinity();
+  }
+
+  /// One Newton step with backtracking; false when v is a root to round-off.
+  bool iterate() {
+    if (++iteration_ > options_.max_iterations) fail_to_converge();
+    const bool dense =
+        options_.solver == linear_solver::dense ||
+        (options_.solver == linear_solver::automatic && equation_.size() <= options_.dense_limit);
+    const column<Real> delta = dense ? dense_step<Real>(equation_, v_, r_, iteration_)
+                                     : krylov_step<Real>(equation_, v_, r_, iteration_);
+    const Real size = v_.template lpNorm<Eigen::Infinity>();
+    step_ = delta.template lpNorm<Eigen::Infinity>() / (size > Real(0) ? size : Real(1));
+    // Near a root a full step reduces R quadratically; once that ends, what is left is rounding.
+    const bool near = step_ <= std::sqrt(std::numeric_limits<Real>::epsilon());
+    for (Real t(1); t >= Real(0x1p-40); t /= Real(2)) {
+      trial_ = v_ + t * delta;
+      const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));
+      if (inside_ && !admissible) continue;
+      const Real norm = evaluate(trial_, trial_r_);
+      if (norm <= (Real(1) - Real(1e-4) * t) * norm_) {
+        const bool stagnates = near && norm > norm_ / Real(2);
+        v_.swap(trial_);
+        r_.swap(trial_r_);
+        norm_ = norm;
+        inside_ = admissible;
+        return !stagnates;
+      }
+      if (near) return false;
+    }
+    if (near) return false;
+    fail_to_reduce();
+  }
+
+  [[noreturn]] void fail_at_start() {
+    Eigen::Index worst = 0;
+    while (worst + 1 < r_.size() && std::isfinite(r_[worst]) && std::isfinite(v_[worst])) ++worst;
+    throw numerical_error(
+        fmt::format("the explicit part of a stage, or G or Ġ there, is not finite (component "
+                    "{}); reduce the time step, or check G",
+                    worst),
+        {-1, std::nan(""), -1, static_cast<double>(v_[worst])});
+  }
+
+  [[noreturn]] void fail_to_reduce() {
+    throw numerical_error(
+        fmt::format("Newton's method cannot reduce the residual {:.3g} of the stage equation any further "
+                    "{}(iteration {}): "
+                    "there seems to be no {}root; reduce the time step, or use an unconditionally SSP method",
+                    static_cast<double>(norm_), inside_ ? "inside the admissible set " : "", iteration_,
+                    inside_ ? "admissible " : ""));
+  }
+
+  [[noreturn]] void fail_to_converge() {
+    throw numerical_error(fmt::format(
+        "Newton's method does not converge on the stage equation (residual {:.3g}, relative step {:.3g} "
+        "after {} iterations); reduce the time step, or allow more iterations",
+        static_cast<double>(norm_), static_cast<double>(step_), options_.max_iterations));
+  }
+
+  stage_equation<Real>& equation_;
+  newton_options options_;
+  column<Real> v_, r_, trial_, trial_r_;
+  Real norm_ = Real(0), step_ = Real(0);
+  int iteration_ = 0;
+  bool inside_ = true;
+};
+
+}  // namespace
+
+template <class Real>
+newton_report guarded_newton(stage_equation<Real>& equation, std::span<Real> v,
+                             const newton_options& options) {
+  return newton<Real>(equation, v, options).solve(v);
+}
+
+template newton_report guarded_newton(stage_equation<double>&, std::span<double>, const newton_options&);
+template newton_report guarded_newton(stage_equation<long double>&, std::span<long double>,
+                                      const newton_options&);
+
+}  // namespace apsis

@@ -1,0 +1,163 @@
+#pragma once
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/array_state.hpp>
+#include <apsis/integrate/autodiff.hpp>
+#include <apsis/integrate/guarded_newton.hpp>
+#include <apsis/integrate/problem.hpp>
+
+#include <functional>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+
+/// u' = F(t, u) + G(u) for any smooth G: G' and Ġ = G'G come from automatic differentiation and the stage
+/// v = u + a G(v) + b Ġ(v) from a guarded Newton method (guarded_newton.hpp). F is explicit, G implicit; all
+/// quantities are dimensionless. The functions, with N = u.size():
+///   f(t, u, out)   out ← F(t, u) on states; no_transport{} where there is none
+///   g(u, out)      out ← G(u) for any scalar type, on std::span of N numbers:
+///                  [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; }
+/// newton_problem{f, g} has the state std::vector<double>, make_newton_problem<State>(f, g) any other.
+///
+/// A stage with d = 0 and ḋ < 0 is singular where Δt λ = ±i/√|ḋ| for an eigenvalue λ of G'. That cannot
+/// happen for real negative spectra (relaxation); for any other G it is detected and reported.
+template <class F, class G, array_state State = std::vector<double>>
+class newton_problem {
+ public:
+  using state = State;
+  using real = state_real<State>;
+
+  newton_problem(F f, G g, newton_options options = {})
+      : f_(std::move(f)), equation_(std::move(g)), options_(options) {}
+
+  /// Δt_FE(t, u) of F for the property to be kept; without it nothing limits the step.
+  newton_problem& with_forward_euler_step(std::function<real(real, const State&)> step) {
+    forward_euler_ = std::move(step);
+    return *this;
+  }
+
+  /// The set Newton's iterates do not leave, e.g. positive states; stages outside it are errors.
+  newton_problem& with_admissible(std::function<bool(std::span<const real>)> admissible) {
+    equation_.admissible_set = std::move(admissible);
+    return *this;
+  }
+
+  void scatter(real t, const State& u, std::span<const target<State, real>> targets) {
+    accumulate<State>(targets, u, [&]() -> const State& {
+      work_ = u;
+      f_(t, u, work_);
+      return work_;
+    });
+  }
+
+  void scatter_collision(real, const State& u, std::span<const target<State, real>> targets) {
+    accumulate<State>(targets, u, [&]() -> const State& {
+      load(u);
+      equation_.field.value(v_, equation_.g);
+      work_ = u;
+      unload(equation_.g, work_);
+      return work_;
+    });
+  }
+
+  /// u ← v. Throws numerical_error as guarded_newton does; u is then unchanged.
+  void collide(real, real a, real b, State& u) {
+    load(u);
+    if (a == real(0) && b == real(0)) {
+      require_finite(u, "a stage");
+      if (!equation_.admissible(v_))
+        throw numerical_error(
+            "a stage is not admissible (the method or the time step does not keep it so); "
+            "reduce the time step, or use an SSP method");
+      return;
+    }
+    equation_.a = a;
+    equation_.b = b;
+    equation_.explicit_part = v_;
+    report_ = guarded_newton<real>(equation_, v_, options_);
+    unload(v_, u);
+  }
+
+  real forward_euler_step(real t, const State& u) const {
+    return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();
+  }
+
+  /// How the last stage was solved.
+  const newton_report& report() const { return report_; }
+
+ private:
+  struct equation final : stage_equation<real> {
+    explicit equation(G callable) : field(std::move(callable)) {}
+
+    std::size_t size() const override { return explicit_part.size(); }
+    bool admissible(std::span<const real> v) override { return !admissible_set || admissible_set(v); }
+
+    void residual(std::span<const real> v, std::span<real> r) override {
+      if (b != real(0)) {
+        field.time_derivatives(v, g, g_dot);
+      } else {
+        field.value(v, g);
+      }
+      for (std::size_t i = 0; i < v.size(); ++i) {
+        r[i] = (v[i] - explicit_part[i]) - a * g[i];
+        if (b != real(0)) r[i] -= b * g_dot[i];
+      }
+    }
+
+    void differential(std::span<const real> v, std::span<const real> x, std::span<real> y,
+                      std::span<real> z) override {
+      if (b != real(0)) {
+        field.second_product(v, x, y, z);
+      } else {
+        field.jacobian_product(v, x, y);
+      }
+      for (std::size_t i = 0; i < v.size(); ++i) {
+        y[i] *= -a;
+        z[i] = b != real(0) ? -b * z[i] : real(0);
+      }
+    }
+
+    vector_field<real, G> field;
+    std::function<bool(std::span<const real>)> admissible_set;
+    real a = real(0), b = real(0);
+    std::vector<real> explicit_part, g, g_dot;
+  };
+
+  void load(const State& u) {
+    using size_type = decltype(u.size());
+    const std::size_t n = static_cast<std::size_t>(u.size());
+    v_.resize(n);
+    equation_.g.resize(n);
+    equation_.g_dot.resize(n);
+    for (std::size_t i = 0; i < n; ++i) v_[i] = u[static_cast<size_type>(i)];
+  }
+
+  static void unload(const std::vector<real>& from, State& u) {
+    using size_type = decltype(u.size());
+    for (std::size_t i = 0; i < from.size(); ++i) u[static_cast<size_type>(i)] = from[i];
+  }
+
+  F f_;
+  equation equation_;
+  newton_options options_;
+  newton_report report_;
+  std::function<real(real, const State&)> forward_euler_;
+  State work_{};
+  std::vector<real> v_;
+};
+
+template <class F, class G>
+newton_problem(F, G) -> newton_problem<F, G>;
+template <class F, class G>
+newton_problem(F, G, newton_options) -> newton_problem<F, G>;
+
+/// The same for a state other than std::vector<double>.
+template <array_state State, class F, class G>
+auto make_newton_problem(F f, G g, newton_options options = {}) {
+  return newton_problem<F, G, State>(std::move(f), std::move(g), options);
+}
+
+}  // namespace apsis

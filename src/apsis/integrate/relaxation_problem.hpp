@@ -1,0 +1,137 @@
+#pragma once
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/relaxation_weights.hpp>
+#include <apsis/integrate/array_state.hpp>
+#include <apsis/integrate/problem.hpp>
+
+#include <functional>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+
+/// u' = T(t, u) + C(ω) (E(ω) − u)/ε with conserved moments ω = ℛu, ℛE(ω) = ω (paper, Properties 3–5): the
+/// simplest way in. Every stage v = u + a Q(v) + b Q̇(v) is a convex combination of u and E, in closed form,
+/// because Q̇ = −(C/ε) Q and ω does not change:  v = (u + μE)/(1 + μ), μ = a C/ε + |b| (C/ε)². It is
+/// nonnegative wherever u and E are, in floating point too, and for ε = 0 it is E.
+///
+/// All quantities are dimensionless. The functions, with N = u.size():
+///   transport(t, u, out)   out ← T(t, u), N numbers; `out` comes with N numbers of any content
+///   moments(u)             ω of any type, a number or a struct
+///   equilibrium(ω, out)    out ← E(ω), N numbers
+///   rate(ω)                C(ω) ≥ 0
+/// relaxation_problem{…} has the state std::vector<double>, make_relaxation_problem<State>(…) any other.
+template <class Transport, class Moments, class Equilibrium, class Rate,
+          array_state State = std::vector<double>>
+class relaxation_problem {
+ public:
+  using state = State;
+  using real = state_real<State>;
+
+  /// Throws input_error unless ε ≥ 0 is finite.
+  relaxation_problem(Transport transport, Moments moments, Equilibrium equilibrium, Rate rate, real epsilon)
+      : transport_(std::move(transport)),
+        moments_(std::move(moments)),
+        equilibrium_(std::move(equilibrium)),
+        rate_(std::move(rate)),
+        epsilon_(epsilon) {
+    if (!(epsilon >= real(0)) || !(epsilon <= std::numeric_limits<real>::max()))
+      throw input_error("epsilon is negative or not finite; give epsilon ≥ 0 (0 is the limit scheme)");
+  }
+
+  /// Δt_FE(t, u) of the transport for the property to be kept; without it nothing limits the step.
+  relaxation_problem& with_forward_euler_step(std::function<real(real, const State&)> step) {
+    forward_euler_ = std::move(step);
+    return *this;
+  }
+
+  /// Every stage value must satisfy this, or the step ends with a numerical_error.
+  relaxation_problem& with_admissible(std::function<bool(const State&)> admissible) {
+    admissible_ = std::move(admissible);
+    return *this;
+  }
+
+  void scatter(real t, const State& u, std::span<const target<State, real>> targets) {
+    accumulate<State>(targets, u, [&]() -> const State& {
+      work_ = u;
+      transport_(t, u, work_);
+      return work_;
+    });
+  }
+
+  /// u ← v. Throws numerical_error if u or v is not finite or not admissible, or the rate is not one.
+  void collide(real, real a, real b, State& u) {
+    require_finite(u, "the explicit part of a stage");
+    if (a != real(0) || b != real(0)) {
+      const auto weights = relax_weights(a, b, relaxation(u), epsilon_);
+      using size_type = decltype(u.size());
+      for (size_type i = 0; i < u.size(); ++i) u[i] = weights.stay * u[i] + weights.relax * work_[i];
+      require_finite(u, "a stage");
+    }
+    if (admissible_ && !admissible_(u))
+      throw numerical_error(
+          "a stage is not admissible (the method or the time step does not keep it so); "
+          "use Δt ≤ r Δt_FE with an SSP method");
+  }
+
+  /// Throws input_error for ε = 0, where Q is not defined off equilibrium.
+  void scatter_collision(real, const State& u, std::span<const target<State, real>> targets) {
+    accumulate<State>(targets, u, [&]() -> const State& {
+      if (epsilon_ == real(0))
+        throw input_error(
+            "epsilon = 0 and the method evaluates Q explicitly (Q is infinite off equilibrium); "
+            "choose a method of type A, which is implicit at every stage");
+      const real k = relaxation(u) / epsilon_;
+      using size_type = decltype(u.size());
+      for (size_type i = 0; i < u.size(); ++i) work_[i] = k * (work_[i] - u[i]);
+      return work_;
+    });
+  }
+
+  real forward_euler_step(real t, const State& u) const {
+    return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();
+  }
+
+  real epsilon() const { return epsilon_; }
+
+ private:
+  /// work_ ← E(ℛu); returns C(ℛu).
+  real relaxation(const State& u) {
+    const auto omega = moments_(u);
+    const real rate = rate_(omega);
+    if (!(rate >= real(0)) || !(rate <= std::numeric_limits<real>::max()))
+      throw numerical_error(
+          "the relaxation rate is negative or not finite (the moments are not admissible); "
+          "reduce the time step, or check the functions of the problem",
+          {-1, std::nan(""), -1, static_cast<double>(rate)});
+    work_ = u;
+    equilibrium_(omega, work_);
+    return rate;
+  }
+
+  Transport transport_;
+  Moments moments_;
+  Equilibrium equilibrium_;
+  Rate rate_;
+  real epsilon_;
+  std::function<real(real, const State&)> forward_euler_;
+  std::function<bool(const State&)> admissible_;
+  State work_{};
+};
+
+template <class Transport, class Moments, class Equilibrium, class Rate>
+relaxation_problem(Transport, Moments, Equilibrium, Rate, double)
+    -> relaxation_problem<Transport, Moments, Equilibrium, Rate>;
+
+/// The same for a state other than std::vector<double>; throws as the constructor does.
+template <array_state State, class Transport, class Moments, class Equilibrium, class Rate>
+auto make_relaxation_problem(Transport transport, Moments moments, Equilibrium equilibrium, Rate rate,
+                             state_real<State> epsilon) {
+  return relaxation_problem<Transport, Moments, Equilibrium, Rate, State>(
+      std::move(transport), std::move(moments), std::move(equilibrium), std::move(rate), epsilon);
+}
+
+}  // namespace apsis

@@ -1,0 +1,412 @@
+#include <apsis/config/case.hpp>
+#include <apsis/config/case_schema.hpp>
+#include <apsis/config/case_text.hpp>
+#include <apsis/config/expression.hpp>
+#include <apsis/core/embedded.hpp>
+#include <apsis/core/suggest.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+const std::vector<std::string>& step_keys() {
+  static const std::vector<std::string> keys = {"time.dt", "time.cfl", "time.safety"};
+  return keys;
+}
+
+/// From flat keys to a case: one pass over the schema, then what one key alone cannot decide.
+class resolver {
+ public:
+  resolver(case_text text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
+
+  case_config resolve() {
+    config_.source = file_;
+    check_tables();
+    find_the_model();
+    check_known();
+    for (const case_key& key : case_schema()) take(key);
+    if (config_.model.initial.empty() && !model_->initial.empty())
+      config_.model.initial = model_->initial.front();
+    take_parameters();
+    check_together();
+    return config_;
+  }
+
+ private:
+  const raw_value* find(const std::string& path) const {
+    const auto found = text_.values.find(path);
+    return found == text_.values.end() ? nullptr : &found->second;
+  }
+
+  // Where something is missing: the head of the table in which it should stand, or the first line.
+  source_place table_place(const std::string& path) const {
+    const auto found = text_.tables.find(path.substr(0, path.find('.')));
+    return found != text_.tables.end() ? found->second : source_place{file_, 1, 1};
+  }
+
+  [[noreturn]] static void wrong(const raw_value& raw, const std::string& path, const std::string& why,
+                                 const std::string& advice) {
+    throw input_error(raw.place, fmt::format("'{}' is {} ({}) {}", path, raw.what, why, advice));
+  }
+
+  void check_tables() const {
+    std::vector<std::string> names = {"model", "space", "velocity", "time", "output"};
+    for (const auto& [name, place] : text_.tables)
+      if (std::find(names.begin(), names.end(), name) == names.end())
+        throw input_error(place, fmt::format("unknown table [{}] (a case has no such table) {}", shown(name),
+                                             suggest(name, names)));
+    for (const auto& name : names)
+      if (const raw_value* raw = find(name))
+        wrong(*raw, name, "it is a table", fmt::format("write [{}]", name));
+  }
+
+  void find_the_model() {
+    for (const case_key& key : case_schema())
+      if (key.path == "model.name") take(key);
+    model_ = find_model(config_.model.name);
+  }
+
+  std::vector<std::string> valid_paths() const {
+    std::vector<std::string> paths;
+    for (const case_key& key : case_schema())
+      if (applies(key, *model_)) paths.push_back(key.path);
+    for (const model_parameter& p : model_->parameters) paths.push_back("model." + p.name);
+    return paths;
+  }
+
+  void check_known() const {
+    const auto valid = valid_paths();
+    for (const auto& [path, raw] : text_.values) {
+      if (std::find(valid.begin(), valid.end(), path) != valid.end()) continue;
+      for (const case_key& key : case_schema())
+        if (key.path == path)
+          throw input_error(raw.place, fmt::format("key '{}' is not used (model '{}' {}) remove it", path,
+                                                   model_->name, unused_because(key.scope)));
+      throw input_error(raw.place, fmt::format("unknown key '{}' (no such key for model '{}') {}",
+                                               shown(path), model_->name, suggest_path(path, valid)));
+    }
+  }
+
+  static std::string unused_because(key_scope scope) {
+    switch (scope) {
+      case key_scope::space:
+        return "has no space";
+      case key_scope::velocity:
+        return "has no velocity grid";
+      default:
+        return "has no epsilon";
+    }
+  }
+
+  // The list of valid keys is that of the table: the whole list is what `apsis show case` is for.
+  static std::string suggest_path(const std::string& path, const std::vector<std::string>& valid) {
+    std::vector<std::string> same_table;
+    const std::string table = path.substr(0, path.find('.') + 1);
+    for (const auto& candidate : valid)
+      if (!table.empty() && candidate.rfind(table, 0) == 0) same_table.push_back(candidate);
+    if (!same_table.empty()) return suggest(path, same_table);
+    const std::string near = nearest(path, valid);
+    return near.empty() ? "see: apsis show case"
+                        : fmt::format("did you mean '{}'? see: apsis show case", near);
+  }
+
+  void take(const case_key& key) {
+    if (model_ != nullptr && !applies(key, *model_)) return;
+    const raw_value* raw = find(key.path);
+    if (raw == nullptr) {
+      if (key.required)
+        throw input_error(table_place(key.path),
+                          fmt::format("key '{}' is missing ({}) add it, for example: {}", key.path,
+                                      model_ == nullptr ? "every case needs it"
+                                                        : fmt::format("model '{}' needs it", model_->name),
+                                      example(key)));
+      return;
+    }
+    key.store(config_, convert(key, *raw));
+  }
+
+  std::string example(const case_key& key) const {
+    const std::string name = key.path.substr(key.path.find('.') + 1);
+    if (key.choices != nullptr) {
+      const auto names = key.choices(config_);
+      return fmt::format("{} = \"{}\"", name, names.empty() ? "" : names.front());
+    }
+    return fmt::format("{} = {}", name, key.type == key_type::integer ? "100" : "1.0");
+  }
+
+  case_value convert(const case_key& key, const raw_value& raw) const {
+    const auto type_error = [&]() {
+      wrong(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+    };
+    switch (key.type) {
+      case key_type::integer:
+        if (!std::holds_alternative<long>(raw.value)) type_error();
+        check_range(key, raw, static_cast<double>(std::get<long>(raw.value)));
+        return std::get<long>(raw.value);
+      case key_type::number:
+        return number(key, raw, key.path);
+      case key_type::text:
+        if (!std::holds_alternative<std::string>(raw.value)) type_error();
+        check_choice(key, raw);
+        return std::get<std::string>(raw.value);
+      case key_type::formula:
+        return formula(key, raw);
+      case key_type::text_list:
+        return texts(key, raw);
+      case key_type::number_pair:
+        return pair(key, raw);
+    }
+    return {};
+  }
+
+  static std::string type_advice(key_type type) {
+    switch (type) {
+      case key_type::integer:
+        return "write for example 100";
+      case key_type::number:
+        return "write for example 0.5";
+      case key_type::text:
+        return "put it in quotes";
+      case key_type::formula:
+        return "write for example 1e-3 or \"1e-3 + x^2\"";
+      case key_type::text_list:
+        return "write for example [\"rho\", \"u\"]";
+      case key_type::number_pair:
+        return "write for example [0.0, 2.0]";
+    }
+    return "";
+  }
+
+  static double as_number(const raw_value& raw, const std::string& path, const std::string& needed) {
+    double x = 0.0;
+    if (const auto* integer = std::get_if<long>(&raw.value))
+      x = static_cast<double>(*integer);
+    else if (const auto* real = std::get_if<double>(&raw.value))
+      x = *real;
+    else
+      wrong(raw, path, needed + " is needed", type_advice(key_type::number));
+    if (!std::isfinite(x)) wrong(raw, path, "it must be finite", "give a finite number");
+    return x;
+  }
+
+  static void check_range(const case_key& key, const raw_value& raw, double x) {
+    const bool low = key.lowest_excluded ? x > key.lowest : x >= key.lowest;
+    if (!low || x > key.highest)
+      wrong(raw, key.path, "it must be " + range_text(key), "change it to a value in this range");
+  }
+
+  static double number(const case_key& key, const raw_value& raw, const std::string& path) {
+    const double x = as_number(raw, path, type_text(key_type::number));
+    check_range(key, raw, x);
+    return x;
+  }
+
+  void check_choice(const case_key& key, const raw_value& raw) const {
+    if (key.choices == nullptr) return;
+    const auto names = key.choices(config_);
+    const auto& name = std::get<std::string>(raw.value);
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      wrong(raw, key.path, "there is no such name", suggest(name, names));
+  }
+
+  std::string formula(const case_key& key, const raw_value& raw) const {
+    if (const auto* text = std::get_if<std::string>(&raw.value)) return *text;
+    if (std::holds_alternative<long>(raw.value) || std::holds_alternative<double>(raw.value))
+      return fmt::format("{}", number(key, raw, key.path));
+    wrong(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+  }
+
+  static std::vector<std::string> texts(const case_key& key, const raw_value& raw) {
+    std::vector<std::string> out;
+    const auto* items = std::get_if<raw_value::list>(&raw.value);
+    if (items == nullptr) wrong(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+    for (const auto& item : *items) {
+      if (!std::holds_alternative<std::string>(item.value))
+        wrong(item, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+      out.push_back(std::get<std::string>(item.value));
+    }
+    return out;
+  }
+
+  static std::array<double, 2> pair(const case_key& key, const raw_value& raw) {
+    const auto* items = std::get_if<raw_value::list>(&raw.value);
+    if (items == nullptr || items->size() != 2)
+      wrong(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+    return {as_number((*items)[0], key.path, type_text(key.type)),
+            as_number((*items)[1], key.path, type_text(key.type))};
+  }
+
+  void take_parameters() {
+    for (const model_parameter& p : model_->parameters) {
+      double value = p.value;
+      if (const raw_value* raw = find("model." + p.name)) {
+        value = as_number(*raw, "model." + p.name, type_text(key_type::number));
+        if (value < p.lowest || value > p.highest)
+          wrong(*raw, "model." + p.name,
+                fmt::format("it must be from {} to {}: {}", p.lowest, p.highest, p.doc),
+                "change it to a value in this range");
+      }
+      config_.model.parameters[p.name] = value;
+    }
+  }
+
+  void check_together() const {
+    check_step_rule();
+    if (model_->has_space) check_mesh();
+    if (model_->has_epsilon) check_epsilon();
+    check_fields();
+    const double snapshots = config_.output.every > 0.0 ? config_.time.end / config_.output.every : 0.0;
+    if (snapshots > 1e5)
+      wrong(*find("output.every"), "output.every",
+            fmt::format("that makes {:.3g} snapshots, at most 100000", snapshots), "give a longer interval");
+  }
+
+  void check_step_rule() const {
+    std::vector<std::string> given, valid;
+    for (const auto& key : step_keys()) {
+      if (find(key) != nullptr) given.push_back(key);
+      if (model_->has_space || key == "time.dt") valid.push_back(key);
+    }
+    if (given.empty())
+      throw input_error(table_place("time.dt"),
+                        fmt::format("no step size is given (one of {} is needed) add for example {}",
+                                    fmt::format("{}", fmt::join(valid, ", ")),
+                                    valid.size() > 1 ? "safety = 0.5" : "dt = 0.01"));
+    if (given.size() > 1)
+      throw input_error(find(given[1])->place,
+                        fmt::format("'{}' conflicts with '{}' (exactly one of {} sets the step) "
+                                    "remove all but one",
+                                    given[1], given[0], fmt::join(valid, ", ")));
+    if (config_.time.dt && *config_.time.dt > config_.time.end * (1.0 + 1e-12))
+      wrong(*find("time.dt"), "time.dt", fmt::format("it is longer than time.end = {}", config_.time.end),
+            "give a step of at most the whole time");
+  }
+
+  void check_mesh() const {
+    const auto [left, right] = config_.space.domain;
+    const raw_value* raw = find("space.domain");
+    const double width = right - left;
+    if (raw != nullptr && !(width > 0.0))
+      wrong(*raw, "space.domain", fmt::format("[{}, {}] is not left < right", left, right),
+            "give the left end first");
+    const double scale = std::max(std::abs(left), std::abs(right));
+    if (raw != nullptr && (!std::isfinite(width) || width / config_.space.cells < 1e-12 * scale))
+      wrong(*raw, "space.domain",
+            fmt::format("cells of [{}, {}] cannot be told apart in double precision", left, right),
+            "give a domain nearer to 0 or fewer cells");
+    const double points = static_cast<double>(config_.space.cells) * std::max(1, config_.velocity.points);
+    if (points > 2e9)
+      wrong(*find("space.cells"), "space.cells",
+            fmt::format("with velocity.points = {} that is {:.3g} unknowns, at most "
+                        "2e9 are possible",
+                        config_.velocity.points, points),
+            "give fewer cells or velocities");
+  }
+
+  // At cell centres and edges, as far as a thousand points go; the run evaluates it where it needs it.
+  void check_epsilon() const {
+    const raw_value* raw = find("model.epsilon");
+    source_place place = raw != nullptr ? raw->value_place : source_place{file_, 1, 1};
+    // A formula begins behind its quotation mark; other text has no columns to point to.
+    if (raw != nullptr && place.column > 0) ++place.column;
+    const expression formula(config_.model.epsilon, place);
+    if (formula.depends_on_x() && !model_->has_space)
+      throw input_error(
+          place,
+          fmt::format("'model.epsilon' depends on x (model '{}' has no space) give a number", model_->name));
+    const auto [left, right] = config_.space.domain;
+    const int points = model_->has_space ? std::min(2 * config_.space.cells, 1000) : 0;
+    for (int k = 0; k <= points; ++k)
+      formula.evaluate(points == 0 ? 0.0 : left + (right - left) * k / points);
+  }
+
+  void check_fields() const {
+    if (config_.output.fields.empty()) return;
+    model_config parts;
+    parts.parameters = config_.model.parameters;
+    parts.velocity = {config_.velocity.max, config_.velocity.points, config_.velocity.equilibrium};
+    std::vector<std::string> names;
+    for (const auto& field : model_->make(parts)->fields()) names.push_back(field.name);
+    for (const auto& name : config_.output.fields)
+      if (std::find(names.begin(), names.end(), name) == names.end())
+        throw input_error(
+            find("output.fields")->place,
+            fmt::format("unknown field '{}' in 'output.fields' (model '{}' has no such field) {}",
+                        shown(name), model_->name, suggest(name, names)));
+  }
+
+  case_text text_;
+  std::string file_;
+  case_config config_;
+  const model_entry* model_ = nullptr;
+};
+
+bool takes_text(const std::string& path) {
+  for (const case_key& key : case_schema())
+    if (key.path == path) return key.type == key_type::text || key.type == key_type::formula;
+  return false;
+}
+
+void apply_overrides(case_text& text, const std::vector<std::string>& overrides) {
+  // A step rule on the command line takes the place of the one in the file.
+  const auto sets_step = [](const std::string& item) {
+    return std::any_of(step_keys().begin(), step_keys().end(),
+                       [&](const std::string& key) { return item.rfind(key + "=", 0) == 0; });
+  };
+  if (std::any_of(overrides.begin(), overrides.end(), sets_step))
+    for (const auto& key : step_keys()) text.values.erase(key);
+  for (const auto& item : overrides) {
+    const source_place place{fmt::format("override '{}'", shown(item)), 0, 0};
+    const auto equals = item.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw input_error(
+          place, "not of the form key=value (an override sets one key) write for example space.cells=80");
+    const std::string path = item.substr(0, equals);
+    apply_override(text, path, item.substr(equals + 1), takes_text(path), place);
+  }
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path))
+    throw io_error(
+        fmt::format("cannot read '{}' (it is a folder or not readable) give a readable case file", path));
+  std::string text(longest_case_file + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+}  // namespace
+
+case_config parse_case(std::string_view text, const std::string& file,
+                       const std::vector<std::string>& overrides) {
+  case_text flat = read_case_text(text, file);
+  apply_overrides(flat, overrides);
+  return resolver(std::move(flat), file).resolve();
+}
+
+case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+  for (const auto& built_in : embedded::cases())
+    if (built_in.name == name_or_path) return parse_case(built_in.text, name_or_path, overrides);
+  std::error_code ignored;
+  if (!std::filesystem::exists(name_or_path, ignored))
+    throw input_error(fmt::format("no case '{}' (neither a file nor a built-in case) {}", shown(name_or_path),
+                                  suggest(name_or_path, case_names())));
+  return parse_case(read_file(name_or_path), name_or_path, overrides);
+}
+
+std::vector<std::string> case_names() {
+  std::vector<std::string> names;
+  for (const auto& built_in : embedded::cases()) names.emplace_back(built_in.name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace apsis

@@ -1,0 +1,171 @@
+// The schema in words, and cases as text: both follow the one table of keys.
+#include <apsis/config/case_schema.hpp>
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      out += fmt::format("\\{}", c);
+    else if (byte < 32 || byte == 127)
+      out += fmt::format("\\u{:04X}", byte);
+    else
+      out += c;
+  }
+  return out + "\"";
+}
+
+// The shortest decimal that reads back to the same number, marked as a float for TOML.
+std::string number_text(double x) {
+  const std::string text = fmt::format("{}", x);
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+struct to_toml_visitor {
+  std::string operator()(std::monostate) const { return ""; }
+  std::string operator()(long x) const { return fmt::format("{}", x); }
+  std::string operator()(double x) const { return number_text(x); }
+  std::string operator()(const std::string& x) const { return quoted(x); }
+  std::string operator()(const std::vector<std::string>& x) const {
+    std::vector<std::string> items;
+    for (const auto& item : x) items.push_back(quoted(item));
+    return fmt::format("[{}]", fmt::join(items, ", "));
+  }
+  std::string operator()(const std::array<double, 2>& x) const {
+    return fmt::format("[{}, {}]", number_text(x[0]), number_text(x[1]));
+  }
+};
+
+std::string table_of(const std::string& path) {
+  const auto dot = path.find('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+std::string name_of(const std::string& path) {
+  return path.substr(path.find('.') + 1);
+}
+
+std::string scope_text(key_scope scope) {
+  switch (scope) {
+    case key_scope::always:
+      return "";
+    case key_scope::space:
+      return "models with space";
+    case key_scope::velocity:
+      return "models with a velocity grid";
+    case key_scope::epsilon:
+      return "models with epsilon";
+  }
+  return "";
+}
+
+// Lines of at most `width` characters, each after `indent`.
+std::string wrapped(const std::string& text, const std::string& indent, std::size_t width) {
+  std::string out, line;
+  std::size_t from = 0;
+  while (from < text.size()) {
+    const std::size_t to = std::min(text.find(' ', from), text.size());
+    const std::string word = text.substr(from, to - from);
+    if (!line.empty() && indent.size() + line.size() + 1 + word.size() > width) {
+      out += indent + line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+    from = to + 1;
+  }
+  return out + indent + line + "\n";
+}
+
+std::string default_text(const case_key& key) {
+  if (key.required) return "required";
+  const case_value value = key.load(case_config{});
+  if (std::holds_alternative<std::monostate>(value)) return "not set";
+  if (key.path == "model.initial") return "the model's first";
+  if (key.path == "model.epsilon") return "default " + std::get<std::string>(value);
+  return "default " + to_toml(value);
+}
+
+std::string key_text(const case_key& key) {
+  std::string facts = type_text(key.type).substr(type_text(key.type).find(' ') + 1);
+  const auto add = [&facts](const std::string& fact) {
+    if (!fact.empty()) facts += ", " + fact;
+  };
+  add(range_text(key));
+  add(key.unit);
+  add(default_text(key));
+  add(scope_text(key.scope));
+  std::string out = fmt::format("  {} ({})\n", name_of(key.path), facts);
+  out += wrapped(key.doc, "      ", 100);
+  // The names of initial data belong to a model and stand there.
+  if (key.choices != nullptr && key.path != "model.initial")
+    out += wrapped(fmt::format("one of: {}", fmt::join(key.choices(case_config{}), ", ")), "      ", 100);
+  return out;
+}
+
+std::string model_text(const model_entry& model) {
+  std::string out = fmt::format("  {}: {}\n", model.name, model.description);
+  std::string tables =
+      model.has_space ? (model.has_velocity ? "space, velocity" : "space") : "none but time, output";
+  out += fmt::format("      tables: {}; initial data: {}\n", tables, fmt::join(model.initial, ", "));
+  for (const model_parameter& p : model.parameters)
+    out += wrapped(
+        fmt::format("{} (number, {} to {}, default {}): {}", p.name, p.lowest, p.highest, p.value, p.doc),
+        "      ", 100);
+  return out;
+}
+
+}  // namespace
+
+std::string to_toml(const case_value& value) {
+  return std::visit(to_toml_visitor{}, value);
+}
+
+std::string schema_text() {
+  std::string out =
+      "Keys of a case file (TOML). A key that is not listed, or that the model does not use, is an error.\n"
+      "On the command line: apsis run CASE key=value, for example space.cells=80.\n";
+  std::string table = "?";
+  for (const case_key& key : case_schema()) {
+    if (table_of(key.path) != table) {
+      table = table_of(key.path);
+      out += table.empty() ? "\n" : fmt::format("\n[{}]\n", table);
+    }
+    out += key_text(key);
+  }
+  out += "\nModels, and the parameters that [model] takes for them\n";
+  for (const model_entry* model : model_entries()) out += model_text(*model);
+  return out;
+}
+
+std::string to_toml(const case_config& config) {
+  const model_entry* model = find_model(config.model.name);
+  std::string out, table;
+  // Ahead of the next table; parameters are the last keys of [model].
+  const auto close_table = [&] {
+    if (table == "model")
+      for (const auto& [name, value] : config.model.parameters)
+        out += fmt::format("{} = {}\n", name, number_text(value));
+  };
+  for (const case_key& key : case_schema()) {
+    const case_value value = key.load(config);
+    if ((model != nullptr && !applies(key, *model)) || std::holds_alternative<std::monostate>(value))
+      continue;
+    if (table_of(key.path) != table) {
+      close_table();
+      table = table_of(key.path);
+      out += fmt::format("\n[{}]\n", table);
+    }
+    out += fmt::format("{} = {}\n", name_of(key.path), to_toml(value));
+  }
+  return out;
+}
+
+}  // namespace apsis

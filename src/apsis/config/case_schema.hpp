@@ -1,0 +1,59 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/model/model_registry.hpp>
+
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace apsis {
+
+/// Value of a key: nothing, integer, number, text, list of texts, or a pair of numbers.
+using case_value =
+    std::variant<std::monostate, long, double, std::string, std::vector<std::string>, std::array<double, 2>>;
+
+enum class key_type { integer, number, text, formula, text_list, number_pair };
+
+/// Which models a key belongs to; a key that the model does not use is an error, not ignored.
+enum class key_scope { always, space, velocity, epsilon };
+
+/// One key of a case file. The table of all keys drives reading, writing and documentation.
+struct case_key {
+  std::string path;  ///< "space.cells"
+  key_type type;
+  key_scope scope;
+  bool required;  ///< else the default is that of case_config
+  std::string unit;
+  double lowest, highest;  ///< allowed range of numbers
+  bool lowest_excluded;
+  std::vector<std::string> (*choices)(const case_config&);  ///< valid names; nullptr: any text
+  std::string doc;
+  void (*store)(case_config&, const case_value&);
+  case_value (*load)(const case_config&);  ///< monostate where an optional key is not set
+};
+
+/// Every key except the parameters of the models, in the order in which they are read and written.
+const std::vector<case_key>& case_schema();
+
+/// Whether a case of this model may have the key.
+bool applies(const case_key& key, const model_entry& model);
+
+/// "an integer", "a number", …, as messages and documentation say it.
+std::string type_text(key_type type);
+
+/// "from 1 to 100", "above 0", "at least 0"; "" without limits.
+std::string range_text(const case_key& key);
+
+/// The value as TOML.
+std::string to_toml(const case_value& value);
+
+/// Documentation of every key: type, unit, default, allowed values, meaning, with the parameters of the
+/// models.
+std::string schema_text();
+
+/// The case as a file that parse_case reads back to the same case; only the keys that its model uses.
+std::string to_toml(const case_config& config);
+
+}  // namespace apsis

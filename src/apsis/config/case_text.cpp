@@ -1,0 +1,139 @@
+#include <apsis/config/case_text.hpp>
+
+#include <algorithm>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+namespace apsis {
+namespace {
+
+source_place place_of(const toml::source_region& source, const std::string& file) {
+  return {file, static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
+}
+
+source_place place_at(std::string_view text, std::size_t byte, const std::string& file) {
+  const std::string_view before = text.substr(0, byte);
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  const auto start = before.rfind('\n');
+  const std::size_t column = byte - (start == std::string_view::npos ? 0 : start + 1) + 1;
+  return {file, static_cast<int>(line), static_cast<int>(column)};
+}
+
+// Both limits stop a file that is no case at all before a parser sees it.
+void check_size(std::string_view text, const std::string& file) {
+  if (text.size() > longest_case_file)
+    throw input_error(
+        place_at(text, longest_case_file, file),
+        "the file is larger than 1 MB (a case has a few dozen lines) is it the file you meant?");
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > longest_case_line)
+      throw input_error(
+          place_at(text, begin + longest_case_line, file),
+          fmt::format("the line is longer than {} bytes (a case has short lines) is it the file you "
+                      "meant?",
+                      longest_case_line));
+    begin = end + 1;
+  }
+}
+
+raw_value convert(const toml::node& node, const source_place& place) {
+  raw_value raw;
+  raw.place = place;
+  if (const auto* integer = node.as_integer()) {
+    raw.value = static_cast<long>(integer->get());
+    raw.what = fmt::format("the integer {}", integer->get());
+  } else if (const auto* number = node.as_floating_point()) {
+    raw.value = number->get();
+    raw.what = fmt::format("the number {}", number->get());
+  } else if (const auto* text = node.as_string()) {
+    raw.value = text->get();
+    raw.what = fmt::format("the text '{}'", shown(text->get()));
+  } else if (const auto* array = node.as_array()) {
+    raw_value::list items;
+    for (const auto& item : *array) items.push_back(convert(item, place));
+    raw.what = fmt::format("a list of {}", items.size());
+    raw.value = std::move(items);
+  } else if (node.is_boolean()) {
+    raw.what = "a boolean";
+  } else {
+    raw.what = node.is_table() ? "a table" : "a date or time";
+  }
+  return raw;
+}
+
+std::string in_quotes(const std::string& value) {
+  std::string out(1, '"');
+  for (const char c : value) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string syntax_message(std::string_view description) {
+  return fmt::format("not valid TOML ({}) correct the syntax here", shown(description));
+}
+
+}  // namespace
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  std::string out(text.substr(0, longest));
+  // Cut bytes of a character that was split; the rest of the text is UTF-8.
+  while (text.size() > longest && !out.empty() &&
+         (static_cast<unsigned char>(text[out.size()]) & 0xC0U) == 0x80U)
+    out.pop_back();
+  for (char& c : out)
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+  return text.size() > longest ? out + "..." : out;
+}
+
+case_text read_case_text(std::string_view text, const std::string& file) {
+  check_size(text, file);
+  case_text out;
+  const auto add = [&](const std::string& path, const toml::key& key, const toml::node& node) {
+    raw_value raw = convert(node, place_of(key.source(), file));
+    raw.value_place = place_of(node.source(), file);
+    out.values.emplace(path, std::move(raw));
+  };
+  try {
+    const toml::table root = toml::parse(text, file);
+    for (const auto& [key, node] : root) {
+      const std::string name(key.str());
+      const toml::table* table = node.as_table();
+      if (table == nullptr) {
+        add(name, key, node);
+        continue;
+      }
+      out.tables.emplace(name, place_of(node.source(), file));
+      for (const auto& [inner, value] : *table)
+        out.values.emplace(fmt::format("{}.{}", name, inner.str()),
+                           convert(value, place_of(inner.source(), file)));
+    }
+  } catch (const toml::parse_error& e) {
+    throw input_error(place_of(e.source(), file), syntax_message(e.description()));
+  }
+  return out;
+}
+
+void apply_override(case_text& target, const std::string& path, const std::string& value, bool is_text,
+                    const source_place& place) {
+  if (value.find_first_of("\r\n") != std::string::npos)
+    throw input_error(place, "the value has more than one line (one value is needed) give one line");
+  const bool bare = is_text && value.find_first_of("\"'") != 0;
+  const std::string line = "value = " + (bare ? in_quotes(value) : value);
+  check_size(line, place.file);
+  try {
+    const toml::table root = toml::parse(line);
+    raw_value raw = convert(*root.get("value"), place);
+    raw.value_place = place;
+    target.values[path] = std::move(raw);
+  } catch (const toml::parse_error& e) {
+    throw input_error(place, syntax_message(e.description()));
+  }
+}
+
+}  // namespace apsis

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <apsis/core/errors.hpp>
+
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace apsis {
+
+/// A value as it stands in a file, before anything is known about its key. `std::monostate` is a type that no
+/// key has (a boolean, a date, a nested table); `what` names it for messages.
+struct raw_value {
+  using list = std::vector<raw_value>;
+  std::variant<std::monostate, long, double, std::string, list> value;
+  std::string what;
+  source_place place;        ///< of the key, or the override
+  source_place value_place;  ///< of the value
+};
+
+/// Keys of a case by dotted path, and where its tables begin.
+struct case_text {
+  std::map<std::string, raw_value> values;
+  std::map<std::string, source_place> tables;
+};
+
+constexpr std::size_t longest_case_file = 1'000'000;  ///< bytes
+constexpr std::size_t longest_case_line = 4096;       ///< bytes; bounds the depth of dotted keys as well
+
+/// Reads TOML into flat keys. Throws input_error with line and column: too large, not TOML.
+case_text read_case_text(std::string_view text, const std::string& file);
+
+/// Sets one key from "dotted.key=value"; the value is TOML, and text may stand without quotes.
+/// `is_text` says whether the key takes text. Throws input_error.
+void apply_override(case_text& target, const std::string& path, const std::string& value, bool is_text,
+                    const source_place& place);
+
+/// A user's text for a message: at most 60 characters, control characters as '?'.
+std::string shown(std::string_view text);
+
+}  // namespace apsis

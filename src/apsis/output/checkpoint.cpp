@@ -1,0 +1,117 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/output/checkpoint.hpp>
+#include <apsis/output/hdf5_file.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+namespace {
+
+// Changes when an older program could not read the file.
+constexpr double format_version = 1.0;
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t to = std::min(text.find('\n', from), text.size());
+    parts.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  return parts;
+}
+
+// HDF5 has no datasets of zero bytes of text; the line end keeps every list nonempty.
+std::string joined(const std::vector<std::string>& parts) {
+  return fmt::format("{}\n", fmt::join(parts, "\n"));
+}
+
+[[noreturn]] void damaged(const std::string& path, const std::string& what) {
+  throw io_error(
+      fmt::format("'{}' is no usable checkpoint ({}) give a checkpoint.h5 written by apsis", path, what));
+}
+
+void write_rows(hdf5_file& file, const std::string& name, const std::vector<std::vector<double>>& rows,
+                std::size_t columns) {
+  std::vector<double> all;
+  for (const auto& row : rows) all.insert(all.end(), row.begin(), row.end());
+  file.write(name, all, {rows.size(), columns});
+}
+
+std::vector<std::vector<double>> read_rows(const hdf5_file& file, const std::string& path,
+                                           const std::string& name, std::size_t columns) {
+  const auto extents = file.extents(name);
+  if (extents.size() != 2 || extents[1] != columns || columns == 0)
+    damaged(path, fmt::format("'{}' has a wrong shape", name));
+  const std::vector<double> all = file.read(name);
+  std::vector<std::vector<double>> rows;
+  for (std::size_t at = 0; at < all.size(); at += columns)
+    rows.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(at),
+                      all.begin() + static_cast<std::ptrdiff_t>(at + columns));
+  return rows;
+}
+
+}  // namespace
+
+double checkpoint::number(const std::string& name) const {
+  const auto found = numbers.find(name);
+  if (found == numbers.end())
+    throw io_error(fmt::format(
+        "the checkpoint has no number '{}' (written by another version?) run the case again", name));
+  return found->second;
+}
+
+void write_checkpoint(const std::string& path, const checkpoint& c) {
+  hdf5_file file = hdf5_file::create(path);
+  file.write_attribute("apsis_checkpoint", format_version);
+  for (const auto& [name, value] : c.numbers) file.write_attribute(name, value);
+  file.write("case", c.case_text);
+  file.write("state", c.state, {c.cells, c.components}, "unknowns");
+  file.write("history/columns", joined(c.history.columns));
+  write_rows(file, "history/rows", c.history.rows, c.history.columns.size());
+  file.write("fields/names", joined(c.fields.names));
+  file.write("fields/labels", joined(c.fields.labels));
+  if (!c.fields.x.empty()) file.write("fields/x", c.fields.x, {c.fields.x.size()});
+  std::vector<std::vector<double>> snapshots;
+  for (const auto& snapshot : c.fields.snapshots) {
+    std::vector<double> row = {snapshot.t};
+    for (const auto& values : snapshot.values) row.insert(row.end(), values.begin(), values.end());
+    snapshots.push_back(std::move(row));
+  }
+  if (!snapshots.empty()) write_rows(file, "fields/snapshots", snapshots, snapshots.front().size());
+  file.close();
+}
+
+checkpoint read_checkpoint(const std::string& path) {
+  const hdf5_file file = hdf5_file::open(path);
+  checkpoint c;
+  for (const auto& [name, value] : file.attributes()) c.numbers[name] = value;
+  if (c.numbers.count("apsis_checkpoint") == 0) damaged(path, "an HDF5 file of another kind");
+  if (c.numbers["apsis_checkpoint"] != format_version) damaged(path, "written by another version");
+  c.numbers.erase("apsis_checkpoint");
+  c.case_text = file.read_text("case");
+  const auto extents = file.extents("state");
+  if (extents.size() != 2) damaged(path, "'state' has a wrong shape");
+  c.cells = extents[0];
+  c.components = extents[1];
+  c.state = file.read("state");
+  c.history.columns = split(file.read_text("history/columns"));
+  c.history.rows = read_rows(file, path, "history/rows", c.history.columns.size());
+  if (c.history.rows.empty()) damaged(path, "its history is empty");
+  c.fields.names = split(file.read_text("fields/names"));
+  c.fields.labels = split(file.read_text("fields/labels"));
+  if (file.has("fields/x")) c.fields.x = file.read("fields/x");
+  if (!file.has("fields/snapshots")) return c;
+  const std::size_t fields = c.fields.names.size();
+  for (const auto& row : read_rows(file, path, "fields/snapshots", 1 + fields * c.cells)) {
+    field_series::snapshot snapshot;
+    snapshot.t = row[0];
+    for (std::size_t k = 0; k < fields; ++k)
+      snapshot.values.emplace_back(row.begin() + static_cast<std::ptrdiff_t>(1 + k * c.cells),
+                                   row.begin() + static_cast<std::ptrdiff_t>(1 + (k + 1) * c.cells));
+    c.fields.snapshots.push_back(std::move(snapshot));
+  }
+  return c;
+}
+
+}  // namespace apsis

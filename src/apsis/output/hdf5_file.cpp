@@ -1,0 +1,213 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/output/hdf5_file.hpp>
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+namespace apsis {
+namespace {
+
+// One larger than any result of this program; a damaged file must not make us ask for all memory.
+constexpr std::uint64_t most_elements = std::uint64_t{1} << 33U;
+
+class handle {
+ public:
+  using closer = herr_t (*)(hid_t);
+  handle(hid_t id, closer close) : id_(id), close_(close) {}
+  ~handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  handle(const handle&) = delete;
+  handle& operator=(const handle&) = delete;
+  operator hid_t() const { return id_; }
+  bool good() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  closer close_;
+};
+
+void silence() {
+  static const herr_t once = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  static_cast<void>(once);
+}
+
+handle text_type(std::size_t length) {
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, std::max<std::size_t>(length, 1));
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  return {type, H5Tclose};
+}
+
+bool write_text_attribute(hid_t object, const std::string& name, const std::string& value) {
+  const handle type = text_type(value.size());
+  const handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  return attribute.good() && H5Awrite(attribute, type, value.c_str()) >= 0;
+}
+
+// Properties of a new dataset: groups on the way are made, no time stamps.
+handle link_properties() {
+  const hid_t list = H5Pcreate(H5P_LINK_CREATE);
+  H5Pset_create_intermediate_group(list, 1);
+  return {list, H5Pclose};
+}
+
+handle dataset_properties() {
+  const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(list, false);
+  return {list, H5Pclose};
+}
+
+}  // namespace
+
+hdf5_file::hdf5_file(std::string path, std::int64_t id) : path_(std::move(path)), id_(id) {}
+
+hdf5_file::hdf5_file(hdf5_file&& other) noexcept
+    : path_(std::move(other.path_)), id_(std::exchange(other.id_, -1)) {}
+
+hdf5_file::~hdf5_file() {
+  if (id_ >= 0) H5Fclose(id_);
+}
+
+void hdf5_file::fail(const std::string& what) const {
+  throw io_error(fmt::format("'{}': {}", path_, what));
+}
+
+hdf5_file hdf5_file::create(const std::string& path) {
+  silence();
+  hdf5_file file(path, H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  if (file.id_ < 0) file.fail("cannot be created (no permission or no space?) choose another folder");
+  return file;
+}
+
+hdf5_file hdf5_file::open(const std::string& path) {
+  silence();
+  hdf5_file file(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  if (file.id_ < 0)
+    file.fail("cannot be opened (missing, damaged, or not an HDF5 file) give a file written by apsis");
+  return file;
+}
+
+void hdf5_file::close() {
+  const hid_t id = std::exchange(id_, -1);
+  const bool flushed = H5Fflush(id, H5F_SCOPE_LOCAL) >= 0;
+  if (H5Fclose(id) < 0 || !flushed) fail("cannot be written to its end (disk full?) free some space");
+}
+
+void hdf5_file::write(const std::string& name, const std::vector<double>& values, const shape& extents,
+                      const std::string& long_name) {
+  const std::vector<hsize_t> dims(extents.begin(), extents.end());
+  const handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
+  const handle links = link_properties();
+  const handle properties = dataset_properties();
+  const handle data(H5Dcreate2(id_, name.c_str(), H5T_IEEE_F64LE, space, links, properties, H5P_DEFAULT),
+                    H5Dclose);
+  const bool written = data.good() &&
+                       H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0 &&
+                       write_text_attribute(data, "units", "dimensionless") &&
+                       (long_name.empty() || write_text_attribute(data, "long_name", long_name));
+  if (!written) fail(fmt::format("'{}' cannot be written (disk full?) free some space", name));
+}
+
+void hdf5_file::write(const std::string& name, const std::string& text) {
+  const handle type = text_type(text.size());
+  const handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const handle links = link_properties();
+  const handle properties = dataset_properties();
+  const handle data(H5Dcreate2(id_, name.c_str(), type, space, links, properties, H5P_DEFAULT), H5Dclose);
+  if (!data.good() || H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0)
+    fail(fmt::format("'{}' cannot be written (disk full?) free some space", name));
+}
+
+void hdf5_file::write_attribute(const std::string& name, double value) {
+  const handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const handle attribute(H5Acreate2(id_, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
+  if (!attribute.good() || H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) < 0)
+    fail(fmt::format("attribute '{}' cannot be written (disk full?) free some space", name));
+}
+
+void hdf5_file::write_attribute(const std::string& name, const std::string& value) {
+  if (!write_text_attribute(id_, name, value))
+    fail(fmt::format("attribute '{}' cannot be written (disk full?) free some space", name));
+}
+
+bool hdf5_file::has(const std::string& name) const {
+  return H5Lexists(id_, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+hdf5_file::shape hdf5_file::extents(const std::string& name) const {
+  const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!data.good())
+    fail(fmt::format("has no data '{}' (not written by this program?) give another file", name));
+  const handle space(H5Dget_space(data), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space);
+  std::vector<hsize_t> dims(rank > 0 ? static_cast<std::size_t>(rank) : 0);
+  if (rank < 0 || H5Sget_simple_extent_dims(space, dims.data(), nullptr) < 0)
+    fail(fmt::format("the extents of '{}' cannot be read (damaged file) give another file", name));
+  return {dims.begin(), dims.end()};
+}
+
+std::vector<double> hdf5_file::read(const std::string& name) const {
+  std::uint64_t count = 1;
+  for (const std::uint64_t n : extents(name)) {
+    if (n > most_elements || (n > 0 && count > most_elements / n))
+      fail(fmt::format("'{}' claims an impossible size (damaged file) give another file", name));
+    count *= n;
+  }
+  const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  // Storage that is not there reads as zeros: a file cut short must not pass for one with an empty state.
+  if (count > 0 && H5Dget_storage_size(data) < count * sizeof(double))
+    fail(fmt::format("'{}' is incomplete (damaged file) give another file", name));
+  std::vector<double> values(count);
+  if (H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    fail(fmt::format("'{}' cannot be read (damaged file) give another file", name));
+  return values;
+}
+
+std::string hdf5_file::read_text(const std::string& name) const {
+  const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!data.good())
+    fail(fmt::format("has no text '{}' (not written by this program?) give another file", name));
+  const handle type(H5Dget_type(data), H5Tclose);
+  const handle space(H5Dget_space(data), H5Sclose);
+  const std::size_t length = H5Tget_size(type);
+  constexpr std::size_t longest = 10'000'000;
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || length > longest ||
+      H5Sget_simple_extent_npoints(space) != 1)
+    fail(fmt::format("'{}' is no text (damaged file) give another file", name));
+  std::string text(length, '\0');
+  if (H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0)
+    fail(fmt::format("'{}' cannot be read (damaged file) give another file", name));
+  return text;
+}
+
+double hdf5_file::read_attribute(const std::string& name) const {
+  for (const auto& [key, value] : attributes())
+    if (key == name) return value;
+  fail(fmt::format("has no number '{}' (not written by this program?) give another file", name));
+}
+
+std::vector<std::pair<std::string, double>> hdf5_file::attributes() const {
+  std::vector<std::pair<std::string, double>> all;
+  const int count = H5Aget_num_attrs(id_);
+  for (int k = 0; k < count; ++k) {
+    const handle attribute(H5Aopen_by_idx(id_, ".", H5_INDEX_NAME, H5_ITER_INC, static_cast<hsize_t>(k),
+                                          H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose);
+    if (!attribute.good()) fail("its attributes cannot be read (damaged file) give another file");
+    const handle type(H5Aget_type(attribute), H5Tclose);
+    const handle space(H5Aget_space(attribute), H5Sclose);
+    if (H5Tget_class(type) != H5T_FLOAT || H5Sget_simple_extent_npoints(space) != 1) continue;
+    std::vector<char> name(256);
+    double value = 0.0;
+    if (H5Aget_name(attribute, name.size(), name.data()) < 0 ||
+        H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0)
+      fail("its attributes cannot be read (damaged file) give another file");
+    all.emplace_back(name.data(), value);
+  }
+  return all;
+}
+
+}  // namespace apsis

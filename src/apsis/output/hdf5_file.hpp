@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+
+/// An HDF5 file with the few operations that results need. Identifiers are closed by the destructor, objects
+/// carry no time stamps (the same results give the same bytes), and HDF5 prints nothing by itself. Everything
+/// throws io_error with the name of the file.
+class hdf5_file {
+ public:
+  using shape = std::vector<std::uint64_t>;
+
+  static hdf5_file create(const std::string& path);
+  static hdf5_file open(const std::string& path);
+  ~hdf5_file();
+  hdf5_file(hdf5_file&& other) noexcept;
+  hdf5_file& operator=(hdf5_file&&) = delete;
+
+  /// Groups on the way of `name` ("fields/rho") are made as needed. Attributes "units" = "dimensionless" and,
+  /// where given, "long_name".
+  void write(const std::string& name, const std::vector<double>& values, const shape& extents,
+             const std::string& long_name = "");
+  void write(const std::string& name, const std::string& text);
+  void write_attribute(const std::string& name, double value);
+  void write_attribute(const std::string& name, const std::string& value);
+  /// Flushes to the disk; a full disk shows here and not in a destructor.
+  void close();
+
+  bool has(const std::string& name) const;
+  shape extents(const std::string& name) const;
+  std::vector<double> read(const std::string& name) const;
+  std::string read_text(const std::string& name) const;
+  double read_attribute(const std::string& name) const;
+  /// Numbers among the attributes of the file.
+  std::vector<std::pair<std::string, double>> attributes() const;
+
+ private:
+  hdf5_file(std::string path, std::int64_t id);
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::string path_;
+  std::int64_t id_;
+};
+
+}  // namespace apsis

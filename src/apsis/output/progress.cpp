@@ -1,0 +1,55 @@
+#include <apsis/output/progress.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace apsis {
+
+std::string progress_line(double fraction, long step, long steps_total, double t, double min_value,
+                          double seconds_left) {
+  constexpr int width = 24;
+  const double part = std::clamp(fraction, 0.0, 1.0);
+  const auto full = static_cast<std::size_t>(part * width);
+  std::string bar(width, ' ');
+  std::fill_n(bar.begin(), full, '=');
+  if (full < width) bar[full] = '>';
+  std::string left = "--";
+  if (std::isfinite(seconds_left) && seconds_left < 3.6e6) {
+    const auto s = static_cast<long>(std::lround(seconds_left));
+    left = s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
+                     : fmt::format("{}:{:02}", s / 60, s % 60);
+  }
+  return fmt::format("[{}] {:3.0f} %  step {}/{}  t = {:.4g}  min {:.2e}  {} left", bar, 100.0 * part, step,
+                     steps_total, t, min_value, left);
+}
+
+progress::progress(double end)
+    : end_(end), visible_(isatty(STDERR_FILENO) == 1), start_(clock::now()), last_(start_) {}
+
+progress::~progress() {
+  finish();
+}
+
+void progress::update(long step, long steps_total, double t, double min_value) {
+  if (!visible_) return;
+  const auto now = clock::now();
+  if (first_t_ < 0.0) first_t_ = t;
+  if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const double left = t > first_t_ ? elapsed * (end_ - t) / (t - first_t_) : HUGE_VAL;
+  fmt::print(stderr, "\r\033[K{}", progress_line(t / end_, step, steps_total, t, min_value, left));
+  std::fflush(stderr);
+  last_ = now;
+  drawn_ = true;
+}
+
+void progress::finish() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+  drawn_ = false;
+}
+
+}  // namespace apsis

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace apsis {
+
+/// A bar on standard error while a run goes on; silent where standard error is not a terminal.
+class progress {
+ public:
+  explicit progress(double end);
+  ~progress();
+  progress(const progress&) = delete;
+  progress& operator=(const progress&) = delete;
+
+  /// Draws at most ten times a second.
+  void update(long step, long steps_total, double t, double min_value);
+  /// Ends the line, so that messages start on a fresh one.
+  void finish();
+
+ private:
+  using clock = std::chrono::steady_clock;
+  double end_;
+  bool visible_, drawn_ = false;
+  clock::time_point start_, last_;
+  double first_t_ = -1.0;
+};
+
+/// "[=====>    ]  42 %  step 1234/2900  t = 0.21  min 1.2e-31  0:12 left"
+std::string progress_line(double fraction, long step, long steps_total, double t, double min_value,
+                          double seconds_left);
+
+}  // namespace apsis

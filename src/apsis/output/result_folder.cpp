@@ -1,0 +1,108 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/output/result_folder.hpp>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::array<const char*, 6> result_names = {
+    result_folder::manifest, "history.csv", "fields.csv", "solution.h5", "solution.xdmf", "checkpoint.h5"};
+
+[[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::string& why) {
+  throw io_error(fmt::format("cannot {} '{}' ({}) choose another folder with --out or free some space", verb,
+                             path.string(), why));
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) cannot("write", path, "no permission or no space left");
+}
+
+}  // namespace
+
+result_folder::result_folder(fs::path path) : path_(std::move(path)) {
+  std::error_code problem;
+  // A trailing slash would make the last folder look empty.
+  fs::path folder = path_.has_filename() ? path_ : path_.parent_path();
+  for (; !folder.empty() && !fs::exists(folder, problem); folder = folder.parent_path()) {
+    if (problem) break;
+    made_.insert(made_.begin(), folder);
+  }
+  problem.clear();
+  fs::create_directories(path_, problem);
+  if (problem || !fs::is_directory(path_)) {
+    discard();
+    cannot("make the folder", path_, problem ? problem.message() : "a file has this name");
+  }
+  const fs::path probe = temporary("probe");
+  try {
+    write_text(probe.string(), "apsis\n");
+  } catch (const io_error&) {
+    discard();
+    throw;
+  }
+  fs::remove(probe, problem);
+}
+
+result_folder::~result_folder() {
+  discard();
+}
+
+void result_folder::discard() noexcept {
+  std::error_code ignored;
+  for (const auto& name : prepared_) fs::remove(temporary(name), ignored);
+  prepared_.clear();
+  if (keep_) return;
+  // Removes a folder only while it is empty.
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
+}
+
+fs::path result_folder::temporary(const std::string& name) const {
+  return path_ / fmt::format(".{}.partial", name);
+}
+
+void result_folder::prepare(const std::string& name, const std::function<void(const std::string&)>& write) {
+  if (std::find(prepared_.begin(), prepared_.end(), name) == prepared_.end()) prepared_.push_back(name);
+  write(temporary(name).string());
+}
+
+void result_folder::prepare_text(const std::string& name, const std::string& text) {
+  prepare(name, [&text](const std::string& path) { write_text(path, text); });
+}
+
+void result_folder::publish(const std::string& name, const std::function<void(const std::string&)>& write) {
+  prepare(name, write);
+  std::error_code problem;
+  fs::rename(temporary(name), path_ / name, problem);
+  if (problem) cannot("write", path_ / name, problem.message());
+  prepared_.erase(std::find(prepared_.begin(), prepared_.end(), name));
+  keep_ = true;
+}
+
+void result_folder::commit() {
+  std::error_code problem;
+  // While names change there is no manifest: one that is there belongs to the files beside it.
+  fs::remove(path_ / manifest, problem);
+  std::stable_partition(prepared_.begin(), prepared_.end(),
+                        [](const std::string& name) { return name != manifest; });
+  for (const char* name : result_names)
+    if (std::find(prepared_.begin(), prepared_.end(), name) == prepared_.end())
+      fs::remove(path_ / name, problem);
+  for (const auto& name : prepared_) {
+    problem.clear();
+    fs::rename(temporary(name), path_ / name, problem);
+    if (problem) cannot("write", path_ / name, problem.message());
+    keep_ = true;
+  }
+  prepared_.clear();
+}
+
+}  // namespace apsis

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// The folder of a run's results. Files are prepared under temporary names inside it and take their names
+/// together in commit(); until then results of an earlier run stay as they are, and whatever was made is
+/// removed again if commit() is never reached. Everything throws io_error.
+class result_folder {
+ public:
+  /// Makes the folder (and those above it) and proves that a file can be written into it.
+  explicit result_folder(std::filesystem::path path);
+  ~result_folder();
+  result_folder(const result_folder&) = delete;
+  result_folder& operator=(const result_folder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Prepares a file of this name; `write` is called with the temporary path.
+  void prepare(const std::string& name, const std::function<void(const std::string&)>& write);
+  void prepare_text(const std::string& name, const std::string& text);
+
+  /// Prepares and names one file at once (checkpoints of a run that goes on).
+  void publish(const std::string& name, const std::function<void(const std::string&)>& write);
+
+  /// Gives every prepared file its name, the manifest last, and removes result files of an earlier run that
+  /// this run did not write.
+  void commit();
+
+  static constexpr const char* manifest = "manifest.json";
+
+ private:
+  std::filesystem::path temporary(const std::string& name) const;
+  void discard() noexcept;
+
+  std::filesystem::path path_;
+  std::vector<std::filesystem::path> made_;  ///< folders that did not exist before, outermost first
+  std::vector<std::string> prepared_;
+  bool keep_ = false;
+};
+
+}  // namespace apsis

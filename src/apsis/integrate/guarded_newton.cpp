@@ -1,3 +1,8 @@
+// GCC takes the deliberately undefined register of its AVX-512 intrinsics, as Eigen uses them, for a mistake.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
 #include <apsis/integrate/guarded_newton.hpp>
 
 #include <apsis/core/errors.hpp>

@@ -25,6 +25,12 @@ struct step_rule {
 template <class Real>
 class time_marcher {
  public:
+  /// All that changes on the way, so that a restart goes on to the same last digit.
+  struct progress {
+    long step, since_anchor;
+    Real t, anchor, anchor_dt;
+  };
+
   /// Throws input_error unless t0 ≤ t1 are finite and dt > 0.
   time_marcher(Real t0, Real t1, std::optional<Real> dt = std::nullopt)
       : t0_(t0), t1_(t1), t_(t0), fixed_(dt) {
@@ -66,8 +72,7 @@ class time_marcher {
           "nothing limits the time step (the transport sets no forward Euler step, or the method is "
           "unconditionally stable); give dt");
     const Real rest = t1_ - t_;
-    // A rest that exceeds the step by rounding only is one step, not two.
-    if (rest <= proposed * (Real(1) + Real(1e-12))) return rest;
+    if (rest < proposed) return rest;
     if (!(t_ + proposed > t_))
       throw numerical_error(
           "the time step does not advance time (it is not positive, or smaller than the "
@@ -80,19 +85,35 @@ class time_marcher {
     ++n_;
     if (fixed_) {
       t_ = n_ >= count_ ? t1_ : t0_ + Real(n_) * *fixed_;
-    } else {
-      t_ = t1_ - t_ <= dt ? t1_ : t_ + dt;
+      return;
     }
+    // While dt stays the same, t is a multiple of it from where it began to be so.
+    if (dt != anchor_dt_) {
+      anchor_ = t_;
+      anchor_dt_ = dt;
+      since_anchor_ = 0;
+    }
+    ++since_anchor_;
+    t_ = anchor_ + Real(since_anchor_) * anchor_dt_;
+    // What rounding of t leaves is not a step.
+    using std::abs;
+    if (t_ >= t1_ || t1_ - t_ <= Real(8) * std::numeric_limits<Real>::epsilon() * (abs(t1_) + abs(t0_))) t_ = t1_;
   }
 
   /// Goes to where an earlier run stopped.
-  void resume(Real t, long step) {
-    t_ = t;
-    n_ = step;
+  void resume(const progress& saved) {
+    n_ = saved.step;
+    t_ = saved.t;
+    anchor_ = saved.anchor;
+    anchor_dt_ = saved.anchor_dt;
+    since_anchor_ = saved.since_anchor;
   }
+  progress save() const { return {n_, since_anchor_, t_, anchor_, anchor_dt_}; }
 
  private:
   Real t0_, t1_, t_;
+  Real anchor_ = Real(0), anchor_dt_ = Real(-1);
+  long since_anchor_ = 0;
   std::optional<Real> fixed_;
   long n_ = 0, count_ = 0;
   bool adjusted_ = false;

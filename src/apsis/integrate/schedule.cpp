@@ -191,7 +191,6 @@ schedule::schedule(const shu_osher_form<Real>& m) {
   builder(p, *this).run();
 }
 
-template schedule::schedule(const shu_osher_form<float>&);
 template schedule::schedule(const shu_osher_form<double>&);
 template schedule::schedule(const shu_osher_form<long double>&);
 template schedule::schedule(const shu_osher_form<mp_real>&);

@@ -35,8 +35,8 @@ class method {
 
   std::size_t stages() const { return exact.stages(); }
 
-  /// Shu–Osher form in `Real` (float, double, long double or mp_real), each coefficient correctly rounded
-  /// from its exact value. In float, double and long double the convex weights are then set on a common
+  /// Shu–Osher form in `Real` (double, long double or mp_real), each coefficient correctly rounded
+  /// from its exact value. In double and long double the convex weights are then set on a common
   /// grid so that r_i + Σ_j (p_ij + w_ij) is 1 without rounding and no step drifts.
   template <class Real>
   shu_osher_form<Real> coefficients() const;

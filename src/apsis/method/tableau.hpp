@@ -23,7 +23,7 @@ template <class Real>
 struct shu_osher_form {
   matrix<Real> P, W, D;
   std::vector<Real> ddot;
-  Real r = Real(1);
+  Real r{};
   std::size_t stages() const { return ddot.size(); }
 };
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 #include <apsis/core/errors.hpp>
-#include <apsis/model/vector_exp.hpp>
+#include <apsis/model/vector_math.hpp>
 
 namespace apsis {
 

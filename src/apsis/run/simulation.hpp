@@ -32,13 +32,22 @@ struct run_promises {
 struct run_summary {
   long steps = 0;
   double dt = 0.0, t = 0.0, wall_s = 0.0;
-  double min_value = 0.0;        ///< over all steps, the initial state included
-  long negative_values = 0;      ///< sum over all steps
+  double min_value = 0.0;    ///< over all steps, the initial state included
+  long negative_values = 0;  ///< sum over all steps
   double conservation_defect = 0.0;
   double max_entropy_increase = 0.0;
   long phase_points = 0;
   double point_stages_per_s = 0.0;
   bool interrupted = false;
+};
+
+/// A run between two steps, for checkpoints.
+struct saved_run {
+  std::vector<double> state;  ///< [cells][components]
+  long step = 0, since_anchor = 0;
+  double t = 0.0, anchor = 0.0, anchor_dt = 0.0;  ///< see time_marcher::progress
+  run_summary so_far;
+  step_record initial, last;
 };
 
 /// Macroscopic fields on the mesh at one time: values[field][cell].
@@ -61,13 +70,13 @@ class simulation {
   const run_promises& promises() const;
   std::vector<std::string> invariants() const;
   double t() const;
-  double dt() const;           ///< of the next step
-  long step() const;           ///< steps done
-  long steps_total() const;    ///< estimate from the present dt
+  double dt() const;         ///< of the next step
+  long step() const;         ///< steps done
+  long steps_total() const;  ///< estimate from the present dt
   bool finished() const;
 
-  /// One step. Throws numerical_error with step, time, cell and value; the state is then that of the last
-  /// good step.
+  /// One step. Throws numerical_error with step, time, cell and value. If a stage failed, the state is that of the last
+  /// good step; if a promise was broken, it is the state that broke it, and last() describes it.
   const step_record& advance();
   const step_record& last() const;  ///< of the last step, or of the initial state
   run_summary summary() const;
@@ -79,9 +88,10 @@ class simulation {
   std::vector<double> velocities() const;  ///< of the components; empty without a velocity grid
   std::vector<double> epsilon() const;     ///< at the cell centres
 
-  /// Goes on from a saved state; the case must be the same.
-  void restore(const std::vector<double>& state, double t, long step, const run_summary& so_far,
-               const step_record& initial, const step_record& last);
+  /// Everything that a restart needs to go on to the same last digit.
+  saved_run save() const;
+  /// Goes on from where `saved` was taken; the case must be the same. Throws input_error if the sizes differ.
+  void restore(const saved_run& saved);
   const step_record& initial_record() const;
 
  private:

@@ -21,6 +21,9 @@ class collision {
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε. Throws numerical_error where ε = 0.
   virtual void scatter(const field& u, std::span<const target<field, double>> targets) = 0;
+
+  /// Largest Δt for which u + Δt Q(u)/ε keeps what the collision keeps (for a relaxation: min ε/C).
+  virtual double forward_euler_step(const field& u) const = 0;
 };
 
 /// Point values: the stage solve of every point is closed form,

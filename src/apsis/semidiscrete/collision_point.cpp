@@ -37,6 +37,15 @@ class pointwise_collision final : public collision {
     });
   }
 
+  double forward_euler_step(const field& u) const override {
+    local_relaxation local;
+    local.attach(equation_);
+    double fastest = 0.0;
+    for (int cell = 0; cell < u.cells(); ++cell)
+      fastest = std::max(fastest, local.rate(u.row(cell)) / epsilon_[static_cast<std::size_t>(cell)]);
+    return 1.0 / fastest;
+  }
+
  private:
   template <class Body>
   void for_blocks(const field& u, Body body) {

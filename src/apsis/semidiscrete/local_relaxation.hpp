@@ -24,6 +24,12 @@ class local_relaxation {
     return relax_weights(a, b, equation_->rate(omega_.data()), epsilon);
   }
 
+  /// C(ℛu).
+  double rate(const double* u) {
+    equation_->moments(u, omega_.data());
+    return equation_->rate(omega_.data());
+  }
+
   /// E(ℛu) into equilibrium(), and C/ε.
   double strength(const double* u, double epsilon, int cell) {
     find_equilibrium(u, cell);

@@ -31,6 +31,7 @@ void accumulate(const target<field, double>& to, int cell, const double* u, cons
 
 transport::transport(const model& equation, const grid& mesh, stencil how)
     : equation_(equation), mesh_(mesh), how_(std::move(how)) {
+  if (equation.space_dimensions() == 0) return;
   const field layout(1, equation.components());
   for (int direction = 0; direction < mesh.dimensions(); ++direction) {
     line_speeds line;
@@ -46,17 +47,28 @@ transport::transport(const model& equation, const grid& mesh, stencil how)
 }
 
 double transport::forward_euler_step() const {
-  double rate = 0.0;
+  double rate = 0.0;  // 1/0 is the infinity of a model without space
   for (const auto& line : speeds_) rate += *std::max_element(line.per_cell.begin(), line.per_cell.end());
-  return (how_.positivity_limiter ? limiter::end_weight : 1.0) / rate;
+  // The rounding of α u + β T(u), a few units in the last place, must not cross what is exact at the limit.
+  constexpr double safe = 1.0 - 1e-14;
+  return safe * (how_.positivity_limiter ? limiter::end_weight : 1.0) / rate;
 }
 
 void transport::scatter(const field& u, targets_view targets) const {
   const bool moves =
       std::any_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta != 0.0; });
   if (!moves) return scatter_weights(u, targets);
+  if (equation_.space_dimensions() == 0) return scatter_source(u, targets);
   for (int direction = 0; direction < mesh_.dimensions(); ++direction)
     scatter_direction(u, targets, direction);
+}
+
+void transport::scatter_source(const field& u, targets_view targets) const {
+  std::vector<double> t(static_cast<std::size_t>(u.stride()), 0.0);
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    if (equation_.has_source()) equation_.source(u.row(cell), t.data());
+    for (const auto& to : targets) accumulate(to, cell, u.row(cell), t.data(), u.stride(), true);
+  }
 }
 
 void transport::scatter_weights(const field& u, targets_view targets) const {

@@ -20,10 +20,11 @@ class transport {
   void scatter(const field& u, std::span<const target<field, double>> targets) const;
 
   /// Δt_FE = κ / Σ_k (max|v_k|/Δx_k): κ = 1/12 with the positivity limiter (Zhang & Shu 2010), else 1, which
-  /// for first-order upwind keeps positivity, total variation and entropy.
+  /// for first-order upwind keeps positivity, total variation and entropy. +infinity without space.
   double forward_euler_step() const;
 
  private:
+  void scatter_source(const field& u, std::span<const target<field, double>> targets) const;
   void scatter_weights(const field& u, std::span<const target<field, double>> targets) const;
   void scatter_direction(const field& u, std::span<const target<field, double>> targets, int direction) const;
 

@@ -25,7 +25,7 @@ struct gauss3 {
   static constexpr int points = 3;
   static constexpr double outer = 0.38729833462074168852;  ///< √(3/5)/2
   static constexpr std::array<double, 3> xi = {-outer, 0.0, outer};
-  static constexpr std::array<double, 3> weight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  static constexpr std::array<double, 3> weight = {5.0 / 18.0, 1.0 - 2.0 * (5.0 / 18.0), 5.0 / 18.0};
 };
 
 /// Interior nodes ±1/(2√5) of the four-point Gauss–Lobatto rule on [−½, ½].

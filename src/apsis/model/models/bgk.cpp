@@ -1,5 +1,6 @@
 #include <apsis/model/maxwellian.hpp>
 #include <apsis/model/model_registry.hpp>
+#include <apsis/model/vector_math.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -57,8 +58,17 @@ class bgk_model final : public relaxation_model {
   bool has_entropy() const override { return true; }
   /// Σ_j f_j log f_j Δv^d (paper, remark on entropy), with 0 log 0 = 0.
   double entropy(const double* f) const override {
+    constexpr int length = 256;  // a block on the stack
+    alignas(alignment) double logarithm[length];
     double sum = 0.0;
-    for (int j = 0; j < grid_.size(); ++j) sum += f[j] > 0.0 ? f[j] * std::log(f[j]) : 0.0;
+    for (int begin = 0; begin < grid_.size(); begin += length) {
+      const int n = std::min(length, grid_.size() - begin);
+      const int padded = (n + packet_length - 1) / packet_length * packet_length;
+      for (int j = 0; j < padded; ++j) logarithm[j] = j < n ? std::max(f[begin + j], 1e-300) : 1.0;
+      log_packets(logarithm, padded);
+#pragma omp simd reduction(+ : sum)
+      for (int j = 0; j < n; ++j) sum += f[begin + j] * logarithm[j];
+    }
     return grid_.weight() * sum;
   }
 

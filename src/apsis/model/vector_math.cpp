@@ -4,7 +4,7 @@
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #endif
 
-#include <apsis/model/vector_exp.hpp>
+#include <apsis/model/vector_math.hpp>
 
 #include <Eigen/Core>
 
@@ -13,6 +13,11 @@ namespace apsis {
 void exp_packets(double* x, int n) {
   Eigen::Map<Eigen::ArrayXd, Eigen::Aligned64> array(x, n);
   array = array.exp();
+}
+
+void log_packets(double* x, int n) {
+  Eigen::Map<Eigen::ArrayXd, Eigen::Aligned64> array(x, n);
+  array = array.log();
 }
 
 }  // namespace apsis

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <apsis/model/model.hpp>
+
+#include <boost/math/differentiation/autodiff.hpp>
+
+namespace apsis {
+
+/// Q(u) without the structure of a relaxation: the stage equation v = u + a Q(v) + b Q̇(v) is solved by Newton's
+/// method, with Q' and Q̇ = Q'Q by automatic differentiation.
+class general_model : public model {
+ public:
+  /// A number with two independent first derivatives: ∂/∂s, ∂/∂t and ∂²/∂s∂t.
+  using number = boost::math::differentiation::autodiff_fvar<double, 1, 1>;
+
+  /// q ← Q(u); rows of components() numbers.
+  virtual void collision(const number* u, number* q) const = 0;
+  /// Whether a row may be the solution of a stage (Newton iterates stay inside).
+  virtual bool admissible(const double* u) const = 0;
+};
+
+}  // namespace apsis

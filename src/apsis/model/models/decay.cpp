@@ -1,0 +1,50 @@
+#include <apsis/model/general_model.hpp>
+#include <apsis/model/model_registry.hpp>
+
+#include <cmath>
+
+namespace apsis {
+namespace {
+
+/// u' = −k u² (paper, numerical tests of the implicit methods: k = 10, u(0) = 10); exact solution u₀/(1 + k u₀ t).
+/// Q̇ = 2k²u³. Dimensionless.
+class decay_model final : public general_model {
+ public:
+  explicit decay_model(const model_config& config) : rate_(config.parameters.at("rate")) {
+    const double start = config.parameters.at("u0");
+    initial_ = {{"start", "u(0) = u0", [start](double, std::span<double> u) { u[0] = start; }}};
+  }
+
+  int components() const override { return 1; }
+  int space_dimensions() const override { return 0; }
+  void collision(const number* u, number* q) const override { q[0] = -rate_ * u[0] * u[0]; }
+  /// A negative solution is admissible: methods that lose positivity must be free to show it.
+  bool admissible(const double* u) const override { return std::isfinite(u[0]); }
+  bool positive() const override { return true; }
+
+  std::vector<std::string> invariants() const override { return {}; }
+  void invariant_densities(const double*, double*) const override {}
+  std::vector<field_name> fields() const override { return {{"u", "u (dimensionless)"}}; }
+  void macroscopic(const double* u, double* values) const override { values[0] = u[0]; }
+  const std::vector<initial_data>& initial() const override { return initial_; }
+
+ private:
+  double rate_;
+  std::vector<initial_data> initial_;
+};
+
+}  // namespace
+
+extern const model_entry model_decay;
+const model_entry model_decay = {
+    "decay",
+    "u' = -k u^2, solved by Newton's method with automatic derivatives",
+    "Gottlieb, Grant, Hu, Shu, numerical tests of the implicit methods",
+    false,
+    false,
+    false,
+    {{"rate", 10.0, 0.0, 1e300, "k (dimensionless)"}, {"u0", 10.0, 0.0, 1e300, "u(0) (dimensionless)"}},
+    {"start"},
+    [](const model_config& config) -> std::unique_ptr<model> { return std::make_unique<decay_model>(config); }};
+
+}  // namespace apsis

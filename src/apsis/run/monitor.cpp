@@ -1,0 +1,72 @@
+#include <apsis/run/monitor.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/parallel.hpp>
+
+namespace apsis {
+
+monitor::totals monitor::sum(const field& u) const {
+  const std::size_t count = equation_.invariants().size();
+  const auto cells = static_cast<std::size_t>(u.cells());
+  std::vector<double> densities(cells * count), entropies(cells), lowest(cells);
+  std::vector<long> negative(cells);
+  parallel_for(u.cells(), [&](int cell) {
+    const auto c = static_cast<std::size_t>(cell);
+    const double* row = u.row(cell);
+    double low = row[0], total = 0.0;
+    long below = 0;
+    for (int k = 0; k < u.components(); ++k) {
+      low = std::min(low, row[k]);
+      below += row[k] < 0.0 ? 1 : 0;
+      total += row[k] - row[k];  // NaN if any number is not finite
+    }
+    lowest[c] = std::isnan(total) ? std::numeric_limits<double>::quiet_NaN() : low;
+    negative[c] = below;
+    equation_.invariant_densities(row, densities.data() + c * count);
+    if (equation_.has_entropy() && below == 0) entropies[c] = equation_.entropy(row);
+  });
+
+  totals t{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0), 0.0,
+           std::numeric_limits<double>::infinity(), 0};
+  for (std::size_t c = 0; c < cells; ++c) {
+    if (std::isnan(lowest[c]))
+      throw numerical_error("a value of the state is not finite (the step is unstable, or the data are); use a "
+                            "smaller step",
+                            {-1, std::numeric_limits<double>::quiet_NaN(), static_cast<long>(c), lowest[c]});
+    t.lowest = std::min(t.lowest, lowest[c]);
+    t.negative += negative[c];
+    t.entropy += volume_ * entropies[c];
+    for (std::size_t k = 0; k < count; ++k) {
+      t.invariants[k] += volume_ * densities[c * count + k];
+      t.scales[k] += volume_ * std::abs(densities[c * count + k]);
+    }
+  }
+  if (!equation_.has_entropy() || t.negative > 0) t.entropy = std::numeric_limits<double>::quiet_NaN();
+  return t;
+}
+
+step_record monitor::start(const field& u) {
+  const totals t = sum(u);
+  invariants_ = t.invariants;
+  scales_ = t.scales;
+  return check(u, std::numeric_limits<double>::quiet_NaN());
+}
+
+step_record monitor::check(const field& u, double previous_entropy) const {
+  const totals t = sum(u);
+  step_record record;
+  record.min_value = t.lowest;
+  record.negative_values = t.negative;
+  record.entropy = t.entropy;
+  record.entropy_change = t.entropy - previous_entropy;
+  for (std::size_t k = 0; k < t.invariants.size(); ++k)
+    record.conservation_defect.push_back(scales_[k] > 0.0 ? std::abs(t.invariants[k] - invariants_[k]) / scales_[k]
+                                                          : std::abs(t.invariants[k]));
+  return record;
+}
+
+}  // namespace apsis

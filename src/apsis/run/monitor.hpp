@@ -1,0 +1,43 @@
+#pragma once
+
+#include <apsis/model/model.hpp>
+#include <apsis/run/simulation.hpp>
+#include <apsis/space/field.hpp>
+
+#include <vector>
+
+namespace apsis {
+
+/// Looks at the state after every step: smallest value, conservation, entropy. Sums run in a fixed order, so the
+/// numbers do not depend on threads.
+class monitor {
+ public:
+  /// `volume` is that of a cell (1 for an ordinary differential equation).
+  monitor(const model& equation, double volume) : equation_(equation), volume_(volume) {}
+
+  /// The state against which conservation is measured.
+  step_record start(const field& u);
+  void resume(const std::vector<double>& invariants, const std::vector<double>& scales) {
+    invariants_ = invariants;
+    scales_ = scales;
+  }
+  const std::vector<double>& invariants() const { return invariants_; }
+  const std::vector<double>& scales() const { return scales_; }
+
+  /// Everything but step, t and dt. Throws numerical_error at the first number that is not finite.
+  step_record check(const field& u, double previous_entropy) const;
+
+ private:
+  struct totals {
+    std::vector<double> invariants, scales;
+    double entropy, lowest;
+    long negative;
+  };
+  totals sum(const field& u) const;
+
+  const model& equation_;
+  double volume_;
+  std::vector<double> invariants_, scales_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,171 @@
+#include <apsis/run/setup.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <apsis/config/expression.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/semidiscrete/newton_collision.hpp>
+#include <apsis/space/quartic.hpp>
+#include <apsis/space/reconstruction_registry.hpp>
+#include <boost/math/quadrature/gauss.hpp>
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+grid make_mesh(const case_config& config, bool has_space) {
+  return has_space ? grid::line(config.space.cells, config.space.domain[0], config.space.domain[1])
+                   : grid::line(1, 0.0, 1.0);
+}
+
+const model_entry& entry_of(const case_config& config) {
+  const model_entry* entry = find_model(config.model.name);
+  if (entry == nullptr) throw input_error("unknown model '" + config.model.name + "'");
+  return *entry;
+}
+
+/// Whether the Shu–Osher form is a convex combination of forward Euler steps of T (and Q, for explicit methods) and
+/// implicit steps of Q: the hypothesis of the paper's theorems.
+bool is_convex(const shu_osher_form<double>& m, method_kind kind) {
+  const auto initial = initial_weights(m);
+  for (std::size_t i = 0; i < m.stages(); ++i) {
+    if (initial[i] < 0.0 || m.D(i, i) < 0.0 || m.ddot[i] > 0.0) return false;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (m.P(i, j) < 0.0 || m.W(i, j) < 0.0) return false;
+      if (kind != method_kind::explicit_only && m.D(i, j) != 0.0) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+run_setup::run_setup(const case_config& config)
+    : config_(config), mesh_(make_mesh(config, entry_of(config).has_space)) {
+  model_config parts;
+  parts.parameters = config.model.parameters;
+  parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium};
+  equation = entry_of(config).make(parts);
+  method_ = &find_method(config.time.method);
+  check_method();
+  if (has_space()) choose_stencil();
+}
+
+void run_setup::check_method() {
+  const bool transports = has_space() || equation->has_source();
+  if (method_->kind == method_kind::implicit_only && transports)
+    throw input_error(fmt::format("method '{}' cannot integrate model '{}' (it is implicit only and the model has "
+                                  "transport); choose an IMEX or explicit method",
+                                  method_->name, config_.model.name));
+  const auto form = method_->coefficients<double>();
+  ssp_coefficient_ = is_convex(form, method_->kind) ? form.r : 0.0;
+  if (config_.time.safety && ssp_coefficient_ == 0.0)
+    throw input_error(fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give "
+                                  "time.dt or time.cfl",
+                                  method_->name));
+}
+
+void run_setup::choose_stencil() {
+  const reconstruction_entry* scheme = find_reconstruction(config_.space.reconstruction);
+  if (scheme == nullptr) throw input_error("unknown reconstruction '" + config_.space.reconstruction + "'");
+  how_.scheme = scheme->make();
+  how_.positivity_limiter = config_.space.limiter == "positivity" && !first_order();
+  how_.boundary = find_boundary(config_.space.boundary);
+  const int needed = 2 * how_.scheme->ghost_width() + 1;
+  if (config_.space.cells < needed)
+    throw input_error(fmt::format("space.cells = {} is smaller than the stencil ({} cells for {}); give at least {}",
+                                  config_.space.cells, needed, config_.space.reconstruction, needed));
+}
+
+bool run_setup::pointwise() const {
+  return !has_space() || first_order() || config_.space.formulation == formulation::finite_difference;
+}
+
+std::vector<double> run_setup::centres() const {
+  std::vector<double> x;
+  for (int cell = 0; cell < mesh_.size(); ++cell) x.push_back(has_space() ? mesh_.centre(cell, 0) : 0.0);
+  return x;
+}
+
+std::vector<double> run_setup::epsilon_on(const std::vector<double>& x) const {
+  const expression formula(config_.model.epsilon);
+  std::vector<double> values;
+  for (const double at : x) values.push_back(formula.evaluate(at));
+  return values;
+}
+
+std::vector<double> run_setup::epsilon_at_centres() const {
+  return epsilon_on(centres());
+}
+
+std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
+  std::unique_ptr<collision> q;
+  if (const auto* general = dynamic_cast<const general_model*>(equation.get())) {
+    q = make_newton_collision(*general);
+  } else {
+    const auto& relaxation = dynamic_cast<const relaxation_model&>(*equation);
+    if (pointwise()) {
+      q = make_pointwise_collision(relaxation, epsilon_at_centres());
+    } else {
+      std::vector<double> points;
+      for (const double centre : centres())
+        for (const double xi : gauss3::xi) points.push_back(centre + xi * mesh_.spacing(0));
+      q = make_cell_average_collision(relaxation, mesh_, how_, epsilon_on(points));
+    }
+  }
+  auto problem = std::make_unique<semidiscrete_problem>(*equation, mesh_, how_, std::move(q));
+  if (method_->kind == method_kind::explicit_only) problem->treat_collision_explicitly();
+  return problem;
+}
+
+field run_setup::initial_state() const {
+  const auto& all = equation->initial();
+  const auto found = std::find_if(all.begin(), all.end(), [this](const auto& data) {
+    return config_.model.initial.empty() || data.name == config_.model.initial;
+  });
+  if (found == all.end()) throw input_error("unknown initial data '" + config_.model.initial + "'");
+  field u(mesh_.size(), equation->components());
+  std::vector<double> values(static_cast<std::size_t>(u.components()));
+  const bool averages = has_space() && config_.space.formulation == formulation::finite_volume;
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    const double centre = mesh_.centre(cell, 0), half = 0.5 * mesh_.spacing(0);
+    double* row = u.row(cell);
+    const auto add = [&](double x, double weight) {
+      found->point_value(x, values);
+      for (std::size_t k = 0; k < values.size(); ++k) row[k] += weight * values[k];
+    };
+    if (averages) {
+      // Ten points: exact to round-off for data that the mesh resolves at all.
+      using rule = boost::math::quadrature::gauss<double, 10>;
+      for (std::size_t q = 0; q < rule::abscissa().size(); ++q) {
+        add(centre - half * rule::abscissa()[q], 0.5 * rule::weights()[q]);
+        add(centre + half * rule::abscissa()[q], 0.5 * rule::weights()[q]);
+      }
+    } else {
+      add(has_space() ? centre : 0.0, 1.0);
+    }
+    const std::string problem = equation->unfit(row);
+    if (!problem.empty()) throw input_error(fmt::format("{} [cell {}]", problem, cell));
+  }
+  return u;
+}
+
+double run_setup::cfl_length() const {
+  if (!has_space()) throw input_error("time.cfl needs a mesh (the model has no space); give time.dt");
+  double fastest = config_.velocity.max;
+  if (!(fastest > 0.0))
+    for (const double v : equation->speeds(0)) fastest = std::max(fastest, std::abs(v));
+  return mesh_.spacing(0) / fastest;
+}
+
+void run_setup::decide_promises(run_promises& promises, double dt, double limit) const {
+  const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
+  promises.conservation = !equation->invariants().empty();
+  promises.positivity = equation->positive() && within && (how_.positivity_limiter || first_order() || !has_space());
+  promises.entropy = equation->has_entropy() && within && first_order();
+}
+
+}  // namespace apsis

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/run/simulation.hpp>
+#include <apsis/semidiscrete/semidiscrete_problem.hpp>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace apsis {
+
+/// Everything that a case names, made and checked against each other before the first step.
+class run_setup {
+ public:
+  /// Throws input_error: mesh smaller than the stencil, method that cannot integrate the model, epsilon(x) not a
+  /// finite number ≥ 0 on the mesh.
+  explicit run_setup(const case_config& config);
+
+  std::unique_ptr<model> equation;
+
+  const method& integrator() const { return *method_; }
+  /// r of Δt ≤ r Δt_FE; 0 if the method has none.
+  double ssp_coefficient() const { return ssp_coefficient_; }
+
+  std::unique_ptr<semidiscrete_problem> make_problem() const;
+  /// Cell averages (finite volume) or point values (finite difference) of the named initial data. Throws
+  /// input_error where the velocity grid cannot hold them.
+  field initial_state() const;
+
+  bool has_space() const { return equation->space_dimensions() > 0; }
+  double cell_volume() const { return has_space() ? mesh_.cell_volume() : 1.0; }
+  std::vector<double> centres() const;
+  std::vector<double> epsilon_at_centres() const;
+  /// dt if it was given as a number.
+  std::optional<double> given_dt() const { return config_.time.dt; }
+  /// Δx/v_max, so that Δt = cfl · this.
+  double cfl_length() const;
+
+  void decide_promises(run_promises& promises, double dt, double limit) const;
+
+ private:
+  bool first_order() const { return how_.scheme && how_.scheme->order() == 1; }
+  /// Collision on the averages themselves: point values, or first order, where the quartic would be too much.
+  bool pointwise() const;
+  std::vector<double> epsilon_on(const std::vector<double>& x) const;
+  void check_method();
+  void choose_stencil();
+
+  case_config config_;
+  grid mesh_;
+  stencil how_;
+  const method* method_ = nullptr;
+  double ssp_coefficient_ = 0.0;
+};
+
+}  // namespace apsis

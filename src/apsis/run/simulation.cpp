@@ -1,0 +1,235 @@
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/run/monitor.hpp>
+#include <apsis/run/setup.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+
+std::string run_promises::text() const {
+  std::vector<std::string> kept;
+  if (positivity) kept.emplace_back("positivity");
+  if (conservation) kept.emplace_back("conservation");
+  if (entropy) kept.emplace_back("entropy decay");
+  return kept.empty() ? "nothing is promised for this configuration; everything is reported"
+                      : fmt::format("promised at every step: {}", fmt::join(kept, ", "));
+}
+
+struct simulation::impl {
+  explicit impl(case_config configured)
+      : config(std::move(configured)), setup(config), problem(setup.make_problem()),
+        integrator(setup.integrator(), *problem), watch(*setup.equation, setup.cell_volume()),
+        state(setup.initial_state()), march(0.0, config.time.end, setup.given_dt()) {
+    if (march.adjusted())
+      log::warning(fmt::format("time.dt = {:.17g} does not divide time.end = {:g}; dt = {:.17g} is used instead",
+                               *config.time.dt, config.time.end, *march.fixed_dt()));
+    first = last = watch.start(state);
+    totals.min_value = first.min_value;
+    totals.negative_values = first.negative_values;
+    totals.phase_points = static_cast<long>(state.cells()) * state.components();
+    if (!march.done()) setup.decide_promises(promises, next_dt(), forward_euler_limit());
+  }
+
+  double forward_euler_limit() { return setup.ssp_coefficient() * problem->forward_euler_step(march.t(), state); }
+
+  double next_dt() {
+    if (config.time.cfl) return march.next(*config.time.cfl * setup.cfl_length());
+    if (config.time.safety) return march.next(*config.time.safety * forward_euler_limit());
+    return march.next(0.0);
+  }
+
+  void record_step(double dt) {
+    march.advance(dt);
+    const double previous = last.entropy;
+    last = watch.check(state, previous);
+    last.step = march.step();
+    last.t = march.t();
+    last.dt = dt;
+    totals.steps = march.step();
+    totals.t = march.t();
+    totals.dt = std::max(totals.dt, dt);
+    totals.min_value = std::min(totals.min_value, last.min_value);
+    totals.negative_values += last.negative_values;
+    for (const double defect : last.conservation_defect)
+      totals.conservation_defect = std::max(totals.conservation_defect, defect);
+    if (!std::isnan(last.entropy_change))
+      totals.max_entropy_increase = std::max(totals.max_entropy_increase, last.entropy_change);
+  }
+
+  void keep_promises() const {
+    const failure_site here{last.step, last.t, -1, std::numeric_limits<double>::quiet_NaN()};
+    const auto broken = [&here](const std::string& what, double value) {
+      failure_site site = here;
+      site.value = value;
+      throw numerical_error("broken promise: " + what, site);
+    };
+    if (promises.positivity && last.negative_values > 0)
+      broken(fmt::format("{} values are negative (the configuration entails positivity)", last.negative_values),
+             last.min_value);
+    // Rounding of one step, times the number of steps.
+    const double rounding = 1e-12 + 1e-15 * static_cast<double>(last.step);
+    for (std::size_t k = 0; promises.conservation && k < last.conservation_defect.size(); ++k)
+      if (!(last.conservation_defect[k] <= rounding))
+        broken(fmt::format("{} is not conserved to rounding (a Maxwellian by formula on a coarse velocity grid does "
+                           "that); use velocity.equilibrium = \"auto\"",
+                           setup.equation->invariants()[k]),
+               last.conservation_defect[k]);
+    if (promises.entropy && last.entropy_change > 1e-13 * (1.0 + std::abs(last.entropy)))
+      broken("the entropy increased (first-order upwind within r dt_FE entails decay)", last.entropy_change);
+  }
+
+  case_config config;
+  run_setup setup;
+  std::unique_ptr<semidiscrete_problem> problem;
+  stepper<semidiscrete_problem> integrator;
+  monitor watch;
+  field state;
+  time_marcher<double> march;
+  run_promises promises;
+  step_record first, last;
+  run_summary totals;
+};
+
+simulation::simulation(case_config config) : impl_(std::make_unique<impl>(std::move(config))) {}
+simulation::~simulation() = default;
+simulation::simulation(simulation&&) noexcept = default;
+simulation& simulation::operator=(simulation&&) noexcept = default;
+
+const case_config& simulation::config() const {
+  return impl_->config;
+}
+const run_promises& simulation::promises() const {
+  return impl_->promises;
+}
+std::vector<std::string> simulation::invariants() const {
+  return impl_->setup.equation->invariants();
+}
+double simulation::t() const {
+  return impl_->march.t();
+}
+double simulation::dt() const {
+  return impl_->march.done() ? 0.0 : impl_->next_dt();
+}
+long simulation::step() const {
+  return impl_->march.step();
+}
+long simulation::steps_total() const {
+  if (finished()) return step();
+  return step() + static_cast<long>(std::ceil((impl_->config.time.end - t()) / dt() - 1e-9));
+}
+bool simulation::finished() const {
+  return impl_->march.done();
+}
+
+const step_record& simulation::advance() {
+  const auto start = std::chrono::steady_clock::now();
+  impl& run = *impl_;
+  try {
+    const double dt = run.next_dt();
+    run.integrator.step(run.march.t(), dt, run.state);
+    run.record_step(dt);
+  } catch (const numerical_error& failure) {
+    throw failure.site().step >= 0 ? failure : failure.at(run.march.step() + 1, run.march.t());
+  }
+  run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  run.keep_promises();
+  return run.last;
+}
+
+const step_record& simulation::last() const {
+  return impl_->last;
+}
+const step_record& simulation::initial_record() const {
+  return impl_->first;
+}
+
+run_summary simulation::summary() const {
+  run_summary summary = impl_->totals;
+  const double work = static_cast<double>(summary.phase_points) * static_cast<double>(summary.steps) *
+                      static_cast<double>(impl_->setup.integrator().stages());
+  summary.t = t();
+  summary.point_stages_per_s = summary.wall_s > 0.0 ? work / summary.wall_s : 0.0;
+  return summary;
+}
+
+field_table simulation::fields() const {
+  const model& equation = *impl_->setup.equation;
+  field_table table;
+  for (const auto& name : equation.fields()) {
+    table.names.push_back(name.name);
+    table.labels.push_back(name.label);
+  }
+  table.x = impl_->setup.centres();
+  table.values.assign(table.names.size(), {});
+  std::vector<double> values(table.names.size());
+  for (int cell = 0; cell < cells(); ++cell) {
+    equation.macroscopic(impl_->state.row(cell), values.data());
+    for (std::size_t k = 0; k < values.size(); ++k) table.values[k].push_back(values[k]);
+  }
+  return table;
+}
+
+int simulation::cells() const {
+  return impl_->state.cells();
+}
+int simulation::components() const {
+  return impl_->state.components();
+}
+
+std::vector<double> simulation::state() const {
+  std::vector<double> values;
+  for (int cell = 0; cell < cells(); ++cell) {
+    const double* row = impl_->state.row(cell);
+    values.insert(values.end(), row, row + components());
+  }
+  return values;
+}
+
+std::vector<double> simulation::velocities() const {
+  const auto speeds = impl_->setup.equation->speeds(0);
+  return {speeds.begin(), speeds.end()};
+}
+std::vector<double> simulation::epsilon() const {
+  return impl_->setup.epsilon_at_centres();
+}
+
+saved_run simulation::save() const {
+  const auto march = impl_->march.save();
+  saved_run saved;
+  saved.state = state();
+  saved.step = march.step;
+  saved.since_anchor = march.since_anchor;
+  saved.t = march.t;
+  saved.anchor = march.anchor;
+  saved.anchor_dt = march.anchor_dt;
+  saved.so_far = summary();
+  saved.initial = impl_->first;
+  saved.last = impl_->last;
+  return saved;
+}
+
+void simulation::restore(const saved_run& saved) {
+  if (saved.state.size() != static_cast<std::size_t>(cells()) * static_cast<std::size_t>(components()))
+    throw input_error("the saved state has another size than the case (it belongs to another case); restart with the "
+                      "case it was written for");
+  for (int cell = 0; cell < cells(); ++cell)
+    std::copy_n(saved.state.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
+                impl_->state.row(cell));
+  impl_->march.resume({saved.step, saved.since_anchor, saved.t, saved.anchor, saved.anchor_dt});
+  impl_->totals = saved.so_far;
+  impl_->first = saved.initial;
+  impl_->last = saved.last;
+}
+
+}  // namespace apsis

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <apsis/semidiscrete/collision.hpp>
+#include <apsis/semidiscrete/transport.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace apsis {
+
+/// A model on a mesh (or, without space, at one point), as the integrator sees it (see integrate/problem.hpp).
+class semidiscrete_problem {
+ public:
+  using state = field;
+  using real = double;
+
+  /// Both references must outlive the problem.
+  semidiscrete_problem(const model& equation, const grid& mesh, stencil how, std::unique_ptr<collision> q)
+      : transport_(equation, mesh, std::move(how)), collision_(std::move(q)) {}
+
+  /// Methods that treat T and Q explicitly keep what u + Δt (T + Q) keeps: with 1/Δt = 1/Δt_T + 1/Δt_Q that is a
+  /// convex combination of a step of T and a step of Q.
+  void treat_collision_explicitly() { explicit_collision_ = true; }
+
+  void scatter(double, const field& u, std::span<const target<field, double>> targets) {
+    transport_.scatter(u, targets);
+  }
+  void collide(double, double a, double b, field& u) { collision_->solve(a, b, u); }
+  void scatter_collision(double, const field& u, std::span<const target<field, double>> targets) {
+    collision_->scatter(u, targets);
+  }
+  double forward_euler_step(double, const field& u) const {
+    const double of_transport = transport_.forward_euler_step();
+    if (!explicit_collision_) return of_transport;
+    return 1.0 / (1.0 / of_transport + 1.0 / collision_->forward_euler_step(u));
+  }
+
+ private:
+  transport transport_;
+  std::unique_ptr<collision> collision_;
+  bool explicit_collision_ = false;
+};
+
+}  // namespace apsis

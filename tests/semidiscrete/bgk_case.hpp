@@ -1,0 +1,68 @@
+#pragma once
+
+#include <apsis/model/model_registry.hpp>
+#include <apsis/semidiscrete/semidiscrete_problem.hpp>
+#include <apsis/space/reconstruction_registry.hpp>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+/// A small BGK model for tests of the operators.
+inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, double max = 8.0) {
+  apsis::model_config config;
+  config.parameters = {{"velocity_dimensions", 1.0}};
+  config.velocity = {max, points, "auto"};
+  auto made = apsis::find_model("bgk")->make(config);
+  return std::unique_ptr<apsis::relaxation_model>(dynamic_cast<apsis::relaxation_model*>(made.release()));
+}
+
+inline apsis::stencil scheme(const std::string& name, bool limited) {
+  return {apsis::find_reconstruction(name)->make(), limited, apsis::boundary_kind::periodic};
+}
+
+/// Cell averages (ten-point-accurate by a fine midpoint rule of 200 points) or point values of g(x, k).
+template <class Function>
+apsis::field sample(const apsis::grid& mesh, int components, bool averages, Function g) {
+  apsis::field u(mesh.size(), components);
+  for (int i = 0; i < mesh.size(); ++i) {
+    const double x = mesh.centre(i, 0), h = mesh.spacing(0);
+    for (int k = 0; k < components; ++k) {
+      if (!averages) {
+        u.row(i)[k] = g(x, k);
+        continue;
+      }
+      // Five-point Gauss on four parts: exact to rounding for the smooth functions here.
+      constexpr double node[3] = {0.0, 0.538469310105683091, 0.906179845938663993};
+      constexpr double weight[3] = {0.568888888888888889, 0.478628670499366468, 0.236926885056189088};
+      double sum = 0.0;
+      for (int part = 0; part < 4; ++part) {
+        const double centre = x + h * (part - 1.5) / 4.0, half = h / 8.0;
+        for (int q = 0; q < 3; ++q)
+          sum += weight[q] * (q == 0 ? g(centre, k) : g(centre - half * node[q], k) + g(centre + half * node[q], k));
+      }
+      u.row(i)[k] = sum / 8.0;
+    }
+  }
+  return u;
+}
+
+/// T(u) as a field.
+inline apsis::field transport_of(const apsis::transport& t, const apsis::field& u) {
+  apsis::field result(u.cells(), u.components());
+  const apsis::target<apsis::field, double> to{&result, 0.0, 1.0, true};
+  t.scatter(u, {&to, 1});
+  return result;
+}
+
+inline double total(const apsis::relaxation_model& m, const apsis::field& u, int moment) {
+  double sum = 0.0;
+  std::vector<double> omega(static_cast<std::size_t>(m.moment_count()));
+  for (int i = 0; i < u.cells(); ++i) {
+    m.moments(u.row(i), omega.data());
+    sum += omega[static_cast<std::size_t>(moment)];
+  }
+  return sum;
+}

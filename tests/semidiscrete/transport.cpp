@@ -1,0 +1,194 @@
+#include "bgk_case.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <apsis/core/parallel.hpp>
+#include <support/property.hpp>
+
+namespace {
+
+using apsis::field;
+using apsis::grid;
+
+/// Largest error of T(u) for u = 1 + sin(2πx) (it touches zero), in the mean over cells (L1).
+double transport_error(const apsis::relaxation_model& m, const std::string& name, bool limited, bool averages, int n) {
+  const grid mesh = grid::line(n, 0.0, 1.0);
+  const apsis::transport t(m, mesh, scheme(name, limited));
+  const double w = 2.0 * std::numbers::pi;
+  const field u = sample(mesh, m.components(), averages, [w](double x, int) { return 1.0 + std::sin(w * x); });
+  const field exact = sample(mesh, m.components(), averages, [&](double x, int k) {
+    return -m.speeds(0)[static_cast<std::size_t>(k)] * w * std::cos(w * x);
+  });
+  const field numerical = transport_of(t, u);
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < m.components(); ++k) sum += std::abs(numerical.row(i)[k] - exact.row(i)[k]);
+  return sum / (n * m.components());
+}
+
+/// Nonnegative rows with zeros, jumps and values of very different size.
+field random_rows(const grid& mesh, int components) {
+  field u(mesh.size(), components);
+  for (int i = 0; i < mesh.size(); ++i)
+    for (int k = 0; k < components; ++k)
+      u.row(i)[k] = *rc::gen::element(0.0, 1.0, 0.3) * std::pow(10.0, *rc::gen::element(0, -3, -20, -160, -305));
+  return u;
+}
+
+double smallest(const field& u) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < u.cells(); ++i) lowest = std::min(lowest, *std::min_element(u.row(i), u.row(i) + u.components()));
+  return lowest;
+}
+
+}  // namespace
+
+TEST(transport, fifth_order_in_both_formulations_with_and_without_limiter) {
+  const auto m = small_bgk(8);
+  for (const char* name : {"weno5-z", "weno5-js"}) {
+    for (const bool limited : {false, true}) {
+      for (const bool averages : {true, false}) {
+        const double slope = std::log2(transport_error(*m, name, limited, averages, 80) /
+                                       transport_error(*m, name, limited, averages, 160));
+        EXPECT_GT(slope, 4.8) << name << " limited " << limited << " averages " << averages;
+      }
+    }
+  }
+}
+
+TEST(transport, first_order_upwind_is_the_difference_of_neighbours) {
+  const auto m = small_bgk(6);
+  const grid mesh = grid::line(9, 0.0, 1.8);
+  const apsis::transport t(*m, mesh, scheme("upwind1", false));
+  const field u = sample(mesh, 6, false, [](double x, int k) { return 1.0 + x * x + k; });
+  const field change = transport_of(t, u);
+  for (int i = 0; i < 9; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      const double v = m->speeds(0)[static_cast<std::size_t>(k)];
+      const int upwind = v > 0 ? (i + 8) % 9 : (i + 1) % 9;
+      const double expected = -std::abs(v) * (u.row(i)[k] - u.row(upwind)[k]) / 0.2;
+      EXPECT_NEAR(change.row(i)[k], expected, 1e-12);
+    }
+  }
+}
+
+TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
+  const auto m = small_bgk(8);
+  const grid mesh = grid::line(12, 0.0, 1.0);
+  for (const bool limited : {true, false}) {
+    const apsis::transport t(*m, mesh, scheme(limited ? "weno5-z" : "upwind1", limited));
+    const double dt = t.forward_euler_step();
+    check_property(limited ? "weno5-z with limiter" : "upwind1", [&] {
+      const field u = random_rows(mesh, 8);
+      // As a stage sees it: a weight w ≤ 1 and the step w Δt.
+      const double w = *rc::gen::inRange(1, 1001) * 1e-3;
+      field result(mesh.size(), 8);
+      const apsis::target<field, double> to{&result, w, w * dt, true};
+      t.scatter(u, {&to, 1});
+      RC_ASSERT(smallest(result) >= 0.0);
+    });
+  }
+}
+
+TEST(transport, above_dt_fe_positivity_breaks) {
+  // An edge value may be up to 12 times the average; a single full cell that empties shows it: L = 0 by the data of
+  // its neighbours, and the update is negative beyond some multiple of Δt_FE.
+  const auto m = small_bgk(8);
+  const grid mesh = grid::line(12, 0.0, 1.0);
+  const apsis::transport upwind(*m, mesh, scheme("upwind1", false));
+  field u(12, 8);
+  for (int k = 0; k < 8; ++k) u.row(5)[k] = 1.0;
+  field result(12, 8);
+  const apsis::target<field, double> to{&result, 1.0, 1.0001 * upwind.forward_euler_step(), true};
+  upwind.scatter(u, {&to, 1});
+  EXPECT_LT(smallest(result), 0.0);
+}
+
+TEST(transport, conserves_every_component) {
+  const auto m = small_bgk(8);
+  const grid mesh = grid::line(20, 0.0, 1.0);
+  for (const bool limited : {false, true}) {
+    const apsis::transport t(*m, mesh, scheme("weno5-z", limited));
+    const field u = sample(mesh, 8, true, [](double x, int k) { return x < 0.4 ? 1.0 + k : 1e-3; });
+    const field change = transport_of(t, u);
+    for (int k = 0; k < 8; ++k) {
+      double sum = 0.0, scale = 0.0;
+      for (int i = 0; i < 20; ++i) {
+        sum += change.row(i)[k];
+        scale += std::abs(change.row(i)[k]);
+      }
+      EXPECT_LT(std::abs(sum), 1e-14 * scale + 1e-13) << k;  // 20 differences of rounded fluxes
+    }
+  }
+}
+
+TEST(transport, does_not_depend_on_the_number_of_threads_or_on_blocks) {
+  const auto m = small_bgk(150, 15.0);
+  const grid mesh = grid::line(97, 0.0, 2.0);
+  const apsis::transport t(*m, mesh, scheme("weno5-z", true));
+  const field u = sample(mesh, 150, false, [](double x, int k) { return std::exp(std::sin(3.0 * x) - 0.1 * k); });
+  apsis::set_threads(1);
+  const field one = transport_of(t, u);
+  apsis::set_threads(3);
+  const field three = transport_of(t, u);
+  apsis::set_threads(1);
+  for (int i = 0; i < 97; ++i)
+    for (int k = 0; k < 150; ++k) ASSERT_EQ(one.row(i)[k], three.row(i)[k]);
+}
+
+namespace {
+
+/// Advection of three components with given velocities in two dimensions.
+class plane_advection final : public apsis::relaxation_model {
+ public:
+  int components() const override { return 3; }
+  int space_dimensions() const override { return 2; }
+  std::span<const double> speeds(int direction) const override {
+    static const std::vector<double> x = {1.0, -0.5, 0.0}, y = {0.5, 0.0, -2.0};
+    return direction == 0 ? x : y;
+  }
+  int moment_count() const override { return 1; }
+  void moments(const double* u, double* omega) const override { omega[0] = u[0] + u[1] + u[2]; }
+  bool equilibrium(const double* omega, double* e) const override {
+    for (int k = 0; k < 3; ++k) e[k] = omega[0] / 3.0;
+    return true;
+  }
+  double rate(const double*) const override { return 1.0; }
+  std::string why_inadmissible(const double*) const override { return ""; }
+  std::vector<std::string> invariants() const override { return {"mass"}; }
+  void invariant_densities(const double* u, double* d) const override { moments(u, d); }
+  std::vector<apsis::field_name> fields() const override { return {}; }
+  void macroscopic(const double*, double*) const override {}
+  const std::vector<apsis::initial_data>& initial() const override {
+    static const std::vector<apsis::initial_data> none;
+    return none;
+  }
+};
+
+}  // namespace
+
+TEST(transport, is_fifth_order_in_two_dimensions_by_the_same_code) {
+  const plane_advection m;
+  const double w = 2.0 * std::numbers::pi;
+  const auto error = [&](int n) {
+    const grid mesh(2, {n, n, 1}, {0, 0, 0}, {1, 1, 1});
+    const apsis::transport t(m, mesh, scheme("weno5-z", true));
+    field u(mesh.size(), 3), exact(mesh.size(), 3);
+    for (int i = 0; i < mesh.size(); ++i) {
+      const double x = mesh.centre(i, 0), y = mesh.centre(i, 1);
+      for (int k = 0; k < 3; ++k) {
+        const auto component = static_cast<std::size_t>(k);
+        u.row(i)[k] = 2.0 + std::sin(w * x) * std::cos(w * y);
+        exact.row(i)[k] = -w * (m.speeds(0)[component] * std::cos(w * x) * std::cos(w * y) -
+                                m.speeds(1)[component] * std::sin(w * x) * std::sin(w * y));
+      }
+    }
+    const field numerical = transport_of(t, u);
+    double sum = 0.0;
+    for (int i = 0; i < mesh.size(); ++i)
+      for (int k = 0; k < 3; ++k) sum += std::abs(numerical.row(i)[k] - exact.row(i)[k]);
+    return sum / mesh.size();
+  };
+  EXPECT_GT(std::log2(error(40) / error(80)), 4.8);
+}

@@ -19,8 +19,8 @@ inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, doubl
   return std::unique_ptr<apsis::relaxation_model>(dynamic_cast<apsis::relaxation_model*>(made.release()));
 }
 
-inline apsis::stencil scheme(const std::string& name, bool limited) {
-  return {apsis::find_reconstruction(name)->make(), limited, apsis::boundary_kind::periodic};
+inline apsis::stencil scheme(const std::string& name, apsis::limiter_kind positivity) {
+  return {apsis::find_reconstruction(name)->make(), positivity, apsis::boundary_kind::periodic};
 }
 
 /// Cell averages (ten-point-accurate by a fine midpoint rule of 200 points) or point values of g(x, k).

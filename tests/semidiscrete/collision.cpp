@@ -11,6 +11,7 @@ namespace {
 
 using apsis::field;
 using apsis::grid;
+using apsis::limiter_kind;
 
 double epsilon_of(double x) {
   return 1e-5 + std::tanh(1 - 11 * (x - 1)) + std::tanh(1 + 11 * (x - 1));
@@ -45,9 +46,10 @@ TEST(collision, conserves_to_rounding_although_epsilon_varies_inside_cells) {
   const auto m = small_bgk();
   const grid mesh = grid::line(20, 0.0, 2.0);
   for (const bool averages : {true, false}) {
-    const auto q = averages ? apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", true),
-                                                                 at_gauss_points(mesh, epsilon_of))
-                            : apsis::make_pointwise_collision(*m, at_centres(mesh, epsilon_of));
+    const auto q = averages
+                       ? apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", limiter_kind::edges),
+                                                            at_gauss_points(mesh, epsilon_of))
+                       : apsis::make_pointwise_collision(*m, at_centres(mesh, epsilon_of));
     field u = smooth(*m, mesh, averages);
     const field before = u;
     q->solve(1e-2, -1e-4, u);
@@ -62,7 +64,7 @@ TEST(collision, averages_are_fifth_order_against_the_exact_average_of_relaxed_po
   const auto error = [&](int n) {
     const grid mesh = grid::line(n, 0.0, 2.0);
     const auto smooth_epsilon = [](double x) { return 1.2 + std::sin(std::numbers::pi * x); };
-    const auto q = apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", true),
+    const auto q = apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", limiter_kind::edges),
                                                       at_gauss_points(mesh, +smooth_epsilon));
     field u = smooth(*m, mesh, true);
     q->solve(a, 0.0, u);
@@ -108,12 +110,13 @@ TEST(collision, never_makes_a_negative_value_from_limited_data) {
   check_property("nonnegative", [&] {
     static double epsilon = 1.0;
     epsilon = *rc::gen::inRange(0, 4) == 0 ? 0.0 : std::pow(10.0, *rc::gen::inRange(-12, 13));
-    const auto q = apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", true),
+    const auto q = apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", limiter_kind::edges),
                                                       at_gauss_points(mesh, [](double) { return epsilon; }));
     field u(12, m->components());
     for (int i = 0; i < 12; ++i)
       for (int k = 0; k < m->components(); ++k)
-        u.row(i)[k] = *rc::gen::element(0.0, 1.0, 0.2) * std::pow(10.0, *rc::gen::element(0, -2, -8)) + 1e-3 * (k == 20);
+        u.row(i)[k] = *rc::gen::element(0.0, 1.0, 0.2) * std::pow(10.0, *rc::gen::element(0, -2, -8)) +
+                      1e-3 * (k == 20);
     q->solve(*rc::gen::element(0.0, 1e-3, 1.0), -*rc::gen::element(0.0, 1e-6, 1.0), u);
     for (int i = 0; i < 12; ++i)
       for (int k = 0; k < m->components(); ++k) RC_ASSERT(u.row(i)[k] >= 0.0);
@@ -139,9 +142,10 @@ TEST(collision, explicit_evaluation_agrees_with_the_implicit_one_for_small_steps
   const auto m = small_bgk();
   const grid mesh = grid::line(10, 0.0, 2.0);
   for (const bool averages : {true, false}) {
-    const auto q = averages ? apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", false),
-                                                                 std::vector<double>(30, 0.5))
-                            : apsis::make_pointwise_collision(*m, std::vector<double>(10, 0.5));
+    const auto q = averages
+                       ? apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", limiter_kind::none),
+                                                            std::vector<double>(30, 0.5))
+                       : apsis::make_pointwise_collision(*m, std::vector<double>(10, 0.5));
     const field u = smooth(*m, mesh, averages);
     field implicit = u, change(10, m->components());
     const double dt = 1e-7;

@@ -10,13 +10,17 @@ namespace {
 
 using apsis::field;
 using apsis::grid;
+using apsis::limiter_kind;
 
 /// Largest error of T(u) for u = 1 + sin(2πx) (it touches zero), in the mean over cells (L1).
-double transport_error(const apsis::relaxation_model& m, const std::string& name, bool limited, bool averages, int n) {
+double transport_error(const apsis::relaxation_model& m, const std::string& name, bool limited, bool averages,
+                       int n) {
   const grid mesh = grid::line(n, 0.0, 1.0);
-  const apsis::transport t(m, mesh, scheme(name, limited));
+  const limiter_kind kind = averages ? limiter_kind::edges : limiter_kind::fluxes;
+  const apsis::transport t(m, mesh, scheme(name, limited ? kind : limiter_kind::none));
   const double w = 2.0 * std::numbers::pi;
-  const field u = sample(mesh, m.components(), averages, [w](double x, int) { return 1.0 + std::sin(w * x); });
+  const field u =
+      sample(mesh, m.components(), averages, [w](double x, int) { return 1.0 + std::sin(w * x); });
   const field exact = sample(mesh, m.components(), averages, [&](double x, int k) {
     return -m.speeds(0)[static_cast<std::size_t>(k)] * w * std::cos(w * x);
   });
@@ -32,13 +36,15 @@ field random_rows(const grid& mesh, int components) {
   field u(mesh.size(), components);
   for (int i = 0; i < mesh.size(); ++i)
     for (int k = 0; k < components; ++k)
-      u.row(i)[k] = *rc::gen::element(0.0, 1.0, 0.3) * std::pow(10.0, *rc::gen::element(0, -3, -20, -160, -305));
+      u.row(i)[k] =
+          *rc::gen::element(0.0, 1.0, 0.3) * std::pow(10.0, *rc::gen::element(0, -3, -20, -160, -305));
   return u;
 }
 
 double smallest(const field& u) {
   double lowest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < u.cells(); ++i) lowest = std::min(lowest, *std::min_element(u.row(i), u.row(i) + u.components()));
+  for (int i = 0; i < u.cells(); ++i)
+    lowest = std::min(lowest, *std::min_element(u.row(i), u.row(i) + u.components()));
   return lowest;
 }
 
@@ -60,7 +66,7 @@ TEST(transport, fifth_order_in_both_formulations_with_and_without_limiter) {
 TEST(transport, first_order_upwind_is_the_difference_of_neighbours) {
   const auto m = small_bgk(6);
   const grid mesh = grid::line(9, 0.0, 1.8);
-  const apsis::transport t(*m, mesh, scheme("upwind1", false));
+  const apsis::transport t(*m, mesh, scheme("upwind1", limiter_kind::none));
   const field u = sample(mesh, 6, false, [](double x, int k) { return 1.0 + x * x + k; });
   const field change = transport_of(t, u);
   for (int i = 0; i < 9; ++i) {
@@ -76,10 +82,11 @@ TEST(transport, first_order_upwind_is_the_difference_of_neighbours) {
 TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
   const auto m = small_bgk(8);
   const grid mesh = grid::line(12, 0.0, 1.0);
-  for (const bool limited : {true, false}) {
-    const apsis::transport t(*m, mesh, scheme(limited ? "weno5-z" : "upwind1", limited));
+  for (const auto kind : {limiter_kind::edges, limiter_kind::fluxes, limiter_kind::none}) {
+    const std::string name = kind == limiter_kind::none ? "upwind1" : "weno5-z";
+    const apsis::transport t(*m, mesh, scheme(name, kind));
     const double dt = t.forward_euler_step();
-    check_property(limited ? "weno5-z with limiter" : "upwind1", [&] {
+    check_property(name + " limiter " + std::to_string(static_cast<int>(kind)), [&] {
       const field u = random_rows(mesh, 8);
       // As a stage sees it: a weight w ≤ 1 and the step w Δt.
       const double w = *rc::gen::inRange(1, 1001) * 1e-3;
@@ -92,11 +99,11 @@ TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
 }
 
 TEST(transport, above_dt_fe_positivity_breaks) {
-  // An edge value may be up to 12 times the average; a single full cell that empties shows it: L = 0 by the data of
-  // its neighbours, and the update is negative beyond some multiple of Δt_FE.
+  // An edge value may be up to 12 times the average; a single full cell that empties shows it: L = 0 by the
+  // data of its neighbours, and the update is negative beyond some multiple of Δt_FE.
   const auto m = small_bgk(8);
   const grid mesh = grid::line(12, 0.0, 1.0);
-  const apsis::transport upwind(*m, mesh, scheme("upwind1", false));
+  const apsis::transport upwind(*m, mesh, scheme("upwind1", limiter_kind::none));
   field u(12, 8);
   for (int k = 0; k < 8; ++k) u.row(5)[k] = 1.0;
   field result(12, 8);
@@ -108,8 +115,8 @@ TEST(transport, above_dt_fe_positivity_breaks) {
 TEST(transport, conserves_every_component) {
   const auto m = small_bgk(8);
   const grid mesh = grid::line(20, 0.0, 1.0);
-  for (const bool limited : {false, true}) {
-    const apsis::transport t(*m, mesh, scheme("weno5-z", limited));
+  for (const auto kind : {limiter_kind::none, limiter_kind::edges, limiter_kind::fluxes}) {
+    const apsis::transport t(*m, mesh, scheme("weno5-z", kind));
     const field u = sample(mesh, 8, true, [](double x, int k) { return x < 0.4 ? 1.0 + k : 1e-3; });
     const field change = transport_of(t, u);
     for (int k = 0; k < 8; ++k) {
@@ -126,8 +133,9 @@ TEST(transport, conserves_every_component) {
 TEST(transport, does_not_depend_on_the_number_of_threads_or_on_blocks) {
   const auto m = small_bgk(150, 15.0);
   const grid mesh = grid::line(97, 0.0, 2.0);
-  const apsis::transport t(*m, mesh, scheme("weno5-z", true));
-  const field u = sample(mesh, 150, false, [](double x, int k) { return std::exp(std::sin(3.0 * x) - 0.1 * k); });
+  const apsis::transport t(*m, mesh, scheme("weno5-z", limiter_kind::edges));
+  const field u =
+      sample(mesh, 150, false, [](double x, int k) { return std::exp(std::sin(3.0 * x) - 0.1 * k); });
   apsis::set_threads(1);
   const field one = transport_of(t, u);
   apsis::set_threads(3);
@@ -173,7 +181,7 @@ TEST(transport, is_fifth_order_in_two_dimensions_by_the_same_code) {
   const double w = 2.0 * std::numbers::pi;
   const auto error = [&](int n) {
     const grid mesh(2, {n, n, 1}, {0, 0, 0}, {1, 1, 1});
-    const apsis::transport t(m, mesh, scheme("weno5-z", true));
+    const apsis::transport t(m, mesh, scheme("weno5-z", limiter_kind::edges));
     field u(mesh.size(), 3), exact(mesh.size(), 3);
     for (int i = 0; i < mesh.size(); ++i) {
       const double x = mesh.centre(i, 0), y = mesh.centre(i, 1);

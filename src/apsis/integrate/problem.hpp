@@ -42,9 +42,8 @@ concept problem = requires(P p, const typename P::state& u, typename P::state& v
 ///   scatter_collision(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)
 template <class P>
 concept problem_with_explicit_collision =
-    problem<P> &&
-    requires(P p, const typename P::state& u, typename P::real x,
-             std::span<const target<typename P::state, typename P::real>> targets) {
+    problem<P> && requires(P p, const typename P::state& u, typename P::real x,
+                           std::span<const target<typename P::state, typename P::real>> targets) {
       p.scatter_collision(x, u, targets);
     };
 

@@ -34,9 +34,10 @@ monitor::totals monitor::sum(const field& u) const {
            std::numeric_limits<double>::infinity(), 0};
   for (std::size_t c = 0; c < cells; ++c) {
     if (std::isnan(lowest[c]))
-      throw numerical_error("a value of the state is not finite (the step is unstable, or the data are); use a "
-                            "smaller step",
-                            {-1, std::numeric_limits<double>::quiet_NaN(), static_cast<long>(c), lowest[c]});
+      throw numerical_error(
+          "a value of the state is not finite (the step is unstable, or the data are); use a "
+          "smaller step",
+          {-1, std::numeric_limits<double>::quiet_NaN(), static_cast<long>(c), lowest[c]});
     t.lowest = std::min(t.lowest, lowest[c]);
     t.negative += negative[c];
     t.entropy += volume_ * entropies[c];
@@ -64,8 +65,9 @@ step_record monitor::check(const field& u, double previous_entropy) const {
   record.entropy = t.entropy;
   record.entropy_change = t.entropy - previous_entropy;
   for (std::size_t k = 0; k < t.invariants.size(); ++k)
-    record.conservation_defect.push_back(scales_[k] > 0.0 ? std::abs(t.invariants[k] - invariants_[k]) / scales_[k]
-                                                          : std::abs(t.invariants[k]));
+    record.conservation_defect.push_back(scales_[k] > 0.0
+                                             ? std::abs(t.invariants[k] - invariants_[k]) / scales_[k]
+                                             : std::abs(t.invariants[k]));
   return record;
 }
 

@@ -8,8 +8,8 @@
 
 namespace apsis {
 
-/// Looks at the state after every step: smallest value, conservation, entropy. Sums run in a fixed order, so the
-/// numbers do not depend on threads.
+/// Looks at the state after every step: smallest value, conservation, entropy. Sums run in a fixed order, so
+/// the numbers do not depend on threads.
 class monitor {
  public:
   /// `volume` is that of a cell (1 for an ordinary differential equation).

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
 #include <apsis/config/expression.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
@@ -11,7 +12,6 @@
 #include <apsis/space/quartic.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
 #include <boost/math/quadrature/gauss.hpp>
-#include <fmt/format.h>
 
 namespace apsis {
 namespace {
@@ -27,8 +27,8 @@ const model_entry& entry_of(const case_config& config) {
   return *entry;
 }
 
-/// Whether the Shu–Osher form is a convex combination of forward Euler steps of T (and Q, for explicit methods) and
-/// implicit steps of Q: the hypothesis of the paper's theorems.
+/// Whether the Shu–Osher form is a convex combination of forward Euler steps of T (and Q, for explicit
+/// methods) and implicit steps of Q: the hypothesis of the paper's theorems.
 bool is_convex(const shu_osher_form<double>& m, method_kind kind) {
   const auto initial = initial_weights(m);
   for (std::size_t i = 0; i < m.stages(); ++i) {
@@ -57,27 +57,32 @@ run_setup::run_setup(const case_config& config)
 void run_setup::check_method() {
   const bool transports = has_space() || equation->has_source();
   if (method_->kind == method_kind::implicit_only && transports)
-    throw input_error(fmt::format("method '{}' cannot integrate model '{}' (it is implicit only and the model has "
-                                  "transport); choose an IMEX or explicit method",
-                                  method_->name, config_.model.name));
+    throw input_error(
+        fmt::format("method '{}' cannot integrate model '{}' (it is implicit only and the model has "
+                    "transport); choose an IMEX or explicit method",
+                    method_->name, config_.model.name));
   const auto form = method_->coefficients<double>();
   ssp_coefficient_ = is_convex(form, method_->kind) ? form.r : 0.0;
   if (config_.time.safety && ssp_coefficient_ == 0.0)
-    throw input_error(fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give "
-                                  "time.dt or time.cfl",
-                                  method_->name));
+    throw input_error(
+        fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give "
+                    "time.dt or time.cfl",
+                    method_->name));
 }
 
 void run_setup::choose_stencil() {
   const reconstruction_entry* scheme = find_reconstruction(config_.space.reconstruction);
   if (scheme == nullptr) throw input_error("unknown reconstruction '" + config_.space.reconstruction + "'");
   how_.scheme = scheme->make();
-  how_.positivity_limiter = config_.space.limiter == "positivity" && !first_order();
+  if (config_.space.limiter == "positivity" && !first_order())
+    how_.positivity =
+        config_.space.formulation == formulation::finite_volume ? limiter_kind::edges : limiter_kind::fluxes;
   how_.boundary = find_boundary(config_.space.boundary);
   const int needed = 2 * how_.scheme->ghost_width() + 1;
   if (config_.space.cells < needed)
-    throw input_error(fmt::format("space.cells = {} is smaller than the stencil ({} cells for {}); give at least {}",
-                                  config_.space.cells, needed, config_.space.reconstruction, needed));
+    throw input_error(
+        fmt::format("space.cells = {} is smaller than the stencil ({} cells for {}); give at least {}",
+                    config_.space.cells, needed, config_.space.reconstruction, needed));
 }
 
 bool run_setup::pointwise() const {
@@ -164,7 +169,8 @@ double run_setup::cfl_length() const {
 void run_setup::decide_promises(run_promises& promises, double dt, double limit) const {
   const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
   promises.conservation = !equation->invariants().empty();
-  promises.positivity = equation->positive() && within && (how_.positivity_limiter || first_order() || !has_space());
+  promises.positivity = equation->positive() && within &&
+                        (how_.positivity != limiter_kind::none || first_order() || !has_space());
   promises.entropy = equation->has_entropy() && within && first_order();
 }
 

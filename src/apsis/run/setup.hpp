@@ -15,8 +15,8 @@ namespace apsis {
 /// Everything that a case names, made and checked against each other before the first step.
 class run_setup {
  public:
-  /// Throws input_error: mesh smaller than the stencil, method that cannot integrate the model, epsilon(x) not a
-  /// finite number ≥ 0 on the mesh.
+  /// Throws input_error: mesh smaller than the stencil, method that cannot integrate the model, epsilon(x)
+  /// not a finite number ≥ 0 on the mesh.
   explicit run_setup(const case_config& config);
 
   std::unique_ptr<model> equation;

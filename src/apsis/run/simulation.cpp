@@ -7,13 +7,13 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/setup.hpp>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace apsis {
 
@@ -28,12 +28,17 @@ std::string run_promises::text() const {
 
 struct simulation::impl {
   explicit impl(case_config configured)
-      : config(std::move(configured)), setup(config), problem(setup.make_problem()),
-        integrator(setup.integrator(), *problem), watch(*setup.equation, setup.cell_volume()),
-        state(setup.initial_state()), march(0.0, config.time.end, setup.given_dt()) {
+      : config(std::move(configured)),
+        setup(config),
+        problem(setup.make_problem()),
+        integrator(setup.integrator(), *problem),
+        watch(*setup.equation, setup.cell_volume()),
+        state(setup.initial_state()),
+        march(0.0, config.time.end, setup.given_dt()) {
     if (march.adjusted())
-      log::warning(fmt::format("time.dt = {:.17g} does not divide time.end = {:g}; dt = {:.17g} is used instead",
-                               *config.time.dt, config.time.end, *march.fixed_dt()));
+      log::warning(
+          fmt::format("time.dt = {:.17g} does not divide time.end = {:g}; dt = {:.17g} is used instead",
+                      *config.time.dt, config.time.end, *march.fixed_dt()));
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
@@ -41,7 +46,9 @@ struct simulation::impl {
     if (!march.done()) setup.decide_promises(promises, next_dt(), forward_euler_limit());
   }
 
-  double forward_euler_limit() { return setup.ssp_coefficient() * problem->forward_euler_step(march.t(), state); }
+  double forward_euler_limit() {
+    return setup.ssp_coefficient() * problem->forward_euler_step(march.t(), state);
+  }
 
   double next_dt() {
     if (config.time.cfl) return march.next(*config.time.cfl * setup.cfl_length());
@@ -75,15 +82,17 @@ struct simulation::impl {
       throw numerical_error("broken promise: " + what, site);
     };
     if (promises.positivity && last.negative_values > 0)
-      broken(fmt::format("{} values are negative (the configuration entails positivity)", last.negative_values),
-             last.min_value);
+      broken(
+          fmt::format("{} values are negative (the configuration entails positivity)", last.negative_values),
+          last.min_value);
     // Rounding of one step, times the number of steps.
     const double rounding = 1e-12 + 1e-15 * static_cast<double>(last.step);
     for (std::size_t k = 0; promises.conservation && k < last.conservation_defect.size(); ++k)
       if (!(last.conservation_defect[k] <= rounding))
-        broken(fmt::format("{} is not conserved to rounding (a Maxwellian by formula on a coarse velocity grid does "
-                           "that); use velocity.equilibrium = \"auto\"",
-                           setup.equation->invariants()[k]),
+        broken(fmt::format(
+                   "{} is not conserved to rounding (a Maxwellian by formula on a coarse velocity grid does "
+                   "that); use velocity.equilibrium = \"auto\"",
+                   setup.equation->invariants()[k]),
                last.conservation_defect[k]);
     if (promises.entropy && last.entropy_change > 1e-13 * (1.0 + std::abs(last.entropy)))
       broken("the entropy increased (first-order upwind within r dt_FE entails decay)", last.entropy_change);
@@ -221,8 +230,9 @@ saved_run simulation::save() const {
 
 void simulation::restore(const saved_run& saved) {
   if (saved.state.size() != static_cast<std::size_t>(cells()) * static_cast<std::size_t>(components()))
-    throw input_error("the saved state has another size than the case (it belongs to another case); restart with the "
-                      "case it was written for");
+    throw input_error(
+        "the saved state has another size than the case (it belongs to another case); restart with the "
+        "case it was written for");
   for (int cell = 0; cell < cells(); ++cell)
     std::copy_n(saved.state.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
                 impl_->state.row(cell));

@@ -75,8 +75,8 @@ class simulation {
   long steps_total() const;  ///< estimate from the present dt
   bool finished() const;
 
-  /// One step. Throws numerical_error with step, time, cell and value. If a stage failed, the state is that of the last
-  /// good step; if a promise was broken, it is the state that broke it, and last() describes it.
+  /// One step. Throws numerical_error with step, time, cell and value. If a stage failed, the state is that
+  /// of the last good step; if a promise was broken, it is the state that broke it, and last() describes it.
   const step_record& advance();
   const step_record& last() const;  ///< of the last step, or of the initial state
   run_summary summary() const;

@@ -115,7 +115,7 @@ class cell_average_collision final : public collision {
       const int begin = task * length, end = std::min(u.cells(), begin + length);
       block.load(u, mesh_, how_, 0, 0, begin, end, 0);
       for (int i = begin; i < end; ++i) {
-        const auto values = how_.positivity_limiter ? gauss_values<true> : gauss_values<false>;
+        const auto values = how_.positivity != limiter_kind::none ? gauss_values<true> : gauss_values<false>;
         values(block.row(i - 1), block.row(i), block.row(i + 1), block.left_edge(i), block.right_edge(i),
                u.stride(), points);
         std::fill(points.sum.begin(), points.sum.end(), 0.0);

@@ -8,7 +8,8 @@
 
 namespace apsis {
 
-/// A model on a mesh (or, without space, at one point), as the integrator sees it (see integrate/problem.hpp).
+/// A model on a mesh (or, without space, at one point), as the integrator sees it (see
+/// integrate/problem.hpp).
 class semidiscrete_problem {
  public:
   using state = field;
@@ -18,8 +19,8 @@ class semidiscrete_problem {
   semidiscrete_problem(const model& equation, const grid& mesh, stencil how, std::unique_ptr<collision> q)
       : transport_(equation, mesh, std::move(how)), collision_(std::move(q)) {}
 
-  /// Methods that treat T and Q explicitly keep what u + Δt (T + Q) keeps: with 1/Δt = 1/Δt_T + 1/Δt_Q that is a
-  /// convex combination of a step of T and a step of Q.
+  /// Methods that treat T and Q explicitly keep what u + Δt (T + Q) keeps: with 1/Δt = 1/Δt_T + 1/Δt_Q that
+  /// is a convex combination of a step of T and a step of Q.
   void treat_collision_explicitly() { explicit_collision_ = true; }
 
   void scatter(double, const field& u, std::span<const target<field, double>> targets) {

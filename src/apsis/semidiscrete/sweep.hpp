@@ -11,10 +11,14 @@
 
 namespace apsis {
 
+/// How positivity is kept: by cutting the edge values of cell averages (Zhang & Shu), or by cutting the
+/// fluxes of point values.
+enum class limiter_kind { none, edges, fluxes };
+
 /// How transport and collision see neighbouring cells.
 struct stencil {
   std::shared_ptr<const reconstruction> scheme;
-  bool positivity_limiter = false;
+  limiter_kind positivity = limiter_kind::none;
   boundary_kind boundary = boundary_kind::periodic;
 };
 

@@ -51,7 +51,7 @@ double transport::forward_euler_step() const {
   for (const auto& line : speeds_) rate += *std::max_element(line.per_cell.begin(), line.per_cell.end());
   // The rounding of α u + β T(u), a few units in the last place, must not cross what is exact at the limit.
   constexpr double safe = 1.0 - 1e-14;
-  return safe * (how_.positivity_limiter ? limiter::end_weight : 1.0) / rate;
+  return safe * (how_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) / rate;
 }
 
 void transport::scatter(const field& u, targets_view targets) const {
@@ -94,45 +94,134 @@ void transport::scatter_weights(const field& u, targets_view targets) const {
   });
 }
 
+/// T along one direction for the cells of one block, cell by cell.
+class transport::block_sweep {
+ public:
+  void attach(const stencil& how, const line_speeds& line) {
+    how_ = &how;
+    line_ = &line;
+  }
+
+  /// Edge values of cells begin … end−1 and of the neighbours that their fluxes need.
+  void load(const field& u, const grid& mesh, int direction, int pencil, int begin, int end) {
+    width_ = u.stride();
+    const bool fluxes = how_->positivity == limiter_kind::fluxes;
+    block_.load(u, mesh, *how_, direction, pencil, begin, end, fluxes ? 2 : 1);
+    change_.resize(static_cast<std::size_t>(width_));
+    if (how_->positivity == limiter_kind::edges)
+      for (int i = begin - 1; i <= end; ++i)
+        limiter::apply(block_.row(i), width_, block_.left_edge(i), block_.right_edge(i));
+    if (!fluxes) return;
+    first_fraction_ = begin - 1;
+    fractions_.resize(static_cast<std::size_t>(end - begin + 2) * static_cast<std::size_t>(width_));
+    for (int i = begin - 1; i <= end; ++i) find_fractions(i);
+  }
+
+  const double* row(int i) const { return block_.row(i); }
+
+  /// |v|/Δx (inflow − outflow) of cell i.
+  double* change(int i) {
+    if (how_->positivity == limiter_kind::fluxes) {
+      limited_change(i);
+    } else {
+      plain_change(i);
+    }
+    return change_.data();
+  }
+
+  void add_source(const model& equation, int i) {
+    source_.assign(static_cast<std::size_t>(width_), 0.0);
+    equation.source(row(i), source_.data());
+    for (std::size_t k = 0; k < source_.size(); ++k) change_[k] += source_[k];
+  }
+
+ private:
+  double* fraction(int i) {
+    return fractions_.data() +
+           static_cast<std::size_t>(i - first_fraction_) * static_cast<std::size_t>(width_);
+  }
+
+  void plain_change(int i) {
+    const double* from_left = block_.right_edge(i - 1);
+    const double* from_right = block_.left_edge(i + 1);
+    const double* left = block_.left_edge(i);
+    const double* right = block_.right_edge(i);
+    const double* per_cell = line_->per_cell.data();
+    const double* forward = line_->forward.data();
+    double* t = change_.data();
+#pragma omp simd
+    for (int k = 0; k < width_; ++k) {
+      const bool ahead = forward[k] > 0.5;
+      const double in = ahead ? from_left[k] : from_right[k];
+      const double out = ahead ? right[k] : left[k];
+      t[k] = per_cell[k] * (in - out);
+    }
+  }
+
+  void find_fractions(int i) {
+    const double *before = row(i - 1), *here = row(i), *after = row(i + 1);
+    const double *from_left = block_.right_edge(i - 1), *from_right = block_.left_edge(i + 1);
+    const double *left = block_.left_edge(i), *right = block_.right_edge(i);
+    const double* forward = line_->forward.data();
+    double* r = fraction(i);
+#pragma omp simd
+    for (int k = 0; k < width_; ++k) {
+      const bool ahead = forward[k] > 0.5;
+      const double u_up = ahead ? before[k] : after[k];
+      const double in = ahead ? from_left[k] : from_right[k];
+      const double out = ahead ? right[k] : left[k];
+      r[k] = limiter::harmless_fraction(u_up, here[k], in - u_up, out - here[k]);
+    }
+  }
+
+  void limited_change(int i) {
+    const double *before = row(i - 1), *here = row(i), *after = row(i + 1);
+    const double *from_left = block_.right_edge(i - 1), *from_right = block_.left_edge(i + 1);
+    const double *left = block_.left_edge(i), *right = block_.right_edge(i);
+    const double *r_before = fraction(i - 1), *r_here = fraction(i), *r_after = fraction(i + 1);
+    const double* per_cell = line_->per_cell.data();
+    const double* forward = line_->forward.data();
+    double* t = change_.data();
+#pragma omp simd
+    for (int k = 0; k < width_; ++k) {
+      const bool ahead = forward[k] > 0.5;
+      const double u_up = ahead ? before[k] : after[k];
+      const double r_up = ahead ? r_before[k] : r_after[k];
+      const double r_down = ahead ? r_after[k] : r_before[k];
+      const double a_in = (ahead ? from_left[k] : from_right[k]) - u_up;
+      const double a_out = (ahead ? right[k] : left[k]) - here[k];
+      // A positive correction harms the donor, a negative one the receiver.
+      const double in = u_up + (a_in > 0.0 ? r_up : r_here[k]) * a_in;
+      const double out = here[k] + (a_out > 0.0 ? r_here[k] : r_down) * a_out;
+      t[k] = per_cell[k] * (in - out);
+    }
+  }
+
+  const stencil* how_ = nullptr;
+  const line_speeds* line_ = nullptr;
+  pencil_block block_;
+  aligned_vector<double> change_, fractions_, source_;
+  int width_ = 0, first_fraction_ = 0;
+};
+
 void transport::scatter_direction(const field& u, targets_view targets, int direction) const {
-  const int width = u.stride();
   const int n = mesh_.cells(direction);
-  const int length = block_length(width);
+  const int length = block_length(u.stride());
   const int blocks = (n + length - 1) / length;
   const auto& line = speeds_[static_cast<std::size_t>(direction)];
-  const double* per_cell = line.per_cell.data();
-  const double* forward = line.forward.data();
+  const bool first = direction == 0;
 
   parallel_for(mesh_.pencils(direction) * blocks, [&](int task) {
-    thread_local pencil_block block;
-    thread_local aligned_vector<double> change, source;
+    thread_local block_sweep sweep;
+    sweep.attach(how_, line);
     const int pencil = task / blocks;
     const int begin = task % blocks * length, end = std::min(n, begin + length);
-    block.load(u, mesh_, how_, direction, pencil, begin, end, 1);
-    if (how_.positivity_limiter)
-      for (int i = begin - 1; i <= end; ++i)
-        limiter::apply(block.row(i), width, block.left_edge(i), block.right_edge(i));
-    change.resize(static_cast<std::size_t>(width));
-    source.assign(static_cast<std::size_t>(width), 0.0);
-    double* t = change.data();
+    sweep.load(u, mesh_, direction, pencil, begin, end);
     for (int i = begin; i < end; ++i) {
-      const double* from_left = block.right_edge(i - 1);
-      const double* from_right = block.left_edge(i + 1);
-      const double* left = block.left_edge(i);
-      const double* right = block.right_edge(i);
-#pragma omp simd
-      for (int k = 0; k < width; ++k) {
-        const bool ahead = forward[k] > 0.5;
-        const double in = ahead ? from_left[k] : from_right[k];
-        const double out = ahead ? right[k] : left[k];
-        t[k] = per_cell[k] * (in - out);
-      }
-      if (direction == 0 && equation_.has_source()) {
-        equation_.source(block.row(i), source.data());
-        for (int k = 0; k < width; ++k) t[k] += source[static_cast<std::size_t>(k)];
-      }
+      double* t = sweep.change(i);
+      if (first && equation_.has_source()) sweep.add_source(equation_, i);
       const int cell = mesh_.first_cell(direction, pencil) + i * mesh_.stride(direction);
-      for (const auto& to : targets) accumulate(to, cell, block.row(i), t, width, direction == 0);
+      for (const auto& to : targets) accumulate(to, cell, sweep.row(i), t, u.stride(), first);
     }
   });
 }

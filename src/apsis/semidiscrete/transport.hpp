@@ -35,6 +35,7 @@ class transport {
     aligned_vector<double> per_cell;  ///< |v|/Δx of every component
     aligned_vector<double> forward;   ///< 1 where v > 0, else 0
   };
+  class block_sweep;
   std::vector<line_speeds> speeds_;
 };
 

@@ -30,5 +30,20 @@ inline double interior(double c, double l, double r) {
 /// left, right (rows of `width` edge values of one cell) move towards the averages c.
 void apply(const double* c, int width, double* left, double* right);
 
+/// For point values: their flux function is not nonnegative where the solution touches zero (near a minimum
+/// it is lower by Δx² u''/24), so edges must not be cut at zero. Instead the flux into and out of a cell are
+/// limited together, between first-order upwind and the high-order edge (as in Xu, Math. Comp. 83, 2014, or
+/// Zalesak, JCP 31, 1979). Seen in the direction of motion, with the values u_up, u, the corrections A = edge
+/// − donor of the inflow and the outflow: the fraction R ∈ [0, 1] of the corrections that harm this cell,
+/// such that
+///   u − κ (u + R A_out⁺ − u_up + R A_in⁻) ≥ 0,  κ = end_weight.
+inline double harmless_fraction(double u_up, double u, double a_in, double a_out) {
+  const double kept = (1.0 - end_weight) * u + end_weight * u_up;
+  const double harm = end_weight * ((a_out > 0.0 ? a_out : 0.0) - (a_in < 0.0 ? a_in : 0.0));
+  const double wanted = (1.0 - floor) * kept;
+  const double fraction = harm > wanted ? wanted / harm : 1.0;
+  return fraction > 0.0 ? fraction : 0.0;
+}
+
 }  // namespace limiter
 }  // namespace apsis

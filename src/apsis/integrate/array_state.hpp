@@ -41,7 +41,7 @@ void accumulate(std::span<const target<State, state_real<State>>> targets, const
   using size_type = decltype(u.size());
   const State* f = nullptr;
   for (const auto& to : targets)
-    if (to.beta != real(0)) f = &evaluate();
+    if (f == nullptr && to.beta != real(0)) f = &evaluate();
   for (const auto& to : targets) {
     const State* transport = to.beta != real(0) ? f : nullptr;
     State& acc = *to.acc;

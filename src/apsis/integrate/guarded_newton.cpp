@@ -107,11 +107,18 @@ constexpr Real singular_below = Real(45) * std::numeric_limits<Real>::epsilon();
       measure, iteration));
 }
 
+/// A Newton step, and the size that rounding alone gives to R(v).
+template <class Real>
+struct newton_step {
+  column<Real> delta;
+  Real noise;
+};
+
 /// Solves R'(v) Δ = −r by LU. Rows and columns are scaled by the terms of R' before they cancel, so that the
 /// test for singularity sees cancellation and neither stiffness nor units.
 template <class Real>
-column<Real> dense_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
-                        int iteration) {
+newton_step<Real> dense_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
+                             int iteration) {
   const Eigen::Index n = v.size();
   square<Real> m(n, n), terms(n, n);
   column<Real> x = column<Real>::Zero(n), y(n), z(n);
@@ -134,13 +141,14 @@ column<Real> dense_step(stage_equation<Real>& equation, const column<Real>& v, c
   const Eigen::PartialPivLU<square<Real>> lu(scaled);
   const Real smallest = norm > Real(0) ? lu.rcond() * norm : Real(0);
   if (!(smallest >= singular_below<Real>)) fail_singular(iteration, static_cast<double>(smallest));
-  return -(cols.asDiagonal() * lu.solve(rows.asDiagonal() * r));
+  const Real noise = std::numeric_limits<Real>::epsilon() * (terms * v.cwiseAbs()).norm();
+  return {-(cols.asDiagonal() * lu.solve(rows.asDiagonal() * r)), noise};
 }
 
 /// The same by GMRES; the linear system needs only a few digits, Newton's method repeats it.
 template <class Real>
-column<Real> krylov_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
-                         int iteration) {
+newton_step<Real> krylov_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
+                              int iteration) {
   const detail::newton_operator<Real> jacobian(equation, v);
   Eigen::GMRES<detail::newton_operator<Real>, Eigen::IdentityPreconditioner> gmres(jacobian);
   gmres.set_restart(60);
@@ -159,7 +167,10 @@ column<Real> krylov_step(stage_equation<Real>& equation, const column<Real>& v, 
         "GMRES does not solve the linear system of Newton iteration {} (nearly singular, or too stiff "
         "without a preconditioner); reduce the time step, or use linear_solver::dense",
         iteration));
-  return step;
+  equation.differential(as_span<Real>(v), as_span<Real>(v), as_span(y), as_span(z));
+  const Real noise =
+      std::numeric_limits<Real>::epsilon() * (v.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs()).norm();
+  return {step, noise};
 }
 
 template <class Real>
@@ -200,12 +211,12 @@ class newton {
     const bool dense =
         options_.solver == linear_solver::dense ||
         (options_.solver == linear_solver::automatic && equation_.size() <= options_.dense_limit);
-    const column<Real> delta = dense ? dense_step<Real>(equation_, v_, r_, iteration_)
-                                     : krylov_step<Real>(equation_, v_, r_, iteration_);
+    const auto [delta, noise] = dense ? dense_step<Real>(equation_, v_, r_, iteration_)
+                                      : krylov_step<Real>(equation_, v_, r_, iteration_);
     const Real size = v_.template lpNorm<Eigen::Infinity>();
     step_ = delta.template lpNorm<Eigen::Infinity>() / (size > Real(0) ? size : Real(1));
     // Near a root a full step reduces R quadratically; once that ends, what is left is rounding.
-    const bool near = step_ <= std::sqrt(std::numeric_limits<Real>::epsilon());
+    const bool near = step_ <= std::sqrt(std::numeric_limits<Real>::epsilon()) || norm_ <= Real(32) * noise;
     for (Real t(1); t >= Real(0x1p-40); t /= Real(2)) {
       trial_ = v_ + t * delta;
       const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));

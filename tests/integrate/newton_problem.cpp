@@ -1,0 +1,252 @@
+// Automatic derivatives against derivatives by hand, and the guarded Newton method on stages that are easy,
+// stiff, singular, without root, or not finite.
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/autodiff.hpp>
+#include <apsis/integrate/newton_problem.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+#include <integrate/random.hpp>
+#include <support/property.hpp>
+
+namespace {
+
+using apsis::linear_solver;
+using apsis::newton_options;
+using apsis::no_transport;
+using random_input::magnitude;
+using random_input::one_in;
+using random_input::uniform;
+using row = std::vector<double>;
+using testing::HasSubstr;
+
+constexpr auto square_decay = [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; };
+
+std::string message_of(const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const apsis::numerical_error& failure) {
+    return failure.what();
+  }
+  return "no numerical_error";
+}
+
+TEST(autodiff, derivatives_of_a_coupled_field_are_those_by_hand) {
+  // G = (sin(x) y, x² + e^y): G' and G'' written out; Ġ = G'G and Ġ'w = G''[G, w] + G'G'w follow.
+  const auto g = [](const auto& u, auto& out) {
+    using std::exp, std::sin;
+    out[0] = sin(u[0]) * u[1];
+    out[1] = u[0] * u[0] + exp(u[1]);
+  };
+  check_property("random point and direction", [&] {
+    const double x = uniform(-2, 2), y = uniform(-2, 2);
+    const Eigen::Vector2d w(uniform(-1, 1), uniform(-1, 1));
+    Eigen::Vector2d value(std::sin(x) * y, x * x + std::exp(y));
+    Eigen::Matrix2d jacobian, hessian1, hessian2;
+    jacobian << std::cos(x) * y, std::sin(x), 2 * x, std::exp(y);
+    hessian1 << -std::sin(x) * y, std::cos(x), std::cos(x), 0;
+    hessian2 << 2, 0, 0, std::exp(y);
+    const Eigen::Vector2d curved(value.dot(hessian1 * w), value.dot(hessian2 * w));
+    const Eigen::Vector2d jw = jacobian * w, kw = curved + jacobian * jw, dot = jacobian * value;
+
+    apsis::vector_field<double, decltype(g)> field(g);
+    const row u{x, y}, direction{w[0], w[1]};
+    row g0(2), g_dot(2), j(2), k(2);
+    field.time_derivatives(u, g0, g_dot);
+    field.second_product(u, direction, j, k);
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      const std::size_t s = static_cast<std::size_t>(i);
+      // All numbers are below 200, and a dozen roundings of them make up each.
+      RC_ASSERT(std::abs(g0[s] - value[i]) <= 1e-13);
+      RC_ASSERT(std::abs(g_dot[s] - dot[i]) <= 1e-12);
+      RC_ASSERT(std::abs(j[s] - jw[i]) <= 1e-13);
+      RC_ASSERT(std::abs(k[s] - kw[i]) <= 1e-12);
+    }
+  });
+}
+
+TEST(newton_problem, solves_the_cubic_of_square_decay_to_round_off_for_any_step) {
+  check_property("v + 10 a v² + 200 |b| v³ = u", [] {
+    const double u = magnitude(-6, 3), dt = magnitude(-6, 8);
+    const double a = one_in(3) ? 0.0 : dt * uniform(0.1, 2);
+    const double b = one_in(3) ? 0.0 : -dt * dt * uniform(0.05, 2);
+    apsis::newton_problem problem{no_transport{}, square_decay};
+    row state{u};
+    problem.collide(0, a, b, state);
+    const long double v = state[0];
+    RC_ASSERT(v > 0 && v <= u);
+    // Every term is positive, so the sum is relatively well conditioned in v.
+    RC_ASSERT(std::abs(v + 10 * a * v * v - 200 * b * v * v * v - u) <= 8 * 2.3e-16L * u);
+  });
+}
+
+TEST(newton_problem, works_in_long_double_to_its_own_round_off) {
+  auto problem = apsis::make_newton_problem<std::vector<long double>>(no_transport{}, square_decay);
+  for (const long double dt : {1e-4L, 1.0L, 1e8L}) {
+    std::vector<long double> state{10};
+    problem.collide(0, dt, -dt * dt / 2, state);
+    const long double v = state[0];
+    EXPECT_LT(std::abs(v + 10 * dt * v * v + 100 * dt * dt * v * v * v - 10), 1e-17L) << dt;
+  }
+}
+
+TEST(newton_problem, zero_and_nothing_implicit_are_exact) {
+  apsis::newton_problem problem{no_transport{}, square_decay};
+  row u{0};
+  problem.collide(0, 1.0, -1.0, u);
+  EXPECT_EQ(u, row{0});
+  u = {3};
+  problem.collide(0, 0.0, 0.0, u);
+  EXPECT_EQ(u, row{3});
+}
+
+/// A tridiagonal diffusion with a cubic sink, N unknowns.
+constexpr auto reaction_diffusion = [](const auto& u, auto& out) {
+  const std::size_t n = u.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    auto slope = -2 * u[i] - u[i] * u[i] * u[i];
+    if (i > 0) slope += u[i - 1];
+    if (i + 1 < n) slope += u[i + 1];
+    out[i] = slope;
+  }
+};
+
+TEST(newton_problem, krylov_and_dense_agree) {
+  for (const std::size_t n : {2U, 40U, 150U}) {
+    row dense(n), krylov(n);
+    for (std::size_t i = 0; i < n; ++i) dense[i] = krylov[i] = std::sin(0.1 * static_cast<double>(i)) + 1.5;
+    auto with = [](linear_solver solver) {
+      return apsis::newton_problem(no_transport{}, reaction_diffusion, newton_options{solver});
+    };
+    with(linear_solver::dense).collide(0, 3.0, -4.0, dense);
+    with(linear_solver::krylov).collide(0, 3.0, -4.0, krylov);
+    // Both are solved to round-off; the condition of this stage is below 100.
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(dense[i], krylov[i], 1e-13) << n << " " << i;
+  }
+}
+
+TEST(newton_problem, automatic_choice_is_krylov_beyond_the_dense_limit) {
+  newton_options tiny;
+  tiny.dense_limit = 10;
+  row u(11, 1.0), v = u;
+  apsis::newton_problem(no_transport{}, reaction_diffusion, tiny).collide(0, 1.0, 0.0, u);
+  apsis::newton_problem(no_transport{}, reaction_diffusion, newton_options{linear_solver::krylov})
+      .collide(0, 1.0, 0.0, v);
+  EXPECT_EQ(u, v);
+}
+
+TEST(newton_problem, errata_4_singular_stage_of_a_rotation_is_detected_and_named) {
+  const double w = 3;
+  const auto rotation = [w](const auto& u, auto& out) {
+    out[0] = w * u[1];
+    out[1] = -w * u[0];
+  };
+  for (const auto solver : {linear_solver::dense, linear_solver::krylov}) {
+    apsis::newton_problem problem(no_transport{}, rotation, newton_options{solver});
+    const auto collide = [&](double b) {
+      row u{1, 2};
+      problem.collide(0, 0.0, b, u);
+      return u;
+    };
+    // I − b G'² = (1 − |b| w²) I: with ḋ = −1 this is Δt λ = ±i.
+    EXPECT_THAT(message_of([&] { collide(-(1 + 1e-15) / (w * w)); }), HasSubstr("singular"));
+    // A millionth beside it the stage is regular, and amplifies by 1e6.
+    const row near = collide(-(1 + 1e-6) / (w * w));
+    EXPECT_NEAR(near[0], -1e6, 1e-3);
+    EXPECT_NEAR(near[1], -2e6, 2e-3);
+    // With the first derivative in it the stage is regular: v = b G'² v cancels and a G v = −u is left.
+    row u{1, 2};
+    problem.collide(0, 0.5, -1 / (w * w), u);
+    EXPECT_NEAR(u[0], 2 / (0.5 * w), 1e-14);
+    EXPECT_NEAR(u[1], -1 / (0.5 * w), 1e-14);
+  }
+  apsis::newton_problem problem(no_transport{}, rotation, newton_options{linear_solver::dense});
+  row u{1, 2};
+  EXPECT_THAT(message_of([&] { problem.collide(0, 0.0, -1 / (w * w), u); }), HasSubstr("d > 0"));
+  EXPECT_EQ(u, (row{1, 2}));
+}
+
+TEST(newton_problem, stiffness_and_units_are_not_taken_for_singularity) {
+  check_property("fast and slow, large and small variables", [] {
+    const double k = magnitude(0, 24), unit = magnitude(-8, 8);
+    const auto g = [=](const auto& u, auto& out) {
+      out[0] = -u[0];
+      out[1] = k * (unit * u[0] - u[1]);
+    };
+    apsis::newton_problem problem(no_transport{}, g);
+    row v{1, 0};
+    problem.collide(0, 1.0, 0.0, v);
+    RC_ASSERT(std::abs(v[0] - 0.5) <= 1e-15);
+    RC_ASSERT(std::abs(v[1] - unit * 0.5 * k / (1 + k)) <= 1e-14 * unit);
+  });
+}
+
+TEST(newton_problem, iterates_never_leave_the_admissible_set) {
+  // √u has no value below 0: one inadmissible iterate would be seen by G as well.
+  double smallest = 1;
+  const auto g = [&smallest](const auto& u, auto& out) {
+    using std::sqrt;
+    smallest = std::min(smallest, static_cast<double>(u[0]));
+    out[0] = -sqrt(u[0]);
+  };
+  apsis::newton_problem problem{no_transport{}, g};
+  problem.with_admissible([](std::span<const double> v) { return v[0] > 0; });
+  row u{1e-4};
+  problem.collide(0, 10.0, 0.0, u);
+  EXPECT_GT(smallest, 0);
+  // w = √v solves w² + 10 w = 1e-4.
+  const double w = 2e-4 / (10 + std::sqrt(100 + 4e-4));
+  EXPECT_NEAR(u[0] / (w * w), 1, 1e-14);  // a few roundings
+}
+
+TEST(newton_problem, no_admissible_root_is_an_error_that_leaves_the_state) {
+  apsis::newton_problem problem{no_transport{}, square_decay};
+  row u{-5};  // 10 v² + v + 5 = 0 has no real root at all
+  EXPECT_THAT(message_of([&] { problem.collide(0, 1.0, 0.0, u); }), HasSubstr("no admissible root"));
+  EXPECT_EQ(u, row{-5});
+  problem.with_admissible([](std::span<const double> v) { return v[0] >= 0; });
+  u = {-1e-3};  // 10 v² + v + 1e-3 = 0 has two negative ones
+  EXPECT_THAT(message_of([&] { problem.collide(0, 1.0, 0.0, u); }), HasSubstr("no admissible root"));
+  EXPECT_EQ(u, row{-1e-3});
+  EXPECT_THAT(message_of([&] { problem.collide(0, 0.0, 0.0, u); }), HasSubstr("not admissible"));
+}
+
+TEST(newton_problem, explicit_part_outside_the_admissible_set_is_no_error_if_the_root_is_inside) {
+  const auto g = [](const auto& u, auto& out) { out[0] = 1 - u[0]; };
+  apsis::newton_problem problem{no_transport{}, g};
+  problem.with_admissible([](std::span<const double> v) { return v[0] >= 0; });
+  row u{-0.5};
+  problem.collide(0, 1.0, 0.0, u);
+  EXPECT_NEAR(u[0], 0.25, 1e-16);
+}
+
+TEST(newton_problem, not_a_number_is_reported_with_its_component) {
+  const auto g = [](const auto& u, auto& out) {
+    using std::sqrt;
+    out[0] = -u[0];
+    out[1] = -sqrt(u[1]);
+  };
+  apsis::newton_problem problem{no_transport{}, g};
+  row u{1, -1};
+  EXPECT_THAT(message_of([&] { problem.collide(0, 1.0, 0.0, u); }), HasSubstr("component 1"));
+  u = {std::nan(""), 1};
+  EXPECT_THAT(message_of([&] { problem.collide(0, 1.0, 0.0, u); }), HasSubstr("component 0"));
+  EXPECT_THAT(message_of([&] { problem.collide(0, 0.0, 0.0, u); }), HasSubstr("component 0"));
+}
+
+TEST(newton_problem, limit_of_iterations_is_an_error) {
+  newton_options few;
+  few.max_iterations = 3;
+  apsis::newton_problem problem{no_transport{}, square_decay, few};
+  row u{10};
+  EXPECT_THAT(message_of([&] { problem.collide(0, 1e8, -1e16, u); }), HasSubstr("3 iterations"));
+}
+
+}  // namespace

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <rapidcheck.h>
+
+/// Random numbers inside a property (they shrink towards `low`).
+namespace random_input {
+
+/// An integer in [low, high), from the whole range in every case; RapidCheck itself starts with small ones.
+inline int integer(int low, int high) {
+  return *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(low, high));
+}
+
+inline bool one_in(int n) {
+  return integer(0, n) == 0;
+}
+
+inline double uniform(double low, double high) {
+  return low + (high - low) * (integer(0, 1000001) * 1e-6);
+}
+
+/// 10^x with x uniform.
+inline double magnitude(double low, double high) {
+  return std::pow(10.0, uniform(low, high));
+}
+
+/// n numbers ≥ 0 over thirteen orders of magnitude, about a quarter of them exactly zero.
+inline std::vector<double> nonnegative(std::size_t n) {
+  std::vector<double> u(n);
+  for (double& x : u) x = one_in(4) ? 0.0 : magnitude(-12, 1);
+  return u;
+}
+
+}  // namespace random_input

@@ -1,0 +1,289 @@
+// The closed-form stage of relaxation problems: its weights, Properties 3–5 of the paper (C14), positivity of
+// backward Euler (C15) and what happens at ε = 0.
+#include <apsis/core/errors.hpp>
+#include <apsis/core/relaxation_weights.hpp>
+#include <apsis/integrate/autodiff.hpp>
+#include <apsis/integrate/newton_problem.hpp>
+#include <apsis/integrate/relaxation_problem.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <integrate/ode_model.hpp>
+#include <integrate/random.hpp>
+#include <support/property.hpp>
+
+namespace {
+
+using random_input::magnitude;
+using random_input::nonnegative;
+using random_input::one_in;
+using random_input::uniform;
+using row = std::vector<double>;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+
+/// The collision of the Broadwell model in the form of kinetic theory, f = (f+, f0, f-): no E, no C.
+constexpr auto broadwell_collision = [](const auto& f, auto& out) {
+  const auto gain = f[1] * f[1] - f[0] * f[2];
+  out[0] = gain;
+  out[1] = -gain;
+  out[2] = gain;
+};
+
+struct broadwell_moments {
+  double rho, m;
+};
+
+/// The same as relaxation: C = ρ, E = ((ρ+m)², ρ²−m², (ρ−m)²)/(4ρ) (paper, C16); the vacuum relaxes to
+/// itself.
+auto broadwell(double epsilon) {
+  return apsis::relaxation_problem(
+      apsis::no_transport{},
+      [](const row& f) { return broadwell_moments{f[0] + 2 * f[1] + f[2], f[0] - f[2]}; },
+      [](broadwell_moments w, row& out) {
+        const double quarter = w.rho > 0 ? 1 / (4 * w.rho) : 0;
+        out[0] = (w.rho + w.m) * (w.rho + w.m) * quarter;
+        out[1] = (w.rho + w.m) * (w.rho - w.m) * quarter;
+        out[2] = (w.rho - w.m) * (w.rho - w.m) * quarter;
+      },
+      [](broadwell_moments w) { return w.rho; }, epsilon);
+}
+
+TEST(relaxation_weights, are_the_two_fractions_to_a_few_ulps_and_sum_to_one) {
+  check_property("weights", [] {
+    const double a = one_in(3) ? 0.0 : magnitude(-12, 12);
+    const double b = one_in(3) ? 0.0 : -magnitude(-20, 20);
+    const double rate = magnitude(-6, 6), epsilon = magnitude(-12, 6);
+    const auto w = apsis::relax_weights(a, b, rate, epsilon);
+    const long double k = static_cast<long double>(rate) / epsilon, mu = a * k - b * k * k;
+    const long double stay = 1 / (1 + mu), relax = mu / (1 + mu);
+    // Five roundings lie between the arguments and the smaller weight.
+    RC_ASSERT(std::abs(w.stay - stay) <= 5 * rounding * stay);
+    RC_ASSERT(std::abs(w.relax - relax) <= 5 * rounding * relax);
+    RC_ASSERT(w.stay + w.relax == 1.0);
+  });
+}
+
+TEST(relaxation_weights, limits_are_exact) {
+  const auto is = [](apsis::relaxation_weights<double> w, double stay, double relax) {
+    EXPECT_EQ(w.stay, stay);
+    EXPECT_EQ(w.relax, relax);
+  };
+  is(apsis::relax_weights(0.0, 0.0, 1.0, 1.0), 1, 0);
+  is(apsis::relax_weights(0.0, 0.0, 1.0, 0.0), 1, 0);
+  is(apsis::relax_weights(0.1, 0.0, 1.0, 0.0), 0, 1);
+  is(apsis::relax_weights(0.0, -0.1, 1.0, 0.0), 0, 1);
+  is(apsis::relax_weights(1.0, -1.0, 1.0, 1e-200), 0, 1);
+  is(apsis::relax_weights(1.0, -1.0, 0.0, 0.0), 1, 0);
+  EXPECT_TRUE(std::isnan(apsis::relax_weights(1.0, 0.0, std::nan(""), 1.0).stay));
+  EXPECT_TRUE(std::isnan(apsis::relax_weights(1.0, 0.0, 1.0, std::nan("")).relax));
+}
+
+TEST(claims, C14_broadwell_is_a_relaxation_with_rate_rho) {
+  check_property("Q, RQ = 0, Q(E) = 0", [] {
+    auto problem = broadwell(1.0);
+    const row f = nonnegative(3);
+    RC_PRE(f[0] + f[1] + f[2] > 0);
+    row q(3), expected(3);
+    const apsis::target<row, double> to{&q, 0.0, 1.0, true};
+    problem.scatter_collision(0, f, {&to, 1});
+    broadwell_collision(f, expected);
+    const double rho = f[0] + 2 * f[1] + f[2];
+    // C(E − f) cancels terms of size ρ².
+    const double tolerance = 16 * rounding * rho * rho;
+    for (std::size_t k = 0; k < 3; ++k) RC_ASSERT(std::abs(q[k] - expected[k]) <= tolerance);
+    RC_ASSERT(std::abs(q[0] + 2 * q[1] + q[2]) <= tolerance);
+    RC_ASSERT(std::abs(q[0] - q[2]) <= tolerance);
+    row e = f;
+    problem.collide(0, 1.0, 0.0, e);  // any state will do as long as it is nonnegative
+    auto limit = broadwell(0.0);
+    limit.collide(0, 1.0, 0.0, e);
+    problem.scatter_collision(0, e, {&to, 1});
+    for (std::size_t k = 0; k < 3; ++k) RC_ASSERT(std::abs(q[k]) <= tolerance);
+  });
+}
+
+/// Largest deviation from Q'(u)Q(u) = −C Q(u), relative to the largest |C Q_k|.
+template <class Q>
+double property_5_defect(const Q& collision, double rate, const row& u) {
+  apsis::vector_field<double, Q> field(collision);
+  row q(u.size()), q_dot(u.size());
+  field.time_derivatives(u, q, q_dot);
+  double worst = 0, scale = 0;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    worst = std::max(worst, std::abs(q_dot[k] + rate * q[k]));
+    scale = std::max(scale, std::abs(rate * q[k]));
+  }
+  return worst / scale;
+}
+
+TEST(claims, C14_property_5_for_the_ode_model_by_automatic_differentiation) {
+  check_property("ODE model", [] {
+    const row u{uniform(-4, 4), uniform(-4, 4)};
+    RC_PRE(std::abs(std::sin(u[0]) - u[1]) > 1e-3);
+    RC_ASSERT(property_5_defect(ode_model::collision(1.0), 1 + u[0] * u[0], u) <= 8 * rounding);
+  });
+}
+
+TEST(claims, C14_property_5_for_broadwell_by_automatic_differentiation) {
+  check_property("Broadwell", [] {
+    const row f{uniform(0, 2), uniform(0, 2), uniform(0, 2)};
+    const double q = f[1] * f[1] - f[0] * f[2];
+    RC_PRE(std::abs(q) > 1e-3);
+    // Q̇ is a sum of three terms, each at most 4e3 times larger than |Q| by the line above.
+    RC_ASSERT(property_5_defect(broadwell_collision, f[0] + 2 * f[1] + f[2], f) <= 3 * 4e3 * rounding);
+  });
+}
+
+TEST(claims, C14_property_5_for_the_relaxation_system_by_automatic_differentiation) {
+  const auto collision = [](const auto& u, auto& out) {
+    using std::exp;
+    out[0] = 0 * u[0];
+    out[1] = exp(-u[0] * u[0]) + u[0] * u[0] / 2 - u[1];  // F(u1) − u2 for some smooth F
+  };
+  check_property("relaxation system", [&] {
+    const row u{uniform(-2, 2), uniform(3, 5)};
+    RC_ASSERT(property_5_defect(collision, 1.0, u) <= 8 * rounding);
+  });
+}
+
+TEST(claims, C14_property_5_for_bgk_by_automatic_differentiation) {
+  constexpr int n = 128;
+  constexpr double v_max = 20, dv = 2 * v_max / n;
+  const auto velocity = [](int k) { return -v_max + (k + 0.5) * dv; };
+  const auto collision = [&](const auto& f, auto& out) {
+    using std::exp, std::sqrt;
+    auto rho = 0 * f[0], momentum = 0 * f[0], energy = 0 * f[0];
+    for (std::size_t k = 0; k < n; ++k) {
+      const double v = velocity(static_cast<int>(k));
+      rho += f[k] * dv;
+      momentum += f[k] * (v * dv);
+      energy += f[k] * (v * v * dv);
+    }
+    const auto u = momentum / rho, temperature = energy / rho - u * u;
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto c = velocity(static_cast<int>(k)) - u;
+      out[k] = rho * (rho / sqrt(2 * M_PI * temperature) * exp(-c * c / (2 * temperature)) - f[k]);
+    }
+  };
+  for (const double shift : {0.0, 0.7, 2.0}) {
+    row f(n);
+    for (int k = 0; k < n; ++k) {
+      const double v = velocity(k);
+      f[static_cast<std::size_t>(k)] =
+          0.4 * std::exp(-(v - shift) * (v - shift) / 2) + 0.2 * std::exp(-(v + 1) * (v + 1));
+    }
+    const double rho = std::accumulate(f.begin(), f.end(), 0.0) * dv;
+    // The midpoint rule keeps the moments of these Maxwellians to 1e-13 or so: that is what E' Q leaves.
+    EXPECT_LT(property_5_defect(collision, rho, f), 1e-11) << shift;
+  }
+}
+
+TEST(claims, C15_backward_euler_is_positive_for_every_step_also_from_zeros) {
+  check_property("Broadwell, λ from 1e-12 to 1e12", [] {
+    const double lambda = magnitude(-12, 12);
+    const row f = nonnegative(3);
+    row v = f;
+    broadwell(1.0).collide(0, lambda, 0.0, v);
+    const double rho = f[0] + 2 * f[1] + f[2];
+    for (const double x : v) RC_ASSERT(x >= 0.0);
+    // v is what it should be: v − f = λ Q(v) in extended precision, up to roundings of terms of size ρ and
+    // λρ².
+    const long double gain = static_cast<long double>(v[1]) * v[1] - static_cast<long double>(v[0]) * v[2];
+    const std::array<long double, 3> sign{1, -1, 1};
+    for (std::size_t k = 0; k < 3; ++k)
+      RC_ASSERT(std::abs(v[k] - f[k] - lambda * sign[k] * gain) <=
+                16 * static_cast<long double>(rounding) * rho * (1 + lambda * rho));
+    RC_ASSERT(std::abs(v[0] + 2 * v[1] + v[2] - rho) <= 8 * rounding * rho);
+    RC_ASSERT(std::abs((v[0] - v[2]) - (f[0] - f[2])) <= 8 * rounding * rho);
+  });
+}
+
+TEST(claims, C15_stages_with_two_derivatives_are_positive_too) {
+  check_property("any a ≥ 0, b ≤ 0, ε ≥ 0", [] {
+    row v = nonnegative(3);
+    const double epsilon = one_in(5) ? 0.0 : magnitude(-300, 3);
+    broadwell(epsilon).collide(0, magnitude(-12, 12), -magnitude(-12, 12), v);
+    for (const double x : v) RC_ASSERT(x >= 0.0 && std::isfinite(x));
+  });
+}
+
+TEST(relaxation_problem, closed_form_equals_newton_on_the_same_equation) {
+  check_property("ODE model, any stage", [] {
+    const double epsilon = magnitude(-10, 1);
+    const double a = one_in(3) ? 0.0 : magnitude(-4, 0);
+    const double b = one_in(3) ? 0.0 : -magnitude(-8, 0);
+    const row u{uniform(-3, 3), uniform(-3, 3)};
+    row closed = u, solved = u;
+    ode_model::as_relaxation(epsilon).collide(0, a, b, closed);
+    ode_model::as_newton(epsilon).collide(0, a, b, solved);
+    // Newton sees terms of size up to 1e4 × the result cancel at the last iterate, relative to the stiff one.
+    for (std::size_t k = 0; k < 2; ++k) RC_ASSERT(std::abs(closed[k] - solved[k]) <= 1e-13);
+  });
+}
+
+TEST(relaxation_problem, epsilon_zero_is_the_equilibrium_exactly_and_nothing_where_nothing_is_implicit) {
+  auto problem = ode_model::as_relaxation(0.0);
+  row u{2, 0.1};
+  problem.collide(0, 0.0, 0.0, u);
+  EXPECT_EQ(u, (row{2, 0.1}));
+  problem.collide(0, 0.0, -1e-3, u);
+  EXPECT_EQ(u, (row{2, std::sin(2.0)}));
+}
+
+TEST(relaxation_problem, explicit_collision_is_refused_at_epsilon_zero) {
+  auto problem = ode_model::as_relaxation(0.0);
+  row u{2, 0}, acc(2);
+  const apsis::target<row, double> to{&acc, 0.0, 1.0, true}, weight_only{&acc, 1.0, 0.0, true};
+  EXPECT_THROW(problem.scatter_collision(0, u, {&to, 1}), apsis::input_error);
+  problem.scatter_collision(0, u, {&weight_only, 1});
+  EXPECT_EQ(acc, u);
+}
+
+TEST(relaxation_problem, says_what_is_wrong_with_a_state) {
+  auto problem = ode_model::as_relaxation(1.0);
+  row bad{2, std::nan("")};
+  EXPECT_THROW(problem.collide(0, 1.0, 0.0, bad), apsis::numerical_error);
+  bad = {infinity, 0};
+  EXPECT_THROW(problem.collide(0, 0.0, 0.0, bad), apsis::numerical_error);
+  row f{-1, 0, 0};  // ρ < 0, so the rate is negative
+  EXPECT_THROW(broadwell(1.0).collide(0, 1.0, 0.0, f), apsis::numerical_error);
+  problem.with_admissible([](const row& u) { return u[0] > 3; });
+  row u{2, 0};
+  EXPECT_THROW(problem.collide(0, 1.0, 0.0, u), apsis::numerical_error);
+  for (const double epsilon : {-1.0, infinity, std::nan("")})
+    EXPECT_THROW(ode_model::as_relaxation(epsilon), apsis::input_error) << epsilon;
+}
+
+TEST(relaxation_problem, forward_euler_step_is_infinite_unless_given) {
+  auto problem = ode_model::as_relaxation(1.0);
+  EXPECT_EQ(problem.forward_euler_step(0, {2, 0}), infinity);
+  problem.with_forward_euler_step([](double t, const row& u) { return t + u[0]; });
+  EXPECT_EQ(problem.forward_euler_step(1, {2, 0}), 3);
+}
+
+TEST(accumulate, evaluates_once_and_only_if_a_target_wants_it) {
+  const row u{1, 2}, slope{10, 20};
+  int evaluations = 0;
+  const auto evaluate = [&]() -> const row& {
+    ++evaluations;
+    return slope;
+  };
+  row first{std::nan(""), std::nan("")}, second{100, 100}, self = u;
+  const std::vector<apsis::target<row, double>> both{{&first, 2.0, 0.5, true}, {&second, 1.0, 1.0, false}};
+  apsis::accumulate<row>(both, u, evaluate);
+  EXPECT_EQ(evaluations, 1);
+  EXPECT_EQ(first, (row{7, 14}));
+  EXPECT_EQ(second, (row{111, 122}));
+  const apsis::target<row, double> in_place{&self, 3.0, 0.0, true};
+  apsis::accumulate<row>({&in_place, 1}, self, evaluate);
+  EXPECT_EQ(evaluations, 1);
+  EXPECT_EQ(self, (row{3, 6}));
+}
+
+}  // namespace

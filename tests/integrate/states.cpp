@@ -1,0 +1,82 @@
+// The same problem on any state type gives the same numbers: standard vectors, Eigen vectors, fixed arrays,
+// long double, and a class that only has size() and [].
+#include <apsis/integrate/integrate.hpp>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+#include <integrate/ode_model.hpp>
+
+namespace {
+
+/// Compilers fuse multiplications and additions differently for each container: 64 steps, a few ulps of 3.
+constexpr double rounding = 1e-14;
+
+/// The least a row of numbers can be: no arithmetic, no iterators.
+class plain_pair {
+ public:
+  std::size_t size() const { return 2; }
+  double& operator[](std::size_t i) { return i == 0 ? first_ : second_; }
+  double operator[](std::size_t i) const { return i == 0 ? first_ : second_; }
+
+ private:
+  double first_ = 0, second_ = 0;
+};
+
+template <class State, class Problem>
+State solved(Problem problem, const std::string& method = "md-imex-6-3") {
+  using real = apsis::state_real<State>;
+  static_assert(apsis::problem_with_explicit_collision<Problem>);
+  apsis::stepper march(apsis::find_method(method), problem);
+  State u = ode_model::initial_state<State>();
+  apsis::integrate(march, u, real(0), real(1), apsis::step_rule<real>::fixed(real(1) / 64));
+  return u;
+}
+
+TEST(states, relaxation_is_the_same_for_every_container) {
+  const double epsilon = 1e-2;
+  const auto standard = solved<std::vector<double>>(ode_model::as_relaxation(epsilon));
+  const auto eigen = solved<Eigen::VectorXd>(ode_model::as_relaxation<Eigen::VectorXd>(epsilon));
+  const auto fixed = solved<Eigen::Vector2d>(ode_model::as_relaxation<Eigen::Vector2d>(epsilon));
+  const auto array = solved<std::array<double, 2>>(ode_model::as_relaxation<std::array<double, 2>>(epsilon));
+  const auto plain = solved<plain_pair>(ode_model::as_relaxation<plain_pair>(epsilon));
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Eigen::Index i = static_cast<Eigen::Index>(k);
+    EXPECT_NEAR(standard[k], eigen[i], rounding);
+    EXPECT_NEAR(standard[k], fixed[i], rounding);
+    EXPECT_NEAR(standard[k], array[k], rounding);
+    EXPECT_NEAR(standard[k], plain[k], rounding);
+  }
+}
+
+TEST(states, newton_is_the_same_for_every_container) {
+  const double epsilon = 1e-2;
+  const auto standard = solved<std::vector<double>>(ode_model::as_newton(epsilon));
+  const auto eigen = solved<Eigen::VectorXd>(ode_model::as_newton<Eigen::VectorXd>(epsilon));
+  const auto plain = solved<plain_pair>(ode_model::as_newton<plain_pair>(epsilon));
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(standard[k], eigen[static_cast<Eigen::Index>(k)], rounding);
+    EXPECT_NEAR(standard[k], plain[k], rounding);
+  }
+}
+
+TEST(states, both_ways_in_and_both_precisions_give_the_same_solution) {
+  const double epsilon = 1e-2;
+  const auto closed = solved<std::vector<double>>(ode_model::as_relaxation(epsilon));
+  const auto newton = solved<std::vector<double>>(ode_model::as_newton(epsilon));
+  using extended = std::vector<long double>;
+  const auto closed_extended = solved<extended>(ode_model::as_relaxation<extended>(1e-2L));
+  const auto newton_extended = solved<extended>(ode_model::as_newton<extended>(1e-2L));
+  for (std::size_t k = 0; k < 2; ++k) {
+    // 64 steps of six stages, each good to a few roundings of numbers below 3.
+    EXPECT_NEAR(closed[k], newton[k], 1e-13);
+    EXPECT_NEAR(static_cast<double>(closed_extended[k] - newton_extended[k]), 0, 1e-16);
+    EXPECT_NEAR(static_cast<double>(closed_extended[k] - static_cast<long double>(closed[k])), 0, 1e-13);
+  }
+}
+
+}  // namespace

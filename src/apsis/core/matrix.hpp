@@ -11,7 +11,7 @@ template <class Real>
 class matrix {
  public:
   matrix() = default;
-  matrix(std::size_t rows, std::size_t cols) : rows_(rows), cols_(cols), data_(rows * cols, Real(0)) {}
+  matrix(std::size_t rows, std::size_t cols) : rows_(rows), cols_(cols), data_(rows * cols) {}
 
   static matrix identity(std::size_t n) {
     matrix eye(n, n);

@@ -21,7 +21,8 @@ std::string to_string(method_kind kind);
 /// What the file of a method says about it; certified when it is loaded.
 struct method_claims {
   int order = 0;
-  std::optional<std::string> ssp_coefficient;  ///< as written; "unconditional" for W = 0
+  std::optional<std::string> ssp_coefficient;  ///< as written; "unconditional" for implicit methods
+  std::optional<std::string> type;             ///< "A", "ARS" or "CK"
 };
 
 /// A time integrator as data. Coefficients exist as the strings of its file (exact rationals "p/q" or
@@ -34,6 +35,10 @@ class method {
   shu_osher_form<std::string> exact;  ///< as in the file; "0" where nothing stands
 
   std::size_t stages() const { return exact.stages(); }
+
+  /// Decimals of the longest coefficient that is not an exact rational or a short decimal; 0 if all are
+  /// exact.
+  int precision() const;
 
   /// Shu–Osher form in `Real` (double, long double or mp_real), each coefficient correctly rounded
   /// from its exact value. In double and long double the convex weights are then set on a common

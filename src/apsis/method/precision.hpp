@@ -5,7 +5,7 @@
 namespace apsis {
 
 /// 60 significant decimal digits: certificates promise residuals below 1e-38 with digits to spare.
-using mp_real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>,
-                                              boost::multiprecision::et_off>;
+using mp_real =
+    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>, boost::multiprecision::et_off>;
 
 }  // namespace apsis

@@ -35,4 +35,10 @@ std::vector<Real> initial_weights(const shu_osher_form<Real>& m);
 template <class Real>
 butcher_form<Real> to_butcher(const shu_osher_form<Real>& m);
 
+/// The way back for a given unit lower triangular R and r > 0: W = rRÂ, D = RA, ḋ = diag(RȦ), P = I − R − W.
+/// The result stands for the same method if RȦ is diagonal; certify() finds the R that the paper's class
+/// requires.
+template <class Real>
+shu_osher_form<Real> to_shu_osher(const butcher_form<Real>& b, const matrix<Real>& R, const Real& r);
+
 }  // namespace apsis

@@ -1,0 +1,63 @@
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include <apsis/core/embedded.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/method/certificate.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/method/method_file.hpp>
+
+namespace apsis {
+namespace {
+
+struct entry {
+  method parsed;
+  certificate certified;
+};
+
+/// Parsed and certified when first asked for, then kept.
+const entry& find_entry(std::string_view name) {
+  static std::mutex guard;
+  static std::map<std::string, std::unique_ptr<entry>, std::less<>> known;
+  const std::lock_guard lock(guard);
+  const auto found = known.find(name);
+  if (found != known.end()) return *found->second;
+  for (const auto& file : embedded::methods()) {
+    if (file.name != name) continue;
+    auto made = std::make_unique<entry>();
+    made->parsed = parse_method(file.text, "methods/" + std::string(file.name) + ".toml");
+    made->certified = certify(made->parsed);
+    return *known.emplace(std::string(name), std::move(made)).first->second;
+  }
+  const std::string text(name.substr(0, 60));
+  throw input_error("unknown method '" + text + "' " + suggest(text, method_names()));
+}
+
+}  // namespace
+
+const method& find_method(std::string_view name) {
+  const entry& found = find_entry(name);
+  require_claims(found.certified);
+  return found.parsed;
+}
+
+const certificate& find_certificate(const std::string& name) {
+  return find_entry(name).certified;
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const auto& file : embedded::methods()) names.emplace_back(file.name);
+  return names;
+}
+
+method load_method_file(const std::string& path) {
+  method m = parse_method(read_method_text(path), path);
+  require_claims(certify(m));
+  return m;
+}
+
+}  // namespace apsis

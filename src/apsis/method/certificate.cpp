@@ -1,0 +1,183 @@
+#include <apsis/method/certificate.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <apsis/core/errors.hpp>
+#include <apsis/method/coefficient.hpp>
+#include <apsis/method/monotonicity.hpp>
+#include <apsis/method/order_conditions.hpp>
+#include <apsis/method/stability.hpp>
+
+namespace apsis {
+namespace {
+
+std::string short_text(const mp_real& x) {
+  return x.str(12);
+}
+
+/// What a residual may be: a few units of the last digit that the coefficients carry.
+mp_real tolerance_of(int digits) {
+  return digits > 0 ? pow(mp_real(10), 3 - digits) : mp_real(1e-50);
+}
+
+tree_colours colours_of(method_kind kind) {
+  if (kind == method_kind::implicit_only) return tree_colours::G_only;
+  return kind == method_kind::imex ? tree_colours::both : tree_colours::F_only;
+}
+
+void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certificate& c) {
+  constexpr int highest = 6;
+  for (int p = 1; p <= highest && c.order == p - 1; ++p) {
+    const auto trees = rooted_trees(p, colours_of(c.kind));
+    const auto weights = elementary_weights(b, trees);
+    mp_real largest(0);
+    c.next.clear();
+    int conditions = 0;
+    for (std::size_t k = 0; k < trees.size(); ++k) {
+      const mp_real wanted = mp_real(1) / mp_real(trees[k].density);
+      const mp_real residual = abs(weights[k] - wanted);
+      ++conditions;
+      if (!(residual <= tolerance)) {
+        c.next.push_back({trees[k].name, p, weights[k], wanted});
+      } else if (residual > largest) {
+        largest = residual;
+      }
+    }
+    if (!c.next.empty()) return;
+    c.order = p;
+    c.order_residual = largest;
+    c.conditions = conditions;
+  }
+}
+
+void find_ssp(const butcher_form<mp_real>& b, const mp_real& zero, certificate& c) {
+  if (c.kind == method_kind::explicit_only) {
+    c.ssp_coefficient = monotonicity_radius(b.A_hat, zero);
+    return;
+  }
+  const auto analysis = analyse_imex(b, zero);
+  c.unconditional = analysis.unconditional;
+  c.bounded = analysis.bounded;
+  c.ssp_coefficient = analysis.exists ? analysis.coefficient : mp_real(0);
+  c.limiting_entry = analysis.forbids;
+  if (c.kind == method_kind::implicit_only && !analysis.exists)
+    c.radius_of_implicit_part = monotonicity_radius(b.A, zero);
+}
+
+bool any_in_column(const matrix<mp_real>& m, std::size_t j) {
+  for (std::size_t i = 0; i < m.rows(); ++i)
+    if (m(i, j) != 0) return true;
+  return false;
+}
+
+void find_structure(const shu_osher_form<mp_real>& m, const butcher_form<mp_real>& b, certificate& c) {
+  bool all_implicit = true, later_implicit = true;
+  for (std::size_t i = 0; i < m.stages(); ++i) {
+    const bool implicit = c.kind != method_kind::explicit_only && (m.D(i, i) != 0 || m.ddot[i] != 0);
+    c.implicit_solves += implicit ? 1 : 0;
+    all_implicit = all_implicit && implicit;
+    later_implicit = later_implicit && (implicit || i == 0);
+    c.explicit_evaluations += any_in_column(b.A_hat, i) ? 1 : 0;
+  }
+  if (c.kind == method_kind::explicit_only) {
+    c.type = "explicit";
+  } else if (all_implicit) {
+    c.type = "A";
+  } else if (later_implicit) {
+    c.type = any_in_column(b.A, 0) || any_in_column(b.A_dot, 0) ? "CK" : "ARS";
+  } else {
+    c.type = "none";
+  }
+  c.ap = c.type == "A" && c.gsa;
+  c.ap_data = c.ap ? "any data" : (c.type == "ARS" || c.type == "CK") ? "consistent data" : "none";
+}
+
+void check_order_claim(const method& m, certificate& c) {
+  if (c.order == m.claims.order) return;
+  if (c.order > m.claims.order) {
+    c.failures.push_back(
+        fmt::format("claims.order = {} but the method has order {}", m.claims.order, c.order));
+    return;
+  }
+  for (const auto& condition : c.next)
+    c.failures.push_back(fmt::format("order {}: the condition of tree {} is {} instead of {} (residual {})",
+                                     condition.order, condition.tree, short_text(condition.value),
+                                     short_text(condition.wanted),
+                                     mp_real(condition.value - condition.wanted).str(3)));
+}
+
+void check_ssp_claim(const method& m, const mp_real& tolerance, certificate& c) {
+  if (!m.claims.ssp_coefficient) return;
+  const std::string& claimed = *m.claims.ssp_coefficient;
+  if (claimed == "unconditional") {
+    if (!c.unconditional || c.bounded)
+      c.failures.push_back(fmt::format("not unconditionally SSP: {}", c.limiting_entry.empty()
+                                                                          ? "the explicit part sets a "
+                                                                            "bound"
+                                                                          : c.limiting_entry));
+    return;
+  }
+  const mp_real value = coefficient_value(claimed);
+  // A claim is as good as its last digit.
+  const int digits = decimals(claimed);
+  const mp_real allowed = digits > 0 ? 2 * pow(mp_real(10), -digits) : tolerance;
+  const bool none = !c.bounded;
+  if (none || abs(c.ssp_coefficient - value) > allowed)
+    c.failures.push_back(fmt::format("claims.ssp_coefficient = {} but the Butcher form gives {}{}", claimed,
+                                     none ? std::string("no bound") : c.ssp_coefficient.str(17),
+                                     c.limiting_entry.empty() ? "" : " (" + c.limiting_entry + ")"));
+}
+
+/// r of the file is what the step rule uses, and its weights must be convex with it.
+void check_form(const method& m, const shu_osher_form<mp_real>& form, const mp_real& tolerance,
+                certificate& c) {
+  if (!c.bounded || c.ssp_coefficient == 0) return;
+  if (form.r > c.ssp_coefficient + tolerance)
+    c.failures.push_back(
+        fmt::format("shu_osher.r = {} is larger than the SSP coefficient {} of the Butcher form", m.exact.r,
+                    c.ssp_coefficient.str(17)));
+  const auto initial = initial_weights(form);
+  for (std::size_t i = 0; i < form.stages(); ++i) {
+    const auto negative = [&](const char* what, std::size_t j, const mp_real& value) {
+      c.failures.push_back(fmt::format("shu_osher.{}_{},{} = {} is negative: the form is not convex", what,
+                                       i + 1, j, short_text(value)));
+    };
+    if (initial[i] < -tolerance) negative("R e", 0, initial[i]);
+    for (std::size_t j = 0; j < i; ++j) {
+      if (form.P(i, j) < 0) negative("P", j + 1, form.P(i, j));
+      if (form.W(i, j) < 0) negative("W", j + 1, form.W(i, j));
+    }
+  }
+}
+
+}  // namespace
+
+certificate certify(const method& m) {
+  certificate c;
+  c.name = m.name;
+  c.kind = m.kind;
+  const auto form = m.coefficients<mp_real>();
+  const auto b = to_butcher(form);
+  const mp_real tolerance = tolerance_of(m.precision());
+  find_order(b, tolerance, c);
+  find_ssp(b, tolerance, c);
+  find_structure(form, b, c);
+  if (m.kind != method_kind::explicit_only)
+    c.stability = analyse_stability(to_butcher(m.coefficients<long double>()));
+  check_order_claim(m, c);
+  check_ssp_claim(m, tolerance, c);
+  check_form(m, form, tolerance, c);
+  if (m.claims.type && *m.claims.type != c.type)
+    c.failures.push_back(
+        fmt::format("claims.type = {} but the method is of type {}", *m.claims.type, c.type));
+  c.claims_hold = c.failures.empty();
+  return c;
+}
+
+void require_claims(const certificate& c) {
+  if (c.claims_hold) return;
+  throw claim_error(
+      fmt::format("the claims of method '{}' do not hold:\n  {}", c.name, fmt::join(c.failures, "\n  ")));
+}
+
+}  // namespace apsis

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <apsis/method/method.hpp>
+#include <apsis/method/precision.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// An order condition that does not hold.
+struct failed_condition {
+  std::string tree;  ///< "G[F]"
+  int order = 0;
+  mp_real value, wanted;  ///< left-hand side and 1/γ
+};
+
+/// Linear stability of the implicit part, y' = λy: R(z) = e_s·(I − zA − z²Ȧ)⁻¹e, z = λΔt.
+struct implicit_stability {
+  std::vector<double> imaginary_poles;   ///< 1/√|ḋ| of stages with d = 0: poles at ± i times this
+  double largest_on_negative_axis = 0;   ///< sup |R(x)|, x < 0
+  double smallest_on_negative_axis = 0;  ///< inf R(x), x < 0; ≥ 0 means no sign change
+  double at_infinity = 0;                ///< |R(−∞)|
+  double angle = 0;                      ///< α of A(α) in degrees: |R| ≤ 1 on the sector |arg(−z)| ≤ α
+};
+
+/// All that can be said of a method from its coefficients alone.
+struct certificate {
+  std::string name;
+  method_kind kind = method_kind::imex;
+  int order = 0;
+  mp_real order_residual;              ///< largest residual of the conditions up to `order`
+  std::vector<failed_condition> next;  ///< conditions of order + 1 that fail
+  int conditions = 0;                  ///< number of conditions up to `order`
+
+  bool unconditional = false;   ///< SSP without a bound from Q
+  bool bounded = true;          ///< the explicit part sets a bound Δt ≤ r Δt_FE
+  mp_real ssp_coefficient = 0;  ///< r, from the Butcher form alone; of no meaning if !bounded
+  mp_real radius_of_implicit_part =
+      0;                       ///< classical radius of A, where Q satisfies a forward Euler condition
+  std::string limiting_entry;  ///< what forbids a larger r, or any
+
+  std::string type;              ///< "A", "ARS", "CK", "explicit" or "none"
+  bool gsa = true;               ///< u^{n+1} = u_s (always, in this form)
+  bool ap = false;               ///< asymptotic preserving for any initial data
+  std::string ap_data;           ///< "any data", "consistent data" or "none"
+  int explicit_evaluations = 0;  ///< of T per step, n_F
+  int implicit_solves = 0;
+  implicit_stability stability;  ///< not for explicit methods
+
+  bool claims_hold = false;
+  std::vector<std::string> failures;  ///< condition, its value and its tree
+};
+
+/// Certifies a method in 60 digits (numerical tolerance: that of its digits).
+certificate certify(const method& m);
+
+/// The certificate of a catalogue method, made once.
+const certificate& find_certificate(const std::string& name);
+
+/// Throws claim_error that lists the failures, if there are any.
+void require_claims(const certificate& c);
+
+}  // namespace apsis

@@ -1,0 +1,65 @@
+#include <apsis/method/coefficient.hpp>
+
+#include <cctype>
+#include <cstddef>
+
+namespace apsis {
+namespace {
+
+bool is_digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Reads digits from position i on; the number of digits read.
+std::size_t digits(const std::string& text, std::size_t& i) {
+  const std::size_t start = i;
+  while (i < text.size() && is_digit(text[i])) ++i;
+  return i - start;
+}
+
+}  // namespace
+
+bool is_coefficient(const std::string& text) {
+  constexpr std::size_t longest = 200;
+  if (text.size() > longest) return false;
+  std::size_t i = 0;
+  if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
+  const std::size_t whole = digits(text, i);
+  if (i < text.size() && text[i] == '/') {
+    ++i;
+    const std::size_t start = i;
+    const bool some = digits(text, i) > 0 && whole > 0 && i == text.size();
+    return some && text.find_first_not_of('0', start) != std::string::npos;
+  }
+  std::size_t fraction = 0;
+  if (i < text.size() && text[i] == '.') {
+    ++i;
+    fraction = digits(text, i);
+  }
+  if (whole + fraction == 0) return false;
+  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+    ++i;
+    if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
+    const std::size_t exponent = digits(text, i);
+    if (exponent == 0 || exponent > 3) return false;
+  }
+  return i == text.size();
+}
+
+mp_real coefficient_value(const std::string& text) {
+  const std::string unsigned_text = text[0] == '+' ? text.substr(1) : text;
+  const auto slash = unsigned_text.find('/');
+  if (slash == std::string::npos) return mp_real(unsigned_text);
+  return mp_real(unsigned_text.substr(0, slash)) / mp_real(unsigned_text.substr(slash + 1));
+}
+
+int decimals(const std::string& text) {
+  const auto point = text.find('.');
+  if (point == std::string::npos) return 0;
+  std::size_t i = point + 1;
+  const auto count = static_cast<int>(digits(text, i));
+  constexpr int shortest = 12;  // "0.25" is a quarter, not a number known to two digits
+  return count >= shortest ? count : 0;
+}
+
+}  // namespace apsis

@@ -1,0 +1,108 @@
+#include <apsis/method/method.hpp>
+
+#include <cmath>
+#include <type_traits>
+
+#include <apsis/method/coefficient.hpp>
+
+namespace apsis {
+
+std::string to_string(method_kind kind) {
+  switch (kind) {
+    case method_kind::implicit_only:
+      return "implicit";
+    case method_kind::imex:
+      return "imex";
+    case method_kind::explicit_only:
+      return "explicit";
+  }
+  return "";
+}
+
+int method::precision() const {
+  int most = 0;
+  const auto see = [&most](const std::string& text) { most = std::max(most, decimals(text)); };
+  for (std::size_t i = 0; i < stages(); ++i) {
+    see(exact.ddot[i]);
+    for (std::size_t j = 0; j <= i; ++j) {
+      see(exact.P(i, j));
+      see(exact.W(i, j));
+      see(exact.D(i, j));
+    }
+  }
+  see(exact.r);
+  return most;
+}
+
+namespace {
+
+template <class Real>
+Real convert(const mp_real& x) {
+  if constexpr (std::is_same_v<Real, mp_real>) {
+    return x;
+  } else {
+    return x.convert_to<Real>();
+  }
+}
+
+/// A weight on the grid of the last place of numbers in [½, 1).
+template <class Real>
+Real on_grid(const mp_real& x) {
+  if constexpr (std::is_same_v<Real, mp_real>) {
+    return x;
+  } else {
+    constexpr int digits = std::numeric_limits<Real>::digits;
+    return std::ldexp(convert<Real>(round(ldexp(x, digits))), -digits);
+  }
+}
+
+/// Sets the weights of row i of P and W; if exactly nothing is left for u^n, nothing is left in Real either.
+template <class Real>
+void set_row(const shu_osher_form<std::string>& exact, std::size_t i, const mp_real& nothing,
+             shu_osher_form<Real>& m) {
+  mp_real rest(1), largest_value(0);
+  Real left(1);
+  Real* largest = nullptr;
+  const auto set = [&](const std::string& text, Real& weight) {
+    const mp_real value = coefficient_value(text);
+    weight = on_grid<Real>(value);
+    rest -= value;
+    left -= weight;
+    if (value > largest_value) {
+      largest_value = value;
+      largest = &weight;
+    }
+  };
+  for (std::size_t j = 0; j < i; ++j) {
+    set(exact.P(i, j), m.P(i, j));
+    set(exact.W(i, j), m.W(i, j));
+  }
+  if (abs(rest) <= nothing && largest != nullptr) *largest += left;
+}
+
+}  // namespace
+
+template <class Real>
+shu_osher_form<Real> method::coefficients() const {
+  const std::size_t s = stages();
+  const int digits = precision();
+  // A row of decimals sums to 1 as far as its digits go.
+  const mp_real nothing = digits > 0 ? mp_real(10) * pow(mp_real(10), -digits) : mp_real(1e-50);
+  shu_osher_form<Real> m;
+  m.P = m.W = m.D = matrix<Real>(s, s);
+  m.r = convert<Real>(coefficient_value(exact.r));
+  for (std::size_t i = 0; i < s; ++i) {
+    set_row(exact, i, nothing, m);
+    m.ddot.push_back(convert<Real>(coefficient_value(exact.ddot[i])));
+    for (std::size_t j = 0; j <= i; ++j)
+      m.D(i, j) = kind == method_kind::explicit_only ? Real(m.W(i, j) / m.r)
+                                                     : convert<Real>(coefficient_value(exact.D(i, j)));
+  }
+  return m;
+}
+
+template shu_osher_form<double> method::coefficients() const;
+template shu_osher_form<long double> method::coefficients() const;
+template shu_osher_form<mp_real> method::coefficients() const;
+
+}  // namespace apsis

@@ -1,0 +1,286 @@
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/method/coefficient.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/method/method_file.hpp>
+
+namespace apsis {
+namespace {
+
+constexpr std::size_t most_stages = 64;
+constexpr std::size_t longest_file = 1 << 20;
+constexpr std::size_t longest_text = 500;
+
+source_place place_of(const toml::node& node, const std::string& file) {
+  const auto& begin = node.source().begin;
+  return {file, static_cast<int>(begin.line), static_cast<int>(begin.column)};
+}
+
+/// A table of the file whose keys are all known.
+class section {
+ public:
+  section(const toml::table& table, std::string file, std::string name, const std::vector<std::string>& keys)
+      : table_(table), file_(std::move(file)), name_(std::move(name)) {
+    for (const auto& [key, value] : table) {
+      const std::string text(key.str());
+      if (std::find(keys.begin(), keys.end(), text) != keys.end()) continue;
+      const auto& at = key.source().begin;
+      throw input_error(
+          {file_, static_cast<int>(at.line), static_cast<int>(at.column)},
+          fmt::format("unknown key '{}'{} {}", text.substr(0, 60), inside(), suggest(text, keys)));
+    }
+  }
+
+  bool has(const std::string& key) const { return table_.contains(key); }
+
+  const toml::node& need(const std::string& key) const {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr)
+      throw input_error(place_of(table_, file_), fmt::format("missing key '{}'{}", key, inside()));
+    return *node;
+  }
+
+  std::string text(const std::string& key) const {
+    const toml::node& node = need(key);
+    const auto value = node.value<std::string>();
+    if (!node.is_string() || !value) wrong(node, key, "a text in quotes");
+    if (value->size() > longest_text)
+      throw input_error(place_of(node, file_), fmt::format("{} is too long ({} characters, at most {})",
+                                                           quoted(key), value->size(), longest_text));
+    return *value;
+  }
+
+  int integer(const std::string& key, int lowest, int highest) const {
+    const toml::node& node = need(key);
+    const auto value = node.value<std::int64_t>();
+    if (!node.is_integer() || !value) wrong(node, key, "an integer");
+    if (*value < lowest || *value > highest)
+      throw input_error(place_of(node, file_), fmt::format("{} = {} is out of range (from {} to {})",
+                                                           quoted(key), *value, lowest, highest));
+    return static_cast<int>(*value);
+  }
+
+  std::string coefficient(const std::string& key) const { return coefficient_of(need(key), key); }
+
+  std::vector<std::string> row(const toml::node& node, const std::string& what) const {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) wrong(node, what, "a list of coefficients such as [\"1/2\", \"0\"]");
+    if (array->size() > most_stages)
+      throw input_error(place_of(node, file_), fmt::format("{} has {} entries (at most {} stages)",
+                                                           quoted(what), array->size(), most_stages));
+    std::vector<std::string> values;
+    for (const toml::node& entry : *array) values.push_back(coefficient_of(entry, what));
+    return values;
+  }
+
+  std::vector<std::string> vector(const std::string& key) const { return row(need(key), key); }
+
+  /// Lower triangular rows into m; row i has i − 1 + diagonal entries, or as many as stages with zeros at the
+  /// end.
+  void triangle(const std::string& key, std::size_t diagonal, matrix<std::string>& m) const {
+    const toml::node& node = need(key);
+    const toml::array* rows = node.as_array();
+    if (rows == nullptr) wrong(node, key, "a list of rows");
+    if (rows->size() != m.rows())
+      throw input_error(place_of(node, file_), fmt::format("{} has {} rows (the method has {} stages)",
+                                                           quoted(key), rows->size(), m.rows()));
+    for (std::size_t i = 0; i < m.rows(); ++i) {
+      const toml::node& line = *rows->get(i);
+      const auto values = row(line, key);
+      const std::size_t expected = i + diagonal;
+      if (values.size() != expected && values.size() != m.rows())
+        throw input_error(place_of(line, file_),
+                          fmt::format("row {} of {} has {} entries (lower triangular: give {})", i + 1,
+                                      quoted(key), values.size(), expected));
+      for (std::size_t j = 0; j < values.size(); ++j) {
+        if (j < expected) {
+          m(i, j) = values[j];
+        } else if (coefficient_value(values[j]) != 0) {
+          throw input_error(
+              place_of(*line.as_array()->get(j), file_),
+              fmt::format("entry {} of row {} of {} lies above the triangle (a stage cannot use a later "
+                          "one); give \"0\" or leave it out",
+                          j + 1, i + 1, quoted(key)));
+        }
+      }
+    }
+  }
+
+  std::size_t row_count(const std::string& key) const {
+    const toml::node& node = need(key);
+    const toml::array* rows = node.as_array();
+    if (rows == nullptr || rows->empty() || rows->size() > most_stages)
+      throw input_error(place_of(node, file_),
+                        fmt::format("{} is not a list of 1 to {} stages", quoted(key), most_stages));
+    return rows->size();
+  }
+
+  [[noreturn]] void fail(const std::string& key, const std::string& problem) const {
+    throw input_error(place_of(need(key), file_), problem);
+  }
+
+ private:
+  std::string inside() const { return name_.empty() ? "" : " in [" + name_ + "]"; }
+  std::string quoted(const std::string& key) const {
+    return "'" + (name_.empty() ? key : name_ + "." + key) + "'";
+  }
+
+  [[noreturn]] void wrong(const toml::node& node, const std::string& key, const std::string& expected) const {
+    throw input_error(place_of(node, file_), fmt::format("{} is not {}", quoted(key), expected));
+  }
+
+  std::string coefficient_of(const toml::node& node, const std::string& key) const {
+    const auto value = node.value<std::string>();
+    if (!node.is_string() || !value)
+      wrong(node, key, "a coefficient in quotes (\"1/2\" or \"0.25\", so that no digit is lost)");
+    if (!is_coefficient(*value))
+      throw input_error(
+          place_of(node, file_),
+          fmt::format("'{}' is no coefficient (for {}); write an exact rational \"p/q\" or a decimal of at "
+                      "most 200 characters",
+                      value->substr(0, 40), quoted(key)));
+    return *value;
+  }
+
+  const toml::table& table_;
+  std::string file_, name_;
+};
+
+const toml::table& need_table(const toml::table& root, const std::string& key, const std::string& file) {
+  const toml::node* node = root.get(key);
+  if (node == nullptr) throw input_error(source_place{file, 1, 1}, fmt::format("missing table [{}]", key));
+  if (node->as_table() == nullptr)
+    throw input_error(place_of(*node, file), fmt::format("'{}' is not a table", key));
+  return *node->as_table();
+}
+
+method_kind read_kind(const section& top) {
+  static const std::vector<std::string> names = {"implicit", "imex", "explicit"};
+  const std::string text = top.text("kind");
+  for (const auto kind : {method_kind::implicit_only, method_kind::imex, method_kind::explicit_only})
+    if (to_string(kind) == text) return kind;
+  top.fail("kind", fmt::format("unknown kind '{}' {}", text.substr(0, 40), suggest(text, names)));
+}
+
+method_claims read_claims(const toml::table& root, const std::string& file) {
+  const section table(need_table(root, "claims", file), file, "claims", {"order", "ssp_coefficient", "type"});
+  method_claims claims;
+  claims.order = table.integer("order", 1, 8);
+  if (table.has("type")) {
+    claims.type = table.text("type");
+    const std::vector<std::string> types = {"A", "ARS", "CK"};
+    if (std::find(types.begin(), types.end(), *claims.type) == types.end())
+      table.fail("type", fmt::format("unknown type '{}' {}", claims.type->substr(0, 40),
+                                     suggest(*claims.type, types)));
+  }
+  if (table.has("ssp_coefficient")) {
+    claims.ssp_coefficient = table.text("ssp_coefficient");
+    if (*claims.ssp_coefficient != "unconditional" && !is_coefficient(*claims.ssp_coefficient))
+      table.fail("ssp_coefficient",
+                 "'claims.ssp_coefficient' is neither a number in quotes nor \"unconditional\"");
+  }
+  return claims;
+}
+
+matrix<std::string> zeros(std::size_t s) {
+  matrix<std::string> m(s, s);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j < s; ++j) m(i, j) = "0";
+  return m;
+}
+
+void read_shu_osher(const toml::table& table, const std::string& file, method& m) {
+  const bool is_explicit = m.kind == method_kind::explicit_only;
+  std::vector<std::string> keys = {"P"};
+  if (m.kind != method_kind::implicit_only) keys.insert(keys.end(), {"W", "r"});
+  if (!is_explicit) keys.insert(keys.end(), {"d", "ddot"});
+  const section form(table, file, "shu_osher", keys);
+  const std::size_t s = form.row_count("P");
+  auto& e = m.exact;
+  e.P = e.W = e.D = zeros(s);
+  e.ddot.assign(s, "0");
+  e.r = "1";
+  form.triangle("P", 0, e.P);
+  if (m.kind != method_kind::implicit_only) {
+    form.triangle("W", 0, e.W);
+    e.r = form.coefficient("r");
+    if (!(coefficient_value(e.r) > 0)) form.fail("r", "'shu_osher.r' is not positive");
+  }
+  if (is_explicit) return;
+  const auto d = form.vector("d");
+  e.ddot = form.vector("ddot");
+  for (const auto& [key, size] : {std::pair{"d", d.size()}, std::pair{"ddot", e.ddot.size()}})
+    if (size != s)
+      form.fail(key, fmt::format("'shu_osher.{}' has {} entries (the method has {} stages)", key, size, s));
+  for (std::size_t i = 0; i < s; ++i) e.D(i, i) = d[i];
+}
+
+/// Butcher form: kept as it is with R = I where that is a Shu–Osher form (no A_hat, no off-diagonal A_dot),
+/// else refused, because the weights of the stages would have to be guessed.
+void read_butcher(const toml::table& table, const std::string& file, method& m) {
+  const section form(table, file, "butcher", {"A"});
+  if (m.kind != method_kind::implicit_only)
+    form.fail(
+        "A",
+        "[butcher] describes implicit methods only (for the others the Shu-Osher form is the definition of "
+        "what is convex); give [shu_osher]");
+  const std::size_t s = form.row_count("A");
+  auto& e = m.exact;
+  e.P = e.W = e.D = zeros(s);
+  e.ddot.assign(s, "0");
+  e.r = "1";
+  form.triangle("A", 1, e.D);
+}
+
+}  // namespace
+
+method parse_method(std::string_view text, const std::string& file) {
+  if (text.size() > longest_file)
+    throw input_error(
+        source_place{file, 1, 1},
+        fmt::format("not a method file ({} bytes; a method file has at most {})", text.size(), longest_file));
+  toml::table root;
+  try {
+    root = toml::parse(text, file);
+  } catch (const toml::parse_error& failure) {
+    const auto& at = failure.source().begin;
+    throw input_error({file, static_cast<int>(at.line), static_cast<int>(at.column)},
+                      "not TOML (" + std::string(failure.description()) + ")");
+  }
+  method m;
+  const section top(root, file, "", {"name", "title", "citation", "kind", "claims", "shu_osher", "butcher"});
+  m.name = top.text("name");
+  m.title = top.text("title");
+  m.citation = top.text("citation");
+  m.kind = read_kind(top);
+  m.claims = read_claims(root, file);
+  if (top.has("shu_osher") == top.has("butcher"))
+    throw input_error(source_place{file, 1, 1},
+                      "exactly one of the tables [shu_osher] and [butcher] must be there");
+  if (top.has("shu_osher")) {
+    read_shu_osher(need_table(root, "shu_osher", file), file, m);
+  } else {
+    read_butcher(need_table(root, "butcher", file), file, m);
+  }
+  return m;
+}
+
+std::string read_method_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in)
+    throw input_error("cannot read the method file '" + path + "' (it does not exist or is not readable)");
+  std::string text(longest_file + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+}  // namespace apsis

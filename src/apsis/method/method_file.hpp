@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace apsis {
+
+/// The text of a method file, or as much of it as shows that it is none (parse_method refuses more than 1
+/// MiB). Throws input_error if it cannot be read.
+std::string read_method_text(const std::string& path);
+
+}  // namespace apsis

@@ -1,0 +1,74 @@
+#include <apsis/method/order_conditions.hpp>
+
+#include <apsis/method/precision.hpp>
+
+namespace apsis {
+namespace {
+
+template <class Real>
+using stage_vector = std::vector<Real>;
+
+template <class Real>
+class evaluator {
+ public:
+  evaluator(const butcher_form<Real>& method, const std::vector<rooted_tree>& trees)
+      : method_(method), trees_(trees) {}
+
+  std::vector<Real> run() {
+    std::vector<Real> weights;
+    for (const rooted_tree& tree : trees_) {
+      phi_.push_back(stage_values(tree));
+      weights.push_back(phi_.back().back());
+    }
+    return weights;
+  }
+
+ private:
+  stage_vector<Real> ones() const { return stage_vector<Real>(method_.stages(), Real(1)); }
+
+  void multiply(stage_vector<Real>& product, int tree) const {
+    const auto& factor = phi_[static_cast<std::size_t>(tree)];
+    for (std::size_t i = 0; i < product.size(); ++i) product[i] *= factor[i];
+  }
+
+  stage_vector<Real> stage_values(const rooted_tree& tree) const {
+    auto product = ones();
+    for (const int child : tree.children) multiply(product, child);
+    if (tree.root == colour::F) return method_.A_hat * product;
+
+    stage_vector<Real> derivative(method_.stages(), Real(0));
+    for (std::size_t k = 0; k < tree.children.size(); ++k) {
+      const rooted_tree& child = trees_[static_cast<std::size_t>(tree.children[k])];
+      if (child.root != colour::G) continue;
+      auto term = ones();
+      for (std::size_t l = 0; l < tree.children.size(); ++l)
+        if (l != k) multiply(term, tree.children[l]);
+      for (const int grandchild : child.children) multiply(term, grandchild);
+      for (std::size_t i = 0; i < term.size(); ++i) derivative[i] += term[i];
+    }
+    auto values = method_.A * product;
+    const auto second = method_.A_dot * derivative;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += second[i];
+    return values;
+  }
+
+  const butcher_form<Real>& method_;
+  const std::vector<rooted_tree>& trees_;
+  std::vector<stage_vector<Real>> phi_;
+};
+
+}  // namespace
+
+template <class Real>
+std::vector<Real> elementary_weights(const butcher_form<Real>& method,
+                                     const std::vector<rooted_tree>& trees) {
+  return evaluator<Real>(method, trees).run();
+}
+
+template std::vector<double> elementary_weights(const butcher_form<double>&, const std::vector<rooted_tree>&);
+template std::vector<long double> elementary_weights(const butcher_form<long double>&,
+                                                     const std::vector<rooted_tree>&);
+template std::vector<mp_real> elementary_weights(const butcher_form<mp_real>&,
+                                                 const std::vector<rooted_tree>&);
+
+}  // namespace apsis

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// Colour of a node: F for the explicit operator T, G for the implicit operator Q.
+enum class colour { F, G };
+
+/// A rooted tree with coloured nodes. Children are indices into the list that it belongs to, sorted; equal
+/// subtrees stand as often as they occur.
+struct rooted_tree {
+  colour root = colour::F;
+  std::vector<int> children;
+  int order = 1;         ///< number of nodes
+  double density = 1.0;  ///< γ(τ) = |τ| Π γ(τ_k), an integer
+  std::string name;      ///< "G[F,G[F]]"
+};
+
+enum class tree_colours { F_only, G_only, both };
+
+/// Every tree of order 1 … `order`, by order; every child stands before its parents. Numbers of trees per
+/// order: 2, 4, 14, 52, 214, … with two colours, 1, 1, 2, 4, 9, … with one.
+std::vector<rooted_tree> rooted_trees(int order, tree_colours colours);
+
+}  // namespace apsis

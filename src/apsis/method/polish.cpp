@@ -1,210 +1,235 @@
+#include <apsis/method/polish.hpp>
+
 #include <algorithm>
-#include <functional>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <apsis/core/errors.hpp>
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/order_conditions.hpp>
-#include <apsis/method/polish.hpp>
-#include <apsis/method/precision.hpp>
 
 namespace apsis {
 namespace {
 
-using vector = std::vector<mp_real>;
+using mp_vector = std::vector<mp_real>;
 
-/// Solves K y = b by Gaussian elimination with row pivoting; false if K is singular to working precision.
-bool solve(matrix<mp_real> K, vector b, vector& y) {
-  const std::size_t n = b.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < n; ++i)
-      if (abs(K(i, k)) > abs(K(pivot, k))) pivot = i;
-    if (abs(K(pivot, k)) < mp_real(1e-25)) return false;
-    for (std::size_t j = k; j < n; ++j) std::swap(K(k, j), K(pivot, j));
-    std::swap(b[k], b[pivot]);
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const mp_real factor = K(i, k) / K(k, k);
-      for (std::size_t j = k; j < n; ++j) K(i, j) -= factor * K(k, j);
-      b[i] -= factor * b[k];
-    }
-  }
-  y.assign(n, mp_real(0));
-  for (std::size_t i = n; i-- > 0;) {
-    mp_real rest = b[i];
-    for (std::size_t j = i + 1; j < n; ++j) rest -= K(i, j) * y[j];
-    y[i] = rest / K(i, i);
-  }
-  return true;
+mp_real dot(const mp_vector& a, const mp_vector& b) {
+  mp_real sum(0);
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
 }
 
-/// The coefficients that move, and the equations that they must satisfy.
-class polisher {
+/// The coefficients that may move, as pointers into a form, and the equations they must satisfy.
+class coefficient_system {
  public:
-  explicit polisher(const method& m) : polished_(m), form_(m.coefficients<mp_real>()) {
-    const std::size_t s = m.stages();
-    for (std::size_t i = 0; i < s; ++i) {
+  explicit coefficient_system(method& m) : source_(m), form_(m.coefficients<mp_real>()) {
+    const auto free = [](const std::string& text) { return decimals(text) > 0; };
+    for (std::size_t i = 0; i < m.stages(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        add(polished_.exact.P(i, j), form_.P(i, j));
-        add(polished_.exact.W(i, j), form_.W(i, j));
+        if (free(m.exact.P(i, j))) add(form_.P(i, j), m.exact.P(i, j));
+        if (free(m.exact.W(i, j))) add(form_.W(i, j), m.exact.W(i, j));
       }
-      for (std::size_t j = 0; j <= i; ++j) add(polished_.exact.D(i, j), form_.D(i, j));
-      add(polished_.exact.ddot[i], form_.ddot[i]);
+      for (std::size_t j = 0; j <= i; ++j)
+        if (free(m.exact.D(i, j))) add(form_.D(i, j), m.exact.D(i, j));
+      if (free(m.exact.ddot[i])) add(form_.ddot[i], m.exact.ddot[i]);
     }
-    add(polished_.exact.r, form_.r);
-    find_full_rows();
-    find_conditions();
+    if (free(m.exact.r)) add(form_.r, m.exact.r);
+    const auto initial = initial_weights(form_);
+    const auto weights = to_butcher(form_).A_hat;
+    for (std::size_t i = 0; i < m.stages(); ++i) {
+      full_row_.push_back(i > 0 && abs(initial[i]) < mp_real(1e-12));
+      counts_.push_back(abs(weights(m.stages() - 1, i)) > mp_real(1e-12));
+    }
+    trees_ =
+        rooted_trees(m.claims.order, m.kind == method_kind::imex ? tree_colours::both : tree_colours::G_only);
   }
 
-  method run(int digits) {
-    constexpr int most_steps = 12;
-    const mp_real enough(1e-54);
-    for (int k = 0; k < most_steps && !unknowns_.empty(); ++k) {
-      const vector residual = residuals();
-      mp_real largest(0);
-      for (const auto& x : residual) largest = std::max<mp_real>(largest, abs(x));
-      if (largest < enough) break;
-      if (k + 1 == most_steps)
-        throw numerical_error(
-            fmt::format("polishing '{}' does not converge (residual {} after {} steps) start from "
-                        "coefficients that are nearer to a solution",
-                        polished_.name, largest.str(3), most_steps));
-      step(residual);
+  std::size_t unknowns() const { return values_.size(); }
+  mp_real& value(std::size_t k) { return *values_[k]; }
+  std::string& text(std::size_t k) { return *texts_[k]; }
+
+  /// Order conditions, full rows, and c = ĉ where T counts (order 3 and up).
+  mp_vector residuals() const {
+    const auto b = to_butcher(form_);
+    auto equations = elementary_weights(b, trees_);
+    for (std::size_t k = 0; k < trees_.size(); ++k) equations[k] -= mp_real(1) / mp_real(trees_[k].density);
+    const auto initial = initial_weights(form_);
+    for (std::size_t i = 0; i < full_row_.size(); ++i) {
+      if (full_row_[i]) equations.push_back(initial[i]);
+      if (source_.kind != method_kind::imex || source_.claims.order < 3 || !counts_[i]) continue;
+      mp_real difference(0);
+      for (std::size_t j = 0; j <= i; ++j) difference += b.A(i, j) - b.A_hat(i, j);
+      equations.push_back(difference);
     }
-    write(digits);
-    return polished_;
+    return equations;
+  }
+
+  /// Gradients of all equations, by differences: in 60 digits a step of 1e-28 leaves an error of about 1e-28,
+  /// which only slows Newton's method from quadratic to a factor of 1e-28 per step.
+  std::vector<mp_vector> gradients() {
+    const mp_real step(1e-28);
+    const auto base = residuals();
+    std::vector<mp_vector> rows(base.size(), mp_vector(unknowns()));
+    for (std::size_t k = 0; k < unknowns(); ++k) {
+      const mp_real kept = value(k);
+      value(k) = kept + step;
+      const auto moved = residuals();
+      value(k) = kept;
+      for (std::size_t e = 0; e < base.size(); ++e) rows[e][k] = (moved[e] - base[e]) / step;
+    }
+    return rows;
   }
 
  private:
-  struct unknown {
-    std::string* text;
-    mp_real* value;
-  };
-
-  void add(std::string& text, mp_real& value) {
-    if (decimals(text) > 0) unknowns_.push_back({&text, &value});
+  void add(mp_real& value, std::string& text) {
+    values_.push_back(&value);
+    texts_.push_back(&text);
   }
 
-  bool moves(const mp_real& value) const {
-    return std::any_of(unknowns_.begin(), unknowns_.end(),
-                       [&](const unknown& u) { return u.value == &value; });
-  }
-
-  /// Rows with Σ_j p_ij + w_ij = 1 as far as the digits go: u^n does not enter, and must not after polishing.
-  void find_full_rows() {
-    const mp_real close = pow(mp_real(10), 1 - std::max(polished_.precision(), 2));
-    const auto initial = initial_weights(form_);
-    for (std::size_t i = 0; i < form_.stages(); ++i) {
-      bool free = false;
-      for (std::size_t j = 0; j < i; ++j) free = free || moves(form_.P(i, j)) || moves(form_.W(i, j));
-      if (free && abs(initial[i]) <= close) full_rows_.push_back(i);
-    }
-  }
-
-  void find_conditions() {
-    const bool imex = polished_.kind == method_kind::imex;
-    const auto colours = polished_.kind == method_kind::implicit_only ? tree_colours::G_only
-                         : imex                                       ? tree_colours::both
-                                                                      : tree_colours::F_only;
-    trees_ = rooted_trees(polished_.claims.order, colours);
-    // At order 2 the conditions are regular as they are, and c = ĉ need not hold.
-    const bool reduced = imex && polished_.claims.order >= 3;
-    for (std::size_t k = 0; k < trees_.size(); ++k)
-      if (!reduced || !has_twin(trees_[k])) conditions_.push_back(k);
-    if (!reduced) return;
-    const auto b = to_butcher(form_);
-    for (std::size_t j = 1; j < form_.stages(); ++j) {
-      bool used = false;
-      for (std::size_t i = j + 1; i < form_.stages(); ++i) used = used || b.A_hat(i, j) != 0;
-      if (used) transport_stages_.push_back(j);
-    }
-  }
-
-  /// A leaf G that hangs on an F may be replaced by a leaf F where c = ĉ: the same condition once more.
-  bool has_twin(const rooted_tree& tree) const {
-    return std::any_of(tree.children.begin(), tree.children.end(), [&](int index) {
-      const rooted_tree& child = trees_[static_cast<std::size_t>(index)];
-      const bool leaf_g = child.root == colour::G && child.children.empty();
-      return (tree.root == colour::F && leaf_g) || has_twin(child);
-    });
-  }
-
-  vector residuals() const {
-    const auto b = to_butcher(form_);
-    const auto weights = elementary_weights(b, trees_);
-    vector f;
-    for (const auto k : conditions_) f.push_back(weights[k] - mp_real(1) / mp_real(trees_[k].density));
-    const auto initial = initial_weights(form_);
-    for (const auto i : full_rows_) f.push_back(initial[i]);
-    const vector ones(form_.stages(), mp_real(1));
-    const vector c = b.A * ones, c_hat = b.A_hat * ones;
-    for (const auto i : transport_stages_) f.push_back(c[i] - c_hat[i]);
-    return f;
-  }
-
-  /// One Gauss-Newton step of least norm, x −= Jᵀ (J Jᵀ)⁻¹ f, with J from differences: at 60 digits they are
-  /// good to 30, so each step gains that many.
-  void step(const vector& f) {
-    const mp_real h("1e-30");
-    const std::size_t n = f.size();
-    matrix<mp_real> J(n, unknowns_.size());
-    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
-      const mp_real kept = *unknowns_[k].value;
-      *unknowns_[k].value = kept + h;
-      const vector moved = residuals();
-      *unknowns_[k].value = kept;
-      for (std::size_t i = 0; i < n; ++i) J(i, k) = (moved[i] - f[i]) / h;
-    }
-    matrix<mp_real> K(n, n);
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        for (std::size_t k = 0; k < unknowns_.size(); ++k) K(i, j) += J(i, k) * J(j, k);
-    vector y;
-    if (!solve(K, f, y))
-      throw numerical_error(
-          fmt::format("polishing '{}' fails (the order conditions are singular here) start from "
-                      "other coefficients, or hold fewer of them as exact numbers",
-                      polished_.name));
-    for (std::size_t k = 0; k < unknowns_.size(); ++k)
-      for (std::size_t i = 0; i < n; ++i) *unknowns_[k].value -= J(i, k) * y[i];
-  }
-
-  void write(int digits) {
-    for (const auto& u : unknowns_) round_to(u, digits);
-    // Rounding may have left a row a few units off 1; its largest weight takes them.
-    for (const auto i : full_rows_) {
-      const unknown* largest = nullptr;
-      for (const auto& u : unknowns_)
-        for (std::size_t j = 0; j < i; ++j)
-          if ((u.value == &form_.P(i, j) || u.value == &form_.W(i, j)) &&
-              (!largest || *u.value > *largest->value))
-            largest = &u;
-      *largest->value += initial_weights(form_)[i];
-      round_to(*largest, digits);
-    }
-  }
-
-  static void round_to(const unknown& u, int digits) {
-    *u.text = u.value->str(digits, std::ios_base::fixed);
-    *u.value = coefficient_value(*u.text);
-  }
-
-  method polished_;
+  method& source_;
   shu_osher_form<mp_real> form_;
-  std::vector<unknown> unknowns_;
-  std::vector<std::size_t> full_rows_, transport_stages_, conditions_;
+  std::vector<mp_real*> values_;
+  std::vector<std::string*> texts_;
+  std::vector<bool> full_row_, counts_;
   std::vector<rooted_tree> trees_;
 };
 
+/// Equations whose gradients are independent, by Gram–Schmidt with the largest remainder first; the printed
+/// digits leave dependent ones a remainder of about 1e-14.
+std::vector<std::size_t> independent(const std::vector<mp_vector>& gradients) {
+  std::vector<std::size_t> chosen;
+  auto rest = gradients;
+  while (true) {
+    std::size_t best = rest.size();
+    mp_real largest(1e-8);
+    for (std::size_t e = 0; e < rest.size(); ++e) {
+      const mp_real size = sqrt(dot(rest[e], rest[e]));
+      if (size > largest) {
+        largest = size;
+        best = e;
+      }
+    }
+    if (best == rest.size()) break;
+    chosen.push_back(best);
+    const mp_vector direction = rest[best];
+    const mp_real square = dot(direction, direction);
+    for (auto& row : rest) {
+      const mp_real along = dot(row, direction) / square;
+      for (std::size_t k = 0; k < row.size(); ++k) row[k] -= along * direction[k];
+    }
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+/// Solves the symmetric positive definite system a x = b by elimination.
+mp_vector solve(std::vector<mp_vector> a, mp_vector b) {
+  const std::size_t n = b.size();
+  for (std::size_t p = 0; p < n; ++p)
+    for (std::size_t i = p + 1; i < n; ++i) {
+      const mp_real factor = a[i][p] / a[p][p];
+      for (std::size_t j = p; j < n; ++j) a[i][j] -= factor * a[p][j];
+      b[i] -= factor * b[p];
+    }
+  for (std::size_t p = n; p-- > 0;) {
+    for (std::size_t j = p + 1; j < n; ++j) b[p] -= a[p][j] * b[j];
+    b[p] /= a[p][p];
+  }
+  return b;
+}
+
+mp_real largest_of(const mp_vector& v) {
+  mp_real largest(0);
+  for (const auto& x : v) largest = std::max(largest, mp_real(abs(x)));
+  return largest;
+}
+
+/// The solution d of J d = right with the least Σ w_k d_k²: d = S Jᵀ (J S Jᵀ)⁻¹ right, S = diag(1/w).
+mp_vector least_change(const std::vector<mp_vector>& J, const mp_vector& right, const mp_vector& scale,
+                       mp_vector* multipliers_out = nullptr) {
+  const std::size_t n = J.size();
+  std::vector<mp_vector> normal(n, mp_vector(n));
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < n; ++b)
+      for (std::size_t k = 0; k < scale.size(); ++k) normal[a][b] += J[a][k] * scale[k] * J[b][k];
+  const auto multipliers = solve(normal, right);
+  if (multipliers_out != nullptr) *multipliers_out = multipliers;
+  mp_vector d(scale.size());
+  for (std::size_t k = 0; k < d.size(); ++k)
+    for (std::size_t a = 0; a < n; ++a) d[k] += scale[k] * J[a][k] * multipliers[a];
+  return d;
+}
+
+/// Scales for which the least change is small in every coefficient, not only in the sum: Lawson's iteration
+/// gives coefficients that move much a larger weight.
+///
+/// `bound`: no solution of J d = right has max |d| below it, because y·right = (Jᵀy)·d ≤ Σ|Jᵀy| max|d| for
+/// every y.
+mp_vector even_scales(const std::vector<mp_vector>& J, const mp_vector& right, mp_real& bound) {
+  const std::size_t n = J.empty() ? 0 : J.front().size();
+  mp_vector weight(n, mp_real(1)), best_scale(n, mp_real(1));
+  mp_real best(-1);
+  for (int iteration = 0; iteration < 400; ++iteration) {
+    mp_vector scale(n);
+    for (std::size_t k = 0; k < n; ++k) scale[k] = 1 / weight[k];
+    mp_vector y;
+    const auto d = least_change(J, right, scale, &y);
+    const mp_real largest = largest_of(d);
+    mp_real total(0);
+    for (std::size_t k = 0; k < n; ++k) total += abs(d[k]) * weight[k];  // Jᵀy = d/S
+    if (total > 0) bound = std::max(bound, mp_real(abs(dot(y, right)) / total));
+    if (best < 0 || largest < best) {
+      best = largest;
+      best_scale = scale;
+    }
+    if (largest == 0) break;
+    mp_real sum(0);
+    for (std::size_t k = 0; k < n; ++k) {
+      weight[k] *= abs(d[k]) / largest + mp_real(1e-12);
+      sum += weight[k];
+    }
+    // Weights stay within a range in which the normal equations are well conditioned.
+    for (auto& w : weight) w = std::max(mp_real(w * mp_real(n) / sum), mp_real(1e-14));
+  }
+  return best_scale;
+}
+
 }  // namespace
 
-method polish(const method& m, int digits) {
-  if (digits < 15 || digits > 50)
-    throw input_error(
-        fmt::format("cannot polish to {} digits (the arithmetic carries 60) ask for 15 to 50", digits));
-  return polisher(m).run(digits);
+polish_result polish(const method& m, int digits) {
+  polish_result result{m, 0, 0, 0};
+  coefficient_system equations(result.polished);
+  const std::size_t n = equations.unknowns();
+  mp_vector start;
+  for (std::size_t k = 0; k < n; ++k) start.push_back(equations.value(k));
+
+  std::vector<std::size_t> chosen;
+  mp_vector scale;
+  for (int iteration = 0; iteration < 20 && n > 0; ++iteration) {
+    const auto gradients = equations.gradients();
+    const auto residuals = equations.residuals();
+    if (iteration == 0) chosen = independent(gradients);
+    std::vector<mp_vector> J;
+    mp_vector right;
+    for (const std::size_t e : chosen) {
+      J.push_back(gradients[e]);
+      right.push_back(-residuals[e]);
+    }
+    if (iteration == 0) scale = even_scales(J, right, result.smallest_possible_move);
+    const auto step = least_change(J, right, scale);
+    for (std::size_t k = 0; k < n; ++k) equations.value(k) += step[k];
+    if (largest_of(step) < mp_real(1e-54)) break;
+  }
+  result.residual = largest_of(equations.residuals());
+  if (!(result.residual < pow(mp_real(10), -digits)))
+    throw numerical_error(fmt::format("polishing '{}' did not converge (residual {}); start from more digits",
+                                      m.name, result.residual.str(3)));
+  for (std::size_t k = 0; k < n; ++k) {
+    result.largest_move = std::max(result.largest_move, mp_real(abs(equations.value(k) - start[k])));
+    equations.text(k) = equations.value(k).str(digits, std::ios_base::fixed);
+  }
+  return result;
 }
 
 }  // namespace apsis

@@ -1,21 +1,24 @@
 #pragma once
 
 #include <apsis/method/method.hpp>
+#include <apsis/method/precision.hpp>
 
 namespace apsis {
 
-/// The same method with its long decimals (12 places or more, see decimals()) carried to `digits` places: the
-/// nearest solution, in the Euclidean norm of these coefficients, of the order conditions of m.claims.order
-/// and of Σ_j p_ij + w_ij = 1 in the rows where the given decimals add up to 1. Rationals, short decimals and
-/// zeros are held.
-///
-/// From order 3 on the conditions of two colours are singular at their solutions, because they imply
-/// Σ b̂_i (c_i − ĉ_i)² = 0 with b̂ ≥ 0. So c_i = ĉ_i is imposed at every stage whose T counts, and the
-/// conditions that this makes equal to others are left out; the Jacobian then has full rank and Newton's
-/// method converges.
-///
-/// Throws input_error if `digits` is not between 15 and 50, numerical_error if the iteration does not
-/// converge.
-method polish(const method& m, int digits = 50);
+/// What polishing did.
+struct polish_result {
+  method polished;                 ///< the same method with `digits` decimals
+  mp_real residual;                ///< largest residual of its order conditions
+  mp_real largest_move;            ///< largest change of a coefficient
+  mp_real smallest_possible_move;  ///< no method with these zeros lies nearer (linear duality; the moves are
+                                   ///< ~1e-15)
+};
+
+/// The method nearest to `m` that satisfies its order conditions to `digits` decimals: Newton's method with
+/// the least change, in 60 digits, keeping every zero, every exact rational and every row that leaves nothing
+/// for u^n. Third-order IMEX conditions are singular at a solution, because together they say Σ b̂_i (c_i −
+/// ĉ_i)² = 0 with b̂ ≥ 0; so c = ĉ at every stage whose T counts is imposed instead, and equations that depend
+/// on others are left out. Throws numerical_error if it does not converge.
+polish_result polish(const method& m, int digits = 45);
 
 }  // namespace apsis

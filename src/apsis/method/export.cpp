@@ -1,0 +1,132 @@
+#include <apsis/method/export.hpp>
+
+#include <functional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <apsis/method/coefficient.hpp>
+
+namespace apsis {
+namespace {
+
+bool is_zero(const std::string& text) {
+  return coefficient_value(text) == 0;
+}
+
+/// A text in quotes, with what TOML would read otherwise escaped.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (code < 0x20 || code == 0x7f) {
+      out += fmt::format("\\u{:04x}", code);
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+std::string list(const std::vector<std::string>& values) {
+  std::vector<std::string> texts;
+  for (const auto& value : values) texts.push_back(quoted(value));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+/// Rows of a lower triangular matrix, without or with its diagonal.
+std::string triangle(const matrix<std::string>& m, std::size_t diagonal) {
+  std::string out = "[\n";
+  for (std::size_t i = 0; i < m.rows(); ++i) {
+    std::vector<std::string> row;
+    for (std::size_t j = 0; j < i + diagonal; ++j) row.push_back(m(i, j));
+    out += "  " + list(row) + ",\n";
+  }
+  return out + "]";
+}
+
+std::vector<std::string> diagonal_of(const matrix<std::string>& m) {
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < m.rows(); ++i) values.push_back(m(i, i));
+  return values;
+}
+
+/// Whether Q of an earlier stage enters a later one: then the file gives the tableau A (read_butcher).
+bool is_tableau(const method& m) {
+  for (std::size_t i = 0; i < m.stages(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!is_zero(m.exact.D(i, j))) return true;
+  return false;
+}
+
+/// A number as LaTeX: "\frac{1}{2}", "0.25".
+std::string number(const std::string& text, int digits) {
+  const auto slash = text.find('/');
+  if (is_zero(text)) return "0";
+  if (slash == std::string::npos) return coefficient_value(text).str(digits);
+  const std::size_t start = text[0] == '-' || text[0] == '+' ? 1 : 0;
+  return fmt::format("{}\\frac{{{}}}{{{}}}", text[0] == '-' ? "-" : "", text.substr(start, slash - start),
+                     text.substr(slash + 1));
+}
+
+/// "name = (rows × cols array)" with entries of a function of row and column.
+std::string array(const std::string& name, std::size_t rows, std::size_t cols,
+                  const std::function<std::string(std::size_t, std::size_t)>& entry) {
+  std::string out = fmt::format("{} &= \\left(\\begin{{array}}{{{}}}\n", name, std::string(cols, 'r'));
+  for (std::size_t i = 0; i < rows; ++i) {
+    std::vector<std::string> row;
+    for (std::size_t j = 0; j < cols; ++j) row.push_back(entry(i, j));
+    out += fmt::format("  {} \\\\\n", fmt::join(row, " & "));
+  }
+  return out + "\\end{array}\\right)";
+}
+
+}  // namespace
+
+std::string to_toml(const method& m) {
+  std::string out =
+      fmt::format("name = {}\ntitle = {}\ncitation = {}\nkind = {}\n\n[claims]\norder = {}\n", quoted(m.name),
+                  quoted(m.title), quoted(m.citation), quoted(to_string(m.kind)), m.claims.order);
+  if (m.claims.ssp_coefficient)
+    out += fmt::format("ssp_coefficient = {}\n", quoted(*m.claims.ssp_coefficient));
+  if (m.claims.type) out += fmt::format("type = {}\n", quoted(*m.claims.type));
+  if (is_tableau(m)) return out + fmt::format("\n[butcher]\nA = {}\n", triangle(m.exact.D, 1));
+  out += "\n[shu_osher]\n";
+  if (m.kind != method_kind::implicit_only) out += fmt::format("r = {}\n", quoted(m.exact.r));
+  out += fmt::format("P = {}\n", triangle(m.exact.P, 0));
+  if (m.kind != method_kind::implicit_only) out += fmt::format("W = {}\n", triangle(m.exact.W, 0));
+  if (m.kind != method_kind::explicit_only)
+    out += fmt::format("d = {}\nddot = {}\n", list(diagonal_of(m.exact.D)), list(m.exact.ddot));
+  return out;
+}
+
+std::string to_latex(const method& m, int digits) {
+  const std::size_t s = m.stages();
+  const auto& e = m.exact;
+  const auto of = [&](const matrix<std::string>& values) {
+    return [&values, digits](std::size_t i, std::size_t j) {
+      return j > i ? "0" : number(values(i, j), digits);
+    };
+  };
+  std::vector<std::string> parts;
+  if (is_tableau(m)) {
+    parts.push_back(array("A", s, s, of(e.D)));
+  } else {
+    if (m.kind != method_kind::implicit_only) parts.push_back("r &= " + number(e.r, digits));
+    parts.push_back(array("P", s, s, of(e.P)));
+    if (m.kind != method_kind::implicit_only) parts.push_back(array("W", s, s, of(e.W)));
+    if (m.kind != method_kind::explicit_only) {
+      parts.push_back(
+          array("d", s, 1, [&](std::size_t i, std::size_t) { return number(e.D(i, i), digits); }));
+      parts.push_back(
+          array("\\dot d", s, 1, [&](std::size_t i, std::size_t) { return number(e.ddot[i], digits); }));
+    }
+  }
+  return fmt::format("% {}: {}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n", m.name, m.title,
+                     fmt::join(parts, " \\\\\n"));
+}
+
+}  // namespace apsis

@@ -39,7 +39,7 @@ class ResultError(Exception):
 @dataclass
 class Result:
     """One result folder. `columns` holds fields.csv (all snapshots, one array per column), `history` the
-    columns of history.csv; `f` is [cells][components] with `x` and `velocities`, where there is a solution.h5."""
+    columns of history.csv; `arrays` f [cells][components], v, x, epsilon of solution.h5, where there is one."""
 
     folder: Path
     manifest: dict = field(default_factory=dict)
@@ -79,8 +79,7 @@ def read_result(folder):
         result.manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
     if (folder / "solution.h5").exists():
         with h5py.File(folder / "solution.h5") as file:
-            file.visititems(lambda name, item: result.arrays.update({name.split("/")[-1]: item[()]})
-                            if isinstance(item, h5py.Dataset) else None)
+            result.arrays = {name: item[()] for name, item in file.items() if isinstance(item, h5py.Dataset)}
     return result
 
 
@@ -118,8 +117,8 @@ def plot_mixed(second, third, reference, path):
     """ρ, u, T: asterisks for second order, circles for third order, a line for the reference; prints the largest
     differences. The reference has an integer multiple of the cells and is averaged onto them."""
     runs = [read_result(folder) for folder in (second, third, reference)]
-    styles = [{"linestyle": "none", "marker": "*", "color": VERMILLION, "markersize": 8},
-              {"linestyle": "none", "marker": "o", "color": BLUE, "markersize": 6, "fillstyle": "none"},
+    styles = [{"linestyle": "none", "marker": (6, 2, 0), "color": VERMILLION, "markersize": 6},
+              {"linestyle": "none", "marker": "o", "color": BLUE, "markersize": 7, "fillstyle": "none"},
               {"color": BLACK, "linewidth": 1.2}]
     labels = ["second order", "third order", "explicit reference"]
     for name, values in runs[2].fields().items():
@@ -136,21 +135,20 @@ def plot_mixed(second, third, reference, path):
 
 def plot_phase_space(result, path):
     """f(x, v) as an image over the ε(x) profile; None where the run has no velocity grid."""
-    if not {"f", "velocities", "x"} <= result.arrays.keys() or result.arrays["velocities"].ndim != 1 \
-            or len(result.arrays["velocities"]) < 2:
+    if not {"f", "v", "x"} <= result.arrays.keys():
         return None
-    x, v, f = (np.asarray(result.arrays[name], dtype=float) for name in ("x", "velocities", "f"))
+    x, v, f = (np.asarray(result.arrays[name], dtype=float) for name in ("x", "v", "f"))
     with_epsilon = "epsilon" in result.arrays
     figure, axes = plt.subplots(1 + with_epsilon, 1, figsize=(6, 5.4 if with_epsilon else 4), sharex=True,
                                 squeeze=False, height_ratios=[3, 1][:1 + with_epsilon])
     panel = axes[0][0]
+    panel.grid(False)
     image = panel.pcolormesh(x, v, f.reshape(len(x), len(v)).T, shading="nearest", cmap="viridis", rasterized=True)
     figure.colorbar(image, ax=panel, label="f (dimensionless)")
     # The tails beyond are below a thousandth of the maximum and would only shrink what is to be seen.
     seen = v[(f.reshape(len(x), len(v)) > 1e-3 * f.max()).any(axis=0)]
     panel.set_ylim(seen.min(), seen.max())
     panel.set_ylabel("v (dimensionless)")
-    panel.grid(False)
     if with_epsilon:
         axes[1][0].semilogy(x, result.arrays["epsilon"], color=BLACK)
         axes[1][0].set_ylabel("ε (dimensionless)")
@@ -165,7 +163,10 @@ def plot_history(result, path):
         return None
     t = result.history["t"]
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.4, 3.4))
-    left.plot(t, result.history["min_value"], color=BLUE)
+    smallest = result.history["min_value"]
+    left.plot(t, smallest, color=BLUE)
+    if (smallest > 0).all():
+        left.set_yscale("log")
     left.set_ylabel("smallest unknown (dimensionless)")
     defects = [name for name in result.history if name.startswith("conservation")]
     for name, colour in zip(defects, (BLUE, VERMILLION, GREEN, PURPLE, ORANGE)):
@@ -187,11 +188,9 @@ def run_decay(apsis, method, dt, folder):
     status = subprocess.run(command, capture_output=True, text=True, check=False)
     if status.returncode not in (0, 3):
         raise ResultError(f"{' '.join(command)} failed (exit {status.returncode}) {status.stderr.strip()}")
-    if not (Path(folder) / "fields.csv").exists():
-        return np.array([0.0]), np.array([10.0]), False
     columns = read_table(Path(folder) / "fields.csv")
-    value = next(name for name in columns if name not in ("t", "x"))
-    return columns["t"], columns[value], status.returncode == 0
+    # A run that fails in its first step has one snapshot, and then no column t.
+    return columns.get("t", np.zeros(1)), columns["u"], status.returncode == 0
 
 
 def plot_decay(apsis, path):

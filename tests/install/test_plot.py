@@ -27,7 +27,8 @@ def write_result(folder, cells, shift=0.0):
     (folder / "manifest.json").write_text(json.dumps({"title": "synthetic"}), encoding="utf-8")
     v = np.linspace(-3, 3, 7)
     with h5py.File(folder / "solution.h5", "w") as file:
-        file["x"], file["velocities"] = x, v
+        file["x"], file["v"] = x, v
+        file["fields/rho"] = np.zeros(cells)  # a group beside the arrays
         file["epsilon"] = np.full(cells, 1e-3)
         file["f"] = np.exp(-(v**2))[None, :] * (1 + x)[:, None]
     return x

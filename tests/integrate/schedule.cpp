@@ -1,0 +1,172 @@
+#include <apsis/integrate/schedule.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/stepper.hpp>
+#include <apsis/method/certificate.hpp>
+#include <cmath>
+
+#include <support/property.hpp>
+
+namespace {
+
+using apsis::schedule;
+using apsis::shu_osher_form;
+
+/// u' = λ_T u + λ_Q u with everything counted; fails on demand.
+class counted {
+ public:
+  using state = std::vector<double>;
+  using real = double;
+
+  double transport = 0.0, collision = 0.0;
+  int transports = 0, collisions = 0, solves = 0;
+  int fail_at_solve = -1;
+
+  void scatter(double, const state& u, std::span<const apsis::target<state, double>> targets) {
+    bool moves = false;
+    for (const auto& to : targets) moves = moves || to.beta != 0.0;
+    transports += moves ? 1 : 0;
+    for (const auto& to : targets)
+      (*to.acc)[0] = to.combine((*to.acc)[0], u[0], moves ? transport * u[0] : 0.0);
+  }
+  void collide(double, double a, double b, state& u) {
+    if (solves++ == fail_at_solve) throw apsis::numerical_error("on demand");
+    u[0] /= 1.0 - a * collision - b * collision * collision;
+  }
+  void scatter_collision(double, const state& u, std::span<const apsis::target<state, double>> targets) {
+    ++collisions;
+    for (const auto& to : targets) (*to.acc)[0] = to.combine((*to.acc)[0], u[0], collision * u[0]);
+  }
+  double forward_euler_step(double, const state&) const { return 1.0; }
+};
+
+/// The same step from the Butcher form, without schedule: (I − z_T Â − z_Q A − z_Q² Ȧ) U = e by substitution.
+double direct(const shu_osher_form<double>& m, double zt, double zq) {
+  const auto b = apsis::to_butcher(m);
+  std::vector<double> u(m.stages());
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const auto coefficient = [&](std::size_t j) {
+      return zt * b.A_hat(i, j) + zq * b.A(i, j) + zq * zq * b.A_dot(i, j);
+    };
+    double sum = 1.0;
+    for (std::size_t j = 0; j < i; ++j) sum += coefficient(j) * u[j];
+    u[i] = sum / (1.0 - coefficient(i));
+  }
+  return u.back();
+}
+
+double stepped(const shu_osher_form<double>& m, counted& p) {
+  apsis::stepper<counted> s(m, apsis::method_kind::imex, p);
+  std::vector<double> u = {1.0};
+  s.step(0.0, 1.0, u);
+  return u[0];
+}
+
+/// A random form of up to seven stages with a random zero pattern, off-diagonal Q included.
+shu_osher_form<double> random_form() {
+  const auto s = *rc::gen::inRange<std::size_t>(1, 8);
+  const auto number = [] { return *rc::gen::inRange(0, 3) == 0 ? *rc::gen::inRange(1, 1000) * 1e-3 : 0.0; };
+  shu_osher_form<double> m;
+  m.P = m.W = m.D = apsis::matrix<double>(s, s);
+  m.r = 0.7;
+  for (std::size_t i = 0; i < s; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      m.P(i, j) = number() / static_cast<double>(s);
+      m.W(i, j) = number() / static_cast<double>(s);
+      m.D(i, j) = number() - number();
+    }
+    m.D(i, i) = number();
+    m.ddot.push_back(-number());
+  }
+  return m;
+}
+
+}  // namespace
+
+TEST(schedule, methods_of_the_paper_need_three_and_six_buffers) {
+  EXPECT_EQ(schedule(apsis::find_method("md-imex-3-2").coefficients<double>()).buffers(), 3);
+  EXPECT_LE(schedule(apsis::find_method("md-imex-6-3").coefficients<double>()).buffers(), 6);
+}
+
+TEST(schedule, counts_of_every_method_are_those_of_its_certificate_and_of_a_step) {
+  for (const auto& name : apsis::method_names()) {
+    const auto form = apsis::find_method(name).coefficients<double>();
+    const schedule plan(form);
+    const auto& certificate = apsis::find_certificate(name);
+    counted p;
+    stepped(form, p);
+    EXPECT_EQ(plan.transport_evaluations(), certificate.explicit_evaluations) << name;
+    EXPECT_EQ(plan.implicit_solves(), certificate.implicit_solves) << name;
+    EXPECT_EQ(p.transports, plan.transport_evaluations()) << name;
+    EXPECT_EQ(p.solves, plan.implicit_solves()) << name;
+    EXPECT_EQ(p.collisions, plan.collision_evaluations()) << name;
+  }
+}
+
+TEST(schedule, a_step_of_every_method_is_its_stability_function) {
+  for (const auto& name : apsis::method_names()) {
+    const auto form = apsis::find_method(name).coefficients<double>();
+    check_property(name, [&] {
+      counted p;
+      p.transport = *rc::gen::inRange(-2000, 2000) * 1e-3;
+      p.collision = -std::pow(10.0, *rc::gen::inRange(-3, 5));
+      const double expected = direct(form, p.transport, p.collision);
+      // A dozen products of numbers whose partial sums are up to 10³ times the result for DIRK methods.
+      RC_ASSERT(std::abs(stepped(form, p) - expected) <= 1e-12 * (1.0 + std::abs(expected)));
+    });
+  }
+}
+
+TEST(schedule, a_step_of_any_zero_pattern_is_its_stability_function) {
+  check_property("random forms", [] {
+    const auto form = random_form();
+    counted p;
+    p.transport = *rc::gen::inRange(-1000, 1000) * 1e-3;
+    p.collision = -*rc::gen::inRange(1, 1000) * 1e-3;
+    // Stages with ḋ and an off-diagonal Q of another stage are recovered from Q evaluated, or from the stage
+    // itself.
+    const double expected = direct(form, p.transport, p.collision);
+    RC_ASSERT(std::abs(stepped(form, p) - expected) <= 1e-11 * (1.0 + std::abs(expected)));
+    RC_ASSERT(schedule(form).buffers() <= static_cast<int>(form.stages()) + 1);
+  });
+}
+
+TEST(stepper, leaves_the_state_alone_when_a_stage_fails) {
+  for (const auto& name : apsis::method_names()) {
+    const auto form = apsis::find_method(name).coefficients<double>();
+    const int solves = schedule(form).implicit_solves();
+    for (int k = 0; k < solves; ++k) {
+      counted p;
+      p.transport = -0.3;
+      p.collision = -2.0;
+      p.fail_at_solve = k;
+      apsis::stepper<counted> s(form, apsis::method_kind::imex, p);
+      std::vector<double> u = {1.25};
+      EXPECT_THROW(s.step(0.0, 0.1, u), apsis::numerical_error);
+      EXPECT_EQ(u[0], 1.25) << name << " stage " << k;
+    }
+  }
+}
+
+namespace {
+
+/// As `counted`, without the third verb.
+class two_verbs {
+ public:
+  using state = double;
+  using real = double;
+  void scatter(double, const double& u, std::span<const apsis::target<double, double>> targets) {
+    for (const auto& to : targets) *to.acc = to.combine(*to.acc, u, 0.0);
+  }
+  void collide(double, double, double, double&) {}
+  double forward_euler_step(double, double) const { return 1.0; }
+};
+
+}  // namespace
+
+TEST(stepper, refuses_a_method_that_needs_a_verb_the_problem_lacks) {
+  two_verbs p;
+  EXPECT_NO_THROW(apsis::stepper<two_verbs>(apsis::find_method("md-imex-6-3"), p));
+  EXPECT_THROW(apsis::stepper<two_verbs>(apsis::find_method("ssprk-3-3"), p), apsis::input_error);
+  EXPECT_THROW(apsis::stepper<two_verbs>(apsis::find_method("dirk-2-2"), p), apsis::input_error);
+}

@@ -1,0 +1,141 @@
+// Time in the stepper and in the loop.
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/integrate/newton_problem.hpp>
+#include <apsis/method/certificate.hpp>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+/// u' = T(t) − u² with the solution 2 + sin t: T = cos t + (2 + sin t)².
+double forced_error(const std::string& name, int steps) {
+  const auto force = [](double t, const std::vector<double>&, std::vector<double>& out) {
+    out[0] = std::cos(t) + (2.0 + std::sin(t)) * (2.0 + std::sin(t));
+  };
+  const auto square = [](const auto& u, auto& out) { out[0] = -u[0] * u[0]; };
+  apsis::newton_problem p(force, square);
+  apsis::stepper s(apsis::find_method(name), p);
+  std::vector<double> u = {2.0};
+  apsis::integrate(s, u, 0.0, 1.0, apsis::step_rule<double>::fixed(1.0 / steps));
+  return std::abs(u[0] - (2.0 + std::sin(1.0)));
+}
+
+}  // namespace
+
+TEST(stepper, every_method_with_transport_has_its_order_for_transport_that_depends_on_time) {
+  for (const auto& name : apsis::method_names()) {
+    if (apsis::find_method(name).kind == apsis::method_kind::implicit_only) continue;
+    const int order = apsis::find_certificate(name).order;
+    // 80 → 160 steps: the next term of the error is below 3 % of the first.
+    const double slope = std::log2(forced_error(name, 80) / forced_error(name, 160));
+    EXPECT_NEAR(slope, order, 0.1) << name;
+  }
+}
+
+TEST(time_marcher, an_interval_of_length_zero_has_no_steps) {
+  EXPECT_TRUE(apsis::time_marcher<double>(1.0, 1.0).done());
+  EXPECT_TRUE(apsis::time_marcher<double>(1.0, 1.0, 0.1).done());
+}
+
+TEST(time_marcher, a_given_dt_that_divides_is_kept_and_ends_exactly) {
+  apsis::time_marcher<double> march(0.0, 0.5, 0.5 / 3600);
+  EXPECT_FALSE(march.adjusted());
+  while (!march.done()) march.advance(march.next(0.0));
+  EXPECT_EQ(march.step(), 3600);
+  EXPECT_EQ(march.t(), 0.5);
+}
+
+TEST(time_marcher, a_given_dt_that_does_not_divide_is_reduced) {
+  const apsis::time_marcher<double> march(0.0, 1.0, 0.3);
+  EXPECT_TRUE(march.adjusted());
+  EXPECT_DOUBLE_EQ(*march.fixed_dt(), 0.25);
+  // 1e-12 relative is still "divides".
+  EXPECT_FALSE(apsis::time_marcher<double>(0.0, 1.0, 0.1 * (1.0 + 5e-13)).adjusted());
+  EXPECT_TRUE(apsis::time_marcher<double>(0.0, 1.0, 0.1 * (1.0 + 5e-12)).adjusted());
+}
+
+TEST(time_marcher, otherwise_the_last_step_is_shortened_and_rounding_makes_no_step_of_its_own) {
+  apsis::time_marcher<double> march(0.0, 1.0);
+  std::vector<double> steps;
+  while (!march.done()) {
+    steps.push_back(march.next(0.3));
+    march.advance(steps.back());
+  }
+  ASSERT_EQ(steps.size(), 4u);
+  EXPECT_NEAR(steps[3], 0.1, 1e-15);
+  EXPECT_EQ(march.t(), 1.0);
+  // 36000 steps of a length that divides up to rounding: no 36001st.
+  apsis::time_marcher<double> many(0.0, 0.5);
+  const double dt = 0.5 / 36000;
+  while (!many.done()) many.advance(many.next(dt));
+  EXPECT_EQ(many.step(), 36000);
+}
+
+TEST(time_marcher, refuses_what_cannot_be_marched) {
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
+  EXPECT_THROW(apsis::time_marcher<double>(1.0, 0.0), apsis::input_error);
+  EXPECT_THROW(apsis::time_marcher<double>(0.0, inf), apsis::input_error);
+  EXPECT_THROW(apsis::time_marcher<double>(0.0, 1.0, 0.0), apsis::input_error);
+  EXPECT_THROW(apsis::time_marcher<double>(0.0, 1.0, -0.1), apsis::input_error);
+  EXPECT_THROW(apsis::time_marcher<double>(0.0, 1.0, nan), apsis::input_error);
+  EXPECT_THROW(apsis::time_marcher<double>(0.0, 1.0, 1e-300), apsis::input_error);
+  const apsis::time_marcher<double> march(0.0, 1.0);
+  EXPECT_THROW(march.next(inf), apsis::input_error);
+  EXPECT_THROW(march.next(nan), apsis::numerical_error);
+  EXPECT_THROW(march.next(0.0), apsis::numerical_error);
+  EXPECT_THROW(apsis::time_marcher<double>(1e6, 2e6).next(1e-12), apsis::numerical_error);
+}
+
+TEST(time_marcher, goes_on_after_a_save_to_the_same_last_digit) {
+  apsis::time_marcher<double> whole(0.0, 0.7), first(0.0, 0.7);
+  const auto march = [](apsis::time_marcher<double>& m, int steps) {
+    for (int k = 0; k < steps && !m.done(); ++k) m.advance(m.next(0.013));
+  };
+  march(whole, 1000);
+  march(first, 20);
+  apsis::time_marcher<double> second(0.0, 0.7);
+  second.resume(first.save());
+  march(second, 10);
+  march(first, 10);
+  EXPECT_EQ(first.t(), second.t());
+  march(second, 1000);
+  EXPECT_EQ(second.t(), whole.t());
+  EXPECT_EQ(second.step(), whole.step());
+}
+
+TEST(integrate, reports_the_step_and_the_time_of_a_failure_and_keeps_the_last_good_state) {
+  // u' = u² explicitly in T blows up; the guarded implicit part refuses what is not finite.
+  const auto blow_up = [](double, const std::vector<double>& u, std::vector<double>& out) {
+    out[0] = 1e200 * u[0] * u[0];
+  };
+  const auto damp = [](const auto& u, auto& out) { out[0] = -u[0]; };
+  apsis::newton_problem p(blow_up, damp);
+  apsis::stepper s(apsis::find_method("md-imex-3-2"), p);
+  std::vector<double> u = {1.0}, last = u;
+  try {
+    apsis::integrate(s, u, 0.0, 1.0, apsis::step_rule<double>::fixed(0.1),
+                     [&](long, double, double, const std::vector<double>& now) { last = now; });
+    FAIL() << "no error";
+  } catch (const apsis::numerical_error& failure) {
+    EXPECT_GE(failure.site().step, 0);
+    EXPECT_FALSE(std::isnan(failure.site().t));
+  }
+  EXPECT_EQ(u, last);
+}
+
+TEST(integrate, an_observer_can_end_it) {
+  const auto none = [](double, const std::vector<double>&, std::vector<double>& out) { out[0] = 0.0; };
+  const auto damp = [](const auto& u, auto& out) { out[0] = -u[0]; };
+  apsis::newton_problem p(none, damp);
+  apsis::stepper s(apsis::find_method("md-imex-3-2"), p);
+  std::vector<double> u = {1.0};
+  const auto result =
+      apsis::integrate(s, u, 0.0, 1.0, apsis::step_rule<double>::fixed(0.1),
+                       [](long step, double, double, const std::vector<double>&) { return step < 3; });
+  EXPECT_EQ(result.steps, 3);
+  EXPECT_DOUBLE_EQ(result.t, 0.3);
+}

@@ -44,11 +44,17 @@ long double largest_on_ray(const butcher_form<long double>& b, long double degre
 /// Rounding, and the flat start |R| = 1 + O(z^{p+1}) near 0.
 constexpr long double stable = 1.0L + 1e-10L;
 
+/// The boundary between stable and unstable rays, by steps of 5 degrees and bisection: inside a sector
+/// without poles |R| is largest on its boundary, so that one ray speaks for the sector.
 double sector(const butcher_form<long double>& b) {
-  long double inside = 0, outside = 0;
-  for (outside = 1; outside <= 90 && largest_on_ray(b, outside) <= stable; outside += 1) inside = outside;
+  constexpr long double stride = 5;
+  long double inside = 0, outside = stride;
+  while (outside <= 90 && largest_on_ray(b, outside) <= stable) {
+    inside = outside;
+    outside += stride;
+  }
   if (outside > 90) return 90.0;
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < 14; ++k) {
     const long double middle = (inside + outside) / 2;
     (largest_on_ray(b, middle) <= stable ? inside : outside) = middle;
   }

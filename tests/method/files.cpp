@@ -1,0 +1,179 @@
+// Method files that no one should write, and where the error message points.
+#include "tableaux.hpp"
+
+#include <apsis/core/errors.hpp>
+
+#include <chrono>
+#include <optional>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace apsis::test {
+namespace {
+
+// Lines: 1 name, 2 title, 3 citation, 4 kind, 6 [claims], 7 order, 9 [shu_osher], 10 r, 11 P, 12 W, 13 d, 14
+// ddot.
+const std::string good = R"(name = "x"
+title = "t"
+citation = "c"
+kind = "imex"
+
+[claims]
+order = 2
+
+[shu_osher]
+r = "1"
+P = [[], ["0"], ["1/2", "0"]]
+W = [[], ["1"], ["0", "1/2"]]
+d = ["1/2", "0", "1/2"]
+ddot = ["0", "-1/2", "0"]
+)";
+
+struct bad_file {
+  std::string name, old, replacement;
+  std::string place;   ///< "line:column"
+  std::string reason;  ///< part of the message
+};
+
+std::ostream& operator<<(std::ostream& out, const bad_file& file) {
+  return out << file.name;
+}
+
+std::optional<std::string> complaint(const std::string& text) {
+  try {
+    parse_method(text, "m.toml");
+  } catch (const input_error& refused) {
+    return refused.what();
+  }
+  return std::nullopt;
+}
+
+class bad_files : public ::testing::TestWithParam<bad_file> {};
+
+TEST_P(bad_files, are_refused_with_place_and_reason) {
+  const auto& [name, old, replacement, place, reason] = GetParam();
+  std::string text = good;
+  const auto at = text.find(old);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, old.size(), replacement);
+  const auto message = complaint(text);
+  ASSERT_TRUE(message) << "accepted:\n" << text;
+  EXPECT_THAT(*message, ::testing::StartsWith("m.toml:" + place + ": "));
+  EXPECT_THAT(*message, ::testing::HasSubstr(reason));
+}
+
+std::string long_text(std::size_t n) {
+  return std::string(n, '7');
+}
+
+std::string many_rows(int n) {
+  std::string rows = "P = [";
+  for (int i = 0; i < n; ++i) rows += "[],";
+  return rows + "]";
+}
+
+std::string name_of(const ::testing::TestParamInfo<bad_file>& file) {
+  return file.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    method_files, bad_files,
+    ::testing::Values(
+        bad_file{"unknown_key", "title =", "titel =", "2:1", "did you mean 'title'"},
+        bad_file{"unknown_claim", "order = 2", "order = 2\nspp_coefficient = \"1\"", "8:1",
+                 "did you mean 'ssp_coefficient'"},
+        bad_file{"unknown_matrix", "ddot =", "dddot =", "14:1", "did you mean 'ddot'"},
+        bad_file{"unknown_table", "[claims]", "[claim]", "6:2", "did you mean 'claims'"},
+        bad_file{"missing_name", "name = \"x\"\n", "", "1:1", "missing key 'name'"},
+        bad_file{"missing_weights", "d = [\"1/2\", \"0\", \"1/2\"]\n", "", "9:1", "missing key 'd'"},
+        bad_file{"order_is_text", "order = 2", "order = \"2\"", "7:9", "integer"},
+        bad_file{"order_is_real", "order = 2", "order = 2.0", "7:9", "integer"},
+        bad_file{"order_is_zero", "order = 2", "order = 0", "7:9", "out of range"},
+        bad_file{"order_is_huge", "order = 2", "order = 9223372036854775807", "7:9", "out of range"},
+        bad_file{"unknown_kind", "\"imex\"", "\"imax\"", "4:8", "did you mean 'imex'"},
+        bad_file{"kind_is_number", "\"imex\"", "3", "4:8", "text in quotes"},
+        bad_file{"coefficient_is_number", "r = \"1\"", "r = 1.0", "10:5", "in quotes"},
+        bad_file{"coefficient_is_nan", "r = \"1\"", "r = \"nan\"", "10:5", "no coefficient"},
+        bad_file{"coefficient_is_infinite", "r = \"1\"", "r = \"inf\"", "10:5", "no coefficient"},
+        bad_file{"coefficient_has_spaces", "r = \"1\"", "r = \" 1\"", "10:5", "no coefficient"},
+        bad_file{"coefficient_has_comma", "\"1/2\", \"0\", \"1/2\"", "\"0,5\", \"0\", \"1/2\"", "13:6",
+                 "no coefficient"},
+        bad_file{"coefficient_is_empty", "r = \"1\"", "r = \"\"", "10:5", "no coefficient"},
+        bad_file{"division_by_zero", "r = \"1\"", "r = \"1/0\"", "10:5", "no coefficient"},
+        bad_file{"two_slashes", "r = \"1\"", "r = \"1/2/3\"", "10:5", "no coefficient"},
+        bad_file{"huge_exponent", "r = \"1\"", "r = \"1e99999\"", "10:5", "no coefficient"},
+        bad_file{"too_long_number", "r = \"1\"", "r = \"" + long_text(100000) + "\"", "10:5",
+                 "no coefficient"},
+        bad_file{"too_long_name", "name = \"x\"", "name = \"" + long_text(100000) + "\"", "1:8", "too long"},
+        bad_file{"negative_r", "r = \"1\"", "r = \"-1\"", "10:5", "not positive"},
+        bad_file{"zero_r", "r = \"1\"", "r = \"0/7\"", "10:5", "not positive"},
+        bad_file{"above_the_diagonal", "W = [[], [\"1\"], ", "W = [[], [\"1\", \"0\", \"1/3\"], ", "12:21",
+                 "above the triangle"},
+        bad_file{"row_too_short", "[\"0\", \"1/2\"]]", "[\"1/2\"]]", "12:17", "has 1 entries"},
+        bad_file{"row_is_no_list", "P = [[], [\"0\"]", "P = [[], \"0\"", "11:10", "list"},
+        bad_file{"row_missing", "W = [[], [\"1\"], [\"0\", \"1/2\"]]", "W = [[], [\"1\"]]", "12:5",
+                 "has 2 rows"},
+        bad_file{"d_too_long", "\"-1/2\", \"0\"]", "\"-1/2\", \"0\", \"0\"]", "14:8", "3 stages"},
+        bad_file{"no_stages", "P = [[], [\"0\"], [\"1/2\", \"0\"]]", "P = []", "11:5", "1 to 64"},
+        bad_file{"too_many_stages", "P = [[], [\"0\"], [\"1/2\", \"0\"]]", many_rows(65), "11:5", "1 to 64"},
+        bad_file{"not_toml", "r = \"1\"", "r = ", "10:5", "not TOML"},
+        bad_file{"duplicate_key", "r = \"1\"", "r = \"1\"\nr = \"1\"", "11:5", "not TOML"},
+        bad_file{"claims_is_a_value", "\n[claims]\norder = 2\n", "claims = 3\n", "5:10", "not a table"},
+        bad_file{"both_forms", "ddot = [\"0\", \"-1/2\", \"0\"]",
+                 "ddot = [\"0\", \"-1/2\", \"0\"]\n[butcher]\nA = [[]]", "1:1", "exactly one"},
+        bad_file{"transport_in_implicit_method", "\"imex\"", "\"implicit\"", "12:1", "unknown key 'W'"},
+        bad_file{"collision_in_explicit_method", "\"imex\"", "\"explicit\"", "13:1", "unknown key 'd'"}),
+    name_of);
+
+TEST(method_files, are_refused_wherever_they_are_cut) {
+  for (std::size_t n = 0; n + 2 < good.size(); ++n) EXPECT_TRUE(complaint(good.substr(0, n))) << n;
+}
+
+TEST(method_files, do_not_crash_whatever_byte_is_changed) {
+  std::mt19937 draw(7);
+  for (int k = 0; k < 3000; ++k) {
+    std::string text = good;
+    for (int changes = 0; changes < 3; ++changes)
+      text[draw() % text.size()] = static_cast<char>(draw() % 256);
+    try {
+      parse_method(text, "m.toml");
+    } catch (const input_error&) {
+      // Whatever else is thrown fails the test.
+    }
+  }
+}
+
+TEST(method_files, ten_megabytes_of_anything_are_refused_at_once) {
+  std::mt19937 draw(11);
+  std::string garbage(10'000'000, ' ');
+  for (char& c : garbage) c = static_cast<char>(draw() % 256);
+  std::string brackets = "x = " + std::string(900'000, '[');
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_TRUE(complaint(garbage));
+  EXPECT_TRUE(complaint(std::string(10'000'000, '\n')));
+  EXPECT_TRUE(complaint(brackets));
+  EXPECT_TRUE(complaint(std::string(1'000'000, '\0')));
+  // Milliseconds in truth; a busy machine has room.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+}
+
+TEST(method_files, that_are_not_there_or_no_files_are_refused) {
+  EXPECT_THROW(load_method_file("/nowhere/at/all.toml"), error);
+  EXPECT_THROW(load_method_file("/"), error);
+  EXPECT_THROW(load_method_file(""), error);
+}
+
+TEST(method_files, a_name_that_is_not_in_the_catalogue_is_met_by_the_nearest) {
+  try {
+    find_method("md-imex-3-3");
+    FAIL();
+  } catch (const input_error& refused) {
+    EXPECT_THAT(refused.what(), ::testing::HasSubstr("did you mean 'md-imex-"));
+  }
+  EXPECT_THROW(find_method(std::string(1'000'000, 'x')), input_error);
+}
+
+}  // namespace
+}  // namespace apsis::test

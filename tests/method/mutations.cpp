@@ -1,0 +1,190 @@
+// A file whose coefficients are wrong must be refused, whatever is wrong about it.
+#include "tableaux.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/method/coefficient.hpp>
+#include <apsis/method/export.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace apsis::test {
+namespace {
+
+struct mutant {
+  std::string what, text;
+};
+
+std::string moved(const std::string& text, const char* by) {
+  return mp_real(coefficient_value(text) + mp_real(by)).str(45, std::ios_base::fixed);
+}
+
+bool has_tableau(const method& m) {
+  return m.kind == method_kind::implicit_only && m.name.substr(0, 4) == "dirk";
+}
+
+/// The files of all methods that differ from m in one coefficient of its file, zeros included.
+std::vector<mutant> mutants(const method& m, const char* by) {
+  std::vector<mutant> all;
+  method changed = m;
+  const auto change = [&](std::string& place, const std::string& what) {
+    const std::string kept = place;
+    place = moved(kept, by);
+    all.push_back({what + " + " + by, to_toml(changed)});
+    place = kept;
+  };
+  const auto name = [](const char* what, std::size_t i, std::size_t j) {
+    return what + std::to_string(i + 1) + std::to_string(j + 1);
+  };
+  auto& e = changed.exact;
+  for (std::size_t i = 0; i < m.stages(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (has_tableau(m)) {
+        change(e.D(i, j), name("A", i, j));
+        continue;
+      }
+      change(e.P(i, j), name("P", i, j));
+      if (m.kind != method_kind::implicit_only) change(e.W(i, j), name("W", i, j));
+    }
+    if (m.kind == method_kind::explicit_only) continue;
+    change(e.D(i, i), name("d", i, i));
+    if (!has_tableau(m)) change(e.ddot[i], name("ddot", i, i));
+  }
+  if (m.kind != method_kind::implicit_only) change(e.r, "r");
+  return all;
+}
+
+bool same_butcher_form(const method& a, const method& b) {
+  const auto x = to_butcher(a.coefficients<mp_real>()), y = to_butcher(b.coefficients<mp_real>());
+  for (std::size_t i = 0; i < a.stages(); ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      for (const auto part :
+           {&butcher_form<mp_real>::A_hat, &butcher_form<mp_real>::A, &butcher_form<mp_real>::A_dot})
+        if (abs((x.*part)(i, j) - (y.*part)(i, j)) > mp_real(1e-40)) return false;
+  return true;
+}
+
+class every_method : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(every_method, is_refused_when_any_coefficient_is_off_by_a_millionth) {
+  const method& m = find_method(GetParam());
+  int unchanged = 0;
+  for (const char* by : {"1e-6", "-1e-6"})
+    for (const auto& mutant : mutants(m, by)) {
+      const method changed = parse_method(mutant.text, "mutant.toml");
+      const certificate c = certify(changed);
+      if (c.claims_hold) {
+        // In an explicit method u_1 = u^n, so weight may go from one to the other: another text, the same
+        // method.
+        EXPECT_EQ(m.kind, method_kind::explicit_only) << mutant.what;
+        EXPECT_TRUE(same_butcher_form(m, changed)) << mutant.what;
+        ++unchanged;
+        continue;
+      }
+      ASSERT_FALSE(c.failures.empty()) << mutant.what;
+      EXPECT_THAT(c.failures.front(), ::testing::AnyOf(::testing::HasSubstr("condition of tree"),
+                                                       ::testing::HasSubstr("negative")))
+          << mutant.what;
+      EXPECT_THROW(require_claims(c), claim_error) << mutant.what;
+    }
+  EXPECT_LE(unchanged, m.kind == method_kind::explicit_only ? 4 : 0);
+}
+
+TEST_P(every_method, survives_being_written_and_read) {
+  const method& m = find_method(GetParam());
+  const method again = parse_method(to_toml(m), "again.toml");
+  EXPECT_EQ(to_toml(again), to_toml(m));
+  EXPECT_EQ(again.title, m.title);
+  EXPECT_EQ(again.citation, m.citation);
+  EXPECT_EQ(again.claims.ssp_coefficient, m.claims.ssp_coefficient);
+  EXPECT_TRUE(same_butcher_form(m, again));
+  EXPECT_TRUE(certify(again).claims_hold);
+}
+
+std::string name_of(const ::testing::TestParamInfo<std::string>& method_name) {
+  std::string name = method_name.param;
+  for (char& c : name) c = c == '-' ? '_' : c;
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(method_names()), name_of);
+
+/// A file in the folder for temporary files, removed with the object.
+class temporary_file {
+ public:
+  explicit temporary_file(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() /
+              ("apsis-mutant-" + std::to_string(::getpid()) + ".toml")) {
+    std::ofstream(path_) << text;
+  }
+  ~temporary_file() { std::filesystem::remove(path_); }
+  temporary_file(const temporary_file&) = delete;
+  temporary_file& operator=(const temporary_file&) = delete;
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string refusal(const std::string& text) {
+  const temporary_file file(text);
+  try {
+    load_method_file(file.path());
+  } catch (const claim_error& refused) {
+    EXPECT_EQ(refused.code(), exit_code::claim);
+    return refused.what();
+  }
+  return "accepted";
+}
+
+std::string with(std::string text, const std::string& old, const std::string& replacement) {
+  const auto at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return at == std::string::npos ? text : text.replace(at, old.size(), replacement);
+}
+
+TEST(refusals, name_the_condition_its_value_and_its_tree) {
+  const std::string text = catalogue_text("md-imex-3-2");
+  ASSERT_FALSE(text.empty());
+  {
+    const temporary_file file(text);
+    EXPECT_NO_THROW(load_method_file(file.path()));
+  }
+  // d_1 = 0.6 gives b·e = 0.6 + 0.5.
+  const std::string wrong = refusal(with(text, "d = [\"1/2\"", "d = [\"0.6\""));
+  EXPECT_THAT(wrong, ::testing::HasSubstr("tree G is 1.1 instead of 1"));
+}
+
+TEST(refusals, an_order_too_high_or_too_low_a_wrong_coefficient_a_wrong_type) {
+  const std::string text = catalogue_text("md-imex-3-2");
+  EXPECT_THAT(refusal(with(text, "order = 2", "order = 3")), ::testing::HasSubstr("order 3"));
+  EXPECT_THAT(refusal(with(text, "order = 2", "order = 1")), ::testing::HasSubstr("the method has order 2"));
+  EXPECT_THAT(refusal(with(text, "ssp_coefficient = \"1\"", "ssp_coefficient = \"1.1\"")),
+              ::testing::HasSubstr("gives 1"));
+  EXPECT_THAT(refusal(with(text, "ssp_coefficient = \"1\"", "ssp_coefficient = \"unconditional\"")),
+              ::testing::HasSubstr("not unconditionally SSP"));
+  EXPECT_THAT(refusal(with(text, "type = \"A\"", "type = \"ARS\"")), ::testing::HasSubstr("type A"));
+  const std::string third = catalogue_text("md-imex-6-3");
+  EXPECT_THAT(refusal(with(third, "ssp_coefficient = \"0.904402174130635\"",
+                           "ssp_coefficient = \"0.904402174131635\"")),
+              ::testing::HasSubstr("0.9044021741306"));
+}
+
+TEST(refusals, a_method_that_is_ssp_only_without_its_negative_weight) {
+  // The trapezoidal rule uses Q(u^n) explicitly, so no form of the paper's class exists.
+  const auto& c = find_certificate("dirk-2-2");
+  EXPECT_EQ(c.ssp_coefficient, 0);
+  EXPECT_FALSE(c.unconditional);
+  EXPECT_THAT(c.limiting_entry, ::testing::HasSubstr("A_2,1 = 0.5"));
+  // Its classical radius of absolute monotonicity: 1 − r/2 ≥ 0.
+  EXPECT_NEAR(c.radius_of_implicit_part.convert_to<double>(), 2.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace apsis::test

@@ -1,0 +1,72 @@
+#include "build_info.hpp"
+
+#include <apsis/core/parallel.hpp>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include <fmt/core.h>
+#include <hdf5.h>
+#include <boost/version.hpp>
+
+namespace apsis::app {
+namespace {
+
+std::string instruction_set() {
+#if defined(__AVX512F__)
+  return "AVX-512";
+#elif defined(__AVX2__)
+  return "AVX2";
+#elif defined(__AVX__)
+  return "AVX";
+#elif defined(__x86_64__)
+  return "SSE2";
+#else
+  return "generic";
+#endif
+}
+
+std::string compiler() {
+#if defined(__clang__)
+  return fmt::format("clang {}.{}.{}", __clang_major__, __clang_minor__, __clang_patchlevel__);
+#else
+  return fmt::format("gcc {}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__);
+#endif
+}
+
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const auto colon = line.find(':');
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos && colon + 2 <= line.size())
+      return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+const char* version() {
+  return APSIS_VERSION;
+}
+
+nlohmann::ordered_json build_info() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return {
+      {"compiler", compiler()},
+      {"build_type", APSIS_BUILD_TYPE},
+      {"instruction_set", instruction_set()},
+      {"libraries",
+       {{"hdf5", fmt::format("{}.{}.{}", major, minor, release)},
+        {"boost", fmt::format("{}.{}", BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000)},
+        {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)}}}};
+}
+
+nlohmann::ordered_json machine_info() {
+  return {{"processor", processor()},
+          {"cores", static_cast<int>(std::thread::hardware_concurrency())},
+          {"threads", threads()}};
+}
+
+}  // namespace apsis::app

@@ -1,0 +1,41 @@
+#include "build_info.hpp"
+#include "commands.hpp"
+
+#include <apsis/core/parallel.hpp>
+#include <memory>
+
+#include <fmt/format.h>
+
+namespace apsis::app {
+namespace {
+
+std::string as_text(const nlohmann::ordered_json& value, const std::string& indent = "") {
+  std::string out;
+  for (const auto& [key, item] : value.items()) {
+    if (item.is_object())
+      out += fmt::format("{}{}\n{}", indent, key, as_text(item, indent + "  "));
+    else
+      out +=
+          fmt::format("{}{:<18}{}\n", indent, key, item.is_string() ? item.get<std::string>() : item.dump());
+  }
+  return out;
+}
+
+int info(bool json) {
+  set_threads(0);
+  const nlohmann::ordered_json all = {
+      {"version", version()}, {"build", build_info()}, {"machine", machine_info()}};
+  print(json ? all.dump(2) + "\n" : as_text(all));
+  return 0;
+}
+
+}  // namespace
+
+void add_info(CLI::App& program, action& chosen) {
+  auto json = std::make_shared<bool>(false);
+  CLI::App* command = program.add_subcommand("info", "Version, compiler, build, machine and libraries");
+  command->add_flag("--json", *json, "print one JSON object");
+  command->callback([json, &chosen] { chosen = [json] { return info(*json); }; });
+}
+
+}  // namespace apsis::app

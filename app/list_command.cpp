@@ -1,0 +1,109 @@
+#include "commands.hpp"
+#include "method_report.hpp"
+
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/space/reconstruction_registry.hpp>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+
+namespace apsis::app {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json methods() {
+  json all = json::array();
+  for (const auto& name : method_names()) all.push_back(check_json(find_method(name)));
+  return all;
+}
+
+json models() {
+  json all = json::array();
+  for (const model_entry* m : model_entries()) {
+    json parameters = json::array();
+    for (const auto& p : m->parameters)
+      parameters.push_back({{"name", p.name},
+                            {"default", p.value},
+                            {"lowest", p.lowest},
+                            {"highest", p.highest},
+                            {"doc", p.doc}});
+    all.push_back({{"name", m->name},
+                   {"description", m->description},
+                   {"source", m->source},
+                   {"space", m->has_space},
+                   {"velocity", m->has_velocity},
+                   {"epsilon", m->has_epsilon},
+                   {"initial", m->initial},
+                   {"parameters", parameters}});
+  }
+  return all;
+}
+
+json cases() {
+  json all = json::array();
+  for (const auto& name : case_names()) {
+    const case_config c = load_case(name);
+    all.push_back(
+        {{"name", name}, {"description", c.title}, {"model", c.model.name}, {"method", c.time.method}});
+  }
+  return all;
+}
+
+json schemes() {
+  json all = json::array();
+  for (const reconstruction_entry* r : reconstruction_entries()) {
+    const auto scheme = r->make();
+    all.push_back({{"name", r->name},
+                   {"description", r->description},
+                   {"source", r->source},
+                   {"order", scheme->order()},
+                   {"ghost_width", scheme->ghost_width()}});
+  }
+  return all;
+}
+
+std::string as_text(const std::string& what, const json& all) {
+  std::string out;
+  for (const auto& item : all)
+    out += what == "methods" ? method_line(item)
+                             : fmt::format("{:<24}{}\n", item["name"].get<std::string>(),
+                                           item["description"].get<std::string>());
+  return what == "methods" ? method_header() + out : out;
+}
+
+int list(const std::string& what, bool as_json) {
+  static const std::map<std::string, json (*)()> lists = {
+      {"methods", methods}, {"models", models}, {"cases", cases}, {"schemes", schemes}};
+  const auto found = lists.find(what);
+  if (found == lists.end()) {
+    std::vector<std::string> names;
+    for (const auto& [name, unused] : lists) names.push_back(name);
+    throw input_error(
+        fmt::format("command line: cannot list '{}' (there is no such list) {}", what, suggest(what, names)));
+  }
+  const json all = found->second();
+  print(as_json ? all.dump(2) + "\n" : as_text(what, all));
+  return 0;
+}
+
+}  // namespace
+
+void add_list(CLI::App& program, action& chosen) {
+  struct options {
+    std::string what;
+    bool json = false;
+  };
+  auto given = std::make_shared<options>();
+  CLI::App* command = program.add_subcommand("list", "List methods, models, cases or schemes");
+  command->add_option("WHAT", given->what, "methods, models, cases or schemes")->required();
+  command->add_flag("--json", given->json, "print a JSON array");
+  command->callback([given, &chosen] { chosen = [given] { return list(given->what, given->json); }; });
+}
+
+}  // namespace apsis::app

@@ -1,0 +1,104 @@
+#include "build_info.hpp"
+#include "commands.hpp"
+
+#include <algorithm>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <cstdio>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::app {
+
+void print(const std::string& text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!written || std::fflush(stdout) != 0)
+    throw io_error("standard output cannot be written (closed or full) check where it goes");
+}
+
+namespace {
+
+std::vector<std::string> command_names(const CLI::App& program) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// CLI11 says what it did not understand, but not what could have been meant.
+[[noreturn]] void usage_error(const CLI::App& program, const CLI::ParseError& problem) {
+  const auto chosen = program.get_subcommands();
+  const CLI::App& place = chosen.empty() ? program : *chosen.front();
+  std::string message = problem.what();
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  const std::string name = chosen.empty() ? "apsis" : "apsis " + place.get_name();
+  std::string advice = fmt::format("see: {} --help", name);
+  const auto dash = message.find(" -");
+  if (dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr && dash != std::string::npos)
+    advice = suggest(message.substr(dash + 1, message.find_first_of(" =", dash + 1) - dash - 1),
+                     option_names(place));
+  throw input_error(fmt::format("command line: {} ({}) {}", message, name, advice));
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App program(
+      "Apsis: stiff relaxation and kinetic equations u_t = T(u) + Q(u)/epsilon with positivity-preserving, "
+      "asymptotic-preserving multi-derivative IMEX Runge-Kutta methods.",
+      "apsis");
+  program.set_version_flag("--version", std::string("apsis ") + version());
+  program.footer(
+      "Exit codes: 0 success, 1 internal error, 2 input, 3 numerical failure or broken promise, 4 file or "
+      "folder, 5 claims do not hold, 130 interrupted (after a checkpoint).");
+  program.require_subcommand(1);
+  action chosen;
+  add_run(program, chosen);
+  add_list(program, chosen);
+  add_show(program, chosen);
+  add_check(program, chosen);
+  add_info(program, chosen);
+  const std::vector<std::string> names = command_names(program);
+  if (argc < 2) throw input_error("command line: no command (one of them is needed) " + suggest("", names));
+  const std::string first = argv[1];
+  if (first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end())
+    throw input_error(fmt::format("command line: unknown command '{}' (apsis has no such command) {}",
+                                  first.substr(0, 60), suggest(first, names)));
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    if (problem.get_exit_code() == 0) return program.exit(problem);
+    usage_error(program, problem);
+  }
+  return chosen();
+}
+
+int fail(exit_code code, const std::string& message) {
+  fmt::print(stderr, "error: {}\n", message);
+  return static_cast<int>(code);
+}
+
+}  // namespace
+}  // namespace apsis::app
+
+int main(int argc, char** argv) {
+  using namespace apsis;
+  try {
+    return app::run_program(argc, argv);
+  } catch (const error& problem) {
+    return app::fail(problem.code(), problem.what());
+  } catch (const std::bad_alloc&) {
+    return app::fail(exit_code::numerical,
+                     "not enough memory (the state and its stages do not fit) use fewer cells or velocities");
+  } catch (const std::exception& problem) {
+    return app::fail(exit_code::internal,
+                     fmt::format("internal error: {} (a bug in apsis) please report it", problem.what()));
+  }
+}

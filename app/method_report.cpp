@@ -1,0 +1,197 @@
+#include "method_report.hpp"
+
+#include <algorithm>
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/schedule.hpp>
+#include <apsis/method/certificate.hpp>
+#include <apsis/method/export.hpp>
+
+#include <fmt/format.h>
+
+namespace apsis::app {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// Catalogue methods are certified once; a file of the user is certified where it is asked about.
+certificate certificate_of(const method& m) {
+  const auto names = method_names();
+  const bool known =
+      std::find(names.begin(), names.end(), m.name) != names.end() && &find_method(m.name) == &m;
+  return known ? find_certificate(m.name) : certify(m);
+}
+
+json rows(const matrix<double>& a) {
+  json out = json::array();
+  for (std::size_t i = 0; i < a.rows(); ++i) {
+    json row = json::array();
+    for (std::size_t j = 0; j < a.cols(); ++j) row.push_back(a(i, j));
+    out.push_back(row);
+  }
+  return out;
+}
+
+json rows(const matrix<std::string>& a) {
+  json out = json::array();
+  for (std::size_t i = 0; i < a.rows(); ++i) {
+    json row = json::array();
+    for (std::size_t j = 0; j < a.cols(); ++j) row.push_back(a(i, j).empty() ? "0" : a(i, j));
+    out.push_back(row);
+  }
+  return out;
+}
+
+template <class Real>
+bool is_diagonal(const matrix<Real>& a) {
+  for (std::size_t i = 0; i < a.rows(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (a(i, j) != Real(0)) return false;
+  return true;
+}
+
+json diagonal(const json& matrix_rows) {
+  json out = json::array();
+  for (std::size_t i = 0; i < matrix_rows.size(); ++i) out.push_back(matrix_rows[i][i]);
+  return out;
+}
+
+json document_json(const method& m) {
+  const auto form = m.coefficients<double>();
+  const auto butcher = to_butcher(form);
+  const json d_rows = rows(form.D), exact_d_rows = rows(m.exact.D);
+  const bool diagonal_d = is_diagonal(form.D);
+  // Methods outside the paper's class have a full lower triangular D; d is then its diagonal.
+  json out = {
+      {"name", m.name},       {"title", m.title},  {"citation", m.citation}, {"kind", to_string(m.kind)},
+      {"stages", m.stages()}, {"P", rows(form.P)}, {"W", rows(form.W)},      {"d", diagonal(d_rows)}};
+  json exact = {{"P", rows(m.exact.P)}, {"W", rows(m.exact.W)}, {"d", diagonal(exact_d_rows)}};
+  if (!diagonal_d) {
+    out["D"] = d_rows;
+    exact["D"] = exact_d_rows;
+  }
+  out["ddot"] = form.ddot;
+  out["r"] = form.r;
+  exact["ddot"] = m.exact.ddot;
+  exact["r"] = m.exact.r;
+  out["A_hat"] = rows(butcher.A_hat);
+  out["A"] = rows(butcher.A);
+  out["A_dot"] = rows(butcher.A_dot);
+  out["exact"] = exact;
+  out["claims"] = {{"order", m.claims.order}};
+  if (m.claims.ssp_coefficient) out["claims"]["ssp_coefficient"] = *m.claims.ssp_coefficient;
+  if (m.claims.type) out["claims"]["type"] = *m.claims.type;
+  return out;
+}
+
+std::string ssp_text(const certificate& c) {
+  if (!c.bounded) return "no bound";
+  return fmt::format("{:.15g}{}", c.ssp_coefficient.convert_to<double>(),
+                     c.unconditional ? "" : " (bounded by Q too)");
+}
+
+std::string matrix_text(const std::string& name, const matrix<double>& a) {
+  std::string out = name + "\n";
+  for (std::size_t i = 0; i < a.rows(); ++i) {
+    out += "   ";
+    for (std::size_t j = 0; j <= i; ++j)
+      out += a(i, j) == 0.0 ? fmt::format(" {:>20}", 0) : fmt::format(" {:>20.15g}", a(i, j));
+    out += "\n";
+  }
+  return out;
+}
+
+std::string document_text(const method& m) {
+  const auto form = m.coefficients<double>();
+  const auto butcher = to_butcher(form);
+  std::string out = check_text(m) + "\n";
+  out += fmt::format("Shu-Osher form, r = {:.15g}\n", form.r);
+  out += matrix_text("P", form.P) + matrix_text("W", form.W) + matrix_text("D", form.D) + "ddot\n   ";
+  for (const double x : form.ddot) out += fmt::format(" {:>20.15g}", x);
+  out += "\nButcher form\n" + matrix_text("A_hat", butcher.A_hat) + matrix_text("A", butcher.A);
+  return out + matrix_text("A_dot", butcher.A_dot);
+}
+
+}  // namespace
+
+json check_json(const method& m) {
+  const certificate c = certificate_of(m);
+  const schedule steps(m.coefficients<double>());
+  json out = {{"name", m.name},
+              {"title", m.title},
+              {"kind", to_string(m.kind)},
+              {"order", c.order},
+              {"order_residual", c.order_residual.convert_to<double>()},
+              {"ssp_coefficient", c.bounded ? json(c.ssp_coefficient.convert_to<double>()) : json(nullptr)},
+              {"unconditional", c.unconditional},
+              {"limiting_entry", c.limiting_entry},
+              {"ap", c.ap},
+              {"ap_data", c.ap_data},
+              {"type", c.type},
+              {"gsa", c.gsa},
+              {"stages", m.stages()},
+              {"explicit_evaluations", c.explicit_evaluations},
+              {"implicit_solves", c.implicit_solves},
+              {"buffers", steps.buffers()},
+              {"claims_hold", c.claims_hold},
+              {"failures", c.failures}};
+  if (m.kind != method_kind::explicit_only)
+    out["stability"] = {{"angle_degrees", c.stability.angle},
+                        {"largest_on_negative_axis", c.stability.largest_on_negative_axis},
+                        {"smallest_on_negative_axis", c.stability.smallest_on_negative_axis},
+                        {"at_infinity", c.stability.at_infinity},
+                        {"imaginary_poles", c.stability.imaginary_poles}};
+  return out;
+}
+
+std::string check_text(const method& m) {
+  const certificate c = certificate_of(m);
+  const schedule steps(m.coefficients<double>());
+  std::string out = fmt::format("{}: {}\n", m.name, m.title);
+  const auto line = [&out](const std::string& name, const std::string& value) {
+    out += fmt::format("  {:<22}{}\n", name, value);
+  };
+  line("order", fmt::format("{} ({} conditions, largest residual {:.1e})", c.order, c.conditions,
+                            c.order_residual.convert_to<double>()));
+  line("SSP coefficient", ssp_text(c));
+  if (!c.limiting_entry.empty()) line("limited by", c.limiting_entry);
+  line("type", fmt::format("{}{}", c.type, c.gsa ? ", globally stiffly accurate" : ""));
+  line("asymptotic preserving", c.ap_data.empty() ? "none" : c.ap_data);
+  line("cost of a step", fmt::format("{} transport evaluations, {} implicit solves, {} buffers",
+                                     c.explicit_evaluations, c.implicit_solves, steps.buffers()));
+  if (m.kind != method_kind::explicit_only)
+    line("implicit part",
+         fmt::format("A({:.4g} degrees), |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
+                     c.stability.angle, c.stability.largest_on_negative_axis, c.stability.at_infinity));
+  line("claims", c.claims_hold ? "hold" : "DO NOT HOLD");
+  for (const auto& failure : c.failures) line("", failure);
+  return out;
+}
+
+std::string first_failure(const method& m) {
+  const certificate c = certificate_of(m);
+  return c.failures.empty() ? "" : c.failures.front();
+}
+
+std::string method_header() {
+  return fmt::format("{:<14}{:<10}{:>6}{:>12}{:>5}{:>8}{:>9}  {}\n", "name", "kind", "order", "SSP coeff.",
+                     "n_F", "solves", "buffers", "title");
+}
+
+std::string method_line(const json& c) {
+  const std::string r = c["ssp_coefficient"].is_null()
+                            ? "unbounded"
+                            : fmt::format("{:.6g}", c["ssp_coefficient"].get<double>());
+  return fmt::format("{:<14}{:<10}{:>6}{:>12}{:>5}{:>8}{:>9}  {}\n", c["name"].get<std::string>(),
+                     c["kind"].get<std::string>(), c["order"].get<int>(), r,
+                     c["explicit_evaluations"].get<int>(), c["implicit_solves"].get<int>(),
+                     c["buffers"].get<int>(), c["title"].get<std::string>());
+}
+
+std::string method_document(const method& m, const std::string& format) {
+  if (format == "json") return document_json(m).dump(2) + "\n";
+  if (format == "latex") return to_latex(m);
+  if (format == "toml") return to_toml(m);
+  return document_text(m);
+}
+
+}  // namespace apsis::app

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <apsis/method/method.hpp>
+
+#include <nlohmann/json.hpp>
+
+namespace apsis::app {
+
+/// The certificate of a method as `apsis check --json` prints it.
+nlohmann::ordered_json check_json(const method& m);
+
+/// The same in words; with the failing conditions where a claim does not hold.
+std::string check_text(const method& m);
+
+/// The first condition that does not hold; "" if all do.
+std::string first_failure(const method& m);
+
+/// Table of `apsis list methods`: its head, and the line of one object of check_json.
+std::string method_header();
+std::string method_line(const nlohmann::ordered_json& checked);
+
+/// Coefficients and claims; `format` is "text", "json", "latex" or "toml".
+std::string method_document(const method& m, const std::string& format);
+
+}  // namespace apsis::app

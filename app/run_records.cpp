@@ -1,0 +1,155 @@
+#include "run_records.hpp"
+
+#include <algorithm>
+#include <apsis/config/case_schema.hpp>
+#include <apsis/core/errors.hpp>
+
+namespace apsis::app {
+namespace {
+
+constexpr std::size_t columns_before_defects = 5, columns_after_defects = 2;
+
+std::vector<double> to_row(const step_record& r) {
+  std::vector<double> row = {static_cast<double>(r.step), r.t, r.dt, r.min_value,
+                             static_cast<double>(r.negative_values)};
+  row.insert(row.end(), r.conservation_defect.begin(), r.conservation_defect.end());
+  row.push_back(r.entropy);
+  row.push_back(r.entropy_change);
+  return row;
+}
+
+step_record from_row(const std::vector<double>& row) {
+  if (row.size() < columns_before_defects + columns_after_defects)
+    throw io_error(
+        "the history of the checkpoint has too few columns (damaged file) give another checkpoint");
+  step_record r;
+  r.step = static_cast<long>(row[0]);
+  r.t = row[1];
+  r.dt = row[2];
+  r.min_value = row[3];
+  r.negative_values = static_cast<long>(row[4]);
+  r.conservation_defect.assign(row.begin() + columns_before_defects, row.end() - columns_after_defects);
+  r.entropy = row[row.size() - 2];
+  r.entropy_change = row[row.size() - 1];
+  return r;
+}
+
+bool has_space(const simulation& run) {
+  return find_model(run.config().model.name)->has_space;
+}
+
+// Counters travel as doubles, which hold them exactly up to 2^53; a damaged one must not overflow.
+long count(const checkpoint& c, const std::string& name) {
+  const double x = c.number(name);
+  if (!(x >= 0.0 && x <= 9007199254740992.0))
+    throw io_error("the checkpoint has a wrong number '" + name + "' (damaged file) give another checkpoint");
+  return static_cast<long>(x);
+}
+
+}  // namespace
+
+run_records::run_records(const simulation& run) {
+  name_columns(run);
+  add_step(run.initial_record());
+  if (run.config().output.every > 0.0) add_snapshot(run);
+}
+
+run_records::run_records(const simulation& run, const checkpoint& from) {
+  name_columns(run);
+  if (from.history.columns != history_.columns)
+    throw io_error(
+        "the history of the checkpoint has other columns (written by another version?) run the case again");
+  history_ = from.history;
+  // The choice of fields may have changed; then earlier snapshots cannot be continued.
+  if (from.fields.names == fields_.names) fields_.snapshots = from.fields.snapshots;
+}
+
+void run_records::name_columns(const simulation& run) {
+  history_.columns = {"step", "t", "dt", "min_value", "negative_values"};
+  for (const auto& invariant : run.invariants()) history_.columns.push_back("conservation_" + invariant);
+  history_.columns.emplace_back("entropy");
+  history_.columns.emplace_back("entropy_change");
+  const field_table all = run.fields();
+  const auto& wanted = run.config().output.fields;
+  for (std::size_t k = 0; k < all.names.size(); ++k) {
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), all.names[k]) == wanted.end()) continue;
+    fields_.names.push_back(all.names[k]);
+    fields_.labels.push_back(all.labels[k]);
+  }
+  if (has_space(run)) fields_.x = all.x;
+}
+
+void run_records::add_step(const step_record& record) {
+  history_.rows.push_back(to_row(record));
+}
+
+void run_records::add_snapshot(const simulation& run) {
+  field_table all = run.fields();
+  field_series::snapshot snapshot;
+  snapshot.t = run.t();
+  for (std::size_t k = 0; k < all.names.size(); ++k)
+    if (std::find(fields_.names.begin(), fields_.names.end(), all.names[k]) != fields_.names.end())
+      snapshot.values.push_back(std::move(all.values[k]));
+  fields_.snapshots.push_back(std::move(snapshot));
+}
+
+checkpoint make_checkpoint(const simulation& run, const run_records& records) {
+  const saved_run saved = run.save();
+  checkpoint c;
+  c.case_text = to_toml(run.config());
+  c.cells = static_cast<std::uint64_t>(run.cells());
+  c.components = static_cast<std::uint64_t>(run.components());
+  c.state = saved.state;
+  c.numbers = {{"step", static_cast<double>(saved.step)},
+               {"since_anchor", static_cast<double>(saved.since_anchor)},
+               {"t", saved.t},
+               {"anchor", saved.anchor},
+               {"anchor_dt", saved.anchor_dt},
+               {"largest_dt", saved.so_far.dt},
+               {"wall_s", saved.so_far.wall_s},
+               {"min_value", saved.so_far.min_value},
+               {"negative_values", static_cast<double>(saved.so_far.negative_values)},
+               {"conservation_defect", saved.so_far.conservation_defect},
+               {"max_entropy_increase", saved.so_far.max_entropy_increase}};
+  c.history = records.history();
+  c.fields = records.fields();
+  return c;
+}
+
+saved_run to_saved_run(const checkpoint& c) {
+  saved_run saved;
+  saved.state = c.state;
+  saved.step = count(c, "step");
+  saved.since_anchor = count(c, "since_anchor");
+  saved.t = c.number("t");
+  saved.anchor = c.number("anchor");
+  saved.anchor_dt = c.number("anchor_dt");
+  saved.so_far.steps = saved.step;
+  saved.so_far.t = saved.t;
+  saved.so_far.dt = c.number("largest_dt");
+  saved.so_far.wall_s = c.number("wall_s");
+  saved.so_far.min_value = c.number("min_value");
+  saved.so_far.negative_values = count(c, "negative_values");
+  saved.so_far.conservation_defect = c.number("conservation_defect");
+  saved.so_far.max_entropy_increase = c.number("max_entropy_increase");
+  saved.so_far.phase_points = static_cast<long>(c.cells * c.components);
+  saved.initial = from_row(c.history.rows.front());
+  saved.last = from_row(c.history.rows.back());
+  return saved;
+}
+
+solution make_solution(const simulation& run, const run_records& records) {
+  solution s;
+  s.title = run.config().title;
+  s.t = run.t();
+  s.step = run.step();
+  s.cells = static_cast<std::uint64_t>(run.cells());
+  s.components = static_cast<std::uint64_t>(run.components());
+  s.f = run.state();
+  s.velocities = run.velocities();
+  if (find_model(run.config().model.name)->has_epsilon) s.epsilon = run.epsilon();
+  s.fields = records.fields();
+  return s;
+}
+
+}  // namespace apsis::app

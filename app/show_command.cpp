@@ -1,0 +1,68 @@
+#include "commands.hpp"
+#include "method_report.hpp"
+
+#include <algorithm>
+#include <apsis/config/case.hpp>
+#include <apsis/config/case_schema.hpp>
+#include <apsis/core/embedded.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/method/method.hpp>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+namespace apsis::app {
+namespace {
+
+struct options {
+  std::string what, format;
+};
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void only_text(const options& given) {
+  if (!given.format.empty() && given.format != "text")
+    throw input_error(fmt::format("command line: --format {} is for methods ('{}' is a text) leave it out",
+                                  given.format, given.what));
+}
+
+int show(const options& given) {
+  const std::vector<std::string> methods = method_names(), cases = case_names();
+  if (given.what == "case") {
+    only_text(given);
+    print(schema_text());
+  } else if (contains(cases, given.what)) {
+    only_text(given);
+    for (const auto& built_in : embedded::cases())
+      if (built_in.name == given.what) print(std::string(built_in.text));
+  } else if (contains(methods, given.what)) {
+    print(method_document(find_method(given.what), given.format.empty() ? "text" : given.format));
+  } else if (std::filesystem::is_regular_file(given.what)) {
+    print(method_document(load_method_file(given.what), given.format.empty() ? "text" : given.format));
+  } else {
+    std::vector<std::string> all = methods;
+    all.insert(all.end(), cases.begin(), cases.end());
+    all.emplace_back("case");
+    throw input_error(fmt::format("nothing is called '{}' (no method, built-in case or method file) {}",
+                                  given.what.substr(0, 60), suggest(given.what, all)));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_show(CLI::App& program, action& chosen) {
+  auto given = std::make_shared<options>();
+  CLI::App* command =
+      program.add_subcommand("show", "Show a method, a built-in case, or the keys of a case (show case)");
+  command->add_option("WHAT", given->what, "a method, a method file, a built-in case, or: case")->required();
+  command->add_option("--format", given->format, "of a method: text, json, latex or toml")
+      ->check(CLI::IsMember({"text", "json", "latex", "toml"}));
+  command->callback([given, &chosen] { chosen = [given] { return show(*given); }; });
+}
+
+}  // namespace apsis::app

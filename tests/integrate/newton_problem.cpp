@@ -107,6 +107,16 @@ TEST(newton_problem, zero_and_nothing_implicit_are_exact) {
   EXPECT_EQ(u, row{3});
 }
 
+TEST(newton_problem, solves_where_squares_underflow) {
+  const auto decay = [](const auto& u, auto& out) { out[0] = -u[0]; };
+  for (const auto solver : {linear_solver::dense, linear_solver::krylov}) {
+    apsis::newton_problem problem(no_transport{}, decay, newton_options{solver});
+    row u{1e-200};
+    problem.collide(0, 1e9, 0.0, u);
+    EXPECT_NEAR(u[0] / (1e-200 / (1 + 1e9)), 1, 1e-14);
+  }
+}
+
 /// A tridiagonal diffusion with a cubic sink, N unknowns.
 constexpr auto reaction_diffusion = [](const auto& u, auto& out) {
   const std::size_t n = u.size();

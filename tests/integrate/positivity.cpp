@@ -113,7 +113,9 @@ TEST(claims, C10_beyond_random_powers_decay_without_sign_change_for_every_step) 
     for (int n = 0; n < 5; ++n) {
       const double before = u[0];
       march.step(0, dt, u);
-      RC_ASSERT(u[0] >= 0 && u[0] <= before);
+      // A decay below the rounding of u is lost in it: the convex combination of stages is good to an ulp or
+      // two.
+      RC_ASSERT(u[0] >= 0 && u[0] <= before * (1 + 1e-15));
       if (p > 1) RC_ASSERT(u[0] > 0);  // linear decay soon underflows
     }
   });

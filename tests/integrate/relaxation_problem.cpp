@@ -238,7 +238,8 @@ TEST(relaxation_problem, epsilon_zero_is_the_equilibrium_exactly_and_nothing_whe
 
 TEST(relaxation_problem, explicit_collision_is_refused_at_epsilon_zero) {
   auto problem = ode_model::as_relaxation(0.0);
-  row u{2, 0}, acc(2);
+  const row u{2, 0};
+  row acc(2);
   const apsis::target<row, double> to{&acc, 0.0, 1.0, true}, weight_only{&acc, 1.0, 0.0, true};
   EXPECT_THROW(problem.scatter_collision(0, u, {&to, 1}), apsis::input_error);
   problem.scatter_collision(0, u, {&weight_only, 1});

@@ -80,6 +80,7 @@ struct generic_product_impl<apsis::detail::newton_operator<Real>, Rhs, SparseSha
                                 generic_product_impl<apsis::detail::newton_operator<Real>, Rhs>> {
   using Scalar = Real;
   template <class Dest>
+  // NOLINTNEXTLINE(readability-identifier-naming): Eigen looks for this name
   static void scaleAndAddTo(Dest& dest, const apsis::detail::newton_operator<Real>& lhs, const Rhs& rhs,
                             const Scalar& alpha) {
     dest.noalias() += alpha * lhs.apply(rhs);
@@ -98,6 +99,12 @@ using square = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
 template <class Real>
 constexpr Real singular_below = Real(45) * std::numeric_limits<Real>::epsilon();
+
+/// The maximum norm: squares of what is left of a decayed solution would underflow.
+template <class Real>
+Real largest(const column<Real>& x) {
+  return x.template lpNorm<Eigen::Infinity>();
+}
 
 [[noreturn]] void fail_singular(int iteration, double measure) {
   throw numerical_error(fmt::format(
@@ -141,7 +148,7 @@ newton_step<Real> dense_step(stage_equation<Real>& equation, const column<Real>&
   const Eigen::PartialPivLU<square<Real>> lu(scaled);
   const Real smallest = norm > Real(0) ? lu.rcond() * norm : Real(0);
   if (!(smallest >= singular_below<Real>)) fail_singular(iteration, static_cast<double>(smallest));
-  const Real noise = std::numeric_limits<Real>::epsilon() * (terms * v.cwiseAbs()).norm();
+  const Real noise = std::numeric_limits<Real>::epsilon() * largest<Real>(terms * v.cwiseAbs());
   return {-(cols.asDiagonal() * lu.solve(rows.asDiagonal() * r)), noise};
 }
 
@@ -155,21 +162,21 @@ newton_step<Real> krylov_step(stage_equation<Real>& equation, const column<Real>
   gmres.setMaxIterations(600);
   gmres.setTolerance(Real(1e-6));
   // The right-hand side is brought to size 1: GMRES squares it, and small residuals would underflow.
-  const Real size = r.template lpNorm<Eigen::Infinity>();
+  const Real size = largest<Real>(r);
   const column<Real> step = gmres.solve(-r / size) * size;
   column<Real> y(v.size()), z(v.size());
   equation.differential(as_span<Real>(v), as_span<Real>(step), as_span(y), as_span(z));
-  const Real applied = (step + y + z).norm();
-  const Real terms = (step.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs()).norm();
+  const Real applied = largest<Real>(step + y + z);
+  const Real terms = largest<Real>(step.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
   if (applied < singular_below<Real> * terms) fail_singular(iteration, static_cast<double>(applied / terms));
-  if (!step.allFinite() || !((step + y + z + r).norm() <= Real(0.1) * r.norm()))
+  if (!step.allFinite() || !(largest<Real>(step + y + z + r) <= Real(0.1) * size))
     throw numerical_error(fmt::format(
         "GMRES does not solve the linear system of Newton iteration {} (nearly singular, or too stiff "
         "without a preconditioner); reduce the time step, or use linear_solver::dense",
         iteration));
   equation.differential(as_span<Real>(v), as_span<Real>(v), as_span(y), as_span(z));
   const Real noise =
-      std::numeric_limits<Real>::epsilon() * (v.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs()).norm();
+      std::numeric_limits<Real>::epsilon() * largest<Real>(v.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
   return {step, noise};
 }
 
@@ -202,7 +209,7 @@ class newton {
  private:
   Real evaluate(const column<Real>& v, column<Real>& r) {
     equation_.residual(as_span<Real>(v), as_span(r));
-    return r.allFinite() ? r.norm() : std::numeric_limits<Real>::infinity();
+    return r.allFinite() ? largest<Real>(r) : std::numeric_limits<Real>::infinity();
   }
 
   /// One Newton step with backtracking; false when v is a root to round-off.
@@ -213,8 +220,8 @@ class newton {
         (options_.solver == linear_solver::automatic && equation_.size() <= options_.dense_limit);
     const auto [delta, noise] = dense ? dense_step<Real>(equation_, v_, r_, iteration_)
                                       : krylov_step<Real>(equation_, v_, r_, iteration_);
-    const Real size = v_.template lpNorm<Eigen::Infinity>();
-    step_ = delta.template lpNorm<Eigen::Infinity>() / (size > Real(0) ? size : Real(1));
+    const Real size = largest<Real>(v_);
+    step_ = largest<Real>(delta) / (size > Real(0) ? size : Real(1));
     // Near a root a full step reduces R quadratically; once that ends, what is left is rounding.
     const bool near = step_ <= std::sqrt(std::numeric_limits<Real>::epsilon()) || norm_ <= Real(32) * noise;
     for (Real t(1); t >= Real(0x1p-40); t /= Real(2)) {

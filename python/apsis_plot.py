@@ -211,7 +211,7 @@ def plot_decay(apsis, path):
                 elif (np.diff(u) > 0).any() or (u < 0).any():
                     print(f"{method}, Δt = 1/{n}: not monotone or negative, smallest value {u.min():.3g}")
         panel.plot(time, 1 / (10 * time + 0.1), "-.", color=BLACK, linewidth=1, label="exact")
-        panel.set_yscale("symlog", linthresh=0.1)
+        panel.set_yscale("log" if all((line.get_ydata() > 0).all() for line in panel.lines) else "symlog")
         panel.set_title(f"{title}: {ssp} solid, {dirk} dashed\n× stage equation without real root", fontsize=10)
         panel.set_xlabel("t (dimensionless)")
     axes[0].set_ylabel("u (dimensionless)")

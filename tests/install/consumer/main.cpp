@@ -1,5 +1,6 @@
-// u' = u − 3u, growth explicit and decay implicit: u(1) = e⁻². A third-order method with 64 steps is within 1e-5
-// and, because a wrong sign or a first-order fallback would be off by 1e-3 or more, only such a method is.
+// u' = u − 3u, growth explicit and decay implicit: u(1) = e⁻². A third-order method with 64 steps is within
+// 1e-5 and, because a wrong sign or a first-order fallback would be off by 1e-3 or more, only such a method
+// is.
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/method/method.hpp>
 

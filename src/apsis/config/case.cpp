@@ -1,6 +1,7 @@
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_text.hpp>
+#include <apsis/config/case_value.hpp>
 #include <apsis/config/expression.hpp>
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/suggest.hpp>
@@ -50,11 +51,6 @@ class resolver {
     return found != text_.tables.end() ? found->second : source_place{file_, 1, 1};
   }
 
-  [[noreturn]] static void wrong(const raw_value& raw, const std::string& path, const std::string& why,
-                                 const std::string& advice) {
-    throw input_error(raw.place, fmt::format("'{}' is {} ({}) {}", path, raw.what, why, advice));
-  }
-
   void check_tables() const {
     std::vector<std::string> names = {"model", "space", "velocity", "time", "output"};
     for (const auto& [name, place] : text_.tables)
@@ -63,7 +59,7 @@ class resolver {
                                              suggest(name, names)));
     for (const auto& name : names)
       if (const raw_value* raw = find(name))
-        wrong(*raw, name, "it is a table", fmt::format("write [{}]", name));
+        refuse(*raw, name, "it is a table", fmt::format("write [{}]", name));
   }
 
   void find_the_model() {
@@ -128,7 +124,7 @@ class resolver {
                                       example(key)));
       return;
     }
-    key.store(config_, convert(key, *raw));
+    key.store(config_, to_value(key, *raw, config_));
   }
 
   std::string example(const case_key& key) const {
@@ -140,117 +136,15 @@ class resolver {
     return fmt::format("{} = {}", name, key.type == key_type::integer ? "100" : "1.0");
   }
 
-  case_value convert(const case_key& key, const raw_value& raw) const {
-    const auto type_error = [&]() {
-      wrong(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
-    };
-    switch (key.type) {
-      case key_type::integer:
-        if (!std::holds_alternative<long>(raw.value)) type_error();
-        check_range(key, raw, static_cast<double>(std::get<long>(raw.value)));
-        return std::get<long>(raw.value);
-      case key_type::number:
-        return number(key, raw, key.path);
-      case key_type::text:
-        if (!std::holds_alternative<std::string>(raw.value)) type_error();
-        check_choice(key, raw);
-        return std::get<std::string>(raw.value);
-      case key_type::formula:
-        return formula(key, raw);
-      case key_type::text_list:
-        return texts(key, raw);
-      case key_type::number_pair:
-        return pair(key, raw);
-    }
-    return {};
-  }
-
-  static std::string type_advice(key_type type) {
-    switch (type) {
-      case key_type::integer:
-        return "write for example 100";
-      case key_type::number:
-        return "write for example 0.5";
-      case key_type::text:
-        return "put it in quotes";
-      case key_type::formula:
-        return "write for example 1e-3 or \"1e-3 + x^2\"";
-      case key_type::text_list:
-        return "write for example [\"rho\", \"u\"]";
-      case key_type::number_pair:
-        return "write for example [0.0, 2.0]";
-    }
-    return "";
-  }
-
-  static double as_number(const raw_value& raw, const std::string& path, const std::string& needed) {
-    double x = 0.0;
-    if (const auto* integer = std::get_if<long>(&raw.value))
-      x = static_cast<double>(*integer);
-    else if (const auto* real = std::get_if<double>(&raw.value))
-      x = *real;
-    else
-      wrong(raw, path, needed + " is needed", type_advice(key_type::number));
-    if (!std::isfinite(x)) wrong(raw, path, "it must be finite", "give a finite number");
-    return x;
-  }
-
-  static void check_range(const case_key& key, const raw_value& raw, double x) {
-    const bool low = key.lowest_excluded ? x > key.lowest : x >= key.lowest;
-    if (!low || x > key.highest)
-      wrong(raw, key.path, "it must be " + range_text(key), "change it to a value in this range");
-  }
-
-  static double number(const case_key& key, const raw_value& raw, const std::string& path) {
-    const double x = as_number(raw, path, type_text(key_type::number));
-    check_range(key, raw, x);
-    return x;
-  }
-
-  void check_choice(const case_key& key, const raw_value& raw) const {
-    if (key.choices == nullptr) return;
-    const auto names = key.choices(config_);
-    const auto& name = std::get<std::string>(raw.value);
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      wrong(raw, key.path, "there is no such name", suggest(name, names));
-  }
-
-  std::string formula(const case_key& key, const raw_value& raw) const {
-    if (const auto* text = std::get_if<std::string>(&raw.value)) return *text;
-    if (std::holds_alternative<long>(raw.value) || std::holds_alternative<double>(raw.value))
-      return fmt::format("{}", number(key, raw, key.path));
-    wrong(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
-  }
-
-  static std::vector<std::string> texts(const case_key& key, const raw_value& raw) {
-    std::vector<std::string> out;
-    const auto* items = std::get_if<raw_value::list>(&raw.value);
-    if (items == nullptr) wrong(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
-    for (const auto& item : *items) {
-      if (!std::holds_alternative<std::string>(item.value))
-        wrong(item, key.path, type_text(key.type) + " is needed", type_advice(key.type));
-      out.push_back(std::get<std::string>(item.value));
-    }
-    return out;
-  }
-
-  static std::array<double, 2> pair(const case_key& key, const raw_value& raw) {
-    const auto* items = std::get_if<raw_value::list>(&raw.value);
-    if (items == nullptr || items->size() != 2)
-      wrong(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
-    return {as_number((*items)[0], key.path, type_text(key.type)),
-            as_number((*items)[1], key.path, type_text(key.type))};
-  }
-
   void take_parameters() {
     for (const model_parameter& p : model_->parameters) {
       double value = p.value;
       if (const raw_value* raw = find("model." + p.name)) {
-        value = as_number(*raw, "model." + p.name, type_text(key_type::number));
+        value = finite_number(*raw, "model." + p.name, type_text(key_type::number));
         if (value < p.lowest || value > p.highest)
-          wrong(*raw, "model." + p.name,
-                fmt::format("it must be from {} to {}: {}", p.lowest, p.highest, p.doc),
-                "change it to a value in this range");
+          refuse(*raw, "model." + p.name,
+                 fmt::format("it must be from {} to {}: {}", p.lowest, p.highest, p.doc),
+                 "change it to a value in this range");
       }
       config_.model.parameters[p.name] = value;
     }
@@ -263,8 +157,8 @@ class resolver {
     check_fields();
     const double snapshots = config_.output.every > 0.0 ? config_.time.end / config_.output.every : 0.0;
     if (snapshots > 1e5)
-      wrong(*find("output.every"), "output.every",
-            fmt::format("that makes {:.3g} snapshots, at most 100000", snapshots), "give a longer interval");
+      refuse(*find("output.every"), "output.every",
+             fmt::format("that makes {:.3g} snapshots, at most 100000", snapshots), "give a longer interval");
   }
 
   void check_step_rule() const {
@@ -284,8 +178,8 @@ class resolver {
                                     "remove all but one",
                                     given[1], given[0], fmt::join(valid, ", ")));
     if (config_.time.dt && *config_.time.dt > config_.time.end * (1.0 + 1e-12))
-      wrong(*find("time.dt"), "time.dt", fmt::format("it is longer than time.end = {}", config_.time.end),
-            "give a step of at most the whole time");
+      refuse(*find("time.dt"), "time.dt", fmt::format("it is longer than time.end = {}", config_.time.end),
+             "give a step of at most the whole time");
   }
 
   void check_mesh() const {
@@ -293,20 +187,20 @@ class resolver {
     const raw_value* raw = find("space.domain");
     const double width = right - left;
     if (raw != nullptr && !(width > 0.0))
-      wrong(*raw, "space.domain", fmt::format("[{}, {}] is not left < right", left, right),
-            "give the left end first");
+      refuse(*raw, "space.domain", fmt::format("[{}, {}] is not left < right", left, right),
+             "give the left end first");
     const double scale = std::max(std::abs(left), std::abs(right));
     if (raw != nullptr && (!std::isfinite(width) || width / config_.space.cells < 1e-12 * scale))
-      wrong(*raw, "space.domain",
-            fmt::format("cells of [{}, {}] cannot be told apart in double precision", left, right),
-            "give a domain nearer to 0 or fewer cells");
+      refuse(*raw, "space.domain",
+             fmt::format("cells of [{}, {}] cannot be told apart in double precision", left, right),
+             "give a domain nearer to 0 or fewer cells");
     const double points = static_cast<double>(config_.space.cells) * std::max(1, config_.velocity.points);
     if (points > 2e9)
-      wrong(*find("space.cells"), "space.cells",
-            fmt::format("with velocity.points = {} that is {:.3g} unknowns, at most "
-                        "2e9 are possible",
-                        config_.velocity.points, points),
-            "give fewer cells or velocities");
+      refuse(*find("space.cells"), "space.cells",
+             fmt::format("with velocity.points = {} that is {:.3g} unknowns, at most "
+                         "2e9 are possible",
+                         config_.velocity.points, points),
+             "give fewer cells or velocities");
   }
 
   // At cell centres and edges, as far as a thousand points go; the run evaluates it where it needs it.

@@ -198,7 +198,8 @@ std::string type_text(key_type type) {
 }
 
 std::string range_text(const case_key& key) {
-  const bool numeric = key.type == key_type::integer || key.type == key_type::number;
+  const bool numeric =
+      key.type == key_type::integer || key.type == key_type::number || key.type == key_type::formula;
   if (!numeric) return "";
   const bool above = std::isfinite(key.lowest), below = std::isfinite(key.highest);
   if (above && below)

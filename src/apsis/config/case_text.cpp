@@ -74,13 +74,12 @@ std::string in_quotes(const std::string& value) {
 }
 
 std::string syntax_message(std::string_view description) {
-  return fmt::format("not valid TOML ({}) correct the syntax here", shown(description));
+  return fmt::format("not valid TOML ({}) correct the syntax here", shown(description, 200));
 }
 
 }  // namespace
 
-std::string shown(std::string_view text) {
-  constexpr std::size_t longest = 60;
+std::string shown(std::string_view text, std::size_t longest) {
   std::string out(text.substr(0, longest));
   // Cut bytes of a character that was split; the rest of the text is UTF-8.
   while (text.size() > longest && !out.empty() &&
@@ -109,9 +108,7 @@ case_text read_case_text(std::string_view text, const std::string& file) {
         continue;
       }
       out.tables.emplace(name, place_of(node.source(), file));
-      for (const auto& [inner, value] : *table)
-        out.values.emplace(fmt::format("{}.{}", name, inner.str()),
-                           convert(value, place_of(inner.source(), file)));
+      for (const auto& [inner, value] : *table) add(fmt::format("{}.{}", name, inner.str()), inner, value);
     }
   } catch (const toml::parse_error& e) {
     throw input_error(place_of(e.source(), file), syntax_message(e.description()));

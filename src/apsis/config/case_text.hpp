@@ -38,7 +38,7 @@ case_text read_case_text(std::string_view text, const std::string& file);
 void apply_override(case_text& target, const std::string& path, const std::string& value, bool is_text,
                     const source_place& place);
 
-/// A user's text for a message: at most 60 characters, control characters as '?'.
-std::string shown(std::string_view text);
+/// A user's text for a message: at most `longest` bytes, control characters as '?'.
+std::string shown(std::string_view text, std::size_t longest = 60);
 
 }  // namespace apsis

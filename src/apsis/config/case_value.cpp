@@ -1,0 +1,125 @@
+#include <apsis/config/case_value.hpp>
+#include <apsis/core/suggest.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+std::string type_advice(key_type type) {
+  switch (type) {
+    case key_type::integer:
+      return "write for example 100";
+    case key_type::number:
+      return "write for example 0.5";
+    case key_type::text:
+      return "put it in quotes";
+    case key_type::formula:
+      return "write for example 1e-3 or \"1e-3 + x^2\"";
+    case key_type::text_list:
+      return "write for example [\"rho\", \"u\"]";
+    case key_type::number_pair:
+      return "write for example [0.0, 2.0]";
+  }
+  return "";
+}
+
+}  // namespace
+
+void refuse(const raw_value& raw, const std::string& path, const std::string& why,
+            const std::string& advice) {
+  throw input_error(raw.place, fmt::format("'{}' is {} ({}) {}", path, raw.what, why, advice));
+}
+
+double finite_number(const raw_value& raw, const std::string& path, const std::string& needed) {
+  double x = 0.0;
+  if (const auto* integer = std::get_if<long>(&raw.value))
+    x = static_cast<double>(*integer);
+  else if (const auto* real = std::get_if<double>(&raw.value))
+    x = *real;
+  else
+    refuse(raw, path, needed + " is needed", type_advice(key_type::number));
+  if (!std::isfinite(x)) refuse(raw, path, "it must be finite", "give a finite number");
+  return x;
+}
+
+namespace {
+
+void check_range(const case_key& key, const raw_value& raw, double x) {
+  const bool low = key.lowest_excluded ? x > key.lowest : x >= key.lowest;
+  if (!low || x > key.highest)
+    refuse(raw, key.path, "it must be " + range_text(key), "change it to a value in this range");
+}
+
+double number(const case_key& key, const raw_value& raw, const std::string& path) {
+  const double x = finite_number(raw, path, type_text(key_type::number));
+  check_range(key, raw, x);
+  return x;
+}
+
+void check_choice(const case_key& key, const raw_value& raw, const case_config& so_far) {
+  if (key.choices == nullptr) return;
+  const auto names = key.choices(so_far);
+  const auto& name = std::get<std::string>(raw.value);
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    refuse(raw, key.path, "there is no such name", suggest(name, names));
+}
+
+std::string formula(const case_key& key, const raw_value& raw) {
+  if (const auto* text = std::get_if<std::string>(&raw.value)) return *text;
+  if (std::holds_alternative<long>(raw.value) || std::holds_alternative<double>(raw.value))
+    return fmt::format("{}", number(key, raw, key.path));
+  refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+}
+
+std::vector<std::string> texts(const case_key& key, const raw_value& raw) {
+  std::vector<std::string> out;
+  const auto* items = std::get_if<raw_value::list>(&raw.value);
+  if (items == nullptr) refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+  for (const auto& item : *items) {
+    if (!std::holds_alternative<std::string>(item.value))
+      refuse(item, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+    out.push_back(std::get<std::string>(item.value));
+  }
+  return out;
+}
+
+std::array<double, 2> pair(const case_key& key, const raw_value& raw) {
+  const auto* items = std::get_if<raw_value::list>(&raw.value);
+  if (items == nullptr || items->size() != 2)
+    refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+  return {finite_number((*items)[0], key.path, type_text(key.type)),
+          finite_number((*items)[1], key.path, type_text(key.type))};
+}
+
+}  // namespace
+
+case_value to_value(const case_key& key, const raw_value& raw, const case_config& so_far) {
+  const auto type_error = [&]() {
+    refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+  };
+  switch (key.type) {
+    case key_type::integer:
+      if (!std::holds_alternative<long>(raw.value)) type_error();
+      check_range(key, raw, static_cast<double>(std::get<long>(raw.value)));
+      return std::get<long>(raw.value);
+    case key_type::number:
+      return number(key, raw, key.path);
+    case key_type::text:
+      if (!std::holds_alternative<std::string>(raw.value)) type_error();
+      check_choice(key, raw, so_far);
+      return std::get<std::string>(raw.value);
+    case key_type::formula:
+      return formula(key, raw);
+    case key_type::text_list:
+      return texts(key, raw);
+    case key_type::number_pair:
+      return pair(key, raw);
+  }
+  return {};
+}
+
+}  // namespace apsis

@@ -1,0 +1,103 @@
+#include <apsis/config/case.hpp>
+#include <apsis/config/case_schema.hpp>
+#include <apsis/core/errors.hpp>
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+using namespace apsis;
+using testing::HasSubstr;
+
+TEST(cases, every_built_in_case_is_good_and_says_what_it_shows) {
+  const auto names = case_names();
+  ASSERT_GE(names.size(), 7U);
+  for (const auto& name : names) {
+    const case_config c = load_case(name);
+    EXPECT_EQ(c.source, name);
+    EXPECT_GT(c.title.size(), 10U) << name;
+    EXPECT_FALSE(c.model.initial.empty()) << name;
+  }
+}
+
+TEST(cases, the_mixed_regime_case_is_the_one_of_the_paper) {
+  const case_config c = load_case("paper/bgk-mixed");
+  EXPECT_EQ(c.model.name, "bgk");
+  EXPECT_EQ(c.model.initial, "mixed-v");
+  EXPECT_EQ(c.space.cells, 40);
+  EXPECT_EQ(c.space.domain, (std::array<double, 2>{0.0, 2.0}));
+  EXPECT_EQ(c.space.formulation, formulation::finite_volume);
+  EXPECT_EQ(c.space.limiter, "positivity");
+  EXPECT_EQ(c.velocity.points, 150);
+  EXPECT_EQ(c.velocity.max, 15.0);
+  EXPECT_EQ(c.time.end, 0.5);
+  EXPECT_EQ(*c.time.cfl, 1.0 / 24.0);
+  EXPECT_FALSE(c.time.dt || c.time.safety);
+  // The reference takes steps of about 7e-6 on 80 cells.
+  const case_config reference = load_case("paper/bgk-mixed-reference");
+  EXPECT_EQ(reference.space.cells, 80);
+  EXPECT_NEAR(*reference.time.cfl * (2.0 / 80) / 15.0, 7e-6, 1e-7);
+}
+
+TEST(cases, overrides_take_the_place_of_the_file) {
+  const case_config c =
+      load_case("paper/bgk-mixed", {"space.cells=80", "time.method=ssprk-2-2", "title=a \"b\" \\c",
+                                    "space.domain=[-1, 1]", "output.fields=[\"rho\"]", "time.dt=1e-4"});
+  EXPECT_EQ(c.space.cells, 80);
+  EXPECT_EQ(c.time.method, "ssprk-2-2");
+  EXPECT_EQ(c.title, "a \"b\" \\c");
+  EXPECT_EQ(c.space.domain, (std::array<double, 2>{-1.0, 1.0}));
+  EXPECT_EQ(c.output.fields, std::vector<std::string>{"rho"});
+  // A step rule on the command line replaces the one in the file.
+  EXPECT_EQ(*c.time.dt, 1e-4);
+  EXPECT_FALSE(c.time.cfl);
+}
+
+TEST(cases, a_missing_case_is_an_input_error_with_the_nearest_name) {
+  try {
+    load_case("paper/bgk-mixd");
+    FAIL();
+  } catch (const input_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("did you mean 'paper/bgk-mixed'?"));
+  }
+  EXPECT_THROW(load_case("/"), io_error);
+}
+
+TEST(cases, resolved_text_reads_back_to_the_same_case) {
+  for (const auto& name : case_names()) {
+    const case_config c = load_case(name);
+    const std::string text = to_toml(c);
+    EXPECT_EQ(to_toml(parse_case(text, "again")), text) << name;
+  }
+}
+
+RC_GTEST_PROP(cases, resolved_text_keeps_every_bit_of_random_values, ()) {
+  case_config c = load_case("paper/bgk-mixed");
+  const auto positive =
+      rc::gen::map(rc::gen::arbitrary<int>(), [](int k) { return 1e-9 + std::abs(k * 1.2345678e-7); });
+  c.time.cfl = *positive;
+  c.time.end = *positive;
+  c.velocity.max = *positive;
+  c.space.domain = {-*positive, *positive};
+  c.space.cells = *rc::gen::inRange(1, 1000);
+  c.title = *rc::gen::container<std::string>(rc::gen::inRange<char>(1, 126));
+  const case_config again = parse_case(to_toml(c), "again");
+  RC_ASSERT(again.time.cfl == c.time.cfl);
+  RC_ASSERT(again.time.end == c.time.end);
+  RC_ASSERT(again.velocity.max == c.velocity.max);
+  RC_ASSERT(again.space.domain == c.space.domain);
+  RC_ASSERT(again.space.cells == c.space.cells);
+  RC_ASSERT(again.title == c.title);
+}
+
+TEST(schema, documents_every_key_with_its_default) {
+  const std::string text = schema_text();
+  for (const case_key& key : case_schema()) {
+    EXPECT_FALSE(key.doc.empty()) << key.path;
+    EXPECT_THAT(text, HasSubstr(key.path.substr(key.path.find('.') + 1))) << key.path;
+  }
+  EXPECT_THAT(text, HasSubstr("velocity_dimensions"));
+  EXPECT_THAT(text, HasSubstr("weno5-z"));
+}

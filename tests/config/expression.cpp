@@ -1,0 +1,88 @@
+#include <apsis/config/expression.hpp>
+
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+using apsis::expression;
+using apsis::input_error;
+using testing::HasSubstr;
+
+namespace {
+
+std::string message_of(const std::string& text) {
+  try {
+    expression parsed(text, {"file", 3, 10});
+    parsed.evaluate(0.5);
+  } catch (const input_error& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST(expression, agrees_with_the_formula_of_the_mixed_regime) {
+  const expression epsilon("1e-5 + tanh(1 - 11*(x - 1)) + tanh(1 + 11*(x - 1))");
+  EXPECT_TRUE(epsilon.depends_on_x());
+  // The same sum as a quotient, tanh a + tanh b = sinh(a + b)/(cosh a cosh b): a formula that shares no
+  // operation.
+  for (double x = 0.0; x <= 2.0; x += 0.01) {
+    const double y = 11.0 * (x - 1.0);
+    const double exact = 1e-5 + std::sinh(2.0) / (std::cosh(1.0 - y) * std::cosh(1.0 + y));
+    // Both terms are at most 1: a few roundings of 1.1e-16 each.
+    EXPECT_NEAR(epsilon.evaluate(x), exact, 1e-15);
+  }
+}
+
+TEST(expression, has_the_precedence_and_constants_of_mathematics) {
+  EXPECT_DOUBLE_EQ(expression("2 + 3 * 2^2").evaluate(0), 14.0);
+  EXPECT_DOUBLE_EQ(expression("10 - 2 - 3").evaluate(0), 5.0);
+  EXPECT_DOUBLE_EQ(expression("4 - -x").evaluate(3), 7.0);
+  EXPECT_DOUBLE_EQ(expression("log(e) + sin(pi/2) + log10(100)").evaluate(0), 4.0);
+  EXPECT_DOUBLE_EQ(expression("x < 1 ? 2 : 3").evaluate(0.5), 2.0);
+  EXPECT_DOUBLE_EQ(expression("x == 1 ? 2 : 3").evaluate(1.0), 2.0);
+  EXPECT_DOUBLE_EQ(expression("max(min(x, 2), 1)").evaluate(5.0), 2.0);
+  EXPECT_FALSE(expression("1e-3").depends_on_x());
+}
+
+RC_GTEST_PROP(expression, reads_every_nonnegative_number_back, (double x)) {
+  RC_PRE(std::isfinite(x) && x >= 0.0);
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  RC_ASSERT(expression(text).evaluate(0.0) == x);
+}
+
+RC_GTEST_PROP(expression, random_text_is_a_formula_or_an_input_error, ()) {
+  const auto text = *rc::gen::container<std::string>(
+      rc::gen::elementOf(std::string("x0123.+-*/^()<>=?:!&|, esinxpabqrt\"\n")));
+  try {
+    expression(text).evaluate(0.3);
+  } catch (const input_error& e) {
+    RC_ASSERT(std::string(e.what()).size() > 10);
+  }
+}
+
+TEST(expression, points_to_the_character_that_is_wrong) {
+  EXPECT_THAT(message_of("1 + y"), HasSubstr("file:3:14: "));
+  EXPECT_THAT(message_of("1 + y"), HasSubstr("unknown name 'y'"));
+  EXPECT_THAT(message_of("1 + sinn(x)"), HasSubstr("did you mean 'sin'?"));
+  EXPECT_THAT(message_of("x = 2"), HasSubstr("file:3:12: "));
+  EXPECT_THAT(message_of("x = 2"), HasSubstr("an assignment"));
+  EXPECT_THAT(message_of("1, 2"), HasSubstr("a comma outside a function"));
+  EXPECT_THAT(message_of("1 \x01"), HasSubstr("0x01"));
+  EXPECT_THAT(message_of("(1 + x"), HasSubstr("parenthesis"));
+  EXPECT_THAT(message_of("1 +"), HasSubstr("ends too early"));
+  EXPECT_THAT(message_of(""), HasSubstr("empty"));
+  EXPECT_THAT(message_of(std::string(2000, '1')), HasSubstr("2000 characters"));
+}
+
+TEST(expression, refuses_values_that_are_no_knudsen_number) {
+  EXPECT_THAT(message_of("x - 1"), HasSubstr("is -0.5 at x = 0.5"));
+  EXPECT_THAT(message_of("1/(x - 0.5)"), HasSubstr("inf"));
+  EXPECT_THAT(message_of("sqrt(x - 1)"), HasSubstr("nan"));
+  EXPECT_THAT(message_of("exp(10000*x)"), HasSubstr("inf"));
+}

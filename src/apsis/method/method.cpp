@@ -56,7 +56,8 @@ Real on_grid(const mp_real& x) {
   }
 }
 
-/// Sets the weights of row i of P and W; if exactly nothing is left for u^n, nothing is left in Real either.
+/// Sets the weights of row i of P and W; if exactly nothing is left for u^n, nothing is left in Real
+/// either, and never less than nothing.
 template <class Real>
 void set_row(const shu_osher_form<std::string>& exact, std::size_t i, const mp_real& nothing,
              shu_osher_form<Real>& m) {
@@ -77,7 +78,7 @@ void set_row(const shu_osher_form<std::string>& exact, std::size_t i, const mp_r
     set(exact.P(i, j), m.P(i, j));
     set(exact.W(i, j), m.W(i, j));
   }
-  if (abs(rest) <= nothing && largest != nullptr) *largest += left;
+  if ((abs(rest) <= nothing || (rest > 0 && left < 0)) && largest != nullptr) *largest += left;
 }
 
 }  // namespace

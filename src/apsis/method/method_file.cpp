@@ -11,6 +11,7 @@
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
+#include <apsis/method/monotonicity.hpp>
 
 namespace apsis {
 namespace {
@@ -223,21 +224,75 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   for (std::size_t i = 0; i < s; ++i) e.D(i, i) = d[i];
 }
 
-/// Butcher form: kept as it is with R = I where that is a Shu–Osher form (no A_hat, no off-diagonal A_dot),
-/// else refused, because the weights of the stages would have to be guessed.
+/// A coefficient that was computed, to as many decimals as the file carries.
+std::string written(const mp_real& value, int digits) {
+  return abs(value) < mp_real(1e-48) ? "0" : value.str(digits, std::ios_base::fixed);
+}
+
+/// The Shu–Osher form that the paper's class requires, or the canonical one of an explicit method (P = 0).
+shu_osher_form<mp_real> shu_osher_of(const butcher_form<mp_real>& b, method_kind kind, const mp_real& zero,
+                                     std::string& reason) {
+  const std::size_t s = b.stages();
+  if (kind == method_kind::explicit_only) {
+    const mp_real r = monotonicity_radius(b.A_hat, zero);
+    auto shifted = matrix<mp_real>::identity(s);
+    for (std::size_t i = 0; i < s; ++i)
+      for (std::size_t j = 0; j < i; ++j) shifted(i, j) = r * b.A_hat(i, j);
+    if (r > zero) return to_shu_osher(b, inverse_lower(shifted), r);
+    reason = "its radius of absolute monotonicity is 0";
+    return {};
+  }
+  const auto analysis = analyse_imex(b, zero);
+  const auto R = stage_matrix(b, zero, reason);
+  if (R && analysis.exists) return to_shu_osher(b, *R, analysis.bounded ? analysis.coefficient : mp_real(1));
+  reason = analysis.forbids;
+  return {};
+}
+
+/// Butcher form. A tableau A alone is a Shu–Osher form with R = I; otherwise the convex form is derived.
 void read_butcher(const toml::table& table, const std::string& file, method& m) {
-  const section form(table, file, "butcher", {"A"});
-  if (m.kind != method_kind::implicit_only)
-    form.fail(
-        "A",
-        "[butcher] describes implicit methods only (for the others the Shu-Osher form is the definition of "
-        "what is convex); give [shu_osher]");
-  const std::size_t s = form.row_count("A");
+  const bool is_explicit = m.kind == method_kind::explicit_only;
+  std::vector<std::string> keys;
+  if (m.kind != method_kind::implicit_only) keys.emplace_back("A_hat");
+  if (!is_explicit) keys.insert(keys.end(), {"A", "A_dot"});
+  const section form(table, file, "butcher", keys);
+  const std::string first = is_explicit ? "A_hat" : "A";
+  const std::size_t s = form.row_count(first);
   auto& e = m.exact;
   e.P = e.W = e.D = zeros(s);
   e.ddot.assign(s, "0");
   e.r = "1";
-  form.triangle("A", 1, e.D);
+  auto A_hat = zeros(s), A_dot = zeros(s);
+  if (m.kind != method_kind::implicit_only) form.triangle("A_hat", 0, A_hat);
+  if (!is_explicit) form.triangle("A", 1, e.D);
+  if (form.has("A_dot")) form.triangle("A_dot", 1, A_dot);
+  if (m.kind == method_kind::implicit_only && !form.has("A_dot")) return;
+
+  butcher_form<mp_real> b{matrix<mp_real>(s, s), matrix<mp_real>(s, s), matrix<mp_real>(s, s)};
+  int digits = 0;
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      for (const auto& text : {A_hat(i, j), e.D(i, j), A_dot(i, j)})
+        digits = std::max(digits, decimals(text));
+      b.A_hat(i, j) = coefficient_value(A_hat(i, j));
+      b.A(i, j) = coefficient_value(is_explicit ? A_hat(i, j) : e.D(i, j));
+      b.A_dot(i, j) = coefficient_value(A_dot(i, j));
+    }
+  const mp_real zero = digits > 0 ? pow(mp_real(10), 3 - digits) : mp_real(1e-50);
+  digits = digits > 0 ? std::min(digits, 50) : 50;
+  std::string reason;
+  const auto convex = shu_osher_of(b, m.kind, zero, reason);
+  if (convex.stages() == 0)
+    form.fail(first, fmt::format("[butcher] has no convex Shu-Osher form ({}) give [shu_osher]", reason));
+  e.r = written(convex.r, digits);
+  for (std::size_t i = 0; i < s; ++i) {
+    e.ddot[i] = written(convex.ddot[i], digits);
+    for (std::size_t j = 0; j < s; ++j) {
+      e.P(i, j) = written(convex.P(i, j), digits);
+      e.W(i, j) = written(convex.W(i, j), digits);
+      e.D(i, j) = i == j && !is_explicit ? written(convex.D(i, j), digits) : "0";
+    }
+  }
 }
 
 }  // namespace

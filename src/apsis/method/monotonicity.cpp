@@ -119,6 +119,15 @@ ssp_analysis analyse_imex(const butcher_form<mp_real>& b, const mp_real& zero) {
   return result;
 }
 
+std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, const mp_real& zero,
+                                            std::string& reason) {
+  std::vector<bool> merged(b.stages());
+  for (std::size_t j = 0; j + 1 < b.stages(); ++j) merged[j] = is_initial(b, j, zero);
+  const auto inverse = inverse_of_R(b, merged, zero, reason);
+  if (!inverse) return std::nullopt;
+  return inverse_lower(*inverse);
+}
+
 mp_real monotonicity_radius(const matrix<mp_real>& tableau, const mp_real& zero) {
   const std::size_t s = tableau.rows();
   const auto monotone = [&](const mp_real& r) {

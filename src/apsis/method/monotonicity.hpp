@@ -3,6 +3,7 @@
 #include <apsis/method/precision.hpp>
 #include <apsis/method/tableau.hpp>
 
+#include <optional>
 #include <string>
 
 namespace apsis {
@@ -20,6 +21,10 @@ struct ssp_analysis {
 /// and r = min −R_ij/(RÂ)_ij over (RÂ)_ij > 0, if Re ≥ 0, RÂ ≥ 0, RA and RȦ are diagonal with signs ≥ 0 and ≤
 /// 0. A first stage that is u^n itself is merged with u^n. Entries below `zero` count as 0.
 ssp_analysis analyse_imex(const butcher_form<mp_real>& b, const mp_real& zero);
+
+/// The R of that class, if there is one; else nothing, and in `reason` the entry that forbids it.
+std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, const mp_real& zero,
+                                            std::string& reason);
 
 /// Radius of absolute monotonicity of one tableau K whose last row is the update (Kraaijevanger, BIT 31,
 /// 1991): the largest r with K(I + rK)⁻¹ ≥ 0 and (I + rK)⁻¹ e ≥ 0. The SSP coefficient of an explicit method,

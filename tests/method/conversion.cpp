@@ -1,0 +1,51 @@
+// The Shu–Osher forms of the catalogue come back from their Butcher forms; random forms are in
+// properties.cpp.
+#include "tableaux.hpp"
+
+#include <gtest/gtest.h>
+
+namespace apsis::test {
+namespace {
+
+void expect_same(const shu_osher_form<mp_real>& a, const shu_osher_form<mp_real>& b,
+                 const std::string& name) {
+  // Sixty digits, of which two triangular inverses of order 1 lose a few.
+  const mp_real rounding("1e-55");
+  EXPECT_EQ(a.r, b.r) << name;
+  for (std::size_t i = 0; i < a.stages(); ++i) {
+    EXPECT_LT(abs(a.ddot[i] - b.ddot[i]), rounding) << name << i;
+    for (std::size_t j = 0; j <= i; ++j) {
+      EXPECT_LT(abs(a.P(i, j) - b.P(i, j)), rounding) << name << i << j;
+      EXPECT_LT(abs(a.W(i, j) - b.W(i, j)), rounding) << name << i << j;
+      EXPECT_LT(abs(a.D(i, j) - b.D(i, j)), rounding) << name << i << j;
+    }
+  }
+}
+
+TEST(conversion, brings_every_method_of_the_catalogue_back) {
+  for (const auto& name : method_names()) {
+    const auto form = find_method(name).coefficients<mp_real>();
+    auto R = matrix<mp_real>::identity(form.stages());
+    for (std::size_t i = 0; i < form.stages(); ++i)
+      for (std::size_t j = 0; j < i; ++j) R(i, j) = -form.P(i, j) - form.W(i, j);
+    expect_same(to_shu_osher(to_butcher(form), R, form.r), form, name);
+  }
+}
+
+TEST(conversion, finds_the_form_of_the_methods_of_the_paper_without_knowing_R) {
+  // D and Ḋ are diagonal, so each column of A = R⁻¹D or of Ȧ = R⁻¹Ḋ is a multiple of the column of R⁻¹.
+  for (const std::string name : {"imdrk-1-2", "imdrk-2-3", "imdrk-5-4", "md-imex-3-2", "md-imex-6-3"}) {
+    const auto form = find_method(name).coefficients<mp_real>();
+    const auto b = to_butcher(form);
+    auto inverse = matrix<mp_real>::identity(b.stages());
+    for (std::size_t j = 0; j < b.stages(); ++j) {
+      const auto& source = b.A(j, j) != 0 ? b.A : b.A_dot;
+      ASSERT_NE(source(j, j), 0) << name << j;
+      for (std::size_t i = j + 1; i < b.stages(); ++i) inverse(i, j) = source(i, j) / source(j, j);
+    }
+    expect_same(to_shu_osher(b, inverse_lower(inverse), form.r), form, name);
+  }
+}
+
+}  // namespace
+}  // namespace apsis::test

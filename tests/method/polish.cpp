@@ -108,14 +108,18 @@ TEST_P(printed_digits, move_hardly_more_than_they_must) {
     const mp_real moved = distance(polished, before);
     largest = std::max(largest, moved);
     EXPECT_LE(moved, mp_real(at_most) * unit) << before << " became " << polished;
-    if (decimals(before) == 0) EXPECT_EQ(polished, before) << "an exact coefficient has moved";
+    if (decimals(before) == 0) {
+      EXPECT_EQ(polished, before) << "an exact coefficient has moved";
+    }
   }
   // The reported move is that of the unrounded coefficients.
   EXPECT_LT(abs(largest - result.largest_move), mp_real("1e-44"));
   // What duality forbids lies below what was found, and close to it: the polished method is all but the
   // nearest one.
   EXPECT_GE(result.smallest_possible_move, mp_real(at_least) * unit);
-  EXPECT_LE(result.smallest_possible_move, result.largest_move);
+  // The bound is that of the linearised conditions; moves of 1e-15 change gradients by about as much,
+  // relatively.
+  EXPECT_LE(result.smallest_possible_move, result.largest_move * mp_real(1 + 1e-12));
 }
 
 // For the third-order IMEX method no coefficients within one unit of all printed digits satisfy the
@@ -123,8 +127,8 @@ TEST_P(printed_digits, move_hardly_more_than_they_must) {
 INSTANTIATE_TEST_SUITE_P(paper, printed_digits,
                          ::testing::Values(expected_move{"imdrk-5-4", printed_imdrk_5_4, 0.72, 0.70},
                                            expected_move{"md-imex-6-3", printed_md_imex_6_3, 1.08, 1.07}),
-                         [](const auto& info) {
-                           return info.param.name == "imdrk-5-4" ? "imdrk_5_4" : "md_imex_6_3";
+                         [](const auto& each) {
+                           return each.param.name == "imdrk-5-4" ? "imdrk_5_4" : "md_imex_6_3";
                          });
 
 }  // namespace

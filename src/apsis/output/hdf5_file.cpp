@@ -191,12 +191,11 @@ double hdf5_file::read_attribute(const std::string& name) const {
 
 std::vector<std::pair<std::string, double>> hdf5_file::attributes() const {
   std::vector<std::pair<std::string, double>> all;
-  const int count = H5Aget_num_attrs(id_);
-  for (int k = 0; k < count; ++k) {
-    const handle attribute(H5Aopen_by_idx(id_, ".", H5_INDEX_NAME, H5_ITER_INC, static_cast<hsize_t>(k),
-                                          H5P_DEFAULT, H5P_DEFAULT),
+  for (hsize_t k = 0;; ++k) {
+    const handle attribute(H5Aopen_by_idx(id_, ".", H5_INDEX_NAME, H5_ITER_INC, k, H5P_DEFAULT, H5P_DEFAULT),
                            H5Aclose);
-    if (!attribute.good()) fail("its attributes cannot be read (damaged file) give another file");
+    // Opening fails behind the last one, in every version of the library alike.
+    if (!attribute.good()) return all;
     const handle type(H5Aget_type(attribute), H5Tclose);
     const handle space(H5Aget_space(attribute), H5Sclose);
     if (H5Tget_class(type) != H5T_FLOAT || H5Sget_simple_extent_npoints(space) != 1) continue;
@@ -207,7 +206,6 @@ std::vector<std::pair<std::string, double>> hdf5_file::attributes() const {
       fail("its attributes cannot be read (damaged file) give another file");
     all.emplace_back(name.data(), value);
   }
-  return all;
 }
 
 }  // namespace apsis

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace app_test {
+
+struct outcome {
+  int code = -1;  ///< exit code; 1000 + signal if a signal ended the program
+  std::string out, err;
+};
+
+/// A folder of its own for one test, removed at its end.
+class work_folder {
+ public:
+  work_folder();
+  ~work_folder();
+  work_folder(const work_folder&) = delete;
+  work_folder& operator=(const work_folder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::string file(const std::string& name, const std::string& text) const;
+  /// Every path below, sorted, with sizes: two listings are equal if nothing was left behind.
+  std::vector<std::string> listing() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The program, started in `folder`, with its output in files beside it.
+class process {
+ public:
+  process(const work_folder& folder, const std::vector<std::string>& arguments);
+  void send(int signal) const;
+  outcome wait();
+
+ private:
+  std::filesystem::path capture_;
+  pid_t id_;
+};
+
+outcome run_apsis(const work_folder& folder, const std::vector<std::string>& arguments);
+
+std::string read(const std::filesystem::path& path);
+
+}  // namespace app_test

@@ -1,0 +1,207 @@
+#include "program.hpp"
+
+#include <apsis/output/hdf5_file.hpp>
+#include <chrono>
+#include <csignal>
+#include <sstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+using namespace app_test;
+using nlohmann::json;
+using testing::HasSubstr;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Large enough for hundreds of steps, small enough for a second.
+const std::vector<std::string> small = {"run", "paper/bgk-mixed", "space.cells=20", "velocity.points=100"};
+
+std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
+void expect_same_results(const fs::path& a, const fs::path& b) {
+  for (const std::string name : {"history.csv", "fields.csv", "solution.h5", "solution.xdmf"}) {
+    ASSERT_FALSE(read(a / name).empty()) << name;
+    EXPECT_TRUE(read(a / name) == read(b / name)) << name;
+  }
+}
+
+}  // namespace
+
+TEST(results, json_is_one_object_and_the_only_output) {
+  const work_folder folder;
+  const outcome result = run_apsis(folder, with(small, {"time.end=0.005", "--json"}));
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json object = json::parse(result.out);
+  for (const std::string key :
+       {"case", "method", "steps", "dt", "t", "wall_s", "min_value", "negative_values", "conservation_defect",
+        "max_entropy_increase", "phase_points", "point_stages_per_s", "fields"})
+    EXPECT_TRUE(object.contains(key)) << key;
+  EXPECT_EQ(object["t"].get<double>(), 0.005);
+  EXPECT_EQ(object["phase_points"].get<long>(), 20 * 100);
+  EXPECT_EQ(object["negative_values"].get<long>(), 0);
+  for (const std::string field : {"x", "rho", "u", "T"})
+    EXPECT_EQ(object["fields"][field].size(), 20U) << field;
+  EXPECT_FALSE(object.contains("state"));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(results, the_state_of_an_ode_is_printed_with_every_digit) {
+  const work_folder folder;
+  const outcome result =
+      run_apsis(folder, {"run", "paper/decay", "time.method=imdrk-1-2", "time.dt=2.0", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const double u = json::parse(result.out)["state"][0].get<double>();
+  // One step of u = 10 - dt 10 u² - dt²/2 200 u³ with dt = 2. The residual is the sum of terms of size 10, so
+  // some roundings of 1e-15.
+  EXPECT_NEAR(10.0 - 20.0 * u * u - 400.0 * u * u * u - u, 0.0, 1e-13);
+}
+
+TEST(results, files_agree_with_each_other) {
+  const work_folder folder;
+  ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.004", "output.every=0.002", "--out", "o"})).code, 0);
+  const json manifest = json::parse(read(folder.path() / "o/manifest.json"));
+  EXPECT_EQ(manifest["state"], "complete");
+  EXPECT_EQ(manifest["case"]["space"]["cells"], 20);
+  const auto history = lines(read(folder.path() / "o/history.csv"));
+  EXPECT_EQ(history[0],
+            "step,t,dt,min_value,negative_values,conservation_mass,conservation_momentum,conservation_energy,"
+            "entropy,"
+            "entropy_change");
+  // A header, the initial state, and every step.
+  EXPECT_EQ(history.size(), 2 + manifest["result"]["steps"].get<std::size_t>());
+  const auto fields = lines(read(folder.path() / "o/fields.csv"));
+  EXPECT_EQ(fields[0], "t,x,rho,u,T");
+  EXPECT_EQ(fields.size(), 1U + 3 * 20);
+
+  const auto file = apsis::hdf5_file::open((folder.path() / "o/solution.h5").string());
+  EXPECT_EQ(file.extents("f"), (apsis::hdf5_file::shape{20, 100}));
+  const auto f = file.read("f"), v = file.read("v"), rho = file.read("fields/rho"), x = file.read("x");
+  EXPECT_EQ(file.extents("snapshots/rho"), (apsis::hdf5_file::shape{3, 20}));
+  const double dv = v[1] - v[0];
+  for (std::size_t cell = 0; cell < 20; ++cell) {
+    double mass = 0.0;
+    for (std::size_t k = 0; k < 100; ++k) mass += f[cell * 100 + k] * dv;
+    EXPECT_NEAR(mass, rho[cell], 1e-13);  // sums of a hundred terms below 1, in another order
+    double csv_t = 0, csv_x = 0, csv_rho = 0;
+    ASSERT_EQ(std::sscanf(fields[41 + cell].c_str(), "%lf,%lf,%lf", &csv_t, &csv_x, &csv_rho), 3);
+    EXPECT_EQ(csv_x, x[cell]);
+    EXPECT_EQ(csv_rho, rho[cell]);
+  }
+  EXPECT_THAT(read(folder.path() / "o/solution.xdmf"), HasSubstr("Dimensions=\"1 20 100\""));
+}
+
+TEST(results, two_runs_and_any_number_of_threads_give_the_same_bits) {
+  const work_folder folder;
+  ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.005", "--out", "a"})).code, 0);
+  ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.005", "--out", "b"})).code, 0);
+  ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.005", "--out", "c", "--threads", "3"})).code, 0);
+  expect_same_results(folder.path() / "a", folder.path() / "b");
+  expect_same_results(folder.path() / "a", folder.path() / "c");
+}
+
+TEST(results, only_chosen_fields_are_written) {
+  const work_folder folder;
+  ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.001", "output.fields=[\"T\"]", "--out", "o"})).code,
+            0);
+  EXPECT_EQ(lines(read(folder.path() / "o/fields.csv"))[0], "x,T");
+}
+
+class interruption : public testing::TestWithParam<int> {};
+
+TEST_P(interruption, gives_130_and_a_checkpoint_that_goes_on_bit_for_bit) {
+  const work_folder folder;
+  // The run must still be going when the signal comes, and the continuation be short: stop early, then end a
+  // little later than the checkpoint.
+  process run(folder, with(small, {"time.end=50.0", "output.every=0.01", "--out", "stopped"}));
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  run.send(GetParam());
+  const outcome stopped = run.wait();
+  ASSERT_EQ(stopped.code, 130) << stopped.err;
+  const json manifest = json::parse(read(folder.path() / "stopped/manifest.json"));
+  EXPECT_EQ(manifest["state"], "interrupted");
+  const double t = manifest["result"]["t"].get<double>();
+  ASSERT_GT(t, 0.0);
+  const std::string end = "time.end=" + std::to_string(t + 0.02);
+  const outcome resumed = run_apsis(folder, with(small, {end, "output.every=0.01", "--restart",
+                                                         "stopped/checkpoint.h5", "--out", "resumed"}));
+  ASSERT_EQ(resumed.code, 0) << resumed.err;
+  ASSERT_EQ(run_apsis(folder, with(small, {end, "output.every=0.01", "--out", "whole"})).code, 0);
+  expect_same_results(folder.path() / "whole", folder.path() / "resumed");
+}
+
+INSTANTIATE_TEST_SUITE_P(signals, interruption, testing::Values(SIGINT, SIGTERM));
+
+TEST(results, the_wall_time_ends_a_run_like_an_interrupt) {
+  const work_folder folder;
+  const outcome result = run_apsis(folder, with(small, {"time.end=50.0", "--wall", "0.3", "--out", "o"}));
+  EXPECT_EQ(result.code, 130) << result.err;
+  EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["state"], "wall time reached");
+  EXPECT_TRUE(fs::exists(folder.path() / "o/checkpoint.h5"));
+}
+
+TEST(results, a_checkpoint_of_another_case_or_a_damaged_one_is_refused) {
+  const work_folder folder;
+  ASSERT_EQ(run_apsis(folder, with(small, {"time.end=50.0", "--wall", "0.2", "--out", "o"})).code, 130);
+  const outcome other = run_apsis(folder, {"run", "paper/bgk-mixed", "space.cells=24", "velocity.points=100",
+                                           "--restart", "o/checkpoint.h5"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("'cells = 20' there, 'cells = 24' here"));
+  const std::string whole = read(folder.path() / "o/checkpoint.h5");
+  for (std::size_t part = 0; part < 20; ++part) {
+    const auto size = whole.size() * part / 20;
+    folder.file("cut.h5", whole.substr(0, size));
+    const outcome cut = run_apsis(folder, with(small, {"--restart", "cut.h5", "--out", "p"}));
+    EXPECT_EQ(cut.code, 4) << part << ": " << cut.err;
+    EXPECT_FALSE(fs::exists(folder.path() / "p"));
+  }
+}
+
+TEST(results, lists_and_certificates_are_json) {
+  const work_folder folder;
+  for (const std::string what : {"methods", "models", "cases", "schemes"}) {
+    const outcome result = run_apsis(folder, {"list", what, "--json"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const json all = json::parse(result.out);
+    ASSERT_TRUE(all.is_array());
+    EXPECT_GE(all.size(), 3U) << what;
+    const outcome text = run_apsis(folder, {"list", what});
+    for (const auto& item : all) EXPECT_THAT(text.out, HasSubstr(item["name"].get<std::string>()));
+  }
+  for (const auto& m : json::parse(run_apsis(folder, {"list", "methods", "--json"}).out)) {
+    const std::string name = m["name"].get<std::string>();
+    EXPECT_EQ(json::parse(run_apsis(folder, {"check", name, "--json"}).out), m);
+    EXPECT_TRUE(m["claims_hold"].get<bool>());
+    const json shown = json::parse(run_apsis(folder, {"show", name, "--format", "json"}).out);
+    EXPECT_EQ(shown["A"].size(), shown["stages"].get<std::size_t>());
+    // The file that `show` writes is the method again.
+    folder.file("m.toml", run_apsis(folder, {"show", name, "--format", "toml"}).out);
+    EXPECT_EQ(json::parse(run_apsis(folder, {"check", "m.toml", "--json"}).out), m);
+    EXPECT_EQ(run_apsis(folder, {"show", name, "--format", "latex"}).code, 0);
+  }
+  EXPECT_EQ(run_apsis(folder, {"info", "--json"}).code, 0);
+  EXPECT_THAT(run_apsis(folder, {"show", "case"}).out, HasSubstr("checkpoint_every"));
+  EXPECT_THAT(run_apsis(folder, {"show", "paper/decay"}).out, HasSubstr("imdrk-2-3"));
+}
+
+TEST(results, a_full_output_device_is_an_output_error) {
+  const work_folder folder;
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  folder.file("go.sh", std::string("exec \"") + APSIS_PROGRAM + "\" list models > /dev/full");
+  const int status = std::system(("sh " + (folder.path() / "go.sh").string() + " 2>/dev/null").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 4);
+}

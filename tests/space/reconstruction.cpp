@@ -23,8 +23,8 @@ edges edges_of(const reconstruction& scheme, const std::vector<double>& cells) {
   return e;
 }
 
-/// Largest edge error for cell averages of f(x) = exp(sin 2πx) on n cells of [0, 1], where the exact averages come
-/// from a ten times finer Simpson rule (error below 1e-15 here).
+/// Largest edge error for cell averages of f(x) = exp(sin 2πx) on n cells of [0, 1], where the exact averages
+/// come from a ten times finer Simpson rule (error below 1e-15 here).
 double edge_error(const reconstruction& scheme, int n) {
   const auto f = [](double x) { return std::exp(std::sin(2.0 * std::numbers::pi * x)); };
   const double h = 1.0 / n;
@@ -53,8 +53,8 @@ double edge_error(const reconstruction& scheme, int n) {
 TEST(reconstruction, every_scheme_reaches_its_order_at_the_edges) {
   for (const auto* entry : apsis::reconstruction_entries()) {
     const auto scheme = entry->make();
-    // Jiang–Shu weights lose order near smooth extrema in the maximum norm until 1e-6 dominates β, that is on fine
-    // meshes; 80 → 160 cells is fine enough for both.
+    // Jiang–Shu weights lose order near smooth extrema in the maximum norm until 1e-6 dominates β, that is on
+    // fine meshes; 80 → 160 cells is fine enough for both.
     const double slope = std::log2(edge_error(*scheme, 80) / edge_error(*scheme, 160));
     EXPECT_GT(slope, scheme->order() - 0.25) << entry->name;
   }
@@ -87,7 +87,8 @@ TEST(reconstruction, tiny_data_fall_back_to_the_linear_weights) {
     const std::vector<double> shape = {1.0, 0.9, 0.7, 0.65, 0.2};
     std::vector<double> cells;
     for (const double s : shape) cells.push_back(s * 1e-150);
-    const double expected = (2 * shape[0] - 13 * shape[1] + 47 * shape[2] + 27 * shape[3] - 3 * shape[4]) / 60.0;
+    const double expected =
+        (2 * shape[0] - 13 * shape[1] + 47 * shape[2] + 27 * shape[3] - 3 * shape[4]) / 60.0;
     EXPECT_NEAR(edges_of(*scheme, cells).right / 1e-150, expected, 1e-14) << name;
   }
 }

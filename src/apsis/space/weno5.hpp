@@ -11,6 +11,7 @@ namespace apsis::weno5 {
 /// edge by mirror symmetry.
 struct smoothness {
   double s0, s1, s2;
+  double mean_square;  ///< of the five values
 };
 
 inline smoothness indicators(double a, double b, double c, double d, double e) {
@@ -18,7 +19,8 @@ inline smoothness indicators(double a, double b, double c, double d, double e) {
   const double x1 = b - 2 * c + d, y1 = b - d;
   const double x2 = c - 2 * d + e, y2 = 3 * c - 4 * d + e;
   constexpr double q = 13.0 / 12.0;
-  return {q * x0 * x0 + 0.25 * y0 * y0, q * x1 * x1 + 0.25 * y1 * y1, q * x2 * x2 + 0.25 * y2 * y2};
+  return {q * x0 * x0 + 0.25 * y0 * y0, q * x1 * x1 + 0.25 * y1 * y1, q * x2 * x2 + 0.25 * y2 * y2,
+          0.2 * (a * a + b * b + c * c + d * d + e * e)};
 }
 
 /// β_k + δ divided by the largest of them, and kept above 1e-40: products of four of these neither overflow

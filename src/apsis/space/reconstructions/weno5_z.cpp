@@ -14,7 +14,9 @@ class weno5_z final : public reconstruction {
   int order() const override { return 5; }
   void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
     weno5::sweep(rows, count, width, left, right, [](const weno5::smoothness& s) {
-      constexpr double delta = 1e-200;  // only data below 1e-100 notice it
+      // Relative to the data, so that the scheme does not change with their scale: variations below a
+      // thousandth of the local size count as smooth, also where the first two derivatives vanish together.
+      const double delta = 1e-6 * s.mean_square + 1e-200;
       const auto [y0, y1, y2, per_largest] = weno5::scale(s, delta);
       const double tau = (s.s0 - s.s2) * per_largest;
       const double t = tau * tau, z0 = y0 * y0, z1 = y1 * y1, z2 = y2 * y2;

@@ -1,0 +1,242 @@
+#include "cases.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/parallel.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace {
+using apsis::formulation;
+constexpr formulation both[] = {formulation::finite_volume, formulation::finite_difference};
+}  // namespace
+
+TEST(promises, no_negative_value_at_safety_one_for_any_epsilon) {
+  for (const auto how : both) {
+    for (const char* method : {"md-imex-3-2", "md-imex-6-3"}) {
+      for (const char* epsilon : {"0", "1e-12", "1e-6", "1e-2", "1", "1e4", "1e12", "x < 1 ? 0 : 1e12"}) {
+        auto c = small(method, how);
+        c.time.cfl.reset();
+        c.time.safety = 1.0;
+        c.model.epsilon = epsilon;
+        apsis::simulation run(c);
+        ASSERT_TRUE(run.promises().positivity);
+        finish(run);
+        EXPECT_EQ(run.summary().negative_values, 0) << method << " " << epsilon;
+        EXPECT_LE(run.summary().conservation_defect, 1e-12) << method << " " << epsilon;
+      }
+    }
+  }
+}
+
+TEST(promises, beyond_the_limit_nothing_is_promised_and_values_do_become_negative) {
+  // First-order upwind and almost no collisions: a forward Euler step of twice Δt_FE is a negative weight of
+  // the cell.
+  auto c = small("md-imex-3-2", formulation::finite_difference);
+  c.space.reconstruction = "upwind1";
+  c.space.limiter = "none";
+  c.model.epsilon = "1e12";
+  c.time.cfl.reset();
+  c.time.safety = 2.5;
+  c.time.end = 2.0;
+  apsis::simulation run(c);
+  EXPECT_FALSE(run.promises().positivity);
+  long negative = 0;
+  try {
+    finish(run);
+    negative = run.summary().negative_values;
+  } catch (const apsis::numerical_error&) {
+    negative = 1;  // no temperature any more: negative enough
+  }
+  EXPECT_GT(negative, 0);
+}
+
+TEST(promises, entropy_decays_with_first_order_upwind_for_any_epsilon) {
+  for (const char* method : {"md-imex-3-2", "md-imex-6-3"}) {
+    for (const char* epsilon : {"0", "1e-12", "1e-4", "1", "1e12"}) {
+      auto c = small(method, formulation::finite_volume);
+      c.space.reconstruction = "upwind1";
+      c.time.cfl.reset();
+      c.time.safety = 1.0;
+      c.time.end = 0.3;
+      c.model.epsilon = epsilon;
+      apsis::simulation run(c);
+      ASSERT_TRUE(run.promises().entropy);
+      const double start = run.initial_record().entropy;
+      finish(run);
+      EXPECT_LE(run.summary().max_entropy_increase, 1e-14 * std::abs(start)) << method << " " << epsilon;
+      EXPECT_LT(run.last().entropy, start) << "the test would show nothing if nothing decayed";
+    }
+  }
+}
+
+TEST(promises, are_decided_from_the_configuration) {
+  auto c = small("md-imex-3-2", formulation::finite_volume);
+  EXPECT_TRUE(apsis::simulation(c).promises().positivity);
+  EXPECT_FALSE(apsis::simulation(c).promises().entropy);
+  c.space.limiter = "none";
+  EXPECT_FALSE(apsis::simulation(c).promises().positivity);
+  EXPECT_TRUE(apsis::simulation(c).promises().conservation);
+  c.space.limiter = "positivity";
+  c.time.cfl = 0.2;  // 2.4 times the limit 1/12
+  EXPECT_FALSE(apsis::simulation(c).promises().positivity);
+}
+
+TEST(promises, a_broken_one_ends_the_run_with_step_and_value) {
+  // The Maxwellian by formula on a velocity grid with Δv close to √T does not conserve.
+  auto c = small("md-imex-3-2", formulation::finite_difference);
+  c.velocity = {9.0, 22, "formula"};
+  c.model.epsilon = "1e-3";
+  apsis::simulation run(c);
+  try {
+    finish(run);
+    FAIL() << "conservation held";
+  } catch (const apsis::numerical_error& failure) {
+    EXPECT_NE(failure.problem().find("broken promise"), std::string::npos) << failure.what();
+    EXPECT_GT(failure.site().step, 0);
+    EXPECT_GT(failure.site().value, 1e-12);
+  }
+  // The discrete Maxwellian keeps it on the same grid.
+  c.velocity.equilibrium = "discrete";
+  EXPECT_LE(finished(c).conservation_defect, 1e-12);
+}
+
+TEST(simulation, two_runs_and_any_number_of_threads_give_the_same_bits) {
+  for (const auto how : both) {
+    const auto c = small("md-imex-6-3", how);
+    apsis::set_threads(1);
+    apsis::simulation one(c), again(c);
+    finish(one);
+    finish(again);
+    apsis::set_threads(3);
+    apsis::simulation three(c);
+    finish(three);
+    apsis::set_threads(1);
+    EXPECT_EQ(one.state(), again.state());
+    EXPECT_EQ(one.state(), three.state());
+    EXPECT_EQ(one.last().entropy, three.last().entropy);
+  }
+}
+
+TEST(simulation, goes_on_from_a_saved_run_to_the_same_last_bit) {
+  auto c = small("md-imex-6-3", formulation::finite_volume);
+  apsis::simulation whole(c), first(c), second(c);
+  finish(whole);
+  for (int k = 0; k < 17; ++k) first.advance();
+  second.restore(first.save());
+  EXPECT_EQ(second.step(), 17);
+  finish(second);
+  EXPECT_EQ(whole.state(), second.state());
+  EXPECT_EQ(whole.t(), second.t());
+  EXPECT_EQ(whole.last().entropy_change, second.last().entropy_change);
+  EXPECT_EQ(whole.summary().min_value, second.summary().min_value);
+  auto other = c;
+  other.space.cells = 21;
+  apsis::simulation different(other);
+  EXPECT_THROW(different.restore(first.save()), apsis::input_error);
+}
+
+TEST(simulation, an_interval_of_length_zero_returns_the_initial_state) {
+  auto c = small("md-imex-3-2", formulation::finite_volume);
+  c.time.end = 0.0;
+  apsis::simulation run(c);
+  EXPECT_TRUE(run.finished());
+  EXPECT_EQ(run.summary().steps, 0);
+  EXPECT_EQ(run.fields().x.size(), 20u);
+}
+
+namespace {
+std::string complaint(const apsis::case_config& c) {
+  try {
+    apsis::simulation run(c);
+  } catch (const apsis::input_error& e) {
+    return e.what();
+  }
+  return "";
+}
+}  // namespace
+
+TEST(simulation, refuses_before_the_first_step_what_cannot_work) {
+  const auto base = small("md-imex-3-2", formulation::finite_volume);
+  EXPECT_EQ(complaint(base), "");
+  auto c = base;
+  c.velocity.max = 3.0;
+  EXPECT_NE(complaint(c).find("velocity.max = 3 is too small"), std::string::npos) << complaint(c);
+  c = base;
+  c.velocity.points = 6;
+  EXPECT_NE(complaint(c).find("velocity.points = 6 is too few"), std::string::npos) << complaint(c);
+  c = base;
+  c.space.cells = 4;
+  EXPECT_NE(complaint(c).find("smaller than the stencil"), std::string::npos) << complaint(c);
+  c = base;
+  c.time.method = "imdrk-2-3";
+  EXPECT_NE(complaint(c).find("cannot integrate"), std::string::npos) << complaint(c);
+  c = base;
+  c.model.epsilon = "x - 1";
+  EXPECT_NE(complaint(c), "");
+  c = base;
+  c.time.cfl.reset();
+  c.time.dt = 1e-300;
+  EXPECT_NE(complaint(c).find("dt is too small"), std::string::npos) << complaint(c);
+}
+
+TEST(simulation, without_space_it_is_the_ordinary_differential_equation) {
+  apsis::case_config c;
+  c.model.name = "decay";
+  c.model.parameters = {{"rate", 10.0}, {"u0", 10.0}};
+  c.time.method = "imdrk-5-4";
+  c.time.end = 2.0;
+  const auto error = [&c](int steps) {
+    c.time.dt = 2.0 / steps;
+    apsis::simulation run(c);
+    finish(run);
+    return std::abs(run.state()[0] - 1.0 / (0.1 + 20.0));
+  };
+  EXPECT_NEAR(std::log2(error(4096) / error(8192)), 4.0, 0.15);
+  c.time.dt.reset();
+  c.time.safety = 1.0;
+  EXPECT_NE(complaint(c).find("nothing limits the time step"), std::string::npos) << complaint(c);
+}
+
+TEST(simulation, free_flight_is_fifth_order_with_and_without_limiter) {
+  // Almost without collisions; differences between meshes of 40, 80 and 160 cells. The time step shrinks as
+  // Δx^{5/3}, so that third order in time does not hide fifth order in space.
+  for (const auto how : both) {
+    for (const char* limiter : {"none", "positivity"}) {
+      const auto solution = [&](int n) {
+        auto c = small("ssprk-3-3", how);
+        c.model.initial = "accuracy";
+        c.model.epsilon = "1e12";
+        c.space.cells = n;
+        c.space.limiter = limiter;
+        c.velocity.points = 24;
+        c.time.cfl = 0.2 * std::pow(40.0 / n, 2.0 / 3.0);
+        c.time.end = 0.1;
+        apsis::simulation run(c);
+        finish(run);
+        return run.fields();
+      };
+      const auto coarse = solution(40), middle = solution(80), fine = solution(160);
+      const auto difference = [&](const apsis::field_table& a, const apsis::field_table& b) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < a.x.size(); ++i) {
+          // Averages of two cells are the coarse average; point values between fine centres by sixth order.
+          const auto& f = b.values[0];
+          const std::size_t n = f.size();
+          const double pair = how == formulation::finite_volume
+                                  ? 0.5 * (f[2 * i] + f[2 * i + 1])
+                                  : (150.0 * (f[2 * i] + f[2 * i + 1]) -
+                                     25.0 * (f[(2 * i + n - 1) % n] + f[(2 * i + 2) % n]) +
+                                     3.0 * (f[(2 * i + n - 2) % n] + f[(2 * i + 3) % n])) /
+                                        256.0;
+          sum += std::abs(a.values[0][i] - pair);
+        }
+        return sum / static_cast<double>(a.x.size());
+      };
+      EXPECT_GT(std::log2(difference(coarse, middle) / difference(middle, fine)), 4.7)
+          << static_cast<int>(how) << limiter;
+    }
+  }
+}

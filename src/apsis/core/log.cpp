@@ -9,7 +9,8 @@ namespace {
 // The only file that sees spdlog: it is slow to compile and its macros are many.
 spdlog::logger& logger() {
   static const auto instance = [] {
-    auto made = std::make_shared<spdlog::logger>("apsis", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    auto made =
+        std::make_shared<spdlog::logger>("apsis", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
     made->set_pattern("%^%l%$: %v");
     return made;
   }();
@@ -20,9 +21,15 @@ spdlog::logger& logger() {
 
 void set_level(level lowest) {
   switch (lowest) {
-    case level::quiet: logger().set_level(spdlog::level::off); return;
-    case level::warning: logger().set_level(spdlog::level::warn); return;
-    case level::info: logger().set_level(spdlog::level::info); return;
+    case level::quiet:
+      logger().set_level(spdlog::level::off);
+      return;
+    case level::warning:
+      logger().set_level(spdlog::level::warn);
+      return;
+    case level::info:
+      logger().set_level(spdlog::level::info);
+      return;
   }
 }
 

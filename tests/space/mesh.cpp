@@ -54,7 +54,7 @@ TEST(quartic, meets_its_five_conditions_and_gauss_integrates_it) {
     // Averages over [a, a+1] by the antiderivative.
     const auto average = [&q](double a) {
       const auto primitive = [&q](double x) {
-        return x * (q.a0 + x * (q.a1 / 2 + x * (q.a2 / 3 + x * (q.a3 / 4 + x * q.a4 / 5))));
+        return x * (q.c + q.d0 + x * (q.d1 / 2 + x * (q.d2 / 3 + x * (q.d3 / 4 + x * q.d4 / 5))));
       };
       return primitive(a + 1.0) - primitive(a);
     };

@@ -31,18 +31,19 @@ void gauss_values(const double* m, const double* c, const double* p, const doubl
 #pragma omp simd
   for (int k = 0; k < width; ++k) {
     const quartic q(m[k], c[k], p[k], l[k], r[k]);
-    double v0 = q(gauss3::xi[0]), v1 = q(gauss3::xi[1]), v2 = q(gauss3::xi[2]);
+    double v0 = q.deviation(gauss3::xi[0]), v1 = q.deviation(gauss3::xi[1]), v2 = q.deviation(gauss3::xi[2]);
     if constexpr (Limited) {
-      const double inner = std::min(q(-lobatto4_inner), q(lobatto4_inner));
-      const double lowest = std::min(std::min(std::min(l[k], r[k]), inner), std::min(std::min(v0, v1), v2));
-      const double theta = limiter::scaling(c[k], lowest);
-      v0 = c[k] + theta * (v0 - c[k]);
-      v1 = c[k] + theta * (v1 - c[k]);
-      v2 = c[k] + theta * (v2 - c[k]);
+      const double inner = std::min(q.deviation(-lobatto4_inner), q.deviation(lobatto4_inner));
+      const double edges = std::min(l[k], r[k]) - c[k];
+      const double lowest = std::min(std::min(edges, inner), std::min(std::min(v0, v1), v2));
+      const double theta = limiter::scaling(c[k], c[k] + lowest);
+      v0 *= theta;
+      v1 *= theta;
+      v2 *= theta;
     }
-    g0[k] = v0;
-    g1[k] = v1;
-    g2[k] = v2;
+    g0[k] = c[k] + v0;
+    g1[k] = c[k] + v1;
+    g2[k] = c[k] + v2;
   }
 }
 
@@ -60,9 +61,9 @@ class cell_average_collision final : public collision {
         const double* row = points.rows[q].data();
         const auto weights = local.prepare(row, a, b, epsilon_at(cell, q), cell);
         const double* e = local.equilibrium();
-        const double stay = gauss3::weight[q] * weights.stay, relax = gauss3::weight[q] * weights.relax;
+        const double stay = weights.stay, relax = weights.relax, weight = gauss3::weight[q];
 #pragma omp simd
-        for (int k = 0; k < u.components(); ++k) sum[k] += stay * row[k] + relax * e[k];
+        for (int k = 0; k < u.components(); ++k) sum[k] += weight * (stay * row[k] + relax * e[k]);
       }
       std::copy_n(sum, u.components(), result_.row(cell));
     });

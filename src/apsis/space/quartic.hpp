@@ -6,18 +6,24 @@ namespace apsis {
 
 /// The quartic on one cell (ξ ∈ [−½, ½]) through the edge values L, R whose averages on the cell and its two
 /// neighbours are c, m, p; three-point Gauss–Legendre is exact on it, so the weighted mean of the Gauss
-/// values is c.
+/// values is c. Written in the differences from c: flat data are reproduced without rounding, and no step
+/// drifts.
 struct quartic {
-  double a0, a1, a2, a3, a4;
+  double c, d0, d1, d2, d3, d4;
 
-  quartic(double m, double c, double p, double l, double r)
-      : a0(-9.0 / 32.0 * (l + r) + 149.0 / 96.0 * c + (m + p) * (1.0 / 192.0)),
-        a1(1.25 * (r - l) + 0.125 * (m - p)),
-        a2(3.75 * (l + r) - 7.25 * c - 0.125 * (m + p)),
-        a3(l - r + 0.5 * (p - m)),
-        a4(-2.5 * (l + r) + 25.0 / 6.0 * c + 5.0 / 12.0 * (m + p)) {}
+  quartic(double m, double average, double p, double l, double r) : c(average) {
+    const double edges = (l - c) + (r - c), slope = r - l;
+    const double neighbours = (m - c) + (p - c), rise = p - m;
+    d0 = -9.0 / 32.0 * edges + neighbours * (1.0 / 192.0);
+    d1 = 1.25 * slope - 0.125 * rise;
+    d2 = 3.75 * edges - 0.125 * neighbours;
+    d3 = 0.5 * rise - slope;
+    d4 = -2.5 * edges + 5.0 / 12.0 * neighbours;
+  }
 
-  double operator()(double xi) const { return a0 + xi * (a1 + xi * (a2 + xi * (a3 + xi * a4))); }
+  /// Value minus average.
+  double deviation(double xi) const { return d0 + xi * (d1 + xi * (d2 + xi * (d3 + xi * d4))); }
+  double operator()(double xi) const { return c + deviation(xi); }
 };
 
 /// Three-point Gauss–Legendre rule on [−½, ½].

@@ -15,7 +15,10 @@
 namespace apsis::app {
 namespace {
 
+// The first thing of a session: an interrupt that comes before the first step is then no different from a
+// later one.
 case_config load(const run_options& options) {
+  watch_for_interrupts();
   set_threads(options.threads);
   return load_case(options.case_name, options.overrides);
 }
@@ -78,7 +81,6 @@ void run_session::resume(const std::string& path) {
 }
 
 run_end run_session::run() {
-  watch_for_interrupts();
   try {
     loop();
   } catch (const numerical_error& failure) {
@@ -131,7 +133,7 @@ void run_session::after_step() {
     folder_->publish("checkpoint.h5", [&](const std::string& path) {
       write_checkpoint(path, make_checkpoint(simulation_, *records_));
     });
-  bar_->update(last.step, simulation_.steps_total(), last.t, last.min_value);
+  if (bar_->due()) bar_->update(last.step, simulation_.steps_total(), last.t, last.min_value);
 }
 
 void run_session::write_results(result_folder& folder, run_end end, const std::string& message) {

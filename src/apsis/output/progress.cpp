@@ -34,11 +34,14 @@ progress::~progress() {
   finish();
 }
 
+bool progress::due() const {
+  return visible_ && (!drawn_ || clock::now() - last_ >= std::chrono::milliseconds(100));
+}
+
 void progress::update(long step, long steps_total, double t, double min_value) {
-  if (!visible_) return;
+  if (!due()) return;
   const auto now = clock::now();
   if (first_t_ < 0.0) first_t_ = t;
-  if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double left = t > first_t_ ? elapsed * (end_ - t) / (t - first_t_) : HUGE_VAL;
   fmt::print(stderr, "\r\033[K{}", progress_line(t / end_, step, steps_total, t, min_value, left));

@@ -13,7 +13,8 @@ class progress {
   progress(const progress&) = delete;
   progress& operator=(const progress&) = delete;
 
-  /// Draws at most ten times a second.
+  /// Whether update() would draw now: at most ten times a second, and never without a terminal.
+  bool due() const;
   void update(long step, long steps_total, double t, double min_value);
   /// Ends the line, so that messages start on a fresh one.
   void finish();

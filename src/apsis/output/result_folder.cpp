@@ -91,8 +91,8 @@ void result_folder::commit() {
   std::error_code problem;
   // While names change there is no manifest: one that is there belongs to the files beside it.
   fs::remove(path_ / manifest, problem);
-  std::stable_partition(prepared_.begin(), prepared_.end(),
-                        [](const std::string& name) { return name != manifest; });
+  std::partition(prepared_.begin(), prepared_.end(),
+                 [](const std::string& name) { return name != manifest; });
   for (const char* name : result_names)
     if (std::find(prepared_.begin(), prepared_.end(), name) == prepared_.end())
       fs::remove(path_ / name, problem);

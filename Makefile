@@ -26,7 +26,7 @@ figures: ## the pictures again, from the results that are there
 
 program: ## the program only, in build/release/app
 	@scripts/install-packages.sh run
-	cmake --preset release -DAPSIS_TESTS=OFF >/dev/null
+	cmake --preset release -DAPSIS_TESTS=OFF -DAPSIS_PCH=ON >/dev/null
 	cmake --build build/release --target app/apsis
 
 test: ## packages, everything built, every test but the slow ones

@@ -95,7 +95,7 @@ const std::vector<bad_case> all = {
     {"table_twice", "points = 150", "points = 150\n[space]", "12:", "not valid TOML"},
     {"nan_end", "end = 0.5", "end = nan", "14:1", "must be finite"},
     {"inf_end", "end = 0.5", "end = inf", "14:1", "must be finite"},
-    {"negative_end", "end = 0.5", "end = -0.5", "14:1", "above 0"},
+    {"negative_end", "end = 0.5", "end = -0.5", "14:1", "at least 0"},
     {"zero_cfl", "cfl = 0.04", "cfl = 0.0", "15:1", "above 0"},
     {"minus_inf_cfl", "cfl = 0.04", "cfl = -inf", "15:1", "must be finite"},
     {"two_step_rules", "cfl = 0.04", "cfl = 0.04\ndt = 0.001", "15:1", "'time.cfl' conflicts with 'time.dt'"},

@@ -177,7 +177,7 @@ class resolver {
                         fmt::format("'{}' conflicts with '{}' (exactly one of {} sets the step) "
                                     "remove all but one",
                                     given[1], given[0], fmt::join(valid, ", ")));
-    if (config_.time.dt && *config_.time.dt > config_.time.end * (1.0 + 1e-12))
+    if (config_.time.dt && config_.time.end > 0.0 && *config_.time.dt > config_.time.end * (1.0 + 1e-12))
       refuse(*find("time.dt"), "time.dt", fmt::format("it is longer than time.end = {}", config_.time.end),
              "give a step of at most the whole time");
   }

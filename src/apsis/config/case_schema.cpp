@@ -126,7 +126,7 @@ std::vector<case_key> make_schema() {
       {"time.method", text, key_scope::always, true, "", 0, 0, false, method_choices,
        "The time integrator, by its name in the catalogue.",
        [](c& o, const v& x) { o.time.method = text_of(x); }, [](const c& o) { return v(o.time.method); }},
-      {"time.end", number, key_scope::always, true, none, 0, unlimited, true, nullptr,
+      {"time.end", number, key_scope::always, true, none, 0, unlimited, false, nullptr,
        "Final time; the start is t = 0.", [](c& o, const v& x) { o.time.end = number_of(x); },
        [](const c& o) { return v(o.time.end); }},
       {"time.dt", number, key_scope::always, false, none, 0, unlimited, true, nullptr,

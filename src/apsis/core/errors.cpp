@@ -15,14 +15,13 @@ std::string to_string(const source_place& place) {
 
 namespace {
 std::string describe(const std::string& problem, const failure_site& site) {
-  std::string text = problem;
   std::string where;
-  auto add = [&where](const std::string& part) { where += (where.empty() ? "" : ", ") + part; };
+  const auto add = [&where](const std::string& part) { where += (where.empty() ? "" : ", ") + part; };
   if (site.step >= 0) add(fmt::format("step {}", site.step));
   if (!std::isnan(site.t)) add(fmt::format("t = {:.10g}", site.t));
   if (site.cell >= 0) add(fmt::format("cell {}", site.cell));
   if (!std::isnan(site.value)) add(fmt::format("value {:.10g}", site.value));
-  return where.empty() ? text : text + " [" + where + "]";
+  return where.empty() ? problem : problem + " [" + where + "]";
 }
 }  // namespace
 

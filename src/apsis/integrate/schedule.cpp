@@ -178,15 +178,15 @@ schedule::schedule(const shu_osher_form<Real>& m) {
   for (std::size_t k = 0; k < s; ++k) {
     bool stages_enter = false;
     for (std::size_t j = 0; j < k; ++j) {
-      p.transport(k + 1, j + 1) = m.W(k, j) != Real(0);
-      p.collision(k + 1, j + 1) = m.D(k, j) != Real(0);
-      p.weight(k + 1, j + 1) = m.P(k, j) != Real(0) || m.W(k, j) != Real(0);
-      stages_enter = stages_enter || p.weight(k + 1, j + 1) || p.collision(k + 1, j + 1);
+      p.transport(k + 1, j + 1) = static_cast<char>(m.W(k, j) != Real(0));
+      p.collision(k + 1, j + 1) = static_cast<char>(m.D(k, j) != Real(0));
+      p.weight(k + 1, j + 1) = static_cast<char>(m.P(k, j) != Real(0) || m.W(k, j) != Real(0));
+      stages_enter = stages_enter || p.weight(k + 1, j + 1) != 0 || p.collision(k + 1, j + 1) != 0;
     }
-    p.weight(k + 1, 0) = initial[k] != Real(0);
-    p.solve[k + 1] = m.D(k, k) != Real(0) || m.ddot[k] != Real(0);
-    p.recoverable[k + 1] = m.D(k, k) != Real(0) && m.ddot[k] == Real(0);
-    p.is_initial[k + 1] = !stages_enter && !p.solve[k + 1];
+    p.weight(k + 1, 0) = static_cast<char>(initial[k] != Real(0));
+    p.solve[k + 1] = static_cast<char>(m.D(k, k) != Real(0) || m.ddot[k] != Real(0));
+    p.recoverable[k + 1] = static_cast<char>(m.D(k, k) != Real(0) && m.ddot[k] == Real(0));
+    p.is_initial[k + 1] = static_cast<char>(!stages_enter && p.solve[k + 1] == 0);
   }
   builder(p, *this).run();
 }

@@ -19,7 +19,7 @@ std::string progress_line(double fraction, long step, long steps_total, double t
   if (full < width) bar[full] = '>';
   std::string left = "--";
   if (std::isfinite(seconds_left) && seconds_left < 3.6e6) {
-    const auto s = static_cast<long>(std::lround(seconds_left));
+    const long s = std::lround(seconds_left);
     left = s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
                      : fmt::format("{}:{:02}", s / 60, s % 60);
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 
+#include <ranges>
 #include <fmt/format.h>
 
 namespace apsis {
@@ -62,7 +63,7 @@ void result_folder::discard() noexcept {
   prepared_.clear();
   if (keep_) return;
   // Removes a folder only while it is empty.
-  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
+  for (const auto& folder : std::views::reverse(made_)) fs::remove(folder, ignored);
 }
 
 fs::path result_folder::temporary(const std::string& name) const {

@@ -22,6 +22,13 @@ struct gauss_rows {
   }
 };
 
+/// θ that brings the quartic to nonnegative values at its Gauss–Lobatto and Gauss–Legendre points.
+double positive_scaling(const quartic& q, double edges, double g0, double g1, double g2) {
+  const double inner = std::min(q.deviation(-lobatto4_inner), q.deviation(lobatto4_inner));
+  const double lowest = std::min(std::min(edges, inner), std::min(std::min(g0, g1), g2));
+  return limiter::scaling(q.c, q.c + lowest);
+}
+
 template <bool Limited>
 void gauss_values(const double* m, const double* c, const double* p, const double* l, const double* r,
                   int width, gauss_rows& out) {
@@ -31,19 +38,12 @@ void gauss_values(const double* m, const double* c, const double* p, const doubl
 #pragma omp simd
   for (int k = 0; k < width; ++k) {
     const quartic q(m[k], c[k], p[k], l[k], r[k]);
-    double v0 = q.deviation(gauss3::xi[0]), v1 = q.deviation(gauss3::xi[1]), v2 = q.deviation(gauss3::xi[2]);
-    if constexpr (Limited) {
-      const double inner = std::min(q.deviation(-lobatto4_inner), q.deviation(lobatto4_inner));
-      const double edges = std::min(l[k], r[k]) - c[k];
-      const double lowest = std::min(std::min(edges, inner), std::min(std::min(v0, v1), v2));
-      const double theta = limiter::scaling(c[k], c[k] + lowest);
-      v0 *= theta;
-      v1 *= theta;
-      v2 *= theta;
-    }
-    g0[k] = c[k] + v0;
-    g1[k] = c[k] + v1;
-    g2[k] = c[k] + v2;
+    const double v0 = q.deviation(gauss3::xi[0]), v1 = q.deviation(gauss3::xi[1]),
+                 v2 = q.deviation(gauss3::xi[2]);
+    const double theta = Limited ? positive_scaling(q, std::min(l[k], r[k]) - c[k], v0, v1, v2) : 1.0;
+    g0[k] = c[k] + theta * v0;
+    g1[k] = c[k] + theta * v1;
+    g2[k] = c[k] + theta * v2;
   }
 }
 

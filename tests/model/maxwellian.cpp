@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include <apsis/core/errors.hpp>
 #include <gtest/gtest.h>
+#include <apsis/core/errors.hpp>
 #include <support/property.hpp>
 
 namespace {
@@ -63,7 +63,8 @@ TEST(maxwellian, formula_agrees_with_the_exponential_of_the_library) {
 TEST(maxwellian, formula_is_exact_to_rounding_on_the_grid_of_the_paper) {
   const velocity_grid grid(1, 150, 15.0);
   check_property("defect", [&] {
-    const fluid_state s{*rc::gen::inRange(1, 100) * 0.1, {*rc::gen::inRange(-20, 20) * 0.1, 0, 0},
+    const fluid_state s{*rc::gen::inRange(1, 100) * 0.1,
+                        {*rc::gen::inRange(-20, 20) * 0.1, 0, 0},
                         *rc::gen::inRange(5, 25) * 0.1};
     RC_ASSERT(defect(grid, s, false) < 4e-15);  // sums of 150 terms
   });

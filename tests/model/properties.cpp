@@ -1,5 +1,5 @@
-// Properties 2–5 of the paper for every relaxation model of the registry: a model added tomorrow is tested by being
-// there. States are random and nonnegative, some components exactly zero.
+// Properties 2–5 of the paper for every relaxation model of the registry: a model added tomorrow is tested by
+// being there. States are random and nonnegative, some components exactly zero.
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/model/model_registry.hpp>
 
@@ -151,6 +151,8 @@ TEST(models, bgk_says_how_its_velocity_grid_must_change) {
     return m->unfit(u.data());
   };
   EXPECT_EQ(complaint(15.0, 150), "");
-  EXPECT_NE(complaint(2.0, 40).find("velocity.max = 2 is too small"), std::string::npos) << complaint(2.0, 40);
-  EXPECT_NE(complaint(60.0, 20).find("velocity.points = 20 is too few"), std::string::npos) << complaint(60.0, 20);
+  EXPECT_NE(complaint(2.0, 40).find("velocity.max = 2 is too small"), std::string::npos)
+      << complaint(2.0, 40);
+  EXPECT_NE(complaint(60.0, 20).find("velocity.points = 20 is too few"), std::string::npos)
+      << complaint(60.0, 20);
 }

@@ -41,7 +41,8 @@ apsis::field sample(const apsis::grid& mesh, int components, bool averages, Func
       for (int part = 0; part < 4; ++part) {
         const double centre = x + h * (part - 1.5) / 4.0, half = h / 8.0;
         for (int q = 0; q < 3; ++q)
-          sum += weight[q] * (q == 0 ? g(centre, k) : g(centre - half * node[q], k) + g(centre + half * node[q], k));
+          sum += weight[q] *
+                 (q == 0 ? g(centre, k) : g(centre - half * node[q], k) + g(centre + half * node[q], k));
       }
       u.row(i)[k] = sum / 8.0;
     }

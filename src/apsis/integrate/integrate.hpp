@@ -97,7 +97,8 @@ class time_marcher {
     t_ = anchor_ + Real(since_anchor_) * anchor_dt_;
     // What rounding of t leaves is not a step.
     using std::abs;
-    if (t_ >= t1_ || t1_ - t_ <= Real(8) * std::numeric_limits<Real>::epsilon() * (abs(t1_) + abs(t0_))) t_ = t1_;
+    if (t_ >= t1_ || t1_ - t_ <= Real(8) * std::numeric_limits<Real>::epsilon() * (abs(t1_) + abs(t0_)))
+      t_ = t1_;
   }
 
   /// Goes to where an earlier run stopped.

@@ -6,8 +6,8 @@
 
 namespace apsis {
 
-/// Q(u) without the structure of a relaxation: the stage equation v = u + a Q(v) + b Q̇(v) is solved by Newton's
-/// method, with Q' and Q̇ = Q'Q by automatic differentiation.
+/// Q(u) without the structure of a relaxation: the stage equation v = u + a Q(v) + b Q̇(v) is solved by
+/// Newton's method, with Q' and Q̇ = Q'Q by automatic differentiation.
 class general_model : public model {
  public:
   /// A number with two independent first derivatives: ∂/∂s, ∂/∂t and ∂²/∂s∂t.

@@ -5,8 +5,8 @@
 #include <array>
 #include <fstream>
 
-#include <ranges>
 #include <fmt/format.h>
+#include <ranges>
 
 namespace apsis {
 namespace fs = std::filesystem;

@@ -6,8 +6,8 @@
 namespace apsis {
 namespace {
 
-/// u' = −k u² (paper, numerical tests of the implicit methods: k = 10, u(0) = 10); exact solution u₀/(1 + k u₀ t).
-/// Q̇ = 2k²u³. Dimensionless.
+/// u' = −k u² (paper, numerical tests of the implicit methods: k = 10, u(0) = 10); exact solution u₀/(1 + k
+/// u₀ t). Q̇ = 2k²u³. Dimensionless.
 class decay_model final : public general_model {
  public:
   explicit decay_model(const model_config& config) : rate_(config.parameters.at("rate")) {
@@ -45,6 +45,8 @@ const model_entry model_decay = {
     false,
     {{"rate", 10.0, 0.0, 1e300, "k (dimensionless)"}, {"u0", 10.0, 0.0, 1e300, "u(0) (dimensionless)"}},
     {"start"},
-    [](const model_config& config) -> std::unique_ptr<model> { return std::make_unique<decay_model>(config); }};
+    [](const model_config& config) -> std::unique_ptr<model> {
+      return std::make_unique<decay_model>(config);
+    }};
 
 }  // namespace apsis

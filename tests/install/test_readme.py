@@ -15,10 +15,12 @@ class Readme(unittest.TestCase):
         blocks = re.findall(r"```cpp\n(.*?)```", README, re.DOTALL)
         self.assertEqual(blocks, [file])
 
-    def test_the_table_of_methods_is_the_catalogue(self):
+    def test_the_table_of_methods_agrees_with_the_catalogue(self):
         listed = re.findall(r"^\| `([a-z0-9-]+)` \| (\d+) \|", README, re.MULTILINE)
-        files = [(p.stem, tomllib.loads(p.read_text(encoding="utf-8"))) for p in (ROOT / "methods").glob("*.toml")]
-        self.assertEqual(sorted(listed), sorted((name, str(data["claims"]["order"])) for name, data in files))
+        self.assertGreater(len(listed), 4)
+        for name, order in listed:
+            data = tomllib.loads((ROOT / "methods" / f"{name}.toml").read_text(encoding="utf-8"))
+            self.assertEqual(order, str(data["claims"]["order"]), name)
 
     def test_every_make_target_that_is_named_exists(self):
         targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))

@@ -92,7 +92,7 @@ std::vector<case_key> make_schema() {
        [](const c& o) { return v(o.space.domain); }},
       {"space.formulation", text, key_scope::space, false, "", 0, 0, false, formulation_choices,
        "Unknowns are cell averages (finite-volume; collisions at Gauss points of the cell) or point values "
-       "(finite-difference; collisions pointwise, about a quarter of the cost).",
+       "(finite-difference; collisions pointwise, about a third of the cost).",
        [](c& o, const v& x) {
          o.space.formulation = text_of(x) == formulation_name(formulation::finite_volume)
                                    ? formulation::finite_volume

@@ -137,7 +137,15 @@ void check_form(const method& m, const shu_osher_form<mp_real>& form, const mp_r
         fmt::format("shu_osher.r = {} is larger than the SSP coefficient {} of the Butcher form", m.exact.r,
                     c.ssp_coefficient.str(17)));
   const auto initial = initial_weights(form);
+  std::vector<bool> is_initial;  // stages that are u^n itself
   for (std::size_t i = 0; i < form.stages(); ++i) {
+    is_initial.push_back(initial[i] == 1 && form.D(i, i) == 0 && form.ddot[i] == 0);
+    for (std::size_t j = 0; j < i; ++j)
+      if (is_initial[j] && abs(initial[i]) > tolerance && form.P(i, j) + form.W(i, j) != 0)
+        c.failures.push_back(
+            fmt::format("row {} gives weight to u^n twice (R e = {} and stage {}, which is u^n): the "
+                        "form is not unique",
+                        i + 1, short_text(initial[i]), j + 1));
     const auto negative = [&](const char* what, std::size_t j, const mp_real& value) {
       c.failures.push_back(fmt::format("shu_osher.{}_{},{} = {} is negative: the form is not convex", what,
                                        i + 1, j, short_text(value)));

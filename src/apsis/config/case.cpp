@@ -28,6 +28,7 @@ class resolver {
 
   case_config resolve() {
     config_.source = file_;
+    for (const auto& [path, raw] : text_.values) config_.places[path] = raw.place;
     check_tables();
     find_the_model();
     check_known();

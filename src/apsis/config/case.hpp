@@ -1,5 +1,7 @@
 #pragma once
 
+#include <apsis/core/errors.hpp>
+
 #include <array>
 #include <map>
 #include <optional>
@@ -14,6 +16,7 @@ enum class formulation { finite_volume, finite_difference };
 /// in case_schema.cpp (`apsis show case`).
 struct case_config {
   std::string source;  ///< file or name of the built-in case
+  std::map<std::string, source_place> places;  ///< where each key of the text stands, for later messages
   std::string title;
   struct {
     std::string name;

@@ -16,8 +16,8 @@ double model::entropy(const double*) const {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-std::string model::unfit(const double*) const {
-  return "";
+misfit model::unfit(const double*) const {
+  return {};
 }
 
 const model_entry* find_model(const std::string& name) {

@@ -20,6 +20,12 @@ struct initial_data {
   std::function<void(double x, std::span<double> u)> point_value;
 };
 
+/// Data that a model cannot hold: the key of the case that must change, and a message; both "" if all is
+/// well.
+struct misfit {
+  std::string key, problem;
+};
+
 /// An equation u_t + Σ_k ∂_xk(v_k u) = S(u) + Q(u)/ε, seen at one point of space: it knows no mesh and no
 /// time. A row u holds components() values; all quantities are dimensionless.
 class model {
@@ -52,8 +58,8 @@ class model {
 
   virtual const std::vector<initial_data>& initial() const = 0;
 
-  /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could; "" if it can.
-  virtual std::string unfit(const double* u) const;
+  /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could.
+  virtual misfit unfit(const double* u) const;
 };
 
 /// Q(u) = C(ω)(E(ω) − u) with ω = ℛu and ℛQ = 0 (paper, Properties 3–5): every stage is solved in closed

@@ -27,6 +27,13 @@ const model_entry& entry_of(const case_config& config) {
   return *entry;
 }
 
+/// An input error at the place of a key, as far as that is known.
+[[noreturn]] void refuse(const case_config& config, const std::string& key, const std::string& message) {
+  const auto place = config.places.find(key);
+  if (place == config.places.end()) throw input_error(message);
+  throw input_error(place->second, message);
+}
+
 /// Whether the Shu–Osher form is a convex combination of forward Euler steps of T (and Q, for explicit
 /// methods) and implicit steps of Q: the hypothesis of the paper's theorems.
 bool is_convex(const shu_osher_form<double>& m, method_kind kind) {
@@ -57,17 +64,17 @@ run_setup::run_setup(const case_config& config)
 void run_setup::check_method() {
   const bool transports = has_space() || equation->has_source();
   if (method_->kind == method_kind::implicit_only && transports)
-    throw input_error(
-        fmt::format("method '{}' cannot integrate model '{}' (it is implicit only and the model has "
-                    "transport); choose an IMEX or explicit method",
-                    method_->name, config_.model.name));
+    refuse(config_, "time.method",
+           fmt::format("method '{}' cannot integrate model '{}' (it is implicit only and the model has "
+                       "transport); choose an IMEX or explicit method",
+                       method_->name, config_.model.name));
   const auto form = method_->coefficients<double>();
   ssp_coefficient_ = is_convex(form, method_->kind) ? form.r : 0.0;
   if (config_.time.safety && ssp_coefficient_ == 0.0)
-    throw input_error(
-        fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give "
-                    "time.dt or time.cfl",
-                    method_->name));
+    refuse(config_, "time.safety",
+           fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give "
+                       "time.dt or time.cfl",
+                       method_->name));
 }
 
 void run_setup::choose_stencil() {
@@ -80,9 +87,9 @@ void run_setup::choose_stencil() {
   how_.boundary = find_boundary(config_.space.boundary);
   const int needed = 2 * how_.scheme->ghost_width() + 1;
   if (config_.space.cells < needed)
-    throw input_error(
-        fmt::format("space.cells = {} is smaller than the stencil ({} cells for {}); give at least {}",
-                    config_.space.cells, needed, config_.space.reconstruction, needed));
+    refuse(config_, "space.cells",
+           fmt::format("space.cells = {} is smaller than the stencil ({} cells for {}); give at least {}",
+                       config_.space.cells, needed, config_.space.reconstruction, needed));
 }
 
 bool run_setup::pointwise() const {
@@ -96,7 +103,9 @@ std::vector<double> run_setup::centres() const {
 }
 
 std::vector<double> run_setup::epsilon_on(const std::vector<double>& x) const {
-  const expression formula(config_.model.epsilon);
+  const auto place = config_.places.find("model.epsilon");
+  const expression formula(config_.model.epsilon,
+                           place == config_.places.end() ? source_place{} : place->second);
   std::vector<double> values;
   for (const double at : x) values.push_back(formula.evaluate(at));
   return values;
@@ -152,8 +161,9 @@ field run_setup::initial_state() const {
     } else {
       add(has_space() ? centre : 0.0, 1.0);
     }
-    const std::string problem = equation->unfit(row);
-    if (!problem.empty()) throw input_error(fmt::format("{} [cell {}]", problem, cell));
+    const misfit found_misfit = equation->unfit(row);
+    if (!found_misfit.problem.empty())
+      refuse(config_, found_misfit.key, fmt::format("{} [cell {}]", found_misfit.problem, cell));
   }
   return u;
 }

@@ -97,12 +97,13 @@ class bgk_model final : public relaxation_model {
 
   const std::vector<initial_data>& initial() const override { return initial_; }
 
-  std::string unfit(const double* f) const override {
+  misfit unfit(const double* f) const override {
     double omega[5];
     moments(f, omega);
     const fluid_state s = to_fluid_state(omega, grid_.dimensions());
     if (!s.admissible())
-      return fmt::format("the initial data have no Maxwellian: {}", why_inadmissible(omega));
+      return {"model.initial",
+              fmt::format("the initial data have no Maxwellian ({})", why_inadmissible(omega))};
     const double width = std::sqrt(s.T);
     double speed = 0.0;
     for (int k = 0; k < grid_.dimensions(); ++k) speed = std::max(speed, std::abs(s.u[k]));
@@ -110,20 +111,22 @@ class bgk_model final : public relaxation_model {
     // here.
     const double beyond = 0.5 * std::erfc((grid_.max() - speed) / (std::numbers::sqrt2 * width));
     if (beyond > 1e-8)
-      return fmt::format(
-          "velocity.max = {:g} is too small for the data (a fraction {:.2g} of the mass of u = {:.3g}, T = "
-          "{:.3g} lies "
-          "beyond it); give at least {:.1f}",
-          grid_.max(), beyond, s.u[0], s.T, speed + 6.0 * width);
+      return {
+          "velocity.max",
+          fmt::format(
+              "velocity.max = {:g} is too small for the data (a fraction {:.2g} of the mass of u = {:.3g}, "
+              "T = {:.3g} lies beyond it); give at least {:.1f}",
+              grid_.max(), beyond, s.u[0], s.T, speed + 6.0 * width)};
     const double widest = choice_ == equilibrium_choice::formula ? 1.0 : 2.0;
     if (grid_.spacing() > widest * width)
-      return fmt::format(
-          "velocity.points = {} is too few for the data (the spacing {:.3g} is more than {:g} times the "
-          "thermal "
-          "speed sqrt(T) = {:.3g}); give at least {}",
-          grid_.points(), grid_.spacing(), widest, width,
-          static_cast<int>(std::ceil(2.0 * grid_.max() / (widest * width))));
-    return "";
+      return {
+          "velocity.points",
+          fmt::format(
+              "velocity.points = {} is too few for the data (the spacing {:.3g} is more than {:g} times the "
+              "thermal speed sqrt(T) = {:.3g}); give at least {}",
+              grid_.points(), grid_.spacing(), widest, width,
+              static_cast<int>(std::ceil(2.0 * grid_.max() / (widest * width))))};
+    return {};
   }
 
  private:

@@ -141,58 +141,58 @@ class transport::block_sweep {
            static_cast<std::size_t>(i - first_fraction_) * static_cast<std::size_t>(width_);
   }
 
+  /// Cell i and its neighbours seen in the direction of motion of every component.
+  struct motion {
+    const double *before, *here, *after, *from_left, *left, *right, *from_right, *forward;
+
+    bool ahead(int k) const { return forward[k] > 0.5; }
+    double upstream(int k) const { return ahead(k) ? before[k] : after[k]; }
+    double inflow(int k) const { return ahead(k) ? from_left[k] : from_right[k]; }
+    double outflow(int k) const { return ahead(k) ? right[k] : left[k]; }
+  };
+
+  motion around(int i) {
+    return {row(i - 1),
+            row(i),
+            row(i + 1),
+            block_.right_edge(i - 1),
+            block_.left_edge(i),
+            block_.right_edge(i),
+            block_.left_edge(i + 1),
+            line_->forward.data()};
+  }
+
   void plain_change(int i) {
-    const double* from_left = block_.right_edge(i - 1);
-    const double* from_right = block_.left_edge(i + 1);
-    const double* left = block_.left_edge(i);
-    const double* right = block_.right_edge(i);
+    const motion cell = around(i);
     const double* per_cell = line_->per_cell.data();
-    const double* forward = line_->forward.data();
     double* t = change_.data();
 #pragma omp simd
-    for (int k = 0; k < width_; ++k) {
-      const bool ahead = forward[k] > 0.5;
-      const double in = ahead ? from_left[k] : from_right[k];
-      const double out = ahead ? right[k] : left[k];
-      t[k] = per_cell[k] * (in - out);
-    }
+    for (int k = 0; k < width_; ++k) t[k] = per_cell[k] * (cell.inflow(k) - cell.outflow(k));
   }
 
   void find_fractions(int i) {
-    const double *before = row(i - 1), *here = row(i), *after = row(i + 1);
-    const double *from_left = block_.right_edge(i - 1), *from_right = block_.left_edge(i + 1);
-    const double *left = block_.left_edge(i), *right = block_.right_edge(i);
-    const double* forward = line_->forward.data();
+    const motion cell = around(i);
     double* r = fraction(i);
 #pragma omp simd
-    for (int k = 0; k < width_; ++k) {
-      const bool ahead = forward[k] > 0.5;
-      const double u_up = ahead ? before[k] : after[k];
-      const double in = ahead ? from_left[k] : from_right[k];
-      const double out = ahead ? right[k] : left[k];
-      r[k] = limiter::harmless_fraction(u_up, here[k], in - u_up, out - here[k]);
-    }
+    for (int k = 0; k < width_; ++k)
+      r[k] = limiter::harmless_fraction(cell.upstream(k), cell.here[k], cell.inflow(k) - cell.upstream(k),
+                                        cell.outflow(k) - cell.here[k]);
   }
 
   void limited_change(int i) {
-    const double *before = row(i - 1), *here = row(i), *after = row(i + 1);
-    const double *from_left = block_.right_edge(i - 1), *from_right = block_.left_edge(i + 1);
-    const double *left = block_.left_edge(i), *right = block_.right_edge(i);
+    const motion cell = around(i);
     const double *r_before = fraction(i - 1), *r_here = fraction(i), *r_after = fraction(i + 1);
     const double* per_cell = line_->per_cell.data();
-    const double* forward = line_->forward.data();
     double* t = change_.data();
 #pragma omp simd
     for (int k = 0; k < width_; ++k) {
-      const bool ahead = forward[k] > 0.5;
-      const double u_up = ahead ? before[k] : after[k];
-      const double r_up = ahead ? r_before[k] : r_after[k];
-      const double r_down = ahead ? r_after[k] : r_before[k];
-      const double a_in = (ahead ? from_left[k] : from_right[k]) - u_up;
-      const double a_out = (ahead ? right[k] : left[k]) - here[k];
+      const double r_up = cell.ahead(k) ? r_before[k] : r_after[k];
+      const double r_down = cell.ahead(k) ? r_after[k] : r_before[k];
+      const double u_up = cell.upstream(k), u = cell.here[k];
+      const double a_in = cell.inflow(k) - u_up, a_out = cell.outflow(k) - u;
       // A positive correction harms the donor, a negative one the receiver.
       const double in = u_up + (a_in > 0.0 ? r_up : r_here[k]) * a_in;
-      const double out = here[k] + (a_out > 0.0 ? r_here[k] : r_down) * a_out;
+      const double out = u + (a_out > 0.0 ? r_here[k] : r_down) * a_out;
       t[k] = per_cell[k] * (in - out);
     }
   }

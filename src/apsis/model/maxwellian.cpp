@@ -283,9 +283,9 @@ double moment_defect(const velocity_grid& grid, const double* m, const double* o
   const int d = grid.dimensions();
   double defect = std::abs(own[0] - omega[0]) / state.rho;
   for (int k = 0; k < d; ++k)
-    defect = std::max(defect, std::abs(own[static_cast<std::size_t>(1 + k)] - omega[1 + k]) /
+    defect = std::max(defect, std::abs(own[static_cast<std::size_t>(k) + 1] - omega[1 + k]) /
                                   (state.rho * (std::sqrt(state.T) + std::abs(state.u[k]))));
-  return std::max(defect, std::abs(own[static_cast<std::size_t>(1 + d)] - omega[1 + d]) / omega[1 + d]);
+  return std::max(defect, std::abs(own[static_cast<std::size_t>(d) + 1] - omega[1 + d]) / omega[1 + d]);
 }
 
 }  // namespace apsis

@@ -20,8 +20,9 @@ std::string entry(const char* what, std::size_t i, std::size_t j, const mp_real&
 
 /// R⁻¹ from the columns of A or Ȧ; stages that are u^n get unit columns. Empty, with the reason, if the
 /// matrices are no multiples of one another.
-std::optional<matrix<mp_real>> inverse_of_R(const butcher_form<mp_real>& b, const std::vector<bool>& merged,
-                                            const mp_real& zero, std::string& reason) {
+std::optional<matrix<mp_real>> inverse_stage_matrix(const butcher_form<mp_real>& b,
+                                                    const std::vector<bool>& merged, const mp_real& zero,
+                                                    std::string& reason) {
   const std::size_t s = b.stages();
   auto inverse = matrix<mp_real>::identity(s);
   for (std::size_t j = 0; j < s; ++j) {
@@ -69,7 +70,7 @@ ssp_analysis analyse_imex(const butcher_form<mp_real>& b, const mp_real& zero) {
     result.forbids = *entry_text;
     return result;
   }
-  const auto inverse = inverse_of_R(b, merged, zero, result.forbids);
+  const auto inverse = inverse_stage_matrix(b, merged, zero, result.forbids);
   if (!inverse) return result;
   const auto R = inverse_lower(*inverse);
   const auto K = R * b.A_hat;
@@ -123,7 +124,7 @@ std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, cons
                                             std::string& reason) {
   std::vector<bool> merged(b.stages());
   for (std::size_t j = 0; j + 1 < b.stages(); ++j) merged[j] = is_initial(b, j, zero);
-  const auto inverse = inverse_of_R(b, merged, zero, reason);
+  const auto inverse = inverse_stage_matrix(b, merged, zero, reason);
   if (!inverse) return std::nullopt;
   return inverse_lower(*inverse);
 }

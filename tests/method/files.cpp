@@ -81,6 +81,11 @@ std::string name_of(const ::testing::TestParamInfo<bad_file>& file) {
 INSTANTIATE_TEST_SUITE_P(
     method_files, bad_files,
     ::testing::Values(
+        bad_file{"order_99", "order = 2", "order = 99", "7:9", "out of range"},
+        bad_file{"d_too_short", "d = [\"1/2\", \"0\", \"1/2\"]", "d = [\"1/2\", \"0\"]", "13:5",
+                 "has 2 entries"},
+        bad_file{"claims_missing", "[claims]\norder = 2\n", "", "1:1", "missing table [claims]"},
+        bad_file{"no_form", good.substr(good.find("[shu_osher]")), "", "1:1", "exactly one of the tables"},
         bad_file{"unknown_key", "title =", "titel =", "2:1", "did you mean 'title'"},
         bad_file{"unknown_claim", "order = 2", "order = 2\nspp_coefficient = \"1\"", "8:1",
                  "did you mean 'ssp_coefficient'"},

@@ -13,4 +13,8 @@ int threads();
 /// smallest k is thrown.
 void parallel_for(int n, const std::function<void(int)>& body);
 
+/// The same for jobs of different length (whole runs): a thread that is free takes the next k. Loops inside a
+/// job run on its own thread. Once a job has failed no new one begins.
+void parallel_tasks(int n, const std::function<void(int)>& body);
+
 }  // namespace apsis

@@ -189,6 +189,9 @@ field_table simulation::fields() const {
   return table;
 }
 
+bool simulation::has_space() const {
+  return impl_->setup.has_space();
+}
 int simulation::cells() const {
   return impl_->state.cells();
 }

@@ -82,6 +82,7 @@ class simulation {
   run_summary summary() const;
 
   field_table fields() const;
+  bool has_space() const;
   int cells() const;
   int components() const;
   std::vector<double> state() const;       ///< [cells][components], contiguous

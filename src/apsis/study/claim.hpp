@@ -1,0 +1,71 @@
+#pragma once
+
+#include <apsis/output/picture.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// One measured figure and what it must be.
+struct finding {
+  std::string what;       ///< "slope between dt = 1/512 and 1/1024, eps = 1"
+  double value = 0.0;     ///< as measured
+  std::string condition;  ///< "at least 2.85", "3 +- 0.15", "at most 1e-13"
+  bool holds = false;
+};
+
+/// Builders of findings; a value that is not a number never holds.
+finding at_most(std::string what, double value, double bound);
+finding at_least(std::string what, double value, double bound);
+finding near(std::string what, double value, double target, double tolerance);
+finding exactly(std::string what, long value, long wanted);
+finding holds(std::string what, bool value);
+
+/// A small table of the report; cells are texts.
+struct report_table {
+  std::string title;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// What came out of checking a claim.
+struct claim_result {
+  std::vector<finding> findings;
+  std::vector<report_table> tables;
+  std::vector<picture> pictures;
+  std::vector<std::string> remarks;  ///< corrections to the paper, deviations and their reasons
+
+  bool all_hold() const;  ///< and there is at least one finding
+};
+
+/// How a study reports and is stopped.
+struct study_control {
+  /// A fraction of the present study in [0, 1], and what is being done; may be empty.
+  std::function<void(double, const std::string&)> progress;
+  /// Asked between runs; true ends the study with study_interrupted. May be empty.
+  std::function<bool()> stop;
+
+  void report(double fraction, const std::string& what) const;
+  void check() const;
+};
+
+/// A study was asked to stop.
+struct study_interrupted {};
+
+/// Runs body(k), k = 0 … count−1, on all threads (see set_threads) in the order of k, each run by itself on
+/// one thread; reports progress and stops between runs.
+void run_all(const study_control& control, const std::string& what, int count,
+             const std::function<void(int)>& body);
+
+/// One claim of the paper: a file of study/claims/ defines `extern const claim_entry claim_<file>`.
+struct claim_entry {
+  std::string id;         ///< "C7"
+  std::string section;    ///< of the paper
+  std::string statement;  ///< what the paper says, or what is said of it
+  std::string how;        ///< how it is shown
+  claim_result (*check)(const study_control&);
+};
+
+}  // namespace apsis

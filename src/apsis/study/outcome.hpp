@@ -1,0 +1,29 @@
+#pragma once
+
+#include <apsis/run/simulation.hpp>
+#include <apsis/study/claim.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// A run that went to its end.
+struct outcome {
+  case_config config;
+  run_summary summary;
+  field_table fields;
+  int cells = 0, components = 0;
+  std::vector<double> state;      ///< [cells][components]
+  double cell_volume = 1.0;       ///< 1 without space
+  double component_weight = 1.0;  ///< of a component in norms: the velocity cell Δv^d, or 1
+};
+
+/// Runs a case to its end. Throws what a simulation throws, and study_interrupted between steps.
+outcome compute(const case_config& config, const study_control& control = {});
+
+/// The built-in case or file with overrides "key=value", computed.
+outcome compute(const std::string& name, const std::vector<std::string>& overrides,
+                const study_control& control = {});
+
+}  // namespace apsis

@@ -15,6 +15,7 @@ void add_list(CLI::App& program, action& chosen);
 void add_show(CLI::App& program, action& chosen);
 void add_check(CLI::App& program, action& chosen);
 void add_info(CLI::App& program, action& chosen);
+void add_reproduce(CLI::App& program, action& chosen);
 
 /// Writes results to standard output. Throws io_error if they did not arrive.
 void print(const std::string& text);

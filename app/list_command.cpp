@@ -7,6 +7,7 @@
 #include <apsis/method/method.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
+#include <apsis/study/claim_registry.hpp>
 #include <map>
 #include <memory>
 
@@ -68,6 +69,13 @@ json schemes() {
   return all;
 }
 
+json claims() {
+  json all = json::array();
+  for (const claim_entry* c : find_claims({}))
+    all.push_back({{"name", c->id}, {"description", c->statement}, {"section", c->section}, {"how", c->how}});
+  return all;
+}
+
 std::string as_text(const std::string& what, const json& all) {
   std::string out;
   for (const auto& item : all)
@@ -79,7 +87,7 @@ std::string as_text(const std::string& what, const json& all) {
 
 int list(const std::string& what, bool as_json) {
   static const std::map<std::string, json (*)()> lists = {
-      {"methods", methods}, {"models", models}, {"cases", cases}, {"schemes", schemes}};
+      {"methods", methods}, {"models", models}, {"cases", cases}, {"schemes", schemes}, {"claims", claims}};
   const auto found = lists.find(what);
   if (found == lists.end()) {
     std::vector<std::string> names;
@@ -100,8 +108,8 @@ void add_list(CLI::App& program, action& chosen) {
     bool json = false;
   };
   auto given = std::make_shared<options>();
-  CLI::App* command = program.add_subcommand("list", "List methods, models, cases or schemes");
-  command->add_option("WHAT", given->what, "methods, models, cases or schemes")->required();
+  CLI::App* command = program.add_subcommand("list", "List methods, models, cases, schemes or claims");
+  command->add_option("WHAT", given->what, "methods, models, cases, schemes or claims")->required();
   command->add_flag("--json", given->json, "print a JSON array");
   command->callback([given, &chosen] { chosen = [given] { return list(given->what, given->json); }; });
 }

@@ -1,9 +1,9 @@
 # Lists that exist twice drift, so these are generated from the files that are there.
 
-# apsis_embed(out VAR files... ): a .cpp with the text of every file, as
-#   extern const std::array<apsis::embedded_text, N> ...  (see core/embedded.hpp)
-function(apsis_embed symbol root out_var)
-  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${root}/*.toml)
+# apsis_embed(methods ${root} toml out): a .cpp with the text of every *.toml below root, as the function
+# apsis::embedded::methods() (see core/embedded.hpp).
+function(apsis_embed symbol root ending out_var)
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${root}/*.${ending})
   list(SORT files)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/generated/${symbol}.cpp)
   set(body "")
@@ -11,11 +11,11 @@ function(apsis_embed symbol root out_var)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
     file(READ ${file} text)
     file(RELATIVE_PATH key ${root} ${file})
-    string(REGEX REPLACE "\\.toml$" "" key ${key})
+    string(REGEX REPLACE "\\.${ending}$" "" key ${key})
     string(APPEND body "    {\"${key}\", R\"apsis_text(${text})apsis_text\"},\n")
   endforeach()
   file(CONFIGURE OUTPUT ${out} @ONLY CONTENT
-"// Generated from the files of ${symbol}/; do not edit.
+"// Generated from the ${ending} files of the project; do not edit.
 #include <apsis/core/embedded.hpp>
 
 namespace apsis::embedded {

@@ -18,6 +18,6 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/apsisConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/apsisConfig.cmake ${PROJECT_BINARY_DIR}/apsisConfigVersion.cmake
         DESTINATION ${apsis_package_dir})
-install(FILES ${PROJECT_SOURCE_DIR}/python/apsis_plot.py DESTINATION ${CMAKE_INSTALL_DATADIR}/apsis)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ DESTINATION ${CMAKE_INSTALL_DATADIR}/apsis FILES_MATCHING PATTERN "*.py")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CITATION.cff
         DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -18,18 +18,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import h5py
-import matplotlib
+import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-import numpy as np  # noqa: E402
+from apsis_picture import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILLION, plt
 
-# Okabe and Ito: distinct for colour-blind readers, and in lightness for print.
-BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
 LABELS = {"rho": "density ρ", "u": "bulk velocity u", "T": "temperature T"}
-
-plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "savefig.dpi": 150,
-                     "figure.constrained_layout.use": True})
 
 
 class ResultError(Exception):

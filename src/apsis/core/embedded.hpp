@@ -5,7 +5,7 @@
 
 namespace apsis {
 
-/// A text file that is part of the library: `name` is its path below its folder, without ".toml".
+/// A text file that is part of the library: `name` is its path below its folder, without ending.
 struct embedded_text {
   std::string_view name;
   std::string_view text;
@@ -14,6 +14,7 @@ struct embedded_text {
 namespace embedded {
 std::vector<embedded_text> methods();  ///< every file of methods/
 std::vector<embedded_text> cases();    ///< every file of cases/
+std::vector<embedded_text> scripts();  ///< every file of python/ (the program draws with them)
 }  // namespace embedded
 
 }  // namespace apsis

@@ -9,22 +9,31 @@
 
 namespace apsis {
 
+namespace {
+
+/// "[=====>    ]  42 %"
+std::string bar(double part) {
+  constexpr int width = 24;
+  const auto full = static_cast<std::size_t>(part * width);
+  std::string text(width, ' ');
+  std::fill_n(text.begin(), full, '=');
+  if (full < width) text[full] = '>';
+  return fmt::format("[{}] {:3.0f} %", text, 100.0 * part);
+}
+
+std::string time_left(double seconds) {
+  if (!std::isfinite(seconds) || seconds >= 3.6e6) return "--";
+  const long s = std::lround(seconds);
+  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
+                   : fmt::format("{}:{:02}", s / 60, s % 60);
+}
+
+}  // namespace
+
 std::string progress_line(double fraction, long step, long steps_total, double t, double min_value,
                           double seconds_left) {
-  constexpr int width = 24;
-  const double part = std::clamp(fraction, 0.0, 1.0);
-  const auto full = static_cast<std::size_t>(part * width);
-  std::string bar(width, ' ');
-  std::fill_n(bar.begin(), full, '=');
-  if (full < width) bar[full] = '>';
-  std::string left = "--";
-  if (std::isfinite(seconds_left) && seconds_left < 3.6e6) {
-    const long s = std::lround(seconds_left);
-    left = s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
-                     : fmt::format("{}:{:02}", s / 60, s % 60);
-  }
-  return fmt::format("[{}] {:3.0f} %  step {}/{}  t = {:.4g}  min {:.2e}  {} left", bar, 100.0 * part, step,
-                     steps_total, t, min_value, left);
+  return fmt::format("{}  step {}/{}  t = {:.4g}  min {:.2e}  {} left", bar(std::clamp(fraction, 0.0, 1.0)),
+                     step, steps_total, t, min_value, time_left(seconds_left));
 }
 
 progress::progress(double end)
@@ -48,6 +57,27 @@ void progress::update(long step, long steps_total, double t, double min_value) {
   std::fflush(stderr);
   last_ = now;
   drawn_ = true;
+}
+
+task_progress::task_progress() : visible_(isatty(STDERR_FILENO) == 1), start_(clock::now()), last_(start_) {}
+
+task_progress::~task_progress() {
+  finish();
+}
+
+void task_progress::update(double fraction, const std::string& what) {
+  const auto now = clock::now();
+  if (!visible_ || (drawn_ && now - last_ < std::chrono::milliseconds(100))) return;
+  const double part = std::clamp(fraction, 0.0, 1.0);
+  fmt::print(stderr, "\r\033[K{}  {:.60}", bar(part), what);
+  std::fflush(stderr);
+  last_ = now;
+  drawn_ = true;
+}
+
+void task_progress::finish() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+  drawn_ = false;
 }
 
 void progress::finish() {

@@ -27,6 +27,22 @@ class progress {
   double first_t_ = -1.0;
 };
 
+/// The same for a study: how much of it is done, and what is being done.
+class task_progress {
+ public:
+  task_progress();
+  ~task_progress();
+  task_progress(const task_progress&) = delete;
+  task_progress& operator=(const task_progress&) = delete;
+  void update(double fraction, const std::string& what);
+  void finish();
+
+ private:
+  using clock = std::chrono::steady_clock;
+  bool visible_, drawn_ = false;
+  clock::time_point start_, last_;
+};
+
 /// "[=====>    ]  42 %  step 1234/2900  t = 0.21  min 1.2e-31  0:12 left"
 std::string progress_line(double fraction, long step, long steps_total, double t, double min_value,
                           double seconds_left);

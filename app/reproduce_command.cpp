@@ -1,0 +1,188 @@
+#include "build_info.hpp"
+#include "commands.hpp"
+#include "drawing.hpp"
+#include "interrupt.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+#include <apsis/core/parallel.hpp>
+#include <apsis/output/case_json.hpp>
+#include <apsis/output/progress.hpp>
+#include <apsis/output/result_folder.hpp>
+#include <apsis/study/claim_registry.hpp>
+#include <apsis/study/reproduce.hpp>
+#include <chrono>
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis::app {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr const char* document_name = "reproduce.json";
+
+struct options {
+  std::vector<std::string> claims;
+  std::string out = "results/reproduce";
+  int threads = 0;
+  bool json = false, resume = false;
+};
+
+/// One reproduction: its claims so far, always on disk.
+class reproduction {
+ public:
+  explicit reproduction(const options& given)
+      : options_(given), chosen_(find_claims(given.claims)), folder_(given.out) {
+    if (given.resume) load();
+  }
+
+  /// False if it was interrupted.
+  bool run() {
+    task_progress bar;
+    for (std::size_t k = 0; k < chosen_.size(); ++k) {
+      const claim_entry& claim = *chosen_[k];
+      if (known(claim.id) == nullptr) {
+        study_control control;
+        control.stop = interrupted;
+        control.progress = [&](double part, const std::string& what) {
+          bar.update((static_cast<double>(k) + part) / static_cast<double>(chosen_.size()),
+                     fmt::format("{} ({} of {})  {}", claim.id, k + 1, chosen_.size(), what));
+        };
+        try {
+          control.report(0.0, claim.statement);
+          done_.push_back(check_claim(claim, control));
+        } catch (const study_interrupted&) {
+          return false;
+        }
+        save();
+      }
+      bar.finish();
+      if (!options_.json) print(line(*known(claim.id)));
+    }
+    return true;
+  }
+
+  /// The claims that were asked for, in the order of the registry.
+  json document() const {
+    json claims = json::array();
+    for (const claim_entry* claim : chosen_)
+      if (const json* found = known(claim->id)) claims.push_back(*found);
+    double wall = 0.0;
+    for (const auto& claim : claims) wall += claim["wall_s"].get<double>();
+    return {{"version", version()},
+            {"paper",
+             "S. Gottlieb, Z. J. Grant, J. Hu, R. Shu, High order strong stability preserving "
+             "multi-derivative implicit and IMEX Runge-Kutta methods with asymptotic preserving properties"},
+            {"build", build_info()},
+            {"machine", machine_info()},
+            {"wall_s", wall},
+            {"claims", claims}};
+  }
+
+  std::vector<std::string> failed() const {
+    std::vector<std::string> ids;
+    for (const auto& claim : done_)
+      if (!claim["holds"].get<bool>()) ids.push_back(claim["id"]);
+    return ids;
+  }
+
+ private:
+  const json* known(const std::string& id) const {
+    for (const auto& claim : done_)
+      if (claim["id"] == id) return &claim;
+    return nullptr;
+  }
+
+  void save() {
+    folder_.publish(document_name, [this](const std::string& path) {
+      std::ofstream out(path, std::ios::binary);
+      out << json_text(document()) << '\n';
+      out.close();
+      if (!out)
+        throw io_error(
+            fmt::format("cannot write '{}' (no permission or no space left) free some space", path));
+    });
+  }
+
+  /// What an earlier run of the same version has shown.
+  void load() {
+    std::ifstream in(folder_.path() / document_name, std::ios::binary);
+    if (!in) return;
+    const json earlier = json::parse(in, nullptr, false);
+    if (!earlier.is_object() || earlier.value("version", "") != version() || !earlier.contains("claims"))
+      throw input_error(
+          fmt::format("'{}' cannot be resumed (its {} is of another version or damaged) leave out --resume",
+                      options_.out, document_name));
+    for (const auto& claim : earlier["claims"])
+      for (const claim_entry* wanted : chosen_)
+        if (claim.value("id", "") == wanted->id && claim.value("holds", false)) done_.push_back(claim);
+  }
+
+  static std::string line(const json& claim) {
+    return fmt::format("{:<4} {:<6} {:6.1f} s  {}\n", claim["id"].get<std::string>(),
+                       claim["holds"].get<bool>() ? "holds" : "FAILS", claim["wall_s"].get<double>(),
+                       claim["statement"].get<std::string>());
+  }
+
+  options options_;
+  std::vector<const claim_entry*> chosen_;
+  result_folder folder_;
+  std::vector<json> done_;
+};
+
+int reproduce(const options& given) {
+  watch_for_interrupts();
+  set_threads(given.threads);
+  reproduction all(given);
+  const bool complete = all.run();
+  const json document = all.document();
+  if (given.json) print(json_text(document) + "\n");
+  if (!complete) {
+    log::warning(fmt::format("interrupted; {} claims are in '{}', go on with --resume",
+                             document["claims"].size(), given.out));
+    return static_cast<int>(exit_code::interrupted);
+  }
+  const auto failed = all.failed();
+  std::string drawing_problem;
+  try {
+    draw("apsis_report", {given.out});
+  } catch (const io_error& problem) {
+    drawing_problem = problem.what();
+  }
+  if (!given.json)
+    print(fmt::format("{} of {} claims hold; see {}/{}\n", document["claims"].size() - failed.size(),
+                      document["claims"].size(), given.out, drawing_problem.empty() ? "report.html" : document_name));
+  if (!failed.empty()) {
+    if (!drawing_problem.empty()) log::warning(drawing_problem);
+    throw claim_error(fmt::format("{} claim(s) of the paper do not hold here: {} see the findings in '{}'",
+                                  failed.size(), fmt::join(failed, ", "), given.out));
+  }
+  if (!drawing_problem.empty()) throw io_error(drawing_problem);
+  return 0;
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& program, action& chosen) {
+  auto given = std::make_shared<options>();
+  CLI::App* command =
+      program.add_subcommand("reproduce", "Check every claim of the paper and redraw its figures");
+  command->add_option("CLAIM", given->claims, "claims such as C22 (apsis list claims); all if none is named");
+  command->add_option("--out", given->out, "folder for report.html, reproduce.json and pictures")
+      ->capture_default_str();
+  command->add_flag("--resume", given->resume,
+                    "keep the claims that an earlier run in the same folder has shown");
+  command
+      ->add_option("--threads", given->threads,
+                   "threads to use, 0 for all cores; results do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->add_flag("--json", given->json, "print reproduce.json on standard output, and nothing else");
+  command->callback([given, &chosen] { chosen = [given] { return reproduce(*given); }; });
+}
+
+}  // namespace apsis::app

@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""Draws pictures that the program apsis wrote as data, all in one style.
+
+    apsis_picture.py FILE.json [--out DIR] [--format png|svg|pdf]
+
+FILE.json holds one picture, or an object with a list "pictures" (also inside "claims"). A picture has name, title, caption
+and panels; a panel has curves {label, x, y, style, colour} or one map {x, y, value}. null stands for "no number".
+"""
+import argparse
+import json
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+import numpy as np  # noqa: E402
+
+# Okabe and Ito: distinct for colour-blind readers, and in lightness for print.
+BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
+SKY = "#56B4E9"
+COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, "#7F7F7F")
+# Markers differ too, so that curves are told apart without colour.
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "h")
+STYLES = {"line": ("-", False), "dashed": ("--", False), "dash_dot": ("-.", False), "markers": ("none", True),
+          "line_and_markers": ("-", True), "dashed_and_markers": ("--", True)}
+
+plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "savefig.dpi": 150,
+                     "figure.constrained_layout.use": True, "svg.fonttype": "path", "svg.hashsalt": "apsis"})
+
+
+class PictureError(Exception):
+    """A file that holds no picture; the message names it."""
+
+
+def numbers(values):
+    return np.array([np.nan if v is None else v for v in values], dtype=float)
+
+
+def draw_curves(axes, panel):
+    following = 0
+    for curve in panel["curves"]:
+        x, y = numbers(curve["x"]), numbers(curve["y"])
+        shown = np.isfinite(x) & np.isfinite(y)
+        if panel["log_x"]:
+            shown &= x > 0
+        if panel["log_y"]:
+            shown &= y > 0
+        index = curve["colour"]
+        if index == -1:
+            index, following = following, following + 1
+        colour = BLACK if index < 0 else COLOURS[index % len(COLOURS)]
+        line, marked = STYLES[curve["style"]]
+        axes.plot(x[shown], y[shown], linestyle=line, color=colour, linewidth=1.3, markersize=4.5,
+                  marker=MARKERS[max(index, 0) % len(MARKERS)] if marked else "none",
+                  fillstyle="none" if line == "none" else "full", label=curve["label"] or None)
+
+
+def draw_slopes(axes, slopes):
+    """Triangles of the given orders in the empty corner below the curves."""
+    if not slopes or not axes.lines:
+        return
+    (left, right), (bottom, top) = np.log10(axes.get_xlim()), np.log10(axes.get_ylim())
+    width = 0.16 * (right - left)
+    for k, slope in enumerate(slopes):
+        x0 = right - (0.06 + 0.24 * k) * (right - left) - width
+        y0 = bottom + 0.06 * (top - bottom)
+        height = slope * width
+        if height > 0.5 * (top - bottom):
+            width, height = 0.5 * (top - bottom) / slope, 0.5 * (top - bottom)
+        corner = 10 ** np.array([[x0, y0], [x0 + width, y0], [x0 + width, y0 + height]])
+        axes.fill(*corner.T, facecolor="#00000018", edgecolor=BLACK, linewidth=0.8)
+        axes.text(*(10 ** np.array([x0 + 1.08 * width, y0 + 0.4 * height])), f"{slope:g}", fontsize=8, va="center")
+    axes.set_xlim(10**left, 10**right)
+    axes.set_ylim(10**bottom, 10**top)
+
+
+def edges(values, logarithmic):
+    """Borders of the fields of a map around their centres."""
+    centres = np.log10(values) if logarithmic else np.asarray(values, dtype=float)
+    if len(centres) == 1:
+        borders = np.array([centres[0] - 0.5, centres[0] + 0.5])
+    else:
+        middle = 0.5 * (centres[1:] + centres[:-1])
+        borders = np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])
+    return 10**borders if logarithmic else borders
+
+
+def draw_map(figure, axes, panel):
+    image = panel["maps"][0]
+    value = np.array([numbers(row) for row in image["value"]])
+    axes.grid(False)
+    mesh = axes.pcolormesh(edges(image["x"], panel["log_x"]), edges(image["y"], panel["log_y"]),
+                           np.ma.masked_invalid(value), cmap="cividis", vmin=image["lowest"], vmax=image["highest"])
+    figure.colorbar(mesh, ax=axes, label=image["label"])
+    if value.size > 400:
+        return
+    middle = 0.5 * (image["lowest"] + image["highest"])
+    for row, y in zip(value, image["y"]):
+        for number, x in zip(row, image["x"]):
+            if np.isfinite(number):
+                axes.text(x, y, f"{number:.1f}", fontsize=6, ha="center", va="center",
+                          color="white" if number < middle else "black")
+
+
+def draw(picture):
+    """The picture as a matplotlib figure."""
+    panels = picture["panels"]
+    columns = min(len(panels), 3) if len(panels) != 4 else 2
+    rows = -(-len(panels) // columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(5.0 * columns if columns > 1 else 6.4, 3.9 * rows), squeeze=False)
+    for axes in grid.flat[len(panels):]:
+        axes.remove()
+    for axes, panel in zip(grid.flat, panels):
+        axes.set_xscale("log" if panel["log_x"] else "linear")
+        axes.set_yscale("log" if panel["log_y"] else "linear")
+        if panel["maps"]:
+            draw_map(figure, axes, panel)
+        draw_curves(axes, panel)
+        if panel["log_x"] and panel["log_y"] and not panel["maps"]:
+            draw_slopes(axes, panel["slopes"])
+        axes.set_xlabel(panel["x_label"])
+        axes.set_ylabel(panel["y_label"])
+        axes.set_title(panel["title"], fontsize=10)
+        if any(curve["label"] for curve in panel["curves"]):
+            axes.legend(fontsize=7, ncols=2 if len(panel["curves"]) > 6 else 1)
+    figure.suptitle(picture["title"], fontsize=11)
+    return figure
+
+
+def pictures_of(document):
+    """Every picture of a parsed JSON document."""
+    if "panels" in document:
+        return [document]
+    found = list(document.get("pictures", []))
+    for claim in document.get("claims", []):
+        found += pictures_of(claim)
+    return found
+
+
+def read_json(path):
+    try:
+        return json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as problem:
+        raise PictureError(f"cannot read {path} ({problem.strerror}) give a file that apsis wrote") from problem
+    except ValueError as problem:
+        raise PictureError(f"{path} is not JSON ({problem}) give a file that apsis wrote") from problem
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--out", type=Path, help="folder of the pictures (default: that of the file)")
+    parser.add_argument("--format", choices=("png", "svg", "pdf"), default="png")
+    options = parser.parse_args(arguments)
+    try:
+        found = pictures_of(read_json(options.file))
+        if not found:
+            raise PictureError(f"{options.file} holds no picture (no \"panels\") give a file that apsis wrote")
+    except PictureError as problem:
+        print(f"apsis_picture: {problem}", file=sys.stderr)
+        return 4
+    out = options.out or options.file.parent
+    out.mkdir(parents=True, exist_ok=True)
+    for picture in found:
+        figure = draw(picture)
+        figure.savefig(out / f"{picture['name']}.{options.format}")
+        plt.close(figure)
+        print(out / f"{picture['name']}.{options.format}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

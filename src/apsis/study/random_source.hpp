@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+namespace apsis {
+
+/// Random numbers for experiments: the same on every machine, which the distributions of the standard library
+/// do not promise.
+class random_source {
+ public:
+  explicit random_source(std::uint64_t seed) : engine_(seed) {}
+
+  /// Uniform in [low, high).
+  double uniform(double low = 0.0, double high = 1.0) {
+    return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
+  /// 10^x with x uniform in [low, high).
+  double magnitude(double low, double high) { return std::pow(10.0, uniform(low, high)); }
+  /// An integer in [low, high).
+  int integer(int low, int high) { return low + static_cast<int>(uniform() * (high - low)); }
+  bool one_in(int n) { return integer(0, n) == 0; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace apsis

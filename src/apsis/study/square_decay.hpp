@@ -1,0 +1,34 @@
+#pragma once
+
+#include <apsis/method/certificate.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// Names of the methods of the catalogue whose certificate satisfies a condition.
+std::vector<std::string> methods_where(const std::function<bool(const certificate&)>& condition);
+
+/// Implicit methods that are strong stability preserving for every step.
+std::vector<std::string> unconditional_methods();
+
+/// u' = −10u², u(0) = 10 (paper, numerical tests of the implicit methods), dimensionless.
+struct decay_run {
+  std::vector<double> t, u;  ///< all steps until a stage equation has no root, the initial state included
+  bool solvable = true;      ///< every stage equation has a root
+  bool positive = true;      ///< every stage and every step is > 0
+  bool decreasing = true;    ///< u^{n+1} < u^n at every step
+
+  bool qualitatively_right() const { return solvable && positive && decreasing; }
+};
+
+/// `steps` steps of length dt by the method, through the production stepper; a stage is solved by Newton's
+/// method and may come out negative.
+decay_run square_decay(const std::string& method, double dt, int steps);
+
+/// The exact solution 1/(1/10 + 10 t).
+double square_decay_exact(double t);
+
+}  // namespace apsis

@@ -181,6 +181,10 @@ TEST(bad_case, overrides_report_themselves_as_their_place) {
       {"model.epsilon=1+z", "unknown name 'z'"},
       {"model.epsilon=-1", "must be finite and not negative"},
       {"space={cells=3}", "it is a table"},
+      {"time.end=1/0", "must be finite"},
+      {"time.end=1/", "not valid TOML"},
+      {"time.end=1/2/3", "not valid TOML"},
+      {"space.cells=80/2", "'space.cells' is the fraction 80/2 (an integer is needed)"},
       {std::string("title=") + std::string(5000, 'a'), "longer than"}};
   for (const auto& given : overrides) {
     const std::string message = error_of(good, {given.text});

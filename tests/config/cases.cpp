@@ -55,6 +55,14 @@ TEST(cases, overrides_take_the_place_of_the_file) {
   EXPECT_FALSE(c.time.cfl);
 }
 
+TEST(cases, numbers_of_overrides_may_be_fractions) {
+  EXPECT_EQ(*load_case("paper/ode", {"time.dt=1/48"}).time.dt, 1.0 / 48.0);
+  EXPECT_EQ(load_case("paper/decay", {"model.u0=2.5e1/4"}).model.parameters.at("u0"), 6.25);
+  // Text stays text, and a formula is computed by its own reader.
+  EXPECT_EQ(load_case("paper/ode", {"title=1/2"}).title, "1/2");
+  EXPECT_EQ(load_case("paper/ode", {"model.epsilon=1/2"}).model.epsilon, "1/2");
+}
+
 TEST(cases, a_missing_case_is_an_input_error_with_the_nearest_name) {
   try {
     load_case("paper/bgk-mixd");

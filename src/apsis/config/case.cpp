@@ -287,14 +287,18 @@ case_config parse_case(std::string_view text, const std::string& file,
   return resolver(std::move(flat), file).resolve();
 }
 
-case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+std::string read_case(const std::string& name_or_path) {
   for (const auto& built_in : embedded::cases())
-    if (built_in.name == name_or_path) return parse_case(built_in.text, name_or_path, overrides);
+    if (built_in.name == name_or_path) return std::string(built_in.text);
   std::error_code ignored;
   if (!std::filesystem::exists(name_or_path, ignored))
     throw input_error(fmt::format("no case '{}' (neither a file nor a built-in case) {}", shown(name_or_path),
                                   suggest(name_or_path, case_names())));
-  return parse_case(read_file(name_or_path), name_or_path, overrides);
+  return read_file(name_or_path);
+}
+
+case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+  return parse_case(read_case(name_or_path), name_or_path, overrides);
 }
 
 std::vector<std::string> case_names() {

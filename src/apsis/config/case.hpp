@@ -15,7 +15,7 @@ enum class formulation { finite_volume, finite_difference };
 /// A case as resolved: every key has its value, every name exists. What the keys mean is documented once,
 /// in case_schema.cpp (`apsis show case`).
 struct case_config {
-  std::string source;  ///< file or name of the built-in case
+  std::string source;                          ///< file or name of the built-in case
   std::map<std::string, source_place> places;  ///< where each key of the text stands, for later messages
   std::string title;
   struct {
@@ -53,6 +53,9 @@ struct case_config {
 /// wrong types and values out of range are input_errors with file, line, column and a suggestion.
 case_config parse_case(std::string_view text, const std::string& file,
                        const std::vector<std::string>& overrides = {});
+
+/// The text of a case: of a file by path, or of a built-in case by name. Throws input_error or io_error.
+std::string read_case(const std::string& name_or_path);
 
 /// A case file by path, or a built-in case by name ("paper/bgk-mixed").
 case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides = {});

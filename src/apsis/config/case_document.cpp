@@ -131,7 +131,8 @@ std::string to_toml(const case_value& value) {
 std::string schema_text() {
   std::string out =
       "Keys of a case file (TOML). A key that is not listed, or that the model does not use, is an error.\n"
-      "On the command line: apsis run CASE key=value, for example space.cells=80.\n";
+      "On the command line: apsis run CASE key=value, for example space.cells=80; there a number may be a\n"
+      "fraction, time.dt=1/128.\n";
   std::string table = "?";
   for (const case_key& key : case_schema()) {
     if (table_of(key.path) != table) {

@@ -1,7 +1,9 @@
 #include <apsis/config/case_text.hpp>
 
 #include <algorithm>
-#include <sstream>
+#include <charconv>
+#include <optional>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -73,6 +75,23 @@ std::string in_quotes(const std::string& value) {
   return out + '"';
 }
 
+// "1/128": exact in a case, and what step sizes look like. Not TOML, so it is read here; nothing if it is no
+// fraction of two decimal numbers.
+std::optional<double> fraction(const std::string& value) {
+  const auto slash = value.find('/');
+  if (slash == std::string::npos) return std::nullopt;
+  const auto number = [](std::string_view text) -> std::optional<double> {
+    double x = 0.0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), x);
+    if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return x;
+  };
+  const auto above = number(std::string_view(value).substr(0, slash));
+  const auto below = number(std::string_view(value).substr(slash + 1));
+  if (!above || !below) return std::nullopt;
+  return *above / *below;
+}
+
 std::string syntax_message(std::string_view description) {
   return fmt::format("not valid TOML ({}) correct the syntax here", shown(description, 200));
 }
@@ -120,6 +139,10 @@ void apply_override(case_text& target, const std::string& path, const std::strin
                     const source_place& place) {
   if (value.find_first_of("\r\n") != std::string::npos)
     throw input_error(place, "the value has more than one line (one value is needed) give one line");
+  if (const auto number = fraction(value); number && !is_text) {
+    target.values[path] = {*number, fmt::format("the fraction {}", value), place, place};
+    return;
+  }
   const bool bare = is_text && value.find_first_of("\"'") != 0;
   const std::string line = "value = " + (bare ? in_quotes(value) : value);
   check_size(line, place.file);

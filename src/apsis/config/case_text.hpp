@@ -33,8 +33,8 @@ constexpr std::size_t longest_case_line = 4096;       ///< bytes; bounds the dep
 /// Reads TOML into flat keys. Throws input_error with line and column: too large, not TOML.
 case_text read_case_text(std::string_view text, const std::string& file);
 
-/// Sets one key from "dotted.key=value"; the value is TOML, and text may stand without quotes.
-/// `is_text` says whether the key takes text. Throws input_error.
+/// Sets one key from "dotted.key=value"; the value is TOML, text may stand without quotes, and a number may
+/// be a fraction like 1/128. `is_text` says whether the key takes text. Throws input_error.
 void apply_override(case_text& target, const std::string& path, const std::string& value, bool is_text,
                     const source_place& place);
 

@@ -135,12 +135,16 @@ std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
   return problem;
 }
 
-field run_setup::initial_state() const {
+const initial_data& run_setup::data() const {
   const auto& all = equation->initial();
-  const auto found = std::find_if(all.begin(), all.end(), [this](const auto& data) {
-    return config_.model.initial.empty() || data.name == config_.model.initial;
+  const auto found = std::find_if(all.begin(), all.end(), [this](const auto& item) {
+    return config_.model.initial.empty() || item.name == config_.model.initial;
   });
   if (found == all.end()) throw input_error("unknown initial data '" + config_.model.initial + "'");
+  return *found;
+}
+
+field run_setup::sampled(const std::function<void(double, std::span<double>)>& point_value) const {
   field u(mesh_.size(), equation->components());
   std::vector<double> values(static_cast<std::size_t>(u.components()));
   const bool averages = has_space() && config_.space.formulation == formulation::finite_volume;
@@ -148,7 +152,7 @@ field run_setup::initial_state() const {
     const double centre = mesh_.centre(cell, 0), half = 0.5 * mesh_.spacing(0);
     double* row = u.row(cell);
     const auto add = [&](double x, double weight) {
-      found->point_value(x, values);
+      point_value(x, values);
       for (std::size_t k = 0; k < values.size(); ++k) row[k] += weight * values[k];
     };
     if (averages) {
@@ -161,11 +165,23 @@ field run_setup::initial_state() const {
     } else {
       add(has_space() ? centre : 0.0, 1.0);
     }
-    const misfit found_misfit = equation->unfit(row);
-    if (!found_misfit.problem.empty())
-      refuse(config_, found_misfit.key, fmt::format("{} [cell {}]", found_misfit.problem, cell));
   }
   return u;
+}
+
+field run_setup::initial_state() const {
+  field u = sampled(data().point_value);
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    const misfit found = equation->unfit(u.row(cell));
+    if (!found.problem.empty()) refuse(config_, found.key, fmt::format("{} [cell {}]", found.problem, cell));
+  }
+  return u;
+}
+
+std::optional<field> run_setup::exact_state(double t) const {
+  const auto& exact = data().exact;
+  if (!exact) return std::nullopt;
+  return sampled([&exact, t](double x, std::span<double> u) { exact(t, x, u); });
 }
 
 double run_setup::cfl_length() const {

@@ -6,8 +6,10 @@
 #include <apsis/run/simulation.hpp>
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace apsis {
@@ -29,6 +31,8 @@ class run_setup {
   /// Cell averages (finite volume) or point values (finite difference) of the named initial data. Throws
   /// input_error where the velocity grid cannot hold them.
   field initial_state() const;
+  /// The exact solution at time t in the same form; nothing where no formula is known for the data.
+  std::optional<field> exact_state(double t) const;
 
   bool has_space() const { return equation->space_dimensions() > 0; }
   double cell_volume() const { return has_space() ? mesh_.cell_volume() : 1.0; }
@@ -45,6 +49,8 @@ class run_setup {
   bool first_order() const { return how_.scheme && how_.scheme->order() == 1; }
   /// Collision on the averages themselves: point values, or first order, where the quartic would be too much.
   bool pointwise() const;
+  const initial_data& data() const;
+  field sampled(const std::function<void(double x, std::span<double> u)>& point_value) const;
   std::vector<double> epsilon_on(const std::vector<double>& x) const;
   void check_method();
   void choose_stencil();

@@ -110,6 +110,15 @@ struct simulation::impl {
   run_summary totals;
 };
 
+namespace {
+std::vector<double> without_padding(const field& u) {
+  std::vector<double> values;
+  for (int cell = 0; cell < u.cells(); ++cell)
+    values.insert(values.end(), u.row(cell), u.row(cell) + u.components());
+  return values;
+}
+}  // namespace
+
 simulation::simulation(case_config config) : impl_(std::make_unique<impl>(std::move(config))) {}
 simulation::~simulation() = default;
 simulation::simulation(simulation&&) noexcept = default;
@@ -200,12 +209,12 @@ int simulation::components() const {
 }
 
 std::vector<double> simulation::state() const {
-  std::vector<double> values;
-  for (int cell = 0; cell < cells(); ++cell) {
-    const double* row = impl_->state.row(cell);
-    values.insert(values.end(), row, row + components());
-  }
-  return values;
+  return without_padding(impl_->state);
+}
+
+std::vector<double> simulation::exact_state() const {
+  const auto exact = impl_->setup.exact_state(t());
+  return exact ? without_padding(*exact) : std::vector<double>{};
 }
 
 std::vector<double> simulation::velocities() const {

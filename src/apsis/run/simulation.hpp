@@ -85,7 +85,9 @@ class simulation {
   bool has_space() const;
   int cells() const;
   int components() const;
-  std::vector<double> state() const;       ///< [cells][components], contiguous
+  std::vector<double> state() const;  ///< [cells][components], contiguous
+  /// The exact solution at t() in the form of state(); empty where no formula is known for the data.
+  std::vector<double> exact_state() const;
   std::vector<double> velocities() const;  ///< of the components; empty without a velocity grid
   std::vector<double> epsilon() const;     ///< at the cell centres
 

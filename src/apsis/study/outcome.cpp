@@ -17,6 +17,7 @@ outcome compute(const case_config& config, const study_control& control) {
   out.cells = run.cells();
   out.components = run.components();
   out.state = run.state();
+  out.exact = run.exact_state();
   if (run.has_space())
     out.cell_volume = (config.space.domain[1] - config.space.domain[0]) / config.space.cells;
   if (config.velocity.points > 0) {

@@ -15,6 +15,7 @@ struct outcome {
   field_table fields;
   int cells = 0, components = 0;
   std::vector<double> state;      ///< [cells][components]
+  std::vector<double> exact;      ///< the exact solution in the same form; empty where none is known
   double cell_volume = 1.0;       ///< 1 without space
   double component_weight = 1.0;  ///< of a component in norms: the velocity cell Δv^d, or 1
 };

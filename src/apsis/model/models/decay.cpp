@@ -12,7 +12,10 @@ class decay_model final : public general_model {
  public:
   explicit decay_model(const model_config& config) : rate_(config.parameters.at("rate")) {
     const double start = config.parameters.at("u0");
-    initial_ = {{"start", "u(0) = u0", [start](double, std::span<double> u) { u[0] = start; }}};
+    const double k = rate_;
+    initial_ = {
+        {"start", "u(0) = u0", [start](double, std::span<double> u) { u[0] = start; },
+         [start, k](double t, double, std::span<double> u) { u[0] = start / (1.0 + k * start * t); }}};
   }
 
   int components() const override { return 1; }

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// The limit scheme: what an IMEX method on a discretised relaxation model u_t = T(u) + C(E − u)/ε becomes
+/// for ε → 0 with Δt and the mesh held fixed (paper, proof of the AP property), written without the operators
+/// and the stepper of a run, for comparison with them.
+///
+/// Point values (also first order, and no space): the unknowns are the moments ω, and they follow the
+/// explicit method Â for the limit system with flux vector splitting,
+///     ω_i = ω^n + Δt Σ_{j<i} â_ij ℛT(E(ω_j)),   ω^{n+1} = ω_s.
+/// Cell averages: a stage relaxes at the Gauss points of the quartics through its explicit part v_i, so the
+/// state is the average u_i = Π(v_i) of equilibria in each cell (limit_space::equilibrium_averages), and
+///     v_i = u^n + Δt Σ_{j<i} â_ij T(u_j) + Σ_{j<i} κ_ij (u_j − v_j),   κ_ij = ȧ_ij/ȧ_jj, or a_ij/a_jj if
+///     ȧ_jj = 0.
+/// ℛ(u_j − v_j) = 0, so the averages of ω follow Â here too; the κ-terms only decide how ω is distributed
+/// inside the cells. Stages that the method does not relax (no implicit part) are left as they are.
+class limit_scheme {
+ public:
+  /// Throws input_error unless the model is a relaxation model and the method is IMEX.
+  explicit limit_scheme(const case_config& config);
+  ~limit_scheme();
+  limit_scheme(limit_scheme&&) noexcept;
+  limit_scheme& operator=(limit_scheme&&) noexcept;
+
+  /// Begins from the state u, [cells][components]; it need not be an equilibrium.
+  void start(std::span<const double> u);
+  /// One step of length dt. Throws numerical_error where a stage has no equilibrium.
+  void step(double dt);
+
+  /// ω of the present state: averages or point values, [cells][moments].
+  std::vector<double> moments() const;
+  /// The equilibrium of the present state: E(ω), or the averages Π, [cells][components].
+  std::vector<double> equilibrium() const;
+
+  /// The same two of any state u, [cells][components].
+  std::vector<double> moments_of(std::span<const double> u) const;
+  std::vector<double> equilibrium_of(std::span<const double> u) const;
+  /// Whether the method relaxes its first stage (type A), so that it finds the equilibrium by itself.
+  bool relaxes_first_stage() const;
+
+ private:
+  struct impl;
+  std::unique_ptr<impl> impl_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,91 @@
+// The limit scheme by itself: against equations written out by hand.
+#include <apsis/core/errors.hpp>
+#include <apsis/study/limit_scheme.hpp>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "limit_cases.hpp"
+
+using namespace apsis;
+
+namespace {
+
+case_config ode_case(const std::string& method) {
+  return small_case("ode", method, "");
+}
+
+/// u1(1) of the limit scheme of the ODE model from u1(0) = 2.
+double limit_of_ode(const std::string& method, int steps) {
+  limit_scheme scheme(ode_case(method));
+  scheme.start(std::array{2.0, 0.0});
+  for (int n = 0; n < steps; ++n) scheme.step(1.0 / steps);
+  return scheme.moments().at(0);
+}
+
+}  // namespace
+
+TEST(limit_scheme, of_the_second_order_method_is_heuns_method_on_the_limit_equation) {
+  double u = 2.0;  // u' = sin u
+  const double dt = 0.1;
+  for (int n = 0; n < 10; ++n) {
+    const double predicted = u + dt * std::sin(u);
+    u = 0.5 * u + 0.5 * (predicted + dt * std::sin(predicted));
+  }
+  // Rounding of ten steps.
+  EXPECT_NEAR(limit_of_ode("md-imex-3-2", 10), u, 1e-14);
+}
+
+TEST(limit_scheme, has_the_order_of_the_method_on_the_limit_equation) {
+  const double exact = 2.0 * std::atan(std::tan(1.0) * std::numbers::e);  // u' = sin u, u(0) = 2, t = 1
+  for (const auto& name : imex_methods(true)) {
+    const double coarse = std::abs(limit_of_ode(name, 20) - exact);
+    const double fine = std::abs(limit_of_ode(name, 40) - exact);
+    // The next term of the error expansion is 1/40 of the leading one, times a constant of order one.
+    EXPECT_NEAR(std::log2(coarse / fine), find_certificate(name).order, 0.15) << name;
+  }
+}
+
+TEST(limit_scheme, takes_data_off_equilibrium_to_their_equilibrium) {
+  limit_scheme scheme(ode_case("md-imex-6-3"));
+  scheme.start(std::array{2.0, 5.0});
+  scheme.step(0.1);
+  const double u1 = scheme.moments().at(0);
+  EXPECT_EQ(scheme.equilibrium(), (std::vector<double>{u1, std::sin(u1)}));
+}
+
+TEST(limit_scheme, conserves_what_the_kinetic_scheme_conserves) {
+  for (const auto& model : relaxation_models()) {
+    for (const auto& formulation : formulations(model)) {
+      if (formulation.empty()) continue;
+      const case_config config = small_case(model, "md-imex-6-3", formulation);
+      const run_setup setup(config);
+      const field u = setup.initial_state();
+      limit_scheme scheme(config);
+      scheme.start(values(u));
+      const auto before = scheme.moments();
+      scheme.step(0.005);
+      const auto after = scheme.moments();
+      const std::size_t moments = before.size() / static_cast<std::size_t>(u.cells());
+      for (std::size_t k = 0; k < moments; ++k) {
+        double defect = 0.0, size = 0.0;
+        for (std::size_t i = k; i < before.size(); i += moments) {
+          defect += after[i] - before[i];
+          size += std::abs(before[i]);
+        }
+        // The moments of 16 cells, each good to a few units of the last digit.
+        EXPECT_LE(std::abs(defect), 1e-14 * (1.0 + size)) << model << " " << formulation << " moment " << k;
+      }
+    }
+  }
+}
+
+TEST(limit_scheme, refuses_methods_and_models_without_one_and_states_of_another_size) {
+  EXPECT_THROW(limit_scheme(ode_case("ssprk-2-2")), input_error);
+  EXPECT_THROW(limit_scheme(load_case("paper/decay", {"time.method=imdrk-2-3"})), input_error);
+  limit_scheme scheme(ode_case("md-imex-3-2"));
+  EXPECT_THROW(scheme.start(std::array{1.0, 2.0, 3.0}), input_error);
+}

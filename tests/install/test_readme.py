@@ -46,7 +46,8 @@ class Readme(unittest.TestCase):
         ids = re.findall(r"^\| (C\d+) \|[^|]*\|$", (ROOT / "docs" / "claims.md").read_text(encoding="utf-8"), re.M)
         self.assertGreater(len(ids), 5)
         for claim in ids:
-            self.assertRegex(tests, rf"\(claims, {claim}_", claim)
+            file = ROOT / "src" / "apsis" / "study" / "claims" / f"C{int(claim[1:]):02d}.cpp"
+            self.assertTrue(file.exists() or re.search(rf"\(claims, {claim}_", tests), claim)
 
     def test_every_room_says_what_it_is(self):
         for room in (ROOT / "src" / "apsis").iterdir():

@@ -66,6 +66,7 @@ struct claim_entry {
   std::string statement;  ///< what the paper says, or what is said of it
   std::string how;        ///< how it is shown
   claim_result (*check)(const study_control&);
+  bool slow = false;  ///< more than about 20 s on two cores
 };
 
 }  // namespace apsis

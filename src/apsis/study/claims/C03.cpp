@@ -1,17 +1,19 @@
-#include <apsis/method/certificate.hpp>
+#include <apsis/study/certificate_findings.hpp>
 #include <apsis/study/claim.hpp>
+#include <apsis/study/paper_tables.hpp>
 
 namespace apsis {
 namespace {
 
 claim_result check(const study_control&) {
-  const certificate& c = find_certificate("imdrk-1-2");
   claim_result result;
-  result.findings = {
-      exactly("order", c.order, 2),
-      at_most("largest residual of the order conditions", static_cast<double>(c.order_residual), 1e-38),
-      holds("unconditionally SSP: R e ≥ 0, P ≥ 0, D ≥ 0, Ḋ ≤ 0", c.unconditional),
-      exactly("stages", static_cast<long>(find_method("imdrk-1-2").stages()), 1)};
+  result.findings = certificate_findings("imdrk-1-2", 2);
+  result.findings.push_back(
+      holds("unconditionally SSP: R e, P, D ≥ 0 and Ḋ ≤ 0", find_certificate("imdrk-1-2").unconditional));
+  const auto& stability = find_certificate("imdrk-1-2").stability;
+  result.findings.push_back(near("angle of A(α)-stability, degrees", stability.angle, 90.0, 0.0));
+  result.findings.push_back(at_least("smallest value of R(z) = 1/(1 - z + z²/2) on the negative axis",
+                                     stability.smallest_on_negative_axis, 0.0));
   return result;
 }
 
@@ -19,8 +21,8 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C03;
 const claim_entry claim_C03 = {
-    "C3", "SSP implicit two-derivative methods, new methods up to order 4",
-    "the one-stage implicit Taylor method is of second order and unconditionally SSP",
-    "certificate of the method from its coefficients alone", check};
+    "C3", "New SSP implicit two-derivative Runge-Kutta methods",
+    "the one-stage implicit Taylor method is of second order and SSP for every step",
+    "certificate from the coefficients alone", check};
 
 }  // namespace apsis

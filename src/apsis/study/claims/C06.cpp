@@ -1,0 +1,27 @@
+#include <apsis/study/certificate_findings.hpp>
+#include <apsis/study/claim.hpp>
+#include <apsis/study/paper_tables.hpp>
+
+namespace apsis {
+namespace {
+
+claim_result check(const study_control&) {
+  claim_result result;
+  result.findings = certificate_findings("md-imex-3-2", 2);
+  result.findings.push_back(near("SSP coefficient r from the Butcher form alone",
+                                 static_cast<double>(find_certificate("md-imex-3-2").ssp_coefficient), 1.0,
+                                 0.0));
+  result.findings.push_back(
+      at_most("largest difference from the printed Butcher form", distance_to_print("md-imex-3-2"), 1e-14));
+  return result;
+}
+
+}  // namespace
+
+extern const claim_entry claim_C06;
+const claim_entry claim_C06 = {
+    "C6", "New SSP IMEX multi-derivative Runge-Kutta methods",
+    "the three-stage IMEX method is of second order with r = 1; its printed Butcher form agrees",
+    "certificate; r re-derived from the Butcher form alone", check};
+
+}  // namespace apsis

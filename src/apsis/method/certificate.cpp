@@ -118,9 +118,10 @@ void check_ssp_claim(const method& m, const mp_real& tolerance, certificate& c) 
     return;
   }
   const mp_real value = coefficient_value(claimed);
-  // A claim is as good as its last digit.
+  // A claim is as good as its last digit; an exact one as the radius is found: what counts as nonnegative
+  // down to −tolerance moves it by a multiple of that, the multiple being a product of a few coefficients.
   const int digits = decimals(claimed);
-  const mp_real allowed = digits > 0 ? 2 * pow(mp_real(10), -digits) : tolerance;
+  const mp_real allowed = digits > 0 ? 2 * pow(mp_real(10), -digits) : 1000 * tolerance;
   const bool none = !c.bounded;
   if (none || abs(c.ssp_coefficient - value) > allowed)
     c.failures.push_back(fmt::format("claims.ssp_coefficient = {} but the Butcher form gives {}{}", claimed,

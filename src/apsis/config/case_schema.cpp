@@ -1,5 +1,6 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/space/boundary.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
 
 #include <cmath>
@@ -48,7 +49,7 @@ std::vector<std::string> limiter_choices(const case_config&) {
   return {"none", "positivity"};
 }
 std::vector<std::string> boundary_choices(const case_config&) {
-  return {"periodic"};
+  return boundary_names();
 }
 std::vector<std::string> equilibrium_choices(const case_config&) {
   return {"auto", "formula", "discrete"};
@@ -108,7 +109,9 @@ std::vector<case_key> make_schema() {
        "nonnegative for steps up to the method's SSP coefficient times dx/(12 v_max).",
        [](c& o, const v& x) { o.space.limiter = text_of(x); }, [](const c& o) { return v(o.space.limiter); }},
       {"space.boundary", text, key_scope::space, false, "", 0, 0, false, boundary_choices,
-       "What happens at the ends of the domain.", [](c& o, const v& x) { o.space.boundary = text_of(x); },
+       "What lies beyond the ends of the domain: its other end (periodic), or a copy of the last cell inside "
+       "(outflow; conservation and entropy decay are then not promised).",
+       [](c& o, const v& x) { o.space.boundary = text_of(x); },
        [](const c& o) { return v(o.space.boundary); }},
       {"velocity.max", number, key_scope::velocity, true, none, 0, 1e6, true, nullptr,
        "The velocity grid covers [-max, max]; it must hold the tails of the data.",

@@ -192,12 +192,14 @@ double run_setup::cfl_length() const {
   return mesh_.spacing(0) / fastest;
 }
 
-void run_setup::decide_promises(run_promises& promises, double dt, double limit) const {
+void run_setup::decide_promises(run_promises& promises, double dt, double limit, bool nonnegative) const {
   const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
-  promises.conservation = !equation->invariants().empty();
-  promises.positivity = equation->positive() && within &&
+  // Through open ends mass and entropy come and go.
+  const bool closed = !has_space() || how_.boundary == boundary_kind::periodic;
+  promises.conservation = closed && !equation->invariants().empty();
+  promises.positivity = equation->positive() && nonnegative && within &&
                         (how_.positivity != limiter_kind::none || first_order() || !has_space());
-  promises.entropy = equation->has_entropy() && within && first_order();
+  promises.entropy = equation->has_entropy() && nonnegative && closed && within && first_order();
 }
 
 }  // namespace apsis

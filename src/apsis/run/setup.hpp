@@ -43,7 +43,8 @@ class run_setup {
   /// Δx/v_max, so that Δt = cfl · this.
   double cfl_length() const;
 
-  void decide_promises(run_promises& promises, double dt, double limit) const;
+  /// What a run with steps of dt ≤ r Δt_FE = `limit` promises; `nonnegative`: the initial state is.
+  void decide_promises(run_promises& promises, double dt, double limit, bool nonnegative) const;
 
  private:
   bool first_order() const { return how_.scheme && how_.scheme->order() == 1; }

@@ -43,7 +43,8 @@ struct simulation::impl {
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
     totals.phase_points = static_cast<long>(state.cells()) * state.components();
-    if (!march.done()) setup.decide_promises(promises, next_dt(), forward_euler_limit());
+    if (!march.done())
+      setup.decide_promises(promises, next_dt(), forward_euler_limit(), first.negative_values == 0);
   }
 
   double forward_euler_limit() {

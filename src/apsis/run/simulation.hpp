@@ -22,9 +22,9 @@ struct step_record {
 
 /// What a run promises because its configuration entails it. A broken promise ends the run (exit code 3).
 struct run_promises {
-  bool positivity = false;    ///< limiter on (or first-order upwind) and Δt ≤ r Δt_FE
-  bool conservation = false;  ///< the model has invariants
-  bool entropy = false;       ///< first-order upwind and Δt ≤ r Δt_FE
+  bool positivity = false;    ///< nonnegative data, limiter (or first-order upwind), Δt ≤ r Δt_FE
+  bool conservation = false;  ///< the model has invariants and the boundary is periodic
+  bool entropy = false;       ///< the same with first-order upwind and a periodic boundary
   std::string text() const;   ///< one line for the log
 };
 

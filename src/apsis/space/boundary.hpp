@@ -9,7 +9,8 @@
 namespace apsis {
 
 /// What lies beyond the ends of a pencil. This is the only place that knows it: everything else sees rows.
-enum class boundary_kind { periodic };
+/// `outflow` is zero gradient: a ghost cell repeats the nearest cell inside.
+enum class boundary_kind { periodic, outflow };
 
 /// Names for case files.
 std::vector<std::string> boundary_names();

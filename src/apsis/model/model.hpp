@@ -13,13 +13,14 @@ struct field_name {
   std::string label;  ///< "density (dimensionless)"
 };
 
-/// Initial data by name: point values of all components at x, and the exact solution that grows out of them
-/// where a formula for it is known (empty otherwise).
+/// Initial data by name: point values of all components at x (at a jump, those of its right side), and the
+/// exact solution that grows out of them where a formula for it is known (empty otherwise; it is smooth).
 struct initial_data {
   std::string name;
   std::string description;
   std::function<void(double x, std::span<double> u)> point_value;
   std::function<void(double t, double x, std::span<double> u)> exact = {};
+  std::vector<double> jumps = {};  ///< where the data are discontinuous, in increasing order
 };
 
 /// Data that a model cannot hold: the key of the case that must change, and a message; both "" if all is

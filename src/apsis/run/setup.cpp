@@ -48,6 +48,24 @@ bool is_convex(const shu_osher_form<double>& m, method_kind kind) {
   return true;
 }
 
+struct interval {
+  double centre, half;
+};
+
+/// The cell cut at the jumps that lie in it; the cell itself where there are none. A jump on an edge, up to
+/// rounding, cuts nothing.
+std::vector<interval> smooth_parts(const std::vector<double>& jumps, double centre, double half) {
+  std::vector<double> ends = {centre - half};
+  for (const double jump : jumps)  // in increasing order
+    if (std::abs(jump - centre) < (1.0 - 1e-9) * half) ends.push_back(jump);
+  if (ends.size() == 1) return {{centre, half}};
+  ends.push_back(centre + half);
+  std::vector<interval> parts;
+  for (std::size_t k = 1; k < ends.size(); ++k)
+    parts.push_back({0.5 * (ends[k - 1] + ends[k]), 0.5 * (ends[k] - ends[k - 1])});
+  return parts;
+}
+
 }  // namespace
 
 run_setup::run_setup(const case_config& config)
@@ -144,7 +162,8 @@ const initial_data& run_setup::data() const {
   return *found;
 }
 
-field run_setup::sampled(const std::function<void(double, std::span<double>)>& point_value) const {
+field run_setup::sampled(const std::function<void(double, std::span<double>)>& point_value,
+                         const std::vector<double>& jumps) const {
   field u(mesh_.size(), equation->components());
   std::vector<double> values(static_cast<std::size_t>(u.components()));
   const bool averages = has_space() && config_.space.formulation == formulation::finite_volume;
@@ -156,11 +175,14 @@ field run_setup::sampled(const std::function<void(double, std::span<double>)>& p
       for (std::size_t k = 0; k < values.size(); ++k) row[k] += weight * values[k];
     };
     if (averages) {
-      // Ten points: exact to round-off for data that the mesh resolves at all.
+      // Ten points on every smooth part: exact to round-off for data that the mesh resolves at all.
       using rule = boost::math::quadrature::gauss<double, 10>;
-      for (std::size_t q = 0; q < rule::abscissa().size(); ++q) {
-        add(centre - half * rule::abscissa()[q], 0.5 * rule::weights()[q]);
-        add(centre + half * rule::abscissa()[q], 0.5 * rule::weights()[q]);
+      for (const auto& part : smooth_parts(jumps, centre, half)) {
+        for (std::size_t q = 0; q < rule::abscissa().size(); ++q) {
+          const double weight = part.half / half * 0.5 * rule::weights()[q];
+          add(part.centre - part.half * rule::abscissa()[q], weight);
+          add(part.centre + part.half * rule::abscissa()[q], weight);
+        }
       }
     } else {
       add(has_space() ? centre : 0.0, 1.0);
@@ -170,7 +192,7 @@ field run_setup::sampled(const std::function<void(double, std::span<double>)>& p
 }
 
 field run_setup::initial_state() const {
-  field u = sampled(data().point_value);
+  field u = sampled(data().point_value, data().jumps);
   for (int cell = 0; cell < u.cells(); ++cell) {
     const misfit found = equation->unfit(u.row(cell));
     if (!found.problem.empty()) refuse(config_, found.key, fmt::format("{} [cell {}]", found.problem, cell));
@@ -181,7 +203,7 @@ field run_setup::initial_state() const {
 std::optional<field> run_setup::exact_state(double t) const {
   const auto& exact = data().exact;
   if (!exact) return std::nullopt;
-  return sampled([&exact, t](double x, std::span<double> u) { exact(t, x, u); });
+  return sampled([&exact, t](double x, std::span<double> u) { exact(t, x, u); }, {});
 }
 
 double run_setup::cfl_length() const {

@@ -51,7 +51,8 @@ class run_setup {
   /// Collision on the averages themselves: point values, or first order, where the quartic would be too much.
   bool pointwise() const;
   const initial_data& data() const;
-  field sampled(const std::function<void(double x, std::span<double> u)>& point_value) const;
+  field sampled(const std::function<void(double x, std::span<double> u)>& point_value,
+                const std::vector<double>& jumps) const;
   std::vector<double> epsilon_on(const std::vector<double>& x) const;
   void check_method();
   void choose_stencil();

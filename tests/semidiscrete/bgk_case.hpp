@@ -4,11 +4,15 @@
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
+
+#include <support/property.hpp>
 
 /// A small BGK model for tests of the operators.
 inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, double max = 8.0) {
@@ -19,8 +23,26 @@ inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, doubl
   return std::unique_ptr<apsis::relaxation_model>(dynamic_cast<apsis::relaxation_model*>(made.release()));
 }
 
-inline apsis::stencil scheme(const std::string& name, apsis::limiter_kind positivity) {
-  return {apsis::find_reconstruction(name)->make(), positivity, apsis::boundary_kind::periodic};
+inline apsis::stencil scheme(const std::string& name, apsis::limiter_kind positivity,
+                             apsis::boundary_kind boundary = apsis::boundary_kind::periodic) {
+  return {apsis::find_reconstruction(name)->make(), positivity, boundary};
+}
+
+/// Nonnegative rows with zeros, jumps and values of very different size.
+inline apsis::field random_rows(const apsis::grid& mesh, int components) {
+  apsis::field u(mesh.size(), components);
+  for (int i = 0; i < mesh.size(); ++i)
+    for (int k = 0; k < components; ++k)
+      u.row(i)[k] =
+          *rc::gen::element(0.0, 1.0, 0.3) * std::pow(10.0, *rc::gen::element(0, -3, -20, -160, -305));
+  return u;
+}
+
+inline double smallest(const apsis::field& u) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < u.cells(); ++i)
+    lowest = std::min(lowest, *std::min_element(u.row(i), u.row(i) + u.components()));
+  return lowest;
 }
 
 /// Cell averages (ten-point-accurate by a fine midpoint rule of 200 points) or point values of g(x, k).

@@ -30,23 +30,6 @@ double transport_error(const apsis::relaxation_model& m, const std::string& name
   return sum / (n * m.components());
 }
 
-/// Nonnegative rows with zeros, jumps and values of very different size.
-field random_rows(const grid& mesh, int components) {
-  field u(mesh.size(), components);
-  for (int i = 0; i < mesh.size(); ++i)
-    for (int k = 0; k < components; ++k)
-      u.row(i)[k] =
-          *rc::gen::element(0.0, 1.0, 0.3) * std::pow(10.0, *rc::gen::element(0, -3, -20, -160, -305));
-  return u;
-}
-
-double smallest(const field& u) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < u.cells(); ++i)
-    lowest = std::min(lowest, *std::min_element(u.row(i), u.row(i) + u.components()));
-  return lowest;
-}
-
 }  // namespace
 
 TEST(transport, fifth_order_in_both_formulations_with_and_without_limiter) {

@@ -3,18 +3,22 @@
 #include <apsis/study/random_source.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 namespace apsis {
 namespace {
 
-/// One of the model's initial data at a random place, disturbed by up to 90 % in every component.
+/// One of the model's initial data at a random place, disturbed by up to 90 % in every component; nonnegative
+/// where negative components have no meaning (some published data are negative all the same).
 std::vector<double> disturbed_data(const model& m, random_source& random) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const int data = random.integer(0, static_cast<int>(m.initial().size()));
   m.initial()[static_cast<std::size_t>(data)].point_value(random.uniform(0, 2), u);
   for (double& value : u) value *= random.uniform(0.1, 1.9);
+  if (m.positive())
+    for (double& value : u) value = std::abs(value);
   return u;
 }
 

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+
+namespace apsis {
+
+/// Exact solution of the Riemann problem of the Broadwell limit system (paper, eq. broadlimit)
+///     ρ_t + m_x = 0,   m_t + ((ρ² + m²)/(2ρ))_x = 0,   (ρ, m) = left for x < 0, right for x > 0.
+/// With u = m/ρ the characteristic speeds are λ∓ = (u ∓ √(2 − u²))/2. Through a rarefaction dm/dρ = λ, so
+/// with u = √2 sin θ the slow wave keeps ln ρ + θ + ln(cos θ + sin θ), the fast one ln ρ − θ + ln(cos θ − sin
+/// θ). A shock obeys s[ρ] = [m] and s[m] = [(ρ² + m²)/(2ρ)], a quadratic equation for the ratio of the
+/// densities. The state between the two waves is found by bisection on u. Dimensionless.
+class broadwell_riemann {
+ public:
+  struct state {
+    double rho, m;
+  };
+  /// Throws input_error unless ρ > 0 and |m| < ρ on both sides.
+  broadwell_riemann(state left, state right);
+
+  /// The solution on the ray x/t = speed.
+  state at(double speed) const;
+  state middle() const;
+  /// Speeds of the edges of the slow and the fast wave; equal for a shock.
+  std::array<double, 2> slow_wave() const;
+  std::array<double, 2> fast_wave() const;
+
+ private:
+  struct side {
+    double rho, u;
+  };
+  side left_, right_, middle_;
+};
+
+}  // namespace apsis

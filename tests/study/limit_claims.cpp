@@ -1,6 +1,0 @@
-// Claims about limits ε → 0.
-#include <study/claim_checks.hpp>
-
-TEST(claims, C16_broadwell_in_moment_form_its_limit_system_and_its_equilibrium) {
-  expect_claim("C16");
-}

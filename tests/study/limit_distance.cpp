@@ -1,5 +1,6 @@
 // The production code against the limit scheme, for every relaxation model and every IMEX method.
 #include <apsis/integrate/stepper.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/study/limit_distance.hpp>
 #include <apsis/study/limit_scheme.hpp>
 
@@ -35,9 +36,9 @@ constexpr auto columns = {&limit_row::moments_first, &limit_row::moments_end, &l
 }  // namespace
 
 TEST(limit_distance, falls_at_least_linearly_to_rounding_for_all_models_and_methods_from_any_data) {
-  for (const auto& model : relaxation_models())
-    for (const auto& method : imex_methods(true))
-      for (const auto& formulation : formulations(model)) {
+  for (const auto& model : relaxation_model_names())
+    for (const auto& method : preserving_methods())
+      for (const auto& formulation : formulation_names(model)) {
         SCOPED_TRACE(model + " " + method + " " + formulation);
         const limit_table table = table_of(model, method, formulation);
         EXPECT_GT(table.off_equilibrium, 1e-2);  // otherwise the question is not asked
@@ -53,12 +54,12 @@ TEST(limit_distance, falls_at_least_linearly_to_rounding_for_all_models_and_meth
 
 TEST(limit_distance, is_rounding_for_one_step_at_epsilon_zero_from_rough_data) {
   // Jumps from cell to cell and in every component, so that limiters work.
-  const auto models = relaxation_models();
-  const auto methods = imex_methods(true);
+  const auto models = relaxation_model_names();
+  const auto methods = preserving_methods();
   check_property("production step at epsilon = 0 is a step of the limit scheme", [&] {
     const auto model = *rc::gen::elementOf(models);
     const auto method = *rc::gen::elementOf(methods);
-    const auto formulation = *rc::gen::elementOf(formulations(model));
+    const auto formulation = *rc::gen::elementOf(formulation_names(model));
     const bool space = !formulation.empty();
     std::vector<std::string> overrides = {"model.epsilon=0"};
     if (space) overrides.push_back(*rc::gen::element("space.limiter=none", "space.limiter=positivity"));
@@ -84,9 +85,9 @@ TEST(limit_distance, is_rounding_for_one_step_at_epsilon_zero_from_rough_data) {
 }
 
 TEST(limit_distance, falls_with_first_order_upwind_and_with_other_weights) {
-  for (const auto& model : relaxation_models())
+  for (const auto& model : relaxation_model_names())
     for (const std::string scheme : {"upwind1", "weno5-js"}) {
-      if (formulations(model).front().empty()) continue;
+      if (formulation_names(model).front().empty()) continue;
       SCOPED_TRACE(model + " " + scheme);
       const limit_table table = table_of(model, "md-imex-3-2", "finite-volume", limit_start::given,
                                          {"space.reconstruction=" + scheme});

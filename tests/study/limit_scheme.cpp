@@ -1,5 +1,6 @@
 // The limit scheme by itself: against equations written out by hand.
 #include <apsis/core/errors.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/study/limit_scheme.hpp>
 
 #include <array>
@@ -41,7 +42,7 @@ TEST(limit_scheme, of_the_second_order_method_is_heuns_method_on_the_limit_equat
 
 TEST(limit_scheme, has_the_order_of_the_method_on_the_limit_equation) {
   const double exact = 2.0 * std::atan(std::tan(1.0) * std::numbers::e);  // u' = sin u, u(0) = 2, t = 1
-  for (const auto& name : imex_methods(true)) {
+  for (const auto& name : preserving_methods()) {
     const double coarse = std::abs(limit_of_ode(name, 20) - exact);
     const double fine = std::abs(limit_of_ode(name, 40) - exact);
     // The next term of the error expansion is 1/40 of the leading one, times a constant of order one.
@@ -58,8 +59,8 @@ TEST(limit_scheme, takes_data_off_equilibrium_to_their_equilibrium) {
 }
 
 TEST(limit_scheme, conserves_what_the_kinetic_scheme_conserves) {
-  for (const auto& model : relaxation_models()) {
-    for (const auto& formulation : formulations(model)) {
+  for (const auto& model : relaxation_model_names()) {
+    for (const auto& formulation : formulation_names(model)) {
       if (formulation.empty()) continue;
       const case_config config = small_case(model, "md-imex-6-3", formulation);
       const run_setup setup(config);

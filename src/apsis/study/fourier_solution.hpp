@@ -32,7 +32,7 @@ class fourier_solution {
            static_cast<std::size_t>(k);
   }
 
-  const limit_equations& system_;
+  limit_equations system_;
   double a_, length_;
   int points_, unknowns_;
   std::vector<double> derivative_;     ///< of the distance of two points, points_ of them

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <study/claim_checks.hpp>
 #include <support/property.hpp>
 
 namespace {
@@ -37,20 +36,17 @@ void check_relaxations(const Property& property) {
 
 // The tolerances are those of the claim: sums of up to a hundred terms, each with its rounding; differences
 // divide it by their step of 1e-2.
-TEST(claims, C14_property_3_collisions_conserve_the_moments) {
+TEST(models, property_3_collisions_conserve_the_moments) {
   check_relaxations([](const auto& defects) { RC_ASSERT(defects.conservation <= 1e-13); });
 }
-TEST(claims, C14_property_4_equilibrium_is_where_the_collision_vanishes) {
+TEST(models, property_4_equilibrium_is_where_the_collision_vanishes) {
   check_relaxations([](const auto& defects) { RC_ASSERT(defects.equilibrium <= 1e-13); });
 }
-TEST(claims, C14_property_5_derivative_along_the_collision_is_minus_rate_times_it) {
+TEST(models, property_5_derivative_along_the_collision_is_minus_rate_times_it) {
   check_relaxations([](const auto& defects) { RC_ASSERT(defects.derivative <= 1e-11); });
 }
-TEST(claims, C14_holds) {
-  expect_claim("C14");
-}
 
-TEST(claims, C15_property_2_backward_euler_on_the_collision_keeps_every_value_nonnegative) {
+TEST(models, property_2_backward_euler_on_the_collision_keeps_every_value_nonnegative) {
   for (const auto& m : apsis::all_models()) {
     if (!m.equation->positive()) continue;
     check_property(m.entry->name, [&] {
@@ -64,9 +60,6 @@ TEST(claims, C15_property_2_backward_euler_on_the_collision_keeps_every_value_no
       }
     });
   }
-}
-TEST(claims, C15_holds) {
-  expect_claim("C15");
 }
 
 TEST(model_properties, an_equilibrium_that_does_not_conserve_breaks_all_three) {

@@ -1,6 +1,7 @@
 #include <apsis/study/square_decay.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <apsis/core/errors.hpp>
@@ -59,6 +60,14 @@ decay_run square_decay(const std::string& method, double dt, int steps) {
 
 double square_decay_exact(double t) {
   return 1.0 / (0.1 + 10.0 * t);
+}
+
+double square_decay_error(const std::string& method, long steps) {
+  auto problem = make_newton_problem<std::vector<long double>>(no_transport{}, square);
+  stepper march(find_method(method), problem);
+  std::vector<long double> u{10};
+  integrate(march, u, 0.0L, 2.0L, step_rule<long double>::fixed(2.0L / static_cast<long double>(steps)));
+  return static_cast<double>(std::abs(u[0] - 1 / 20.1L));
 }
 
 }  // namespace apsis

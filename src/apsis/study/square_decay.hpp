@@ -31,4 +31,7 @@ decay_run square_decay(const std::string& method, double dt, int steps);
 /// The exact solution 1/(1/10 + 10 t).
 double square_decay_exact(double t);
 
+/// |u(2) − 1/20.1| after `steps` equal steps in long double, where orders above three need it.
+double square_decay_error(const std::string& method, long steps);
+
 }  // namespace apsis

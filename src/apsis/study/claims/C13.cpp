@@ -1,6 +1,5 @@
-#include <apsis/integrate/integrate.hpp>
-#include <apsis/integrate/newton_problem.hpp>
 #include <apsis/study/claim.hpp>
+#include <apsis/study/square_decay.hpp>
 
 #include <array>
 #include <cmath>
@@ -13,16 +12,6 @@ namespace {
 
 constexpr double end = 2.0;
 
-/// |u(2) − 1/20.1| with 2^k steps, in long double: the fourth order meets the rounding of double.
-double error(const std::string& method, int k) {
-  const auto square = [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; };
-  auto problem = make_newton_problem<std::vector<long double>>(no_transport{}, square);
-  stepper march(find_method(method), problem);
-  std::vector<long double> u{10};
-  integrate(march, u, 0.0L, 2.0L, step_rule<long double>::fixed(2.0L / static_cast<long double>(1L << k)));
-  return static_cast<double>(std::abs(u[0] - 1 / 20.1L));
-}
-
 constexpr int coarsest = 7, finest = 14, levels = finest - coarsest + 1;
 constexpr std::pair<const char*, int> methods[] = {{"imdrk-1-2", 2}, {"imdrk-2-3", 3}, {"imdrk-5-4", 4}};
 
@@ -31,7 +20,8 @@ claim_result check(const study_control& control) {
   std::array<errors_of_method, std::size(methods)> errors{};
   run_all(control, "orders on u' = -10 u^2", static_cast<int>(std::size(methods)) * levels, [&](int job) {
     const auto m = static_cast<std::size_t>(job / levels), k = static_cast<std::size_t>(job % levels);
-    errors[m][levels - 1 - k] = error(methods[m].first, finest - static_cast<int>(k));  // long runs first
+    errors[m][levels - 1 - k] =
+        square_decay_error(methods[m].first, 1L << (finest - static_cast<int>(k)));  // long runs first
   });
   const auto order = [&](std::size_t m, std::size_t k) { return std::log2(errors[m][k - 1] / errors[m][k]); };
 

@@ -80,6 +80,8 @@ json document_json(const method& m) {
   out["claims"] = {{"order", m.claims.order}};
   if (m.claims.ssp_coefficient) out["claims"]["ssp_coefficient"] = *m.claims.ssp_coefficient;
   if (m.claims.type) out["claims"]["type"] = *m.claims.type;
+  if (m.claims.explicit_radius) out["claims"]["explicit_radius"] = *m.claims.explicit_radius;
+  if (m.claims.l_stable) out["claims"]["l_stable"] = *m.claims.l_stable;
   return out;
 }
 
@@ -116,26 +118,30 @@ std::string document_text(const method& m) {
 json check_json(const method& m) {
   const certificate c = certificate_of(m);
   const schedule steps(m.coefficients<double>());
-  json out = {{"name", m.name},
-              {"title", m.title},
-              {"kind", to_string(m.kind)},
-              {"order", c.order},
-              {"order_residual", c.order_residual.convert_to<double>()},
-              {"ssp_coefficient", c.bounded ? json(c.ssp_coefficient.convert_to<double>()) : json(nullptr)},
-              {"unconditional", c.unconditional},
-              {"limiting_entry", c.limiting_entry},
-              {"ap", c.ap},
-              {"ap_data", c.ap_data},
-              {"type", c.type},
-              {"gsa", c.gsa},
-              {"stages", m.stages()},
-              {"explicit_evaluations", c.explicit_evaluations},
-              {"implicit_solves", c.implicit_solves},
-              {"buffers", steps.buffers()},
-              {"claims_hold", c.claims_hold},
-              {"failures", c.failures}};
+  json out = {
+      {"name", m.name},
+      {"title", m.title},
+      {"kind", to_string(m.kind)},
+      {"order", c.order},
+      {"order_residual", c.order_residual.convert_to<double>()},
+      {"ssp_coefficient", c.bounded ? json(c.ssp_coefficient.convert_to<double>()) : json(nullptr)},
+      {"unconditional", c.unconditional},
+      {"explicit_radius",
+       m.kind == method_kind::implicit_only ? json(nullptr) : json(c.explicit_radius.convert_to<double>())},
+      {"limiting_entry", c.limiting_entry},
+      {"ap", c.ap},
+      {"ap_data", c.ap_data},
+      {"type", c.type},
+      {"gsa", c.gsa},
+      {"stages", m.stages()},
+      {"explicit_evaluations", c.explicit_evaluations},
+      {"implicit_solves", c.implicit_solves},
+      {"buffers", steps.buffers()},
+      {"claims_hold", c.claims_hold},
+      {"failures", c.failures}};
   if (m.kind != method_kind::explicit_only)
     out["stability"] = {{"angle_degrees", c.stability.angle},
+                        {"l_stable", c.stability.l_stable},
                         {"largest_on_negative_axis", c.stability.largest_on_negative_axis},
                         {"smallest_on_negative_axis", c.stability.smallest_on_negative_axis},
                         {"at_infinity", c.stability.at_infinity},
@@ -154,14 +160,18 @@ std::string check_text(const method& m) {
                             c.order_residual.convert_to<double>()));
   line("SSP coefficient", ssp_text(c));
   if (!c.limiting_entry.empty()) line("limited by", c.limiting_entry);
+  if (m.kind == method_kind::imex)
+    line("explicit part",
+         fmt::format("SSP coefficient {:.15g} by itself", c.explicit_radius.convert_to<double>()));
   line("type", fmt::format("{}{}", c.type, c.gsa ? ", globally stiffly accurate" : ""));
   line("asymptotic preserving", c.ap_data.empty() ? "none" : c.ap_data);
   line("cost of a step", fmt::format("{} transport evaluations, {} implicit solves, {} buffers",
                                      c.explicit_evaluations, c.implicit_solves, steps.buffers()));
   if (m.kind != method_kind::explicit_only)
     line("implicit part",
-         fmt::format("A({:.4g} degrees), |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
-                     c.stability.angle, c.stability.largest_on_negative_axis, c.stability.at_infinity));
+         fmt::format("{}, |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
+                     c.stability.l_stable ? "L-stable" : fmt::format("A({:.4g} degrees)", c.stability.angle),
+                     c.stability.largest_on_negative_axis, c.stability.at_infinity));
   line("claims", c.claims_hold ? "hold" : "DO NOT HOLD");
   for (const auto& failure : c.failures) line("", failure);
   return out;

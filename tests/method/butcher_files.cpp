@@ -59,14 +59,111 @@ TEST(butcher_files, give_explicit_methods_their_canonical_form) {
 }
 
 TEST(butcher_files, without_a_convex_form_are_refused_with_the_entry_that_forbids_it) {
-  // Q(u_1) enters stage 2 explicitly, with a weight that no convex combination of u^n and u_1 gives.
+  // Q̇(u_1) enters stage 2 with a weight that no convex combination of u^n and u_1 gives.
   try {
-    parse_method(head("imex", 1, "0") + "A_hat = [[], [\"1\"]]\nA = [[\"1\"], [\"2\", \"1\"]]\n", "x");
+    parse_method(head("imex", 1, "0") +
+                     "A_hat = [[], [\"1\"]]\nA = [[\"1\"], [\"0\", \"1\"]]\n"
+                     "A_dot = [[\"0\"], [\"-2\", \"0\"]]\n",
+                 "x");
     FAIL();
   } catch (const input_error& refused) {
     EXPECT_THAT(refused.what(), ::testing::StartsWith("x:10:5: "));
     EXPECT_THAT(refused.what(), ::testing::HasSubstr("no convex Shu-Osher form"));
   }
+}
+
+/// Problem and place of a file that must not be read.
+std::string refusal(const std::string& text) {
+  try {
+    parse_method(text, "x");
+  } catch (const input_error& refused) {
+    return refused.what();
+  }
+  return "accepted";
+}
+
+TEST(butcher_files, give_the_method_of_hu_shu_zhang_its_exact_weights) {
+  // The first stage is u^n: it carries the weight of u^n in every row.
+  const method m = parse_method(
+      head("imex", 2, "0.8125") +
+          "A_hat = [[], [\"0\"], [\"1\", \"0\"], [\"1/2\", \"0\", \"1/2\"], [\"1/2\", \"0\", \"1/2\", "
+          "\"0\"]]\n"
+          "A = [[\"0\"], [\"0\", \"1.6\"], [\"0\", \"0.3\", \"0.7\"], [\"0\", \"0.5\", \"0.3\", \"0.2\"], "
+          "[\"0\", \"0.5\", \"0.3\", \"0.2\", \"0\"]]\n"
+          "A_dot = [[\"0\"], [\"0\", \"0\"], [\"0\", \"0\", \"0\"], [\"0\", \"0\", \"0\", \"0\"], "
+          "[\"0\", \"0\", \"0\", \"0\", \"-0.8\"]]\n",
+      "x");
+  const auto c = certify(m);
+  EXPECT_TRUE(c.claims_hold) << ::testing::PrintToString(c.failures);
+  expect_same_form(m, find_method("hsz-ars-4-2"));
+}
+
+const std::string midpoint_rows = "A_hat = [[], [\"1/2\"]]\nA = [[\"0\"], [\"0\", \"1/2\"]]\n";
+const std::string midpoint_update = "b_hat = [\"0\", \"1\"]\nb = [\"0\", \"1\"]\n";
+
+TEST(butcher_files, take_an_update_that_is_no_stage_as_one_more_row) {
+  // The IMEX midpoint rule, ARS(1,2,2).
+  const method m = parse_method(head("imex", 2, "0") + midpoint_rows + midpoint_update, "x");
+  EXPECT_TRUE(m.ends_with_update());
+  EXPECT_EQ(m.stages(), 3u);
+  const auto c = certify(m);
+  EXPECT_TRUE(c.claims_hold) << ::testing::PrintToString(c.failures);
+  EXPECT_FALSE(c.gsa);
+  EXPECT_EQ(c.type, "ARS");
+  EXPECT_EQ(c.ap_data, "consistent data (moments only)");
+  EXPECT_EQ(c.implicit_solves, 1);
+  EXPECT_EQ(c.explicit_evaluations, 2);
+  const auto b = to_butcher(m.coefficients<double>());
+  EXPECT_EQ(b.A_hat(2, 1), 1.0);
+  EXPECT_EQ(b.A(2, 1), 1.0);
+  EXPECT_EQ(b.A(2, 2), 0.0);
+}
+
+TEST(butcher_files, know_every_kind_with_an_update) {
+  // Implicit midpoint: Q(u_1) enters u^{n+1} beyond what u_1 contains.
+  const method implicit = parse_method(head("implicit", 2, "0") + "A = [[\"1/2\"]]\nb = [\"1\"]\n", "x");
+  EXPECT_TRUE(certify(implicit).claims_hold);
+  EXPECT_FALSE(certify(implicit).gsa);
+  // Classical Runge–Kutta: an explicit method without a convex form.
+  const method kutta = parse_method(head("explicit", 4, "0") +
+                                        "A_hat = [[], [\"1/2\"], [\"0\", \"1/2\"], [\"0\", \"0\", \"1\"]]\n"
+                                        "b_hat = [\"1/6\", \"1/3\", \"1/3\", \"1/6\"]\n",
+                                    "x");
+  EXPECT_TRUE(certify(kutta).claims_hold) << ::testing::PrintToString(certify(kutta).failures);
+  // Heun, whose update is a convex combination: r = 1 is found.
+  const method heun =
+      parse_method(head("explicit", 2, "1") + "A_hat = [[], [\"1\"]]\nb_hat = [\"1/2\", \"1/2\"]\n", "x");
+  EXPECT_TRUE(certify(heun).claims_hold);
+  // The fourth-order method of Chan and Tsai (2010) with both derivatives of an explicit stage is none of
+  // ours.
+  EXPECT_NE(
+      refusal(head("implicit", 4, "0") + "A = [[\"0\"], [\"1/2\", \"0\"]]\nb = [\"1\", \"0\"]\n"
+                                         "A_dot = [[\"0\"], [\"1/8\", \"0\"]]\nb_dot = [\"1/6\", \"1/3\"]\n")
+          .find("Qdot of a stage enters another one"),
+      std::string::npos);
+}
+
+TEST(butcher_files, with_a_bad_update_are_refused_where_it_stands) {
+  const std::string start = head("imex", 2, "0") + midpoint_rows;  // its rows are lines 9 and 10
+  using ::testing::AllOf;
+  using ::testing::HasSubstr;
+  using ::testing::StartsWith;
+  EXPECT_THAT(refusal(start + "b_hat = [\"0\", \"1\"]\n"), HasSubstr("missing key 'b'"));
+  EXPECT_THAT(refusal(start + "b = [\"0\", \"1\"]\n"), HasSubstr("missing key 'b_hat'"));
+  EXPECT_THAT(refusal(start + "b_hat = [\"0\", \"1\"]\nb = [\"1\"]\n"),
+              AllOf(StartsWith("x:12:5: "), HasSubstr("'butcher.b' has 1 entries")));
+  EXPECT_THAT(refusal(start + "b_hat = [\"0\", \"1\", \"0\"]\nb = [\"0\", \"1\"]\n"),
+              AllOf(StartsWith("x:11:9: "), HasSubstr("has 3 entries")));
+  EXPECT_THAT(refusal(start + "b_hat = [\"1/2\", \"0\"]\nb = [\"0\", \"1/2\"]\n"),
+              AllOf(StartsWith("x:12:5: "), HasSubstr("repeats the last stage")));
+  EXPECT_THAT(refusal(start + midpoint_update + "b_dot = [\"0\", \"0\"]\n"),
+              HasSubstr("missing key 'A_dot'"));
+  EXPECT_THAT(refusal(start + "b_hat = \"1\"\nb = [\"0\", \"1\"]\n"), HasSubstr("not a list"));
+  EXPECT_THAT(refusal(head("explicit", 2, "1") + "A_hat = [[]]\nb_hat = [\"1\"]\nb = [\"1\"]\n"),
+              HasSubstr("unknown key 'b'"));
+  std::string many = "A_hat = [";
+  for (int i = 0; i < 64; ++i) many += "[], ";
+  EXPECT_THAT(refusal(head("explicit", 2, "1") + many + "]\nb_hat = []\n"), HasSubstr("too many"));
 }
 
 }  // namespace

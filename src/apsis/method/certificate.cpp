@@ -51,8 +51,9 @@ void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certif
 }
 
 void find_ssp(const butcher_form<mp_real>& b, const mp_real& zero, certificate& c) {
+  if (c.kind != method_kind::implicit_only) c.explicit_radius = monotonicity_radius(b.A_hat, zero);
   if (c.kind == method_kind::explicit_only) {
-    c.ssp_coefficient = monotonicity_radius(b.A_hat, zero);
+    c.ssp_coefficient = c.explicit_radius;
     return;
   }
   const auto analysis = analyse_imex(b, zero);
@@ -70,14 +71,17 @@ bool any_in_column(const matrix<mp_real>& m, std::size_t j) {
   return false;
 }
 
-void find_structure(const shu_osher_form<mp_real>& m, const butcher_form<mp_real>& b, certificate& c) {
+void find_structure(const method& m, const shu_osher_form<mp_real>& form, const butcher_form<mp_real>& b,
+                    certificate& c) {
+  c.gsa = !m.ends_with_update();
   bool all_implicit = true, later_implicit = true;
-  for (std::size_t i = 0; i < m.stages(); ++i) {
-    const bool implicit = c.kind != method_kind::explicit_only && (m.D(i, i) != 0 || m.ddot[i] != 0);
+  for (std::size_t i = 0; i < form.stages(); ++i) {
+    c.explicit_evaluations += any_in_column(b.A_hat, i) ? 1 : 0;
+    if (!c.gsa && i + 1 == form.stages()) break;  // the update is no stage
+    const bool implicit = c.kind != method_kind::explicit_only && (form.D(i, i) != 0 || form.ddot[i] != 0);
     c.implicit_solves += implicit ? 1 : 0;
     all_implicit = all_implicit && implicit;
     later_implicit = later_implicit && (implicit || i == 0);
-    c.explicit_evaluations += any_in_column(b.A_hat, i) ? 1 : 0;
   }
   if (c.kind == method_kind::explicit_only) {
     c.type = "explicit";
@@ -89,7 +93,8 @@ void find_structure(const shu_osher_form<mp_real>& m, const butcher_form<mp_real
     c.type = "none";
   }
   c.ap = c.type == "A" && c.gsa;
-  c.ap_data = c.ap ? "any data" : (c.type == "ARS" || c.type == "CK") ? "consistent data" : "none";
+  c.ap_data = c.type == "A" ? "any data" : (c.type == "ARS" || c.type == "CK") ? "consistent data" : "none";
+  if (!c.gsa && c.ap_data != "none") c.ap_data += " (moments only)";
 }
 
 void check_order_claim(const method& m, certificate& c) {
@@ -106,7 +111,19 @@ void check_order_claim(const method& m, certificate& c) {
                                      mp_real(condition.value - condition.wanted).str(3)));
 }
 
+/// Whether a claimed number is the one found. A claim is as good as its last digit; an exact one as the
+/// radius is found: what counts as nonnegative down to −tolerance moves it by a multiple of that, the
+/// multiple being a product of a few coefficients.
+bool agrees(const std::string& claimed, const mp_real& found, const mp_real& tolerance) {
+  const int digits = decimals(claimed);
+  const mp_real allowed = digits > 0 ? 2 * pow(mp_real(10), -digits) : 1000 * tolerance;
+  return abs(found - coefficient_value(claimed)) <= allowed;
+}
+
 void check_ssp_claim(const method& m, const mp_real& tolerance, certificate& c) {
+  if (m.claims.explicit_radius && !agrees(*m.claims.explicit_radius, c.explicit_radius, tolerance))
+    c.failures.push_back(fmt::format("claims.explicit_radius = {} but A_hat gives {}",
+                                     *m.claims.explicit_radius, c.explicit_radius.str(17)));
   if (!m.claims.ssp_coefficient) return;
   const std::string& claimed = *m.claims.ssp_coefficient;
   if (claimed == "unconditional") {
@@ -117,16 +134,22 @@ void check_ssp_claim(const method& m, const mp_real& tolerance, certificate& c) 
                                                                           : c.limiting_entry));
     return;
   }
-  const mp_real value = coefficient_value(claimed);
-  // A claim is as good as its last digit; an exact one as the radius is found: what counts as nonnegative
-  // down to −tolerance moves it by a multiple of that, the multiple being a product of a few coefficients.
-  const int digits = decimals(claimed);
-  const mp_real allowed = digits > 0 ? 2 * pow(mp_real(10), -digits) : 1000 * tolerance;
   const bool none = !c.bounded;
-  if (none || abs(c.ssp_coefficient - value) > allowed)
+  if (none || !agrees(claimed, c.ssp_coefficient, tolerance))
     c.failures.push_back(fmt::format("claims.ssp_coefficient = {} but the Butcher form gives {}{}", claimed,
                                      none ? std::string("no bound") : c.ssp_coefficient.str(17),
                                      c.limiting_entry.empty() ? "" : " (" + c.limiting_entry + ")"));
+}
+
+void check_structure_claims(const method& m, certificate& c) {
+  if (m.claims.type && *m.claims.type != c.type)
+    c.failures.push_back(
+        fmt::format("claims.type = {} but the method is of type {}", *m.claims.type, c.type));
+  if (m.claims.l_stable && *m.claims.l_stable != c.stability.l_stable)
+    c.failures.push_back(
+        fmt::format("claims.l_stable = {} but the implicit part is A({:.4g} degrees)-stable with "
+                    "|R(-infinity)| = {:.3g}",
+                    *m.claims.l_stable, c.stability.angle, c.stability.at_infinity));
 }
 
 /// r of the file is what the step rule uses, and its weights must be convex with it.
@@ -170,15 +193,13 @@ certificate certify(const method& m) {
   const mp_real tolerance = tolerance_of(m.precision());
   find_order(b, tolerance, c);
   find_ssp(b, tolerance, c);
-  find_structure(form, b, c);
+  find_structure(m, form, b, c);
   if (m.kind != method_kind::explicit_only)
     c.stability = analyse_stability(to_butcher(m.coefficients<long double>()));
   check_order_claim(m, c);
   check_ssp_claim(m, tolerance, c);
   check_form(m, form, tolerance, c);
-  if (m.claims.type && *m.claims.type != c.type)
-    c.failures.push_back(
-        fmt::format("claims.type = {} but the method is of type {}", *m.claims.type, c.type));
+  check_structure_claims(m, c);
   c.claims_hold = c.failures.empty();
   return c;
 }

@@ -22,6 +22,7 @@ struct implicit_stability {
   double smallest_on_negative_axis = 0;  ///< inf R(x), x < 0; ≥ 0 means no sign change
   double at_infinity = 0;                ///< |R(−∞)|
   double angle = 0;                      ///< α of A(α) in degrees: |R| ≤ 1 on the sector |arg(−z)| ≤ α
+  bool l_stable = false;                 ///< A-stable and R(−∞) = 0
 };
 
 /// All that can be said of a method from its coefficients alone.
@@ -37,13 +38,15 @@ struct certificate {
   bool bounded = true;          ///< the explicit part sets a bound Δt ≤ r Δt_FE
   mp_real ssp_coefficient = 0;  ///< r, from the Butcher form alone; of no meaning if !bounded
   mp_real radius_of_implicit_part =
-      0;                       ///< classical radius of A, where Q satisfies a forward Euler condition
-  std::string limiting_entry;  ///< what forbids a larger r, or any
+      0;                        ///< classical radius of A, where Q satisfies a forward Euler condition
+  mp_real explicit_radius = 0;  ///< classical radius of Â: the SSP coefficient of the explicit part by itself
+  std::string limiting_entry;   ///< what forbids a larger r, or any
 
-  std::string type;              ///< "A", "ARS", "CK", "explicit" or "none"
-  bool gsa = true;               ///< u^{n+1} = u_s (always, in this form)
+  std::string type;              ///< "A", "ARS", "CK", "explicit" or "none"; an update is no stage
+  bool gsa = true;               ///< u^{n+1} = u_s, not an update without implicit part
   bool ap = false;               ///< asymptotic preserving for any initial data
-  std::string ap_data;           ///< "any data", "consistent data" or "none"
+  std::string ap_data;           ///< "any data", "consistent data" or "none"; "(moments only)" without GSA:
+                                 ///< then u^{n+1} itself is not projected to equilibrium
   int explicit_evaluations = 0;  ///< of T per step, n_F
   int implicit_solves = 0;
   implicit_stability stability;  ///< not for explicit methods

@@ -1,5 +1,6 @@
 #include <apsis/method/export.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -37,29 +38,52 @@ std::string list(const std::vector<std::string>& values) {
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
+/// The first entries of a row.
+std::vector<std::string> entries(const matrix<std::string>& m, std::size_t i, std::size_t count) {
+  std::vector<std::string> row;
+  for (std::size_t j = 0; j < count; ++j) row.push_back(m(i, j));
+  return row;
+}
+
 /// Rows of a lower triangular matrix, without or with its diagonal.
-std::string triangle(const matrix<std::string>& m, std::size_t diagonal) {
+std::string triangle(const matrix<std::string>& m, std::size_t diagonal, std::size_t rows) {
   std::string out = "[\n";
-  for (std::size_t i = 0; i < m.rows(); ++i) {
-    std::vector<std::string> row;
-    for (std::size_t j = 0; j < i + diagonal; ++j) row.push_back(m(i, j));
-    out += "  " + list(row) + ",\n";
-  }
+  for (std::size_t i = 0; i < rows; ++i) out += "  " + list(entries(m, i, i + diagonal)) + ",\n";
   return out + "]";
+}
+
+bool has_derivative(const method& m) {
+  return !std::all_of(m.exact.ddot.begin(), m.exact.ddot.end(), is_zero);
+}
+
+/// Ȧ where it is diagonal.
+matrix<std::string> derivative_of(const method& m) {
+  matrix<std::string> a(m.stages(), m.stages());
+  for (std::size_t i = 0; i < m.stages(); ++i)
+    for (std::size_t j = 0; j < m.stages(); ++j) a(i, j) = i == j ? m.exact.ddot[i] : "0";
+  return a;
+}
+
+/// [butcher] of a method whose Shu–Osher form is its tableau (R = I: W = Â, D = A).
+std::string butcher_table(const method& m) {
+  const bool update = m.ends_with_update();
+  const std::size_t rows = update ? m.stages() - 1 : m.stages();
+  std::string out = "\n[butcher]\n";
+  const auto part = [&](const char* name, const char* weights, const matrix<std::string>& a,
+                        std::size_t diagonal) {
+    out += fmt::format("{} = {}\n", name, triangle(a, diagonal, rows));
+    if (update) out += fmt::format("{} = {}\n", weights, list(entries(a, rows, rows)));
+  };
+  if (m.kind == method_kind::imex) part("A_hat", "b_hat", m.exact.W, 0);
+  part("A", "b", m.exact.D, 1);
+  if (has_derivative(m)) part("A_dot", "b_dot", derivative_of(m), 1);
+  return out;
 }
 
 std::vector<std::string> diagonal_of(const matrix<std::string>& m) {
   std::vector<std::string> values;
   for (std::size_t i = 0; i < m.rows(); ++i) values.push_back(m(i, i));
   return values;
-}
-
-/// Whether Q of an earlier stage enters a later one: then the file gives the tableau A (read_butcher).
-bool is_tableau(const method& m) {
-  for (std::size_t i = 0; i < m.stages(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (!is_zero(m.exact.D(i, j))) return true;
-  return false;
 }
 
 /// A number as LaTeX: "\frac{1}{2}", "0.25".
@@ -93,11 +117,15 @@ std::string to_toml(const method& m) {
   if (m.claims.ssp_coefficient)
     out += fmt::format("ssp_coefficient = {}\n", quoted(*m.claims.ssp_coefficient));
   if (m.claims.type) out += fmt::format("type = {}\n", quoted(*m.claims.type));
-  if (is_tableau(m)) return out + fmt::format("\n[butcher]\nA = {}\n", triangle(m.exact.D, 1));
+  if (m.claims.explicit_radius)
+    out += fmt::format("explicit_radius = {}\n", quoted(*m.claims.explicit_radius));
+  if (m.claims.l_stable) out += fmt::format("l_stable = {}\n", *m.claims.l_stable);
+  if (m.is_tableau()) return out + butcher_table(m);
   out += "\n[shu_osher]\n";
   if (m.kind != method_kind::implicit_only) out += fmt::format("r = {}\n", quoted(m.exact.r));
-  out += fmt::format("P = {}\n", triangle(m.exact.P, 0));
-  if (m.kind != method_kind::implicit_only) out += fmt::format("W = {}\n", triangle(m.exact.W, 0));
+  out += fmt::format("P = {}\n", triangle(m.exact.P, 0, m.stages()));
+  if (m.kind != method_kind::implicit_only)
+    out += fmt::format("W = {}\n", triangle(m.exact.W, 0, m.stages()));
   if (m.kind != method_kind::explicit_only)
     out += fmt::format("d = {}\nddot = {}\n", list(diagonal_of(m.exact.D)), list(m.exact.ddot));
   return out;
@@ -112,8 +140,10 @@ std::string to_latex(const method& m, int digits) {
     };
   };
   std::vector<std::string> parts;
-  if (is_tableau(m)) {
+  if (m.is_tableau()) {
+    if (m.kind == method_kind::imex) parts.push_back(array("\\hat A", s, s, of(e.W)));
     parts.push_back(array("A", s, s, of(e.D)));
+    if (has_derivative(m)) parts.push_back(array("\\dot A", s, s, of(derivative_of(m))));
   } else {
     if (m.kind != method_kind::implicit_only) parts.push_back("r &= " + number(e.r, digits));
     parts.push_back(array("P", s, s, of(e.P)));

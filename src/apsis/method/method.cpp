@@ -19,6 +19,19 @@ std::string to_string(method_kind kind) {
   return "";
 }
 
+bool method::ends_with_update() const {
+  const std::size_t last = stages() - 1;
+  return kind != method_kind::explicit_only && coefficient_value(exact.D(last, last)) == 0 &&
+         coefficient_value(exact.ddot[last]) == 0;
+}
+
+bool method::is_tableau() const {
+  for (std::size_t i = 0; i < stages(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (coefficient_value(exact.D(i, j)) != 0) return true;
+  return false;
+}
+
 int method::precision() const {
   int most = 0;
   const auto see = [&most](const std::string& text) { most = std::max(most, decimals(text)); };

@@ -23,6 +23,9 @@ struct method_claims {
   int order = 0;
   std::optional<std::string> ssp_coefficient;  ///< as written; "unconditional" for implicit methods
   std::optional<std::string> type;             ///< "A", "ARS" or "CK"
+  std::optional<std::string>
+      explicit_radius;           ///< as written; of the explicit part of an IMEX method by itself
+  std::optional<bool> l_stable;  ///< of the implicit part
 };
 
 /// A time integrator as data. Coefficients exist as the strings of its file (exact rationals "p/q" or
@@ -34,7 +37,15 @@ class method {
   method_claims claims;
   shu_osher_form<std::string> exact;  ///< as in the file; "0" where nothing stands
 
+  /// Rows of the form, the last of which is u^{n+1}.
   std::size_t stages() const { return exact.stages(); }
+
+  /// u^{n+1} is no stage but an update, u^n + Δt Σ b̂_j T(u_j) + Δt Σ b_j Q(u_j): the last row has no implicit
+  /// part although the method has one.
+  bool ends_with_update() const;
+
+  /// Q of a stage enters a later one (D has entries below the diagonal): outside the paper's class.
+  bool is_tableau() const;
 
   /// Decimals of the longest coefficient that is not an exact rational or a short decimal; 0 if all are
   /// exact.

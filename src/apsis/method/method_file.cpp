@@ -9,9 +9,9 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/coefficient.hpp>
+#include <apsis/method/exact_form.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
-#include <apsis/method/monotonicity.hpp>
 
 namespace apsis {
 namespace {
@@ -67,6 +67,13 @@ class section {
       throw input_error(place_of(node, file_), fmt::format("{} = {} is out of range (from {} to {})",
                                                            quoted(key), *value, lowest, highest));
     return static_cast<int>(*value);
+  }
+
+  bool boolean(const std::string& key) const {
+    const toml::node& node = need(key);
+    const auto value = node.value_exact<bool>();
+    if (!value) wrong(node, key, "true or false");
+    return *value;
   }
 
   std::string coefficient(const std::string& key) const { return coefficient_of(need(key), key); }
@@ -172,7 +179,8 @@ method_kind read_kind(const section& top) {
 }
 
 method_claims read_claims(const toml::table& root, const std::string& file) {
-  const section table(need_table(root, "claims", file), file, "claims", {"order", "ssp_coefficient", "type"});
+  const section table(need_table(root, "claims", file), file, "claims",
+                      {"order", "ssp_coefficient", "type", "explicit_radius", "l_stable"});
   method_claims claims;
   claims.order = table.integer("order", 1, 8);
   if (table.has("type")) {
@@ -188,6 +196,8 @@ method_claims read_claims(const toml::table& root, const std::string& file) {
       table.fail("ssp_coefficient",
                  "'claims.ssp_coefficient' is neither a number in quotes nor \"unconditional\"");
   }
+  if (table.has("explicit_radius")) claims.explicit_radius = table.coefficient("explicit_radius");
+  if (table.has("l_stable")) claims.l_stable = table.boolean("l_stable");
   return claims;
 }
 
@@ -224,75 +234,61 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   for (std::size_t i = 0; i < s; ++i) e.D(i, i) = d[i];
 }
 
-/// A coefficient that was computed, to as many decimals as the file carries.
-std::string written(const mp_real& value, int digits) {
-  return abs(value) < mp_real(1e-48) ? "0" : value.str(digits, std::ios_base::fixed);
+/// The rows of `key` and, below them, the update `weights` of a method whose u^{n+1} is not its last stage.
+matrix<std::string> read_tableau(const section& form, const std::string& key, const std::string& weights,
+                                 std::size_t diagonal, std::size_t s, bool update) {
+  auto stages = zeros(s);
+  form.triangle(key, diagonal, stages);
+  if (!update) return stages;
+  auto all = zeros(s + 1);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j < s; ++j) all(i, j) = stages(i, j);
+  const auto b = form.vector(weights);
+  if (b.size() != s)
+    form.fail(weights,
+              fmt::format("'butcher.{}' has {} entries (the method has {} stages)", weights, b.size(), s));
+  for (std::size_t j = 0; j < s; ++j) all(s, j) = b[j];
+  return all;
 }
 
-/// The Shu–Osher form that the paper's class requires, or the canonical one of an explicit method (P = 0).
-shu_osher_form<mp_real> shu_osher_of(const butcher_form<mp_real>& b, method_kind kind, const mp_real& zero,
-                                     std::string& reason) {
-  const std::size_t s = b.stages();
-  if (kind == method_kind::explicit_only) {
-    const mp_real r = monotonicity_radius(b.A_hat, zero);
-    auto shifted = matrix<mp_real>::identity(s);
-    for (std::size_t i = 0; i < s; ++i)
-      for (std::size_t j = 0; j < i; ++j) shifted(i, j) = r * b.A_hat(i, j);
-    if (r > zero) return to_shu_osher(b, inverse_lower(shifted), r);
-    reason = "its radius of absolute monotonicity is 0";
-    return {};
-  }
-  const auto analysis = analyse_imex(b, zero);
-  const auto R = stage_matrix(b, zero, reason);
-  if (R && analysis.exists) return to_shu_osher(b, *R, analysis.bounded ? analysis.coefficient : mp_real(1));
-  reason = analysis.forbids;
-  return {};
+/// Whether u^{n+1} is the last stage, so that its weights say nothing new.
+bool repeats_last_stage(const butcher_form<std::string>& b) {
+  const std::size_t last = b.stages() - 1;
+  for (const auto* part : {&b.A_hat, &b.A, &b.A_dot})
+    for (std::size_t j = 0; j < last; ++j)
+      if (coefficient_value((*part)(last, j)) != coefficient_value((*part)(last - 1, j))) return false;
+  return true;
 }
 
-/// Butcher form. A tableau A alone is a Shu–Osher form with R = I; otherwise the convex form is derived.
+/// Butcher form, with the convex form derived from it where there is one.
 void read_butcher(const toml::table& table, const std::string& file, method& m) {
   const bool is_explicit = m.kind == method_kind::explicit_only;
   std::vector<std::string> keys;
-  if (m.kind != method_kind::implicit_only) keys.emplace_back("A_hat");
-  if (!is_explicit) keys.insert(keys.end(), {"A", "A_dot"});
+  if (m.kind != method_kind::implicit_only) keys.insert(keys.end(), {"A_hat", "b_hat"});
+  if (!is_explicit) keys.insert(keys.end(), {"A", "b", "A_dot", "b_dot"});
   const section form(table, file, "butcher", keys);
-  const std::string first = is_explicit ? "A_hat" : "A";
+  const std::string first = is_explicit ? "A_hat" : "A", weights = is_explicit ? "b_hat" : "b";
   const std::size_t s = form.row_count(first);
-  auto& e = m.exact;
-  e.P = e.W = e.D = zeros(s);
-  e.ddot.assign(s, "0");
-  e.r = "1";
-  auto A_hat = zeros(s), A_dot = zeros(s);
-  if (m.kind != method_kind::implicit_only) form.triangle("A_hat", 0, A_hat);
-  if (!is_explicit) form.triangle("A", 1, e.D);
-  if (form.has("A_dot")) form.triangle("A_dot", 1, A_dot);
-  if (m.kind == method_kind::implicit_only && !form.has("A_dot")) return;
-
-  butcher_form<mp_real> b{matrix<mp_real>(s, s), matrix<mp_real>(s, s), matrix<mp_real>(s, s)};
-  int digits = 0;
-  for (std::size_t i = 0; i < s; ++i)
-    for (std::size_t j = 0; j <= i; ++j) {
-      for (const auto& text : {A_hat(i, j), e.D(i, j), A_dot(i, j)})
-        digits = std::max(digits, decimals(text));
-      b.A_hat(i, j) = coefficient_value(A_hat(i, j));
-      b.A(i, j) = coefficient_value(is_explicit ? A_hat(i, j) : e.D(i, j));
-      b.A_dot(i, j) = coefficient_value(A_dot(i, j));
-    }
-  const mp_real zero = digits > 0 ? pow(mp_real(10), 3 - digits) : mp_real(1e-50);
-  digits = digits > 0 ? std::min(digits, 50) : 50;
+  const bool update = form.has("b_hat") || form.has("b") || form.has("b_dot");
+  if (update && s == most_stages)
+    form.fail(first, fmt::format("{} stages and an update are too many (at most {} rows)", s, most_stages));
+  const std::size_t rows = update ? s + 1 : s;
+  butcher_form<std::string> b{zeros(rows), zeros(rows), zeros(rows)};
+  if (m.kind != method_kind::implicit_only) b.A_hat = read_tableau(form, "A_hat", "b_hat", 0, s, update);
+  if (!is_explicit) b.A = read_tableau(form, "A", "b", 1, s, update);
+  if (form.has("A_dot") || form.has("b_dot")) b.A_dot = read_tableau(form, "A_dot", "b_dot", 1, s, update);
+  if (update && repeats_last_stage(b))
+    form.fail(weights,
+              fmt::format("'butcher.{}' repeats the last stage (then u^{{n+1}} is that stage); leave "
+                          "the update out",
+                          weights));
   std::string reason;
-  const auto convex = shu_osher_of(b, m.kind, zero, reason);
-  if (convex.stages() == 0)
-    form.fail(first, fmt::format("[butcher] has no convex Shu-Osher form ({}) give [shu_osher]", reason));
-  e.r = written(convex.r, digits);
-  for (std::size_t i = 0; i < s; ++i) {
-    e.ddot[i] = written(convex.ddot[i], digits);
-    for (std::size_t j = 0; j < s; ++j) {
-      e.P(i, j) = written(convex.P(i, j), digits);
-      e.W(i, j) = written(convex.W(i, j), digits);
-      e.D(i, j) = i == j && !is_explicit ? written(convex.D(i, j), digits) : "0";
-    }
-  }
+  const auto exact = exact_shu_osher(b, m.kind, reason);
+  if (!exact)
+    form.fail(first, fmt::format("[butcher] has no convex Shu-Osher form ({}) and Qdot of a stage enters "
+                                 "another one; give [shu_osher]",
+                                 reason));
+  m.exact = *exact;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <apsis/method/monotonicity.hpp>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -29,7 +30,7 @@ std::optional<matrix<mp_real>> inverse_stage_matrix(const butcher_form<mp_real>&
     if (merged[j]) continue;
     const bool by_a = abs(b.A(j, j)) > zero;
     const bool by_derivative = abs(b.A_dot(j, j)) > zero;
-    if (!by_a && !by_derivative) {
+    if (!by_a && !by_derivative && j + 1 < s) {  // no stage uses the last one
       reason = fmt::format("stage {} has neither Q nor its derivative (d = ddot = 0), so R is not determined",
                            j + 1);
       return std::nullopt;
@@ -126,7 +127,18 @@ std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, cons
   for (std::size_t j = 0; j + 1 < b.stages(); ++j) merged[j] = is_initial(b, j, zero);
   const auto inverse = inverse_stage_matrix(b, merged, zero, reason);
   if (!inverse) return std::nullopt;
-  return inverse_lower(*inverse);
+  auto R = inverse_lower(*inverse);
+  const auto first = std::find(merged.begin(), merged.end(), true);
+  if (first == merged.end()) return R;
+  // The weight of u^n goes to the stage that is u^n, whose T carries the Euler steps.
+  const auto stage = static_cast<std::size_t>(first - merged.begin());
+  for (std::size_t i = stage + 1; i < b.stages(); ++i) {
+    if (merged[i]) continue;
+    mp_real initial(0);
+    for (std::size_t j = 0; j <= i; ++j) initial += R(i, j);
+    R(i, stage) -= initial;
+  }
+  return R;
 }
 
 mp_real monotonicity_radius(const matrix<mp_real>& tableau, const mp_real& zero) {

@@ -19,10 +19,12 @@ struct ssp_analysis {
 
 /// The paper's class: with d_j, ḋ_j the diagonals, column j of R⁻¹ is A_·j/d_j or Ȧ_·j/ḋ_j, so R is unique,
 /// and r = min −R_ij/(RÂ)_ij over (RÂ)_ij > 0, if Re ≥ 0, RÂ ≥ 0, RA and RȦ are diagonal with signs ≥ 0 and ≤
-/// 0. A first stage that is u^n itself is merged with u^n. Entries below `zero` count as 0.
+/// 0. A first stage that is u^n itself is merged with u^n; the last row needs no implicit part (an update
+/// u^{n+1} that is no stage). Entries below `zero` count as 0.
 ssp_analysis analyse_imex(const butcher_form<mp_real>& b, const mp_real& zero);
 
-/// The R of that class, if there is one; else nothing, and in `reason` the entry that forbids it.
+/// The R of that class, if there is one; else nothing, and in `reason` the entry that forbids it. Where a
+/// stage is u^n itself, it carries the weight of u^n in all rows.
 std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, const mp_real& zero,
                                             std::string& reason);
 

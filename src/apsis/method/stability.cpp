@@ -78,6 +78,8 @@ implicit_stability analyse_stability(const butcher_form<long double>& b) {
     if (b.A(i, i) == 0 && b.A_dot(i, i) < 0)
       s.imaginary_poles.push_back(static_cast<double>(1 / std::sqrt(-b.A_dot(i, i))));
   s.angle = largest <= stable ? sector(b) : 0.0;
+  constexpr double vanishing = 1e-9;  // R ~ 1/z at z = −1e12
+  s.l_stable = s.angle == 90.0 && s.at_infinity <= vanishing;
   return s;
 }
 

@@ -1,0 +1,111 @@
+#include <apsis/method/exact_form.hpp>
+
+#include <algorithm>
+
+#include <apsis/method/coefficient.hpp>
+#include <apsis/method/monotonicity.hpp>
+
+namespace apsis {
+namespace {
+
+matrix<std::string> zeros(std::size_t s) {
+  matrix<std::string> m(s, s);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j < s; ++j) m(i, j) = "0";
+  return m;
+}
+
+matrix<mp_real> values(const matrix<std::string>& texts) {
+  matrix<mp_real> m(texts.rows(), texts.cols());
+  for (std::size_t i = 0; i < texts.rows(); ++i)
+    for (std::size_t j = 0; j < texts.cols(); ++j) m(i, j) = coefficient_value(texts(i, j));
+  return m;
+}
+
+/// The most decimals of any coefficient; 0 if all are exact.
+int decimals_of(const butcher_form<std::string>& b) {
+  int digits = 0;
+  for (std::size_t i = 0; i < b.stages(); ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      for (const auto& text : {b.A_hat(i, j), b.A(i, j), b.A_dot(i, j)})
+        digits = std::max(digits, decimals(text));
+  return digits;
+}
+
+std::optional<shu_osher_form<mp_real>> convex_form(const butcher_form<mp_real>& b, method_kind kind,
+                                                   const mp_real& zero, std::string& reason) {
+  const std::size_t s = b.stages();
+  if (kind == method_kind::explicit_only) {
+    const mp_real r = monotonicity_radius(b.A_hat, zero);
+    auto shifted = matrix<mp_real>::identity(s);
+    for (std::size_t i = 0; i < s; ++i)
+      for (std::size_t j = 0; j < i; ++j) shifted(i, j) = r * b.A_hat(i, j);
+    if (r > zero) return to_shu_osher(b, inverse_lower(shifted), r);
+    reason = "its radius of absolute monotonicity is 0";
+    return std::nullopt;
+  }
+  const auto analysis = analyse_imex(b, zero);
+  const auto R = stage_matrix(b, zero, reason);
+  if (R && analysis.exists) return to_shu_osher(b, *R, analysis.bounded ? analysis.coefficient : mp_real(1));
+  reason = analysis.forbids;
+  return std::nullopt;
+}
+
+/// A coefficient that was computed, to as many decimals as the file carries.
+std::string written(const mp_real& value, int digits) {
+  return abs(value) < mp_real(1e-48) ? "0" : value.str(digits, std::ios_base::fixed);
+}
+
+shu_osher_form<std::string> written(const shu_osher_form<mp_real>& form, method_kind kind, int digits) {
+  const std::size_t s = form.stages();
+  shu_osher_form<std::string> e;
+  e.P = e.W = e.D = zeros(s);
+  e.r = written(form.r, digits);
+  for (std::size_t i = 0; i < s; ++i) {
+    e.ddot.push_back(written(form.ddot[i], digits));
+    for (std::size_t j = 0; j < i; ++j) {
+      e.P(i, j) = written(form.P(i, j), digits);
+      e.W(i, j) = written(form.W(i, j), digits);
+    }
+    if (kind != method_kind::explicit_only) e.D(i, i) = written(form.D(i, i), digits);
+  }
+  return e;
+}
+
+std::string negative(const std::string& text) {
+  if (coefficient_value(text) == 0) return text;
+  return text[0] == '-' ? text.substr(1) : "-" + (text[0] == '+' ? text.substr(1) : text);
+}
+
+/// R = I; nothing if Ȧ is not diagonal.
+std::optional<shu_osher_form<std::string>> increments(const butcher_form<std::string>& b, method_kind kind) {
+  const std::size_t s = b.stages();
+  shu_osher_form<std::string> e;
+  e.P = zeros(s);
+  e.W = b.A_hat;
+  e.D = kind == method_kind::explicit_only ? zeros(s) : b.A;
+  e.r = "1";
+  for (std::size_t i = 0; i < s; ++i) {
+    e.ddot.push_back(b.A_dot(i, i));
+    for (std::size_t j = 0; j < i; ++j) {
+      if (coefficient_value(b.A_dot(i, j)) != 0) return std::nullopt;
+      e.P(i, j) = negative(b.A_hat(i, j));
+    }
+  }
+  return e;
+}
+
+}  // namespace
+
+std::optional<shu_osher_form<std::string>> exact_shu_osher(const butcher_form<std::string>& b,
+                                                           method_kind kind, std::string& reason) {
+  const int digits = decimals_of(b);
+  const mp_real zero = digits > 0 ? pow(mp_real(10), 3 - digits) : mp_real(1e-50);
+  const butcher_form<mp_real> numbers{
+      values(b.A_hat), values(kind == method_kind::explicit_only ? b.A_hat : b.A), values(b.A_dot)};
+  if (const auto convex = convex_form(numbers, kind, zero, reason))
+    return written(*convex, kind, digits > 0 ? std::min(digits, 50) : 50);
+  return increments(b, kind);
+}
+
+}  // namespace apsis

@@ -16,6 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
+from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter  # noqa: E402
 
 # Okabe and Ito: distinct for colour-blind readers, and in lightness for print.
 BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
@@ -38,8 +39,15 @@ def numbers(values):
     return np.array([np.nan if v is None else v for v in values], dtype=float)
 
 
+def palette(count):
+    """Colours of `count` curves: named ones while they last, else steps of a map that is read in grey as well."""
+    return COLOURS if count <= len(COLOURS) else [plt.cm.viridis(t) for t in np.linspace(0.0, 0.9, count)]
+
+
 def draw_curves(axes, panel):
     following = 0
+    colours = palette(1 + max((c["colour"] for c in panel["curves"]), default=0)
+                      + sum(c["colour"] == -1 for c in panel["curves"]))
     for curve in panel["curves"]:
         x, y = numbers(curve["x"]), numbers(curve["y"])
         shown = np.isfinite(x) & np.isfinite(y)
@@ -50,30 +58,43 @@ def draw_curves(axes, panel):
         index = curve["colour"]
         if index == -1:
             index, following = following, following + 1
-        colour = BLACK if index < 0 else COLOURS[index % len(COLOURS)]
+        colour = BLACK if index < 0 else colours[index % len(colours)]
         line, marked = STYLES[curve["style"]]
-        axes.plot(x[shown], y[shown], linestyle=line, color=colour, linewidth=1.3, markersize=4.5,
+        # Dashed curves often lie on solid ones: their markers are open and larger, so that both are seen.
+        is_open = line in ("none", "--")
+        axes.plot(x[shown], y[shown], linestyle=line, color=colour, linewidth=1.3, markersize=7 if line == "--" else 4.5,
                   marker=MARKERS[max(index, 0) % len(MARKERS)] if marked else "none",
-                  fillstyle="none" if line == "none" else "full", label=curve["label"] or None)
+                  fillstyle="none" if is_open else "full", label=curve["label"] or None)
 
 
 def draw_slopes(axes, slopes):
-    """Triangles of the given orders in the empty corner below the curves."""
+    """Triangles of the given orders in the corner that curves of such slopes leave empty."""
     if not slopes or not axes.lines:
         return
     (left, right), (bottom, top) = np.log10(axes.get_xlim()), np.log10(axes.get_ylim())
-    width = 0.16 * (right - left)
     for k, slope in enumerate(slopes):
-        x0 = right - (0.06 + 0.24 * k) * (right - left) - width
+        width = min(0.16 * (right - left), 0.5 * (top - bottom) / abs(slope))
         y0 = bottom + 0.06 * (top - bottom)
-        height = slope * width
-        if height > 0.5 * (top - bottom):
-            width, height = 0.5 * (top - bottom) / slope, 0.5 * (top - bottom)
-        corner = 10 ** np.array([[x0, y0], [x0 + width, y0], [x0 + width, y0 + height]])
+        if slope > 0:
+            x0 = right - (0.22 + 0.24 * k) * (right - left)
+            upright = x0 + width
+        else:
+            x0 = left + (0.08 + 0.24 * k) * (right - left)
+            upright = x0
+        corner = 10 ** np.array([[x0, y0], [x0 + width, y0], [upright, y0 + abs(slope) * width]])
         axes.fill(*corner.T, facecolor="#00000018", edgecolor=BLACK, linewidth=0.8)
-        axes.text(*(10 ** np.array([x0 + 1.08 * width, y0 + 0.4 * height])), f"{slope:g}", fontsize=8, va="center")
+        axes.text(*(10 ** np.array([upright + (0.08 if slope > 0 else -0.08) * width, y0 + 0.4 * abs(slope) * width])),
+                  f"{slope:g}", fontsize=8, va="center", ha="left" if slope > 0 else "right")
     axes.set_xlim(10**left, 10**right)
     axes.set_ylim(10**bottom, 10**top)
+
+
+def label_ticks(axis, limits):
+    """Logarithmic axes shorter than two decades also get numbers at 2 and 5, and no others."""
+    axis.set_minor_formatter(NullFormatter())
+    if np.ptp(np.log10(limits)) < 2:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(np.inf, np.inf)))
 
 
 def edges(values, logarithmic):
@@ -120,11 +141,15 @@ def draw(picture):
         draw_curves(axes, panel)
         if panel["log_x"] and panel["log_y"] and not panel["maps"]:
             draw_slopes(axes, panel["slopes"])
+        if panel["log_x"]:
+            label_ticks(axes.xaxis, axes.get_xlim())
+        if panel["log_y"]:
+            label_ticks(axes.yaxis, axes.get_ylim())
         axes.set_xlabel(panel["x_label"])
         axes.set_ylabel(panel["y_label"])
         axes.set_title(panel["title"], fontsize=10)
         if any(curve["label"] for curve in panel["curves"]):
-            axes.legend(fontsize=7, ncols=2 if len(panel["curves"]) > 6 else 1)
+            axes.legend(fontsize=7, ncols=2 if len(panel["curves"]) > 6 else 1, handlelength=3)
     figure.suptitle(picture["title"], fontsize=11)
     return figure
 

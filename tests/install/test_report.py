@@ -3,6 +3,7 @@ import base64
 import contextlib
 import io
 import json
+import math
 import re
 import sys
 import tempfile
@@ -47,12 +48,15 @@ class Pictures(unittest.TestCase):
         self.assertEqual(figure.axes[0].get_xlabel(), "Δt (dimensionless)")
 
     def test_a_slope_triangle_has_the_slope(self):
-        data = panel(curves=[curve("a", [1, 0.1], [1, 0.01])], slopes=[2])
-        figure = apsis_picture.draw(picture(data))
-        (triangle,) = figure.axes[0].patches
-        (x0, y0), (x1, _), (_, y2) = triangle.get_xy()[:3]
-        import math
-        self.assertAlmostEqual(math.log(y2 / y0) / math.log(x1 / x0), 2.0, places=12)
+        for slope in (2, -5):
+            data = panel(curves=[curve("a", [1, 0.1], [1, 0.1**slope])], slopes=[slope])
+            figure = apsis_picture.draw(picture(data))
+            (triangle,) = figure.axes[0].patches
+            (x0, y0), (x1, _), (upright, y2) = triangle.get_xy()[:3]
+            foot = x0 if upright == x1 else x1
+            self.assertAlmostEqual(math.log(y2 / y0) / math.log(upright / foot), slope, places=12)
+            low, high = figure.axes[0].get_ylim()
+            self.assertTrue(low < y0 and y2 < high)
 
     def test_curves_of_one_colour_share_it_and_references_are_black(self):
         data = panel(curves=[curve("a", [1, 2], [1, 2], "line", 0), curve("", [1, 2], [2, 1], "dashed", 0),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the report of `apsis reproduce`: one self-contained page that opens without a network.
 
-    apsis_report.py DIR        reads DIR/reproduce.json, writes DIR/report.html and DIR/pictures/*.png
+    apsis_report.py DIR        reads DIR/reproduce.json, writes DIR/report.html, DIR/claims.md and DIR/pictures/*.png
 """
 import argparse
 import base64
@@ -127,6 +127,34 @@ def page(document, folder):
     return PAGE.format(title="The paper, claim by claim", style=STYLE, body=body)
 
 
+def markdown(document):
+    """The verdict table alone, for documentation."""
+    def plain(value):
+        return html.unescape(str(value)).replace("|", "\\|").replace("\n", " ")
+
+    claims = document["claims"]
+    machine = document["machine"]
+    lines = ["# The paper, claim by claim", "",
+             f"Made by `apsis reproduce`: {sum(c['holds'] for c in claims)} of {len(claims)} claims hold. Measured with version "
+             f"{document['version']}, {document['build']['compiler']}, on {machine['threads']} threads of "
+             f"{machine['processor']}, {document['wall_s']:.0f} s. All quantities are dimensionless. The report has every figure, table "
+             "and picture; here is one figure for each claim.", "",
+             "| claim | statement | shown by | measured (must be) | verdict |", "|---|---|---|---|---|"]
+    lines += [f"| {c['id']} | {plain(c['statement'])} | {plain(c['how'])} | {plain(deciding(c))} | {'holds' if c['holds'] else 'fails'} |"
+              for c in claims]
+    remarks = [f"- **{c['id']}** {plain(r)}" for c in claims for r in c["remarks"]]
+    if remarks:
+        lines += ["", "## Corrections and remarks", "", *remarks]
+    return "\n".join(lines) + "\n"
+
+
+def write(path, content):
+    """Appears complete or not at all."""
+    partial = path.with_name(f".{path.name}.partial")
+    partial.write_text(content, encoding="utf-8")
+    partial.replace(path)
+
+
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
@@ -136,9 +164,8 @@ def main(arguments=None):
     except apsis_picture.PictureError as problem:
         print(f"apsis_report: {problem}", file=sys.stderr)
         return 4
-    partial = folder / ".report.html.partial"
-    partial.write_text(page(document, folder / "pictures"), encoding="utf-8")
-    partial.replace(folder / "report.html")
+    write(folder / "report.html", page(document, folder / "pictures"))
+    write(folder / "claims.md", markdown(document))
     print(folder / "report.html")
     return 0
 

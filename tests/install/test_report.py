@@ -116,6 +116,14 @@ class Report(unittest.TestCase):
         self.assertIn("slope: 1.25 (at least 2.85)", page)
         self.assertIn("it broke (why)", page)
 
+    def test_the_table_for_documentation_has_a_row_for_each_claim(self):
+        table = apsis_report.markdown(document(claim(remarks=["misprint"]), claim(id="C2", statement="a | b", holds=False)))
+        rows = re.findall(r"^\| (C\d+) \|", table, re.M)
+        self.assertEqual(rows, ["C1", "C2"])
+        self.assertIn("1 of 2 claims hold", table)
+        self.assertIn("a \\| b", table)
+        self.assertIn("- **C1** misprint", table)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -33,6 +33,7 @@ class run_setup {
   field initial_state() const;
   /// The exact solution at time t in the same form; nothing where no formula is known for the data.
   std::optional<field> exact_state(double t) const;
+  bool has_exact_state() const { return static_cast<bool>(data().exact); }
 
   bool has_space() const { return equation->space_dimensions() > 0; }
   double cell_volume() const { return has_space() ? mesh_.cell_volume() : 1.0; }

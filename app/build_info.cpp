@@ -1,11 +1,13 @@
 #include "build_info.hpp"
 
 #include <apsis/core/parallel.hpp>
+#include <chrono>
 #include <fstream>
 #include <string>
 #include <thread>
 
-#include <fmt/core.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <hdf5.h>
 #include <boost/version.hpp>
 
@@ -67,6 +69,11 @@ nlohmann::ordered_json machine_info() {
   return {{"processor", processor()},
           {"cores", static_cast<int>(std::thread::hardware_concurrency())},
           {"threads", threads()}};
+}
+
+std::string time_stamp() {
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
 }
 
 }  // namespace apsis::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace apsis::app {
 
@@ -12,5 +13,8 @@ nlohmann::ordered_json build_info();
 
 /// Processor, cores and threads in use.
 nlohmann::ordered_json machine_info();
+
+/// The present second in universal time, "2026-01-31T12:00:00Z".
+std::string time_stamp();
 
 }  // namespace apsis::app

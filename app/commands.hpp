@@ -11,6 +11,7 @@ using action = std::function<int()>;
 
 /// Each adds one command to the program.
 void add_run(CLI::App& program, action& chosen);
+void add_converge(CLI::App& program, action& chosen);
 void add_list(CLI::App& program, action& chosen);
 void add_show(CLI::App& program, action& chosen);
 void add_check(CLI::App& program, action& chosen);

@@ -61,6 +61,7 @@ int run_program(int argc, char** argv) {
   program.require_subcommand(1);
   action chosen;
   add_run(program, chosen);
+  add_converge(program, chosen);
   add_list(program, chosen);
   add_show(program, chosen);
   add_check(program, chosen);

@@ -4,10 +4,8 @@
 
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/case_json.hpp>
-#include <chrono>
 #include <cmath>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 namespace apsis::app {
@@ -64,9 +62,7 @@ json to_json(const simulation& run, const run_records& records) {
 json manifest(const simulation& run, run_end end, const std::string& message) {
   json out = {{"apsis", version()}, {"state", to_string(end)}};
   if (!message.empty()) out["message"] = message;
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  out["written"] =
-      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+  out["written"] = time_stamp();
   out["case"] = apsis::to_json(run.config());
   out["method"] = run.config().time.method;
   out["promises"] = {{"positivity", run.promises().positivity},

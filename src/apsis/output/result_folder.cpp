@@ -12,8 +12,9 @@ namespace apsis {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array<const char*, 6> result_names = {
-    result_folder::manifest, "history.csv", "fields.csv", "solution.h5", "solution.xdmf", "checkpoint.h5"};
+constexpr std::array<const char*, 10> result_names = {
+    result_folder::manifest, "history.csv",  "fields.csv",    "solution.h5",  "solution.xdmf",
+    "checkpoint.h5",         "converge.csv", "converge.json", "picture.json", "converge.png"};
 
 [[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::string& why) {
   throw io_error(fmt::format("cannot {} '{}' ({}) choose another folder with --out or free some space", verb,

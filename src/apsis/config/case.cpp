@@ -2,8 +2,8 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_text.hpp>
 #include <apsis/config/case_value.hpp>
-#include <apsis/config/expression.hpp>
 #include <apsis/core/embedded.hpp>
+#include <apsis/core/expression.hpp>
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
@@ -211,7 +211,7 @@ class resolver {
     // A formula begins behind its quotation mark; other text has no columns to point to.
     if (raw != nullptr && place.column > 0) ++place.column;
     const expression formula(config_.model.epsilon, place);
-    if (formula.depends_on_x() && !model_->has_space)
+    if (!formula.is_constant() && !model_->has_space)
       throw input_error(
           place,
           fmt::format("'model.epsilon' depends on x (model '{}' has no space) give a number", model_->name));

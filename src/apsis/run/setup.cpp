@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <apsis/config/expression.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/core/expression.hpp>
 #include <apsis/semidiscrete/newton_collision.hpp>
 #include <apsis/space/quartic.hpp>
 #include <apsis/space/reconstruction_registry.hpp>

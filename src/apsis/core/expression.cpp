@@ -1,6 +1,9 @@
-#include <apsis/config/expression.hpp>
+#include <apsis/core/expression.hpp>
 #include <apsis/core/suggest.hpp>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -10,26 +13,16 @@
 
 namespace apsis {
 
-struct expression::impl {
-  std::string text;
-  source_place place;
-  // The parser keeps the address of x, so both live at one address for the life of the expression.
-  double x = 0.0;
-  mu::Parser parser;
-};
-
 namespace {
 
-const std::vector<std::string>& known_names() {
-  static const std::vector<std::string> names = {"x",     "pi",   "e",    "sin",  "cos",  "tan", "asin",
-                                                 "acos",  "atan", "sinh", "cosh", "tanh", "exp", "log",
-                                                 "log10", "sqrt", "abs",  "min",  "max"};
-  return names;
+std::vector<std::string> known_names(const std::string& variable) {
+  return {variable, "pi",   "e",   "sin", "cos",   "tan",  "asin", "acos", "atan", "sinh",
+          "cosh",   "tanh", "exp", "log", "log10", "sqrt", "abs",  "min",  "max"};
 }
 
 // muParser ships its own list of functions, some of which changed meaning between versions (log); this one is
 // ours.
-void define_language(mu::Parser& parser, double* x) {
+void define_language(mu::Parser& parser, const std::string& variable, double* x) {
   parser.ClearFun();
   parser.ClearConst();
   parser.ClearInfixOprt();
@@ -57,7 +50,7 @@ void define_language(mu::Parser& parser, double* x) {
   parser.DefineFun("max", binary(std::fmax));
   parser.DefineConst("pi", std::numbers::pi);
   parser.DefineConst("e", std::numbers::e);
-  parser.DefineVar("x", x);
+  parser.DefineVar(variable, x);
 }
 
 source_place shifted(source_place place, std::size_t by) {
@@ -65,7 +58,7 @@ source_place shifted(source_place place, std::size_t by) {
   return place;
 }
 
-// '=' alone would assign to x; a comparison is written with two characters.
+// '=' alone would assign to the variable; a comparison is written with two characters.
 std::size_t find_assignment(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;
@@ -85,10 +78,12 @@ std::size_t find_assignment(const std::string& text) {
                                                     text, why, at + 1, advice));
 }
 
-void check_characters(const std::string& text, const source_place& place) {
+void check_characters(const std::string& text, const source_place& place, const std::string& variable) {
   if (text.find_first_not_of(" \t") == std::string::npos)
-    throw input_error(place,
-                      "expression is empty (a number or a formula in x is needed) write for example 1e-3");
+    throw input_error(
+        place,
+        fmt::format("expression is empty (a number or a formula in {} is needed) write for example 1e-3",
+                    variable));
   if (text.size() > expression::longest)
     throw input_error(place, fmt::format("expression has {} characters (at most {} are read) shorten it",
                                          text.size(), expression::longest));
@@ -134,58 +129,122 @@ std::string explain(const mu::ParserError& e) {
   }
 }
 
+/// A parser and its variable. The parser keeps the address of x and scratch space, so one thread at a time.
+struct machine {
+  double x = 0.0;
+  mu::Parser parser;
+
+  machine(const std::string& text, const std::string& variable) {
+    define_language(parser, variable, &x);
+    parser.SetExpr(text);
+  }
+  double run(double at) {
+    x = at;
+    return parser.Eval();
+  }
+};
+
+/// Machines for one formula, each in the hands of one thread at a time. A thread comes back to the same slot,
+/// so nobody waits unless there are more threads than slots.
+class machine_shed {
+ public:
+  machine_shed(const std::string& text, const std::string& variable) : text_(text), variable_(variable) {
+    slots_.front().own = std::make_unique<machine>(text, variable);
+  }
+
+  /// For the constructor of an expression, which is alone.
+  mu::Parser& first() { return slots_.front().own->parser; }
+
+  double run(double x) {
+    slot& mine = take();
+    const release_at_exit release{mine};
+    if (!mine.own) mine.own = std::make_unique<machine>(text_, variable_);
+    return mine.own->run(x);
+  }
+
+ private:
+  struct alignas(64) slot {  // threads side by side do not share a cache line
+    std::atomic_flag taken = ATOMIC_FLAG_INIT;
+    std::unique_ptr<machine> own;
+  };
+  struct release_at_exit {
+    slot& held;
+    ~release_at_exit() { held.taken.clear(std::memory_order_release); }
+  };
+
+  slot& take() {
+    static std::atomic<std::size_t> threads_seen{0};
+    thread_local const std::size_t home = threads_seen++;
+    for (std::size_t k = home;; ++k) {
+      slot& candidate = slots_[k % slots_.size()];
+      if (!candidate.taken.test_and_set(std::memory_order_acquire)) return candidate;
+    }
+  }
+
+  std::string text_, variable_;
+  std::array<slot, 64> slots_;
+};
+
 }  // namespace
 
-expression::expression(std::string text, source_place place) : impl_(std::make_unique<impl>()) {
-  check_characters(text, place);
-  impl_->text = std::move(text);
-  impl_->place = std::move(place);
+struct expression::impl {
+  impl(const std::string& words, source_place where, formula_kind what)
+      : text(words), place(std::move(where)), kind(std::move(what)), machines(text, kind.variable) {}
+
+  std::string text;
+  source_place place;
+  formula_kind kind;
+  machine_shed machines;
+};
+
+expression::expression(std::string text, source_place place, formula_kind kind) {
+  check_characters(text, place, kind.variable);
   try {
-    define_language(impl_->parser, &impl_->x);
-    impl_->parser.SetExpr(impl_->text);
-    impl_->parser.Eval();
+    impl_ = std::make_unique<impl>(text, place, kind);
+    impl_->machines.first().Eval();
   } catch (const mu::ParserError& e) {
     const bool unknown = e.GetCode() == mu::ecUNASSIGNABLE_TOKEN;
     // muParser reports the end of some tokens and the start of others; an unknown name is found again in the
     // text.
     std::size_t at = e.GetPos() >= 0 ? static_cast<std::size_t>(e.GetPos()) : 0;
-    if (unknown && impl_->text.rfind(e.GetToken(), at) != std::string::npos)
-      at = impl_->text.rfind(e.GetToken(), at);
-    at = std::min(at, impl_->text.size() - 1);
-    fail(impl_->text, impl_->place, at, explain(e),
-         unknown ? suggest(e.GetToken(), known_names()) : "check the formula");
+    if (unknown && text.rfind(e.GetToken(), at) != std::string::npos) at = text.rfind(e.GetToken(), at);
+    at = std::min(at, text.size() - 1);
+    fail(text, place, at, explain(e),
+         unknown ? suggest(e.GetToken(), known_names(kind.variable)) : "check the formula");
   }
-  if (impl_->parser.GetNumResults() != 1)
-    fail(impl_->text, impl_->place, impl_->text.find(','), "a comma outside a function", "write one formula");
+  if (impl_->machines.first().GetNumResults() != 1)
+    fail(text, place, text.find(','), "a comma outside a function", "write one formula");
 }
 
 expression::~expression() = default;
 expression::expression(expression&&) noexcept = default;
 expression& expression::operator=(expression&&) noexcept = default;
 
-double expression::evaluate(double x) const {
-  impl_->x = x;
-  double value = 0.0;
+double expression::value(double x) const {
   try {
-    value = impl_->parser.Eval();
+    return impl_->machines.run(x);
   } catch (const mu::ParserError& e) {
     fail(impl_->text, impl_->place, 0, e.GetMsg(), "check the formula");
   }
-  if (!std::isfinite(value) || value < 0.0)
-    throw input_error(
-        impl_->place,
-        fmt::format("expression '{}' is {} at x = {:.10g} (it must be finite and not negative) change the "
-                    "formula or the domain",
-                    impl_->text, value, x));
-  return value;
+}
+
+double expression::evaluate(double x) const {
+  const double result = value(x);
+  if (!std::isfinite(result) || (impl_->kind.nonnegative && result < 0.0))
+    throw input_error(impl_->place,
+                      fmt::format("expression '{}' is {} at {} = {:.10g} (it must be finite{}) change the "
+                                  "formula or the domain",
+                                  impl_->text, result, impl_->kind.variable, x,
+                                  impl_->kind.nonnegative ? " and not negative" : ""));
+  return result;
 }
 
 const std::string& expression::text() const {
   return impl_->text;
 }
 
-bool expression::depends_on_x() const {
-  return !impl_->parser.GetUsedVar().empty();
+bool expression::is_constant() const {
+  return impl_->machines.first().GetUsedVar().empty();
 }
 
 }  // namespace apsis

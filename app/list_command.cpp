@@ -34,6 +34,13 @@ json models() {
                             {"lowest", p.lowest},
                             {"highest", p.highest},
                             {"doc", p.doc}});
+    json texts = json::array();
+    for (const auto& t : m->texts)
+      texts.push_back({{"name", t.name},
+                       {"default", t.value},
+                       {"choices", t.choices},
+                       {"formula_in", t.variable.empty() ? json(nullptr) : json(t.variable)},
+                       {"doc", t.doc}});
     all.push_back({{"name", m->name},
                    {"description", m->description},
                    {"source", m->source},
@@ -41,7 +48,8 @@ json models() {
                    {"velocity", m->has_velocity},
                    {"epsilon", m->has_epsilon},
                    {"initial", m->initial},
-                   {"parameters", parameters}});
+                   {"parameters", parameters},
+                   {"texts", texts}});
   }
   return all;
 }

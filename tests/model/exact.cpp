@@ -13,8 +13,7 @@
 namespace {
 
 std::unique_ptr<apsis::model> make(const apsis::model_entry& entry) {
-  apsis::model_config config;
-  for (const auto& p : entry.parameters) config.parameters[p.name] = p.value;
+  apsis::model_config config = apsis::default_config(entry);
   config.velocity = {8.0, 40, "auto"};
   return entry.make(config);
 }

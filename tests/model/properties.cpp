@@ -20,8 +20,7 @@ struct named_model {
 std::vector<named_model> relaxation_models() {
   std::vector<named_model> all;
   for (const auto* entry : apsis::model_entries()) {
-    apsis::model_config config;
-    for (const auto& p : entry->parameters) config.parameters[p.name] = p.value;
+    apsis::model_config config = apsis::default_config(*entry);
     config.velocity = {8.0, 40, "auto"};
     auto made = entry->make(config);
     const auto* relaxation = dynamic_cast<const relaxation_model*>(made.get());

@@ -74,6 +74,7 @@ class resolver {
     for (const case_key& key : case_schema())
       if (applies(key, *model_)) paths.push_back(key.path);
     for (const model_parameter& p : model_->parameters) paths.push_back("model." + p.name);
+    for (const model_text& t : model_->texts) paths.push_back("model." + t.name);
     return paths;
   }
 
@@ -149,6 +150,10 @@ class resolver {
       }
       config_.model.parameters[p.name] = value;
     }
+    for (const model_text& t : model_->texts) {
+      const raw_value* raw = find("model." + t.name);
+      config_.model.texts[t.name] = raw == nullptr ? t.value : to_text(t, *raw);
+    }
   }
 
   void check_together() const {
@@ -223,11 +228,8 @@ class resolver {
 
   void check_fields() const {
     if (config_.output.fields.empty()) return;
-    model_config parts;
-    parts.parameters = config_.model.parameters;
-    parts.velocity = {config_.velocity.max, config_.velocity.points, config_.velocity.equilibrium};
     std::vector<std::string> names;
-    for (const auto& field : model_->make(parts)->fields()) names.push_back(field.name);
+    for (const auto& field : make_model(config_)->fields()) names.push_back(field.name);
     for (const auto& name : config_.output.fields)
       if (std::find(names.begin(), names.end(), name) == names.end())
         throw input_error(
@@ -245,6 +247,10 @@ class resolver {
 bool takes_text(const std::string& path) {
   for (const case_key& key : case_schema())
     if (key.path == path) return key.type == key_type::text || key.type == key_type::formula;
+  // No model has a number of the same name as a text of another.
+  for (const model_entry* entry : model_entries())
+    for (const model_text& t : entry->texts)
+      if ("model." + t.name == path) return true;
   return false;
 }
 
@@ -299,6 +305,21 @@ std::string read_case(const std::string& name_or_path) {
 
 case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides) {
   return parse_case(read_case(name_or_path), name_or_path, overrides);
+}
+
+std::unique_ptr<model> make_model(const case_config& config) {
+  const model_entry* entry = find_model(config.model.name);
+  if (entry == nullptr) {
+    std::vector<std::string> names;
+    for (const model_entry* known : model_entries()) names.push_back(known->name);
+    throw input_error(fmt::format("unknown model '{}' (there is no such name) {}", shown(config.model.name),
+                                  suggest(config.model.name, names)));
+  }
+  model_config parts = default_config(*entry);
+  for (const auto& [name, value] : config.model.parameters) parts.parameters[name] = value;
+  for (const auto& [name, value] : config.model.texts) parts.texts[name] = value;
+  parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium};
+  return entry->make(parts);
 }
 
 std::vector<std::string> case_names() {

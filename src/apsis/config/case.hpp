@@ -1,9 +1,11 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
+#include <apsis/model/model.hpp>
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +24,8 @@ struct case_config {
     std::string name;
     std::string epsilon = "1";  ///< a number or an expression in x; dimensionless Knudsen number, ≥ 0
     std::string initial;        ///< name of one of the model's initial data; "" takes its first
-    std::map<std::string, double> parameters;  ///< of the model, all of them
+    std::map<std::string, double> parameters;  ///< of the model; what is not there has its default
+    std::map<std::string, std::string> texts;  ///< likewise
   } model;
   struct {
     int cells = 40;
@@ -59,6 +62,9 @@ std::string read_case(const std::string& name_or_path);
 
 /// A case file by path, or a built-in case by name ("paper/bgk-mixed").
 case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides = {});
+
+/// The model of the case with its parameters. Throws input_error if there is no such model.
+std::unique_ptr<model> make_model(const case_config& config);
 
 /// Names of the built-in cases, sorted.
 std::vector<std::string> case_names();

@@ -110,7 +110,7 @@ std::string key_text(const case_key& key) {
   return out;
 }
 
-std::string model_text(const model_entry& model) {
+std::string describe(const model_entry& model) {
   std::string out = fmt::format("  {}: {}\n", model.name, model.description);
   std::string tables =
       model.has_space ? (model.has_velocity ? "space, velocity" : "space") : "none but time, output";
@@ -119,6 +119,12 @@ std::string model_text(const model_entry& model) {
     out += wrapped(
         fmt::format("{} (number, {} to {}, default {}): {}", p.name, p.lowest, p.highest, p.value, p.doc),
         "      ", 100);
+  for (const model_text& t : model.texts)
+    out +=
+        wrapped(fmt::format("{} (text, one of {}{}, default \"{}\"): {}", t.name, fmt::join(t.choices, ", "),
+                            t.variable.empty() ? "" : fmt::format(", or a formula in {}", t.variable),
+                            t.value, t.doc),
+                "      ", 100);
   return out;
 }
 
@@ -142,7 +148,7 @@ std::string schema_text() {
     out += key_text(key);
   }
   out += "\nModels, and the parameters that [model] takes for them\n";
-  for (const model_entry* model : model_entries()) out += model_text(*model);
+  for (const model_entry* model : model_entries()) out += describe(*model);
   return out;
 }
 
@@ -151,9 +157,10 @@ std::string to_toml(const case_config& config) {
   std::string out, table;
   // Ahead of the next table; parameters are the last keys of [model].
   const auto close_table = [&] {
-    if (table == "model")
-      for (const auto& [name, value] : config.model.parameters)
-        out += fmt::format("{} = {}\n", name, number_text(value));
+    if (table != "model") return;
+    for (const auto& [name, value] : config.model.parameters)
+      out += fmt::format("{} = {}\n", name, number_text(value));
+    for (const auto& [name, value] : config.model.texts) out += fmt::format("{} = {}\n", name, quoted(value));
   };
   for (const case_key& key : case_schema()) {
     const case_value value = key.load(config);

@@ -1,7 +1,9 @@
 #include <apsis/config/case_value.hpp>
+#include <apsis/core/expression.hpp>
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -96,6 +98,29 @@ std::array<double, 2> pair(const case_key& key, const raw_value& raw) {
 }
 
 }  // namespace
+
+std::string to_text(const model_text& text, const raw_value& raw) {
+  const std::string path = "model." + text.name;
+  const auto* value = std::get_if<std::string>(&raw.value);
+  if (value == nullptr) refuse(raw, path, "a text is needed", type_advice(key_type::text));
+  if (std::find(text.choices.begin(), text.choices.end(), *value) != text.choices.end()) return *value;
+  const std::string advice = suggest(*value, text.choices);
+  if (text.variable.empty()) refuse(raw, path, "there is no such name", advice);
+  source_place place = raw.value_place;
+  if (place.column > 0) ++place.column;  // behind the quotation mark
+  try {
+    const expression formula(*value, place, {text.variable, false});
+  } catch (const input_error&) {
+    // A word, perhaps misspelled, is not helped by what is wrong with it as a formula.
+    const auto in_word = [](char c) {
+      return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
+    };
+    if (!value->empty() && std::all_of(value->begin(), value->end(), in_word))
+      refuse(raw, path, fmt::format("it is neither a name nor a formula in {}", text.variable), advice);
+    throw;
+  }
+  return *value;
+}
 
 case_value to_value(const case_key& key, const raw_value& raw, const case_config& so_far) {
   const auto type_error = [&]() {

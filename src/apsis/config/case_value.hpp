@@ -12,6 +12,9 @@ namespace apsis {
 /// place of the value.
 case_value to_value(const case_key& key, const raw_value& raw, const case_config& so_far);
 
+/// One of the names of the text, or a formula in its variable. Throws input_error at the place of the value.
+std::string to_text(const model_text& text, const raw_value& raw);
+
 /// A finite number. `needed` says what the key takes ("a number"). Throws input_error.
 double finite_number(const raw_value& raw, const std::string& path, const std::string& needed);
 

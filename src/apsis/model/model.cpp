@@ -20,6 +20,17 @@ misfit model::unfit(const double*) const {
   return {};
 }
 
+misfit model::unfit_range(const double*, const double*) const {
+  return {};
+}
+
+model_config default_config(const model_entry& entry) {
+  model_config config;
+  for (const auto& p : entry.parameters) config.parameters[p.name] = p.value;
+  for (const auto& t : entry.texts) config.texts[t.name] = t.value;
+  return config;
+}
+
 const model_entry* find_model(const std::string& name) {
   for (const model_entry* entry : model_entries())
     if (entry->name == name) return entry;

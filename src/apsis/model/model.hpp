@@ -63,6 +63,8 @@ class model {
 
   /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could.
   virtual misfit unfit(const double* u) const;
+  /// Likewise for data whose macroscopic fields lie between these extremes.
+  virtual misfit unfit_range(const double* lowest, const double* highest) const;
 };
 
 /// Q(u) = C(ω)(E(ω) − u) with ω = ℛu and ℛQ = 0 (paper, Properties 3–5): every stage is solved in closed

@@ -18,6 +18,15 @@ struct model_parameter {
   std::string doc;  ///< meaning and unit
 };
 
+/// A text that a model can be given in its case file: one of its names, or a formula.
+struct model_text {
+  std::string name;
+  std::string value;                 ///< default
+  std::vector<std::string> choices;  ///< names with a meaning of their own
+  std::string variable;              ///< what a formula is written in, any finite value; "": names only
+  std::string doc;
+};
+
 /// Velocity grid of a kinetic model: `points` midpoints on [−max, max] per velocity dimension.
 struct velocity_config {
   double max = 0.0;
@@ -28,6 +37,7 @@ struct velocity_config {
 /// All that a model is made from.
 struct model_config {
   std::map<std::string, double> parameters;  ///< complete: defaults filled in
+  std::map<std::string, std::string> texts;  ///< likewise; each a choice or a formula that can be read
   velocity_config velocity;                  ///< only where the entry has_velocity
 };
 
@@ -42,7 +52,11 @@ struct model_entry {
   std::vector<model_parameter> parameters;
   std::vector<std::string> initial;  ///< names of its initial data, default first
   std::unique_ptr<model> (*make)(const model_config&);
+  std::vector<model_text> texts = {};
 };
+
+/// What the model is made from if its case file says nothing; the velocity grid is left to the caller.
+model_config default_config(const model_entry& entry);
 
 /// Every model, sorted by name (generated).
 std::vector<const model_entry*> model_entries();

@@ -29,6 +29,7 @@ nlohmann::ordered_json to_json(const case_config& config) {
       out[key.path.substr(0, dot)][key.path.substr(dot + 1)] = std::move(item);
   }
   for (const auto& [name, value] : config.model.parameters) out["model"][name] = value;
+  for (const auto& [name, value] : config.model.texts) out["model"][name] = value;
   return out;
 }
 

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <apsis/core/errors.hpp>
-#include <apsis/core/suggest.hpp>
 #include <apsis/core/expression.hpp>
+#include <apsis/core/suggest.hpp>
 #include <apsis/semidiscrete/newton_collision.hpp>
 #include <apsis/space/quartic.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
@@ -19,12 +20,6 @@ namespace {
 grid make_mesh(const case_config& config, bool has_space) {
   return has_space ? grid::line(config.space.cells, config.space.domain[0], config.space.domain[1])
                    : grid::line(1, 0.0, 1.0);
-}
-
-const model_entry& entry_of(const case_config& config) {
-  const model_entry* entry = find_model(config.model.name);
-  if (entry == nullptr) throw input_error("unknown model '" + config.model.name + "'");
-  return *entry;
 }
 
 /// An input error at the place of a key, as far as that is known.
@@ -48,6 +43,22 @@ bool is_convex(const shu_osher_form<double>& m, method_kind kind) {
   return true;
 }
 
+/// Smallest and largest value of every macroscopic field.
+std::pair<std::vector<double>, std::vector<double>> extremes_of_fields(const model& equation,
+                                                                       const field& u) {
+  std::vector<double> values(equation.fields().size());
+  std::vector<double> lowest(values.size(), std::numeric_limits<double>::infinity()), highest(values.size());
+  for (double& value : highest) value = -std::numeric_limits<double>::infinity();
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    equation.macroscopic(u.row(cell), values.data());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      lowest[k] = std::min(lowest[k], values[k]);
+      highest[k] = std::max(highest[k], values[k]);
+    }
+  }
+  return {lowest, highest};
+}
+
 struct interval {
   double centre, half;
 };
@@ -69,11 +80,7 @@ std::vector<interval> smooth_parts(const std::vector<double>& jumps, double cent
 }  // namespace
 
 run_setup::run_setup(const case_config& config)
-    : config_(config), mesh_(make_mesh(config, entry_of(config).has_space)) {
-  model_config parts;
-  parts.parameters = config.model.parameters;
-  parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium};
-  equation = entry_of(config).make(parts);
+    : equation(make_model(config)), config_(config), mesh_(make_mesh(config, has_space())) {
   method_ = &find_method(config.time.method);
   check_method();
   if (has_space()) choose_stencil();
@@ -99,6 +106,11 @@ void run_setup::choose_stencil() {
   const reconstruction_entry* scheme = find_reconstruction(config_.space.reconstruction);
   if (scheme == nullptr) throw input_error("unknown reconstruction '" + config_.space.reconstruction + "'");
   how_.scheme = scheme->make();
+  if (config_.space.limiter == "positivity" && !equation->positive())
+    refuse(config_, "space.limiter",
+           fmt::format("space.limiter = \"positivity\" cannot be used with model '{}' (its unknowns may be "
+                       "negative); write \"none\"",
+                       config_.model.name));
   if (config_.space.limiter == "positivity" && !first_order())
     how_.positivity =
         config_.space.formulation == formulation::finite_volume ? limiter_kind::edges : limiter_kind::fluxes;
@@ -197,6 +209,9 @@ field run_setup::initial_state() const {
     const misfit found = equation->unfit(u.row(cell));
     if (!found.problem.empty()) refuse(config_, found.key, fmt::format("{} [cell {}]", found.problem, cell));
   }
+  const auto [lowest, highest] = extremes_of_fields(*equation, u);
+  const misfit found = equation->unfit_range(lowest.data(), highest.data());
+  if (!found.problem.empty()) refuse(config_, found.key, found.problem);
   return u;
 }
 

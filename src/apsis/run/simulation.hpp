@@ -88,7 +88,7 @@ class simulation {
   std::vector<double> state() const;  ///< [cells][components], contiguous
   /// The exact solution at t() in the form of state(); empty where no formula is known for the data.
   std::vector<double> exact_state() const;
-  std::vector<double> velocities() const;  ///< of the components; empty without a velocity grid
+  std::vector<double> velocities() const;  ///< speeds of the components; empty without space
   std::vector<double> epsilon() const;     ///< at the cell centres
 
   /// Everything that a restart needs to go on to the same last digit.

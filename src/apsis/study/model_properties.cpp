@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <apsis/core/errors.hpp>
 #include <apsis/semidiscrete/newton_collision.hpp>
@@ -62,8 +63,7 @@ double derivative_defect(const relaxation_model& m, const row& u, const row& q, 
 std::vector<made_model> all_models() {
   std::vector<made_model> all;
   for (const auto* entry : model_entries()) {
-    model_config config;
-    for (const auto& p : entry->parameters) config.parameters[p.name] = p.value;
+    model_config config = default_config(*entry);
     config.velocity = {8.0, 40, "auto"};
     auto made = entry->make(config);
     const auto* relaxation = dynamic_cast<const relaxation_model*>(made.get());
@@ -77,8 +77,10 @@ relaxation_defects defects_of(const relaxation_model& m, const std::vector<doubl
   const double rate = m.rate(omega.data());
   row moved = moments_of(m, e);
   for (std::size_t k = 0; k < moved.size(); ++k) moved[k] -= omega[k];
+  const double size =
+      std::max(norm(e), std::numeric_limits<double>::min());  // 0 is its own equilibrium at times
   return {norm(moments_of(m, q)) / (1.0 + norm(omega)),
-          std::max(norm(collision_of(m, e)) / norm(e), norm(moved) / (1.0 + norm(omega))),
+          std::max(norm(collision_of(m, e)) / size, norm(moved) / (1.0 + norm(omega))),
           derivative_defect(m, u, q, rate) / ((1.0 + rate) * (1.0 + norm(u) + norm(q)))};
 }
 

@@ -22,7 +22,9 @@ import numpy as np
 
 from apsis_picture import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILLION, plt
 
-LABELS = {"rho": "density ρ", "u": "bulk velocity u", "T": "temperature T"}
+LABELS = {"rho": "density ρ", "u": "bulk velocity u", "T": "temperature T",
+          "m": "momentum m", "z": "momentum flux z", "f_plus": "particles of speed 1, f₊", "f_0": "particles at rest, f₀",
+          "f_minus": "particles of speed −1, f₋", "u1": "u₁", "u2": "u₂"}
 
 
 class ResultError(Exception):
@@ -94,16 +96,21 @@ def label_of(name):
 def plot_fields(results, path, title=""):
     """One panel per macroscopic field. `results` is a list of (label, Result, style); x is dimensionless."""
     names = [name for name in results[0][1].fields() if name != "x"]
-    figure, axes = plt.subplots(1, len(names), figsize=(4.2 * len(names), 3.6), squeeze=False)
-    for panel, name in zip(axes[0], names):
+    columns = min(len(names), 3)
+    rows = -(-len(names) // columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(4.2 * columns, 3.6 * rows), squeeze=False)
+    panels = axes.ravel()
+    for unused in panels[len(names):]:
+        unused.set_visible(False)
+    for panel, name in zip(panels, names):
         for label, result, style in results:
             fields = result.fields()
             panel.plot(fields["x"], fields[name], label=label, **style)
         panel.set_xlabel("x (dimensionless)")
         panel.set_ylabel(label_of(name))
-    axes[0][0].legend(fontsize=8)
+    panels[0].legend(fontsize=8)
     figure.suptitle(title)
-    return save(figure, path, axes[0])
+    return save(figure, path, panels[:len(names)])
 
 
 def plot_mixed(second, third, reference, path):
@@ -127,8 +134,8 @@ def plot_mixed(second, third, reference, path):
 
 
 def plot_phase_space(result, path):
-    """f(x, v) as an image over the ε(x) profile; None where the run has no velocity grid."""
-    if not {"f", "v", "x"} <= result.arrays.keys():
+    """f(x, v) as an image over the ε(x) profile; None where the run has no velocity grid (a few speeds are none)."""
+    if not {"f", "v", "x"} <= result.arrays.keys() or len(result.arrays["v"]) < 8:
         return None
     x, v, f = (np.asarray(result.arrays[name], dtype=float) for name in ("x", "v", "f"))
     with_epsilon = "epsilon" in result.arrays

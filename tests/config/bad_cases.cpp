@@ -160,6 +160,37 @@ TEST(bad_case, a_formula_in_x_needs_space) {
   EXPECT_THAT(error_of(ode), HasSubstr("depends on x (model 'ode' has no space)"));
 }
 
+TEST(bad_case, a_text_of_a_model_is_one_of_its_names_or_a_formula) {
+  const auto with = [](const std::string& flux) {
+    return error_of("[model]\nname = \"relaxation\"\nflux = " + flux +
+                    "\n[space]\ncells = 20\n[time]\nmethod = \"md-imex-3-2\"\nend = 1.0\ncfl = 0.5\n");
+  };
+  EXPECT_EQ(with("\"burgers\""), "accepted");
+  EXPECT_EQ(with("\"-u^2/4\""), "accepted");
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"\"burger\"",
+       "3:1: 'model.flux' is the text 'burger' (it is neither a name nor a formula in u) did you mean "
+       "'burgers'?"},
+      {"\"buckley-levrett\"", "did you mean 'buckley-leverett'?"},
+      {"\"\"", "expression is empty"},
+      {"\" \"", "expression is empty"},
+      {"\"sin(x)/2\"", "3:13: expression 'sin(x)/2' cannot be used (unknown name 'x'"},
+      {"\"u +\"", "ends too early"},
+      {"\"u = 2\"", "an assignment"},
+      {"\"u, 2\"", "a comma outside a function"},
+      {"\"u\\u0000\"", "the byte 0x00"},
+      {"3", "3:1: 'model.flux' is the integer 3 (a text is needed) put it in quotes"},
+      {"[\"burgers\"]", "a text is needed"},
+      {"true", "a text is needed"},
+      {"\"" + std::string(1001, '1') + "\"", "1001 characters"},
+  };
+  for (const auto& [flux, says] : wrong) {
+    EXPECT_THAT(with(flux), StartsWith("c.toml:3:")) << flux;
+    EXPECT_THAT(with(flux), HasSubstr(says)) << flux;
+  }
+  EXPECT_THAT(error_of(good, {"model.flux=burgers"}), HasSubstr("no such key for model 'bgk'"));
+}
+
 struct bad_override {
   std::string text, says;
 };

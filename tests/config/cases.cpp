@@ -2,6 +2,7 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 
+#include <algorithm>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -100,6 +101,23 @@ RC_GTEST_PROP(cases, resolved_text_keeps_every_bit_of_random_values, ()) {
   RC_ASSERT(again.title == c.title);
 }
 
+TEST(cases, texts_of_a_model_survive_their_own_text) {
+  const case_config c = load_case("paper/relaxation", {"model.flux=u < 0.5 ? u/4 : (u - 0.25)/2"});
+  EXPECT_EQ(c.model.texts.at("flux"), "u < 0.5 ? u/4 : (u - 0.25)/2");
+  EXPECT_EQ(parse_case(to_toml(c), "again").model.texts, c.model.texts);
+  EXPECT_EQ(load_case("paper/relaxation", {"model.flux=0"}).model.texts.at("flux"), "0");
+}
+
+TEST(schema, a_name_is_a_text_for_every_model_or_for_none) {
+  // The command line decides whether a value needs quotes before it knows the model.
+  for (const model_entry* one : model_entries())
+    for (const model_text& text : one->texts) {
+      EXPECT_NE(std::find(text.choices.begin(), text.choices.end(), text.value), text.choices.end());
+      for (const model_entry* other : model_entries())
+        for (const model_parameter& p : other->parameters) EXPECT_NE(text.name, p.name);
+    }
+}
+
 TEST(schema, documents_every_key_with_its_default) {
   const std::string text = schema_text();
   for (const case_key& key : case_schema()) {
@@ -108,4 +126,5 @@ TEST(schema, documents_every_key_with_its_default) {
   }
   EXPECT_THAT(text, HasSubstr("velocity_dimensions"));
   EXPECT_THAT(text, HasSubstr("weno5-z"));
+  EXPECT_THAT(text, HasSubstr("buckley-leverett, or a formula in u"));
 }

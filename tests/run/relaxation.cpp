@@ -1,0 +1,115 @@
+// The relaxation system on a mesh, against exact solutions of the conservation laws that it becomes.
+#include "cases.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/parallel.hpp>
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+apsis::simulation finished_run(const std::string& name, const std::vector<std::string>& overrides) {
+  apsis::simulation run(apsis::load_case("paper/" + name, overrides));
+  finish(run);
+  return run;
+}
+
+/// Smooth solution of u_t + u u_x = 0 with u(0, x) = 0.4 + 0.3 sin πx: u = u₀(x − u t).
+double burgers(double t, double x) {
+  double u = 0.4;
+  for (int k = 0; k < 50; ++k) {
+    const double at = std::numbers::pi * (x - u * t);
+    u -= (u - 0.4 - 0.3 * std::sin(at)) / (1.0 + 0.3 * std::numbers::pi * t * std::cos(at));
+  }
+  return u;
+}
+
+std::string complaint(const std::vector<std::string>& overrides) {
+  try {
+    const apsis::simulation run(apsis::load_case("paper/relaxation", overrides));
+  } catch (const apsis::input_error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(relaxation, becomes_burgers_equation_at_the_order_of_the_method) {
+  // Point values against the solution by characteristics. Third order in time shows at Δt ~ Δx because the
+  // space error is of fifth order.
+  const auto error = [](int cells) {
+    const auto fields =
+        finished_run("relaxation-burgers", {"space.cells=" + std::to_string(cells), "model.epsilon=0",
+                                            "time.end=0.5", "space.formulation=finite-difference"})
+            .fields();
+    double largest = 0.0;
+    for (std::size_t i = 0; i < fields.x.size(); ++i)
+      largest = std::max(largest, std::abs(fields.values[0][i] - burgers(0.5, fields.x[i])));
+    return largest;
+  };
+  const double coarse = error(160), fine = error(320);
+  EXPECT_GT(std::log2(coarse / fine), 2.85);
+  EXPECT_LT(fine, 1e-5);
+}
+
+TEST(relaxation, a_linear_flux_moves_the_data_with_its_slope) {
+  const auto fields =
+      finished_run("relaxation", {"model.flux=linear", "model.slope=-0.5", "model.epsilon=1e-10",
+                                  "time.end=1", "model.initial=smooth-consistent",
+                                  "space.formulation=finite-difference", "space.cells=160"})
+          .fields();
+  for (std::size_t i = 0; i < fields.x.size(); ++i) {
+    const double exact = 0.4 + 0.3 * std::sin(std::numbers::pi * (fields.x[i] + 0.5));
+    EXPECT_NEAR(fields.values[0][i], exact, 1e-5);  // third order at Δt = 1/160
+    EXPECT_NEAR(fields.values[1][i], -0.5 * exact, 1e-5);
+  }
+}
+
+TEST(relaxation, buckley_leverett_has_its_shock_where_the_tangent_says) {
+  const auto run = finished_run("relaxation-buckley-leverett", {});
+  const auto fields = run.fields();
+  // u*² = M/(1 + M); the shock runs with F(u*)/u*, from u* to 0.
+  const double star = std::sqrt(0.5 / 1.5);
+  const double F = star * star / (star * star + 0.5 * (1 - star) * (1 - star));
+  const double shock = 0.4 * F / star, cell = 0.01;
+  for (std::size_t i = 0; i < fields.x.size(); ++i) {
+    if (fields.x[i] > shock + 3 * cell) {
+      EXPECT_LT(std::abs(fields.values[0][i]), 1e-3) << fields.x[i];
+    }
+    if (fields.x[i] < shock - 3 * cell) {
+      EXPECT_GT(fields.values[0][i], star - 0.01) << fields.x[i];
+    }
+  }
+  EXPECT_FALSE(run.promises().conservation);
+  // Nonetheless conserved: water comes in with flux F(1) = 1 and none goes out.
+  double mass = 0.0;
+  for (const double u : fields.values[0]) mass += cell * u;
+  EXPECT_NEAR(mass, 0.5 + 0.4, 1e-10);
+}
+
+TEST(relaxation, a_formula_gives_the_bits_of_one_thread_on_any_number) {
+  const std::vector<std::string> overrides = {"model.flux=sin(u)/2 + u^3/9", "space.cells=700",
+                                              "time.end=0.02"};
+  apsis::set_threads(1);
+  const auto one = finished_run("relaxation", overrides).state();
+  apsis::set_threads(3);
+  const auto three = finished_run("relaxation", overrides).state();
+  apsis::set_threads(1);
+  EXPECT_EQ(one, three);
+}
+
+TEST(relaxation, refuses_at_the_key_what_the_data_forbid) {
+  EXPECT_EQ(complaint({}), "");
+  EXPECT_EQ(complaint({"model.speed=0.7"}), "");
+  EXPECT_EQ(
+      complaint({"model.speed=0.6"}).rfind("override 'model.speed=0.6': model.speed = 0.6 is too small", 0),
+      0U);
+  EXPECT_EQ(
+      complaint({"model.flux=log(u - 0.2)"}).rfind("override 'model.flux=log(u - 0.2)': model.flux = ", 0),
+      0U);
+  EXPECT_NE(complaint({"space.limiter=positivity"}).find("its unknowns may be negative"), std::string::npos);
+}

@@ -1,0 +1,129 @@
+// Order of every method of the catalogue as observed through the stepper: far from the limit ε → 0 and in it,
+// where it must be what the certificate says of initial data. A method added tomorrow is tested by being
+// there.
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/method/certificate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <integrate/ode_model.hpp>
+#include <integrate/reference.hpp>
+
+namespace {
+
+using apsis::certificate;
+using apsis::method_kind;
+using apsis::step_rule;
+using real =
+    long double;  // the errors of fourth order are far above its rounding, not always above that of double
+using state = std::vector<real>;
+
+state solve(const std::string& method, real epsilon, long steps, state u) {
+  auto problem = ode_model::as_relaxation<state>(epsilon);
+  apsis::stepper march(apsis::find_method(method), problem);
+  apsis::integrate(march, u, real(0), real(1), step_rule<real>::fixed(real(1) / static_cast<real>(steps)));
+  return u;
+}
+
+/// u' = −10u² from u(0) = 1/10, exact 1/(10 + 10t): slow enough for its order to be seen.
+double decay_error(const std::string& method, long steps) {
+  const auto g = [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; };
+  auto problem = apsis::make_newton_problem<state>(apsis::no_transport{}, g);
+  apsis::stepper march(apsis::find_method(method), problem);
+  state u{real(1) / 10};
+  apsis::integrate(march, u, real(0), real(1), step_rule<real>::fixed(real(1) / static_cast<real>(steps)));
+  return static_cast<double>(std::abs(u[0] - real(1) / 20));
+}
+
+double ode_error(const std::string& method, long steps) {
+  const auto exact = reference::radau(1, 1);
+  const auto u = solve(method, 1, steps, ode_model::initial_state<state>());
+  return static_cast<double>(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1]));
+}
+
+/// Observed orders of the conserved and of the relaxing component of the ODE model for ε ≪ Δt. The plateau at
+/// a tenth of ε = 1e-12 lies below every error.
+struct limit_orders {
+  double moment, rest;
+};
+
+limit_orders in_the_limit(const std::string& method, real initial_rest) {
+  const auto exact = reference::limit(1);
+  double moment[2], rest[2];
+  for (int k = 0; k < 2; ++k) {
+    const auto u = solve(method, 1e-12L, 64L << k, {2, initial_rest});
+    moment[k] = static_cast<double>(std::abs(u[0] - exact[0]));
+    rest[k] = static_cast<double>(std::abs(u[1] - exact[1]));
+  }
+  return {std::log2(moment[0] / moment[1]), std::log2(rest[0] / rest[1])};
+}
+
+const real consistent = std::sin(real(2)), inconsistent = 0;
+
+/// The next term of an error in the steps used here is below a tenth of the first: 0.15 in the slope.
+constexpr double tolerance = 0.15;
+
+class every_method : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(every_method, has_its_order) {
+  const certificate& c = apsis::find_certificate(GetParam());
+  const auto error = c.kind == method_kind::implicit_only ? decay_error : ode_error;
+  EXPECT_NEAR(std::log2(error(GetParam(), 128) / error(GetParam(), 256)), c.order, tolerance);
+}
+
+class every_imex_method : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(every_imex_method, has_its_order_in_the_limit_for_the_data_of_its_certificate) {
+  const certificate& c = apsis::find_certificate(GetParam());
+  const auto near_equilibrium = in_the_limit(GetParam(), consistent);
+  const auto far_from_it = in_the_limit(GetParam(), inconsistent);
+  EXPECT_NEAR(near_equilibrium.moment, c.order, tolerance);
+  if (c.type == "A") {
+    EXPECT_NEAR(far_from_it.moment, c.order, tolerance);
+  }
+  // T(u^n) of the first step is that of data which the limit does not know.
+  if (c.type == "ARS") {
+    EXPECT_NEAR(far_from_it.moment, 1, tolerance);
+  }
+  if (c.gsa) {
+    EXPECT_NEAR(near_equilibrium.rest, c.order, tolerance);
+  }
+  if (c.ap) {
+    EXPECT_NEAR(far_from_it.rest, c.order, tolerance);
+  }
+}
+
+std::string name_of(const ::testing::TestParamInfo<std::string>& name) {
+  std::string text = name.param;
+  std::replace(text.begin(), text.end(), '-', '_');
+  return text;
+}
+
+std::vector<std::string> imex_methods() {
+  auto names = apsis::method_names();
+  std::erase_if(names,
+                [](const auto& name) { return apsis::find_certificate(name).kind != method_kind::imex; });
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(apsis::method_names()), name_of);
+INSTANTIATE_TEST_SUITE_P(catalogue, every_imex_method, ::testing::ValuesIn(imex_methods()), name_of);
+
+// What docs/methods.md says of methods that are not globally stiffly accurate: u^{n+1} is not projected, and
+// how far it is from equilibrium is left to the weights b A⁻¹ of the stages.
+TEST(comparators, without_gsa_lose_order_outside_the_moments) {
+  EXPECT_NEAR(in_the_limit("ssp2-222", inconsistent).rest, 1, tolerance);
+  EXPECT_NEAR(in_the_limit("ssp3-433", inconsistent).rest, 1, tolerance);
+  EXPECT_NEAR(in_the_limit("ssp2-332", inconsistent).rest, 2, tolerance);  // b is the last row of A
+}
+
+TEST(comparators, bhr_loses_one_order_from_inconsistent_data) {
+  EXPECT_NEAR(in_the_limit("bhr-553", inconsistent).moment, 2, tolerance);
+  EXPECT_NEAR(in_the_limit("bhr-553", consistent).rest, 3, tolerance);
+}
+
+}  // namespace

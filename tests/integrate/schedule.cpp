@@ -88,6 +88,14 @@ TEST(schedule, methods_of_the_paper_need_three_and_six_buffers) {
   EXPECT_LE(schedule(apsis::find_method("md-imex-6-3").coefficients<double>()).buffers(), 6);
 }
 
+TEST(schedule, explicit_methods_need_one_buffer_more_than_in_place_and_keep_u_n) {
+  // Ketcheson (2008) counts two registers for (4,3) and (10,4), with T(u) added to u in place. A scatter
+  // reads u while it writes elsewhere, and u^n is kept, where (4,3) needs it anyway, for a step that fails.
+  for (const auto& [name, buffers] : {std::pair{"ssprk-2-2", 3}, std::pair{"ssprk-3-3", 3},
+                                      std::pair{"ssprk-4-3", 3}, std::pair{"ssprk-10-4", 4}})
+    EXPECT_EQ(schedule(apsis::find_method(name).coefficients<double>()).buffers(), buffers) << name;
+}
+
 TEST(schedule, counts_of_every_method_are_those_of_its_certificate_and_of_a_step) {
   for (const auto& name : apsis::method_names()) {
     const auto form = apsis::find_method(name).coefficients<double>();

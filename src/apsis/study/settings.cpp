@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <apsis/config/case_schema.hpp>
-#include <apsis/config/expression.hpp>
+#include <apsis/core/expression.hpp>
 
 namespace apsis {
 namespace {
@@ -66,7 +66,7 @@ double number_of(const case_config& config, const std::string& key) {
     if (const auto* number = std::get_if<double>(&value)) return *number;
     if (entry.type != key_type::formula) break;
     const expression formula(std::get<std::string>(value));
-    return formula.depends_on_x() ? not_a_number : formula.evaluate(0.0);
+    return !formula.is_constant() ? not_a_number : formula.evaluate(0.0);
   }
   return not_a_number;
 }

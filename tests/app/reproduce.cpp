@@ -1,0 +1,117 @@
+// apsis reproduce from outside: verdicts, report, resuming, and what goes wrong.
+#include "program.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <unistd.h>
+
+namespace {
+
+using app_test::run_apsis;
+using app_test::work_folder;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+/// An environment variable for the programs started in this scope.
+class environment {
+ public:
+  environment(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
+  ~environment() { unsetenv(name_); }
+  environment(const environment&) = delete;
+  environment& operator=(const environment&) = delete;
+
+ private:
+  const char* name_;
+};
+
+}  // namespace
+
+TEST(reproduce, leaves_a_report_that_needs_no_other_file) {
+  const work_folder folder;
+  const auto result = run_apsis(folder, {"reproduce", "c12", "C3", "--out", "r"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("2 of 2 claims hold"));
+  const json document = json::parse(app_test::read(folder.path() / "r" / "reproduce.json"));
+  ASSERT_EQ(document["claims"].size(), 2U);
+  EXPECT_EQ(document["claims"][0]["id"], "C3");  // in the order of the paper
+  const std::string page = app_test::read(folder.path() / "r" / "report.html");
+  EXPECT_THAT(page, HasSubstr("data:image/svg+xml;base64,"));
+  EXPECT_THAT(page, Not(HasSubstr("src=\"http")));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "r" / "pictures" / "C12-decay.png"));
+}
+
+TEST(reproduce, prints_only_the_document_when_asked_for_json) {
+  const work_folder folder;
+  const auto result = run_apsis(folder, {"reproduce", "C3", "--out", "r", "--json"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  const json document = json::parse(result.out);
+  EXPECT_TRUE(document["claims"][0]["holds"].get<bool>());
+  EXPECT_EQ(document["claims"][0]["findings"][0]["value"], 2.0);
+}
+
+TEST(reproduce, resumes_what_was_shown_and_refuses_what_is_damaged) {
+  const work_folder folder;
+  ASSERT_EQ(run_apsis(folder, {"reproduce", "C3", "--out", "r"}).code, 0);
+  const auto file = folder.path() / "r" / "reproduce.json";
+  json document = json::parse(app_test::read(file));
+  document["claims"][0]["wall_s"] = 1234.5;  // a mark that a new check would not have
+  std::ofstream(file) << document;
+  ASSERT_EQ(run_apsis(folder, {"reproduce", "C3", "C4", "--out", "r", "--resume"}).code, 0);
+  document = json::parse(app_test::read(file));
+  EXPECT_EQ(document["claims"][0]["wall_s"], 1234.5);
+  EXPECT_EQ(document["claims"].size(), 2U);
+
+  document["claims"][0]["holds"] = false;  // what did not hold is checked again
+  std::ofstream(file) << document;
+  ASSERT_EQ(run_apsis(folder, {"reproduce", "C3", "--out", "r", "--resume"}).code, 0);
+  EXPECT_NE(json::parse(app_test::read(file))["claims"][0]["wall_s"], 1234.5);
+
+  std::ofstream(file) << "{\"version\": \"0.0";
+  const auto refused = run_apsis(folder, {"reproduce", "C3", "--out", "r", "--resume"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("leave out --resume"));
+}
+
+TEST(reproduce, keeps_the_data_where_no_python_draws) {
+  const work_folder folder;
+  const environment none("APSIS_PYTHON", "/nowhere/python3");
+  const auto result = run_apsis(folder, {"reproduce", "C3", "--out", "r"});
+  EXPECT_EQ(result.code, 4);
+  EXPECT_THAT(result.err, HasSubstr("/nowhere/python3"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "r" / "reproduce.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "r" / "report.html"));
+}
+
+TEST(reproduce, names_the_nearest_claim_and_leaves_nothing_behind) {
+  const work_folder folder;
+  const auto before = folder.listing();
+  for (const auto& arguments : std::vector<std::vector<std::string>>{{"reproduce", "C99"},
+                                                                     {"reproduce", ""},
+                                                                     {"reproduce", "C3", "--threads", "-1"},
+                                                                     {"reproduce", "--outt", "x"}}) {
+    const auto result = run_apsis(folder, arguments);
+    EXPECT_EQ(result.code, 2) << result.err;
+  }
+  EXPECT_EQ(folder.listing(), before);
+  EXPECT_EQ(run_apsis(folder, {"reproduce", "C3", "--out", "/proc/nowhere"}).code, 4);
+}
+
+TEST(reproduce, an_interrupt_keeps_the_claims_so_far) {
+  const work_folder folder;
+  app_test::process running(folder, {"reproduce", "C3", "C24", "--out", "r"});
+  const auto file = folder.path() / "r" / "reproduce.json";
+  for (int k = 0; k < 2000 && !std::filesystem::exists(file); ++k) usleep(10'000);
+  running.send(SIGINT);
+  const auto result = running.wait();
+  EXPECT_EQ(result.code, 130);
+  EXPECT_THAT(result.err, HasSubstr("--resume"));
+  EXPECT_EQ(json::parse(app_test::read(file))["claims"].size(), 1U);
+}

@@ -1,8 +1,10 @@
 // What models refuse. (Properties 2–5 of the paper: tests/study/model_properties.cpp.)
 #include <apsis/model/model_registry.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -38,6 +40,62 @@ TEST(models, inadmissible_moments_are_refused_with_a_reason) {
     EXPECT_FALSE(m.relaxation->equilibrium(omega.data(), e.data())) << m.entry->name;
     EXPECT_FALSE(m.relaxation->why_inadmissible(omega.data()).empty()) << m.entry->name;
   }
+}
+
+TEST(models, consistent_data_are_the_equilibrium_of_the_data_they_are_named_after) {
+  // "smooth-consistent" of "smooth": the same moments, and E of them is the row itself.
+  int found = 0;
+  for (const auto& m : relaxation_models()) {
+    const auto& all = m.relaxation->initial();
+    for (const auto& consistent : all) {
+      const auto end = consistent.name.rfind("-consistent");
+      if (end == std::string::npos) continue;
+      const auto base = std::find_if(all.begin(), all.end(), [&](const auto& data) {
+        return data.name == consistent.name.substr(0, end);
+      });
+      ASSERT_NE(base, all.end()) << m.entry->name;
+      ++found;
+      for (double x = 0.05; x < 2.0; x += 0.1) {
+        const auto size = static_cast<std::size_t>(m.relaxation->components());
+        const auto count = static_cast<std::size_t>(m.relaxation->moment_count());
+        std::vector<double> u(size), v(size), e(size), omega_u(count), omega_v(count);
+        base->point_value(x, u);
+        consistent.point_value(x, v);
+        m.relaxation->moments(u.data(), omega_u.data());
+        m.relaxation->moments(v.data(), omega_v.data());
+        ASSERT_TRUE(m.relaxation->equilibrium(omega_v.data(), e.data()));
+        // Sums of forty terms of size 1.
+        for (std::size_t k = 0; k < count; ++k) EXPECT_NEAR(omega_u[k], omega_v[k], 1e-14) << m.entry->name;
+        for (std::size_t k = 0; k < size; ++k) EXPECT_NEAR(e[k], v[k], 1e-13) << m.entry->name;
+      }
+    }
+  }
+  EXPECT_GE(found, 3);
+}
+
+TEST(models, the_names_of_initial_data_are_those_of_the_entry_in_its_order) {
+  for (const auto* entry : apsis::model_entries()) {
+    auto config = apsis::default_config(*entry);
+    config.velocity = {8.0, 40, "auto"};
+    std::vector<std::string> names;
+    const auto made = entry->make(config);
+    for (const auto& data : made->initial()) {
+      names.push_back(data.name);
+      EXPECT_TRUE(std::is_sorted(data.jumps.begin(), data.jumps.end()));
+    }
+    EXPECT_EQ(names, entry->initial);
+  }
+}
+
+TEST(models, the_ode_starts_where_its_parameters_say) {
+  auto config = apsis::default_config(*apsis::find_model("ode"));
+  config.parameters["u1"] = -0.25;
+  config.parameters["u2"] = 3.0;
+  std::vector<double> u(2);
+  const auto ode = apsis::find_model("ode")->make(config);
+  ode->initial().back().point_value(0.0, u);
+  EXPECT_EQ(ode->initial().back().name, "given");
+  EXPECT_EQ(u, (std::vector<double>{-0.25, 3.0}));
 }
 
 TEST(models, bgk_says_how_its_velocity_grid_must_change) {

@@ -162,6 +162,14 @@ class bgk_model final : public relaxation_model {
         0.3, 1.0, 1.0);
     add("accuracy", "0.7 M[r,1,T] + 0.3 M[r,-1/2,T], r = 1 + 0.2 sin(2 pi x), T = 1/(1 + 0.2 sin(pi x))", 0.7,
         0.3, 2.0, 1.0);
+    const auto accuracy = initial_.back().point_value;
+    initial_.push_back({"accuracy-consistent", "the Maxwellian with the moments of 'accuracy'",
+                        [this, accuracy](double x, std::span<double> f) {
+                          double omega[5];
+                          accuracy(x, f);
+                          moments(f.data(), omega);
+                          equilibrium(omega, f.data());
+                        }});
   }
 
   velocity_grid grid_;
@@ -180,7 +188,7 @@ const model_entry model_bgk = {
     true,
     true,
     {{"velocity_dimensions", 1.0, 1.0, 3.0, "number of velocity dimensions (an integer)"}},
-    {"mixed-v", "mixed-s", "accuracy"},
+    {"mixed-v", "mixed-s", "accuracy", "accuracy-consistent"},
     [](const model_config& config) -> std::unique_ptr<model> { return std::make_unique<bgk_model>(config); }};
 
 }  // namespace apsis

@@ -11,6 +11,19 @@ namespace {
 /// test). ω = u₁, E = (u₁, g(u₁)), C = f(u₁); as ε → 0, u₁' = g(u₁). Dimensionless.
 class ode_model final : public relaxation_model {
  public:
+  /// The data "given" are (u1, u2).
+  ode_model(double u1, double u2) {
+    const auto add = [this](const char* name, const char* description, double first, double second) {
+      initial_.push_back({name, description, [first, second](double, std::span<double> u) {
+                            u[0] = first;
+                            u[1] = second;
+                          }});
+    };
+    add("inconsistent", "u = (2, 0), far from equilibrium (paper, ODE model)", 2.0, 0.0);
+    add("equilibrium", "u = (2, sin 2)", 2.0, std::sin(2.0));
+    add("given", "u = (u1, u2), the parameters of the model", u1, u2);
+  }
+
   int components() const override { return 2; }
   int space_dimensions() const override { return 0; }
   bool has_source() const override { return true; }
@@ -41,33 +54,27 @@ class ode_model final : public relaxation_model {
     values[1] = u[1];
   }
 
-  const std::vector<initial_data>& initial() const override {
-    static const std::vector<initial_data> data = {
-        {"inconsistent", "u = (2, 0), far from equilibrium (paper, ODE model)",
-         [](double, std::span<double> u) {
-           u[0] = 2.0;
-           u[1] = 0.0;
-         }},
-        {"equilibrium", "u = (2, sin 2)", [](double, std::span<double> u) {
-           u[0] = 2.0;
-           u[1] = std::sin(2.0);
-         }}};
-    return data;
-  }
+  const std::vector<initial_data>& initial() const override { return initial_; }
+
+ private:
+  std::vector<initial_data> initial_;
 };
 
 }  // namespace
 
 extern const model_entry model_ode;
-const model_entry model_ode = {
-    "ode",
-    "u1' = u2, u2' = (1 + u1^2)(sin u1 - u2)/epsilon",
-    "Gottlieb, Grant, Hu, Shu: SSP multi-derivative IMEX Runge-Kutta, ODE model",
-    false,
-    false,
-    true,
-    {},
-    {"inconsistent", "equilibrium"},
-    [](const model_config&) -> std::unique_ptr<model> { return std::make_unique<ode_model>(); }};
+const model_entry model_ode = {"ode",
+                               "u1' = u2, u2' = (1 + u1^2)(sin u1 - u2)/epsilon",
+                               "Gottlieb, Grant, Hu, Shu: SSP multi-derivative IMEX Runge-Kutta, ODE model",
+                               false,
+                               false,
+                               true,
+                               {{"u1", 2.0, -1e6, 1e6, "u1(0) of the data 'given' (dimensionless)"},
+                                {"u2", 0.0, -1e6, 1e6, "u2(0) of the data 'given' (dimensionless)"}},
+                               {"inconsistent", "equilibrium", "given"},
+                               [](const model_config& config) -> std::unique_ptr<model> {
+                                 return std::make_unique<ode_model>(config.parameters.at("u1"),
+                                                                    config.parameters.at("u2"));
+                               }};
 
 }  // namespace apsis

@@ -33,6 +33,10 @@ struct smooth_problem {
 std::vector<smooth_problem> smooth_problems() {
   return {{"paper/ode", "u1' = sin u1", {"time.end=1"}, {16, 32, 64, 128, 256}, false},
           {"paper/broadwell", "Broadwell limit system", {"space.reconstruction=weno5-z"}, {40, 80, 160, 320}},
+          {"paper/relaxation",
+           "Burgers' equation from the relaxation system",
+           {"space.reconstruction=weno5-z"},
+           {40, 80, 160, 320}},
           {"paper/bgk-accuracy",
            "Euler equations from BGK",
            {"space.reconstruction=weno5-z", "velocity.points=60", "velocity.max=12"},

@@ -42,12 +42,15 @@ TEST(limit_distance, falls_at_least_linearly_to_rounding_for_all_models_and_meth
         SCOPED_TRACE(model + " " + method + " " + formulation);
         const limit_table table = table_of(model, method, formulation);
         EXPECT_GT(table.off_equilibrium, 1e-2);  // otherwise the question is not asked
+        // Without GSA only the moments promise it.
+        const bool state = find_certificate(method).gsa;
         for (const auto column : columns) {
+          if (!state && (column == &limit_row::state_first || column == &limit_row::state_end)) continue;
           EXPECT_LE(table.floor(column), round_off);
+          EXPECT_GT(table.rows.front().*column, 1e3 * round_off);  // epsilon = 1e-4 is seen
           const auto slope = table.slope(column);
           ASSERT_TRUE(slope.has_value());
           EXPECT_GE(*slope, 0.9);
-          EXPECT_GT(table.rows.front().*column, 1e3 * round_off);  // epsilon = 1e-4 is seen
         }
       }
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -141,9 +142,6 @@ picture draw_distances(const std::vector<distance_job>& jobs) {
   return p;
 }
 
-// ---- what goes wrong: first stages that are not relaxed, last stages that are not
-// -----------------------------------
-
 /// Cases whose equilibrium is found point by point, so that consistent data are exactly consistent.
 case_config pointwise_case(const std::string& model, const std::string& method, double step) {
   std::vector<std::string> overrides = {"time.method=" + method};
@@ -152,6 +150,26 @@ case_config pointwise_case(const std::string& model, const std::string& method, 
   *config.time.dt *= step;
   return config;
 }
+
+// ---- how fast: at least linearly
+// ---------------------------------------------------------------------------------
+
+/// From data in equilibrium only stages without Q̇ keep an O(ε) distance from it. In md-imex-3-2 the one stage
+/// that feeds T after a transport has Q̇ alone, so its moments fall like ε²; in md-imex-6-3 two such stages
+/// have Q alone.
+void judge_rates(claim_result& result) {
+  constexpr std::pair<const char*, double> rates[] = {{"md-imex-3-2", 2.0}, {"md-imex-6-3", 1.0}};
+  for (const auto& [method, rate] : rates) {
+    const auto table = limit_distance(pointwise_case("broadwell", method, 1.0), geometric(1e-3, 1e-6, 7),
+                                      limit_start::equilibrium);
+    result.findings.push_back(
+        near(fmt::format("broadwell, {}, data in equilibrium: slope of the distance of ω", method),
+             table.slope(&limit_row::moments_end, round_off).value_or(NAN), rate, 0.1));
+  }
+}
+
+// ---- what goes wrong: first stages that are not relaxed, last stages that are not
+// -----------------------------------
 
 /// Methods whose first stage is u^n itself.
 void first_stage_failure(const std::string& model, const std::string& method, int colour, panel& into,
@@ -163,13 +181,13 @@ void first_stage_failure(const std::string& model, const std::string& method, in
     const auto table = limit_distance(pointwise_case(model, method, step), positive);
     plateau.push_back(table.floor(&limit_row::moments_first));
     if (step == 1.0)
-      into.curves.push_back(distance_curve(table, &limit_row::moments_end, method + ", data off equilibrium",
-                                           curve_style::line_and_markers, colour));
+      into.curves.push_back(
+          distance_curve(table, &limit_row::moments_end, method, curve_style::line_and_markers, colour));
   }
   const auto consistent =
       limit_distance(pointwise_case(model, method, 1.0), positive, limit_start::equilibrium);
-  into.curves.push_back(distance_curve(consistent, &limit_row::moments_end, method + ", data in equilibrium",
-                                       curve_style::dashed_and_markers, colour));
+  into.curves.push_back(
+      distance_curve(consistent, &limit_row::moments_end, "", curve_style::dashed_and_markers, colour));
   const std::string name = method + ", " + model;
   result.findings.push_back(
       at_least(name + ": distance of ω for ε → 0, data off equilibrium", plateau[0], 1e-4));
@@ -184,27 +202,28 @@ void last_stage_failure(const std::string& model, const std::string& method, int
                         claim_result& result) {
   const auto table = limit_distance(pointwise_case(model, method, 1.0), epsilons());
   into.curves.push_back(
-      distance_curve(table, &limit_row::moments_end, method + ": ω", curve_style::line_and_markers, colour));
-  into.curves.push_back(distance_curve(table, &limit_row::state_end, method + ": u from E(ω)",
-                                       curve_style::dashed_and_markers, colour));
+      distance_curve(table, &limit_row::moments_end, method, curve_style::line_and_markers, colour));
+  into.curves.push_back(
+      distance_curve(table, &limit_row::state_end, "", curve_style::dashed_and_markers, colour));
   const std::string name = method + ", " + model;
   result.findings.push_back(
       at_most(name + ": distance of ω at ε = 0", table.floor(&limit_row::moments_end), round_off));
   result.findings.push_back(
-      at_least(name + ": distance of u from E(ω) at ε = 0", table.floor(&limit_row::state_end), 1e-4));
+      at_least(name + ": distance of u from E(ω) at ε = 0", table.floor(&limit_row::state_end), 1e-6));
 }
 
 void show_failures(const study_control& control, claim_result& result) {
-  const auto first = imex_methods([](const certificate& c) { return c.ap_data == "consistent data"; });
+  const auto first = imex_methods([](const certificate& c) { return c.type == "ARS"; });
   const auto last = imex_methods([](const certificate& c) { return c.type == "A" && !c.gsa; });
   picture p{"C17-failures",
             "What type A and GSA are for",
-            "Methods whose first stage is u^n itself transport data that are off equilibrium: the moments "
-            "stay at a distance "
-            "proportional to Δt (solid), and reach the limit scheme only from data in equilibrium (dashed). "
-            "Methods whose last "
-            "stage is not relaxed reach the limit with their moments (solid), but leave the state off "
-            "equilibrium (dashed).",
+            "Left: methods whose first stage is u^n itself transport data that are off equilibrium. Their "
+            "moments stay at "
+            "a distance proportional to Δt (solid); only from data in equilibrium do they reach the limit "
+            "scheme (dashed). "
+            "Right: methods whose last stage is not relaxed reach the limit with their moments (solid), but "
+            "leave the state "
+            "off its equilibrium (dashed).",
             {}};
   for (const std::string model : {"ode", "broadwell"}) {
     panel starts = distance_panel(model + ": first stage not relaxed", "distance of ω");
@@ -227,14 +246,18 @@ claim_result check(const study_control& control) {
   claim_result result;
   const auto jobs = all_distances(control);
   judge_distances(jobs, result);
+  judge_rates(result);
   result.pictures.push_back(draw_distances(jobs));
   show_failures(control, result);
   add_limit_convergence("C17", control, result);
   add_riemann_problems("C17", control, result);
   result.remarks = {
-      "The distance falls at least linearly: where ḋ ≠ 0 in every stage that feeds T it falls like ε², as "
-      "the moments of "
-      "md-imex-3-2 do from consistent data.",
+      "The distance falls at least linearly, and no faster in general: the first stage of md-imex-3-2 has Q "
+      "alone, so "
+      "from inconsistent data it keeps O(ε) of them, and T carries it on.",
+      "Methods of type CK are left out: they evaluate Q(u^n)/ε explicitly, which leaves rounding divided by "
+      "ε in the "
+      "moments, from data in equilibrium as well.",
       "Stages with cell averages relax at the Gauss points of the quartics through their explicit part, so "
       "the limit of the "
       "finite-volume scheme is a state of projected averages; its moments follow the explicit method."};

@@ -4,16 +4,13 @@
     apsis_plot.py case DIR [--out DIR]                fields, f(x, v) and history of one run
     apsis_plot.py mixed --second DIR --third DIR --reference DIR [--out DIR]
                                                       the mixed-regime figure: both orders on the reference
-    apsis_plot.py decay [--apsis PROGRAM] [--out DIR] u' = -10 u^2 by SSP and by DIRK methods
 
 All quantities are dimensionless. Every picture is written as PNG and its axis ranges are printed.
 """
 import argparse
 import csv
 import json
-import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -181,44 +178,6 @@ def plot_history(result, path):
     return save(figure, path, [left, right])
 
 
-def run_decay(apsis, method, dt, folder):
-    """t, u of `apsis run paper/decay` and whether it reached the end: a DIRK stage may have no real root."""
-    command = [str(apsis), "run", "paper/decay", f"time.method={method}", f"time.dt={dt!r}", f"output.every={dt!r}",
-               "--out", str(folder)]
-    status = subprocess.run(command, capture_output=True, text=True, check=False)
-    if status.returncode not in (0, 3):
-        raise ResultError(f"{' '.join(command)} failed (exit {status.returncode}) {status.stderr.strip()}")
-    columns = read_table(Path(folder) / "fields.csv")
-    # A run that fails in its first step has one snapshot, and then no column t.
-    return columns.get("t", np.zeros(1)), columns["u"], status.returncode == 0
-
-
-def plot_decay(apsis, path):
-    """u' = −10u², u(0) = 10 to t = 2: DIRK dashed, SSP multi-derivative solid, exact 1/(10t + 0.1) dash-dotted.
-    A run that ends early (its stage equation has no real root) is marked where it ends."""
-    figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), sharey=True)
-    time = np.linspace(0, 2, 801)
-    rows = [("second order", "dirk-2-2", "imdrk-1-2"), ("third order", "dirk-4-3", "imdrk-2-3")]
-    for panel, (title, dirk, ssp) in zip(axes, rows):
-        for n, colour in zip((4, 8, 16, 32, 64), (BLUE, VERMILLION, GREEN, PURPLE, ORANGE)):
-            for method, style in ((dirk, "--"), (ssp, "-")):
-                with tempfile.TemporaryDirectory() as folder:
-                    t, u, complete = run_decay(apsis, method, 1 / n, folder)
-                panel.plot(t, u, style, color=colour, linewidth=1.2, label=f"Δt = 1/{n}" if style == "-" else None)
-                if not complete:
-                    panel.plot(t[-1], u[-1], "x", color=colour, markersize=8)
-                    print(f"{method}, Δt = 1/{n}: no real root of the stage equation after t = {t[-1]:g}")
-                elif (np.diff(u) > 0).any() or (u < 0).any():
-                    print(f"{method}, Δt = 1/{n}: not monotone or negative, smallest value {u.min():.3g}")
-        panel.plot(time, 1 / (10 * time + 0.1), "-.", color=BLACK, linewidth=1, label="exact")
-        panel.set_yscale("log" if all((line.get_ydata() > 0).all() for line in panel.lines) else "symlog")
-        panel.set_title(f"{title}: {ssp} solid, {dirk} dashed\n× stage equation without real root", fontsize=10)
-        panel.set_xlabel("t (dimensionless)")
-    axes[0].set_ylabel("u (dimensionless)")
-    axes[0].legend(fontsize=8)
-    return save(figure, path, axes[:1])
-
-
 def plot_case(result, out, name):
     """All pictures of one run as <out>/<name>-*.png."""
     style = {"color": BLUE, "marker": ".", "markersize": 4, "linewidth": 1}
@@ -236,9 +195,7 @@ def parse_arguments(arguments):
     mixed = commands.add_parser("mixed", help="both orders against the explicit reference")
     for name in ("second", "third", "reference"):
         mixed.add_argument(f"--{name}", type=Path, required=True)
-    decay = commands.add_parser("decay", help="u' = -10 u^2 by SSP and DIRK methods")
-    decay.add_argument("--apsis", type=Path, default=Path("build/release/app/apsis"))
-    for command in (case, mixed, decay):
+    for command in (case, mixed):
         command.add_argument("--out", type=Path, help="folder of the pictures (default: the result's own, or results)")
     return parser.parse_args(arguments)
 
@@ -248,12 +205,10 @@ def main(arguments=None):
     try:
         if options.command == "case":
             plot_case(read_result(options.folder), options.out or options.folder, options.folder.resolve().name)
-        elif options.command == "mixed":
+        else:
             out = options.out or Path("results")
             plot_mixed(options.second, options.third, options.reference, out / "bgk-mixed.png")
             plot_case(read_result(options.third), out, options.third.resolve().name)
-        else:
-            plot_decay(options.apsis, (options.out or Path("results")) / "decay.png")
     except ResultError as problem:
         print(f"apsis_plot: {problem}", file=sys.stderr)
         return 4

@@ -25,7 +25,7 @@ def write_result(folder, cells, shift=0.0):
         "step,t,dt,min_value,negative_values,conservation_mass,entropy,entropy_change\n"
         "0,0,0,0.5,0,0,,\n1,0.25,0.25,0.4,0,1e-16,,\n2,0.5,0.25,0.3,0,0,,\n", encoding="utf-8")
     (folder / "manifest.json").write_text(json.dumps({"title": "synthetic"}), encoding="utf-8")
-    v = np.linspace(-3, 3, 7)
+    v = np.linspace(-3, 3, 9)
     with h5py.File(folder / "solution.h5", "w") as file:
         file["x"], file["v"] = x, v
         file["fields/rho"] = np.zeros(cells)  # a group beside the arrays

@@ -23,7 +23,8 @@ mp_real dot(const mp_vector& a, const mp_vector& b) {
 /// The coefficients that may move, as pointers into a form, and the equations they must satisfy.
 class coefficient_system {
  public:
-  explicit coefficient_system(method& m) : source_(m), form_(m.coefficients<mp_real>()) {
+  coefficient_system(method& m, const polish_conditions& more)
+      : source_(m), more_(more), form_(m.coefficients<mp_real>()) {
     const auto free = [](const std::string& text) { return decimals(text) > 0; };
     for (std::size_t i = 0; i < m.stages(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
@@ -50,7 +51,7 @@ class coefficient_system {
   mp_real& value(std::size_t k) { return *values_[k]; }
   std::string& text(std::size_t k) { return *texts_[k]; }
 
-  /// Order conditions, full rows, and c = ĉ where T counts (order 3 and up).
+  /// Order conditions, full rows, c = ĉ where T counts (order 3 and up), and what was asked for besides.
   mp_vector residuals() const {
     const auto b = to_butcher(form_);
     auto equations = elementary_weights(b, trees_);
@@ -63,6 +64,8 @@ class coefficient_system {
       for (std::size_t j = 0; j <= i; ++j) difference += b.A(i, j) - b.A_hat(i, j);
       equations.push_back(difference);
     }
+    if (more_)
+      for (const auto& missing : more_(form_)) equations.push_back(missing);
     return equations;
   }
 
@@ -89,6 +92,7 @@ class coefficient_system {
   }
 
   method& source_;
+  const polish_conditions& more_;
   shu_osher_form<mp_real> form_;
   std::vector<mp_real*> values_;
   std::vector<std::string*> texts_;
@@ -198,9 +202,9 @@ mp_vector even_scales(const std::vector<mp_vector>& J, const mp_vector& right, m
 
 }  // namespace
 
-polish_result polish(const method& m, int digits) {
+polish_result polish(const method& m, int digits, const polish_conditions& conditions) {
   polish_result result{m, 0, 0, 0};
-  coefficient_system equations(result.polished);
+  coefficient_system equations(result.polished, conditions);
   const std::size_t n = equations.unknowns();
   mp_vector start;
   for (std::size_t k = 0; k < n; ++k) start.push_back(equations.value(k));

@@ -3,6 +3,9 @@
 #include <apsis/method/method.hpp>
 #include <apsis/method/precision.hpp>
 
+#include <functional>
+#include <vector>
+
 namespace apsis {
 
 /// What polishing did.
@@ -19,6 +22,10 @@ struct polish_result {
 /// for u^n. Third-order IMEX conditions are singular at a solution, because together they say Σ b̂_i (c_i −
 /// ĉ_i)² = 0 with b̂ ≥ 0; so c = ĉ at every stage whose T counts is imposed instead, and equations that depend
 /// on others are left out. Throws numerical_error if it does not converge.
-polish_result polish(const method& m, int digits = 45);
+///
+/// `conditions` are further equations, by what is missing to zero, for example those of the intermediate
+/// regime.
+using polish_conditions = std::function<std::vector<mp_real>(const shu_osher_form<mp_real>&)>;
+polish_result polish(const method& m, int digits = 45, const polish_conditions& conditions = {});
 
 }  // namespace apsis

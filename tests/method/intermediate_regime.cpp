@@ -1,0 +1,155 @@
+// Terms of size ε, from coefficients alone. What they mean is tested with the stepper (tests/integrate).
+#include <apsis/method/certificate.hpp>
+#include <apsis/method/intermediate_regime.hpp>
+#include <apsis/method/monotonicity.hpp>
+#include <apsis/method/order_conditions.hpp>
+#include <apsis/method/polish.hpp>
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace apsis {
+namespace {
+
+intermediate_regime<mp_real> of(const std::string& name) {
+  return analyse_intermediate_regime(find_method(name).coefficients<mp_real>());
+}
+
+TEST(intermediate_regime, of_the_papers_second_order_method_has_no_flux) {
+  const auto terms = of("md-imex-3-2");  // by hand: χ = (0, 0, ½/½), b̂ = (½, ½, 0), λ = (1/½, 0, 0)
+  ASSERT_TRUE(terms.applies);
+  EXPECT_EQ(terms.flux, 0);
+  EXPECT_EQ(terms.last, 1);
+  EXPECT_EQ(terms.layer, 1);
+}
+
+TEST(intermediate_regime, of_the_papers_third_order_method_has_too_much) {
+  const auto terms = of("md-imex-6-3");
+  ASSERT_TRUE(terms.applies);
+  // By hand from the printed coefficients: χ₃ = w₃₁/(r d₃), χ₄ = w₄₃/(r d₄), b̂ = last row of R⁻¹W/r.
+  const double r = 0.904402174130635;
+  EXPECT_NEAR(terms.kept[2].convert_to<double>(), 0.764266518291495 / (r * 0.388820513661584), 1e-12);
+  EXPECT_NEAR(terms.kept[3].convert_to<double>(), 0.292520982667463 / (r * 0.083529464436389), 1e-12);
+  const double b4 = 0.448630511341543 / r + 0.331204417210324 * 0.281050180194829 / r;
+  const double b3 = (0.448630511341543 + 0.331204417210324 * 0.281050180194829) * 0.292520982667463 / r;
+  EXPECT_NEAR(terms.flux.convert_to<double>(),
+              b3 * terms.kept[2].convert_to<double>() + b4 * terms.kept[3].convert_to<double>(), 1e-12);
+  EXPECT_EQ(terms.last, 0);
+  EXPECT_NEAR(terms.layer.convert_to<double>(), b4 * 0.583517183806433 / 0.083529464436389, 1e-12);
+}
+
+TEST(intermediate_regime, of_methods_made_for_it_is_exact) {
+  for (const std::string name : {"md-imex-4-2", "md-imex-5-2"}) {
+    const auto terms = of(name);
+    ASSERT_TRUE(terms.applies) << name;
+    EXPECT_LT(abs(terms.flux - 1), mp_real(1e-42)) << name;
+    EXPECT_LT(abs(terms.last - 1), mp_real(1e-42)) << name;
+  }
+  EXPECT_LT(abs(of("md-imex-5-2").layer - 1), mp_real(1e-55));
+  EXPECT_GT(abs(of("md-imex-4-2").layer - 1), mp_real(1));
+}
+
+TEST(intermediate_regime, where_the_start_is_a_stage_only_consistent_data_are_right) {
+  const auto terms = of("forward-backward-euler");
+  ASSERT_TRUE(terms.applies);
+  EXPECT_EQ(terms.flux, 1);
+  EXPECT_EQ(terms.last, 1);
+  EXPECT_TRUE(isinf(terms.layer));
+}
+
+TEST(intermediate_regime, does_not_apply_where_a_stage_is_explicit) {
+  for (const std::string name : {"ssprk-3-3", "ssp2-222"}) EXPECT_FALSE(of(name).applies) << name;
+}
+
+/// The closed form of docs/plateaus.md: n transport evaluations, n + 2 stages, r = n − 1.
+shu_osher_form<mp_real> closed_form(std::size_t n) {
+  const std::size_t s = n + 2, last = s - 1;
+  const mp_real N(n);
+  shu_osher_form<mp_real> m{matrix<mp_real>(s, s), matrix<mp_real>(s, s), matrix<mp_real>(s, s),
+                            std::vector<mp_real>(s), N - 1};
+  m.P(1, 0) = 1;
+  m.P(last, 1) = 1 / N;
+  for (std::size_t i = 2; i < last; ++i) m.W(i, i == 2 ? 0 : i - 1) = 1;
+  m.W(last, last - 1) = (N - 1) / N;
+  m.D(0, 0) = m.D(last, last) = 1 / N;
+  m.D(1, 1) = (N - 2) / N;
+  for (std::size_t i = 2; i < last; ++i) m.D(i, i) = (N - 2) / (N * (N - 1));
+  const auto A = to_butcher(m).A;
+  mp_real bc(0);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j <= i; ++j) bc += A(last, i) * A(i, j);
+  m.ddot[last - 1] = -N * (bc - mp_real(1) / 2) / (N + 1);
+  m.ddot[1] = 2 * m.ddot[last - 1];
+  return m;
+}
+
+TEST(closed_form, has_order_2_the_largest_r_and_no_plateau_for_any_number_of_evaluations) {
+  for (std::size_t n = 3; n <= 8; ++n) {
+    const auto m = closed_form(n);
+    const auto b = to_butcher(m);
+    const auto trees = rooted_trees(2, tree_colours::both);
+    const auto weights = elementary_weights(b, trees);
+    for (std::size_t k = 0; k < trees.size(); ++k)
+      EXPECT_LT(abs(weights[k] - 1 / mp_real(trees[k].density)), mp_real(1e-50)) << n << " " << trees[k].name;
+    const auto ssp = analyse_imex(b, mp_real(1e-40));
+    ASSERT_TRUE(ssp.exists) << n << " " << ssp.forbids;
+    // n − 1 is the largest r that n evaluations can have at order 2 (Gottlieb, Ketcheson, Shu 2011).
+    EXPECT_LT(abs(ssp.coefficient - mp_real(n - 1)), mp_real(1e-35)) << n;
+    const auto terms = analyse_intermediate_regime(m);
+    EXPECT_LT(abs(terms.flux - 1), mp_real(1e-50)) << n;
+    EXPECT_LT(abs(terms.last - 1), mp_real(1e-50)) << n;
+    EXPECT_LT(abs(terms.layer - 1), mp_real(1e-50)) << n;
+  }
+}
+
+TEST(closed_form, is_the_method_of_the_catalogue_for_three_evaluations) {
+  const auto made = closed_form(3), file = find_method("md-imex-5-2").coefficients<mp_real>();
+  EXPECT_LT(abs(made.r - file.r), mp_real(1e-55));
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_LT(abs(made.ddot[i] - file.ddot[i]), mp_real(1e-55)) << i;
+    for (std::size_t j = 0; j <= i; ++j) {
+      EXPECT_LT(abs(made.P(i, j) - file.P(i, j)), mp_real(1e-55)) << i << j;
+      EXPECT_LT(abs(made.W(i, j) - file.W(i, j)), mp_real(1e-55)) << i << j;
+      EXPECT_LT(abs(made.D(i, j) - file.D(i, j)), mp_real(1e-55)) << i << j;
+    }
+  }
+}
+
+// Four digits, found by a search, are enough for Newton's method to find the other forty; zeros make sure
+// that no number is taken for an exact one.
+const char* const four_digits = R"(name = "md-imex-4-2"
+title = ""
+citation = ""
+kind = "imex"
+[claims]
+order = 2
+[shu_osher]
+r = "1.511000000000"
+P = [[], ["0"], ["0", "0"], ["0.373200000000", "0", "0"]]
+W = [[], ["0.410600000000"], ["0", "1"], ["0", "0", "0.626800000000"]]
+d = ["0.703900000000", "0.112700000000", "0.112700000000", "0.414800000000"]
+ddot = ["-0.078300000000", "0", "-0.387100000000", "0"]
+)";
+
+TEST(polishing, with_conditions_of_the_intermediate_regime_finds_the_method_of_the_catalogue) {
+  const auto keeps_flux = [](const shu_osher_form<mp_real>& m) {
+    const auto terms = analyse_intermediate_regime(m);
+    return std::vector<mp_real>{terms.flux - 1, terms.last - 1};
+  };
+  const auto polished = polish(parse_method(four_digits, "four digits"), 45, keeps_flux).polished;
+  // Eight conditions leave one of nine coefficients free, so the four digits lead to a neighbour of the
+  // file's method, no nearer than the four digits are.
+  const auto m = polished.coefficients<mp_real>(), file = find_method("md-imex-4-2").coefficients<mp_real>();
+  EXPECT_LT(abs(m.r - file.r), mp_real(1e-3));
+  EXPECT_LT(abs(analyse_intermediate_regime(m).flux - 1), mp_real(1e-42));
+  EXPECT_EQ(certify(polished).order, 2);
+  // The digits of the file itself do not move.
+  const auto again = polish(find_method("md-imex-4-2"), 45, keeps_flux);
+  EXPECT_LT(again.largest_move, mp_real(1e-42));
+  EXPECT_LT(again.residual, mp_real(1e-50));
+}
+
+}  // namespace
+}  // namespace apsis

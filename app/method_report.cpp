@@ -88,7 +88,7 @@ json document_json(const method& m) {
 std::string ssp_text(const certificate& c) {
   if (!c.bounded) return "no bound";
   return fmt::format("{:.15g}{}", c.ssp_coefficient.convert_to<double>(),
-                     c.unconditional ? "" : " (bounded by Q too)");
+                     c.unconditional || c.ssp_coefficient == 0 ? "" : " (bounded by Q too)");
 }
 
 std::string matrix_text(const std::string& name, const matrix<double>& a) {

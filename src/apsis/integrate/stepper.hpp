@@ -53,7 +53,8 @@ class stepper {
     }
   }
 
-  /// SSP coefficient of the explicit part: Δt ≤ r Δt_FE keeps what forward Euler steps of T keep.
+  /// r of the Shu–Osher form: Δt ≤ r Δt_FE keeps what forward Euler steps of T keep. Where no form is convex
+  /// (the certificate says SSP coefficient 0) it is 1 and promises nothing.
   real r() const { return m_.r; }
   const schedule& plan() const { return plan_; }
   P& target_problem() { return problem_; }

@@ -127,6 +127,7 @@ const std::vector<bad_study> all = {
     {"value_twice", ode, {}, {"time.dt=1/4,1/8,1/4"}, "", "", "twice"},
     {"value_twice_in_a_range", ode, {}, {"time.dt=1/4..1/16,1/8"}, "", "", "twice"},
     {"value_twice_written_differently", ode, {}, {"time.dt=1/4,0.25"}, "", "", "make the same run"},
+    {"formula_twice", ode, {}, {"model.epsilon=1/4,0.25"}, "time", "", "make the same run"},
     {"open_range", ode, {}, {"time.dt=1/4..1/5"}, "", "", "does not end"},
     {"endless_range", ode, {}, {"time.dt=1e300..1e-300"}, "", "", "does not end"},
     {"key_twice", ode, {}, {"time.dt=1/4", "time.dt=1/8"}, "", "", "varied twice"},

@@ -96,7 +96,8 @@ void convergence::run(const study_control& control) {
   for (std::size_t k = 0; k < all.plan.runs.size(); ++k)
     if (!all.results[k] && all.failures[k].empty()) order.push_back(k);
   const auto& work = all.plan.work;
-  std::stable_sort(order.begin(), order.end(), [&work](auto a, auto b) { return work[a] > work[b]; });
+  std::sort(order.begin(), order.end(),
+            [&work](auto a, auto b) { return std::pair(-work[a], a) < std::pair(-work[b], b); });
   const double total = std::accumulate(order.begin(), order.end(), 0.0,
                                        [&work](double sum, std::size_t k) { return sum + work[k]; });
   std::atomic<double> done = 0.0;

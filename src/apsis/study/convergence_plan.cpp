@@ -166,8 +166,8 @@ class planner {
     }
     if (plan_.refined < 0) return;
     for (auto& block : plan_.blocks)
-      std::stable_sort(block.rows.begin(), block.rows.end(),
-                       [](const auto& a, const auto& b) { return a.h > b.h; });
+      std::sort(block.rows.begin(), block.rows.end(),
+                [](const auto& a, const auto& b) { return std::pair(-a.h, a.run) < std::pair(-b.h, b.run); });
   }
 
   bool all_exact() const {

@@ -1,8 +1,10 @@
 #include <apsis/study/settings.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/expression.hpp>
 
@@ -53,6 +55,9 @@ texts layered(const texts& lower, const texts& upper) {
 std::string essence(case_config config) {
   config.title.clear();
   config.output = {};
+  // 1/4 and 0.25 are the same.
+  if (const double x = number_of(config, "model.epsilon"); !std::isnan(x))
+    config.model.epsilon = fmt::format("{}", x);
   return to_toml(config);
 }
 

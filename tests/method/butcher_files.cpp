@@ -3,6 +3,8 @@
 
 #include <apsis/core/errors.hpp>
 
+#include <random>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -164,6 +166,26 @@ TEST(butcher_files, with_a_bad_update_are_refused_where_it_stands) {
   std::string many = "A_hat = [";
   for (int i = 0; i < 64; ++i) many += "[], ";
   EXPECT_THAT(refusal(head("explicit", 2, "1") + many + "]\nb_hat = []\n"), HasSubstr("too many"));
+}
+
+TEST(butcher_files, do_not_crash_whatever_byte_is_changed) {
+  const std::string good = head("imex", 2, "0") + midpoint_rows + "A_dot = [[\"0\"], [\"0\", \"0\"]]\n" +
+                           midpoint_update + "b_dot = [\"0\", \"0\"]\n";
+  std::mt19937 draw(3);
+  int read = 0;
+  for (int k = 0; k < 2000; ++k) {
+    std::string text = good;
+    // Among the coefficients, where most changes are still a file.
+    const std::size_t start = good.find("A_hat");
+    text[start + draw() % (text.size() - start)] = "0123456789/-.e\", ]"[draw() % 19];
+    try {
+      certify(parse_method(text, "x"));
+      ++read;
+    } catch (const input_error&) {
+      // Whatever else is thrown fails the test.
+    }
+  }
+  EXPECT_GT(read, 100);  // and some of them are methods
 }
 
 }  // namespace

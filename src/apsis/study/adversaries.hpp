@@ -1,0 +1,108 @@
+#pragma once
+
+#include <apsis/integrate/relaxation_problem.hpp>
+#include <apsis/study/random_source.hpp>
+
+#include <functional>
+#include <map>
+#include <vector>
+
+namespace apsis {
+
+/// Problems on which methods lose a property soon after they must, for largest_step. Dimensionless, Δt_FE
+/// = 1.
+
+/// u_i' = u_{i−1} − u_i on a ring: advection by first-order upwind. A forward Euler step u + τT(u) is the
+/// mean of u and u moved by one cell, and keeps every convex functional that the motion keeps, for τ ≤ 1. Q =
+/// 0.
+class ring_advection {
+ public:
+  using state = std::vector<double>;
+  using real = double;
+
+  void scatter(double, const state& u, std::span<const target<state, double>> targets) {
+    accumulate<state>(targets, u, [&]() -> const state& {
+      work_.resize(u.size());
+      for (std::size_t i = 0; i < u.size(); ++i) work_[i] = u[(i + u.size() - 1) % u.size()] - u[i];
+      return work_;
+    });
+  }
+  void collide(double, double, double, state&) {}
+  void scatter_collision(double, const state& u, std::span<const target<state, double>> targets) {
+    accumulate<state>(targets, u, [&]() -> const state& {
+      work_.assign(u.size(), 0.0);
+      return work_;
+    });
+  }
+  double forward_euler_step(double, const state&) const { return 1.0; }
+
+ private:
+  state work_;
+};
+
+/// A step, a spike, a comb and `random` random rows in [0, 1], each of `cells` numbers.
+std::vector<std::vector<double>> adversarial_rows(std::size_t cells, int random);
+
+/// T and Q that are different operators at every stage, which is what the theory allows and what makes its
+/// bounds sharp. The last number of the state is a clock, θ' = θ, whose value tells the stages apart; for the
+/// others, z = all but the clock,
+///   T(u) = S_θ z − z,   Q(u) = (E_θ(mass z) − z)/ε,   S_θ a linear map and E_θ an equilibrium that keep what
+///   is
+/// kept; both may depend on θ as they like, and θ is conserved by Q. So Properties 1–5 of the paper hold,
+/// with Δt_FE = 1. The first clock value that is seen gets number 0, the next one 1, …
+class staged_problem {
+ public:
+  using state = std::vector<double>;
+  using real = double;
+  /// out ← S_k z, and out ← E_k(mass), for the k-th value of the clock; both come with room.
+  using motion = std::function<void(int k, std::span<const double> z, std::span<double> out)>;
+  using equilibrium = std::function<void(int k, double mass, std::span<double> out)>;
+
+  /// ε = infinity: no collisions, E is not used.
+  staged_problem(motion move, equilibrium relax, double epsilon);
+
+  void scatter(double t, const state& u, std::span<const target<state, double>> targets);
+  void collide(double t, double a, double b, state& u);
+  void scatter_collision(double t, const state& u, std::span<const target<state, double>> targets);
+  double forward_euler_step(double, const state&) const { return 1.0; }
+
+ private:
+  int number_of(double clock);
+
+  motion move_;
+  equilibrium relax_;
+  double epsilon_;
+  std::map<double, int> seen_;
+  state work_;
+};
+
+/// The worst such problem for positivity. Cells are words: the last `memory` operators that acted, in
+/// the alphabet of `letters` motions, on one of `letters` equilibria or on the initial data. S_k puts the
+/// letter k in front of every word and E_k puts all mass into the word that is this equilibrium alone, so
+/// contributions that came different ways do not mix, and a negative coefficient of the method is a negative
+/// number in a cell. Methods with more stages than letters use letters again.
+staged_problem word_problem(int letters, int memory, double epsilon);
+
+/// All mass on the word that is the initial data; the clock is 1.
+std::vector<double> word_data(int letters, int memory);
+
+/// The same with random permutations of `cells` cells and the mean as equilibrium: a symmetric convex
+/// functional of the cells cannot grow.
+staged_problem permutation_problem(int cells, double epsilon, std::uint64_t seed);
+
+/// Spikes and random rows of `cells` numbers, the clock behind.
+std::vector<std::vector<double>> permutation_data(int cells, int random);
+
+/// Σ_i h(u_i) over all but the last `ignored` numbers, h the maximum of a few random affine functions.
+std::function<double(const std::vector<double>&)> random_symmetric_functional(random_source& random,
+                                                                              std::size_t ignored = 0);
+
+/// How far the smallest number but the last `ignored` ones is below 0, for stays_inside.
+std::function<double(const std::vector<double>&)> negative_part(std::size_t ignored = 0);
+
+/// Σ_i |u_i − u_{i−1}| on a ring.
+double total_variation(const std::vector<double>& u);
+/// max |u_i|.
+double maximum_norm(const std::vector<double>& u);
+
+}  // namespace apsis

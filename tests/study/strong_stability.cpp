@@ -1,0 +1,184 @@
+// The largest step that keeps a property: the promise Δt ≤ r Δt_FE of every method of the catalogue, and
+// where it is sharp.
+#include <apsis/integrate/newton_problem.hpp>
+#include <apsis/study/adversaries.hpp>
+#include <apsis/study/case_problem.hpp>
+#include <apsis/study/strong_stability.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace apsis {
+namespace {
+
+using row = std::vector<double>;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Methods for T, and the r they promise.
+std::vector<std::pair<std::string, double>> promising_methods() {
+  std::vector<std::pair<std::string, double>> all;
+  for (const auto& name : method_names()) {
+    const certificate& c = find_certificate(name);
+    if (c.kind != method_kind::implicit_only && promised_coefficient(c) > 0.0)
+      all.emplace_back(name, promised_coefficient(c));
+  }
+  return all;
+}
+
+/// The bisection is good to 1e-4 of the step; the promise must hold to that.
+constexpr double bisection = 2e-4;
+
+step_limit words(const std::string& name, double epsilon, double lowest = 0.0625) {
+  constexpr int memory = 2;
+  const int letters = static_cast<int>(find_method(name).stages());
+  auto problem = word_problem(letters, memory, epsilon);
+  const std::vector<row> data{word_data(letters, memory)};
+  return largest_step(find_method(name), problem, std::span<const row>(data),
+                      stays_inside<row>("positivity", negative_part(1), 1e-13),
+                      {.stages = true, .lowest = lowest});
+}
+
+TEST(strong_stability, every_method_keeps_total_variation_positivity_and_maximum_of_advection) {
+  ring_advection problem;
+  const auto rows = adversarial_rows(24, 20);
+  const std::span<const row> data(rows);
+  for (const auto& [name, r] : promising_methods()) {
+    const method& m = find_method(name);
+    for (const auto& property : {does_not_grow<row>("total variation", total_variation),
+                                 does_not_grow<row>("maximum norm", maximum_norm),
+                                 stays_inside<row>("positivity", negative_part(), 1e-13)})
+      EXPECT_GE(largest_step(m, problem, data, property, {.steps = 3}).kept, r * (1 - bisection))
+          << name << " " << property.name;
+  }
+}
+
+TEST(strong_stability,
+     every_method_keeps_random_convex_functionals_of_operators_that_change_from_stage_to_stage) {
+  random_source random(5);
+  const auto rows = permutation_data(40, 10);
+  for (const auto& [name, r] : promising_methods())
+    for (const double epsilon : {infinity, 1.0, 1e-2, 1e-6}) {
+      if (find_method(name).kind == method_kind::explicit_only && epsilon < infinity) continue;  // Δt_FE of Q
+      auto problem = permutation_problem(40, epsilon, 11);
+      const auto property = does_not_grow<row>("convex", random_symmetric_functional(random, 1));
+      EXPECT_GE(
+          largest_step(find_method(name), problem, std::span<const row>(rows), property, {.stages = true})
+              .kept,
+          r * (1 - bisection))
+          << name << " " << epsilon;
+    }
+}
+
+TEST(strong_stability, the_promise_is_sharp_for_operators_that_change_from_stage_to_stage) {
+  // With collisions of moderate strength contributions of different stages still mix; as ε → 0 they come
+  // apart.
+  for (const auto& [name, r] : promising_methods()) {
+    const bool is_explicit = find_method(name).kind == method_kind::explicit_only;
+    double sharpest = infinity;
+    for (const double epsilon : {infinity, 1.0, 1e-2, 1e-4}) {
+      if (is_explicit && epsilon < infinity) continue;
+      const auto limit = words(name, epsilon);
+      EXPECT_GE(limit.kept, r * (1 - bisection)) << name << " " << epsilon;
+      EXPECT_GT(limit.excess, 0.0) << name << " " << epsilon;
+      sharpest = std::min(sharpest, limit.lost);
+    }
+    EXPECT_NEAR(sharpest, r, 1e-3 * r) << name;
+  }
+}
+
+TEST(strong_stability,
+     imex_methods_without_a_coefficient_lose_positivity_at_a_thousandth_of_the_step_for_some_epsilon) {
+  for (const auto& name : method_names()) {
+    const certificate& c = find_certificate(name);
+    if (c.kind != method_kind::imex || promised_coefficient(c) > 0.0) continue;
+    double least = infinity;
+    for (const double epsilon : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6})
+      least = std::min(least, words(name, epsilon, 1e-3).kept);
+    EXPECT_EQ(least, 0.0) << name;  // lost on the first rung, Δt_FE/1000
+  }
+}
+
+TEST(strong_stability, implicit_methods_on_square_decay_keep_what_their_certificate_says) {
+  // G = −10 u², u ≤ 10: u + τG ≥ 0 for τ ≤ 1/100.
+  newton_problem problem(no_transport{}, [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; });
+  const std::vector<row> data{{10.0}, {1.0}, {1e-3}};
+  const auto positive = stays_inside<row>("positivity", negative_part());
+  for (const auto& name : method_names()) {
+    const certificate& c = find_certificate(name);
+    if (c.kind != method_kind::implicit_only) continue;
+    const step_search how{.steps = 5, .stages = true, .highest = 1e10, .rung = 2.0, .unit = 0.01};
+    const auto limit = largest_step(find_method(name), problem, std::span<const row>(data), positive, how);
+    EXPECT_GE(limit.kept, std::min(promised_coefficient(c), 0.5e10) * (1 - bisection)) << name;
+    EXPECT_EQ(std::isinf(limit.lost), c.unconditional) << name;
+    if (name == "dirk-2-2") {
+      EXPECT_NEAR(limit.kept, 2.0, 1e-3);
+    }
+  }
+  // The classical radius of dirk-2-2 is 2 and sharp here: C11. That of dirk-4-3 is 0, but this problem is not
+  // its worst.
+  EXPECT_EQ(promised_coefficient(find_certificate("dirk-2-2")), 2.0);
+  EXPECT_EQ(promised_coefficient(find_certificate("dirk-4-3")), 0.0);
+}
+
+TEST(strong_stability, forward_euler_steps_of_the_problems_are_sharp) {
+  ring_advection ring;
+  const auto rows = adversarial_rows(24, 5);
+  const auto tv = does_not_grow<row>("total variation", total_variation);
+  EXPECT_NEAR(largest_forward_euler_step(ring, std::span<const row>(rows), tv).kept, 1.0, bisection);
+  case_problem weno(small_case("broadwell", "md-imex-3-2", 1.0, 12,
+                               {"space.limiter=positivity", "space.formulation=finite-difference"}));
+  const auto data = hostile_data(weno, 10, 1e-8, true);
+  EXPECT_NEAR(largest_forward_euler_step(*weno.equations, std::span<const field>(data), positivity()).kept,
+              1.0, bisection);
+}
+
+TEST(strong_stability, positivity_with_limited_weno_is_kept_by_every_method_for_every_epsilon) {
+  for (const auto& [name, r] : promising_methods())
+    for (const std::string form : {"finite-volume", "finite-difference"})
+      for (const std::string model : {"broadwell", "bgk"})
+        for (const double epsilon : {0.0, 1e-12, 1e-3, 1.0, 1e12}) {
+          if (find_method(name).kind == method_kind::explicit_only && epsilon == 0.0) continue;
+          case_problem problem(small_case(model, name, epsilon, 10,
+                                          {"space.limiter=positivity", "space.formulation=" + form}));
+          // Limited point values of nearly empty cells may have no Maxwellian on a coarse velocity grid.
+          const bool gauss_points = model == "bgk" && form == "finite-volume";
+          const auto data = hostile_data(problem, 3, gauss_points ? 0.3 : 1e-8, !gauss_points);
+          const auto limit = largest_step(
+              find_method(name), *problem.equations, std::span<const field>(data), positivity(),
+              {.steps = 2, .lowest = 0.25 * r, .highest = 1.01 * r, .rung = 1.4142, .accuracy = 1e-3});
+          EXPECT_GE(limit.kept, 0.99 * r) << name << " " << form << " " << model << " " << epsilon;
+        }
+}
+
+TEST(strong_stability, a_wrong_promise_is_found_out) {
+  // Δt_FE too large by 1 %.
+  struct boastful : ring_advection {
+    double forward_euler_step(double, const state&) const { return 1.01; }
+  } problem;
+  const auto rows = adversarial_rows(24, 0);
+  const auto tv = does_not_grow<row>("total variation", total_variation);
+  EXPECT_LT(largest_step(find_method("ssprk-3-3"), problem, std::span<const row>(rows), tv).kept, 0.995);
+  EXPECT_LT(largest_forward_euler_step(problem, std::span<const row>(rows), tv).kept, 0.995);
+  // A functional that forward Euler does not keep is lost at once: the sum of squares of differences of
+  // second order.
+  const auto curvature = does_not_grow<row>("not convex", [](const row& u) { return -total_variation(u); });
+  EXPECT_EQ(largest_step(find_method("ssprk-3-3"), problem, std::span<const row>(rows), curvature).kept, 0.0);
+}
+
+TEST(strong_stability, searches_climb_before_they_bisect) {
+  // Kept up to 0.3 and again from 0.5 on: the first loss counts.
+  const auto limit = search_step(
+      3, 2.0, {}, [](std::size_t k, double dt) { return k == 1 && dt > 0.6 && dt < 1.0 ? 7.0 : -1.0; });
+  EXPECT_NEAR(limit.kept, 0.3, 1e-4);
+  EXPECT_NEAR(limit.lost, 0.3, 1e-4);
+  EXPECT_EQ(limit.data, 1U);
+  EXPECT_EQ(limit.excess, 7.0);
+  EXPECT_THROW(search_step(0, 1.0, {}, [](std::size_t, double) { return 0.0; }), input_error);
+  EXPECT_THROW(search_step(1, infinity, {}, [](std::size_t, double) { return 0.0; }), input_error);
+  EXPECT_EQ(search_step(1, 1.0, {}, [](std::size_t, double) { return std::nan(""); }).kept, 0.0);
+}
+
+}  // namespace
+}  // namespace apsis

@@ -115,3 +115,15 @@ TEST(reproduce, an_interrupt_keeps_the_claims_so_far) {
   EXPECT_THAT(result.err, HasSubstr("--resume"));
   EXPECT_EQ(json::parse(app_test::read(file))["claims"].size(), 1U);
 }
+
+TEST(reproduce, the_documentation_has_every_claim_and_no_other) {
+  const work_folder folder;
+  const json claims = json::parse(run_apsis(folder, {"list", "claims", "--json"}).out);
+  const std::string page = app_test::read(std::filesystem::path(APSIS_SOURCE) / "docs" / "claims.md");
+  std::size_t rows = 0;
+  for (std::size_t at = page.find("\n| C"); at != std::string::npos; at = page.find("\n| C", at + 1)) ++rows;
+  EXPECT_EQ(rows, claims.size()) << "write it again: make reproduce, then copy results/reproduce/claims.md";
+  for (const auto& claim : claims)
+    EXPECT_THAT(page, HasSubstr("| " + claim["name"].get<std::string>() + " | " +
+                                claim["description"].get<std::string>() + " |"));
+}

@@ -16,6 +16,7 @@ using kind = convergence_reference::kind;
 
 TEST(vary, separates_values_but_not_inside_brackets_and_quotes) {
   EXPECT_EQ(parse_vary("a.b=1").key, "a.b");
+  EXPECT_THAT(parse_vary("a= 1 ,2, 4..8 ").values, ElementsAre("1", "2", "4", "8"));
   EXPECT_THAT(parse_vary("a=1,2e-3,1/4").values, ElementsAre("1", "2e-3", "1/4"));
   EXPECT_THAT(parse_vary("d=[0, 1],[0,[2,3]]").values, ElementsAre("[0, 1]", "[0,[2,3]]"));
   EXPECT_THAT(parse_vary("t=\"a,b\",'c,\"d'").values, ElementsAre("\"a,b\"", "'c,\"d'"));
@@ -45,6 +46,24 @@ TEST(vary, ranges_keep_their_ratio) {
       const auto config = load_case("paper/ode", {"time.end=2e6", "time.dt=" + values[m]});
       const double wanted = std::ldexp(static_cast<double>(p) / q, (k < 0 ? -1 : 1) * static_cast<int>(m));
       RC_ASSERT(std::abs(*config.time.dt / wanted - 1.0) <= 1e-15);
+    }
+  });
+}
+
+TEST(vary, any_text_is_read_or_refused) {
+  check_property("text", [] {
+    const auto letter = rc::gen::elementOf(std::string("=,.@[]{}()\"'/-+e0123456789ax\n\x01\xff"));
+    const auto text = *rc::gen::container<std::string>(letter);
+    try {
+      const auto varied = parse_vary(text);
+      RC_ASSERT(!varied.key.empty());
+      RC_ASSERT(!varied.values.empty());
+    } catch (const input_error& refused) {
+      RC_ASSERT(std::string(refused.what()).find('\n') == std::string::npos);
+    }
+    try {
+      parse_reference(text);
+    } catch (const input_error&) {
     }
   });
 }
@@ -159,6 +178,7 @@ const std::vector<bad_study> all = {
     {"reference_method", ode, {}, {"time.dt=1/4"}, "md-imex-6-4@1/8", "", "did you mean 'md-imex-6-3'?"},
     {"reference_step", ode, {}, {"time.dt=1/4"}, "md-imex-6-3@", "", "override 'time.dt='"},
     {"reference_key", ode, {}, {"time.dt=1/4"}, "time.tend=3", "", "did you mean 'time.end'?"},
+    {"step_too_short", ode, {}, {"time.dt=1/4,1e-17"}, "", "", "dt is too small"},
     {"reference_end", ode, {}, {"time.dt=1/4"}, "time.end=3", "", "'time.end'"},
     {"reference_without_space", ode, {}, {"time.dt=1/4,1/8"}, "space+time", "", "has no space"},
     {"reference_coarser", bgk, {}, {"space.cells=20,40"}, "space.cells=20", "", "coarser"},

@@ -104,7 +104,7 @@ void convergence::run(const study_control& control) {
   study_control by_work = control;
   if (control.progress)
     by_work.progress = [&](double part, const std::string& what) {
-      control.progress(total > 0.0 ? done.load() / total : part, what);
+      control.progress(total > 0.0 && std::isfinite(total) ? done.load() / total : part, what);
     };
   run_all(by_work, fmt::format("{} runs", order.size()), static_cast<int>(order.size()), [&](int job) {
     const std::size_t k = order[static_cast<std::size_t>(job)];

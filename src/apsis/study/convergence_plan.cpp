@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 #include <apsis/config/case_text.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/integrate.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/study/settings.hpp>
 
@@ -81,7 +82,10 @@ class planner {
     const auto [place, is_new] = known_.emplace(essence(config), plan_.runs.size());
     if (is_new) {
       const run_setup setup(config);
-      setup.initial_state();  // throws where the meshes cannot hold the data
+      // Both throw what would else be found only when the run begins: data that the meshes cannot hold, and a
+      // step that is too short for the interval.
+      setup.initial_state();
+      time_marcher<double>(0.0, config.time.end, config.time.dt);
       plan_.work.push_back(work(config, setup));
       plan_.runs.push_back(std::move(config));
     }

@@ -14,7 +14,8 @@
 namespace apsis {
 namespace {
 
-/// Parts of a list between commas; those inside brackets, braces and quotes belong to a value.
+/// Parts of a list between commas, without space around them; commas inside brackets, braces and quotes
+/// belong to a value.
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts(1);
   int depth = 0;
@@ -33,6 +34,10 @@ std::vector<std::string> split(const std::string& text) {
       parts.emplace_back();
     else
       parts.back() += c;
+  }
+  for (std::string& part : parts) {
+    const auto first = part.find_first_not_of(" \t"), last = part.find_last_not_of(" \t");
+    part = first == std::string::npos ? "" : part.substr(first, last - first + 1);
   }
   return parts;
 }
@@ -103,7 +108,7 @@ varied_key parse_vary(const std::string& text) {
              "write for example space.cells=20,40,80");
   varied_key varied{text.substr(0, equals), {}};
   for (const auto& value : split(text.substr(equals + 1))) {
-    if (value.find_first_not_of(" \t") == std::string::npos)
+    if (value.empty())
       bad_vary(text, "a value is empty (nothing stands before or after a comma, or behind =)",
                "write for example space.cells=20,40,80");
     const auto many = range(value, text);

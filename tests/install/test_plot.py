@@ -67,6 +67,23 @@ class Plot(unittest.TestCase):
         self.assertEqual(code, 0)
         self.assert_pictures("a-fields.png", "a-f.png", "a-history.png")
 
+    def test_three_speeds_make_no_phase_space_and_six_fields_two_rows(self):
+        folder = self.root / "a"
+        write_result(folder, 8)
+        with h5py.File(folder / "solution.h5", "a") as file:
+            del file["v"], file["f"]
+            file["v"], file["f"] = np.array([1.0, 0.0, -1.0]), np.ones((8, 3))
+        names = ["rho", "m", "z", "f_plus", "f_0", "f_minus"]
+        lines = [",".join(["t", "x", *names])] + [f"0,{i / 8},{i},1,2,3,4,5" for i in range(8)]
+        (folder / "fields.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        code, text = quietly("case", folder, "--out", self.root / "out")
+        self.assertEqual(code, 0)
+        self.assertFalse((self.root / "out" / "a-f.png").exists())
+        for name in names:
+            self.assertIn(apsis_plot.label_of(name), text)
+        height, width = apsis_plot.plt.imread(self.root / "out" / "a-fields.png").shape[:2]
+        self.assertLess(width / height, 2.0)
+
     def test_mixed_figure_states_the_differences_on_common_cells(self):
         # rho is linear, so the mean of two fine cells is exactly the coarse value: only the shifts remain.
         write_result(self.root / "two", 8, shift=0.125)

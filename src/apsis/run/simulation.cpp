@@ -90,10 +90,12 @@ struct simulation::impl {
     const double rounding = 1e-12 + 1e-15 * static_cast<double>(last.step);
     for (std::size_t k = 0; promises.conservation && k < last.conservation_defect.size(); ++k)
       if (!(last.conservation_defect[k] <= rounding))
-        broken(fmt::format(
-                   "{} is not conserved to rounding (a Maxwellian by formula on a coarse velocity grid does "
-                   "that); use velocity.equilibrium = \"auto\"",
-                   setup.equation->invariants()[k]),
+        broken(fmt::format("{} is not conserved to rounding{}", setup.equation->invariants()[k],
+                           config.velocity.points > 0
+                               ? " (a Maxwellian by formula on a coarse velocity grid does that); use "
+                                 "velocity.equilibrium = \"auto\""
+                               : " (the step is unstable, or values of very different size cancel); use a "
+                                 "smaller step"),
                last.conservation_defect[k]);
     if (promises.entropy && last.entropy_change > 1e-13 * (1.0 + std::abs(last.entropy)))
       broken("the entropy increased (first-order upwind within r dt_FE entails decay)", last.entropy_change);

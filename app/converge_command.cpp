@@ -60,7 +60,7 @@ json manifest(const options& given, const convergence_table& table) {
 
 void write_results(result_folder& folder, const options& given, const convergence_table& table) {
   const picture plot = to_picture(table);
-  const bool drawable = !plot.panels.front().curves.empty();
+  const bool drawable = !plot.panels.empty();
   folder.prepare_text("converge.csv", to_csv(table));
   folder.prepare_text("converge.json", json_text(to_json(table)) + "\n");
   if (drawable) folder.prepare_text("picture.json", json_text(to_json(plot)) + "\n");
@@ -118,9 +118,15 @@ constexpr const char* description =
     "  apsis converge paper/decay --vary time.method=imdrk-1-2,imdrk-2-3 --vary time.dt=1/16..1/1024\n"
     "  apsis converge paper/bgk-accuracy --vary model.epsilon=1,1e-6 --vary space.cells=20,40,80\n"
     "  apsis converge paper/ode --vary time.dt=1/16..1/1024 --reference md-imex-6-3@1e-5 --norm l1\n\n"
-    "Refined, and in the last column, is the last varied key of space.cells, time.dt, time.cfl, time.safety "
-    "and "
-    "velocity.points; without one of them the last key with positive numbers. The rate is the slope of the "
+    "Refined is the last varied key of space.cells, time.dt, time.cfl, time.safety and velocity.points, or, "
+    "where none "
+    "of them is varied, the last key with positive numbers. The others make blocks, whose rows go from "
+    "coarse to fine. "
+    "The rate is the slope of the error against the cell length, the step, or that number. A run that fails "
+    "leaves a "
+    "message in its row, and the exit code is 3. More: docs/convergence.md.";
+without one of them the last key with positive numbers.The rate is the slope of the
+    "
     "error "
     "against the cell length, the step, or that number. A run that fails leaves a message in its row, and "
     "the exit "

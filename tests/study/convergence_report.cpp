@@ -96,6 +96,19 @@ TEST(convergence_report, picture_has_a_curve_for_every_block_and_the_orders_as_s
   }
 }
 
+TEST(convergence_report, picture_of_two_keys_has_a_panel_for_each_value_of_the_shorter_list) {
+  const convergence_study study{.case_name = "paper/ode",
+                                .vary = {parse_vary("model.epsilon=1,2,3"), parse_vary("time.dt=1/8,1/16"),
+                                         parse_vary("time.method=md-imex-6-3,md-imex-3-2")}};
+  const picture p = to_picture(converge(study));
+  ASSERT_EQ(p.panels.size(), 2U);
+  EXPECT_EQ(p.panels[0].title, "md-imex-6-3");
+  EXPECT_THAT(p.panels[0].slopes, ElementsAre(3.0));
+  EXPECT_THAT(p.panels[1].slopes, ElementsAre(2.0));
+  ASSERT_EQ(p.panels[1].curves.size(), 3U);
+  EXPECT_EQ(p.panels[1].curves[2].label, "ε = 3");
+}
+
 TEST(convergence_report, runs_without_an_error_have_their_reason_everywhere) {
   auto table = example();
   auto& row = table.blocks[0].rows[1];
@@ -116,7 +129,7 @@ TEST(convergence_report, without_a_refined_key_there_is_no_picture_and_no_rate) 
   const auto table = converge(study);
   EXPECT_EQ(table.refined, -1);
   ASSERT_EQ(table.blocks.size(), 1U);
-  EXPECT_TRUE(to_picture(table).panels.at(0).curves.empty());
+  EXPECT_TRUE(to_picture(table).panels.empty());
   EXPECT_THAT(to_text(table), HasSubstr("md-imex-3-2"));
   for (const auto& row : to_json(table)) EXPECT_TRUE(row["rate"].is_null());
 }

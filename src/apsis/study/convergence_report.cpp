@@ -67,21 +67,59 @@ std::string row_name(const convergence_table& table, const convergence_row& row)
                             : fmt::format("{}", fmt::join(row.values, ", "));
 }
 
-std::string curve_label(const convergence_table& table, const convergence_block& block) {
-  std::vector<std::string> parts;
-  std::size_t k = 0;
-  for (std::size_t key = 0; key < table.keys.size(); ++key) {
-    if (static_cast<int>(key) == table.refined) continue;
-    const std::string& name = table.keys[key];
-    const std::string& value = block.values[k++];
-    if (name == "model.epsilon")
-      parts.push_back("ε = " + value);
-    else if (name == "time.method" || name == "model.initial" || name == "space.formulation")
-      parts.push_back(value);
-    else
-      parts.push_back(fmt::format("{} = {}", name.substr(name.find('.') + 1), value));
+/// Value of a key as it is written beside a curve.
+std::string label_part(const std::string& key, const std::string& value) {
+  if (key == "model.epsilon") return "ε = " + value;
+  if (key == "time.method" || key == "model.initial" || key == "space.formulation") return value;
+  return fmt::format("{} = {}", key.substr(key.find('.') + 1), value);
+}
+
+std::vector<std::string> outer_keys(const convergence_table& table) {
+  std::vector<std::string> keys = table.keys;
+  if (table.refined >= 0) keys.erase(keys.begin() + table.refined);
+  return keys;
+}
+
+/// Index of the key whose values get a panel each, −1 for one panel: of several keys the one with the fewest
+/// values, so that no panel is crowded.
+int panel_key(const convergence_table& table) {
+  constexpr std::size_t most_panels = 6;
+  const std::size_t count = outer_keys(table).size();
+  int chosen = -1, long_lists = 0;
+  std::size_t fewest = most_panels + 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::set<std::string> values;
+    for (const auto& block : table.blocks) values.insert(block.values[k]);
+    if (values.size() < 2) continue;
+    ++long_lists;
+    if (values.size() >= fewest) continue;
+    fewest = values.size();
+    chosen = static_cast<int>(k);
   }
-  return fmt::format("{}", fmt::join(parts, ", "));
+  return long_lists > 1 ? chosen : -1;
+}
+
+/// Curves of the blocks that have `value` for the key of the panels (all blocks where there is none).
+panel panel_of(const convergence_table& table, int key, const std::string& value) {
+  const auto keys = outer_keys(table);
+  panel axes{"", table.h_name + " (dimensionless)", "error (dimensionless)", true, true, {}, {}, {}};
+  if (key >= 0) axes.title = label_part(keys[static_cast<std::size_t>(key)], value);
+  std::set<int> orders;
+  for (const auto& block : table.blocks) {
+    if (key >= 0 && block.values[static_cast<std::size_t>(key)] != value) continue;
+    std::vector<std::string> parts;
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      if (static_cast<int>(k) != key) parts.push_back(label_part(keys[k], block.values[k]));
+    curve c{fmt::format("{}", fmt::join(parts, ", ")), {}, {}};
+    for (const auto& row : block.rows) {
+      c.x.push_back(row.h);
+      c.y.push_back(row.error);
+      orders.insert(find_method(row.config.time.method).claims.order);
+    }
+    axes.curves.push_back(std::move(c));
+  }
+  if (table.h_name == "Δt" || table.h_name == "Δx") axes.slopes.assign(orders.begin(), orders.end());
+  return axes;
 }
 
 }  // namespace
@@ -129,22 +167,16 @@ json to_json(const convergence_table& table) {
 }
 
 picture to_picture(const convergence_table& table) {
-  panel axes{"", table.h_name + " (dimensionless)", "error (dimensionless)", true, true, {}, {}, {}};
-  std::set<int> orders;
+  picture p{"converge", table.title, fmt::format("The {}.", table.measure), {}};
+  if (table.refined < 0) return p;
+  if (table.h_name == "Δt" || table.h_name == "Δx") p.caption += " Triangles: orders of the methods.";
+  const int key = panel_key(table);
+  std::set<std::string> drawn;
   for (const auto& block : table.blocks) {
-    if (table.refined < 0) break;
-    curve c{curve_label(table, block), {}, {}};
-    for (const auto& row : block.rows) {
-      c.x.push_back(row.h);
-      c.y.push_back(row.error);
-      orders.insert(find_method(row.config.time.method).claims.order);
-    }
-    axes.curves.push_back(std::move(c));
+    const std::string value = key < 0 ? "" : block.values[static_cast<std::size_t>(key)];
+    if (drawn.insert(value).second) p.panels.push_back(panel_of(table, key, value));
   }
-  if (table.h_name == "Δt" || table.h_name == "Δx") axes.slopes.assign(orders.begin(), orders.end());
-  const std::string caption = fmt::format("The {}.{}", table.measure,
-                                          axes.slopes.empty() ? "" : " Triangles: orders of the methods.");
-  return {"converge", table.title, caption, {std::move(axes)}};
+  return p;
 }
 
 }  // namespace apsis

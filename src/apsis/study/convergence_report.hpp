@@ -20,7 +20,8 @@ std::string to_csv(const convergence_table& table);
 nlohmann::ordered_json to_json(const convergence_table& table);
 
 /// Errors against what is refined, both logarithmic, one curve per block, with triangles of the orders of the
-/// methods. Nothing is refined: a picture without curves.
+/// methods. Of several other keys the one with the fewest values has a panel for each of them. Without panels
+/// where nothing is refined.
 picture to_picture(const convergence_table& table);
 
 }  // namespace apsis

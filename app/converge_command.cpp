@@ -119,18 +119,9 @@ constexpr const char* description =
     "  apsis converge paper/bgk-accuracy --vary model.epsilon=1,1e-6 --vary space.cells=20,40,80\n"
     "  apsis converge paper/ode --vary time.dt=1/16..1/1024 --reference md-imex-6-3@1e-5 --norm l1\n\n"
     "Refined is the last varied key of space.cells, time.dt, time.cfl, time.safety and velocity.points, or, "
-    "where none "
-    "of them is varied, the last key with positive numbers. The others make blocks, whose rows go from "
-    "coarse to fine. "
-    "The rate is the slope of the error against the cell length, the step, or that number. A run that fails "
-    "leaves a "
-    "message in its row, and the exit code is 3. More: docs/convergence.md.";
-without one of them the last key with positive numbers.The rate is the slope of the
-    "
-    "error "
-    "against the cell length, the step, or that number. A run that fails leaves a message in its row, and "
-    "the exit "
-    "code is 3.";
+    "where none of them is varied, the last key with positive numbers. The others make blocks, whose rows go "
+    "from coarse to fine. The rate is the slope of the error against the cell length, the step, or that "
+    "number. A run that fails leaves a message in its row, and the exit code is 3.";
 
 }  // namespace
 

@@ -5,6 +5,8 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/study/observed_limits.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -27,38 +29,78 @@ method read_method(const std::string& path) {
   return parse_method(text, path);
 }
 
-int report(const method& m, bool as_json) {
-  const nlohmann::ordered_json result = check_json(m);
-  const bool holds = result["claims_hold"].get<bool>();
-  print(as_json ? result.dump(2) + "\n" : check_text(m));
-  if (holds) return 0;
-  throw claim_error(fmt::format("the claims of '{}' do not hold ({}) correct the coefficients or the claims",
-                                m.name, first_failure(m)));
+struct options {
+  std::string what;
+  bool json = false, observe = false;
+};
+
+std::string limit_text(const step_limit& limit) {
+  if (std::isinf(limit.lost)) return fmt::format("> {:.4g}", limit.kept);
+  return limit.kept > 0.0 ? fmt::format("{:.4f}", limit.kept) : fmt::format("< {:.4g}", limit.lost);
 }
 
-int check(const std::string& what, bool as_json) {
+std::string observed_text(const std::vector<observed_limit>& all) {
+  std::string text = fmt::format("{:<86}{:>8}   {}\n", "largest steps that were seen to keep a property",
+                                 "dt/dt_FE", "worst");
+  for (const auto& one : all)
+    text += fmt::format("  {:<84}{:>8}   {}\n", one.problem + ": " + one.property, limit_text(one.limit),
+                        one.worst);
+  return text;
+}
+
+nlohmann::ordered_json to_json(const observed_limit& one) {
+  const auto number = [](double x) {
+    return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
+  };
+  return {{"problem", one.problem},           {"property", one.property},
+          {"promised", number(one.promised)}, {"kept", number(one.limit.kept)},
+          {"lost", number(one.limit.lost)},   {"worst", one.worst}};
+}
+
+int report(const method& m, const options& given) {
+  nlohmann::ordered_json result = check_json(m);
+  std::vector<observed_limit> observed;
+  if (given.observe) {
+    observed = observe_limits(m);
+    result["observed"] = nlohmann::ordered_json::array();
+    for (const auto& one : observed) result["observed"].push_back(to_json(one));
+  }
+  print(given.json ? result.dump(2) + "\n" : check_text(m) + (given.observe ? observed_text(observed) : ""));
+  if (!result["claims_hold"].get<bool>())
+    throw claim_error(
+        fmt::format("the claims of '{}' do not hold ({}) correct the coefficients or the claims", m.name,
+                    first_failure(m)));
+  for (const auto& one : observed)
+    if (!one.keeps_promise())
+      throw claim_error(
+          fmt::format("the SSP coefficient {:.6g} of '{}' does not hold ({}: {} is lost at {:.6g} dt_FE) "
+                      "this is a bug of the certificate, or of the problem",
+                      one.promised, m.name, one.problem, one.property, one.limit.lost));
+  return 0;
+}
+
+int check(const options& given) {
+  const std::string& what = given.what;
   const std::vector<std::string> names = method_names();
-  if (std::find(names.begin(), names.end(), what) != names.end()) return report(find_method(what), as_json);
+  if (std::find(names.begin(), names.end(), what) != names.end()) return report(find_method(what), given);
   std::error_code ignored;
   if (!std::filesystem::exists(what, ignored))
     throw input_error(fmt::format("no method '{}' (neither in the catalogue nor a file) {}",
                                   what.substr(0, 60), suggest(what, names)));
-  return report(read_method(what), as_json);
+  return report(read_method(what), given);
 }
 
 }  // namespace
 
 void add_check(CLI::App& program, action& chosen) {
-  struct options {
-    std::string what;
-    bool json = false;
-  };
   auto given = std::make_shared<options>();
   CLI::App* command =
       program.add_subcommand("check", "Certify a method: order, SSP coefficient, structure, cost");
   command->add_option("METHOD", given->what, "a method of the catalogue or a method file")->required();
   command->add_flag("--json", given->json, "print one JSON object");
-  command->callback([given, &chosen] { chosen = [given] { return check(given->what, given->json); }; });
+  command->add_flag("--observe", given->observe,
+                    "also look for the largest steps that keep positivity, total variation, entropy, ...");
+  command->callback([given, &chosen] { chosen = [given] { return check(*given); }; });
 }
 
 }  // namespace apsis::app

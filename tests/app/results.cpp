@@ -198,6 +198,20 @@ TEST(results, lists_and_certificates_are_json) {
   EXPECT_THAT(run_apsis(folder, {"show", "paper/decay"}).out, HasSubstr("imdrk-2-3"));
 }
 
+TEST(results, check_observes_the_limits_of_a_method_that_is_not_in_the_catalogue) {
+  const work_folder folder;
+  std::string text = run_apsis(folder, {"show", "md-imex-3-2", "--format", "toml"}).out;
+  text.replace(text.find("md-imex-3-2"), 11, "my-own-3-2x");
+  folder.file("m.toml", text);
+  const json checked = json::parse(run_apsis(folder, {"check", "m.toml", "--observe", "--json"}).out);
+  ASSERT_GT(checked["observed"].size(), 5U);
+  for (const auto& one : checked["observed"]) {
+    EXPECT_EQ(one["promised"], 1.0);
+    EXPECT_GE(one["kept"].get<double>(), 0.998) << one;
+  }
+  EXPECT_THAT(run_apsis(folder, {"check", "dirk-2-2", "--observe"}).out, HasSubstr("u' = -10 u^2"));
+}
+
 TEST(results, a_full_output_device_is_an_output_error) {
   const work_folder folder;
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";

@@ -1,5 +1,6 @@
 #include <apsis/study/claim.hpp>
 #include <apsis/study/ode_study.hpp>
+#include <apsis/study/plateau_study.hpp>
 
 #include <algorithm>
 #include <string>
@@ -116,6 +117,7 @@ claim_result check(const study_control& control) {
     result.pictures.push_back(figure(m));
     result.tables.push_back(slopes(m));
   }
+  add_plateau_study("C19", control, result);
   return result;
 }
 

@@ -13,13 +13,18 @@ namespace {
 
 TEST(time_study, reference_is_what_fine_steps_of_every_method_converge_to) {
   for (const auto& model : relaxation_model_names()) {
-    const time_study study(small_case(model), 0.1);
+    // First-order upwinding is linear; weights of WENO that switch where data are flat would cost order in
+    // time.
+    const bool space = model != "ode";
+    const time_study study(small_case(model, space ? std::vector<std::string>{"space.reconstruction=upwind1"}
+                                                   : std::vector<std::string>{}),
+                           0.1);
     const field exact = study.reference();
     for (const std::string name : {"md-imex-6-3", "ars-443"}) {
-      const double coarse = largest_difference(study.solve(find_method(name), 256), exact);
-      const double fine = largest_difference(study.solve(find_method(name), 512), exact);
-      // Third order in steps far below both ε/C and the stable one.
-      EXPECT_GT(std::log2(coarse / fine), 2.7) << model << " " << name << " " << coarse;
+      const double coarse = largest_difference(study.solve(find_method(name), 128), exact);
+      const double fine = largest_difference(study.solve(find_method(name), 256), exact);
+      // Third order; ε/C is about 20 steps, and at 256 steps the error is still three times the reference's.
+      EXPECT_GT(std::log2(coarse / fine), 2.6) << model << " " << name << " " << coarse;
     }
   }
 }

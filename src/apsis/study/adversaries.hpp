@@ -1,8 +1,9 @@
 #pragma once
 
-#include <apsis/integrate/relaxation_problem.hpp>
+#include <apsis/integrate/array_state.hpp>
 #include <apsis/study/random_source.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <vector>

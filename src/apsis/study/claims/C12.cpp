@@ -18,15 +18,16 @@ struct pair_of_methods {
 constexpr pair_of_methods pairs[] = {{"second order", "dirk-2-2", "imdrk-1-2"},
                                      {"third order", "dirk-4-3", "imdrk-2-3"}};
 
-/// Draws the run; one that ends early is marked where its stage equation has no root.
+/// Draws the run; where its stage equation has no root it ends, in a marker.
 void draw(const decay_run& run, const std::string& label, curve_style style, int colour, panel& into) {
-  into.curves.push_back({label, run.t, run.u, style, colour});
+  if (run.u.size() > 1) into.curves.push_back({label, run.t, run.u, style, colour});
   if (!run.solvable)
-    into.curves.push_back({"", {run.t.back()}, {run.u.back()}, curve_style::markers, colour});
+    into.curves.push_back(
+        {label + ": no root", {run.t.back()}, {run.u.back()}, curve_style::markers, colour});
 }
 
 panel draw_pair(const pair_of_methods& methods, claim_result& result) {
-  panel p{methods.title, "t (dimensionless)", "u (dimensionless)", false, false, {}, {}};
+  panel p{methods.title, "t (dimensionless)", "u (dimensionless)", false, true, {}, {}};
   int right = 0, wrong = 0, total = 0, colour = 0;
   double distance = 0.0;
   for (int n = 4; n <= finest; n *= 2, ++total, ++colour) {
@@ -64,8 +65,8 @@ claim_result check(const study_control&) {
       "u' = −10u², u(0) = 10",
       "Solid: unconditionally SSP implicit two-derivative methods; dashed: DIRK methods of the same "
       "order; dash-dotted: the exact solution 1/(10t + 0.1). The SSP methods are positive and "
-      "decreasing for every step, the DIRK methods are not. A point at the start of a dashed curve "
-      "marks a run that could not begin: its stage equation has no real root.",
+      "decreasing for every step, the DIRK methods are not. A marker at the start "
+      "is a run that could not begin: its stage equation has no real root.",
       {}};
   for (const auto& methods : pairs) decay.panels.push_back(draw_pair(methods, result));
   result.pictures.push_back(std::move(decay));

@@ -5,6 +5,8 @@
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/export.hpp>
+#include <apsis/method/intermediate_regime.hpp>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -85,6 +87,22 @@ json document_json(const method& m) {
   return out;
 }
 
+/// null where the method has stages that the analysis does not cover, or the term is infinite.
+json regime_json(const method& m) {
+  const auto terms = analyse_intermediate_regime(m.coefficients<double>());
+  if (!terms.applies) return nullptr;
+  return {{"flux", terms.flux},
+          {"last", terms.last},
+          {"layer", std::isfinite(terms.layer) ? json(terms.layer) : json(nullptr)}};
+}
+
+std::string regime_text(const method& m) {
+  const auto terms = analyse_intermediate_regime(m.coefficients<double>());
+  if (!terms.applies) return "not covered (a stage is neither relaxed nor u^n)";
+  return fmt::format("flux {:.4g}, last stage {:.4g}, layer {:.4g} times the exact ones",  //
+                     terms.flux, terms.last, terms.layer);
+}
+
 std::string ssp_text(const certificate& c) {
   if (!c.bounded) return "no bound";
   return fmt::format("{:.15g}{}", c.ssp_coefficient.convert_to<double>(),
@@ -139,6 +157,7 @@ json check_json(const method& m) {
       {"buffers", steps.buffers()},
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
+  if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(m);
   if (m.kind != method_kind::explicit_only)
     out["stability"] = {{"angle_degrees", c.stability.angle},
                         {"l_stable", c.stability.l_stable},
@@ -165,6 +184,7 @@ std::string check_text(const method& m) {
          fmt::format("SSP coefficient {:.15g} by itself", c.explicit_radius.convert_to<double>()));
   line("type", fmt::format("{}{}", c.type, c.gsa ? ", globally stiffly accurate" : ""));
   line("asymptotic preserving", c.ap_data.empty() ? "none" : c.ap_data);
+  if (m.kind == method_kind::imex) line("where epsilon << dt", regime_text(m));
   line("cost of a step", fmt::format("{} transport evaluations, {} implicit solves, {} buffers",
                                      c.explicit_evaluations, c.implicit_solves, steps.buffers()));
   if (m.kind != method_kind::explicit_only)

@@ -88,7 +88,7 @@ std::string as_text(const std::string& what, const json& all) {
   std::string out;
   for (const auto& item : all)
     out += what == "methods" ? method_line(item)
-                             : fmt::format("{:<28}{}\n", item["name"].get<std::string>(),
+                             : fmt::format("{:<34}{}\n", item["name"].get<std::string>(),
                                            item["description"].get<std::string>());
   return what == "methods" ? method_header() + out : out;
 }

@@ -155,7 +155,8 @@ int reproduce(const options& given) {
   }
   if (!given.json)
     print(fmt::format("{} of {} claims hold; see {}/{}\n", document["claims"].size() - failed.size(),
-                      document["claims"].size(), given.out, drawing_problem.empty() ? "report.html" : document_name));
+                      document["claims"].size(), given.out,
+                      drawing_problem.empty() ? "report.html" : document_name));
   if (!failed.empty()) {
     if (!drawing_problem.empty()) log::warning(drawing_problem);
     throw claim_error(fmt::format("{} claim(s) of the paper do not hold here: {} see the findings in '{}'",

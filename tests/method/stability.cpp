@@ -65,8 +65,8 @@ TEST(stability, function_approximates_the_exponential_to_the_order_of_the_method
       const auto error = [&](long double h) {
         return std::abs(stability_function(b, h * direction) - std::exp(h * direction));
       };
-      // h^{p+1} = 1e-12 is far above rounding, constants of 1e-4 included; the next power changes the slope by
-      // O(h).
+      // h^{p+1} = 1e-12 is far above rounding, constants of 1e-4 included; the next power changes the slope
+      // by O(h).
       const long double h = std::pow(1e-12L, 1.0L / (m.claims.order + 1));
       const long double slope = std::log2(error(2 * h) / error(h));
       EXPECT_NEAR(static_cast<double>(slope), m.claims.order + 1, 0.1) << name << direction;

@@ -59,14 +59,15 @@ void add_ranges(claim_result& result, const field_table& fields) {
 }
 
 picture draw(const outcome& second, const outcome& third, const outcome& reference) {
-  picture p{"C24-mixed-regime",
-            "Mixed regime, BGK, t = 0.5",
-            "Density, bulk velocity and temperature with a Knudsen number between 1e-5 and 1.5. Squares: "
-            "second order, "
-            "circles: third order, both on 40 cells; line: explicit method on 80 cells with steps twenty times "
-            "smaller. The "
-            "two orders lie on each other because the error in space dominates; both follow the line.",
-            {}};
+  picture p{
+      "C24-mixed-regime",
+      "Mixed regime, BGK, t = 0.5",
+      "Density, bulk velocity and temperature with a Knudsen number between 1e-5 and 1.5. Squares: "
+      "second order, "
+      "circles: third order, both on 40 cells; line: explicit method on 80 cells with steps twenty times "
+      "smaller. The "
+      "two orders lie on each other because the error in space dominates; both follow the line.",
+      {}};
   for (std::size_t k = 0; k < 3; ++k) {
     panel one;
     one.x_label = "x (dimensionless)";

@@ -41,13 +41,14 @@ TEST(intermediate_regime, of_the_papers_third_order_method_has_too_much) {
 }
 
 TEST(intermediate_regime, of_methods_made_for_it_is_exact) {
-  for (const std::string name : {"md-imex-4-2", "md-imex-5-2"}) {
+  for (const std::string name : {"md-imex-4-2", "md-imex-5-2", "md-imex-8-3"}) {
     const auto terms = of(name);
     ASSERT_TRUE(terms.applies) << name;
     EXPECT_LT(abs(terms.flux - 1), mp_real(1e-42)) << name;
     EXPECT_LT(abs(terms.last - 1), mp_real(1e-42)) << name;
   }
   EXPECT_LT(abs(of("md-imex-5-2").layer - 1), mp_real(1e-55));
+  EXPECT_LT(abs(of("md-imex-8-3").layer - 1), mp_real(1e-42));
   EXPECT_GT(abs(of("md-imex-4-2").layer - 1), mp_real(1));
 }
 

@@ -34,7 +34,7 @@ program: ## the program only, in build/release/app
 
 test: ## packages, everything built, every test but the slow ones
 	@scripts/install-packages.sh test
-	cmake --preset release -DAPSIS_TESTS=ON -DAPSIS_BENCH=ON >/dev/null
+	cmake --preset release -DAPSIS_TESTS=ON -DAPSIS_BENCH=ON -DAPSIS_PCH=ON >/dev/null
 	cmake --build build/release
 	ctest --preset release -LE slow
 
@@ -46,11 +46,11 @@ test-all: test ## test, and: slow tests, clang, sanitizers, clang-tidy, format
 	$(MAKE) --no-print-directory test-slow format-check clang tidy asan
 
 clang: ## everything built by clang-19, without a warning
-	cmake --preset clang >/dev/null
+	cmake --preset clang -DAPSIS_PCH=ON >/dev/null
 	cmake --build build/clang
 
 asan: ## tests under the address and undefined-behaviour sanitizers
-	cmake --preset asan >/dev/null
+	cmake --preset asan -DAPSIS_PCH=ON >/dev/null
 	cmake --build build/asan
 	ctest --preset asan -LE slow -E 'C24_data' # 72000 steps of the reference take half an hour here
 

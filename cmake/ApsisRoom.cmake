@@ -1,7 +1,9 @@
 # One static library per room of src/apsis. A room may link only the rooms below it, so an include
 # that reaches back does not link and the direction of the data flow is kept by the build.
 #
-#   apsis_room(method DEPENDS core PUBLIC Boost::headers PRIVATE tomlplusplus::tomlplusplus)
+#   apsis_room(method DEPENDS core PUBLIC Boost::headers PRIVATE tomlplusplus::tomlplusplus HEAVY <string>)
+#
+# HEAVY headers are those that most of its files include and that take seconds to read (see APSIS_PCH).
 set(APSIS_ROOMS "" CACHE INTERNAL "rooms in the order they are declared")
 
 add_library(apsis_options INTERFACE)
@@ -22,7 +24,7 @@ target_compile_options(apsis_kernel_options INTERFACE
   $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)
 
 function(apsis_room name)
-  cmake_parse_arguments(ROOM "KERNELS" "" "DEPENDS;PUBLIC;PRIVATE;GENERATED" ${ARGN})
+  cmake_parse_arguments(ROOM "KERNELS" "" "DEPENDS;PUBLIC;PRIVATE;GENERATED;HEAVY" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp
        ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*/*.cpp)
   add_library(apsis_${name} STATIC ${sources} ${ROOM_GENERATED})
@@ -35,5 +37,8 @@ function(apsis_room name)
   target_link_libraries(apsis_${name} PUBLIC ${ROOM_DEPENDS} ${ROOM_PUBLIC})
   target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_options> ${ROOM_PRIVATE}
                         $<$<BOOL:${ROOM_KERNELS}>:$<BUILD_INTERFACE:apsis_kernel_options>>)
+  if(APSIS_PCH AND ROOM_HEAVY)
+    target_precompile_headers(apsis_${name} PRIVATE ${ROOM_HEAVY})
+  endif()
   set(APSIS_ROOMS ${APSIS_ROOMS} ${name} CACHE INTERNAL "")
 endfunction()

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <boost/version.hpp>
+#include <nlohmann/json.hpp>
 
 namespace apsis::app {
 namespace {

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace apsis::app {
 namespace {
@@ -107,8 +108,8 @@ int converge(const options& given) {
   }
   if (const long failed = table.failures(); failed > 0)
     throw numerical_error(
-        fmt::format("{} run(s) have no error (they or their references failed, the others "
-                    "are good) see the messages in the table",
+        fmt::format("{} run(s) have no error (they or their references failed, the others are good) see the "
+                    "messages in the table",
                     failed));
   return 0;
 }
@@ -135,18 +136,17 @@ void add_converge(CLI::App& program, action& chosen) {
       ->required();
   command->add_option("key=value", given->overrides, "keys of the case that take another value in every run");
   command
-      ->add_option(
-          "--vary", given->vary,
-          "key=v1,v2,...: a key and its values, 20..160 stands for 20,40,80,160; all combinations of "
-          "several --vary are run")
+      ->add_option("--vary", given->vary,
+                   "key=v1,v2,...: a key and its values, 20..160 stands for 20,40,80,160; all combinations "
+                   "of several --vary are run")
       ->required()
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option(
       "--reference", given->reference,
-      "what errors are measured against: exact (if the model knows it; then the default), next (the "
-      "next finer run; else the default), time (1/8 of the smallest step), space+time (three times "
-      "the cells, a third of the step), METHOD@STEP, or key=value,... for a run with these keys");
+      "what errors are measured against: exact (if the model knows it; then the default), next (the next "
+      "finer run; else the default), time (1/8 of the smallest step), space+time (three times the cells, a "
+      "third of the step), METHOD@STEP, or key=value,... for a run with these keys");
   command->add_option("--norm", given->norm, "l1, l2 or linf")->capture_default_str();
   command->add_option("--quantity", given->quantity,
                       "a macroscopic field, such as rho, to compare instead of the full state");

@@ -2,7 +2,7 @@
 
 #include <apsis/method/method.hpp>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace apsis::app {
 

@@ -5,6 +5,8 @@
 #include <apsis/output/case_json.hpp>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 namespace apsis::app {
 namespace {
 

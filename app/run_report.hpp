@@ -2,7 +2,7 @@
 
 #include "run_records.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace apsis::app {
 

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace apsis::app {
 namespace {
@@ -37,10 +38,9 @@ void check_same_case(const case_config& mine, const std::string& saved_text, con
   for (std::string a, b; std::getline(here, a) || std::getline(there, b);) {
     if (b.empty()) std::getline(there, b);
     if (a != b)
-      throw input_error(
-          fmt::format("'{}' belongs to another case ('{}' there, '{}' here) restart with the case it was "
-                      "written for",
-                      path, b, a));
+      throw input_error(fmt::format(
+          "'{}' belongs to another case ('{}' there, '{}' here) restart with the case it was written for",
+          path, b, a));
     a.clear();
     b.clear();
   }
@@ -68,10 +68,9 @@ void run_session::resume(const std::string& path) {
   check_same_case(simulation_.config(), saved.case_text, path);
   if (saved.cells != static_cast<std::uint64_t>(simulation_.cells()) ||
       saved.components != static_cast<std::uint64_t>(simulation_.components()))
-    throw input_error(
-        fmt::format("'{}' holds {} x {} unknowns (the case has {} x {}) restart with the case it was written "
-                    "for",
-                    path, saved.cells, saved.components, simulation_.cells(), simulation_.components()));
+    throw input_error(fmt::format(
+        "'{}' holds {} x {} unknowns (the case has {} x {}) restart with the case it was written for", path,
+        saved.cells, saved.components, simulation_.cells(), simulation_.components()));
   const saved_run state = to_saved_run(saved);
   if (!(state.t < simulation_.config().time.end))
     throw input_error(fmt::format("'{}' is already at t = {} (time.end is {}) give a later time.end", path,

@@ -16,6 +16,9 @@ target_compile_options(apsis_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${APSIS_PCH}>>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>")
 
+# What only calls the rooms (program, tests) gains nothing from optimisation but time to build.
+set(APSIS_QUICKLY_BUILT $<$<CONFIG:Release>:-O1>)
+
 # Rooms with loops over cells and velocities. Their headers keep no type whose layout depends on the instruction
 # set, so other targets are built for the plain architecture and link with them safely.
 add_library(apsis_kernel_options INTERFACE)

@@ -1,6 +1,8 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/output/case_json.hpp>
 
+#include <nlohmann/json.hpp>
+
 namespace apsis {
 namespace {
 

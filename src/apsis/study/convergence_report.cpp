@@ -9,6 +9,7 @@
 #include <apsis/method/method.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/study/settings.hpp>
+#include <nlohmann/json.hpp>
 
 namespace apsis {
 namespace {

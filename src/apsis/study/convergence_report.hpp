@@ -3,7 +3,7 @@
 #include <apsis/output/picture.hpp>
 #include <apsis/study/convergence.hpp>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace apsis {

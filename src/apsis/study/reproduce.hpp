@@ -2,7 +2,7 @@
 
 #include <apsis/study/claim.hpp>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace apsis {
 

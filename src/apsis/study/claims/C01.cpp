@@ -1,26 +1,13 @@
-#include <apsis/study/condition_tables.hpp>
-
-#include <fmt/format.h>
 #include <apsis/study/claim.hpp>
+#include <apsis/study/condition_tables.hpp>
 
 namespace apsis {
 namespace {
 
 claim_result check(const study_control&) {
   claim_result result;
-  const auto trees = rooted_trees(4, tree_colours::G_only);
-  const auto [values, ratios] = compare_with_print(trees, printed_implicit_conditions);
-  result.findings = {
-      exactly("conditions generated from rooted trees", static_cast<long>(trees.size()), 8),
-      exactly("conditions printed",
-              static_cast<long>(printed_implicit_conditions(random_tableau(2, 1)).size()), 8),
-      at_most("largest difference between generated and printed left-hand sides, 100 random tableaux of "
-              "1 to 6 stages",
-              values, 1e-11),
-      at_most("largest difference of the right-hand sides", ratios, 1e-15)};
-  for (const auto& [order, count] : {std::pair{5, 9L}, std::pair{6, 20L}})
-    result.findings.push_back(exactly(fmt::format("beyond the paper: conditions of order {} alone", order),
-                                      conditions_of_order(order, tree_colours::G_only), count));
+  result.findings =
+      condition_findings(tree_colours::G_only, printed_implicit_conditions, {4, 8}, {{5, 9}, {6, 20}});
   return result;
 }
 

@@ -1,15 +1,12 @@
 #include <apsis/study/certificate_findings.hpp>
 #include <apsis/study/claim.hpp>
-#include <apsis/study/paper_tables.hpp>
 
 namespace apsis {
 namespace {
 
 claim_result check(const study_control&) {
   claim_result result;
-  result.findings = certificate_findings("imdrk-1-2", 2);
-  result.findings.push_back(
-      holds("unconditionally SSP: R e, P, D ≥ 0 and Ḋ ≤ 0", find_certificate("imdrk-1-2").unconditional));
+  result.findings = unconditional_findings("imdrk-1-2", 2);
   const auto& stability = find_certificate("imdrk-1-2").stability;
   result.findings.push_back(near("angle of A(α)-stability, degrees", stability.angle, 90.0, 0.0));
   result.findings.push_back(at_least("smallest value of R(z) = 1/(1 - z + z²/2) on the negative axis",

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <apsis/run/simulation.hpp>
+
+#include <array>
+#include <vector>
+
+namespace apsis {
+
+/// ρ, ρu and 𝓔 = ρ(u² + T)/2 of every cell: fields whose cell averages are averages of finer ones.
+/// Dimensionless.
+using conserved_fields = std::array<std::vector<double>, 3>;
+
+/// From density, bulk velocity and temperature, the fields of kinetic models in one dimension.
+conserved_fields conserved(const field_table& macroscopic);
+
+/// Averages over pairs of cells, for a comparison with a mesh of half as many.
+conserved_fields averaged_in_pairs(const conserved_fields& fine);
+
+/// Over fields and cells. NaN where a value is no number.
+double largest_difference(const conserved_fields& a, const conserved_fields& b);
+
+}  // namespace apsis

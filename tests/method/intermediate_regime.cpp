@@ -1,4 +1,6 @@
 // Terms of size ε, from coefficients alone. What they mean is tested with the stepper (tests/integrate).
+#include "tableaux.hpp"
+
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/intermediate_regime.hpp>
 #include <apsis/method/monotonicity.hpp>
@@ -120,19 +122,13 @@ TEST(closed_form, is_the_method_of_the_catalogue_for_three_evaluations) {
 
 // Four digits, found by a search, are enough for Newton's method to find the other forty; zeros make sure
 // that no number is taken for an exact one.
-const char* const four_digits = R"(name = "md-imex-4-2"
-title = ""
-citation = ""
-kind = "imex"
-[claims]
-order = 2
-[shu_osher]
+const std::string four_digits = test::method_text("md-imex-4-2", "imex", 2, R"([shu_osher]
 r = "1.511000000000"
 P = [[], ["0"], ["0", "0"], ["0.373200000000", "0", "0"]]
 W = [[], ["0.410600000000"], ["0", "1"], ["0", "0", "0.626800000000"]]
 d = ["0.703900000000", "0.112700000000", "0.112700000000", "0.414800000000"]
 ddot = ["-0.078300000000", "0", "-0.387100000000", "0"]
-)";
+)");
 
 TEST(polishing, with_conditions_of_the_intermediate_regime_finds_the_method_of_the_catalogue) {
   const auto keeps_flux = [](const shu_osher_form<mp_real>& m) {

@@ -14,13 +14,7 @@
 namespace apsis::test {
 namespace {
 
-const char* const printed_imdrk_5_4 = R"(name = "imdrk-5-4"
-title = ""
-citation = ""
-kind = "implicit"
-[claims]
-order = 4
-[shu_osher]
+const std::string printed_imdrk_5_4 = method_text("imdrk-5-4", "implicit", 4, R"([shu_osher]
 P = [
   [],
   ["1"],
@@ -30,16 +24,10 @@ P = [
 ]
 d = ["0.660949255604937", "0.242201390400848", "1.137542996287740", "0.191388711018110", "0.625266691721946"]
 ddot = ["-0.177750705279127", "-0.354733903778084", "-0.403963513682271", "-0.161628266349058", "-0.218859021269943"]
-)";
+)");
 
 // The printed 2 of d and of ddot is a number known to fifteen decimals like the others.
-const char* const printed_md_imex_6_3 = R"(name = "md-imex-6-3"
-title = ""
-citation = ""
-kind = "imex"
-[claims]
-order = 3
-[shu_osher]
+const std::string printed_md_imex_6_3 = method_text("md-imex-6-3", "imex", 3, R"([shu_osher]
 r = "0.904402174130635"
 P = [
   [],
@@ -59,16 +47,10 @@ W = [
 ]
 d = ["0", "2.000000000000000", "0.388820513661584", "0.083529464436389", "1.793313488277995", "0"]
 ddot = ["-0.871358934880525", "-0.856842702601821", "0", "0", "-2.000000000000000", "-0.205134529930013"]
-)";
+)");
 
 // The method 2.6.1 of Hu, Shu and Zhang by its Butcher form, with the correction step as the fourth row.
-const char* const printed_hsz_a_3_2 = R"(name = "hsz-a-3-2"
-title = ""
-citation = ""
-kind = "imex"
-[claims]
-order = 2
-[butcher]
+const std::string printed_hsz_a_3_2 = method_text("hsz-a-3-2", "imex", 2, R"([butcher]
 A_hat = [
   [],
   ["0.73695027152854"],
@@ -82,7 +64,7 @@ A = [
   ["0.48036510509894", "0.074643281386981", "0.44499161351408", "0"],
 ]
 A_dot = [["0"], ["0", "0"], ["0", "0", "0"], ["0", "0", "0", "-0.27973737915215"]]
-)";
+)");
 
 /// SSPRK(5,4) of Spiteri and Ruuth, u_i = Σ_j α_ij u_j + Δt β_ij T(u_j): in our form W = rβ and P = α − rβ
 /// with r = min α/β, and P = 0 where r is attained up to the digits printed.
@@ -117,9 +99,8 @@ std::string printed_ssprk_5_4() {
     P += "]";
     W += "]";
   }
-  return "name = \"ssprk-5-4\"\ntitle = \"\"\ncitation = \"\"\nkind = \"explicit\"\n[claims]\norder = "
-         "4\n[shu_osher]\nr = \"" +
-         digits(r) + "\"\nP = " + P + "]\nW = " + W + "]\n";
+  return method_text("ssprk-5-4", "explicit", 4,
+                     "[shu_osher]\nr = \"" + digits(r) + "\"\nP = " + P + "]\nW = " + W + "]\n");
 }
 
 /// What the two methods have in every place, in the order of the file.

@@ -49,4 +49,11 @@ inline std::string catalogue_text(const std::string& name) {
   return "";
 }
 
+/// A method file with what every file must have, for coefficients that are given in its last table.
+inline std::string method_text(const std::string& name, const std::string& kind, int order,
+                               const std::string& coefficients) {
+  return "name = \"" + name + "\"\ntitle = \"\"\ncitation = \"\"\nkind = \"" + kind +
+         "\"\n[claims]\norder = " + std::to_string(order) + "\n" + coefficients;
+}
+
 }  // namespace apsis::test

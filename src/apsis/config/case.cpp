@@ -179,10 +179,10 @@ class resolver {
                                     fmt::format("{}", fmt::join(valid, ", ")),
                                     valid.size() > 1 ? "safety = 0.5" : "dt = 0.01"));
     if (given.size() > 1)
-      throw input_error(find(given[1])->place,
-                        fmt::format("'{}' conflicts with '{}' (exactly one of {} sets the step) "
-                                    "remove all but one",
-                                    given[1], given[0], fmt::join(valid, ", ")));
+      throw input_error(
+          find(given[1])->place,
+          fmt::format("'{}' conflicts with '{}' (exactly one of {} sets the step) remove all but one",
+                      given[1], given[0], fmt::join(valid, ", ")));
     if (config_.time.dt && config_.time.end > 0.0 && *config_.time.dt > config_.time.end * (1.0 + 1e-12))
       refuse(*find("time.dt"), "time.dt", fmt::format("it is longer than time.end = {}", config_.time.end),
              "give a step of at most the whole time");
@@ -203,8 +203,7 @@ class resolver {
     const double points = static_cast<double>(config_.space.cells) * std::max(1, config_.velocity.points);
     if (points > 2e9)
       refuse(*find("space.cells"), "space.cells",
-             fmt::format("with velocity.points = {} that is {:.3g} unknowns, at most "
-                         "2e9 are possible",
+             fmt::format("with velocity.points = {} that is {:.3g} unknowns, at most 2e9 are possible",
                          config_.velocity.points, points),
              "give fewer cells or velocities");
   }

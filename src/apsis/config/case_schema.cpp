@@ -122,8 +122,7 @@ std::vector<case_key> make_schema() {
        [](const c& o) { return v(long{o.velocity.points}); }},
       {"velocity.equilibrium", text, key_scope::velocity, false, "", 0, 0, false, equilibrium_choices,
        "Maxwellian by its formula, or with the discrete moments matched (conservative on any grid); auto "
-       "measures "
-       "which is needed.",
+       "measures which is needed.",
        [](c& o, const v& x) { o.velocity.equilibrium = text_of(x); },
        [](const c& o) { return v(o.velocity.equilibrium); }},
       {"time.method", text, key_scope::always, true, "", 0, 0, false, method_choices,
@@ -142,8 +141,7 @@ std::vector<case_key> make_schema() {
        [](const c& o) { return optional_number(o.time.cfl); }},
       {"time.safety", number, key_scope::space, false, none, 0, unlimited, true, nullptr,
        "Step size as dt = safety * r * dt_FE with the SSP coefficient r of the method and the forward Euler "
-       "step "
-       "dt_FE of the transport; positivity is guaranteed up to 1. Exactly one of dt, cfl and safety is "
+       "step dt_FE of the transport; positivity is guaranteed up to 1. Exactly one of dt, cfl and safety is "
        "given.",
        [](c& o, const v& x) { o.time.safety = number_of(x); },
        [](const c& o) { return optional_number(o.time.safety); }},

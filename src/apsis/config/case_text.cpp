@@ -34,8 +34,7 @@ void check_size(std::string_view text, const std::string& file) {
     if (end - begin > longest_case_line)
       throw input_error(
           place_at(text, begin + longest_case_line, file),
-          fmt::format("the line is longer than {} bytes (a case has short lines) is it the file you "
-                      "meant?",
+          fmt::format("the line is longer than {} bytes (a case has short lines) is it the file you meant?",
                       longest_case_line));
     begin = end + 1;
   }

@@ -90,10 +90,10 @@ void check_characters(const std::string& text, const source_place& place, const 
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
     if ((c < 32 && c != '\t') || c > 126)
-      throw input_error(shifted(place, i),
-                        fmt::format("expression has the byte 0x{:02x} at character {} (formulas are "
-                                    "plain ASCII) remove it",
-                                    c, i + 1));
+      throw input_error(
+          shifted(place, i),
+          fmt::format("expression has the byte 0x{:02x} at character {} (formulas are plain ASCII) remove it",
+                      c, i + 1));
     if (c == '"') fail(text, place, i, "a quotation mark", "formulas have no strings");
   }
   const std::size_t assignment = find_assignment(text);
@@ -231,11 +231,12 @@ double expression::value(double x) const {
 double expression::evaluate(double x) const {
   const double result = value(x);
   if (!std::isfinite(result) || (impl_->kind.nonnegative && result < 0.0))
-    throw input_error(impl_->place,
-                      fmt::format("expression '{}' is {} at {} = {:.10g} (it must be finite{}) change the "
-                                  "formula or the domain",
-                                  impl_->text, result, impl_->kind.variable, x,
-                                  impl_->kind.nonnegative ? " and not negative" : ""));
+    throw input_error(
+        impl_->place,
+        fmt::format(
+            "expression '{}' is {} at {} = {:.10g} (it must be finite{}) change the formula or the domain",
+            impl_->text, result, impl_->kind.variable, x,
+            impl_->kind.nonnegative ? " and not negative" : ""));
   return result;
 }
 

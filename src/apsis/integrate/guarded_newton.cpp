@@ -107,11 +107,11 @@ Real largest(const column<Real>& x) {
 }
 
 [[noreturn]] void fail_singular(int iteration, double measure) {
-  throw numerical_error(fmt::format(
-      "the stage equation is singular to working precision (relative smallest singular value {:.2g} "
-      "at Newton iteration {}; a stage with d = 0 is singular where Δt λ = ±i/√|ḋ| for an "
-      "eigenvalue λ of G'); change the time step, or use a method with d > 0 at every stage",
-      measure, iteration));
+  throw numerical_error(
+      fmt::format("the stage equation is singular to working precision (relative smallest singular value "
+                  "{:.2g} at Newton iteration {}; a stage with d = 0 is singular where Δt λ = ±i/√|ḋ| for an "
+                  "eigenvalue λ of G'); change the time step, or use a method with d > 0 at every stage",
+                  measure, iteration));
 }
 
 /// A Newton step, and the size that rounding alone gives to R(v).
@@ -137,10 +137,10 @@ newton_step<Real> dense_step(stage_equation<Real>& equation, const column<Real>&
     x[k] = Real(0);
   }
   if (!m.allFinite())
-    throw numerical_error(fmt::format(
-        "the derivative of the stage equation is not finite (Newton iteration {}); check that G is "
-        "differentiable on the admissible set",
-        iteration));
+    throw numerical_error(
+        fmt::format("the derivative of the stage equation is not finite (Newton iteration {}); check that G "
+                    "is differentiable on the admissible set",
+                    iteration));
   const column<Real> rows = terms.rowwise().maxCoeff().cwiseInverse();
   const column<Real> cols = (rows.asDiagonal() * terms).colwise().maxCoeff().cwiseInverse().transpose();
   const square<Real> scaled = rows.asDiagonal() * m * cols.asDiagonal();
@@ -170,10 +170,10 @@ newton_step<Real> krylov_step(stage_equation<Real>& equation, const column<Real>
   const Real terms = largest<Real>(step.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
   if (applied < singular_below<Real> * terms) fail_singular(iteration, static_cast<double>(applied / terms));
   if (!step.allFinite() || !(largest<Real>(step + y + z + r) <= Real(0.1) * size))
-    throw numerical_error(fmt::format(
-        "GMRES does not solve the linear system of Newton iteration {} (nearly singular, or too stiff "
-        "without a preconditioner); reduce the time step, or use linear_solver::dense",
-        iteration));
+    throw numerical_error(
+        fmt::format("GMRES does not solve the linear system of Newton iteration {} (nearly singular, or too "
+                    "stiff without a preconditioner); reduce the time step, or use linear_solver::dense",
+                    iteration));
   equation.differential(as_span<Real>(v), as_span<Real>(v), as_span(y), as_span(z));
   const Real noise =
       std::numeric_limits<Real>::epsilon() * largest<Real>(v.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
@@ -246,27 +246,25 @@ class newton {
   [[noreturn]] void fail_at_start() {
     Eigen::Index worst = 0;
     while (worst + 1 < r_.size() && std::isfinite(r_[worst]) && std::isfinite(v_[worst])) ++worst;
-    throw numerical_error(
-        fmt::format("the explicit part of a stage, or G or Ġ there, is not finite (component "
-                    "{}); reduce the time step, or check G",
-                    worst),
-        {-1, std::nan(""), -1, static_cast<double>(v_[worst])});
+    throw numerical_error(fmt::format("the explicit part of a stage, or G or Ġ there, is not finite "
+                                      "(component {}); reduce the time step, or check G",
+                                      worst),
+                          {-1, std::nan(""), -1, static_cast<double>(v_[worst])});
   }
 
   [[noreturn]] void fail_to_reduce() {
-    throw numerical_error(
-        fmt::format("Newton's method cannot reduce the residual {:.3g} of the stage equation any further "
-                    "{}(iteration {}): "
-                    "there seems to be no {}root; reduce the time step, or use an unconditionally SSP method",
-                    static_cast<double>(norm_), inside_ ? "inside the admissible set " : "", iteration_,
-                    inside_ ? "admissible " : ""));
+    throw numerical_error(fmt::format(
+        "Newton's method cannot reduce the residual {:.3g} of the stage equation any further {}(iteration "
+        "{}): there seems to be no {}root; reduce the time step, or use an unconditionally SSP method",
+        static_cast<double>(norm_), inside_ ? "inside the admissible set " : "", iteration_,
+        inside_ ? "admissible " : ""));
   }
 
   [[noreturn]] void fail_to_converge() {
-    throw numerical_error(fmt::format(
-        "Newton's method does not converge on the stage equation (residual {:.3g}, relative step {:.3g} "
-        "after {} iterations); reduce the time step, or allow more iterations",
-        static_cast<double>(norm_), static_cast<double>(step_), options_.max_iterations));
+    throw numerical_error(
+        fmt::format("Newton's method does not converge on the stage equation (residual {:.3g}, relative step "
+                    "{:.3g} after {} iterations); reduce the time step, or allow more iterations",
+                    static_cast<double>(norm_), static_cast<double>(step_), options_.max_iterations));
   }
 
   stage_equation<Real>& equation_;

@@ -129,8 +129,7 @@ void check_ssp_claim(const method& m, const mp_real& tolerance, certificate& c) 
   if (claimed == "unconditional") {
     if (!c.unconditional || c.bounded)
       c.failures.push_back(fmt::format("not unconditionally SSP: {}", c.limiting_entry.empty()
-                                                                          ? "the explicit part sets a "
-                                                                            "bound"
+                                                                          ? "the explicit part sets a bound"
                                                                           : c.limiting_entry));
     return;
   }
@@ -146,10 +145,9 @@ void check_structure_claims(const method& m, certificate& c) {
     c.failures.push_back(
         fmt::format("claims.type = {} but the method is of type {}", *m.claims.type, c.type));
   if (m.claims.l_stable && *m.claims.l_stable != c.stability.l_stable)
-    c.failures.push_back(
-        fmt::format("claims.l_stable = {} but the implicit part is A({:.4g} degrees)-stable with "
-                    "|R(-infinity)| = {:.3g}",
-                    *m.claims.l_stable, c.stability.angle, c.stability.at_infinity));
+    c.failures.push_back(fmt::format(
+        "claims.l_stable = {} but the implicit part is A({:.4g} degrees)-stable with |R(-infinity)| = {:.3g}",
+        *m.claims.l_stable, c.stability.angle, c.stability.at_infinity));
 }
 
 /// r of the file is what the step rule uses, and its weights must be convex with it.
@@ -166,10 +164,9 @@ void check_form(const method& m, const shu_osher_form<mp_real>& form, const mp_r
     is_initial.push_back(initial[i] == 1 && form.D(i, i) == 0 && form.ddot[i] == 0);
     for (std::size_t j = 0; j < i; ++j)
       if (is_initial[j] && abs(initial[i]) > tolerance && form.P(i, j) + form.W(i, j) != 0)
-        c.failures.push_back(
-            fmt::format("row {} gives weight to u^n twice (R e = {} and stage {}, which is u^n): the "
-                        "form is not unique",
-                        i + 1, short_text(initial[i]), j + 1));
+        c.failures.push_back(fmt::format(
+            "row {} gives weight to u^n twice (R e = {} and stage {}, which is u^n): the form is not unique",
+            i + 1, short_text(initial[i]), j + 1));
     const auto negative = [&](const char* what, std::size_t j, const mp_real& value) {
       c.failures.push_back(fmt::format("shu_osher.{}_{},{} = {} is negative: the form is not convex", what,
                                        i + 1, j, short_text(value)));

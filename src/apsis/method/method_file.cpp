@@ -112,11 +112,10 @@ class section {
         if (j < expected) {
           m(i, j) = values[j];
         } else if (coefficient_value(values[j]) != 0) {
-          throw input_error(
-              place_of(*line.as_array()->get(j), file_),
-              fmt::format("entry {} of row {} of {} lies above the triangle (a stage cannot use a later "
-                          "one); give \"0\" or leave it out",
-                          j + 1, i + 1, quoted(key)));
+          throw input_error(place_of(*line.as_array()->get(j), file_),
+                            fmt::format("entry {} of row {} of {} lies above the triangle (a stage cannot "
+                                        "use a later one); give \"0\" or leave it out",
+                                        j + 1, i + 1, quoted(key)));
         }
       }
     }
@@ -150,11 +149,10 @@ class section {
     if (!node.is_string() || !value)
       wrong(node, key, "a coefficient in quotes (\"1/2\" or \"0.25\", so that no digit is lost)");
     if (!is_coefficient(*value))
-      throw input_error(
-          place_of(node, file_),
-          fmt::format("'{}' is no coefficient (for {}); write an exact rational \"p/q\" or a decimal of at "
-                      "most 200 characters",
-                      value->substr(0, 40), quoted(key)));
+      throw input_error(place_of(node, file_),
+                        fmt::format("'{}' is no coefficient (for {}); write an exact rational \"p/q\" or a "
+                                    "decimal of at most 200 characters",
+                                    value->substr(0, 40), quoted(key)));
     return *value;
   }
 
@@ -279,9 +277,9 @@ void read_butcher(const toml::table& table, const std::string& file, method& m) 
   if (form.has("A_dot") || form.has("b_dot")) b.A_dot = read_tableau(form, "A_dot", "b_dot", 1, s, update);
   if (update && repeats_last_stage(b))
     form.fail(weights,
-              fmt::format("'butcher.{}' repeats the last stage (then u^{{n+1}} is that stage); leave "
-                          "the update out",
-                          weights));
+              fmt::format(
+                  "'butcher.{}' repeats the last stage (then u^{{n+1}} is that stage); leave the update out",
+                  weights));
   std::string reason;
   const auto exact = exact_shu_osher(b, m.kind, reason);
   if (!exact)

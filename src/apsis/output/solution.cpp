@@ -56,8 +56,7 @@ std::string grid(const std::string& name, std::uint64_t slow, std::uint64_t fast
   return fmt::format(
       "<Grid Name=\"{}\" GridType=\"Uniform\">\n<Time Value=\"{:.17g}\"/>\n"
       "<Topology TopologyType=\"3DRectMesh\" Dimensions=\"1 {} {}\"/>\n<Geometry "
-      "GeometryType=\"VXVYVZ\">\n{}{}{}"
-      "</Geometry>\n{}</Grid>\n",
+      "GeometryType=\"VXVYVZ\">\n{}{}{}</Geometry>\n{}</Grid>\n",
       name, t, slow, fast, fast_axis, slow_axis, zero_axis(), values);
 }
 

@@ -35,8 +35,7 @@ monitor::totals monitor::sum(const field& u) const {
   for (std::size_t c = 0; c < cells; ++c) {
     if (std::isnan(lowest[c]))
       throw numerical_error(
-          "a value of the state is not finite (the step is unstable, or the data are); use a "
-          "smaller step",
+          "a value of the state is not finite (the step is unstable, or the data are); use a smaller step",
           {-1, std::numeric_limits<double>::quiet_NaN(), static_cast<long>(c), lowest[c]});
     t.lowest = std::min(t.lowest, lowest[c]);
     t.negative += negative[c];

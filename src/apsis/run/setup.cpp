@@ -98,8 +98,8 @@ void run_setup::check_method() {
   ssp_coefficient_ = is_convex(form, method_->kind) ? form.r : 0.0;
   if (config_.time.safety && ssp_coefficient_ == 0.0)
     refuse(config_, "time.safety",
-           fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give "
-                       "time.dt or time.cfl",
+           fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give time.dt "
+                       "or time.cfl",
                        method_->name));
 }
 

@@ -90,13 +90,14 @@ struct simulation::impl {
     const double rounding = 1e-12 + 1e-15 * static_cast<double>(last.step);
     for (std::size_t k = 0; promises.conservation && k < last.conservation_defect.size(); ++k)
       if (!(last.conservation_defect[k] <= rounding))
-        broken(fmt::format("{} is not conserved to rounding{}", setup.equation->invariants()[k],
-                           config.velocity.points > 0
-                               ? " (a Maxwellian by formula on a coarse velocity grid does that); use "
-                                 "velocity.equilibrium = \"auto\""
-                               : " (the step is unstable, or values of very different size cancel); use a "
-                                 "smaller step"),
-               last.conservation_defect[k]);
+        broken(
+            fmt::format(
+                "{} is not conserved to rounding{}", setup.equation->invariants()[k],
+                config.velocity.points > 0
+                    ? " (a Maxwellian by formula on a coarse velocity grid does that); use "
+                      "velocity.equilibrium = \"auto\""
+                    : " (the step is unstable, or values of very different size cancel); use a smaller step"),
+            last.conservation_defect[k]);
     if (promises.entropy && last.entropy_change > 1e-13 * (1.0 + std::abs(last.entropy)))
       broken("the entropy increased (first-order upwind within r dt_FE entails decay)", last.entropy_change);
   }
@@ -246,8 +247,8 @@ saved_run simulation::save() const {
 void simulation::restore(const saved_run& saved) {
   if (saved.state.size() != static_cast<std::size_t>(cells()) * static_cast<std::size_t>(components()))
     throw input_error(
-        "the saved state has another size than the case (it belongs to another case); restart with the "
-        "case it was written for");
+        "the saved state has another size than the case (it belongs to another case); restart with the case "
+        "it was written for");
   for (int cell = 0; cell < cells(); ++cell)
     std::copy_n(saved.state.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
                 impl_->state.row(cell));

@@ -44,11 +44,10 @@ broadwell_riemann::broadwell_riemann(state left, state right)
     : left_{left.rho, left.m / left.rho}, right_{right.rho, right.m / right.rho}, middle_{} {
   for (const side& given : {left_, right_})
     if (!(given.rho > 0.0) || !(std::abs(given.u) < 1.0))
-      throw input_error(
-          fmt::format("no Riemann problem for density {:g} and velocity {:g} (the limit system is hyperbolic "
-                      "for positive density and "
-                      "velocities below that of the particles); give rho > 0 and |m| < rho",
-                      given.rho, given.u));
+      throw input_error(fmt::format(
+          "no Riemann problem for density {:g} and velocity {:g} (the limit system is hyperbolic for "
+          "positive density and velocities below that of the particles); give rho > 0 and |m| < rho",
+          given.rho, given.u));
   // Towards u = −1 the density behind the slow wave exceeds that behind the fast one, towards u = 1 the
   // reverse.
   double low = -1.0, high = 1.0;

@@ -58,10 +58,9 @@ class planner {
                                       shown(varied.key)));
       for (const auto& item : study_.overrides)
         if (key_of(item) == varied.key)
-          throw input_error(
-              fmt::format("'{}' is both varied and set to a value (one of them would be ignored) "
-                          "leave one out",
-                          shown(varied.key)));
+          throw input_error(fmt::format(
+              "'{}' is both varied and set to a value (one of them would be ignored) leave one out",
+              shown(varied.key)));
       if (varied.key == "title" || varied.key.rfind("output.", 0) == 0)
         throw input_error(fmt::format(
             "'{}' cannot be varied (no number of a run depends on it) vary another key", shown(varied.key)));
@@ -69,8 +68,8 @@ class planner {
     }
     if (runs > static_cast<double>(convergence::most_runs))
       throw input_error(
-          fmt::format("the combinations of all values make {:.0f} runs (at most {} are possible) "
-                      "vary fewer keys at a time",
+          fmt::format("the combinations of all values make {:.0f} runs (at most {} are possible) vary fewer "
+                      "keys at a time",
                       runs, convergence::most_runs));
   }
 
@@ -116,8 +115,7 @@ class planner {
       for (const auto& other : grid_)
         if (other.run == p.run)
           throw input_error(fmt::format(
-              "the values {} and {} of {} make the same run (each run is compared "
-              "once) remove one of them",
+              "the values {} and {} of {} make the same run (each run is compared once) remove one of them",
               fmt::join(other.values, ", "), fmt::join(p.values, ", "), fmt::join(plan_.keys, ", ")));
       grid_.push_back(std::move(p));
       more = false;
@@ -187,19 +185,19 @@ class planner {
       how_ = all_exact() ? kind::exact : kind::next;
       if (how_ == kind::next && !resolves_)
         throw input_error(
-            fmt::format("there is nothing to compare with (no mesh or step is refined, and model "
-                        "'{}' has no exact solution) give --reference",
+            fmt::format("there is nothing to compare with (no mesh or step is refined, and model '{}' has no "
+                        "exact solution) give --reference",
                         model));
     }
     if (how_ == kind::exact && !all_exact())
       throw input_error(
-          fmt::format("reference 'exact' does not exist (no exact solution of model '{}' is known "
-                      "for these data) choose --reference next, time or METHOD@STEP",
+          fmt::format("reference 'exact' does not exist (no exact solution of model '{}' is known for these "
+                      "data) choose --reference next, time or METHOD@STEP",
                       model));
     if (how_ == kind::next && (!resolves_ || refined_key() == "velocity.points"))
       throw input_error(
-          "reference 'next' needs a finer run (no mesh or step is refined) vary space.cells or a "
-          "step, or choose another reference");
+          "reference 'next' needs a finer run (no mesh or step is refined) vary space.cells or a step, or "
+          "choose another reference");
     if (how_ == kind::space_time && !has_space)
       throw input_error(
           fmt::format("reference 'space+time' needs a mesh (model '{}' has no space) choose time", model));

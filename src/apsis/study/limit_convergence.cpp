@@ -108,10 +108,10 @@ void add_limit_convergence(const std::string& id, const study_control& control, 
   picture drawing{
       id + "-convergence",
       "Runs with ε = 0 converge to the limit systems",
-      "Relative L2 error of the moments against solutions of the limit systems by Fourier "
-      "collocation, which knows nothing of kinetic schemes. Solid: finite volumes; dashed, hardly "
-      "to be told from them: finite differences. The second-order method falls with slope 2, the "
-      "third-order method faster than 3 until the fifth-order space error is the smaller one.",
+      "Relative L2 error of the moments against solutions of the limit systems by Fourier collocation, which "
+      "knows nothing of kinetic schemes. Solid: finite volumes; dashed, hardly to be told from them: finite "
+      "differences. The second-order method falls with slope 2, the third-order method faster than 3 until "
+      "the fifth-order space error is the smaller one.",
       {}};
   for (const auto& p : problems)
     drawing.panels.push_back({p.title,

@@ -104,12 +104,9 @@ void add_order_maps(const std::string& id, const study_control& control, claim_r
     picture p{id + "-order-" + model,
               "Observed order, " + model,
               "Observed order between Δt and Δt/2 from data out of equilibrium. Top: ε ≫ Δt; bottom: the "
-              "limit. Between, "
-              "the paper's methods have plateaus proportional to ε. For md-imex-5-2 and md-imex-8-3 low "
-              "orders mark the "
-              "rise of errors ε²/Δt towards Δt = ε; beyond, for ε ≪ Δt, the order holds. Empty: less than "
-              "the reference can "
-              "tell.",
+              "limit. Between, the paper's methods have plateaus proportional to ε. For md-imex-5-2 and "
+              "md-imex-8-3 low orders mark the rise of errors ε²/Δt towards Δt = ε; beyond, for ε ≪ Δt, the "
+              "order holds. Empty: less than the reference can tell.",
               {}};
     for (const auto& m : maps) {
       p.panels.push_back(m.map());

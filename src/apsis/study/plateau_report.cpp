@@ -111,18 +111,15 @@ void add_starts(const std::string& id, const study_control& control, claim_resul
   const time_study study(load_case("paper/ode", {}), epsilon);
   std::vector<field> exact;
   for (const auto& from : starts) exact.push_back(study.reference(from.data, 1e-11, control));
-  picture starts_picture{id + "-starts",
-                         fmt::format("ODE model at ε = {:g}: three starts", epsilon),
-                         "Plateaus have two causes. md-imex-3-2 stalls from all three starts: it has no flux "
-                         "of size ε. md-imex-4-2 keeps "
-                         "that flux, and stalls only where the layer of inconsistent data is not resolved. "
-                         "md-imex-6-3 has both errors. "
-                         "md-imex-5-2 and md-imex-8-3 have neither and stay far below ε from every start; "
-                         "what is left are errors ε²/Δt, "
-                         "which rise towards Δt = ε. Dashed: the plateaus that the coefficients predict for "
-                         "inconsistent and for "
-                         "consistent data.",
-                         {}};
+  picture starts_picture{
+      id + "-starts",
+      fmt::format("ODE model at ε = {:g}: three starts", epsilon),
+      "Plateaus have two causes. md-imex-3-2 stalls from all three starts: it has no flux of size ε. "
+      "md-imex-4-2 keeps that flux, and stalls only where the layer of inconsistent data is not resolved. "
+      "md-imex-6-3 has both errors. md-imex-5-2 and md-imex-8-3 have neither and stay far below ε from every "
+      "start; what is left are errors ε²/Δt, which rise towards Δt = ε. Dashed: the plateaus that the "
+      "coefficients predict for inconsistent and for consistent data.",
+      {}};
   std::vector<std::vector<std::vector<double>>> errors(
       shown.size(), std::vector<std::vector<double>>(std::size(starts), std::vector<double>(levels)));
   run_all(control, "three starts", static_cast<int>(shown.size() * std::size(starts)) * levels, [&](int job) {
@@ -181,8 +178,7 @@ void add_plateau_study(const std::string& id, const study_control& control, clai
   add_starts(id, control, result);
   result.remarks.emplace_back(
       "The plateaus, which the paper leaves open, follow from the coefficients: docs/plateaus.md derives the "
-      "constants, the "
-      "tables compare them with what runs show, and md-imex-5-2 and md-imex-8-3 have none.");
+      "constants, the tables compare them with what runs show, and md-imex-5-2 and md-imex-8-3 have none.");
 }
 
 }  // namespace apsis

@@ -17,8 +17,8 @@ claim_result check(const study_control&) {
            1e-15),
       near("ratio of the two, in percent more", 100.0 * (ratio - 1.0), 23.0, 0.5)};
   result.remarks = {
-      "Their scheme counts its correction step as a fifth stage here; it is of type ARS, so that the "
-      "limit needs consistent data, where that of the paper does not."};
+      "Their scheme counts its correction step as a fifth stage here; it is of type ARS, so that the limit "
+      "needs consistent data, where that of the paper does not."};
   return result;
 }
 

@@ -162,8 +162,8 @@ extern const claim_entry claim_C10;
 const claim_entry claim_C10 = {
     "C10", "Numerical results, the implicit methods on u' = -10 u^2; theorem on implicit methods",
     "the implicit methods keep u' = -10 u^2, u(0) = 10 positive for every step",
-    "every stage and step looked at for x; beyond: random dissipative G with random "
-    "convex functionals, for every implicit method of the catalogue that is unconditionally SSP",
+    "every stage and step looked at for x; beyond: random dissipative G with random convex functionals, for "
+    "every implicit method of the catalogue that is unconditionally SSP",
     check};
 
 }  // namespace apsis

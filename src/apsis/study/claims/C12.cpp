@@ -60,14 +60,13 @@ panel draw_pair(const pair_of_methods& methods, claim_result& result) {
 
 claim_result check(const study_control&) {
   claim_result result;
-  picture decay{
-      "C12-decay",
-      "u' = −10u², u(0) = 10",
-      "Solid: unconditionally SSP implicit two-derivative methods; dashed: DIRK methods of the same "
-      "order; dash-dotted: the exact solution 1/(10t + 0.1). The SSP methods are positive and "
-      "decreasing for every step, the DIRK methods are not. A marker at the start "
-      "is a run that could not begin: its stage equation has no real root.",
-      {}};
+  picture decay{"C12-decay",
+                "u' = −10u², u(0) = 10",
+                "Solid: unconditionally SSP implicit two-derivative methods; dashed: DIRK methods of the "
+                "same order; dash-dotted: the exact solution 1/(10t + 0.1). The SSP methods are positive and "
+                "decreasing for every step, the DIRK methods are not. A marker at the start is a run that "
+                "could not begin: its stage equation has no real root.",
+                {}};
   for (const auto& methods : pairs) decay.panels.push_back(draw_pair(methods, result));
   result.pictures.push_back(std::move(decay));
   result.remarks = {

@@ -43,10 +43,10 @@ claim_result check(const study_control& control) {
     add("equilibrium, |Q(E)| / |E| and |R E - w| / (1 + |w|)", worst.equilibrium, 1e-13);
     add("dissipation, |Q'Q + C Q| / ((1 + C)(1 + |u| + |Q|))", worst.derivative, 1e-11);
   }
-  result.remarks = {fmt::format(
-      "largest of {} random states of every relaxation model of the registry: its initial data at random "
-      "places, every component multiplied by a random number between 0.1 and 1.9",
-      samples)};
+  result.remarks = {
+      fmt::format("largest of {} random states of every relaxation model of the registry: its initial data "
+                  "at random places, every component multiplied by a random number between 0.1 and 1.9",
+                  samples)};
   return result;
 }
 

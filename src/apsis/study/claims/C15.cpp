@@ -57,10 +57,10 @@ claim_result check(const study_control& control) {
         at_most(fmt::format("{}: fraction of random states without equilibrium", m.entry->name),
                 static_cast<double>(sum.refused) / (25.0 * samples), 0.1));
   }
-  result.remarks = {fmt::format(
-      "{} random states of every model with positive unknowns, each with 25 steps between 1e-12 and 1e12; "
-      "the stage solve is the one of production",
-      samples)};
+  result.remarks = {
+      fmt::format("{} random states of every model with positive unknowns, each with 25 steps between 1e-12 "
+                  "and 1e12; the stage solve is the one of production",
+                  samples)};
   return result;
 }
 

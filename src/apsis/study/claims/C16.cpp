@@ -155,8 +155,7 @@ claim_result check(const study_control&) {
       at_most("and lie within those of the particles (subcharacteristic condition)", limit.fastest, 1.0)};
   result.remarks = {fmt::format(
       "Largest of {} random states, through the collision and transport operators of the runs: populations "
-      "from "
-      "10⁻³ to 10, ε from 10⁻⁸ to 10⁸, profiles linear in x with every reconstruction of the registry.",
+      "from 10⁻³ to 10, ε from 10⁻⁸ to 10⁸, profiles linear in x with every reconstruction of the registry.",
       samples)};
   return result;
 }
@@ -167,8 +166,7 @@ extern const claim_entry claim_C16;
 const claim_entry claim_C16 = {
     "C16", "Models, the Broadwell model",
     "in moments ρ_t + m_x = 0, m_t + z_x = 0, z_t + m_x = (ρ² + m² − 2ρz)/(2ε); for ε → 0 z = (ρ² + "
-    "m²)/(2ρ), which "
-    "closes the limit system; E(ρ, m) as printed",
+    "m²)/(2ρ), which closes the limit system; E(ρ, m) as printed",
     "identities on random states through the production operators, and the fluxes of the limit system",
     check};
 

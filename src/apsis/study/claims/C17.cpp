@@ -123,9 +123,9 @@ picture draw_distances(const std::vector<distance_job>& jobs) {
   picture p{
       "C17-distance",
       "Distance to the limit scheme, from inconsistent data",
-      "Largest difference of the moments ω from those of the limit scheme at the end of eight steps, "
-      "against ε at fixed step and mesh. It falls in proportion to ε until only rounding is left. Solid: "
-      "finite volumes (and the ODE model); dashed, on top of them down to rounding: finite differences.",
+      "Largest difference of the moments ω from those of the limit scheme at the end of eight steps, against "
+      "ε at fixed step and mesh. It falls in proportion to ε until only rounding is left. Solid: finite "
+      "volumes (and the ODE model); dashed, on top of them down to rounding: finite differences.",
       {}};
   for (const auto& job : jobs) {
     if (!of_the_paper(job.method)) continue;
@@ -218,12 +218,9 @@ void show_failures(const study_control& control, claim_result& result) {
   picture p{"C17-failures",
             "What type A and GSA are for",
             "Left: methods whose first stage is u^n itself transport data that are off equilibrium. Their "
-            "moments stay at "
-            "a distance proportional to Δt (solid); only from data in equilibrium do they reach the limit "
-            "scheme (dashed). "
-            "Right: methods whose last stage is not relaxed reach the limit with their moments (solid), but "
-            "leave the state "
-            "off its equilibrium (dashed).",
+            "moments stay at a distance proportional to Δt (solid); only from data in equilibrium do they "
+            "reach the limit scheme (dashed). Right: methods whose last stage is not relaxed reach the limit "
+            "with their moments (solid), but leave the state off its equilibrium (dashed).",
             {}};
   for (const std::string model : {"ode", "broadwell"}) {
     panel starts = distance_panel(model + ": first stage not relaxed", "distance of ω");
@@ -253,14 +250,12 @@ claim_result check(const study_control& control) {
   add_riemann_problems("C17", control, result);
   result.remarks = {
       "The distance falls at least linearly, and no faster in general: the first stage of md-imex-3-2 has Q "
-      "alone, so "
-      "from inconsistent data it keeps O(ε) of them, and T carries it on.",
+      "alone, so from inconsistent data it keeps O(ε) of them, and T carries it on.",
       "Methods of type CK are left out: they evaluate Q(u^n)/ε explicitly, which leaves rounding divided by "
-      "ε in the "
-      "moments, from data in equilibrium as well.",
+      "ε in the moments, from data in equilibrium as well.",
       "Stages with cell averages relax at the Gauss points of the quartics through their explicit part, so "
-      "the limit of the "
-      "finite-volume scheme is a state of projected averages; its moments follow the explicit method."};
+      "the limit of the finite-volume scheme is a state of projected averages; its moments follow the "
+      "explicit method."};
   return result;
 }
 
@@ -269,11 +264,9 @@ claim_result check(const study_control& control) {
 extern const claim_entry claim_C17;
 const claim_entry claim_C17 = {"C17", "Properties of the numerical scheme, asymptotic preservation",
                                "at fixed Δt, as ε → 0, the scheme becomes the explicit Runge–Kutta method on "
-                               "the limit system, for every model and "
-                               "from any data",
+                               "the limit system, for every model and from any data",
                                "runs against the limit scheme, written without the operators and the stepper "
-                               "of a run; the limit scheme against the "
-                               "limit systems written out by hand",
+                               "of a run; the limit scheme against the limit systems written out by hand",
                                check};
 
 }  // namespace apsis

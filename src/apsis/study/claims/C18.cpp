@@ -113,10 +113,8 @@ void add_violation(claim_result& result) {
       {"C18-entropy",
        "Broadwell model, ε = 1e-8, first-order upwind, Δt = 0.8 Δt_FE",
        "Left: the entropy falls in every step of md-imex-3-2. The IMEX trapezoidal rule is stable and its "
-       "densities "
-       "stay above 0.4, but the entropy rises in half of its steps, and over long times. Right: its change "
-       "in each "
-       "step but the first.",
+       "densities stay above 0.4, but the entropy rises in half of its steps, and over long times. Right: "
+       "its change in each step but the first.",
        {{"", "t (dimensionless)", "entropy (dimensionless)", false, false, {bad.entropy, good.entropy}, {}},
         {"",
          "t (dimensionless)",
@@ -166,11 +164,9 @@ claim_result check(const study_control& control) {
   add_violation(result);
   result.remarks = {
       "epsilon from 0 to 1e12, initial data of the models, their equilibrium, and hostile data: unknowns "
-      "disturbed over "
-      "two decades, cells next to each other that are nearly empty (1e-8), at rest, or full.",
+      "disturbed over two decades, cells next to each other that are nearly empty (1e-8), at rest, or full.",
       "Comparators that are L-stable (ars-222, ssp2-222, ssp2-332, ...) were not seen to gain entropy before "
-      "they lost "
-      "positivity; a method that does not damp, like the trapezoidal rule, does."};
+      "they lost positivity; a method that does not damp, like the trapezoidal rule, does."};
   return result;
 }
 
@@ -181,8 +177,7 @@ const claim_entry claim_C18 = {
     "C18", "AP and positivity, remark on the entropy",
     "S[f^{n+1}] <= S[f^n] for BGK and Broadwell with first-order upwind, dt <= r dt_FE, for every epsilon",
     "every step of runs and of hostile data, epsilon from 0 to 1e12, every IMEX method with an SSP "
-    "coefficient; and a "
-    "method without one that violates it",
+    "coefficient; and a method without one that violates it",
     check};
 
 }  // namespace apsis

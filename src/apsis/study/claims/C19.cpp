@@ -62,14 +62,14 @@ picture figure(const method_errors& m) {
     }
     p.curves.push_back(std::move(c));
   }
-  return {"C19-" + m.name,
-          "ODE model, " + m.name,
-          fmt::format(
-              "Order {} for ε = 1 and in the limit of small ε. Between, where Δt falls from far above ε to "
-              "far below, the error stays at a plateau proportional to ε. What is left below 1e-13 is "
-              "rounding.",
-              m.order),
-          {std::move(p)}};
+  return {
+      "C19-" + m.name,
+      "ODE model, " + m.name,
+      fmt::format(
+          "Order {} for ε = 1 and in the limit of small ε. Between, where Δt falls from far above ε to far "
+          "below, the error stays at a plateau proportional to ε. What is left below 1e-13 is rounding.",
+          m.order),
+      {std::move(p)}};
 }
 
 report_table slopes(const method_errors& m) {

@@ -61,8 +61,8 @@ claim_result check(const study_control& control) {
     result.pictures.push_back(
         {"C20-" + name,
          name + fmt::format(" at ε = {:g}", epsilon),
-         "The error stops at a plateau, while runs with Δt and Δt/2 still come together at the "
-         "order of the method: they converge to another solution, O(ε) away.",
+         "The error stops at a plateau, while runs with Δt and Δt/2 still come together at the order of the "
+         "method: they converge to another solution, O(ε) away.",
          {std::move(p)}});
   }
   return result;

@@ -103,9 +103,9 @@ claim_result check(const study_control& control) {
   result.pictures.push_back(
       {"C21-round-off",
        "md-imex-6-3 at ε = 1: rounding, and what removes it",
-       "With 15 printed digits the rows of coefficients miss 1 by about 1e-16, which is lost "
-       "again at every step: the error grows below Δt ≈ 5e-5. Coefficients whose rows sum to 1 "
-       "without rounding remove the growth in double; long double removes the floor.",
+       "With 15 printed digits the rows of coefficients miss 1 by about 1e-16, which is lost again at every "
+       "step: the error grows below Δt ≈ 5e-5. Coefficients whose rows sum to 1 without rounding remove the "
+       "growth in double; long double removes the floor.",
        {std::move(p)}});
   return result;
 }

@@ -62,18 +62,15 @@ claim_result check(const study_control& control) {
   result.pictures = {accuracy_picture(
       figure, "C22-broadwell", "Accuracy for the Broadwell model, inconsistent data, Δt = Δx/2, t = 0.1",
       "L² difference to the next finer mesh. For ε = 1 and ε ≤ 1e-6 the curves have the slope of the "
-      "triangle; between, "
-      "the order is reduced while ε and Δt are comparable. On coarse meshes the error in space shows for the "
-      "third order.")};
+      "triangle; between, the order is reduced while ε and Δt are comparable. On coarse meshes the error in "
+      "space shows for the third order.")};
   result.tables = {accuracy_table(figure, "Errors (slopes), WENO5-JS, N = 20 … 640"),
                    accuracy_table(deep, "Errors (slopes), WENO5-Z, N = 80 … 2560")};
   result.remarks = {
       "With the weights of Jiang and Shu (the figure) the third-order errors at ε = 1e-8 are 6.9e-6 and "
-      "2.5e-7 for N = 80 and 160, "
-      "factors of 3.8 and 2.5 above the independent program: there the error in space dominates, and these "
-      "weights lose "
-      "accuracy where a derivative vanishes. With Z weights, which do not, the error in time is seen and the "
-      "figures agree."};
+      "2.5e-7 for N = 80 and 160, factors of 3.8 and 2.5 above the independent program: there the error in "
+      "space dominates, and these weights lose accuracy where a derivative vanishes. With Z weights, which "
+      "do not, the error in time is seen and the figures agree."};
   return result;
 }
 

@@ -181,12 +181,10 @@ claim_result check(const study_control& control) {
   add_searches(reached, residual, result);
   result.remarks = {
       "Beyond the paper: with b·e = 1 its inequality for every a, x − k_s x² ≤ b·c with x = 1 − a, gives b·c "
-      "≥ "
-      "1/(4 k_s) = 1/2 + 1/(2s). The residual of order two is at least 1/(2s); s backward Euler steps of 1/s "
-      "reach it.",
+      "≥ 1/(4 k_s) = 1/2 + 1/(2s). The residual of order two is at least 1/(2s); s backward Euler steps of "
+      "1/s reach it.",
       "Where the proof says that a term 'obtains a minimum', it is a maximum, and the inequality before is "
-      "not strict; "
-      "the conclusion stands."};
+      "not strict; the conclusion stands."};
   return result;
 }
 
@@ -196,8 +194,7 @@ extern const claim_entry claim_C25;
 const claim_entry claim_C25 = {
     "C25", "Appendix: unconditionally SSP implicit methods",
     "with nonnegative coefficients of the derivative no method of the class has order two, because b·e − b·c "
-    "≤ "
-    "k_s < 1/2",
+    "≤ k_s < 1/2",
     "random nonnegative tableaux; random searches for the largest difference and the smallest residual",
     check};
 

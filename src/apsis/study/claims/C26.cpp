@@ -79,8 +79,7 @@ claim_result check(const study_control& control) {
                              {std::move(plot)}});
   result.remarks = {
       "The statement of the paper, that none was found, is overtaken by this method; its file tells how it "
-      "was "
-      "found. Whether fewer than nine stages can do is open."};
+      "was found. Whether fewer than nine stages can do is open."};
   return result;
 }
 

@@ -1,15 +1,16 @@
 #include "build_info.hpp"
 
 #include <apsis/core/parallel.hpp>
+
 #include <chrono>
 #include <fstream>
 #include <string>
 #include <thread>
 
+#include <boost/version.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <boost/version.hpp>
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {

@@ -1,11 +1,12 @@
 #include "commands.hpp"
 #include "method_report.hpp"
 
-#include <algorithm>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/study/observed_limits.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>

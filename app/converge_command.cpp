@@ -10,6 +10,7 @@
 #include <apsis/output/progress.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/study/convergence_report.hpp>
+
 #include <memory>
 #include <optional>
 

@@ -2,14 +2,14 @@
 
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/errors.hpp>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>

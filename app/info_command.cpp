@@ -2,6 +2,7 @@
 #include "commands.hpp"
 
 #include <apsis/core/parallel.hpp>
+
 #include <memory>
 
 #include <fmt/format.h>

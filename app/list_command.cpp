@@ -8,6 +8,7 @@
 #include <apsis/model/model_registry.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
 #include <apsis/study/claim_registry.hpp>
+
 #include <map>
 #include <memory>
 

@@ -1,9 +1,10 @@
 #include "build_info.hpp"
 #include "commands.hpp"
 
-#include <algorithm>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
+
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <string>

@@ -1,11 +1,12 @@
 #include "method_report.hpp"
 
-#include <algorithm>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/export.hpp>
 #include <apsis/method/intermediate_regime.hpp>
+
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>

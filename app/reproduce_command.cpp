@@ -11,6 +11,7 @@
 #include <apsis/output/result_folder.hpp>
 #include <apsis/study/claim_registry.hpp>
 #include <apsis/study/reproduce.hpp>
+
 #include <chrono>
 #include <fstream>
 #include <memory>

@@ -3,6 +3,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/output/case_json.hpp>
+
 #include <memory>
 
 #include <nlohmann/json.hpp>

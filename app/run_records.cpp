@@ -1,8 +1,9 @@
 #include "run_records.hpp"
 
-#include <algorithm>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
+
+#include <algorithm>
 
 namespace apsis::app {
 namespace {

@@ -1,9 +1,9 @@
-#include "run_report.hpp"
-
 #include "build_info.hpp"
+#include "run_report.hpp"
 
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/case_json.hpp>
+
 #include <cmath>
 
 #include <fmt/format.h>

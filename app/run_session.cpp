@@ -1,12 +1,12 @@
-#include "run_session.hpp"
-
 #include "interrupt.hpp"
+#include "run_session.hpp"
 
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/parallel.hpp>
 #include <apsis/output/case_json.hpp>
+
 #include <cmath>
 #include <sstream>
 

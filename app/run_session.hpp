@@ -5,6 +5,7 @@
 
 #include <apsis/output/progress.hpp>
 #include <apsis/output/result_folder.hpp>
+
 #include <chrono>
 #include <memory>
 

@@ -1,13 +1,14 @@
 #include "commands.hpp"
 #include "method_report.hpp"
 
-#include <algorithm>
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
+
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 

@@ -2,12 +2,12 @@
 
 #include <apsis/space/reconstruction_registry.hpp>
 
-#include <benchmark/benchmark.h>
-
 #include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <benchmark/benchmark.h>
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <apsis/method/method.hpp>
 #include <apsis/run/simulation.hpp>
 
-#include <benchmark/benchmark.h>
-
 #include <string>
+
+#include <benchmark/benchmark.h>
 
 namespace {
 

@@ -1,6 +1,7 @@
 // apsis reproduce from outside: verdicts, report, resuming, and what goes wrong.
 #include "program.hpp"
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -8,9 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
 #include <unistd.h>
-#include <csignal>
 
 namespace {
 

@@ -1,6 +1,7 @@
 #include "program.hpp"
 
 #include <apsis/output/hdf5_file.hpp>
+
 #include <chrono>
 #include <csignal>
 #include <sstream>

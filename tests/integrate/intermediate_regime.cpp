@@ -1,9 +1,10 @@
 // The terms of size ε that the coefficients predict, against the production stepper on a linear problem whose
 // slow manifold is known: u' = v, v' = (a u − v)/ε. Its slow eigenvalue is a − ε a² + O(ε²), with the right
 // eigenvector (1, a − ε a²) and the left eigenvector (1, ε) up to O(ε²).
+#include <apsis/method/intermediate_regime.hpp>
+
 #include <apsis/integrate/relaxation_problem.hpp>
 #include <apsis/integrate/stepper.hpp>
-#include <apsis/method/intermediate_regime.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,8 +1,9 @@
 // Automatic derivatives against derivatives by hand, and the guarded Newton method on stages that are easy,
 // stiff, singular, without root, or not finite.
+#include <apsis/integrate/newton_problem.hpp>
+
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/autodiff.hpp>
-#include <apsis/integrate/newton_problem.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Dense>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <Eigen/Dense>
 #include <integrate/random.hpp>
 #include <support/property.hpp>
 

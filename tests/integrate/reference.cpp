@@ -1,13 +1,13 @@
 // The references that errors are measured against must be right themselves.
+#include <integrate/reference.hpp>
+
 #include <apsis/integrate/extrapolation.hpp>
 
 #include <array>
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 #include <integrate/ode_model.hpp>
-#include <integrate/reference.hpp>
 
 namespace {
 

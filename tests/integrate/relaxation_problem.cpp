@@ -1,10 +1,11 @@
 // The closed-form stage of relaxation problems: its weights, Properties 3–5 of the paper (C14), positivity of
 // backward Euler (C15) and what happens at ε = 0.
+#include <apsis/integrate/relaxation_problem.hpp>
+
 #include <apsis/core/errors.hpp>
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/integrate/autodiff.hpp>
 #include <apsis/integrate/newton_problem.hpp>
-#include <apsis/integrate/relaxation_problem.hpp>
 
 #include <array>
 #include <cmath>

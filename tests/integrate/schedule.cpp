@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/method/certificate.hpp>
+
 #include <cmath>
 
 #include <support/property.hpp>

@@ -1,8 +1,9 @@
 // Terms of size ε, from coefficients alone. What they mean is tested with the stepper (tests/integrate).
+#include <apsis/method/intermediate_regime.hpp>
+
 #include "tableaux.hpp"
 
 #include <apsis/method/certificate.hpp>
-#include <apsis/method/intermediate_regime.hpp>
 #include <apsis/method/monotonicity.hpp>
 #include <apsis/method/order_conditions.hpp>
 #include <apsis/method/polish.hpp>

@@ -1,10 +1,11 @@
 // SSP coefficients against formulas of their own: from random Shu–Osher forms, from θ methods, from
 // polynomials.
-#include "tableaux.hpp"
-
 #include <apsis/method/monotonicity.hpp>
 
+#include "tableaux.hpp"
+
 #include <algorithm>
+
 #include <support/property.hpp>
 
 namespace apsis::test {

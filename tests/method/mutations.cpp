@@ -11,10 +11,9 @@
 #include <fstream>
 #include <map>
 
-#include <unistd.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace apsis::test {
 namespace {

@@ -1,9 +1,10 @@
 // Polishing the digits that papers print gives the digits of the catalogue. The printed coefficients are
 // typed here from the page, so that neither the files nor the polishing can hide a wrong digit of the other.
+#include <apsis/method/polish.hpp>
+
 #include "tableaux.hpp"
 
 #include <apsis/method/coefficient.hpp>
-#include <apsis/method/polish.hpp>
 
 #include <algorithm>
 #include <string>

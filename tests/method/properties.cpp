@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+
 #include <support/property.hpp>
 
 namespace apsis::test {

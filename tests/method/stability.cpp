@@ -1,12 +1,13 @@
 // Linear stability against formulas derived by hand from the Shu–Osher form, and against the exponential.
-#include "tableaux.hpp"
-
 #include <apsis/method/stability.hpp>
+
+#include "tableaux.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+
 #include <support/property.hpp>
 
 namespace apsis::test {

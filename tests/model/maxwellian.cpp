@@ -1,10 +1,11 @@
 #include <apsis/model/maxwellian.hpp>
 
+#include <apsis/core/errors.hpp>
+
 #include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <apsis/core/errors.hpp>
 #include <support/property.hpp>
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/parallel.hpp>
+
 #include <cmath>
 #include <limits>
 #include <string>

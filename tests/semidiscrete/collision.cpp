@@ -1,10 +1,11 @@
 #include "bgk_case.hpp"
 
-#include <limits>
-
 #include <apsis/core/errors.hpp>
 #include <apsis/core/parallel.hpp>
 #include <apsis/space/quartic.hpp>
+
+#include <limits>
+
 #include <support/property.hpp>
 
 namespace {

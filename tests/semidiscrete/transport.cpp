@@ -1,9 +1,10 @@
 #include "bgk_case.hpp"
 
+#include <apsis/core/parallel.hpp>
+
 #include <algorithm>
 #include <limits>
 
-#include <apsis/core/parallel.hpp>
 #include <support/property.hpp>
 
 namespace {

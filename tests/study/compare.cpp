@@ -1,6 +1,7 @@
 // States on different meshes: cell averages against cell averages, point values against point values.
-#include <apsis/core/errors.hpp>
 #include <apsis/study/compare.hpp>
+
+#include <apsis/core/errors.hpp>
 
 #include <cmath>
 #include <functional>

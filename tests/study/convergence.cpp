@@ -1,8 +1,9 @@
 // Convergence studies: known orders through the whole chain from case to rate, and what the machinery
 // promises.
+#include <apsis/study/convergence.hpp>
+
 #include <apsis/core/errors.hpp>
 #include <apsis/core/parallel.hpp>
-#include <apsis/study/convergence.hpp>
 
 #include <atomic>
 #include <cmath>

@@ -1,15 +1,16 @@
 // The production code against the limit scheme, for every relaxation model and every IMEX method.
+#include <apsis/study/limit_distance.hpp>
+
+#include "limit_cases.hpp"
+
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/run/setup.hpp>
-#include <apsis/study/limit_distance.hpp>
 #include <apsis/study/limit_scheme.hpp>
 
 #include <cmath>
 #include <random>
 
 #include <support/property.hpp>
-
-#include "limit_cases.hpp"
 
 using namespace apsis;
 

@@ -1,7 +1,10 @@
 // The limit scheme by itself: against equations written out by hand.
+#include <apsis/study/limit_scheme.hpp>
+
+#include "limit_cases.hpp"
+
 #include <apsis/core/errors.hpp>
 #include <apsis/run/setup.hpp>
-#include <apsis/study/limit_scheme.hpp>
 
 #include <algorithm>
 #include <array>
@@ -9,8 +12,6 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
-
-#include "limit_cases.hpp"
 
 using namespace apsis;
 

@@ -1,16 +1,17 @@
 // Runs with ε = 0 against the limit systems written out by hand.
+#include <apsis/study/limit_solution.hpp>
+
+#include "limit_cases.hpp"
+
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/study/limit_equations.hpp>
-#include <apsis/study/limit_solution.hpp>
 #include <apsis/study/model_properties.hpp>
 
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include "limit_cases.hpp"
 
 using namespace apsis;
 

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include <run/cases.hpp>
-
 #include <gtest/gtest.h>
+#include <run/cases.hpp>
 
 namespace apsis {
 namespace {

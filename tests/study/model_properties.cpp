@@ -1,7 +1,8 @@
 // Properties 2–5 of the paper for every model of the registry: a model added tomorrow is tested by being
 // there. States are random; the counterexample is shrunk.
-#include <apsis/core/errors.hpp>
 #include <apsis/study/model_properties.hpp>
+
+#include <apsis/core/errors.hpp>
 
 #include <cmath>
 #include <vector>

@@ -1,6 +1,7 @@
 // Observed orders on a problem type of one's own.
-#include <apsis/integrate/relaxation_problem.hpp>
 #include <apsis/study/observed_order.hpp>
+
+#include <apsis/integrate/relaxation_problem.hpp>
 
 #include <array>
 #include <cmath>

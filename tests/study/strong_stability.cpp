@@ -1,10 +1,11 @@
 // The largest step that keeps a property: the promise Δt ≤ r Δt_FE of every method of the catalogue, and
 // where it is sharp.
+#include <apsis/study/strong_stability.hpp>
+
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/study/adversaries.hpp>
 #include <apsis/study/case_problem.hpp>
 #include <apsis/study/observed_limits.hpp>
-#include <apsis/study/strong_stability.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,9 @@
 // Time accuracy of a discretised case against its exact solution in time.
+#include <apsis/study/time_study.hpp>
+
 #include <apsis/core/errors.hpp>
 #include <apsis/study/model_cases.hpp>
 #include <apsis/study/plateau_study.hpp>
-#include <apsis/study/time_study.hpp>
 
 #include <cmath>
 

@@ -1,4 +1,5 @@
 #include <apsis/config/case.hpp>
+
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_text.hpp>
 #include <apsis/config/case_value.hpp>

@@ -1,4 +1,5 @@
 #include <apsis/config/case_schema.hpp>
+
 #include <apsis/method/method.hpp>
 #include <apsis/space/boundary.hpp>
 #include <apsis/space/reconstruction_registry.hpp>

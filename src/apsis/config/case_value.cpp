@@ -1,4 +1,5 @@
 #include <apsis/config/case_value.hpp>
+
 #include <apsis/core/expression.hpp>
 #include <apsis/core/suggest.hpp>
 

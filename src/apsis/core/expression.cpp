@@ -1,4 +1,5 @@
 #include <apsis/core/expression.hpp>
+
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <boost/math/differentiation/autodiff.hpp>
-
 #include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include <boost/math/differentiation/autodiff.hpp>
 
 namespace apsis {
 

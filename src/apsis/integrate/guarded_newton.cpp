@@ -11,8 +11,8 @@
 #include <limits>
 #include <utility>
 
-#include <fmt/format.h>
 #include <Eigen/Dense>
+#include <fmt/format.h>
 #include <unsupported/Eigen/IterativeSolvers>
 
 namespace apsis::detail {

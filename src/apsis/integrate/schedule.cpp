@@ -1,8 +1,8 @@
 #include <apsis/integrate/schedule.hpp>
 
-#include <algorithm>
-
 #include <apsis/method/precision.hpp>
+
+#include <algorithm>
 
 namespace apsis {
 

@@ -1,14 +1,14 @@
-#include <map>
-#include <memory>
-#include <mutex>
-#include <string>
-
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
 
 namespace apsis {
 namespace {

@@ -1,12 +1,13 @@
 #include <apsis/method/certificate.hpp>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <apsis/core/errors.hpp>
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/monotonicity.hpp>
 #include <apsis/method/order_conditions.hpp>
 #include <apsis/method/stability.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace apsis {
 namespace {

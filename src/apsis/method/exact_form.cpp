@@ -1,9 +1,9 @@
 #include <apsis/method/exact_form.hpp>
 
-#include <algorithm>
-
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/monotonicity.hpp>
+
+#include <algorithm>
 
 namespace apsis {
 namespace {

@@ -1,12 +1,13 @@
 #include <apsis/method/export.hpp>
 
+#include <apsis/method/coefficient.hpp>
+
 #include <algorithm>
 #include <functional>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <apsis/method/coefficient.hpp>
 
 namespace apsis {
 namespace {

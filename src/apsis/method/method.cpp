@@ -1,9 +1,9 @@
 #include <apsis/method/method.hpp>
 
+#include <apsis/method/coefficient.hpp>
+
 #include <cmath>
 #include <type_traits>
-
-#include <apsis/method/coefficient.hpp>
 
 namespace apsis {
 

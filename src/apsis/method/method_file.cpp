@@ -1,3 +1,11 @@
+#include <apsis/method/method_file.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/method/coefficient.hpp>
+#include <apsis/method/exact_form.hpp>
+#include <apsis/method/method.hpp>
+
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -6,12 +14,6 @@
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
-#include <apsis/core/errors.hpp>
-#include <apsis/core/suggest.hpp>
-#include <apsis/method/coefficient.hpp>
-#include <apsis/method/exact_form.hpp>
-#include <apsis/method/method.hpp>
-#include <apsis/method/method_file.hpp>
 
 namespace apsis {
 namespace {

@@ -1,13 +1,14 @@
 #include <apsis/method/polish.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/method/coefficient.hpp>
+#include <apsis/method/order_conditions.hpp>
+
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <apsis/core/errors.hpp>
-#include <apsis/method/coefficient.hpp>
-#include <apsis/method/order_conditions.hpp>
 
 namespace apsis {
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/core/matrix.hpp>
+
 #include <vector>
 
 namespace apsis {

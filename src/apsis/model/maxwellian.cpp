@@ -1,13 +1,14 @@
 #include <apsis/model/maxwellian.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/model/vector_math.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
-#include <apsis/core/errors.hpp>
-#include <apsis/model/vector_math.hpp>
 
 namespace apsis {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/core/aligned.hpp>
+
 #include <string>
 #include <vector>
 

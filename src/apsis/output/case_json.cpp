@@ -1,5 +1,6 @@
-#include <apsis/config/case_schema.hpp>
 #include <apsis/output/case_json.hpp>
+
+#include <apsis/config/case_schema.hpp>
 
 #include <nlohmann/json.hpp>
 

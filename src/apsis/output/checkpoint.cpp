@@ -1,5 +1,6 @@
-#include <apsis/core/errors.hpp>
 #include <apsis/output/checkpoint.hpp>
+
+#include <apsis/core/errors.hpp>
 #include <apsis/output/hdf5_file.hpp>
 
 #include <fmt/format.h>

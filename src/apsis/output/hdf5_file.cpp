@@ -1,5 +1,6 @@
-#include <apsis/core/errors.hpp>
 #include <apsis/output/hdf5_file.hpp>
+
+#include <apsis/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <hdf5.h>

@@ -1,12 +1,13 @@
-#include <apsis/core/errors.hpp>
 #include <apsis/output/result_folder.hpp>
+
+#include <apsis/core/errors.hpp>
 
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <ranges>
 
 #include <fmt/format.h>
-#include <ranges>
 
 namespace apsis {
 namespace fs = std::filesystem;

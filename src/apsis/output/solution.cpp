@@ -1,5 +1,6 @@
-#include <apsis/output/hdf5_file.hpp>
 #include <apsis/output/solution.hpp>
+
+#include <apsis/output/hdf5_file.hpp>
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
 #include <apsis/run/monitor.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/core/parallel.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <apsis/core/errors.hpp>
-#include <apsis/core/parallel.hpp>
 
 namespace apsis {
 

@@ -1,19 +1,20 @@
-#include <apsis/integrate/schedule.hpp>
 #include <apsis/run/setup.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/expression.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/integrate/schedule.hpp>
+#include <apsis/semidiscrete/newton_collision.hpp>
+#include <apsis/space/quartic.hpp>
+#include <apsis/space/reconstruction_registry.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include <fmt/format.h>
-#include <apsis/core/errors.hpp>
-#include <apsis/core/expression.hpp>
-#include <apsis/core/suggest.hpp>
-#include <apsis/semidiscrete/newton_collision.hpp>
-#include <apsis/space/quartic.hpp>
-#include <apsis/space/reconstruction_registry.hpp>
 #include <boost/math/quadrature/gauss.hpp>
+#include <fmt/format.h>
 
 namespace apsis {
 namespace {

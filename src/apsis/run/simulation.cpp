@@ -1,5 +1,11 @@
 #include <apsis/run/simulation.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/run/monitor.hpp>
+#include <apsis/run/setup.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,11 +15,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <apsis/core/errors.hpp>
-#include <apsis/core/log.hpp>
-#include <apsis/integrate/integrate.hpp>
-#include <apsis/run/monitor.hpp>
-#include <apsis/run/setup.hpp>
 
 namespace apsis {
 

@@ -1,12 +1,12 @@
-#include <algorithm>
-#include <array>
-#include <utility>
-
 #include <apsis/core/parallel.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/local_relaxation.hpp>
 #include <apsis/space/limiter.hpp>
 #include <apsis/space/quartic.hpp>
+
+#include <algorithm>
+#include <array>
+#include <utility>
 
 namespace apsis {
 namespace {

@@ -1,9 +1,9 @@
-#include <algorithm>
-#include <utility>
-
 #include <apsis/core/parallel.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/local_relaxation.hpp>
+
+#include <algorithm>
+#include <utility>
 
 namespace apsis {
 namespace {

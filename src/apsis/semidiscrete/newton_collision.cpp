@@ -1,12 +1,12 @@
 #include <apsis/semidiscrete/newton_collision.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/newton_problem.hpp>
+
 #include <limits>
 #include <span>
 #include <type_traits>
 #include <vector>
-
-#include <apsis/core/errors.hpp>
-#include <apsis/integrate/newton_problem.hpp>
 
 namespace apsis {
 namespace {

@@ -1,12 +1,12 @@
 #include <apsis/semidiscrete/transport.hpp>
 
+#include <apsis/core/parallel.hpp>
+#include <apsis/space/limiter.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
-
-#include <apsis/core/parallel.hpp>
-#include <apsis/space/limiter.hpp>
 
 namespace apsis {
 namespace {

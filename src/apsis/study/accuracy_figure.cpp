@@ -1,12 +1,13 @@
 #include <apsis/study/accuracy_figure.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/method/method.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
-#include <apsis/core/errors.hpp>
-#include <apsis/method/method.hpp>
 
 namespace apsis {
 namespace {

@@ -1,13 +1,13 @@
 #include <apsis/study/adversaries.hpp>
 
+#include <apsis/core/relaxation_weights.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
-
-#include <apsis/core/relaxation_weights.hpp>
 
 namespace apsis {
 namespace {

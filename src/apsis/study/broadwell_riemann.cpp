@@ -1,10 +1,11 @@
 #include <apsis/study/broadwell_riemann.hpp>
 
+#include <apsis/core/errors.hpp>
+
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
-#include <apsis/core/errors.hpp>
 
 namespace apsis {
 namespace {

@@ -1,11 +1,12 @@
 #include <apsis/study/case_problem.hpp>
 
+#include <apsis/study/model_properties.hpp>
+#include <apsis/study/random_source.hpp>
+
 #include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>
-#include <apsis/study/model_properties.hpp>
-#include <apsis/study/random_source.hpp>
 
 namespace apsis {
 namespace {

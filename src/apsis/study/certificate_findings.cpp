@@ -1,4 +1,5 @@
 #include <apsis/study/certificate_findings.hpp>
+
 #include <apsis/study/paper_tables.hpp>
 
 namespace apsis {

@@ -1,3 +1,6 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/core/parallel.hpp>
+#include <apsis/core/suggest.hpp>
 #include <apsis/study/claim_registry.hpp>
 
 #include <algorithm>
@@ -8,9 +11,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <apsis/core/errors.hpp>
-#include <apsis/core/parallel.hpp>
-#include <apsis/core/suggest.hpp>
 
 namespace apsis {
 

@@ -1,5 +1,9 @@
 #include <apsis/study/compare.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/run/setup.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,9 +12,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <apsis/core/errors.hpp>
-#include <apsis/core/suggest.hpp>
-#include <apsis/run/setup.hpp>
 
 namespace apsis {
 namespace {

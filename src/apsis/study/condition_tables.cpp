@@ -1,5 +1,6 @@
-#include <apsis/method/order_conditions.hpp>
 #include <apsis/study/condition_tables.hpp>
+
+#include <apsis/method/order_conditions.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,6 @@
 #include <apsis/study/convergence.hpp>
+
+#include <apsis/core/errors.hpp>
 #include <apsis/study/convergence_plan.hpp>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <apsis/core/errors.hpp>
 
 namespace apsis {
 

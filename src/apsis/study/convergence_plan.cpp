@@ -1,5 +1,11 @@
 #include <apsis/study/convergence_plan.hpp>
 
+#include <apsis/config/case_text.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/study/settings.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,11 +14,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <apsis/config/case_text.hpp>
-#include <apsis/core/errors.hpp>
-#include <apsis/integrate/integrate.hpp>
-#include <apsis/run/setup.hpp>
-#include <apsis/study/settings.hpp>
 
 namespace apsis {
 namespace {

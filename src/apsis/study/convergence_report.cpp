@@ -1,14 +1,15 @@
 #include <apsis/study/convergence_report.hpp>
 
+#include <apsis/method/method.hpp>
+#include <apsis/output/case_json.hpp>
+#include <apsis/study/settings.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <apsis/method/method.hpp>
-#include <apsis/output/case_json.hpp>
-#include <apsis/study/settings.hpp>
 #include <nlohmann/json.hpp>
 
 namespace apsis {

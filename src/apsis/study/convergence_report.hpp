@@ -3,8 +3,9 @@
 #include <apsis/output/picture.hpp>
 #include <apsis/study/convergence.hpp>
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+
+#include <nlohmann/json_fwd.hpp>
 
 namespace apsis {
 

@@ -1,10 +1,10 @@
 #include <apsis/study/fourier_solution.hpp>
 
+#include <apsis/core/errors.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include <apsis/core/errors.hpp>
 
 namespace apsis {
 

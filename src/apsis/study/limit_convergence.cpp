@@ -1,12 +1,13 @@
 #include <apsis/study/limit_convergence.hpp>
 
+#include <apsis/method/certificate.hpp>
+#include <apsis/study/limit_solution.hpp>
+
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
-#include <apsis/method/certificate.hpp>
-#include <apsis/study/limit_solution.hpp>
 
 namespace apsis {
 namespace {

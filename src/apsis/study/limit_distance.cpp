@@ -1,14 +1,15 @@
 #include <apsis/study/limit_distance.hpp>
 
+#include <apsis/model/model_registry.hpp>
+#include <apsis/run/simulation.hpp>
+#include <apsis/study/limit_scheme.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
-#include <apsis/model/model_registry.hpp>
-#include <apsis/run/simulation.hpp>
-#include <apsis/study/limit_scheme.hpp>
 
 namespace apsis {
 namespace {

@@ -1,12 +1,12 @@
 #include <apsis/study/limit_scheme.hpp>
 
-#include <algorithm>
-#include <utility>
-
 #include <apsis/core/errors.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/study/limit_space.hpp>
+
+#include <algorithm>
+#include <utility>
 
 namespace apsis {
 namespace {

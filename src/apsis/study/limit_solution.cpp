@@ -1,11 +1,11 @@
 #include <apsis/study/limit_solution.hpp>
 
-#include <algorithm>
-#include <cmath>
-
 #include <apsis/core/errors.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/study/outcome.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 namespace apsis {
 namespace {

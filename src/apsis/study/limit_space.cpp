@@ -1,13 +1,13 @@
 #include <apsis/study/limit_space.hpp>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include <apsis/core/errors.hpp>
 #include <apsis/space/limiter.hpp>
 #include <apsis/space/quartic.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace apsis {
 namespace {

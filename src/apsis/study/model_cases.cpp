@@ -1,8 +1,9 @@
 #include <apsis/study/model_cases.hpp>
 
-#include <fmt/format.h>
 #include <apsis/core/errors.hpp>
 #include <apsis/study/model_properties.hpp>
+
+#include <fmt/format.h>
 
 namespace apsis {
 namespace {

@@ -1,11 +1,11 @@
 #include <apsis/study/model_properties.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/semidiscrete/newton_collision.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <apsis/core/errors.hpp>
-#include <apsis/semidiscrete/newton_collision.hpp>
 
 namespace apsis {
 namespace {

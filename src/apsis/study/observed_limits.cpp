@@ -1,5 +1,10 @@
 #include <apsis/study/observed_limits.hpp>
 
+#include <apsis/integrate/newton_problem.hpp>
+#include <apsis/study/adversaries.hpp>
+#include <apsis/study/case_problem.hpp>
+#include <apsis/study/model_properties.hpp>
+
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -7,10 +12,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <apsis/integrate/newton_problem.hpp>
-#include <apsis/study/adversaries.hpp>
-#include <apsis/study/case_problem.hpp>
-#include <apsis/study/model_properties.hpp>
 
 namespace apsis {
 namespace {

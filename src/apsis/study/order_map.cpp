@@ -1,14 +1,15 @@
 #include <apsis/study/order_map.hpp>
 
+#include <apsis/method/method.hpp>
+#include <apsis/study/model_cases.hpp>
+#include <apsis/study/time_study.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include <fmt/format.h>
-#include <apsis/method/method.hpp>
-#include <apsis/study/model_cases.hpp>
-#include <apsis/study/time_study.hpp>
 
 namespace apsis {
 namespace {

@@ -1,11 +1,11 @@
 #include <apsis/study/paper_tables.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/method/method.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <apsis/core/errors.hpp>
-#include <apsis/method/method.hpp>
 
 namespace apsis {
 namespace {

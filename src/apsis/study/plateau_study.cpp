@@ -1,13 +1,14 @@
 #include <apsis/study/plateau_study.hpp>
 
+#include <apsis/study/time_study.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include <fmt/format.h>
-#include <apsis/study/time_study.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <fmt/format.h>
 
 namespace apsis {
 namespace {

@@ -1,5 +1,6 @@
-#include <apsis/core/errors.hpp>
 #include <apsis/study/reproduce.hpp>
+
+#include <apsis/core/errors.hpp>
 
 #include <chrono>
 #include <cmath>

@@ -1,12 +1,13 @@
 #include <apsis/study/settings.hpp>
 
+#include <apsis/config/case_schema.hpp>
+#include <apsis/core/expression.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
-#include <apsis/config/case_schema.hpp>
-#include <apsis/core/expression.hpp>
 
 namespace apsis {
 namespace {

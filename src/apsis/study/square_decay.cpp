@@ -1,12 +1,12 @@
 #include <apsis/study/square_decay.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace apsis {
 namespace {

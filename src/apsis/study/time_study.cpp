@@ -1,16 +1,17 @@
 #include <apsis/study/time_study.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/extrapolation.hpp>
+#include <apsis/integrate/graded_start.hpp>
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/run/setup.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include <fmt/format.h>
-#include <apsis/core/errors.hpp>
-#include <apsis/integrate/extrapolation.hpp>
-#include <apsis/integrate/graded_start.hpp>
-#include <apsis/integrate/integrate.hpp>
-#include <apsis/run/setup.hpp>
 
 namespace apsis {
 

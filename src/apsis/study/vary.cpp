@@ -1,15 +1,16 @@
 #include <apsis/study/vary.hpp>
 
+#include <apsis/config/case_text.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/method/method.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
-#include <apsis/config/case_text.hpp>
-#include <apsis/core/errors.hpp>
-#include <apsis/core/suggest.hpp>
-#include <apsis/method/method.hpp>
 
 namespace apsis {
 namespace {

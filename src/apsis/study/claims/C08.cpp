@@ -1,8 +1,9 @@
+#include <apsis/method/certificate.hpp>
+#include <apsis/study/claim.hpp>
+
 #include <tuple>
 
 #include <fmt/format.h>
-#include <apsis/method/certificate.hpp>
-#include <apsis/study/claim.hpp>
 
 namespace apsis {
 namespace {

@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
+#include <fmt/format.h>
 
 namespace apsis {
 namespace {

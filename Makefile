@@ -52,7 +52,7 @@ clang: ## everything built by clang-19, without a warning
 asan: ## tests under the address and undefined-behaviour sanitizers
 	cmake --preset asan -DAPSIS_PCH=ON >/dev/null
 	cmake --build build/asan
-	ctest --preset asan -LE slow # 72000 steps of the reference take half an hour here
+	ctest --preset asan -LE slow
 
 tidy: ## clang-tidy over the library and the program
 	cmake --preset clang >/dev/null

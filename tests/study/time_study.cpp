@@ -30,6 +30,15 @@ TEST(time_study, reference_is_what_fine_steps_of_every_method_converge_to) {
   }
 }
 
+TEST(time_study, difference_to_a_state_with_a_value_that_is_no_number_is_none) {
+  field u(2, 3);
+  for (int cell = 0; cell < 2; ++cell) {
+    field broken = u;
+    broken.row(cell)[1] = std::nan("");
+    EXPECT_TRUE(std::isnan(largest_difference(u, broken)) && std::isnan(largest_difference(broken, u)));
+  }
+}
+
 TEST(time_study, epsilon_zero_keeps_equilibrium) {
   for (const auto& model : relaxation_model_names()) {
     const time_study study(small_case(model), 0.0);

@@ -1,5 +1,6 @@
 #include <apsis/study/adversaries.hpp>
 
+#include <apsis/core/extremes.hpp>
 #include <apsis/core/relaxation_weights.hpp>
 
 #include <algorithm>
@@ -139,7 +140,7 @@ std::function<double(const std::vector<double>&)> random_symmetric_functional(ra
     double sum = 0.0;
     for (std::size_t i = 0; i + ignored < u.size(); ++i) {
       double h = -std::numeric_limits<double>::infinity();
-      for (const auto& [slope, offset] : pieces) h = std::max(h, slope * u[i] + offset);
+      for (const auto& [slope, offset] : pieces) h = maximum(h, slope * u[i] + offset);
       sum += h;
     }
     return sum;
@@ -163,7 +164,7 @@ double total_variation(const std::vector<double>& u) {
 
 double maximum_norm(const std::vector<double>& u) {
   double largest = 0.0;
-  for (const double x : u) largest = std::max(largest, std::abs(x));
+  for (const double x : u) largest = maximum(largest, std::abs(x));
   return largest;
 }
 

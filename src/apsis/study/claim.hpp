@@ -32,7 +32,7 @@ struct report_table {
 
 /// What came out of checking a claim.
 struct claim_result {
-  std::vector<finding> findings;
+  std::vector<finding> findings;  ///< short tables show the first, or the first that does not hold
   std::vector<report_table> tables;
   std::vector<picture> pictures;
   std::vector<std::string> remarks;  ///< corrections to the paper, deviations and their reasons

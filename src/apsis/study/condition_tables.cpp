@@ -1,5 +1,6 @@
 #include <apsis/study/condition_tables.hpp>
 
+#include <apsis/core/extremes.hpp>
 #include <apsis/method/order_conditions.hpp>
 
 #include <algorithm>
@@ -21,8 +22,8 @@ std::pair<double, double> compare_with_print(const std::vector<rooted_tree>& tre
       if (found == trees.end()) return {std::numeric_limits<double>::quiet_NaN(), right};
       const double value = weights[static_cast<std::size_t>(found - trees.begin())];
       // Sums of at most some hundred products of numbers below 6.
-      left = std::max(left, std::abs(value - row.left) / std::max(1.0, std::abs(row.left)));
-      right = std::max(right, std::abs(1.0 / found->density - row.right));
+      left = maximum(left, std::abs(value - row.left) / std::max(1.0, std::abs(row.left)));
+      right = maximum(right, std::abs(1.0 / found->density - row.right));
     }
   }
   return {left, right};

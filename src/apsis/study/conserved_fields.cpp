@@ -1,5 +1,7 @@
 #include <apsis/study/conserved_fields.hpp>
 
+#include <apsis/core/extremes.hpp>
+
 #include <cmath>
 
 namespace apsis {
@@ -26,11 +28,7 @@ conserved_fields averaged_in_pairs(const conserved_fields& fine) {
 double largest_difference(const conserved_fields& a, const conserved_fields& b) {
   double largest = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k)
-    for (std::size_t i = 0; i < a[k].size(); ++i) {
-      const double difference = std::abs(a[k][i] - b[k].at(i));
-      if (!(difference <= largest)) largest = difference;
-      if (std::isnan(largest)) return largest;
-    }
+    for (std::size_t i = 0; i < a[k].size(); ++i) largest = maximum(largest, std::abs(a[k][i] - b[k].at(i)));
   return largest;
 }
 

@@ -1,6 +1,7 @@
 #include <apsis/study/fourier_solution.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/extremes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -85,13 +86,13 @@ double fourier_solution::resolution() const {
   const auto size = [this](int m) {
     double largest = 0.0;
     for (int k = 0; k < unknowns_; ++k)
-      largest = std::max(largest, std::hypot(cosine_[at(m, k)], sine_[at(m, k)]));
+      largest = maximum(largest, std::hypot(cosine_[at(m, k)], sine_[at(m, k)]));
     return largest;
   };
   double largest = 0.0, highest = 0.0;
   for (int m = 0; m <= points_ / 2; ++m) {
-    largest = std::max(largest, size(m));
-    if (m > 0 && m >= points_ / 2 - 1) highest = std::max(highest, size(m));
+    largest = maximum(largest, size(m));
+    if (m > 0 && m >= points_ / 2 - 1) highest = maximum(highest, size(m));
   }
   return highest / largest;
 }

@@ -1,5 +1,6 @@
 #include <apsis/study/limit_distance.hpp>
 
+#include <apsis/core/extremes.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/run/simulation.hpp>
 #include <apsis/study/limit_scheme.hpp>
@@ -17,9 +18,8 @@ namespace {
 double largest_difference(std::span<const double> a, std::span<const double> b) {
   double difference = 0.0, size = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
-    difference = std::max(difference, std::abs(a[k] - b[k]));
-    size = std::max(size, std::abs(b[k]));
-    if (std::isnan(a[k])) return std::nan("");
+    difference = maximum(difference, std::abs(a[k] - b[k]));
+    size = maximum(size, std::abs(b[k]));
   }
   return size > 0.0 ? difference / size : difference;
 }

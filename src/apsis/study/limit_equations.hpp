@@ -20,12 +20,11 @@ struct limit_equations {
 };
 
 /// The limit system of the case's model; nothing for a model whose limit is not written here.
-///   ode         u1' = sin u1
-///   relaxation  u1_t + F(u1)_x = 0, F linear, of Burgers or of Buckley and Leverett (paper, eq. hr)
-///   broadwell   ρ_t + m_x = 0,  m_t + ((ρ² + m²)/(2ρ))_x = 0                                (paper, eq.
-///   broadlimit) bgk         ρ_t + (ρu)_x = 0,  (ρu)_t + (ρu² + p)_x = 0,  𝓔_t + ((𝓔 + p)u)_x = 0,  p = ρT
-///   (paper, eq. euler)
-///               with 𝓔 = ½ρu² + (d/2)ρT for d velocity dimensions, momenta across x carried along
+///  - ode: u1' = sin u1
+///  - relaxation (paper, eq. hr): u1_t + F(u1)_x = 0, F linear, of Burgers or of Buckley and Leverett
+///  - broadwell (paper, eq. broadlimit): ρ_t + m_x = 0, m_t + ((ρ² + m²)/(2ρ))_x = 0
+///  - bgk (paper, eq. euler): ρ_t + (ρu)_x = 0, (ρu)_t + (ρu² + p)_x = 0, 𝓔_t + ((𝓔 + p)u)_x = 0, p = ρT,
+///    𝓔 = ½ρu² + (d/2)ρT for d velocity dimensions, momenta across x carried along
 std::optional<limit_equations> written_limit(const case_config& config);
 
 }  // namespace apsis

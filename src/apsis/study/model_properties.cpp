@@ -1,6 +1,7 @@
 #include <apsis/study/model_properties.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/extremes.hpp>
 #include <apsis/semidiscrete/newton_collision.hpp>
 
 #include <algorithm>
@@ -14,7 +15,7 @@ using row = std::vector<double>;
 
 double norm(const row& u) {
   double largest = 0.0;
-  for (const double value : u) largest = std::max(largest, std::abs(value));
+  for (const double value : u) largest = maximum(largest, std::abs(value));
   return largest;
 }
 
@@ -53,7 +54,7 @@ double derivative_defect(const relaxation_model& m, const row& u, const row& q, 
   double worst = 0.0;
   for (std::size_t k = 0; k < u.size(); ++k) {
     const double derivative = (8.0 * (ahead[k] - behind[k]) - (far_ahead[k] - far_behind[k])) / (12.0 * h);
-    worst = std::max(worst, std::abs(derivative + rate * q[k]));
+    worst = maximum(worst, std::abs(derivative + rate * q[k]));
   }
   return worst;
 }
@@ -80,7 +81,7 @@ relaxation_defects defects_of(const relaxation_model& m, const std::vector<doubl
   const double size =
       std::max(norm(e), std::numeric_limits<double>::min());  // 0 is its own equilibrium at times
   return {norm(moments_of(m, q)) / (1.0 + norm(omega)),
-          std::max(norm(collision_of(m, e)) / size, norm(moved) / (1.0 + norm(omega))),
+          maximum(norm(collision_of(m, e)) / size, norm(moved) / (1.0 + norm(omega))),
           derivative_defect(m, u, q, rate) / ((1.0 + rate) * (1.0 + norm(u) + norm(q)))};
 }
 

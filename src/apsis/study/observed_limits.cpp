@@ -1,5 +1,6 @@
 #include <apsis/study/observed_limits.hpp>
 
+#include <apsis/core/extremes.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/study/adversaries.hpp>
 #include <apsis/study/case_problem.hpp>
@@ -73,7 +74,7 @@ experiment permutations(const method& m, const std::vector<double>& epsilons) {
             const kept_property<row> each{"convex", [&all](const row& before, const row& after) {
                                             double most = -infinity;
                                             for (const auto& one : all)
-                                              most = std::max(most, one.excess(before, after));
+                                              most = maximum(most, one.excess(before, after));
                                             return most;
                                           }};
             auto problem = permutation_problem(cells, epsilon, 11);

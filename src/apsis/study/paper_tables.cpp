@@ -1,6 +1,7 @@
 #include <apsis/study/paper_tables.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/extremes.hpp>
 #include <apsis/method/method.hpp>
 
 #include <algorithm>
@@ -111,7 +112,7 @@ double distance(const matrix<double>& m, const std::vector<printed_entry>& print
       const auto found = std::find_if(printed.begin(), printed.end(), [&](const printed_entry& entry) {
         return entry.row == i + 1 && entry.column == j + 1;
       });
-      largest = std::max(largest, std::abs(m(i, j) - (found == printed.end() ? 0.0 : found->value)));
+      largest = maximum(largest, std::abs(m(i, j) - (found == printed.end() ? 0.0 : found->value)));
     }
   return largest;
 }
@@ -174,8 +175,8 @@ const printed_tableau& printed_butcher_form(const std::string& method) {
 double distance_to_print(const std::string& method) {
   const auto& printed = printed_butcher_form(method);
   const auto form = to_butcher(find_method(method).coefficients<double>());
-  return std::max({distance(form.A_hat, printed.A_hat), distance(form.A, printed.A),
-                   distance(form.A_dot, printed.A_dot)});
+  return maximum({distance(form.A_hat, printed.A_hat), distance(form.A, printed.A),
+                  distance(form.A_dot, printed.A_dot)});
 }
 
 butcher_form<double> random_tableau(std::size_t stages, std::uint64_t seed) {

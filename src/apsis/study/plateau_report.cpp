@@ -1,6 +1,7 @@
 // What add_plateau_study() adds to a claim: tables, findings and pictures of measure_regimes() and its
 // fellows.
 #include <apsis/core/errors.hpp>
+#include <apsis/core/extremes.hpp>
 #include <apsis/study/plateau_study.hpp>
 #include <apsis/study/time_study.hpp>
 
@@ -56,7 +57,7 @@ void add_regimes(const study_control& control, claim_result& result) {
       std::vector<std::string> cells{methods[m], term, fmt::format("{:.4f}", value)};
       for (const auto& of_case : measured) {
         cells.push_back(fmt::format("{:.4f}", of_case[m].*part));
-        largest = std::max(largest, miss(of_case[m].*part, value));
+        largest = maximum(largest, miss(of_case[m].*part, value));
       }
       table.rows.push_back(std::move(cells));
     };
@@ -83,7 +84,7 @@ void add_constants(claim_result& result) {
       for (std::size_t k = 0; k < 2; ++k) {
         row.push_back(fmt::format("{:.5f}", theory[k]));
         row.push_back(fmt::format("{:.5f}", seen[k]));
-        largest = std::max(largest, std::abs(theory[k] - seen[k]));
+        largest = maximum(largest, std::abs(theory[k] - seen[k]));
       }
       table.rows.push_back(std::move(row));
     }
@@ -146,7 +147,7 @@ void add_starts(const std::string& id, const study_control& control, claim_resul
     }
     for (const auto data : {ode_data::inconsistent, ode_data::consistent}) {
       const auto e = predicted_ode_plateau(predicted(shown[m]), data);
-      const double level = epsilon * std::max(std::abs(e[0]), std::abs(e[1]));
+      const double level = epsilon * maximum(std::abs(e[0]), std::abs(e[1]));
       if (level > 1e-3 * epsilon)
         p.curves.push_back({"",
                             {0.25, std::ldexp(0.25, 1 - levels)},

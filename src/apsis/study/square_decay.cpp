@@ -1,6 +1,7 @@
 #include <apsis/study/square_decay.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/extremes.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 
@@ -18,7 +19,7 @@ struct watched_decay : newton_problem<no_transport, decltype(square)> {
   watched_decay() : newton_problem(no_transport{}, square) {}
   void collide(double t, double a, double b, std::vector<double>& u) {
     newton_problem::collide(t, a, b, u);
-    lowest_stage = std::min(lowest_stage, u[0]);
+    lowest_stage = minimum(lowest_stage, u[0]);
   }
   double lowest_stage = std::numeric_limits<double>::infinity();
 };

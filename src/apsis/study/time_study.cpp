@@ -1,6 +1,7 @@
 #include <apsis/study/time_study.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/extremes.hpp>
 #include <apsis/integrate/extrapolation.hpp>
 #include <apsis/integrate/graded_start.hpp>
 #include <apsis/integrate/integrate.hpp>
@@ -19,7 +20,7 @@ double largest_difference(const field& u, const field& v) {
   double largest = 0.0;
   for (int cell = 0; cell < u.cells(); ++cell)
     for (int k = 0; k < u.components(); ++k)
-      largest = std::max(largest, std::abs(u.row(cell)[k] - v.row(cell)[k]));
+      largest = maximum(largest, std::abs(u.row(cell)[k] - v.row(cell)[k]));
   return largest;
 }
 
@@ -79,7 +80,7 @@ field time_study::solve(const method& m, long steps, start_data data, first_step
     std::vector<double> omega(static_cast<std::size_t>(impl_->equation->moment_count()));
     for (int cell = 0; cell < u.cells(); ++cell) {
       impl_->equation->moments(u.row(cell), omega.data());
-      fastest = std::max(fastest, impl_->equation->rate(omega.data()));
+      fastest = maximum(fastest, impl_->equation->rate(omega.data()));
     }
     for (const double part : graded_start(dt, impl_->epsilon / (4.0 * fastest))) {
       march.step(t, part, u);

@@ -1,4 +1,5 @@
 #include <apsis/core/errors.hpp>
+#include <apsis/core/extremes.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/study/claim.hpp>
@@ -29,7 +30,7 @@ double growth(const std::string& method, const G& g, const std::function<double(
   for (int n = 0; n < 3; ++n) {
     march.step(0.0, dt, u);
     const double after = functional(u);
-    worst = std::max(worst, after > before ? (after / before - 1.0) / rounding : 0.0);
+    worst = maximum(worst, after <= before ? 0.0 : (after / before - 1.0) / rounding);
     before = after;
   }
   return worst;
@@ -61,7 +62,7 @@ double reflected_cubic_decay(const std::string& method, random_source& random) {
     c[i] = random.one_in(3) ? 0.0 : random.magnitude(-3, 3);
     e[i] = random.one_in(3) ? 0.0 : random.magnitude(-3, 3);
     u[i] = random.uniform(-5, 5);
-    fastest = std::max(fastest, c[i] + 3 * e[i] * 125);  // w² ≤ ‖u‖² ≤ 125
+    fastest = maximum(fastest, c[i] + 3 * e[i] * 125);  // w² ≤ ‖u‖² ≤ 125
     normal[i] = random.uniform(0.1, 1);
     square += normal[i] * normal[i];
   }
@@ -108,7 +109,7 @@ double averaging(const std::string& method, random_source& random) {
     double sum = 0.0;
     for (const double x : v) {
       double h = -std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < pieces; ++k) h = std::max(h, slope[k] * x + offset[k]);
+      for (std::size_t k = 0; k < pieces; ++k) h = maximum(h, slope[k] * x + offset[k]);
       sum += h + 10;  // so that rounding is relative to it
     }
     return sum;
@@ -141,7 +142,7 @@ claim_result check(const study_control& control) {
     random_source random(1);
     for (const auto& [what, sample] : fields) {
       double worst = 0.0;
-      for (int k = 0; k < samples; ++k) worst = std::max(worst, sample(method, random));
+      for (int k = 0; k < samples; ++k) worst = maximum(worst, sample(method, random));
       result.findings.push_back(
           at_most(fmt::format("{}, {} random G = {}: largest growth in units of the rounding allowed", method,
                               samples, what),
@@ -150,7 +151,7 @@ claim_result check(const study_control& control) {
   }
   random_source random(1);
   double worst = 0.0;
-  for (int k = 0; k < samples; ++k) worst = std::max(worst, averaging("dirk-2-2", random));
+  for (int k = 0; k < samples; ++k) worst = maximum(worst, averaging("dirk-2-2", random));
   result.findings.push_back(
       at_least("the last of these with dirk-2-2, for contrast: largest growth", worst, 1e6));
   return result;

@@ -1,3 +1,4 @@
+#include <apsis/core/extremes.hpp>
 #include <apsis/study/claim.hpp>
 #include <apsis/study/square_decay.hpp>
 
@@ -36,7 +37,7 @@ panel draw_pair(const pair_of_methods& methods, claim_result& result) {
     const auto dirk = square_decay(methods.dirk, 1.0 / n, steps);
     right += ssp.qualitatively_right() ? 1 : 0;
     wrong += dirk.qualitatively_right() ? 0 : 1;
-    distance = std::max(distance, std::abs(ssp.u.back() / square_decay_exact(end) - 1.0));
+    distance = maximum(distance, std::abs(ssp.u.back() / square_decay_exact(end) - 1.0));
     draw(ssp, fmt::format("{}, Δt = 1/{}", methods.ssp, n), curve_style::line, colour, p);
     draw(dirk, fmt::format("{}, Δt = 1/{}", methods.dirk, n), curve_style::dashed, colour, p);
   }

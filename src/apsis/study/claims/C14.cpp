@@ -1,3 +1,4 @@
+#include <apsis/core/extremes.hpp>
 #include <apsis/study/claim.hpp>
 #include <apsis/study/model_properties.hpp>
 #include <apsis/study/random_source.hpp>
@@ -32,8 +33,8 @@ claim_result check(const study_control& control) {
     relaxation_defects worst{0.0, 0.0, 0.0};
     for (int k = 0; k < samples; ++k) {
       const auto one = defects_of(*m.relaxation, disturbed_data(*m.equation, random));
-      worst = {std::max(worst.conservation, one.conservation), std::max(worst.equilibrium, one.equilibrium),
-               std::max(worst.derivative, one.derivative)};
+      worst = {maximum(worst.conservation, one.conservation), maximum(worst.equilibrium, one.equilibrium),
+               maximum(worst.derivative, one.derivative)};
     }
     const auto add = [&](const char* what, double value, double bound) {
       result.findings.push_back(at_most(fmt::format("{}: {}", m.entry->name, what), value, bound));

@@ -1,3 +1,4 @@
+#include <apsis/core/extremes.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/transport.hpp>
@@ -55,14 +56,14 @@ void collide_randomly(const broadwell& b, random_source& random, moment_form_def
   const auto w = moments_of(f.data()), rate = moments_of(change.row(0));
   // Everything is measured against the size of the terms, ρ²/ε.
   const double size = w.rho * w.rho / epsilon;
-  worst.conservation = std::max({worst.conservation, std::abs(rate.rho) / size, std::abs(rate.m) / size});
+  worst.conservation = maximum({worst.conservation, std::abs(rate.rho) / size, std::abs(rate.m) / size});
   const double written = (w.rho * w.rho + w.m * w.m - 2.0 * w.rho * w.z) / (2.0 * epsilon);
-  worst.relaxation = std::max(worst.relaxation, std::abs(rate.z - written) / size);
+  worst.relaxation = maximum(worst.relaxation, std::abs(rate.z - written) / size);
 
   q->solve(1e300 * epsilon, 0.0, u);  // an implicit stage for epsilon → 0
   const auto limit = moments_of(u.row(0));
   worst.projection =
-      std::max(worst.projection, std::abs(limit.z - (w.rho * w.rho + w.m * w.m) / (2.0 * w.rho)) / w.rho);
+      maximum(worst.projection, std::abs(limit.z - (w.rho * w.rho + w.m * w.m) / (2.0 * w.rho)) / w.rho);
 }
 
 /// T of populations that are linear in x, which every reconstruction reproduces: away from the ends of the
@@ -81,8 +82,8 @@ void transport_randomly(const broadwell& b, const std::string& scheme, random_so
   t.scatter(u, {&to, 1});
   const auto rate = moments_of(change.row(cells / 2)), x = moments_of(slope.data());
   const double size = moments_of(u.row(cells - 1)).rho;
-  worst.transport = std::max({worst.transport, std::abs(rate.rho + x.m) / size, std::abs(rate.m + x.z) / size,
-                              std::abs(rate.z + x.m) / size});
+  worst.transport = maximum({worst.transport, std::abs(rate.rho + x.m) / size, std::abs(rate.m + x.z) / size,
+                             std::abs(rate.z + x.m) / size});
 }
 
 /// The limit system: E, its fluxes and its characteristic speeds.
@@ -103,13 +104,13 @@ void compare_limit(const broadwell& b, const limit_equations& system, random_sou
   system.flux(omega.data(), by_hand.data());
   populations moved{};  // v E
   for (std::size_t k = 0; k < 3; ++k) {
-    worst.equilibrium = std::max(worst.equilibrium, std::abs(e[k] - written[k]) / rho);
+    worst.equilibrium = maximum(worst.equilibrium, std::abs(e[k] - written[k]) / rho);
     moved[k] = b.equation.speeds(0)[k] * e[k];
   }
   b.equation.moments(moved.data(), by_transport.data());
   for (std::size_t k = 0; k < 2; ++k) {
-    worst.moments = std::max(worst.moments, std::abs(back[k] - omega[k]) / rho);
-    worst.fluxes = std::max(worst.fluxes, std::abs(by_transport[k] - by_hand[k]) / rho);
+    worst.moments = maximum(worst.moments, std::abs(back[k] - omega[k]) / rho);
+    worst.fluxes = maximum(worst.fluxes, std::abs(by_transport[k] - by_hand[k]) / rho);
   }
   // λ is an eigenvalue of F' when F'(1, λ) = λ(1, λ): the derivative of F along (1, λ), by central
   // differences.
@@ -121,8 +122,8 @@ void compare_limit(const broadwell& b, const limit_equations& system, random_sou
     system.flux(behind.data(), low.data());
     for (std::size_t k = 0; k < 2; ++k)
       worst.speeds =
-          std::max(worst.speeds, std::abs((high[k] - low[k]) / (2.0 * h) - lambda * (k == 0 ? 1.0 : lambda)));
-    worst.fastest = std::max(worst.fastest, std::abs(lambda));
+          maximum(worst.speeds, std::abs((high[k] - low[k]) / (2.0 * h) - lambda * (k == 0 ? 1.0 : lambda)));
+    worst.fastest = maximum(worst.fastest, std::abs(lambda));
   }
 }
 

@@ -1,3 +1,4 @@
+#include <apsis/core/extremes.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/study/claim.hpp>
 #include <apsis/study/limit_convergence.hpp>
@@ -40,13 +41,13 @@ constexpr double limit_row::* distances[] = {&limit_row::moments_first, &limit_r
 /// The smallest slope of the four distances; those that are rounding from the start have none.
 double smallest_slope(const limit_table& table) {
   double smallest = INFINITY;
-  for (const auto column : distances) smallest = std::min(smallest, table.slope(column).value_or(INFINITY));
+  for (const auto column : distances) smallest = minimum(smallest, table.slope(column).value_or(INFINITY));
   return std::isinf(smallest) ? NAN : smallest;
 }
 
 double largest_floor(const limit_table& table) {
   double largest = 0.0;
-  for (const auto column : distances) largest = std::max(largest, table.floor(column));
+  for (const auto column : distances) largest = maximum(largest, table.floor(column));
   return largest;
 }
 
@@ -70,8 +71,7 @@ std::vector<double> epsilons() {
   return values;
 }
 
-// ---- the distance falls: every model, every formulation, every method that promises it
-// ----------------------------
+// The distance falls: every model, every formulation, every method that promises it.
 
 struct distance_job {
   std::string model, formulation, method;
@@ -111,8 +111,8 @@ void judge_distances(const std::vector<distance_job>& jobs, claim_result& result
     double slope = INFINITY, floor = 0.0;
     for (const auto& job : jobs) {
       if (job.method != method) continue;
-      slope = std::min(slope, smallest_slope(job.table));
-      floor = std::max(floor, largest_floor(job.table));
+      slope = minimum(slope, smallest_slope(job.table));
+      floor = maximum(floor, largest_floor(job.table));
     }
     result.findings.push_back(at_least(method + ", all models: slope of the distances in ε", slope, 0.9));
     result.findings.push_back(at_most(method + ", all models: distances at ε = 0", floor, round_off));
@@ -151,8 +151,7 @@ case_config pointwise_case(const std::string& model, const std::string& method, 
   return config;
 }
 
-// ---- how fast: at least linearly
-// ---------------------------------------------------------------------------------
+// How fast: at least linearly.
 
 /// From data in equilibrium only stages without Q̇ keep an O(ε) distance from it. In md-imex-3-2 the one stage
 /// that feeds T after a transport has Q̇ alone, so its moments fall like ε²; in md-imex-6-3 two such stages
@@ -168,8 +167,7 @@ void judge_rates(claim_result& result) {
   }
 }
 
-// ---- what goes wrong: first stages that are not relaxed, last stages that are not
-// -----------------------------------
+// What goes wrong: first stages that are not relaxed, last stages that are not.
 
 /// Methods whose first stage is u^n itself.
 void first_stage_failure(const std::string& model, const std::string& method, int colour, panel& into,

@@ -1,3 +1,4 @@
+#include <apsis/core/extremes.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/study/case_problem.hpp>
 #include <apsis/study/claim.hpp>
@@ -45,7 +46,7 @@ double increase_in_run(const combination& c) {
   double worst = -std::numeric_limits<double>::infinity();
   for (int n = 0; n < 2 * steps && !run.finished(); ++n) {
     const double before = run.last().entropy;
-    worst = std::max(worst, run.advance().entropy_change / (1.0 + std::abs(before)));
+    worst = maximum(worst, run.advance().entropy_change / (1.0 + std::abs(before)));
   }
   return worst;
 }

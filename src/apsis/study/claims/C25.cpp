@@ -1,3 +1,4 @@
+#include <apsis/core/extremes.hpp>
 #include <apsis/method/tableau.hpp>
 #include <apsis/study/claim.hpp>
 #include <apsis/study/random_source.hpp>
@@ -79,7 +80,7 @@ double search(std::size_t s, random_source& random,
         here = there;
       }
     }
-    best = std::max(best, height);
+    best = maximum(best, height);
   }
   return best;
 }
@@ -111,7 +112,7 @@ double largest_over_random_tableaux(int samples) {
     std::vector<double> parameters(parameter_count(s));
     const double scale = random.magnitude(-1.5, 0.5);
     for (double& x : parameters) x = random.one_in(3) ? 0.0 : scale * random.uniform();
-    worst = std::max(worst, difference(form_of(s, parameters)) / bound(s));
+    worst = maximum(worst, difference(form_of(s, parameters)) / bound(s));
   }
   return worst;
 }
@@ -137,11 +138,11 @@ void add_searches(const std::vector<double>& reached, const std::vector<double>&
   for (std::size_t s = 1; s <= reached.size(); ++s) {
     const double k = bound(s), half = 0.5 / static_cast<double>(s),
                  steps = difference(backward_euler_steps(s));
-    extremal = std::max(extremal, std::abs(steps / k - 1.0));
-    above = std::max(above, reached[s - 1] / k);
-    least_reached = std::min(least_reached, reached[s - 1] / k);
-    least_residual = std::min(least_residual, residual[s - 1] / half);
-    nearest = std::max(nearest, residual[s - 1] / half);
+    extremal = maximum(extremal, std::abs(steps / k - 1.0));
+    above = maximum(above, reached[s - 1] / k);
+    least_reached = minimum(least_reached, reached[s - 1] / k);
+    least_residual = minimum(least_residual, residual[s - 1] / half);
+    nearest = maximum(nearest, residual[s - 1] / half);
     auto& row = table.rows.emplace_back();
     row.push_back(std::to_string(s));
     for (const double x : {k, reached[s - 1], steps, residual[s - 1], half})

@@ -1,3 +1,4 @@
+#include <apsis/core/extremes.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/method/certificate.hpp>
@@ -30,7 +31,8 @@ double rigid_body_error(long steps) {
   integrate(march, y, 0.0L, end, step_rule<long double>::fixed(end / static_cast<long double>(steps)));
   long double cn = 0, dn = 0;
   const long double sn = boost::math::jacobi_elliptic(modulus, end, &cn, &dn);
-  return static_cast<double>(std::max({std::abs(y[0] - sn), std::abs(y[1] - cn), std::abs(y[2] - dn)}));
+  const auto miss = [](long double a, long double b) { return static_cast<double>(std::abs(a - b)); };
+  return maximum({miss(y[0], sn), miss(y[1], cn), miss(y[2], dn)});
 }
 
 struct problem_of_order {

@@ -1,13 +1,14 @@
 # One static library per room of src/apsis. A room may link only the rooms below it, so an include
 # that reaches back does not link and the direction of the data flow is kept by the build.
 #
-#   apsis_room(method DEPENDS core PUBLIC Boost::headers PRIVATE tomlplusplus::tomlplusplus HEAVY <string>)
+#   apsis_room(method DEPENDS core PUBLIC Boost::headers PRIVATE tomlplusplus::tomlplusplus)
 #
-# HEAVY headers are those that most of its files include and that take seconds to read (see APSIS_PCH).
 set(APSIS_ROOMS "" CACHE INTERNAL "rooms in the order they are declared")
 
 add_library(apsis_options INTERFACE)
 target_compile_features(apsis_options INTERFACE cxx_std_20)
+# As Boost::headers has it; a precompiled header wants it in all files or in none.
+target_compile_definitions(apsis_options INTERFACE BOOST_ALL_NO_LIB)
 target_compile_options(apsis_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion
   $<$<BOOL:${APSIS_WERROR}>:-Werror>
@@ -18,6 +19,8 @@ target_compile_options(apsis_options INTERFACE
 
 # What only calls the rooms (program, tests) gains nothing from optimisation but time to build.
 set(APSIS_QUICKLY_BUILT $<$<CONFIG:Release>:-O1>)
+# Rooms without loops over cells: -O3 costs time to build and makes nothing faster.
+set(APSIS_PLAIN $<$<CONFIG:Release>:-O2>)
 
 # Rooms with loops over cells and velocities. Their headers keep no type whose layout depends on the instruction
 # set, so other targets are built for the plain architecture and link with them safely.
@@ -27,8 +30,21 @@ target_compile_options(apsis_kernel_options INTERFACE
   # Sanitizers keep clang from vectorising some loops; that is no reason to fail there.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)
 
+# Headers that most files read, for seconds each (see APSIS_PCH). Rooms with kernels or OpenMP have other flags and go
+# without.
+if(APSIS_PCH)
+  file(WRITE ${CMAKE_BINARY_DIR}/generated/precompiled.cpp "")
+  add_library(apsis_precompiled STATIC ${CMAKE_BINARY_DIR}/generated/precompiled.cpp)
+  set_target_properties(apsis_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(apsis_precompiled PRIVATE apsis_options Boost::headers fmt::fmt)
+  target_compile_options(apsis_precompiled PRIVATE ${APSIS_PLAIN})
+  target_precompile_headers(apsis_precompiled PRIVATE
+    <algorithm> <array> <cmath> <functional> <limits> <map> <memory> <optional> <span> <string> <utility> <vector>
+    <boost/multiprecision/cpp_bin_float.hpp> <fmt/format.h> <fmt/ranges.h>)
+endif()
+
 function(apsis_room name)
-  cmake_parse_arguments(ROOM "KERNELS" "" "DEPENDS;PUBLIC;PRIVATE;GENERATED;HEAVY" ${ARGN})
+  cmake_parse_arguments(ROOM "KERNELS" "" "DEPENDS;PUBLIC;PRIVATE;GENERATED" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp
        ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*/*.cpp)
   add_library(apsis_${name} STATIC ${sources} ${ROOM_GENERATED})
@@ -41,8 +57,11 @@ function(apsis_room name)
   target_link_libraries(apsis_${name} PUBLIC ${ROOM_DEPENDS} ${ROOM_PUBLIC})
   target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_options> ${ROOM_PRIVATE}
                         $<$<BOOL:${ROOM_KERNELS}>:$<BUILD_INTERFACE:apsis_kernel_options>>)
-  if(APSIS_PCH AND ROOM_HEAVY)
-    target_precompile_headers(apsis_${name} PRIVATE ${ROOM_HEAVY})
+  if(NOT ROOM_KERNELS)
+    target_compile_options(apsis_${name} PRIVATE ${APSIS_PLAIN})
+    if(APSIS_PCH AND NOT OpenMP::OpenMP_CXX IN_LIST ROOM_PRIVATE)
+      target_precompile_headers(apsis_${name} REUSE_FROM apsis_precompiled)
+    endif()
   endif()
   set(APSIS_ROOMS ${APSIS_ROOMS} ${name} CACHE INTERNAL "")
 endfunction()

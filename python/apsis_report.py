@@ -25,6 +25,7 @@ td.number { font-variant-numeric: tabular-nums; white-space: nowrap; }
 .yes { color: #00664b; white-space: nowrap; } .no { color: #a33b00; font-weight: 700; white-space: nowrap; }
 figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; } figcaption { font-size: .9rem; color: #333; max-width: 50rem; }
 .small { color: #555; font-size: .85rem; } a { color: #00508a; }
+@media (max-width: 40rem) { table { font-size: .8rem; } th, td { padding-right: .4rem; } }
 @media print { body { max-width: none; font-size: 11px; } h2, figure, tr { break-inside: avoid; } a { color: inherit; text-decoration: none; } }
 """
 
@@ -61,9 +62,9 @@ def table(columns, rows, title=""):
 
 
 def overview(claims):
-    rows = [[f'<a href="#{text(c["id"])}">{text(c["id"])}</a>', text(c["statement"]), deciding(c),
-             verdict(c["holds"])] for c in claims]
-    return table(["claim", "statement", "measured", "verdict"], rows)
+    rows = [[f'<a href="#{text(c["id"])}">{text(c["id"])}</a>', verdict(c["holds"]), text(c["statement"]), deciding(c)]
+            for c in claims]
+    return table(["claim", "verdict", "statement", "measured"], rows)
 
 
 def deciding(claim):

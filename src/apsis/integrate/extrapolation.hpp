@@ -83,11 +83,14 @@ long extrapolate(P& p, typename P::state& u, typename P::real t0, typename P::re
           "the reference solution needs too many steps (its tolerance is too small); enlarge it",
           {steps, static_cast<double>(t), -1, static_cast<double>(step)});
     using std::pow;
-    real error = std::numeric_limits<real>::infinity();
+    // An inadmissible state on the way, or no number: as a step that is too long.
+    constexpr real too_long = std::numeric_limits<real>::infinity();
+    real error = too_long;
     try {
       error = attempt(t, step);
+      if (!(error <= too_long)) error = too_long;
     } catch (const numerical_error&) {
-      // An inadmissible state on the way: as a step that is too long.
+      error = too_long;
     }
     if (error <= how.tolerance) {
       t = last ? t1 : t + step;

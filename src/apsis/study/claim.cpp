@@ -58,7 +58,7 @@ void run_all(const study_control& control, const std::string& what, int count,
 }
 
 std::vector<const claim_entry*> find_claims(const std::vector<std::string>& ids) {
-  const auto all = claim_entries();
+  auto all = claim_entries();
   if (ids.empty()) return all;
   std::vector<std::string> names;
   for (const claim_entry* entry : all) names.push_back(entry->id);

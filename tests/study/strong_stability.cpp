@@ -145,6 +145,15 @@ TEST(strong_stability, a_wrong_promise_is_found_out) {
   EXPECT_EQ(largest_step(find_method("ssprk-3-3"), problem, std::span<const row>(rows), curvature).kept, 0.0);
 }
 
+TEST(strong_stability, searches_try_what_is_promised_itself) {
+  const auto up_to_one = [](std::size_t, double dt) { return dt <= 1.0 ? 0.0 : 1.0; };
+  EXPECT_EQ(search_step(1, 1.0, {.accuracy = 0.1, .promised = 1.0}, up_to_one).kept, 1.0);
+  // A promise that does not hold changes nothing but where the search begins.
+  const auto refuted = search_step(1, 1.0, {.promised = 1.02}, up_to_one);
+  EXPECT_NEAR(refuted.kept, 1.0, 1e-4);
+  EXPECT_GT(refuted.lost, 1.0);
+}
+
 TEST(strong_stability, searches_climb_before_they_bisect) {
   // Kept up to 0.3 and again from 0.5 on: the first loss counts.
   const auto limit = search_step(

@@ -24,7 +24,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct experiment {
   std::string problem, property;
   std::vector<double> epsilons;  ///< of which the worst counts; one infinity where there is none
-  std::function<step_limit(double epsilon)> search;
+  std::function<step_limit(double epsilon, double promised)> search;
 };
 
 observed_limit worst_of(const experiment& e, double promised, const study_control& control) {
@@ -32,7 +32,7 @@ observed_limit worst_of(const experiment& e, double promised, const study_contro
   bool first = true;
   for (const double epsilon : e.epsilons) {
     control.check();
-    const step_limit found = e.search(epsilon);
+    const step_limit found = e.search(epsilon, promised);
     if (!first && !(found.kept < out.limit.kept)) continue;
     out.limit = found;
     if (e.epsilons.size() > 1)
@@ -43,29 +43,31 @@ observed_limit worst_of(const experiment& e, double promised, const study_contro
 }
 
 experiment advection(const method& m, std::string name, const kept_property<row>& property) {
-  return {"upwind advection", std::move(name), {infinity}, [&m, property](double) {
+  return {"upwind advection", std::move(name), {infinity}, [&m, property](double, double promised) {
             ring_advection problem;
             const auto rows = adversarial_rows(24, 20);
-            return largest_step(m, problem, std::span<const row>(rows), property, {.steps = 3});
+            return largest_step(m, problem, std::span<const row>(rows), property,
+                                {.steps = 3, .promised = promised});
           }};
 }
 
 experiment words(const method& m, const std::vector<double>& epsilons) {
   return {"operators that change from stage to stage", "positivity of all stages", epsilons,
-          [&m](double epsilon) {
+          [&m](double epsilon, double promised) {
             const int letters = static_cast<int>(m.stages());
             constexpr int memory = 2;
             auto problem = word_problem(letters, memory, epsilon);
             const std::vector<row> data{word_data(letters, memory)};
             return largest_step(m, problem, std::span<const row>(data),
-                                stays_inside<row>("positivity", negative_part(1), 1e-13), {.stages = true});
+                                stays_inside<row>("positivity", negative_part(1), 1e-13),
+                                {.stages = true, .promised = promised});
           }};
 }
 
 /// The largest growth of several random functionals.
 experiment permutations(const method& m, const std::vector<double>& epsilons) {
   return {"permutations that change from stage to stage", "random symmetric convex functionals", epsilons,
-          [&m](double epsilon) {
+          [&m](double epsilon, double promised) {
             constexpr int cells = 40;
             random_source random(5);
             std::vector<kept_property<row>> all;
@@ -79,7 +81,8 @@ experiment permutations(const method& m, const std::vector<double>& epsilons) {
                                           }};
             auto problem = permutation_problem(cells, epsilon, 11);
             const auto rows = permutation_data(cells, 10);
-            return largest_step(m, problem, std::span<const row>(rows), each, {.stages = true});
+            return largest_step(m, problem, std::span<const row>(rows), each,
+                                {.stages = true, .promised = promised});
           }};
 }
 
@@ -90,12 +93,13 @@ const char* stand_in(method_kind kind) {
 }
 
 experiment entropy(const method& m, const std::string& model, const std::vector<double>& epsilons) {
-  return {model + ", first-order upwind", "entropy", epsilons, [&m, model](double epsilon) {
+  return {model + ", first-order upwind", "entropy", epsilons, [&m, model](double epsilon, double promised) {
             case_problem problem(
                 small_case(model, stand_in(m.kind), epsilon, 12, {"space.reconstruction=upwind1"}));
             const auto data = hostile_data(problem, 6, 1e-8, false);
             return largest_step(m, *problem.equations, std::span<const field>(data),
-                                entropy_decay(problem.setup), {.steps = 3, .rung = 1.25, .accuracy = 1e-3});
+                                entropy_decay(problem.setup),
+                                {.steps = 3, .rung = 1.25, .accuracy = 1e-3, .promised = promised});
           }};
 }
 
@@ -104,25 +108,25 @@ experiment positive_weno(const method& m, const made_model& model, const std::st
   // Limited values at a point of a nearly empty cell may have no Maxwellian on a coarse velocity grid.
   const bool tame = model.entry->has_velocity && form == "finite-volume";
   return {model.entry->name + ", WENO5 with limiter, " + form, "positivity", epsilons,
-          [&m, name = model.entry->name, form, tame](double epsilon) {
+          [&m, name = model.entry->name, form, tame](double epsilon, double promised) {
             case_problem problem(small_case(name, stand_in(m.kind), epsilon, 12,
                                             {"space.limiter=positivity", "space.formulation=" + form}));
             const auto data = hostile_data(problem, 6, tame ? 0.3 : 1e-8, !tame);
             return largest_step(m, *problem.equations, std::span<const field>(data), positivity(),
-                                {.steps = 2, .rung = 1.25, .accuracy = 1e-3});
+                                {.steps = 2, .rung = 1.25, .accuracy = 1e-3, .promised = promised});
           }};
 }
 
 experiment square_decay_experiment(const method& m) {
-  return {"u' = -10 u^2, u <= 10", "positivity of all stages", {infinity}, [&m](double) {
-            newton_problem problem(no_transport{},
-                                   [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; });
-            const std::vector<row> data{{10.0}, {1.0}, {1e-3}};
-            // u + τG ≥ 0 for τ ≤ 1/100.
-            return largest_step(m, problem, std::span<const row>(data),
-                                stays_inside<row>("positivity", negative_part()),
-                                {.steps = 5, .stages = true, .highest = 1e10, .rung = 1.5, .unit = 0.01});
-          }};
+  return {
+      "u' = -10 u^2, u <= 10", "positivity of all stages", {infinity}, [&m](double, double promised) {
+        newton_problem problem(no_transport{}, [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; });
+        const std::vector<row> data{{10.0}, {1.0}, {1e-3}};
+        // u + τG ≥ 0 for τ ≤ 1/100.
+        return largest_step(
+            m, problem, std::span<const row>(data), stays_inside<row>("positivity", negative_part()),
+            {.steps = 5, .stages = true, .highest = 1e10, .rung = 1.5, .promised = promised, .unit = 0.01});
+      }};
 }
 
 std::vector<experiment> experiments_for(const method& m) {

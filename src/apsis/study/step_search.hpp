@@ -15,6 +15,7 @@ struct step_search {
   double highest = 16.0;   ///< last rung
   double rung = 1.1;       ///< ratio of neighbours
   double accuracy = 1e-4;  ///< of the bisection, relative
+  double promised = 0.0;   ///< if positive, tried itself, so that the bisection does not end just below it
   double unit = 0.0;       ///< if positive, in place of Δt_FE
 };
 

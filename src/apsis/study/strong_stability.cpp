@@ -33,6 +33,8 @@ step_limit search_step(std::size_t count, double unit, const step_search& how,
     if (!keeps(step)) break;
     limit.kept = step;
   }
+  if (limit.kept > 0.0 && limit.kept < how.promised && how.promised < limit.lost && keeps(how.promised))
+    limit.kept = how.promised;
   while (limit.kept > 0.0 && std::isfinite(limit.lost) &&
          limit.lost - limit.kept > how.accuracy * limit.lost) {
     const double middle = 0.5 * (limit.kept + limit.lost);

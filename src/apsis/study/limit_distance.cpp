@@ -15,7 +15,8 @@
 namespace apsis {
 namespace {
 
-double largest_difference(std::span<const double> a, std::span<const double> b) {
+/// max |a − b| / max |b|; max |a − b| where b is 0.
+double relative_difference(std::span<const double> a, std::span<const double> b) {
   double difference = 0.0, size = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
     difference = maximum(difference, std::abs(a[k] - b[k]));
@@ -107,7 +108,7 @@ limit_table limit_distance(const case_config& config, const std::vector<double>&
         config.space.formulation == formulation::finite_volume ? "finite volume" : "finite difference";
   const std::vector<double> given = simulation(config).state();
   const std::vector<double> equilibrium = scheme.equilibrium_of(given);
-  table.off_equilibrium = largest_difference(given, equilibrium);
+  table.off_equilibrium = relative_difference(given, equilibrium);
   const std::vector<double>& data = start == limit_start::given ? given : equilibrium;
 
   const std::size_t count = epsilons.size();
@@ -133,8 +134,8 @@ limit_table limit_distance(const case_config& config, const std::vector<double>&
       limit_row& row = table.rows[k];
       row.epsilon = epsilons[k];
       const auto compare = [&](const std::vector<double>& u, double& of_moments, double& of_state) {
-        of_moments = largest_difference(scheme.moments_of(u), moments);
-        of_state = largest_difference(u, state);
+        of_moments = relative_difference(scheme.moments_of(u), moments);
+        of_state = relative_difference(u, state);
       };
       if (first) compare(kinetic[k].first, row.moments_first, row.state_first);
       if (end) compare(kinetic[k].end, row.moments_end, row.state_end);

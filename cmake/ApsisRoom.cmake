@@ -2,7 +2,6 @@
 # that reaches back does not link and the direction of the data flow is kept by the build.
 #
 #   apsis_room(method DEPENDS core PUBLIC Boost::headers PRIVATE tomlplusplus::tomlplusplus)
-#
 set(APSIS_ROOMS "" CACHE INTERNAL "rooms in the order they are declared")
 
 add_library(apsis_options INTERFACE)
@@ -33,7 +32,7 @@ target_compile_options(apsis_kernel_options INTERFACE
 # Headers that most files read, for seconds each (see APSIS_PCH). Rooms with kernels or OpenMP have other flags and go
 # without.
 if(APSIS_PCH)
-  file(WRITE ${CMAKE_BINARY_DIR}/generated/precompiled.cpp "")
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/precompiled.cpp CONTENT "")
   add_library(apsis_precompiled STATIC ${CMAKE_BINARY_DIR}/generated/precompiled.cpp)
   set_target_properties(apsis_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_link_libraries(apsis_precompiled PRIVATE apsis_options Boost::headers fmt::fmt)

@@ -16,6 +16,7 @@ void add_converge(CLI::App& program, action& chosen);
 void add_list(CLI::App& program, action& chosen);
 void add_show(CLI::App& program, action& chosen);
 void add_check(CLI::App& program, action& chosen);
+void add_design(CLI::App& program, action& chosen);
 void add_info(CLI::App& program, action& chosen);
 void add_reproduce(CLI::App& program, action& chosen);
 

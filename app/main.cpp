@@ -67,6 +67,7 @@ int run_program(int argc, char** argv) {
   add_show(program, chosen);
   add_check(program, chosen);
   add_reproduce(program, chosen);
+  add_design(program, chosen);
   add_info(program, chosen);
   const std::vector<std::string> names = command_names(program);
   if (argc < 2) throw input_error("command line: no command (one of them is needed) " + suggest("", names));

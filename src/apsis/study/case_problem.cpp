@@ -1,7 +1,7 @@
 #include <apsis/study/case_problem.hpp>
 
 #include <apsis/study/model_properties.hpp>
-#include <apsis/study/random_source.hpp>
+#include <apsis/core/random_source.hpp>
 
 #include <algorithm>
 #include <limits>

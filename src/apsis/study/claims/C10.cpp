@@ -3,7 +3,7 @@
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/study/claim.hpp>
-#include <apsis/study/random_source.hpp>
+#include <apsis/core/random_source.hpp>
 #include <apsis/study/square_decay.hpp>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <apsis/space/reconstruction_registry.hpp>
 #include <apsis/study/claim.hpp>
 #include <apsis/study/limit_equations.hpp>
-#include <apsis/study/random_source.hpp>
+#include <apsis/core/random_source.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,229 @@
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "method_report.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+#include <apsis/core/parallel.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/design/finish.hpp>
+#include <apsis/design/search.hpp>
+#include <apsis/design/sparsify.hpp>
+#include <apsis/method/export.hpp>
+#include <apsis/output/progress.hpp>
+#include <apsis/output/result_folder.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace apsis::app {
+namespace {
+
+using json = nlohmann::ordered_json;
+using clock = std::chrono::steady_clock;
+
+struct options {
+  int order = 2, stages = 3, evaluations = 0, starts = 1000, threads = 0;
+  bool implicit = false, json = false;
+  std::string objective = "r", regime = "none", out;
+  double seconds = 60.0, sparsify = 0.0;
+  std::uint64_t seed = 1;
+  design_demands demands;
+};
+
+template <class Value>
+Value choice(const std::string& option, const std::string& given,
+             const std::map<std::string, Value>& values) {
+  const auto found = values.find(given);
+  if (found != values.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : values) names.push_back(name);
+  throw input_error(
+      fmt::format("command line: unknown {} '{}' {}", option, given.substr(0, 60), suggest(given, names)));
+}
+
+void require(bool good, const std::string& option, const std::string& value, const std::string& range) {
+  if (!good) throw input_error(fmt::format("command line: {} {} is out of range ({})", option, value, range));
+}
+
+design_task task_of(const options& given) {
+  require(given.order >= 1 && given.order <= 6, "--order", std::to_string(given.order), "from 1 to 6");
+  require(given.stages >= 1 && given.stages <= 32, "--stages", std::to_string(given.stages), "from 1 to 32");
+  require(given.evaluations >= 0 && given.evaluations < given.stages, "--evaluations",
+          std::to_string(given.evaluations), "fewer than stages: the last stage is the result");
+  require(given.starts >= 1, "--starts", std::to_string(given.starts), "at least 1");
+  require(given.seconds > 0.0, "--time", fmt::format("{}", given.seconds), "positive, in seconds");
+  const auto& d = given.demands;
+  require(d.box > 0.0 && d.box <= 1e3, "--box", fmt::format("{}", d.box), "positive, at most 1000");
+  require(d.margin >= 0.0 && d.margin < d.box, "--margin", fmt::format("{}", d.margin), "from 0 to the box");
+  require(d.least_r > 0.0 && d.least_r < d.largest_r, "--ssp", fmt::format("{}", d.least_r),
+          fmt::format("positive, below {}", d.largest_r));
+  require(given.sparsify >= 0.0 && given.sparsify < 1.0, "--sparsify", fmt::format("{}", given.sparsify),
+          "from 0 to 1: the part of the objective that may be lost");
+  design_task task;
+  task.kind = given.implicit ? method_kind::implicit_only : method_kind::imex;
+  task.stages = static_cast<std::size_t>(given.stages);
+  if (given.evaluations > 0) task.transports = given.evaluations;
+  task.demands = d;
+  task.demands.order = given.order;
+  task.demands.regime = choice<regime_demand>(
+      "--regime", given.regime,
+      {{"none", regime_demand::none}, {"slow", regime_demand::slow}, {"all", regime_demand::all}});
+  task.objective = choice<design_objective>("--objective", given.objective,
+                                            {{"r", design_objective::largest_r},
+                                             {"r/n_F", design_objective::efficiency},
+                                             {"error", design_objective::smallest_error}});
+  task.seed = given.seed;
+  if (!given.implicit) {
+    require(given.stages >= 2, "--stages", std::to_string(given.stages),
+            "an IMEX method needs 2; --implicit gives one without transport");
+    return task;
+  }
+  if (given.evaluations > 0 || given.regime != "none")
+    throw input_error(
+        "command line: --evaluations and --regime are of no meaning with --implicit (there is no transport) "
+        "leave them out");
+  // Without transport there is no r.
+  task.objective = design_objective::smallest_error;
+  return task;
+}
+
+/// The method file, with the best method so far at any time.
+class method_file {
+ public:
+  explicit method_file(const std::string& path)
+      : path_(path), folder_(path_.has_parent_path() ? path_.parent_path() : std::filesystem::path(".")) {
+    if (!path_.has_filename() || path_.extension() != ".toml")
+      throw input_error(fmt::format("command line: --out '{}' is not a method file (.toml)", path));
+  }
+
+  std::string name() const { return path_.stem().string(); }
+  std::string path() const { return path_.string(); }
+
+  void write(const method& m) {
+    folder_.publish(path_.filename().string(), [&m](const std::string& temporary) {
+      std::ofstream out(temporary, std::ios::binary);
+      out << to_toml(m);
+      out.close();
+      if (!out) throw io_error(fmt::format("cannot write '{}' (no space left) free some space", temporary));
+    });
+  }
+
+ private:
+  std::filesystem::path path_;
+  result_folder folder_;
+};
+
+std::string state_of(const design_progress& p) {
+  const std::string best = p.best ? fmt::format("r {:.6f}, error {:.4g}", p.best->r, p.best->error)
+                                  : fmt::format("nearest residual {:.1e}", p.best_residual);
+  return fmt::format("{} starts, {} feasible, {}", p.starts, p.feasible, best);
+}
+
+json summary(const design_task& task, const options& given, const design_progress& found, double wall) {
+  return {
+      {"kind", to_string(task.kind)},
+      {"order", task.demands.order},
+      {"stages", task.stages},
+      {"box", task.demands.box},
+      {"objective", given.objective},
+      {"seed", task.seed},
+      {"starts", found.starts},
+      {"feasible", found.feasible},
+      {"nearest_residual", std::isfinite(found.best_residual) ? json(found.best_residual) : json(nullptr)},
+      {"wall_s", wall},
+      {"found", found.best.has_value()}};
+}
+
+int design(const options& given) {
+  const design_task task = task_of(given);
+  method_file file(given.out);
+  watch_for_interrupts();
+  set_threads(given.threads);
+  const auto begin = clock::now();
+  const auto elapsed = [&begin] { return std::chrono::duration<double>(clock::now() - begin).count(); };
+  task_progress bar;
+  design_search how;
+  how.starts = given.starts;
+  how.stop = [&] { return interrupted() || elapsed() > given.seconds; };
+  how.report = [&](const design_progress& p, bool improved) {
+    if (improved) file.write(to_method(task, *p.best, file.name()));
+    const double part = std::max(static_cast<double>(p.starts) / given.starts, elapsed() / given.seconds);
+    bar.update(part, state_of(p));
+  };
+  const design_progress found = search(task, how);
+  bar.finish();
+  json result = summary(task, given, found, elapsed());
+  if (!found.best) {
+    if (given.json) print(result.dump(2) + "\n");
+    if (interrupted()) return static_cast<int>(exit_code::interrupted);
+    throw numerical_error(
+        fmt::format("no method found ({} in {:.0f} s, seed {}) try more starts, stages or a larger box",
+                    state_of(found), elapsed(), task.seed));
+  }
+  if (interrupted()) {
+    log::warning(fmt::format("interrupted; the best method so far is in '{}'", file.path()));
+    return static_cast<int>(exit_code::interrupted);
+  }
+  auto best = *found.best;
+  if (given.sparsify > 0.0) best = sparsify(task, best, given.sparsify, interrupted);
+  const method polished = to_polished_method(task, best, file.name());
+  file.write(polished);
+  result["start"] = best.start;
+  result["error_constant"] = best.error;
+  result["file"] = file.path();
+  result["method"] = check_json(polished);
+  if (given.json) {
+    print(result.dump(2) + "\n");
+  } else {
+    print(fmt::format("{}; best of start {}; written to '{}'\n\n{}", state_of(found), best.start, file.path(),
+                      check_text(polished)));
+  }
+  if (!result["method"]["claims_hold"].get<bool>())
+    throw claim_error(fmt::format("the method in '{}' does not hold what was asked for ({}) try another seed",
+                                  file.path(), first_failure(polished)));
+  return 0;
+}
+
+}  // namespace
+
+void add_design(CLI::App& program, action& chosen) {
+  auto given = std::make_shared<options>();
+  auto& d = given->demands;
+  CLI::App* command =
+      program.add_subcommand("design", "Find a new method: order, stages, what it is to be best in");
+  command->add_option("--order", given->order, "order of accuracy")->required();
+  command->add_option("--stages", given->stages, "stages; the last one is the result")->required();
+  command->add_flag("--implicit", given->implicit, "a method without transport, u' = Q(u)");
+  command->add_option("--evaluations", given->evaluations,
+                      "transport evaluations in a step (any number if not given)");
+  command->add_option("--box", d.box, "largest d and |ddot|")->capture_default_str();
+  command->add_option("--margin", d.margin, "least d + |ddot| of a stage")->capture_default_str();
+  command->add_option("--objective", given->objective, "r, r/n_F or error: what the method is to be best in")
+      ->capture_default_str();
+  command->add_option("--ssp", d.least_r, "least SSP coefficient r")->capture_default_str();
+  command
+      ->add_option("--regime", given->regime, "terms of size epsilon that are to be exact: none, slow or all")
+      ->capture_default_str();
+  command->add_option("--angle", d.least_angle, "least angle of A(alpha)-stability, degrees");
+  command->add_option("--pole", d.least_pole, "least distance of poles on the imaginary axis from zero");
+  command->add_option("--buffers", d.most_buffers, "most state-sized buffers");
+  command->add_option("--sparsify", given->sparsify, "part of the objective to give for fewer coefficients");
+  command->add_option("--starts", given->starts, "random starts")->capture_default_str();
+  command->add_option("--time", given->seconds, "the search ends after this many seconds")
+      ->capture_default_str();
+  command->add_option("--seed", given->seed, "of the random starts")->capture_default_str();
+  command->add_option("--threads", given->threads, "threads; 0 for all cores");
+  command->add_option("--out", given->out, "method file to write (FILE.toml)")->required();
+  command->add_flag("--json", given->json, "print one JSON object");
+  command->callback([given, &chosen] { chosen = [given] { return design(*given); }; });
+}
+
+}  // namespace apsis::app

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <apsis/design/stage_series.hpp>
+#include <apsis/method/method.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// An equation between coefficients: Σ_t a_t Π_f y_f[stage_t] = target, with the stage vectors y of a list of
+/// nodes.
+struct design_condition {
+  struct term {
+    double factor;
+    std::vector<int> nodes;
+    std::size_t stage;
+  };
+  std::string name;
+  std::vector<term> terms;
+  double target = 0.0;
+};
+
+/// Equations and the stage vectors that they need.
+struct condition_list {
+  std::vector<series_node> nodes;
+  std::vector<design_condition> conditions;
+};
+
+/// What is demanded of the terms of size ε where ε ≪ Δt (docs/plateaus.md).
+enum class regime_demand {
+  none,
+  slow,  ///< flux = last = 1: (N1) and (N2)
+  all    ///< layer = 1 too: (N3)
+};
+
+/// The order conditions of a method of the paper's class, in a form that is regular at its solutions.
+///
+/// Transport: order ≥ 3 gives Σ b̂_i (c_i − ĉ_i)² = 0 with b̂ ≥ 0, so c = ĉ at each stage in `transport`; this
+/// is imposed, and of trees that differ only in leaves under a node T one is kept (15 of 20 conditions at
+/// order 3, 49 of 72 at order 4). Without transport: order ≥ 5 gives Σ b_i δ_i² = 0 with δ = Ac + ȧ − c²/2,
+/// so δ = 0 at each stage in `relaxation` (those with d > 0). The proofs are in docs/design.md.
+condition_list order_equations(method_kind kind, int order, std::size_t stages,
+                               const std::vector<char>& transport, const std::vector<char>& relaxation);
+
+/// (N1) to (N3) as far as demanded, added to a list.
+void add_regime_equations(condition_list& list, regime_demand demand, std::size_t stages);
+
+/// The residuals of the conditions of one order: what the error constant is made of.
+condition_list error_terms(method_kind kind, int order, std::size_t stages);
+
+/// Values and gradients of a list of conditions for one set of coefficients at a time.
+template <class Real>
+class condition_sweep {
+ public:
+  condition_sweep(const condition_list& list, const std::vector<char>& slow)
+      : series_(list.nodes, slow), conditions_(list.conditions) {}
+
+  std::size_t size() const { return conditions_.size(); }
+  void evaluate(const shu_osher_form<Real>& m) { series_.evaluate(m); }
+
+  Real residual(std::size_t k) const {
+    Real sum(-conditions_[k].target);
+    for (const auto& term : conditions_[k].terms) {
+      Real product(term.factor);
+      for (const int node : term.nodes) product *= series_.value(node, term.stage);
+      sum += product;
+    }
+    return sum;
+  }
+
+  /// Adds weight times condition k to the sum whose gradient reverse() gives.
+  void seed(std::size_t k, const Real& weight) {
+    for (const auto& term : conditions_[k].terms)
+      for (std::size_t f = 0; f < term.nodes.size(); ++f) {
+        Real others = weight * Real(term.factor);
+        for (std::size_t l = 0; l < term.nodes.size(); ++l)
+          if (l != f) others *= series_.value(term.nodes[l], term.stage);
+        series_.seed(term.nodes[f], term.stage, others);
+      }
+  }
+
+  void reverse(shu_osher_form<Real>& out) { series_.reverse(out); }
+
+ private:
+  stage_series<Real> series_;
+  std::vector<design_condition> conditions_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,228 @@
+#include <apsis/design/design_problem.hpp>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+condition_list equations_of(const zero_pattern& pattern, const design_demands& demands) {
+  auto list = order_equations(pattern.kind, demands.order, pattern.stages(), pattern.transport(), pattern.d);
+  if (pattern.kind == method_kind::imex) add_regime_equations(list, demands.regime, pattern.stages());
+  return list;
+}
+
+/// Stages that relax without Q̇, whatever the values.
+std::vector<char> slow_stages(const zero_pattern& pattern) {
+  std::vector<char> slow(pattern.stages(), 0);
+  for (std::size_t i = 0; i < slow.size(); ++i) slow[i] = pattern.d[i] != 0 && pattern.ddot[i] == 0;
+  return slow;
+}
+
+}  // namespace
+
+std::vector<char> zero_pattern::transport() const {
+  std::vector<char> used(stages(), 0);
+  for (std::size_t i = 0; i < stages(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (W(i, j) != 0) used[j] = 1;
+  return used;
+}
+
+zero_pattern full_pattern(method_kind kind, const std::vector<char>& transport) {
+  const std::size_t s = transport.size();
+  zero_pattern p;
+  p.kind = kind;
+  p.P = p.W = matrix<char>(s, s);
+  p.d.assign(s, kind != method_kind::explicit_only);
+  p.ddot = p.d;
+  p.initial.assign(s, 1);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      p.P(i, j) = 1;
+      p.W(i, j) = static_cast<char>(transport[j] != 0 && kind != method_kind::implicit_only);
+    }
+  return p;
+}
+
+design_problem::design_problem(zero_pattern pattern, const design_demands& demands)
+    : pattern_(std::move(pattern)),
+      demands_(demands),
+      slow_(slow_stages(pattern_)),
+      conditions_(equations_of(pattern_, demands_), slow_),
+      second_(equations_of(pattern_, demands_), slow_) {
+  for (const auto& c : equations_of(pattern_, demands_).conditions) names_.push_back(c.name);
+  const std::size_t s = pattern_.stages();
+  std::vector<std::pair<double, double>> bounds;
+  const auto declare = [&](part what, std::size_t i, std::size_t j, double lower, double upper) {
+    unknowns_.push_back({what, i, j});
+    bounds.emplace_back(lower, upper);
+    return static_cast<Eigen::Index>(unknowns_.size()) - 1;
+  };
+  for (std::size_t i = 1; i < s; ++i) {
+    rows_.emplace_back();
+    names_.push_back(fmt::format("weights of stage {}", i + 1));
+    for (std::size_t j = 0; j < i; ++j) {
+      if (pattern_.P(i, j) != 0) rows_.back().push_back(declare(part::P, i, j, 0.0, 1.0));
+      if (pattern_.W(i, j) != 0) rows_.back().push_back(declare(part::W, i, j, 0.0, 1.0));
+    }
+    if (pattern_.initial[i] != 0) rows_.back().push_back(declare(part::initial, i, 0, 0.0, 1.0));
+  }
+  const bool relaxes = pattern_.kind != method_kind::explicit_only;
+  for (std::size_t i = 0; i < s && relaxes; ++i) {
+    const bool both = pattern_.d[i] != 0 && pattern_.ddot[i] != 0;
+    Eigen::Index d = -1, ddot = -1;
+    if (pattern_.d[i] != 0) d = declare(part::d, i, i, both ? 0.0 : demands_.margin, demands_.box);
+    if (pattern_.ddot[i] != 0) ddot = declare(part::ddot, i, i, -demands_.box, both ? 0.0 : -demands_.margin);
+    if (both) inequalities_.push_back({{{d, 1.0}, {ddot, -1.0}}, demands_.margin});
+  }
+  if (pattern_.kind != method_kind::implicit_only)
+    r_place_ = declare(part::r, 0, 0, demands_.least_r, demands_.largest_r);
+  lower_.resize(static_cast<Eigen::Index>(bounds.size()));
+  upper_.resize(lower_.size());
+  for (std::size_t k = 0; k < bounds.size(); ++k) {
+    lower_(static_cast<Eigen::Index>(k)) = bounds[k].first;
+    upper_(static_cast<Eigen::Index>(k)) = bounds[k].second;
+  }
+}
+
+template <class Real>
+Real* design_problem::entry(shu_osher_form<Real>& m, const unknown& u) {
+  switch (u.what) {
+    case part::P:
+      return &m.P(u.i, u.j);
+    case part::W:
+      return &m.W(u.i, u.j);
+    case part::d:
+      return &m.D(u.i, u.i);
+    case part::ddot:
+      return &m.ddot[u.i];
+    case part::r:
+      return &m.r;
+    case part::initial:
+      break;
+  }
+  return nullptr;  // 1 − Σ_j (p_ij + w_ij) in a form
+}
+
+template <class Real>
+shu_osher_form<Real> design_problem::empty_form() const {
+  const std::size_t s = pattern_.stages();
+  shu_osher_form<Real> m;
+  m.P = m.W = m.D = matrix<Real>(s, s);
+  m.ddot.assign(s, Real(0.0));
+  m.r = Real(0.0);
+  return m;
+}
+
+template <class Real>
+shu_osher_form<Real> design_problem::form_of(const std::vector<Real>& x) const {
+  auto m = empty_form<Real>();
+  m.r = Real(1.0);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    if (Real* to = entry(m, unknowns_[k]); to != nullptr) *to = x[k];
+  return m;
+}
+
+shu_osher_form<double> design_problem::form(const Eigen::VectorXd& x) const {
+  return form_of(std::vector<double>(x.begin(), x.end()));
+}
+
+Eigen::VectorXd design_problem::unknowns_of(const shu_osher_form<double>& m) const {
+  auto copy = m;
+  const auto initial = initial_weights(m);
+  Eigen::VectorXd x(unknowns());
+  for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+    const double* from = entry(copy, unknowns_[k]);
+    x(static_cast<Eigen::Index>(k)) = from != nullptr ? *from : initial[unknowns_[k].i];
+  }
+  return x;
+}
+
+Eigen::VectorXd design_problem::residuals(const Eigen::VectorXd& x) {
+  conditions_.evaluate(form(x));
+  Eigen::VectorXd c(equations());
+  Eigen::Index k = 0;
+  for (; k < static_cast<Eigen::Index>(conditions_.size()); ++k)
+    c(k) = conditions_.residual(static_cast<std::size_t>(k));
+  for (const auto& row : rows_) {
+    double sum = -1.0;
+    for (const auto place : row) sum += x(place);
+    c(k++) = sum;
+  }
+  return c;
+}
+
+Eigen::MatrixXd design_problem::jacobian(const Eigen::VectorXd& x) {
+  conditions_.evaluate(form(x));
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(equations(), unknowns());
+  for (std::size_t k = 0; k < conditions_.size(); ++k) {
+    auto gradient = empty_form<double>();
+    conditions_.seed(k, 1.0);
+    conditions_.reverse(gradient);
+    for (std::size_t u = 0; u < unknowns_.size(); ++u)
+      if (const double* from = entry(gradient, unknowns_[u]); from != nullptr)
+        J(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(u)) = *from;
+  }
+  for (std::size_t row = 0; row < rows_.size(); ++row)
+    for (const auto place : rows_[row]) J(static_cast<Eigen::Index>(conditions_.size() + row), place) = 1.0;
+  return J;
+}
+
+void design_problem::require_error_terms() {
+  if (error_) return;
+  const auto list = error_terms(pattern_.kind, demands_.order + 1, pattern_.stages());
+  error_.emplace(list, slow_);
+  error_second_.emplace(list, slow_);
+}
+
+double design_problem::half_square_error(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+  require_error_terms();
+  error_->evaluate(form(x));
+  double sum = 0.0;
+  for (std::size_t k = 0; k < error_->size(); ++k) {
+    const double residual = error_->residual(k);
+    sum += 0.5 * residual * residual;
+    if (gradient != nullptr) error_->seed(k, residual);
+  }
+  if (gradient == nullptr) return sum;
+  auto g = empty_form<double>();
+  error_->reverse(g);
+  gradient->setZero(unknowns());
+  for (std::size_t u = 0; u < unknowns_.size(); ++u)
+    if (const double* from = entry(g, unknowns_[u]); from != nullptr)
+      (*gradient)(static_cast<Eigen::Index>(u)) = *from;
+  return sum;
+}
+
+Eigen::MatrixXd design_problem::hessian(const Eigen::VectorXd& x, const Eigen::VectorXd& multipliers,
+                                        double weight) {
+  if (weight != 0.0) require_error_terms();
+  const std::size_t n = unknowns_.size();
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(unknowns(), unknowns());
+  for (std::size_t first = 0; first < n; first += tangent::width) {
+    const std::size_t last = std::min(n, first + tangent::width);
+    std::vector<tangent> point(x.begin(), x.end());
+    for (std::size_t k = first; k < last; ++k) point[k].slope[k - first] = 1.0;
+    const auto m = form_of(point);
+    auto gradient = empty_form<tangent>();
+    second_.evaluate(m);
+    for (std::size_t k = 0; k < second_.size(); ++k)
+      second_.seed(k, tangent(multipliers(static_cast<Eigen::Index>(k))));
+    second_.reverse(gradient);
+    if (weight != 0.0) {
+      error_second_->evaluate(m);
+      for (std::size_t k = 0; k < error_second_->size(); ++k)
+        error_second_->seed(k, tangent(weight) * error_second_->residual(k));
+      error_second_->reverse(gradient);
+    }
+    for (std::size_t u = 0; u < n; ++u)
+      if (const tangent* from = entry(gradient, unknowns_[u]); from != nullptr)
+        for (std::size_t k = first; k < last; ++k)
+          H(static_cast<Eigen::Index>(u), static_cast<Eigen::Index>(k)) = from->slope[k - first];
+  }
+  return H;
+}
+
+}  // namespace apsis

@@ -1,0 +1,224 @@
+#include <apsis/design/nonlinear_program.hpp>
+
+#include <algorithm>
+#include <mutex>
+
+#include <Eigen/QR>
+#include <IpIpoptApplication.hpp>
+#include <IpTNLP.hpp>
+
+namespace apsis {
+namespace {
+
+using Ipopt::Index;
+using Ipopt::Number;
+
+// MUMPS, the linear solver below Ipopt, keeps global state: one thread at a time. It is let go while the
+// functions of a program are evaluated, which is where the time is.
+std::mutex& solver_guard() {
+  static std::mutex guard;
+  return guard;
+}
+
+class released_lock {
+ public:
+  released_lock() { solver_guard().unlock(); }
+  ~released_lock() { solver_guard().lock(); }
+  released_lock(const released_lock&) = delete;
+  released_lock& operator=(const released_lock&) = delete;
+};
+
+Eigen::Map<const Eigen::VectorXd> vector_of(Index n, const Number* x) {
+  return {x, n};
+}
+
+class program final : public Ipopt::TNLP {
+ public:
+  program(design_problem& problem, design_objective objective, Eigen::VectorXd start,
+          const std::function<bool()>& stop, program_result& result)
+      : problem_(problem), objective_(objective), start_(std::move(start)), stop_(stop), result_(result) {
+    chosen_ = independent_equations(problem_.jacobian(start_));
+  }
+
+  bool get_nlp_info(Index& n, Index& m, Index& jacobian_entries, Index& hessian_entries,
+                    IndexStyleEnum& style) override {
+    n = static_cast<Index>(problem_.unknowns());
+    m = rows();
+    jacobian_entries = n * m;
+    hessian_entries = n * (n + 1) / 2;
+    style = C_STYLE;
+    return true;
+  }
+
+  bool get_bounds_info(Index n, Number* lower, Number* upper, Index m, Number* least, Number* most) override {
+    std::copy_n(problem_.lower().data(), n, lower);
+    std::copy_n(problem_.upper().data(), n, upper);
+    const auto equations = static_cast<Index>(chosen_.size());
+    for (Index k = 0; k < m; ++k) {
+      const bool equation = k < equations;
+      least[k] = equation ? 0.0 : problem_.inequalities()[static_cast<std::size_t>(k - equations)].least;
+      most[k] = equation ? 0.0 : 2e19;
+    }
+    return true;
+  }
+
+  bool get_starting_point(Index n, bool, Number* x, bool, Number*, Number*, Index, bool, Number*) override {
+    std::copy_n(start_.data(), n, x);
+    return true;
+  }
+
+  bool eval_f(Index n, const Number* x, bool, Number& value) override {
+    const released_lock free;
+    value = objective_ != design_objective::smallest_error ? -x[problem_.place_of_r()]
+                                                           : problem_.half_square_error(vector_of(n, x));
+    return std::isfinite(value);
+  }
+
+  bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
+    const released_lock free;
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
+    if (objective_ != design_objective::smallest_error) {
+      g(problem_.place_of_r()) = -1.0;
+    } else {
+      problem_.half_square_error(vector_of(n, x), &g);
+    }
+    std::copy_n(g.data(), n, gradient);
+    return g.allFinite();
+  }
+
+  bool eval_g(Index n, const Number* x, bool, Index, Number* values) override {
+    const released_lock free;
+    const Eigen::VectorXd c = problem_.residuals(vector_of(n, x));
+    for (const auto k : chosen_) *values++ = c(k);
+    for (const auto& inequality : problem_.inequalities()) {
+      double sum = 0.0;
+      for (const auto& [place, factor] : inequality.terms) sum += factor * x[place];
+      *values++ = sum;
+    }
+    return c.allFinite();
+  }
+
+  bool eval_jac_g(Index n, const Number* x, bool, Index m, Index entries, Index* row, Index* column,
+                  Number* values) override {
+    if (values == nullptr) {
+      for (Index k = 0; k < entries; ++k) {
+        row[k] = k / n;
+        column[k] = k % n;
+      }
+      return true;
+    }
+    const released_lock free;
+    const Eigen::MatrixXd J = problem_.jacobian(vector_of(n, x));
+    std::fill_n(values, n * m, 0.0);
+    Index at = 0;
+    for (const auto k : chosen_)
+      for (Index u = 0; u < n; ++u) values[at++] = J(k, u);
+    for (const auto& inequality : problem_.inequalities()) {
+      for (const auto& [place, factor] : inequality.terms) values[at + place] = factor;
+      at += n;
+    }
+    return J.allFinite();
+  }
+
+  bool eval_h(Index n, const Number* x, bool, Number objective_factor, Index, const Number* multipliers, bool,
+              Index entries, Index* row, Index* column, Number* values) override {
+    if (values == nullptr) {
+      Index at = 0;
+      for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j <= i && at < entries; ++j, ++at) {
+          row[at] = i;
+          column[at] = j;
+        }
+      return true;
+    }
+    const released_lock free;
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(problem_.equations());
+    for (std::size_t k = 0; k < chosen_.size(); ++k) all(chosen_[k]) = multipliers[k];
+    const double weight = objective_ == design_objective::smallest_error ? objective_factor : 0.0;
+    const Eigen::MatrixXd H = problem_.hessian(vector_of(n, x), all, weight);
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j <= i; ++j) *values++ = H(i, j);
+    return H.allFinite();
+  }
+
+  bool intermediate_callback(Ipopt::AlgorithmMode, Index, Number, Number, Number, Number, Number, Number,
+                             Number, Number, Index, const Ipopt::IpoptData*,
+                             Ipopt::IpoptCalculatedQuantities*) override {
+    return !stop_ || !stop_();
+  }
+
+  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*, const Number*, Index,
+                         const Number*, const Number*, Number, const Ipopt::IpoptData*,
+                         Ipopt::IpoptCalculatedQuantities*) override {
+    result_.x = vector_of(n, x);
+  }
+
+ private:
+  Index rows() const { return static_cast<Index>(chosen_.size() + problem_.inequalities().size()); }
+
+  design_problem& problem_;
+  design_objective objective_;
+  Eigen::VectorXd start_;
+  const std::function<bool()>& stop_;
+  program_result& result_;
+  std::vector<Eigen::Index> chosen_;
+};
+
+std::string to_text(Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case Ipopt::Solve_Succeeded:
+      return "solved";
+    case Ipopt::Solved_To_Acceptable_Level:
+      return "solved to an acceptable level";
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return "too many iterations";
+    case Ipopt::User_Requested_Stop:
+      return "stopped";
+    case Ipopt::Infeasible_Problem_Detected:
+      return "infeasible";
+    case Ipopt::Restoration_Failed:
+      return "restoration failed";
+    default:
+      return "status " + std::to_string(static_cast<int>(status));
+  }
+}
+
+}  // namespace
+
+std::vector<Eigen::Index> independent_equations(const Eigen::MatrixXd& jacobian) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(jacobian.transpose());
+  factors.setThreshold(1e-9);
+  std::vector<Eigen::Index> chosen;
+  for (Eigen::Index k = 0; k < factors.rank(); ++k) chosen.push_back(factors.colsPermutation().indices()(k));
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+program_result optimise(design_problem& problem, design_objective objective, const Eigen::VectorXd& x,
+                        const std::function<bool()>& stop, int most_iterations) {
+  program_result result;
+  result.x = x;
+  const std::lock_guard lock(solver_guard());
+  Ipopt::SmartPtr<Ipopt::IpoptApplication> solver = IpoptApplicationFactory();
+  const auto options = solver->Options();
+  options->SetStringValue("sb", "yes");
+  options->SetIntegerValue("print_level", 0);
+  options->SetIntegerValue("max_iter", most_iterations);
+  options->SetNumericValue("tol", 1e-9);
+  options->SetNumericValue("constr_viol_tol", 1e-11);
+  // Signs are exact: bounds are neither relaxed nor left.
+  options->SetNumericValue("bound_relax_factor", 0.0);
+  options->SetStringValue("mu_strategy", "adaptive");
+  if (solver->Initialize() != Ipopt::Solve_Succeeded) {
+    result.status = "Ipopt does not start";
+    return result;
+  }
+  const Ipopt::SmartPtr<Ipopt::TNLP> task = new program(problem, objective, x, stop, result);
+  const auto status = solver->OptimizeTNLP(task);
+  result.status = to_text(status);
+  result.solved = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level;
+  result.residual = problem.residuals(result.x).lpNorm<Eigen::Infinity>();
+  return result;
+}
+
+}  // namespace apsis

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <apsis/design/design_problem.hpp>
+
+#include <functional>
+#include <string>
+
+namespace apsis {
+
+/// What a design is to be best in.
+enum class design_objective {
+  largest_r,      ///< the SSP coefficient r
+  efficiency,     ///< r/n_F, what one evaluation of T pays for; the same as r for a given pattern
+  smallest_error  ///< the 2-norm of the residuals of the next order
+};
+
+struct program_result {
+  Eigen::VectorXd x;
+  bool solved = false;    ///< a point where the first-order conditions hold
+  double residual = 0.0;  ///< largest |equation| there
+  std::string status;
+};
+
+/// The best method near x: Ipopt (Wächter, Biegler, Math. Program. 106, 2006) with exact first and second
+/// derivatives. Of equations that depend on others at x, which makes a program singular, only independent
+/// ones are passed on. `stop` ends the iteration when it returns true. May be called from several threads.
+program_result optimise(design_problem& problem, design_objective objective, const Eigen::VectorXd& x,
+                        const std::function<bool()>& stop = {}, int most_iterations = 500);
+
+/// Equations whose gradients at x are independent of each other, as far as double precision tells.
+std::vector<Eigen::Index> independent_equations(const Eigen::MatrixXd& jacobian);
+
+}  // namespace apsis

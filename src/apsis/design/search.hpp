@@ -1,0 +1,68 @@
+#pragma once
+
+#include <apsis/design/nonlinear_program.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+
+namespace apsis {
+
+/// A method to be found: kind, order, stages, what is demanded of it and what it is to be best in.
+struct design_task {
+  method_kind kind = method_kind::imex;
+  std::size_t stages = 3;
+  std::optional<int>
+      transports;  ///< evaluations of T, n_F; if not given any number, drawn anew for each start
+  design_demands demands;
+  design_objective objective = design_objective::largest_r;
+  std::uint64_t seed = 1;
+};
+
+/// A method that was found, in double precision.
+struct design_candidate {
+  zero_pattern pattern;
+  Eigen::VectorXd x;    ///< of the design_problem of this pattern
+  double r = 0.0;       ///< 1 without transport
+  int evaluations = 0;  ///< of T, n_F
+  double error = 0.0;   ///< 2-norm of the residuals of the next order
+  int start = -1;       ///< which start found it
+};
+
+/// How far a search is.
+struct design_progress {
+  long starts = 0;    ///< finished
+  long feasible = 0;  ///< satisfied the equations
+  double best_residual =
+      std::numeric_limits<double>::infinity();  ///< smallest largest |equation| of any start
+  std::optional<design_candidate> best;
+};
+
+/// Starts a search may take, and what is told of them. `improved` is called when there is a new best, before
+/// any other start ends; `stop` is asked often and ends the search.
+struct design_search {
+  int starts = 1000;
+  std::function<void(const design_progress&, bool improved)> report;
+  std::function<bool()> stop;
+};
+
+/// Multi-start search, on all threads: each start draws a pattern and coefficients from (seed, start), looks
+/// for a point that satisfies the equations, optimises from there and drops coefficients that are zero. A
+/// start has the same result on any number of threads, so a search of a given number of starts has, too.
+design_progress search(const design_task& task, const design_search& how);
+
+/// Whether a is better than b: in the objective of the task; the earlier start if that is equal.
+bool is_better(const design_task& task, const design_candidate& a, const design_candidate& b);
+
+/// What counts: larger is better. r, r/n_F or minus the error.
+double value_of(const design_candidate& candidate, design_objective objective);
+
+/// Whether the demands that the equations do not know are met: angle, poles, buffers.
+bool is_acceptable(const design_task& task, const design_candidate& candidate);
+
+/// One start of it; nothing if no point satisfies the equations. `residual` is how near it came.
+std::optional<design_candidate> search_once(const design_task& task, int start, double& residual,
+                                            const std::function<bool()>& stop = {});
+
+}  // namespace apsis

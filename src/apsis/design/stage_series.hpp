@@ -1,0 +1,204 @@
+#pragma once
+
+#include <apsis/method/tableau.hpp>
+#include <apsis/method/trees.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// One stage vector y that a method defines, in terms of others (by their place in the list).
+struct series_node {
+  enum class kind {
+    transport,   ///< R y = (W/r) Π children: a tree with root T
+    relaxation,  ///< R y = D Π children + Ḋ Σ_k (Π_{l≠k} children)(Π children of child k): a tree with root Q
+    kept,        ///< y_i = Σ_j w_ij/(r d_i) where ḋ_i = 0 and d_i > 0, else 0: χ of docs/plateaus.md
+    layer        ///< y_i = r_i/d_i there, else 0: λ of docs/plateaus.md
+  };
+  kind what = kind::transport;
+  std::vector<int> children;
+  std::vector<std::vector<int>> merged;  ///< the factors of each term of Ḋ (nodes of kind relaxation)
+};
+
+/// The stage vectors of trees, in the same order (rooted_trees() puts children first).
+std::vector<series_node> series_of(const std::vector<rooted_tree>& trees);
+
+/// Values of stage vectors of a method in Shu–Osher form with diagonal D, and by reverse sweep the exact
+/// gradient of any weighted sum of their entries in all coefficients P, W, d, ḋ, r. Over `tangent` instead of
+/// double the gradient carries its own derivatives, that is, second derivatives.
+///
+/// `slow[i]`: stage i has ḋ_i = 0 by design (not by value), so that χ and λ are smooth functions.
+template <class Real>
+class stage_series {
+ public:
+  stage_series(std::span<const series_node> nodes, std::vector<char> slow)
+      : nodes_(nodes.begin(), nodes.end()), slow_(std::move(slow)) {}
+
+  void evaluate(const shu_osher_form<Real>& m) {
+    s_ = m.stages();
+    r_ = m.r;
+    resize();
+    ddot_ = m.ddot;
+    for (std::size_t i = 0; i < s_; ++i) {
+      d_[i] = m.D(i, i);
+      initial_[i] = Real(1.0);
+      for (std::size_t j = 0; j < i; ++j) {
+        M(i, j) = m.P(i, j) + m.W(i, j);
+        V(i, j) = m.W(i, j) / r_;
+        initial_[i] -= M(i, j);
+      }
+    }
+    for (std::size_t n = 0; n < nodes_.size(); ++n) evaluate_node(n);
+  }
+
+  const Real& value(int node, std::size_t stage) const {
+    return y_[static_cast<std::size_t>(node) * s_ + stage];
+  }
+
+  /// Adds weight · y_stage of the node to the sum whose gradient reverse() gives.
+  void seed(int node, std::size_t stage, const Real& weight) {
+    adjoint_[static_cast<std::size_t>(node) * s_ + stage] += weight;
+    active_[static_cast<std::size_t>(node)] = 1;
+  }
+
+  /// Adds the gradient of the seeded sum to `out` (P, W, diagonal of D, ddot, r); the seeds are used up.
+  void reverse(shu_osher_form<Real>& out) {
+    for (std::size_t n = nodes_.size(); n-- > 0;)
+      if (active_[n] != 0) reverse_node(n, out);
+    // W stands in V = W/r and in M.
+    for (std::size_t i = 0; i < s_; ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        Real& v = V_bar_[i * s_ + j];
+        Real& w = M_bar_[i * s_ + j];
+        out.P(i, j) += w;
+        out.W(i, j) += w + v / r_;
+        out.r -= v * V(i, j) / r_;
+        v = w = Real(0.0);
+      }
+  }
+
+ private:
+  Real& M(std::size_t i, std::size_t j) { return M_[i * s_ + j]; }
+  Real& V(std::size_t i, std::size_t j) { return V_[i * s_ + j]; }
+
+  void resize() {
+    const std::size_t all = nodes_.size() * s_;
+    if (y_.size() == all && d_.size() == s_) return;
+    for (auto* v : {&y_, &g_, &h_, &adjoint_}) v->assign(all, Real(0.0));
+    for (auto* v : {&M_, &V_, &M_bar_, &V_bar_}) v->assign(s_ * s_, Real(0.0));
+    for (auto* v : {&d_, &initial_, &g_bar_, &h_bar_}) v->assign(s_, Real(0.0));
+    active_.assign(nodes_.size(), 0);
+  }
+
+  /// Π_{f in factors, f ≠ left_out} y_f at a stage; left_out by position.
+  Real product(const std::vector<int>& factors, std::size_t stage, std::size_t left_out) const {
+    Real p(1.0);
+    for (std::size_t f = 0; f < factors.size(); ++f)
+      if (f != left_out) p *= value(factors[f], stage);
+    return p;
+  }
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  void evaluate_node(std::size_t n) {
+    const series_node& node = nodes_[n];
+    Real* y = &y_[n * s_];
+    Real* g = &g_[n * s_];
+    Real* h = &h_[n * s_];
+    if (node.what == series_node::kind::kept || node.what == series_node::kind::layer) {
+      for (std::size_t i = 0; i < s_; ++i) {
+        y[i] = Real(0.0);
+        if (slow_[i] == 0) continue;
+        Real source = node.what == series_node::kind::layer ? initial_[i] : Real(0.0);
+        if (node.what == series_node::kind::kept)
+          for (std::size_t j = 0; j < i; ++j) source += V(i, j);
+        y[i] = source / d_[i];
+      }
+      return;
+    }
+    const bool relaxes = node.what == series_node::kind::relaxation;
+    for (std::size_t i = 0; i < s_; ++i) {
+      g[i] = product(node.children, i, none);
+      Real sum(0.0);
+      if (relaxes) {
+        h[i] = Real(0.0);
+        for (const auto& factors : node.merged) h[i] += product(factors, i, none);
+        sum = d_[i] * g[i] + ddot_[i] * h[i];
+        for (std::size_t j = 0; j < i; ++j) sum += M(i, j) * y[j];
+      } else {
+        for (std::size_t j = 0; j < i; ++j) sum += M(i, j) * y[j] + V(i, j) * g[j];
+      }
+      y[i] = sum;
+    }
+  }
+
+  void reverse_source(std::size_t n, shu_osher_form<Real>& out) {
+    const bool layer = nodes_[n].what == series_node::kind::layer;
+    for (std::size_t i = 0; i < s_; ++i) {
+      const Real a = adjoint_[n * s_ + i];
+      adjoint_[n * s_ + i] = Real(0.0);
+      if (slow_[i] == 0) continue;
+      const Real per_d = a / d_[i];
+      out.D(i, i) -= per_d * y_[n * s_ + i];
+      for (std::size_t j = 0; j < i; ++j) {
+        if (layer) {
+          M_bar_[i * s_ + j] -= per_d;
+        } else {
+          V_bar_[i * s_ + j] += per_d;
+        }
+      }
+    }
+  }
+
+  void reverse_node(std::size_t n, shu_osher_form<Real>& out) {
+    active_[n] = 0;
+    const series_node& node = nodes_[n];
+    if (node.what == series_node::kind::kept || node.what == series_node::kind::layer) {
+      reverse_source(n, out);
+      return;
+    }
+    const bool relaxes = node.what == series_node::kind::relaxation;
+    const Real* y = &y_[n * s_];
+    const Real* g = &g_[n * s_];
+    Real* bar = &adjoint_[n * s_];
+    for (std::size_t i = 0; i < s_; ++i) g_bar_[i] = h_bar_[i] = Real(0.0);
+    for (std::size_t i = s_; i-- > 0;) {
+      const Real a = bar[i];
+      bar[i] = Real(0.0);
+      for (std::size_t j = 0; j < i; ++j) {
+        bar[j] += a * M(i, j);
+        M_bar_[i * s_ + j] += a * y[j];
+        if (relaxes) continue;
+        V_bar_[i * s_ + j] += a * g[j];
+        g_bar_[j] += a * V(i, j);
+      }
+      if (!relaxes) continue;
+      out.D(i, i) += a * g[i];
+      out.ddot[i] += a * h_[n * s_ + i];
+      g_bar_[i] += a * d_[i];
+      h_bar_[i] += a * ddot_[i];
+    }
+    spread(node.children, g_bar_);
+    for (const auto& factors : node.merged) spread(factors, h_bar_);
+  }
+
+  /// Adjoints of the factors of a product.
+  void spread(const std::vector<int>& factors, const std::vector<Real>& bar) {
+    for (std::size_t f = 0; f < factors.size(); ++f) {
+      const auto child = static_cast<std::size_t>(factors[f]);
+      active_[child] = 1;
+      for (std::size_t i = 0; i < s_; ++i) adjoint_[child * s_ + i] += bar[i] * product(factors, i, f);
+    }
+  }
+
+  std::vector<series_node> nodes_;
+  std::vector<char> slow_, active_;
+  std::size_t s_ = 0;
+  Real r_{};
+  std::vector<Real> y_, g_, h_, adjoint_;    ///< nodes × stages
+  std::vector<Real> M_, V_, M_bar_, V_bar_;  ///< P + W and W/r, s × s, and their adjoints
+  std::vector<Real> d_, ddot_, initial_, g_bar_, h_bar_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,102 @@
+// The command design from outside.
+#include "program.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+using namespace app_test;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> design(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {"design", "--out", "found.toml"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+}  // namespace
+
+TEST(design, writes_a_method_that_can_be_checked_and_used) {
+  const work_folder folder;
+  const auto arguments = design({"--order", "2", "--stages", "3", "--starts", "40", "--json"});
+  const outcome result = run_apsis(folder, arguments);
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json found = json::parse(result.out);
+  EXPECT_EQ(found["starts"], 40);
+  EXPECT_TRUE(found["found"].get<bool>());
+  // r = s - 2 is the ceiling; Ipopt stops within 1e-9 of it.
+  EXPECT_NEAR(found["method"]["ssp_coefficient"].get<double>(), 1.0, 1e-6);
+  const outcome check = run_apsis(folder, {"check", "found.toml", "--json"});
+  ASSERT_EQ(check.code, 0) << check.err;
+  EXPECT_EQ(json::parse(check.out), found["method"]);
+  EXPECT_EQ(run_apsis(folder, {"run", "paper/ode", "time.method=found.toml"}).code, 0);
+  // The same search has the same result.
+  const std::string first = read(folder.path() / "found.toml");
+  ASSERT_EQ(
+      run_apsis(folder, design({"--order", "2", "--stages", "3", "--starts", "40", "--threads", "1"})).code,
+      0);
+  EXPECT_EQ(read(folder.path() / "found.toml"), first);
+}
+
+TEST(design, says_how_near_it_came_if_nothing_is_found) {
+  const work_folder folder;
+  const outcome result =
+      run_apsis(folder, design({"--implicit", "--order", "4", "--stages", "2", "--starts", "20"}));
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("no method found (20 starts, 0 feasible, nearest residual"));
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(folder.listing(), IsEmpty());
+}
+
+TEST(design, leaves_the_best_so_far_when_interrupted) {
+  const work_folder folder;
+  process running(folder, design({"--order", "3", "--stages", "6", "--evaluations", "3", "--starts",
+                                  "1000000", "--time", "500"}));
+  const auto file = folder.path() / "found.toml";
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+  while (!fs::exists(file) && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_TRUE(fs::exists(file));
+  running.send(SIGINT);
+  const outcome result = running.wait();
+  EXPECT_EQ(result.code, 130);
+  EXPECT_THAT(result.err, HasSubstr("best method so far is in 'found.toml'"));
+  const outcome check = run_apsis(folder, {"check", "found.toml"});
+  EXPECT_EQ(check.code, 0) << check.err;
+}
+
+TEST(design, refuses_what_cannot_be_asked_for) {
+  const work_folder folder;
+  const auto refused = [&folder](const std::vector<std::string>& more, const std::string& message) {
+    const outcome result = run_apsis(folder, design(more));
+    EXPECT_EQ(result.code, 2) << message;
+    EXPECT_THAT(result.err, HasSubstr(message));
+    EXPECT_THAT(folder.listing(), IsEmpty());
+  };
+  refused({"--stages", "3"}, "--order is required");
+  refused({"--order", "2"}, "--stages is required");
+  refused({"--order", "0", "--stages", "3"}, "--order 0 is out of range (from 1 to 6)");
+  refused({"--order", "2", "--stages", "99"}, "--stages 99 is out of range (from 1 to 32)");
+  refused({"--order", "2", "--stages", "1"}, "an IMEX method needs 2");
+  refused({"--order", "2", "--stages", "3", "--evaluations", "3"}, "--evaluations 3 is out of range");
+  refused({"--order", "2", "--stages", "3", "--box", "-1"}, "--box -1 is out of range");
+  refused({"--order", "2", "--stages", "3", "--box", "nan"}, "--box nan is out of range");
+  refused({"--order", "2", "--stages", "3", "--margin", "5"}, "--margin 5 is out of range");
+  refused({"--order", "2", "--stages", "3", "--ssp", "0"}, "--ssp 0 is out of range");
+  refused({"--order", "2", "--stages", "3", "--time", "0"}, "--time 0 is out of range");
+  refused({"--order", "2", "--stages", "3", "--starts", "0"}, "--starts 0 is out of range");
+  refused({"--order", "2", "--stages", "3", "--objective", "eror"}, "did you mean 'error'");
+  refused({"--order", "2", "--stages", "3", "--regime", "fast"}, "unknown --regime 'fast'");
+  refused({"--implicit", "--order", "2", "--stages", "1", "--regime", "slow"}, "there is no transport");
+  refused({"--order", "2", "--stages", "3", "--out", "found.txt"}, "found.txt");
+}

@@ -1,0 +1,188 @@
+// What the designer finds from order, stages, box and seed alone, and that it comes back as a certified
+// method.
+#include <apsis/design/search.hpp>
+
+#include <apsis/core/parallel.hpp>
+#include <apsis/design/finish.hpp>
+#include <apsis/design/sparsify.hpp>
+#include <apsis/integrate/schedule.hpp>
+#include <apsis/method/certificate.hpp>
+#include <apsis/method/export.hpp>
+#include <apsis/method/intermediate_regime.hpp>
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace apsis {
+namespace {
+
+design_task imex_task(int order, std::size_t stages, double box) {
+  design_task task;
+  task.stages = stages;
+  task.demands.order = order;
+  task.demands.box = box;
+  return task;
+}
+
+design_task implicit_task(int order, std::size_t stages) {
+  design_task task;
+  task.kind = method_kind::implicit_only;
+  task.stages = stages;
+  task.demands.order = order;
+  task.objective = design_objective::smallest_error;
+  return task;
+}
+
+design_progress look(const design_task& task, int starts, int team = 2) {
+  design_search how;
+  how.starts = starts;
+  set_threads(team);
+  auto found = search(task, how);
+  set_threads(1);
+  return found;
+}
+
+/// The polished method is certified by the certificate, which shares nothing with the designer.
+void expect_certified(const design_task& task, const design_candidate& found) {
+  const auto m = to_polished_method(task, found, "designed");
+  const auto c = certify(m);
+  EXPECT_TRUE(c.claims_hold) << (c.failures.empty() ? "" : c.failures.front());
+  EXPECT_GE(c.order, task.demands.order);
+  EXPECT_LT(c.order_residual, mp_real(1e-40));
+  const auto again = certify(parse_method(to_toml(m), "designed.toml"));
+  EXPECT_TRUE(again.claims_hold);
+  if (task.kind == method_kind::implicit_only) {
+    EXPECT_TRUE(c.unconditional);
+    return;
+  }
+  EXPECT_EQ(c.type, "A");
+  // r is the optimum to the tolerance of the optimiser.
+  EXPECT_NEAR(c.ssp_coefficient.convert_to<double>(), found.r, 1e-6);
+}
+
+// The ceiling of second order is r = s − 2 with s − 1 evaluations; Ipopt stops at 1e-9.
+TEST(design_search, finds_the_best_second_order_methods) {
+  for (const auto& [stages, best] : {std::pair<std::size_t, double>{3, 1.0}, {6, 4.0}}) {
+    const auto task = imex_task(2, stages, 2.0);
+    const auto found = look(task, 60);
+    ASSERT_TRUE(found.best);
+    EXPECT_GT(found.best->r, best - 1e-6);
+    EXPECT_LT(found.best->r, best + 1e-6);
+    expect_certified(task, *found.best);
+  }
+}
+
+TEST(design_search, finds_the_third_order_method_of_the_paper) {
+  auto task = imex_task(3, 6, 2.0);
+  task.transports = 3;
+  const auto found = look(task, 100);
+  ASSERT_TRUE(found.best);
+  EXPECT_GT(found.best->r, 0.9044);
+  expect_certified(task, *found.best);
+}
+
+TEST(design_search, finds_a_third_order_method_with_seven_stages) {
+  auto task = imex_task(3, 7, 2.0);
+  task.transports = 4;
+  const auto found = look(task, 150);
+  ASSERT_TRUE(found.best);
+  EXPECT_GT(found.best->r, 1.87);
+  expect_certified(task, *found.best);
+}
+
+TEST(design_search, finds_implicit_methods_of_the_fewest_stages) {
+  for (const auto& [order, stages] : {std::pair<int, std::size_t>{2, 1}, {3, 2}, {4, 5}}) {
+    const auto task = implicit_task(order, stages);
+    const auto found = look(task, 200);
+    ASSERT_TRUE(found.best) << order;
+    expect_certified(task, *found.best);
+  }
+}
+
+// Order 3 needs two stages without transport, and order 4 with one evaluation does not exist at all.
+TEST(design_search, says_how_near_it_came_where_there_is_nothing) {
+  const auto found = look(implicit_task(3, 1), 20);
+  EXPECT_FALSE(found.best);
+  EXPECT_EQ(found.starts, 20);
+  EXPECT_GT(found.best_residual, 1e-3);
+}
+
+TEST(design_search, keeps_the_terms_of_size_epsilon_where_asked) {
+  auto task = imex_task(2, 5, 2.0);
+  task.demands.regime = regime_demand::all;
+  task.transports = 3;
+  const auto found = look(task, 150);
+  ASSERT_TRUE(found.best);
+  // md-imex-5-2 has r = 2, which is the ceiling of three evaluations.
+  EXPECT_GT(found.best->r, 2.0 - 1e-6);
+  const auto m = to_polished_method(task, *found.best, "designed");
+  EXPECT_TRUE(certify(m).claims_hold);
+  const auto terms = analyse_intermediate_regime(m.coefficients<mp_real>());
+  for (const mp_real& one : {terms.flux, terms.last, terms.layer}) EXPECT_LT(abs(one - 1), mp_real(1e-40));
+}
+
+TEST(design_search, has_a_smaller_error_at_a_smaller_r) {
+  auto task = imex_task(3, 6, 2.0);
+  task.transports = 3;
+  task.objective = design_objective::smallest_error;
+  task.demands.least_r = 0.5;
+  const auto found = look(task, 60);
+  ASSERT_TRUE(found.best);
+  EXPECT_GE(found.best->r, 0.5);
+  // 0.28 is known for r = 0.5; the method of the paper has 4.3.
+  EXPECT_LT(found.best->error, 0.29);
+  expect_certified(task, *found.best);
+}
+
+TEST(design_search, does_not_depend_on_the_number_of_threads) {
+  auto task = imex_task(3, 6, 2.0);
+  task.transports = 3;
+  const auto one = look(task, 12, 1), two = look(task, 12, 2);
+  ASSERT_TRUE(one.best && two.best);
+  EXPECT_EQ(one.feasible, two.feasible);
+  EXPECT_EQ(one.best_residual, two.best_residual);
+  EXPECT_EQ(one.best->start, two.best->start);
+  EXPECT_EQ(one.best->x, two.best->x);
+}
+
+TEST(design_search, stops_when_asked) {
+  design_search how;
+  how.starts = 1'000'000;
+  int told = 0;
+  how.report = [&told](const design_progress&, bool) { ++told; };
+  how.stop = [&told] { return told >= 3; };
+  const auto found = search(imex_task(2, 3, 2.0), how);
+  EXPECT_GE(found.starts, 3);
+  EXPECT_LT(found.starts, 10);
+}
+
+TEST(design_demands, pass_over_methods_that_do_not_meet_them) {
+  auto task = imex_task(3, 6, 2.0);
+  task.transports = 3;
+  const auto free = look(task, 40);
+  ASSERT_TRUE(free.best);
+  const auto buffers = [&task](const design_candidate& c) {
+    return schedule(design_problem(c.pattern, task.demands).form(c.x)).buffers();
+  };
+  task.demands.most_buffers = buffers(*free.best) - 1;
+  const auto lean = look(task, 40);
+  if (lean.best) EXPECT_LE(buffers(*lean.best), task.demands.most_buffers);
+  EXPECT_LT(lean.feasible, free.feasible);
+}
+
+TEST(design_sparsify, gives_up_no_more_than_it_may) {
+  auto task = imex_task(3, 6, 2.0);
+  task.transports = 3;
+  task.objective = design_objective::smallest_error;
+  task.demands.least_r = 0.5;
+  const auto found = look(task, 10);
+  ASSERT_TRUE(found.best);
+  const auto sparse = sparsify(task, *found.best, 0.05);
+  EXPECT_LT(sparse.x.size(), found.best->x.size());
+  EXPECT_LE(sparse.error, 1.05 * found.best->error);
+  expect_certified(task, sparse);
+}
+
+}  // namespace
+}  // namespace apsis

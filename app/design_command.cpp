@@ -13,6 +13,7 @@
 #include <apsis/output/progress.hpp>
 #include <apsis/output/result_folder.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -32,7 +33,7 @@ using clock = std::chrono::steady_clock;
 struct options {
   int order = 2, stages = 3, evaluations = 0, starts = 1000, threads = 0;
   bool implicit = false, json = false;
-  std::string objective = "r", regime = "none", out;
+  std::string objective = "r", regime = "none", from, out;
   double seconds = 60.0, sparsify = 0.0;
   std::uint64_t seed = 1;
   design_demands demands;
@@ -51,6 +52,12 @@ Value choice(const std::string& option, const std::string& given,
 
 void require(bool good, const std::string& option, const std::string& value, const std::string& range) {
   if (!good) throw input_error(fmt::format("command line: {} {} is out of range ({})", option, value, range));
+}
+
+method find_or_load(const std::string& what) {
+  const auto names = method_names();
+  if (std::find(names.begin(), names.end(), what) != names.end()) return find_method(what);
+  return load_method_file(what);
 }
 
 design_task task_of(const options& given) {
@@ -81,6 +88,17 @@ design_task task_of(const options& given) {
                                              {"r/n_F", design_objective::efficiency},
                                              {"error", design_objective::smallest_error}});
   task.seed = given.seed;
+  if (!given.from.empty()) {
+    const method m = find_or_load(given.from);
+    if (m.kind != task.kind || m.is_tableau() || m.ends_with_update())
+      throw input_error(fmt::format(
+          "command line: --from '{}' is no method of the kind that is looked for ({} of the paper's "
+          "class is needed)",
+          given.from, to_string(task.kind)));
+    require(m.stages() == task.stages, "--stages", std::to_string(given.stages),
+            fmt::format("'{}' has {}", given.from, m.stages()));
+    task.from = m.coefficients<double>();
+  }
   if (!given.implicit) {
     require(given.stages >= 2, "--stages", std::to_string(given.stages),
             "an IMEX method needs 2; --implicit gives one without transport");

@@ -55,8 +55,15 @@ design_problem::design_problem(zero_pattern pattern, const design_demands& deman
   for (const auto& c : equations_of(pattern_, demands_).conditions) names_.push_back(c.name);
   const std::size_t s = pattern_.stages();
   std::vector<std::pair<double, double>> bounds;
+  const std::size_t given = demands_.given_rows ? demands_.given_rows->stages() : 0;
+  const auto given_initial =
+      demands_.given_rows ? initial_weights(*demands_.given_rows) : std::vector<double>();
   const auto declare = [&](part what, std::size_t i, std::size_t j, double lower, double upper) {
     unknowns_.push_back({what, i, j});
+    if (i < given) {
+      const double* value = entry(*demands_.given_rows, unknowns_.back());
+      lower = upper = value != nullptr ? *value : std::max(0.0, given_initial[i]);
+    }
     bounds.emplace_back(lower, upper);
     return static_cast<Eigen::Index>(unknowns_.size()) - 1;
   };
@@ -75,7 +82,7 @@ design_problem::design_problem(zero_pattern pattern, const design_demands& deman
     Eigen::Index d = -1, ddot = -1;
     if (pattern_.d[i] != 0) d = declare(part::d, i, i, both ? 0.0 : demands_.margin, demands_.box);
     if (pattern_.ddot[i] != 0) ddot = declare(part::ddot, i, i, -demands_.box, both ? 0.0 : -demands_.margin);
-    if (both) inequalities_.push_back({{{d, 1.0}, {ddot, -1.0}}, demands_.margin});
+    if (both && i >= given) inequalities_.push_back({{{d, 1.0}, {ddot, -1.0}}, demands_.margin});
   }
   if (pattern_.kind != method_kind::implicit_only)
     r_place_ = declare(part::r, 0, 0, demands_.least_r, demands_.largest_r);

@@ -36,6 +36,8 @@ struct design_demands {
   double least_angle = 0.0;  ///< α of A(α)-stability of the implicit part, in degrees
   double least_pole = 0.0;   ///< poles of stages with d = 0 are at ±i/√|ḋ|: 1/√|ḋ| at least
   int most_buffers = 1000;   ///< state-sized buffers of a step
+  /// Rows that are given, the first ones, and r with them: only later rows are unknown.
+  std::optional<shu_osher_form<double>> given_rows;
 };
 
 /// The unknown coefficients of a method with the equations and bounds that they must satisfy:

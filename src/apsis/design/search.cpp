@@ -28,7 +28,30 @@ std::vector<char> draw_subset(random_source& random, std::size_t n, std::size_t 
   return chosen;
 }
 
+/// Stages of a given method whose T is evaluated.
+std::vector<char> transport_of(const shu_osher_form<double>& m) {
+  std::vector<char> used(m.stages(), 0);
+  for (std::size_t i = 0; i < m.stages(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (m.W(i, j) != 0.0) used[j] = 1;
+  return used;
+}
+
+/// What a given method has, and every weight besides. Where its d or ḋ is zero, it may stay so for a reason
+/// (the intermediate regime, order 5 without transport).
+zero_pattern pattern_near(const design_task& task, const shu_osher_form<double>& m) {
+  auto pattern = full_pattern(task.kind, transport_of(m));
+  const bool stages_differ = task.demands.regime != regime_demand::none ||
+                             (task.kind == method_kind::implicit_only && task.demands.order >= 5);
+  for (std::size_t i = 0; i < m.stages() && stages_differ; ++i) {
+    pattern.d[i] = static_cast<char>(m.D(i, i) != 0.0);
+    pattern.ddot[i] = static_cast<char>(m.ddot[i] != 0.0);
+  }
+  return pattern;
+}
+
 zero_pattern draw_pattern(const design_task& task, random_source& random) {
+  if (task.from) return pattern_near(task, *task.from);
   const std::size_t s = task.stages;
   std::vector<char> transport(s, 0);
   if (task.kind != method_kind::implicit_only) {
@@ -48,7 +71,14 @@ zero_pattern draw_pattern(const design_task& task, random_source& random) {
 }
 
 /// Coefficients of any size the bounds allow; rows of few weights, as those of good methods are.
-Eigen::VectorXd draw_coefficients(const design_task& task, design_problem& problem, random_source& random) {
+Eigen::VectorXd draw_coefficients(const design_task& task, design_problem& problem, random_source& random,
+                                  bool is_first) {
+  if (task.from) {
+    Eigen::VectorXd x = problem.unknowns_of(*task.from);
+    const double away = is_first ? 0.0 : random.magnitude(-4.0, -1.0);
+    for (double& value : x) value += away * random.uniform(-1.0, 1.0);
+    return x.cwiseMax(problem.lower()).cwiseMin(problem.upper());
+  }
   const auto& pattern = problem.pattern();
   const std::size_t s = pattern.stages();
   shu_osher_form<double> m;
@@ -125,7 +155,7 @@ std::optional<design_candidate> search_once(const design_task& task, int start, 
                        static_cast<std::uint64_t>(start) * 0xD1B54A32D192ED03ULL);
   const auto pattern = draw_pattern(task, random);
   design_problem problem(pattern, task.demands);
-  const auto feasible = find_feasible(problem, draw_coefficients(task, problem, random));
+  const auto feasible = find_feasible(problem, draw_coefficients(task, problem, random, start == 0));
   residual = feasible.residual;
   if (!feasible.feasible || (stop && stop())) return std::nullopt;
   Eigen::VectorXd best = feasible.x;

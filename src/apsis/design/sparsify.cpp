@@ -36,8 +36,9 @@ std::vector<place> places_of(design_problem& problem, const Eigen::VectorXd& x) 
   const auto m = problem.form(x);
   const auto initial = initial_weights(m);
   const auto& pattern = problem.pattern();
+  const auto& given = problem.demands().given_rows;
   std::vector<place> all;
-  for (std::size_t i = 0; i < m.stages(); ++i) {
+  for (std::size_t i = given ? given->stages() : 0; i < m.stages(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (pattern.P(i, j) != 0) all.push_back({&zero_pattern::P, nullptr, i, j, m.P(i, j)});
       if (pattern.W(i, j) != 0) all.push_back({&zero_pattern::W, nullptr, i, j, m.W(i, j)});

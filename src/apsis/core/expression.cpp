@@ -198,7 +198,7 @@ struct expression::impl {
   machine_shed machines;
 };
 
-expression::expression(std::string text, source_place place, formula_kind kind) {
+expression::expression(const std::string& text, const source_place& place, const formula_kind& kind) {
   check_characters(text, place, kind.variable);
   try {
     impl_ = std::make_unique<impl>(text, place, kind);

@@ -22,7 +22,7 @@ class expression {
 
   /// `place` is where the first character stands; errors point into the text from there.
   /// Throws input_error: syntax, unknown name, too long, empty.
-  explicit expression(std::string text, source_place place = {}, formula_kind kind = {});
+  explicit expression(const std::string& text, const source_place& place = {}, const formula_kind& kind = {});
   ~expression();
   expression(expression&&) noexcept;
   expression& operator=(expression&&) noexcept;

@@ -64,9 +64,8 @@ void parallel_for(int n, const std::function<void(int)>& body) {
 }
 
 void parallel_tasks(int n, const std::function<void(int)>& body) {
-  const int team = std::max(1, std::min(thread_count, n));
   first_failure failure;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(team)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(std::max(1, std::min(thread_count, n)))
   for (int k = 0; k < n; ++k)
     if (!failure.any()) failure.guard(k, body);
   failure.rethrow();

@@ -13,12 +13,12 @@ namespace apsis {
 /// measured. Nothing here knows a model: any case can be varied in any of its keys.
 struct convergence_study {
   std::string case_name;       ///< a case file or a built-in case
-  std::string case_text = "";  ///< of a case that is no file (to_toml(config)); empty: that of case_name
+  std::string case_text = {};  ///< of a case that is no file (to_toml(config)); empty: that of case_name
   std::vector<std::string> overrides = {};  ///< "key=value", for every run
   std::vector<varied_key> vary = {};
   convergence_reference reference = {};
   error_norm norm = error_norm::l2;
-  std::string quantity = "";  ///< a macroscopic field; empty: the full state
+  std::string quantity = {};  ///< a macroscopic field; empty: the full state
 };
 
 /// One run and its error.

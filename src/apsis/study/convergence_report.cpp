@@ -52,7 +52,7 @@ json to_json(const convergence_table& table, const convergence_row& row) {
 std::string cell(const json& value) {
   if (value.is_null()) return "";
   if (value.is_number_float()) return fmt::format("{:.17g}", value.get<double>());
-  const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string out(1, '"');
   for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);

@@ -102,7 +102,7 @@ void add_order_maps(const std::string& id, const study_control& control, claim_r
     if (model != "ode") overrides = {"space.reconstruction=upwind1"};
     if (model == "bgk") overrides.emplace_back("velocity.points=36");  // enough for a test of time steps
     const auto maps = measure_order_maps(small_case(model, overrides), methods, epsilons, 3, 10, control);
-    picture p{id + "-order-" + model,
+    picture p{fmt::format("{}-order-{}", id, model),
               "Observed order, " + model,
               "Observed order between Δt and Δt/2 from data out of equilibrium. Top: ε ≫ Δt; bottom: the "
               "limit. Between, the paper's methods have plateaus proportional to ε. For md-imex-5-2 and "

@@ -117,6 +117,8 @@ TEST_P(every_method, survives_being_written_and_read) {
   EXPECT_EQ(to_toml(again), to_toml(m));
   EXPECT_EQ(again.title, m.title);
   EXPECT_EQ(again.citation, m.citation);
+  EXPECT_EQ(again.origin, m.origin);
+  EXPECT_EQ(again.purpose, m.purpose);
   EXPECT_EQ(again.claims.ssp_coefficient, m.claims.ssp_coefficient);
   EXPECT_TRUE(same_butcher_form(m, again));
   EXPECT_TRUE(certify(again).claims_hold);

@@ -33,6 +33,8 @@ struct method_claims {
 class method {
  public:
   std::string name, title, citation;
+  std::string origin;   ///< how its coefficients were found; "" where the citation says it
+  std::string purpose;  ///< what it is recommended for, in a few words; "" where it is not
   method_kind kind = method_kind::imex;
   method_claims claims;
   shu_osher_form<std::string> exact;  ///< as in the file; "0" where nothing stands

@@ -264,7 +264,7 @@ std::string entry(const json& number, const std::string& none = "-") {
 std::string method_table(const json& all) {
   const auto row = [](const auto&... cells) {
     std::string line =
-        fmt::format("{:<23}{:>3}{:>4}{:>5}{:>8}{:>11}{:>8}{:>10}{:>9}  {:<9}{:<6}{}", cells...);
+        fmt::format("{:<23}{:>3}{:>4}{:>5}{:>8}{:>10}{:>8}{:>10}{:>9}  {:<9}{:<6}{}", cells...);
     line.erase(line.find_last_not_of(' ') + 1);
     return line + "\n";
   };

@@ -16,7 +16,7 @@ method make(std::size_t stages) {
   m.origin =
       "Closed form: order 2 with n_F = S - 1 and r = S - 2 leaves no choice but that of ddot (proof in "
       "docs/methods.md).";
-  m.purpose = "order 2, largest r/n_F";
+  m.purpose = "largest r/n_F";
   m.kind = method_kind::imex;
   m.claims.order = 2;
   m.claims.ssp_coefficient = std::to_string(n - 1);

@@ -17,7 +17,7 @@ method make(std::size_t stages) {
   m.origin =
       "Closed form: the optimal explicit second-order method, with one relaxed stage that waits beside the "
       "chain.";
-  m.purpose = "order 2, no O(epsilon) plateau";
+  m.purpose = "no O(epsilon) plateau";
   m.kind = method_kind::imex;
   m.claims.order = 2;
   m.claims.ssp_coefficient = std::to_string(n - 1);

@@ -6,7 +6,6 @@
 #include <apsis/method/method.hpp>
 #include <apsis/study/observed_limits.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>

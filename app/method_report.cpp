@@ -7,7 +7,6 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/intermediate_regime.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <utility>

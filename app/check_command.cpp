@@ -6,7 +6,6 @@
 #include <apsis/method/method.hpp>
 #include <apsis/study/observed_limits.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -83,12 +82,11 @@ int report(const method& m, const options& given) {
 
 int check(const options& given) {
   const std::string& what = given.what;
-  const std::vector<std::string> names = method_names();
-  if (std::find(names.begin(), names.end(), what) != names.end()) return report(find_method(what), given);
+  if (is_method_name(what)) return report(find_method(what), given);
   std::error_code ignored;
   if (!std::filesystem::exists(what, ignored))
     throw input_error(fmt::format("no method '{}' (neither in the catalogue nor a file) {}",
-                                  what.substr(0, 60), suggest(what, names)));
+                                  what.substr(0, 60), suggest(what, method_names())));
   return report(read_method(what), given);
 }
 

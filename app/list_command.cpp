@@ -4,6 +4,7 @@
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
@@ -23,6 +24,16 @@ using json = nlohmann::ordered_json;
 json methods() {
   json all = json::array();
   for (const auto& name : method_names()) all.push_back(check_json(find_method(name)));
+  return all;
+}
+
+json families() {
+  json all = json::array();
+  for (const family_entry* f : family_entries())
+    all.push_back({{"name", f->pattern},
+                   {"description", f->description},
+                   {"lowest", f->lowest},
+                   {"highest", f->highest}});
   return all;
 }
 
@@ -86,18 +97,26 @@ json claims() {
   return all;
 }
 
+std::string family_lines() {
+  std::string out = "\nfamilies: any S of the range gives a method\n";
+  for (const family_entry* f : family_entries())
+    out += fmt::format("{:<26}S = {} ... {}: {}\n", f->pattern, f->lowest, f->highest, f->description);
+  return out;
+}
+
 std::string as_text(const std::string& what, const json& all) {
+  if (what == "methods") return method_table(all) + family_lines();
+  if (what == "families") return family_lines().substr(1);
   std::string out;
   for (const auto& item : all)
-    out += what == "methods" ? method_line(item)
-                             : fmt::format("{:<34}{}\n", item["name"].get<std::string>(),
-                                           item["description"].get<std::string>());
-  return what == "methods" ? method_header() + out : out;
+    out += fmt::format("{:<34}{}\n", item["name"].get<std::string>(), item["description"].get<std::string>());
+  return out;
 }
 
 int list(const std::string& what, bool as_json) {
-  static const std::map<std::string, json (*)()> lists = {
-      {"methods", methods}, {"models", models}, {"cases", cases}, {"schemes", schemes}, {"claims", claims}};
+  static const std::map<std::string, json (*)()> lists = {{"methods", methods}, {"families", families},
+                                                          {"models", models},   {"cases", cases},
+                                                          {"schemes", schemes}, {"claims", claims}};
   const auto found = lists.find(what);
   if (found == lists.end()) {
     std::vector<std::string> names;
@@ -118,8 +137,9 @@ void add_list(CLI::App& program, action& chosen) {
     bool json = false;
   };
   auto given = std::make_shared<options>();
-  CLI::App* command = program.add_subcommand("list", "List methods, models, cases, schemes or claims");
-  command->add_option("WHAT", given->what, "methods, models, cases, schemes or claims")->required();
+  CLI::App* command =
+      program.add_subcommand("list", "List methods, families, models, cases, schemes or claims");
+  command->add_option("WHAT", given->what, "methods, families, models, cases, schemes or claims")->required();
   command->add_flag("--json", given->json, "print a JSON array");
   command->callback([given, &chosen] { chosen = [given] { return list(given->what, given->json); }; });
 }

@@ -4,10 +4,12 @@
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/export.hpp>
+#include <apsis/method/family_registry.hpp>
 #include <apsis/method/intermediate_regime.hpp>
 
-#include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,12 +19,11 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Catalogue methods are certified once; a file of the user is certified where it is asked about.
+// Methods that have a name are certified once; a file of the user is certified where it is asked about.
 certificate certificate_of(const method& m) {
-  const auto names = method_names();
-  const bool known =
-      std::find(names.begin(), names.end(), m.name) != names.end() && &find_method(m.name) == &m;
-  return known ? find_certificate(m.name) : certify(m);
+  const family_entry* family = find_family(m.name);
+  const bool named = family == nullptr ? is_method_name(m.name) : missing_member(*family, m.name).empty();
+  return named && &find_method(m.name) == &m ? find_certificate(m.name) : certify(m);
 }
 
 json rows(const matrix<double>& a) {
@@ -65,9 +66,10 @@ json document_json(const method& m) {
   const json d_rows = rows(form.D), exact_d_rows = rows(m.exact.D);
   const bool diagonal_d = is_diagonal(form.D);
   // Methods outside the paper's class have a full lower triangular D; d is then its diagonal.
-  json out = {
-      {"name", m.name},       {"title", m.title},  {"citation", m.citation}, {"kind", to_string(m.kind)},
-      {"stages", m.stages()}, {"P", rows(form.P)}, {"W", rows(form.W)},      {"d", diagonal(d_rows)}};
+  json out = {{"name", m.name},       {"title", m.title},     {"citation", m.citation},
+              {"origin", m.origin},   {"purpose", m.purpose}, {"kind", to_string(m.kind)},
+              {"stages", m.stages()}, {"P", rows(form.P)},    {"W", rows(form.W)},
+              {"d", diagonal(d_rows)}};
   json exact = {{"P", rows(m.exact.P)}, {"W", rows(m.exact.W)}, {"d", diagonal(exact_d_rows)}};
   if (!diagonal_d) {
     out["D"] = d_rows;
@@ -89,13 +91,21 @@ json document_json(const method& m) {
   return out;
 }
 
+/// What is kept of the terms of size ε ≪ Δt: "all", "slow" (those of data near equilibrium) or "none".
+std::string kept_of(const intermediate_regime<double>& terms) {
+  const auto exact = [](double x) { return std::abs(x - 1.0) < 1e-12; };
+  if (!exact(terms.flux) || !exact(terms.last)) return "none";
+  return exact(terms.layer) ? "all" : "slow";
+}
+
 /// null where the method has stages that the analysis does not cover, or the term is infinite.
 json regime_json(const method& m) {
   const auto terms = analyse_intermediate_regime(m.coefficients<double>());
   if (!terms.applies) return nullptr;
   return {{"flux", terms.flux},
           {"last", terms.last},
-          {"layer", std::isfinite(terms.layer) ? json(terms.layer) : json(nullptr)}};
+          {"layer", std::isfinite(terms.layer) ? json(terms.layer) : json(nullptr)},
+          {"kept", kept_of(terms)}};
 }
 
 std::string regime_text(const method& m) {
@@ -103,6 +113,24 @@ std::string regime_text(const method& m) {
   if (!terms.applies) return "not covered (a stage is neither relaxed nor u^n)";
   return fmt::format("flux {:.4g}, last stage {:.4g}, layer {:.4g} times the exact ones",  //
                      terms.flux, terms.last, terms.layer);
+}
+
+/// r/n_F: what a transport evaluation is worth where positivity limits the step; null without such a limit.
+json figure_of_merit(const certificate& c) {
+  if (!c.bounded || c.explicit_evaluations == 0) return nullptr;
+  return c.ssp_coefficient.convert_to<double>() / c.explicit_evaluations;
+}
+
+/// Words on lines of at most 90 characters.
+std::vector<std::string> lines_of(const std::string& text) {
+  constexpr std::size_t width = 90;
+  std::vector<std::string> lines(1);
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > width) lines.emplace_back();
+    lines.back() += (lines.back().empty() ? "" : " ") + word;
+  }
+  return lines;
 }
 
 std::string ssp_text(const certificate& c) {
@@ -141,9 +169,12 @@ json check_json(const method& m) {
   json out = {
       {"name", m.name},
       {"title", m.title},
+      {"origin", m.origin},
+      {"purpose", m.purpose},
       {"kind", to_string(m.kind)},
       {"order", c.order},
       {"order_residual", c.order_residual.convert_to<double>()},
+      {"error_constant", c.error_constant.convert_to<double>()},
       {"ssp_coefficient", c.bounded ? json(c.ssp_coefficient.convert_to<double>()) : json(nullptr)},
       {"unconditional", c.unconditional},
       {"explicit_radius",
@@ -156,6 +187,7 @@ json check_json(const method& m) {
       {"stages", m.stages()},
       {"explicit_evaluations", c.explicit_evaluations},
       {"implicit_solves", c.implicit_solves},
+      {"r_per_evaluation", figure_of_merit(c)},
       {"buffers", steps.buffers()},
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
@@ -179,6 +211,8 @@ std::string check_text(const method& m) {
   };
   line("order", fmt::format("{} ({} conditions, largest residual {:.1e})", c.order, c.conditions,
                             c.order_residual.convert_to<double>()));
+  line("error constant", fmt::format("{:.4g} (2-norm of the residuals of order {})",
+                                     c.error_constant.convert_to<double>(), c.order + 1));
   line("SSP coefficient", ssp_text(c));
   if (!c.limiting_entry.empty()) line("limited by", c.limiting_entry);
   if (m.kind == method_kind::imex)
@@ -194,6 +228,12 @@ std::string check_text(const method& m) {
          fmt::format("{}, |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
                      c.stability.l_stable ? "L-stable" : fmt::format("A({:.4g} degrees)", c.stability.angle),
                      c.stability.largest_on_negative_axis, c.stability.at_infinity));
+  const auto paragraph = [&line](std::string name, const std::string& text) {
+    if (text.empty()) return;
+    for (const auto& one : lines_of(text)) line(std::exchange(name, ""), one);
+  };
+  paragraph("recommended for", m.purpose);
+  paragraph("origin", m.origin);
   line("claims", c.claims_hold ? "hold" : "DO NOT HOLD");
   for (const auto& failure : c.failures) line("", failure);
   return out;
@@ -204,19 +244,52 @@ std::string first_failure(const method& m) {
   return c.failures.empty() ? "" : c.failures.front();
 }
 
-std::string method_header() {
-  return fmt::format("{:<23}{:<10}{:>6}{:>12}{:>5}{:>8}{:>9}  {}\n", "name", "kind", "order", "SSP coeff.",
-                     "n_F", "solves", "buffers", "title");
+namespace {
+
+/// "any", "cons.", "any m", … of "any data", "consistent data", "any data (moments only)", …
+std::string short_data(const std::string& data) {
+  if (data.empty() || data == "none") return "-";
+  const std::string first = data.starts_with("any") ? "any" : "cons.";
+  return data.ends_with("(moments only)") ? first + " m" : first;
 }
 
-std::string method_line(const json& c) {
-  const std::string r = c["ssp_coefficient"].is_null()
-                            ? "unbounded"
-                            : fmt::format("{:.6g}", c["ssp_coefficient"].get<double>());
-  return fmt::format("{:<23}{:<10}{:>6}{:>12}{:>5}{:>8}{:>9}  {}\n", c["name"].get<std::string>(),
-                     c["kind"].get<std::string>(), c["order"].get<int>(), r,
-                     c["explicit_evaluations"].get<int>(), c["implicit_solves"].get<int>(),
-                     c["buffers"].get<int>(), c["title"].get<std::string>());
+/// A number of the table, "-" where there is none.
+std::string entry(const json& number, const std::string& none = "-") {
+  return number.is_null() ? none : fmt::format("{:.4g}", number.get<double>());
+}
+
+}  // namespace
+
+std::string method_table(const json& all) {
+  const auto row = [](const auto&... cells) {
+    std::string line =
+        fmt::format("{:<23}{:>3}{:>4}{:>5}{:>8}{:>10}{:>8}{:>10}{:>9}  {:<9}{:<6}{}", cells...);
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + "\n";
+  };
+  std::string out;
+  for (const auto kind : {method_kind::imex, method_kind::implicit_only, method_kind::explicit_only}) {
+    out += fmt::format("{}{} methods\n", out.empty() ? "" : "\n", to_string(kind));
+    out += row("name", "p", "s", "n_F", "solves", "r", "r/n_F", "error", "buffers", "AP", "eps",
+               "recommended for");
+    for (const auto& c : all) {
+      if (c["kind"] != to_string(kind)) continue;
+      const bool has_terms = c.contains("intermediate_regime") && !c["intermediate_regime"].is_null();
+      out += row(c["name"].get<std::string>(), c["order"].get<int>(), c["stages"].get<int>(),
+                 c["explicit_evaluations"].get<int>(), c["implicit_solves"].get<int>(),
+                 entry(c["ssp_coefficient"], "unbounded"), entry(c["r_per_evaluation"]),
+                 entry(c["error_constant"]), c["buffers"].get<int>(),
+                 short_data(c["ap_data"].get<std::string>()),
+                 has_terms ? c["intermediate_regime"]["kept"].get<std::string>() : std::string("-"),
+                 c["purpose"].get<std::string>());
+    }
+  }
+  return out + R"(
+p order, s stages, n_F transport evaluations, solves of Q, r SSP coefficient, error: 2-norm of the residuals of
+order p + 1, buffers of the size of a state, AP: the initial data for which the limit epsilon -> 0 is right (cons.:
+consistent data only, m: in the moments only), eps: which terms of size epsilon are right for epsilon << dt
+(slow: for data near equilibrium).
+)";
 }
 
 std::string method_document(const method& m, const std::string& format) {

@@ -40,7 +40,7 @@ int show(const options& given) {
     only_text(given);
     for (const auto& built_in : embedded::cases())
       if (built_in.name == given.what) print(std::string(built_in.text));
-  } else if (contains(methods, given.what)) {
+  } else if (is_method_name(given.what)) {
     print(method_document(find_method(given.what), given.format.empty() ? "text" : given.format));
   } else if (std::filesystem::is_regular_file(given.what)) {
     print(method_document(load_method_file(given.what), given.format.empty() ? "text" : given.format));

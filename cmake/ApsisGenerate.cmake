@@ -28,10 +28,14 @@ std::vector<embedded_text> ${symbol}() {
   set(${out_var} ${out} PARENT_SCOPE)
 endfunction()
 
-# apsis_registry(model out): every file of <room>/<what>s/ named x.cpp defines `make_<what>_x()`; the
-# generated registry.cpp is the one place that knows them all.
+# apsis_registry(room what out [folder]): every file x.cpp of <room>/<folder>/ (or <room>/<what>s/) defines
+# `<what>_entry <what>_x`; the generated registry is the one place that knows them all.
 function(apsis_registry room what out_var)
-  file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/${what}s/*.cpp)
+  set(folder ${what}s)
+  if(ARGC GREATER 3)
+    set(folder ${ARGV3})
+  endif()
+  file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/${folder}/*.cpp)
   list(SORT files)
   set(declarations "")
   set(entries "")
@@ -42,7 +46,7 @@ function(apsis_registry room what out_var)
   endforeach()
   set(out ${CMAKE_CURRENT_BINARY_DIR}/generated/${what}_registry.cpp)
   file(CONFIGURE OUTPUT ${out} @ONLY CONTENT
-"// Generated from the files of ${room}/${what}s/; do not edit.
+"// Generated from the files of ${room}/${folder}/; do not edit.
 #include <apsis/${room}/${what}_registry.hpp>
 
 namespace apsis {

@@ -75,6 +75,8 @@ const std::vector<bad_input> all = {
     {"wall_without_value", {"run", "good.toml", "--wall"}, 2, "--wall"},
     {"unknown_list", {"list", "metods"}, 2, "did you mean 'methods'?"},
     {"unknown_format", {"show", "imdrk-1-2", "--format", "yaml"}, 2, "--format"},
+    {"family_to_show", {"show", "md-imex-chain-2-2"}, 2, "md-imex-chain-S-2 has S from 3 to 64"},
+    {"family_to_check", {"check", "md-imex-chain-65-2"}, 2, "md-imex-chain-S-2 has S from 3 to 64"},
     {"unknown_to_show", {"show", "md-imex-3-3"}, 2, "did you mean 'md-imex-3-2'?"},
     {"format_of_a_case", {"show", "case", "--format", "json"}, 2, "leave it out"},
     {"unknown_method_to_check", {"check", "imdrk-1-3"}, 2, "did you mean 'imdrk-1-2'?"},

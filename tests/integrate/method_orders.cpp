@@ -113,6 +113,12 @@ std::vector<std::string> imex_methods() {
 INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(apsis::method_names()), name_of);
 INSTANTIATE_TEST_SUITE_P(catalogue, every_imex_method, ::testing::ValuesIn(imex_methods()), name_of);
 
+const auto members =
+    ::testing::Values("md-imex-chain-3-2", "md-imex-chain-7-2", "md-imex-chain-20-2", "md-imex-chain-64-2",
+                      "md-imex-plateau-free-6-2", "md-imex-plateau-free-20-2");
+INSTANTIATE_TEST_SUITE_P(families, every_method, members, name_of);
+INSTANTIATE_TEST_SUITE_P(families, every_imex_method, members, name_of);
+
 // What docs/methods.md says of methods that are not globally stiffly accurate: u^{n+1} is not projected, and
 // how far it is from equilibrium is left to the weights b A⁻¹ of the stages.
 TEST(comparators, without_gsa_lose_order_outside_the_moments) {

@@ -112,6 +112,14 @@ INSTANTIATE_TEST_SUITE_P(
         bad_file{"too_long_number", "r = \"1\"", "r = \"" + long_text(100000) + "\"", "10:5",
                  "no coefficient"},
         bad_file{"too_long_name", "name = \"x\"", "name = \"" + long_text(100000) + "\"", "1:8", "too long"},
+        bad_file{"origin_is_a_list", "citation = \"c\"", "citation = \"c\"\norigin = [\"a\"]", "4:10",
+                 "text in quotes"},
+        bad_file{"too_long_origin", "citation = \"c\"",
+                 "citation = \"c\"\norigin = \"" + long_text(501) + "\"", "4:10", "too long"},
+        bad_file{"purpose_is_a_number", "citation = \"c\"", "citation = \"c\"\npurpose = 3", "4:11",
+                 "text in quotes"},
+        bad_file{"misspelled_purpose", "citation = \"c\"", "citation = \"c\"\npurpos = \"x\"", "4:1",
+                 "did you mean 'purpose'"},
         bad_file{"negative_r", "r = \"1\"", "r = \"-1\"", "10:5", "not positive"},
         bad_file{"zero_r", "r = \"1\"", "r = \"0/7\"", "10:5", "not positive"},
         bad_file{"above_the_diagonal", "W = [[], [\"1\"], ", "W = [[], [\"1\", \"0\", \"1/3\"], ", "12:21",
@@ -131,6 +139,14 @@ INSTANTIATE_TEST_SUITE_P(
         bad_file{"transport_in_implicit_method", "\"imex\"", "\"implicit\"", "12:1", "unknown key 'W'"},
         bad_file{"collision_in_explicit_method", "\"imex\"", "\"explicit\"", "13:1", "unknown key 'd'"}),
     name_of);
+
+TEST(method_files, may_say_where_they_come_from_and_what_for) {
+  EXPECT_EQ(parse_method(good, "m.toml").origin, "");
+  EXPECT_EQ(parse_method(good, "m.toml").purpose, "");
+  const method m = parse_method("origin = \"by hand\"\npurpose = \"a test\"\n" + good, "m.toml");
+  EXPECT_EQ(m.origin, "by hand");
+  EXPECT_EQ(m.purpose, "a test");
+}
 
 TEST(method_files, are_refused_wherever_they_are_cut) {
   for (std::size_t n = 0; n + 2 < good.size(); ++n) EXPECT_TRUE(complaint(good.substr(0, n))) << n;

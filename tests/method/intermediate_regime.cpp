@@ -4,8 +4,6 @@
 #include "tableaux.hpp"
 
 #include <apsis/method/certificate.hpp>
-#include <apsis/method/monotonicity.hpp>
-#include <apsis/method/order_conditions.hpp>
 #include <apsis/method/polish.hpp>
 
 #include <cmath>
@@ -65,60 +63,6 @@ TEST(intermediate_regime, where_the_start_is_a_stage_only_consistent_data_are_ri
 
 TEST(intermediate_regime, does_not_apply_where_a_stage_is_explicit) {
   for (const std::string name : {"ssprk-3-3", "ssp2-222"}) EXPECT_FALSE(of(name).applies) << name;
-}
-
-/// The closed form of docs/plateaus.md: n transport evaluations, n + 2 stages, r = n − 1.
-shu_osher_form<mp_real> closed_form(std::size_t n) {
-  const std::size_t s = n + 2, last = s - 1;
-  const mp_real N(n);
-  shu_osher_form<mp_real> m{matrix<mp_real>(s, s), matrix<mp_real>(s, s), matrix<mp_real>(s, s),
-                            std::vector<mp_real>(s), N - 1};
-  m.P(1, 0) = 1;
-  m.P(last, 1) = 1 / N;
-  for (std::size_t i = 2; i < last; ++i) m.W(i, i == 2 ? 0 : i - 1) = 1;
-  m.W(last, last - 1) = (N - 1) / N;
-  m.D(0, 0) = m.D(last, last) = 1 / N;
-  m.D(1, 1) = (N - 2) / N;
-  for (std::size_t i = 2; i < last; ++i) m.D(i, i) = (N - 2) / (N * (N - 1));
-  const auto A = to_butcher(m).A;
-  mp_real bc(0);
-  for (std::size_t i = 0; i < s; ++i)
-    for (std::size_t j = 0; j <= i; ++j) bc += A(last, i) * A(i, j);
-  m.ddot[last - 1] = -N * (bc - mp_real(1) / 2) / (N + 1);
-  m.ddot[1] = 2 * m.ddot[last - 1];
-  return m;
-}
-
-TEST(closed_form, has_order_2_the_largest_r_and_no_plateau_for_any_number_of_evaluations) {
-  for (std::size_t n = 3; n <= 8; ++n) {
-    const auto m = closed_form(n);
-    const auto b = to_butcher(m);
-    const auto trees = rooted_trees(2, tree_colours::both);
-    const auto weights = elementary_weights(b, trees);
-    for (std::size_t k = 0; k < trees.size(); ++k)
-      EXPECT_LT(abs(weights[k] - 1 / mp_real(trees[k].density)), mp_real(1e-50)) << n << " " << trees[k].name;
-    const auto ssp = analyse_imex(b, mp_real(1e-40));
-    ASSERT_TRUE(ssp.exists) << n << " " << ssp.forbids;
-    // n − 1 is the largest r that n evaluations can have at order 2 (Gottlieb, Ketcheson, Shu 2011).
-    EXPECT_LT(abs(ssp.coefficient - mp_real(n - 1)), mp_real(1e-35)) << n;
-    const auto terms = analyse_intermediate_regime(m);
-    EXPECT_LT(abs(terms.flux - 1), mp_real(1e-50)) << n;
-    EXPECT_LT(abs(terms.last - 1), mp_real(1e-50)) << n;
-    EXPECT_LT(abs(terms.layer - 1), mp_real(1e-50)) << n;
-  }
-}
-
-TEST(closed_form, is_the_method_of_the_catalogue_for_three_evaluations) {
-  const auto made = closed_form(3), file = find_method("md-imex-5-2").coefficients<mp_real>();
-  EXPECT_LT(abs(made.r - file.r), mp_real(1e-55));
-  for (std::size_t i = 0; i < 5; ++i) {
-    EXPECT_LT(abs(made.ddot[i] - file.ddot[i]), mp_real(1e-55)) << i;
-    for (std::size_t j = 0; j <= i; ++j) {
-      EXPECT_LT(abs(made.P(i, j) - file.P(i, j)), mp_real(1e-55)) << i << j;
-      EXPECT_LT(abs(made.W(i, j) - file.W(i, j)), mp_real(1e-55)) << i << j;
-      EXPECT_LT(abs(made.D(i, j) - file.D(i, j)), mp_real(1e-55)) << i << j;
-    }
-  }
 }
 
 // Four digits, found by a search, are enough for Newton's method to find the other forty; zeros make sure

@@ -7,8 +7,8 @@
 #include <apsis/method/order_conditions.hpp>
 #include <apsis/method/polish.hpp>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <thread>
 
@@ -26,11 +26,12 @@ TEST(catalogue, has_residuals_below_1e_38_and_holds_its_claims) {
   }
 }
 
-TEST(catalogue, is_certified_in_well_below_a_second) {
-  const auto start = std::chrono::steady_clock::now();
+TEST(catalogue, is_certified_in_a_few_seconds_of_processor_time) {
+  const std::clock_t start = std::clock();
   for (const auto& name : method_names()) certify(parse_method(catalogue_text(name), name));
-  // About 0.1 s; the limit leaves room for a machine that is busy or an unoptimised build.
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  // About 1 s; the limit leaves room for an unoptimised build. Not wall time: a busy machine is no fault of
+  // ours.
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5.0);
 }
 
 TEST(catalogue, gives_every_thread_the_same_method) {

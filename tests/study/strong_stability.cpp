@@ -51,11 +51,23 @@ TEST_P(every_method, keeps_what_it_promises) {
     EXPECT_TRUE(one.keeps_promise()) << one.problem << ", " << one.property << ": " << one.limit.lost << " "
                                      << one.worst;
 }
-INSTANTIATE_TEST_SUITE_P(catalogue, every_method, testing::ValuesIn(method_names()), [](const auto& p) {
-  std::string name = p.param;
+std::string name_of(const testing::TestParamInfo<std::string>& method_name) {
+  std::string name = method_name.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
-});
+}
+
+/// Some tenths of a second per stage.
+std::vector<std::string> methods_with(bool many_stages) {
+  auto names = method_names();
+  for (const char* member : {"md-imex-chain-3-2", "md-imex-chain-7-2", "md-imex-plateau-free-7-2"})
+    names.emplace_back(member);
+  std::erase_if(names, [&](const auto& name) { return (find_method(name).stages() > 12) != many_stages; });
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(catalogue, every_method, testing::ValuesIn(methods_with(false)), name_of);
+INSTANTIATE_TEST_SUITE_P(slow_catalogue, every_method, testing::ValuesIn(methods_with(true)), name_of);
 
 TEST(strong_stability, third_order_imex_loses_positivity_of_the_broadwell_model_just_above_r) {
   const method& m = find_method("md-imex-6-3");

@@ -1,5 +1,6 @@
 #include <apsis/config/case_schema.hpp>
 
+#include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/space/boundary.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
@@ -33,6 +34,12 @@ std::vector<std::string> reconstruction_choices(const case_config&) {
 
 std::vector<std::string> method_choices(const case_config&) {
   return method_names();
+}
+
+std::optional<std::string> family_member(const std::string& name) {
+  const family_entry* family = find_family(name);
+  if (family == nullptr) return std::nullopt;
+  return missing_member(*family, name);
 }
 
 case_value optional_number(const std::optional<double>& x) {
@@ -127,8 +134,11 @@ std::vector<case_key> make_schema() {
        [](c& o, const v& x) { o.velocity.equilibrium = text_of(x); },
        [](const c& o) { return v(o.velocity.equilibrium); }},
       {"time.method", text, key_scope::always, true, "", 0, 0, false, method_choices,
-       "The time integrator, by its name in the catalogue.",
-       [](c& o, const v& x) { o.time.method = text_of(x); }, [](const c& o) { return v(o.time.method); }},
+       "The time integrator, by its name in the catalogue, or a member of a family (apsis list families) "
+       "such as "
+       "md-imex-chain-7-2.",
+       [](c& o, const v& x) { o.time.method = text_of(x); }, [](const c& o) { return v(o.time.method); },
+       family_member},
       {"time.end", number, key_scope::always, true, none, 0, unlimited, false, nullptr,
        "Final time; the start is t = 0.", [](c& o, const v& x) { o.time.end = number_of(x); },
        [](const c& o) { return v(o.time.end); }},

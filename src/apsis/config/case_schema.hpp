@@ -4,6 +4,7 @@
 #include <apsis/model/model_registry.hpp>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -32,6 +33,8 @@ struct case_key {
   std::string doc;
   void (*store)(case_config&, const case_value&);
   case_value (*load)(const case_config&);  ///< monostate where an optional key is not set
+  /// Whether a name is valid besides `choices`: "" if it is, why not if it is meant to be, nothing otherwise.
+  std::optional<std::string> (*also)(const std::string& name) = nullptr;
 };
 
 /// Every key except the parameters of the models, in the order in which they are read and written.

@@ -67,8 +67,10 @@ void check_choice(const case_key& key, const raw_value& raw, const case_config& 
   if (key.choices == nullptr) return;
   const auto names = key.choices(so_far);
   const auto& name = std::get<std::string>(raw.value);
-  if (std::find(names.begin(), names.end(), name) == names.end())
-    refuse(raw, key.path, "there is no such name", suggest(name, names));
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  const auto why_not = key.also == nullptr ? std::nullopt : key.also(name);
+  if (!why_not) refuse(raw, key.path, "there is no such name", suggest(name, names));
+  if (!why_not->empty()) refuse(raw, key.path, *why_not, "change S");
 }
 
 std::string formula(const case_key& key, const raw_value& raw) {

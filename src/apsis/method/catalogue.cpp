@@ -2,6 +2,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/certificate.hpp>
+#include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
 
@@ -18,22 +19,28 @@ struct entry {
   certificate certified;
 };
 
-/// Parsed and certified when first asked for, then kept.
+/// From the file of the catalogue or by its family.
+method make_method(std::string_view name) {
+  for (const auto& file : embedded::methods())
+    if (file.name == name) return parse_method(file.text, "methods/" + std::string(file.name) + ".toml");
+  if (const family_entry* family = find_family(name)) return make_member(*family, name);
+  std::vector<std::string> known = method_names();
+  for (const family_entry* family : family_entries()) known.push_back(family->pattern);
+  const std::string text(name.substr(0, 60));
+  throw input_error("unknown method '" + text + "' " + suggest(text, known));
+}
+
+/// Made and certified when first asked for, then kept.
 const entry& find_entry(std::string_view name) {
   static std::mutex guard;
   static std::map<std::string, std::unique_ptr<entry>, std::less<>> known;
   const std::lock_guard lock(guard);
   const auto found = known.find(name);
   if (found != known.end()) return *found->second;
-  for (const auto& file : embedded::methods()) {
-    if (file.name != name) continue;
-    auto made = std::make_unique<entry>();
-    made->parsed = parse_method(file.text, "methods/" + std::string(file.name) + ".toml");
-    made->certified = certify(made->parsed);
-    return *known.emplace(std::string(name), std::move(made)).first->second;
-  }
-  const std::string text(name.substr(0, 60));
-  throw input_error("unknown method '" + text + "' " + suggest(text, method_names()));
+  auto made = std::make_unique<entry>();
+  made->parsed = make_method(name);
+  made->certified = certify(made->parsed);
+  return *known.emplace(std::string(name), std::move(made)).first->second;
 }
 
 }  // namespace
@@ -52,6 +59,12 @@ std::vector<std::string> method_names() {
   std::vector<std::string> names;
   for (const auto& file : embedded::methods()) names.emplace_back(file.name);
   return names;
+}
+
+bool is_method_name(std::string_view name) {
+  for (const auto& file : embedded::methods())
+    if (file.name == name) return true;
+  return find_family(name) != nullptr;
 }
 
 method load_method_file(const std::string& path) {

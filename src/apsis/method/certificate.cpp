@@ -31,12 +31,13 @@ void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certif
   for (int p = 1; p <= highest && c.order == p - 1; ++p) {
     const auto trees = rooted_trees(p, colours_of(c.kind));
     const auto weights = elementary_weights(b, trees);
-    mp_real largest(0);
+    mp_real largest(0), squares(0);
     c.next.clear();
     int conditions = 0;
     for (std::size_t k = 0; k < trees.size(); ++k) {
       const mp_real wanted = mp_real(1) / mp_real(trees[k].density);
       const mp_real residual = abs(weights[k] - wanted);
+      if (trees[k].order == p) squares += residual * residual;
       ++conditions;
       if (!(residual <= tolerance)) {
         c.next.push_back({trees[k].name, p, weights[k], wanted});
@@ -44,7 +45,10 @@ void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certif
         largest = residual;
       }
     }
-    if (!c.next.empty()) return;
+    if (!c.next.empty()) {
+      c.error_constant = sqrt(squares);
+      return;
+    }
     c.order = p;
     c.order_residual = largest;
     c.conditions = conditions;
@@ -52,9 +56,8 @@ void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certif
 }
 
 void find_ssp(const butcher_form<mp_real>& b, const mp_real& zero, certificate& c) {
-  if (c.kind != method_kind::implicit_only) c.explicit_radius = monotonicity_radius(b.A_hat, zero);
   if (c.kind == method_kind::explicit_only) {
-    c.ssp_coefficient = c.explicit_radius;
+    c.ssp_coefficient = c.explicit_radius = monotonicity_radius(b.A_hat, zero);
     return;
   }
   const auto analysis = analyse_imex(b, zero);
@@ -62,6 +65,8 @@ void find_ssp(const butcher_form<mp_real>& b, const mp_real& zero, certificate& 
   c.bounded = analysis.bounded;
   c.ssp_coefficient = analysis.exists ? analysis.coefficient : mp_real(0);
   c.limiting_entry = analysis.forbids;
+  // r is a lower bound of the radius of the explicit part, and often equal to it.
+  if (c.kind == method_kind::imex) c.explicit_radius = monotonicity_radius(b.A_hat, zero, c.ssp_coefficient);
   if (c.kind == method_kind::implicit_only && !analysis.exists)
     c.radius_of_implicit_part = monotonicity_radius(b.A, zero);
 }

@@ -33,6 +33,7 @@ struct certificate {
   mp_real order_residual;              ///< largest residual of the conditions up to `order`
   std::vector<failed_condition> next;  ///< conditions of order + 1 that fail
   int conditions = 0;                  ///< number of conditions up to `order`
+  mp_real error_constant;              ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order + 1
 
   bool unconditional = false;   ///< SSP without a bound from Q
   bool bounded = true;          ///< the explicit part sets a bound Δt ≤ r Δt_FE
@@ -58,7 +59,7 @@ struct certificate {
 /// Certifies a method in 60 digits (numerical tolerance: that of its digits).
 certificate certify(const method& m);
 
-/// The certificate of a catalogue method, made once.
+/// The certificate of a method by its name, made once. Throws input_error as find_method.
 const certificate& find_certificate(const std::string& name);
 
 /// Throws claim_error that lists the failures, if there are any.

@@ -112,9 +112,11 @@ std::string array(const std::string& name, std::size_t rows, std::size_t cols,
 }  // namespace
 
 std::string to_toml(const method& m) {
-  std::string out =
-      fmt::format("name = {}\ntitle = {}\ncitation = {}\nkind = {}\n\n[claims]\norder = {}\n", quoted(m.name),
-                  quoted(m.title), quoted(m.citation), quoted(to_string(m.kind)), m.claims.order);
+  std::string out = fmt::format("name = {}\ntitle = {}\ncitation = {}\n", quoted(m.name), quoted(m.title),
+                                quoted(m.citation));
+  if (!m.origin.empty()) out += fmt::format("origin = {}\n", quoted(m.origin));
+  if (!m.purpose.empty()) out += fmt::format("purpose = {}\n", quoted(m.purpose));
+  out += fmt::format("kind = {}\n\n[claims]\norder = {}\n", quoted(to_string(m.kind)), m.claims.order);
   if (m.claims.ssp_coefficient)
     out += fmt::format("ssp_coefficient = {}\n", quoted(*m.claims.ssp_coefficient));
   if (m.claims.type) out += fmt::format("type = {}\n", quoted(*m.claims.type));

@@ -33,6 +33,8 @@ struct method_claims {
 class method {
  public:
   std::string name, title, citation;
+  std::string origin;   ///< how its coefficients were found; "" where the citation says it
+  std::string purpose;  ///< what it is recommended for, in a few words; "" where it is not
   method_kind kind = method_kind::imex;
   method_claims claims;
   shu_osher_form<std::string> exact;  ///< as in the file; "0" where nothing stands
@@ -58,12 +60,16 @@ class method {
   shu_osher_form<Real> coefficients() const;
 };
 
-/// The method called `name` from the catalogue (methods/*.toml); certified.
-/// Throws input_error with the nearest name if there is none, claim_error if its claims do not hold.
+/// The method called `name`: of the catalogue (methods/*.toml), or a member of a family
+/// (family_registry.hpp); certified. Throws input_error with the nearest name if there is none, or the range
+/// of S if a family has no such member, claim_error if its claims do not hold.
 const method& find_method(std::string_view name);
 
-/// Names of the catalogue, sorted.
+/// Names of the catalogue, sorted; without members of families.
 std::vector<std::string> method_names();
+
+/// Whether `name` is in the catalogue or has the pattern of a family.
+bool is_method_name(std::string_view name);
 
 /// A method from the text of a file. `file` is for messages only. Does not certify.
 /// Throws input_error with line and column.

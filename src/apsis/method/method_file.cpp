@@ -307,10 +307,14 @@ method parse_method(std::string_view text, const std::string& file) {
                       "not TOML (" + std::string(failure.description()) + ")");
   }
   method m;
-  const section top(root, file, "", {"name", "title", "citation", "kind", "claims", "shu_osher", "butcher"});
+  const section top(
+      root, file, "",
+      {"name", "title", "citation", "origin", "purpose", "kind", "claims", "shu_osher", "butcher"});
   m.name = top.text("name");
   m.title = top.text("title");
   m.citation = top.text("citation");
+  if (top.has("origin")) m.origin = top.text("origin");
+  if (top.has("purpose")) m.purpose = top.text("purpose");
   m.kind = read_kind(top);
   m.claims = read_claims(root, file);
   if (top.has("shu_osher") == top.has("butcher"))

@@ -1,5 +1,7 @@
 #include <apsis/method/monotonicity.hpp>
 
+#include <apsis/method/lower_product.hpp>
+
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -74,7 +76,7 @@ ssp_analysis analyse_imex(const butcher_form<mp_real>& b, const mp_real& zero) {
   const auto inverse = inverse_stage_matrix(b, merged, zero, result.forbids);
   if (!inverse) return result;
   const auto R = inverse_lower(*inverse);
-  const auto K = R * b.A_hat;
+  const auto K = lower_product(R, b.A_hat);
   for (std::size_t i = 0; i < s; ++i) {
     mp_real row_sum(0);
     for (std::size_t j = 0; j <= i; ++j) {
@@ -141,14 +143,14 @@ std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, cons
   return R;
 }
 
-mp_real monotonicity_radius(const matrix<mp_real>& tableau, const mp_real& zero) {
+mp_real monotonicity_radius(const matrix<mp_real>& tableau, const mp_real& zero, const mp_real& guess) {
   const std::size_t s = tableau.rows();
   const auto monotone = [&](const mp_real& r) {
     auto shifted = matrix<mp_real>::identity(s);
     for (std::size_t i = 0; i < s; ++i)
       for (std::size_t j = 0; j <= i; ++j) shifted(i, j) += r * tableau(i, j);
     const auto inverse = inverse_lower(shifted);
-    const auto weights = tableau * inverse;
+    const auto weights = lower_product(tableau, inverse);
     for (std::size_t i = 0; i < s; ++i) {
       mp_real rest(0);
       for (std::size_t j = 0; j < s; ++j) {
@@ -160,6 +162,7 @@ mp_real monotonicity_radius(const matrix<mp_real>& tableau, const mp_real& zero)
     return true;
   };
   if (!monotone(mp_real(0)) || !monotone(mp_real(1e-12))) return 0;
+  if (guess > 0 && monotone(guess) && !monotone(guess + 1e6 * zero)) return guess;
   mp_real low(0), high(1);
   while (monotone(high) && high < 1e6) high *= 2;
   for (int k = 0; k < 200 && high - low > mp_real(1e-48) * high; ++k) {

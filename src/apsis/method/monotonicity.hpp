@@ -30,7 +30,9 @@ std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, cons
 
 /// Radius of absolute monotonicity of one tableau K whose last row is the update (Kraaijevanger, BIT 31,
 /// 1991): the largest r with K(I + rK)⁻¹ ≥ 0 and (I + rK)⁻¹ e ≥ 0. The SSP coefficient of an explicit method,
-/// and of a DIRK method when only forward Euler steps of Q keep the property.
-mp_real monotonicity_radius(const matrix<mp_real>& tableau, const mp_real& zero);
+/// and of a DIRK method when only forward Euler steps of Q keep the property. A `guess` that is right (from
+/// below, to 10⁶ zeros) saves the bisection.
+mp_real monotonicity_radius(const matrix<mp_real>& tableau, const mp_real& zero,
+                            const mp_real& guess = mp_real(0));
 
 }  // namespace apsis

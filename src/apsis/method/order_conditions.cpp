@@ -1,5 +1,6 @@
 #include <apsis/method/order_conditions.hpp>
 
+#include <apsis/method/lower_product.hpp>
 #include <apsis/method/precision.hpp>
 
 namespace apsis {
@@ -34,7 +35,7 @@ class evaluator {
   stage_vector<Real> stage_values(const rooted_tree& tree) const {
     auto product = ones();
     for (const int child : tree.children) multiply(product, child);
-    if (tree.root == colour::F) return method_.A_hat * product;
+    if (tree.root == colour::F) return lower_product(method_.A_hat, product);
 
     stage_vector<Real> derivative(method_.stages(), Real(0));
     for (std::size_t k = 0; k < tree.children.size(); ++k) {
@@ -46,8 +47,8 @@ class evaluator {
       for (const int grandchild : child.children) multiply(term, grandchild);
       for (std::size_t i = 0; i < term.size(); ++i) derivative[i] += term[i];
     }
-    auto values = method_.A * product;
-    const auto second = method_.A_dot * derivative;
+    auto values = lower_product(method_.A, product);
+    const auto second = lower_product(method_.A_dot, derivative);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] += second[i];
     return values;
   }

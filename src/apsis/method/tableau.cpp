@@ -1,5 +1,6 @@
 #include <apsis/method/tableau.hpp>
 
+#include <apsis/method/lower_product.hpp>
 #include <apsis/method/precision.hpp>
 
 namespace apsis {
@@ -28,7 +29,8 @@ butcher_form<Real> to_butcher(const shu_osher_form<Real>& m) {
     }
   }
   const auto inverse = inverse_lower(R);
-  return {inverse * explicit_part, inverse * m.D, inverse * derivative};
+  return {lower_product(inverse, explicit_part), lower_product(inverse, m.D),
+          lower_product(inverse, derivative)};
 }
 
 template <class Real>

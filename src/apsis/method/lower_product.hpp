@@ -1,0 +1,29 @@
+#pragma once
+
+#include <apsis/core/matrix.hpp>
+
+namespace apsis {
+
+/// a b of two lower triangular matrices: a sixth of the products, fewer where a has zeros.
+template <class Real>
+matrix<Real> lower_product(const matrix<Real>& a, const matrix<Real>& b) {
+  matrix<Real> c(a.rows(), b.cols());
+  for (std::size_t i = 0; i < a.rows(); ++i)
+    for (std::size_t k = 0; k <= i; ++k) {
+      if (a(i, k) == Real(0)) continue;
+      for (std::size_t j = 0; j <= k; ++j) c(i, j) += a(i, k) * b(k, j);
+    }
+  return c;
+}
+
+/// a x of a lower triangular matrix.
+template <class Real>
+std::vector<Real> lower_product(const matrix<Real>& a, const std::vector<Real>& x) {
+  std::vector<Real> y(a.rows(), Real(0));
+  for (std::size_t i = 0; i < a.rows(); ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      if (a(i, j) != Real(0)) y[i] += a(i, j) * x[j];
+  return y;
+}
+
+}  // namespace apsis

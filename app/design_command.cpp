@@ -13,7 +13,6 @@
 #include <apsis/output/progress.hpp>
 #include <apsis/output/result_folder.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -54,12 +53,6 @@ void require(bool good, const std::string& option, const std::string& value, con
   if (!good) throw input_error(fmt::format("command line: {} {} is out of range ({})", option, value, range));
 }
 
-method find_or_load(const std::string& what) {
-  const auto names = method_names();
-  if (std::find(names.begin(), names.end(), what) != names.end()) return find_method(what);
-  return load_method_file(what);
-}
-
 design_task task_of(const options& given) {
   require(given.order >= 1 && given.order <= 6, "--order", std::to_string(given.order), "from 1 to 6");
   require(given.stages >= 1 && given.stages <= 32, "--stages", std::to_string(given.stages), "from 1 to 32");
@@ -89,7 +82,7 @@ design_task task_of(const options& given) {
                                              {"error", design_objective::smallest_error}});
   task.seed = given.seed;
   if (!given.from.empty()) {
-    const method m = find_or_load(given.from);
+    const method& m = find_method(given.from);
     if (m.kind != task.kind || m.is_tableau() || m.ends_with_update())
       throw input_error(fmt::format(
           "command line: --from '{}' is no method of the kind that is looked for ({} of the paper's "

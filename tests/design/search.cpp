@@ -64,13 +64,22 @@ void expect_certified(const design_task& task, const design_candidate& found) {
 // The ceiling of second order is r = s − 2 with s − 1 evaluations; Ipopt stops at 1e-9.
 TEST(design_search, finds_the_best_second_order_methods) {
   for (const auto& [stages, best] : {std::pair<std::size_t, double>{3, 1.0}, {6, 4.0}}) {
-    const auto task = imex_task(2, stages, 2.0);
-    const auto found = look(task, 60);
+    auto task = imex_task(2, stages, 2.0);
+    task.transports = static_cast<int>(stages) - 1;
+    const auto found = look(task, 40);
     ASSERT_TRUE(found.best);
     EXPECT_GT(found.best->r, best - 1e-6);
     EXPECT_LT(found.best->r, best + 1e-6);
     expect_certified(task, *found.best);
   }
+}
+
+TEST(design_search_slow, finds_how_many_evaluations_are_best) {
+  const auto task = imex_task(2, 6, 2.0);
+  const auto found = look(task, 200);
+  ASSERT_TRUE(found.best);
+  EXPECT_GT(found.best->r, 4.0 - 1e-6);
+  EXPECT_EQ(found.best->evaluations, 5);
 }
 
 TEST(design_search, finds_the_third_order_method_of_the_paper) {
@@ -167,7 +176,9 @@ TEST(design_demands, pass_over_methods_that_do_not_meet_them) {
   };
   task.demands.most_buffers = buffers(*free.best) - 1;
   const auto lean = look(task, 40);
-  if (lean.best) EXPECT_LE(buffers(*lean.best), task.demands.most_buffers);
+  if (lean.best) {
+    EXPECT_LE(buffers(*lean.best), task.demands.most_buffers);
+  }
   EXPECT_LT(lean.feasible, free.feasible);
 }
 
@@ -178,9 +189,9 @@ TEST(design_sparsify, gives_up_no_more_than_it_may) {
   task.demands.least_r = 0.5;
   const auto found = look(task, 10);
   ASSERT_TRUE(found.best);
-  const auto sparse = sparsify(task, *found.best, 0.05);
+  const auto sparse = sparsify(task, *found.best, 0.5);
   EXPECT_LT(sparse.x.size(), found.best->x.size());
-  EXPECT_LE(sparse.error, 1.05 * found.best->error);
+  EXPECT_LE(sparse.error, 1.5 * found.best->error);
   expect_certified(task, sparse);
 }
 

@@ -2,6 +2,7 @@
 
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/method/method_file.hpp>
 #include <apsis/space/boundary.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
 
@@ -36,7 +37,12 @@ std::vector<std::string> method_choices(const case_config&) {
   return method_names();
 }
 
-std::optional<std::string> family_member(const std::string& name) {
+/// A member of a family, or a method file; a file that is no good throws with its own place.
+std::optional<std::string> method_besides(const std::string& name) {
+  if (is_method_file(name)) {
+    find_method(name);
+    return "";
+  }
   const family_entry* family = find_family(name);
   if (family == nullptr) return std::nullopt;
   return missing_member(*family, name);
@@ -134,11 +140,11 @@ std::vector<case_key> make_schema() {
        [](c& o, const v& x) { o.velocity.equilibrium = text_of(x); },
        [](const c& o) { return v(o.velocity.equilibrium); }},
       {"time.method", text, key_scope::always, true, "", 0, 0, false, method_choices,
-       "The time integrator, by its name in the catalogue, or a member of a family (apsis list families) "
-       "such as "
-       "md-imex-chain-7-2.",
+       "The time integrator, by its name in the catalogue, a member of a family (apsis list families) such "
+       "as "
+       "md-imex-chain-7-2, or a method file of yours (FILE.toml, relative to where the program runs).",
        [](c& o, const v& x) { o.time.method = text_of(x); }, [](const c& o) { return v(o.time.method); },
-       family_member},
+       method_besides},
       {"time.end", number, key_scope::always, true, none, 0, unlimited, false, nullptr,
        "Final time; the start is t = 0.", [](c& o, const v& x) { o.time.end = number_of(x); },
        [](const c& o) { return v(o.time.end); }},

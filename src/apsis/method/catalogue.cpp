@@ -19,8 +19,9 @@ struct entry {
   certificate certified;
 };
 
-/// From the file of the catalogue or by its family.
+/// From the file of the catalogue, by its family, or from a file of the user.
 method make_method(std::string_view name) {
+  if (is_method_file(name)) return parse_method(read_method_text(std::string(name)), std::string(name));
   for (const auto& file : embedded::methods())
     if (file.name == name) return parse_method(file.text, "methods/" + std::string(file.name) + ".toml");
   if (const family_entry* family = find_family(name)) return make_member(*family, name);
@@ -65,6 +66,10 @@ bool is_method_name(std::string_view name) {
   for (const auto& file : embedded::methods())
     if (file.name == name) return true;
   return find_family(name) != nullptr;
+}
+
+bool is_method_file(std::string_view name) {
+  return name.ends_with(".toml");
 }
 
 method load_method_file(const std::string& path) {

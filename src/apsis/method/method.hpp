@@ -26,6 +26,8 @@ struct method_claims {
   std::optional<std::string>
       explicit_radius;           ///< as written; of the explicit part of an IMEX method by itself
   std::optional<bool> l_stable;  ///< of the implicit part
+  std::optional<std::string>
+      intermediate;  ///< O(ε) terms that are right where ε ≪ Δt: "slow" (N1, N2) or "all" (N1–N3)
 };
 
 /// A time integrator as data. Coefficients exist as the strings of its file (exact rationals "p/q" or

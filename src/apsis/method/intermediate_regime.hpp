@@ -43,7 +43,10 @@ class relaxed_stages {
     const auto initial = initial_weights(m);
     for (std::size_t i = 0; i < m.stages(); ++i) {
       const bool relaxed = m.ddot[i] != Real(0) || m.D(i, i) != Real(0);
-      start_.push_back(!relaxed && initial[i] == Real(1));
+      bool is_start = !relaxed && initial[i] == Real(1);
+      for (std::size_t j = 0; j < i; ++j)
+        is_start = is_start && m.P(i, j) == Real(0) && m.W(i, j) == Real(0) && m.D(i, j) == Real(0);
+      start_.push_back(is_start);
       has_start_ = has_start_ || start_.back();
       solvable_ = solvable_ && (relaxed || start_.back());
     }

@@ -88,31 +88,43 @@ json document_json(const method& m) {
   if (m.claims.type) out["claims"]["type"] = *m.claims.type;
   if (m.claims.explicit_radius) out["claims"]["explicit_radius"] = *m.claims.explicit_radius;
   if (m.claims.l_stable) out["claims"]["l_stable"] = *m.claims.l_stable;
+  if (m.claims.intermediate) out["claims"]["intermediate"] = *m.claims.intermediate;
   return out;
 }
 
-/// What is kept of the terms of size ε ≪ Δt: "all", "slow" (those of data near equilibrium) or "none".
-std::string kept_of(const intermediate_regime<double>& terms) {
-  const auto exact = [](double x) { return std::abs(x - 1.0) < 1e-12; };
-  if (!exact(terms.flux) || !exact(terms.last)) return "none";
-  return exact(terms.layer) ? "all" : "slow";
-}
-
 /// null where the method has stages that the analysis does not cover, or the term is infinite.
-json regime_json(const method& m) {
-  const auto terms = analyse_intermediate_regime(m.coefficients<double>());
-  if (!terms.applies) return nullptr;
-  return {{"flux", terms.flux},
-          {"last", terms.last},
-          {"layer", std::isfinite(terms.layer) ? json(terms.layer) : json(nullptr)},
-          {"kept", kept_of(terms)}};
+json regime_json(const certificate& c) {
+  if (!c.regime.applies) return nullptr;
+  const auto& terms = c.regime;
+  const auto number = [](const mp_real& x) {
+    return isfinite(x) ? json(x.convert_to<double>()) : json(nullptr);
+  };
+  return {{"flux", number(terms.flux)},
+          {"last", number(terms.last)},
+          {"layer", number(terms.layer)},
+          {"keeps", c.keeps()},
+          {"next",
+           {{"flux_place", number(terms.flux_place)},
+            {"flux_slope", number(terms.flux_slope)},
+            {"flux_curvature", number(terms.flux_curvature)},
+            {"flux_carried", number(terms.flux_carried)},
+            {"last_slope", number(terms.last_slope)},
+            {"last_curvature", number(terms.last_curvature)},
+            {"layer_place", number(terms.layer_place)},
+            {"layer_carried", number(terms.layer_carried)}}},
+          {"band", {{"error", c.band.error}, {"at", c.band.at}}}};
 }
 
-std::string regime_text(const method& m) {
-  const auto terms = analyse_intermediate_regime(m.coefficients<double>());
-  if (!terms.applies) return "not covered (a stage is neither relaxed nor u^n)";
-  return fmt::format("flux {:.4g}, last stage {:.4g}, layer {:.4g} times the exact ones",  //
-                     terms.flux, terms.last, terms.layer);
+std::string regime_text(const certificate& c) {
+  if (!c.regime.applies) return "not covered (a stage is neither relaxed nor u^n)";
+  return fmt::format("flux {:.4g}, last stage {:.4g}, layer {:.4g} times the exact ones",
+                     c.regime.flux.convert_to<double>(), c.regime.last.convert_to<double>(),
+                     c.regime.layer.convert_to<double>());
+}
+
+std::string verdict_text(const certificate& c) {
+  return fmt::format("flux and last stage (N1, N2) {}, layer (N3) {}; for BGK the flux is the viscosity",
+                     c.keeps_slow_terms ? "yes" : "no", c.keeps_layer ? "yes" : "no");
 }
 
 /// r/n_F: what a transport evaluation is worth where positivity limits the step; null without such a limit.
@@ -191,7 +203,7 @@ json check_json(const method& m) {
       {"buffers", steps.buffers()},
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
-  if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(m);
+  if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(c);
   if (m.kind != method_kind::explicit_only)
     out["stability"] = {{"angle_degrees", c.stability.angle},
                         {"l_stable", c.stability.l_stable},
@@ -207,7 +219,7 @@ std::string check_text(const method& m) {
   const schedule steps(m.coefficients<double>());
   std::string out = fmt::format("{}: {}\n", m.name, m.title);
   const auto line = [&out](const std::string& name, const std::string& value) {
-    out += fmt::format("  {:<22}{}\n", name, value);
+    out += fmt::format("  {:<24}{}\n", name, value);
   };
   line("order", fmt::format("{} ({} conditions, largest residual {:.1e})", c.order, c.conditions,
                             c.order_residual.convert_to<double>()));
@@ -220,7 +232,12 @@ std::string check_text(const method& m) {
          fmt::format("SSP coefficient {:.15g} by itself", c.explicit_radius.convert_to<double>()));
   line("type", fmt::format("{}{}", c.type, c.gsa ? ", globally stiffly accurate" : ""));
   line("asymptotic preserving", c.ap_data.empty() ? "none" : c.ap_data);
-  if (m.kind == method_kind::imex) line("where epsilon << dt", regime_text(m));
+  if (m.kind == method_kind::imex) {
+    line("where epsilon << dt", regime_text(c));
+    if (c.regime.applies) line("keeps O(epsilon) terms", verdict_text(c));
+    line("where epsilon ~ dt",
+         fmt::format("error of the flux up to {:.2g} dt, at epsilon/C = dt/{:.2g}", c.band.error, c.band.at));
+  }
   line("cost of a step", fmt::format("{} transport evaluations, {} implicit solves, {} buffers",
                                      c.explicit_evaluations, c.implicit_solves, steps.buffers()));
   if (m.kind != method_kind::explicit_only)
@@ -280,7 +297,7 @@ std::string method_table(const json& all) {
                  entry(c["ssp_coefficient"], "unbounded"), entry(c["r_per_evaluation"]),
                  entry(c["error_constant"]), c["buffers"].get<int>(),
                  short_data(c["ap_data"].get<std::string>()),
-                 has_terms ? c["intermediate_regime"]["kept"].get<std::string>() : std::string("-"),
+                 has_terms ? c["intermediate_regime"]["keeps"].get<std::string>() : std::string("-"),
                  c["purpose"].get<std::string>());
     }
   }

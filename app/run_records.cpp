@@ -106,6 +106,9 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records) {
                {"t", saved.t},
                {"anchor", saved.anchor},
                {"anchor_dt", saved.anchor_dt},
+               {"startup_steps", static_cast<double>(saved.startup_steps)},
+               {"startup_done", static_cast<double>(saved.startup_done)},
+               {"startup_length", saved.startup_length},
                {"largest_dt", saved.so_far.dt},
                {"wall_s", saved.so_far.wall_s},
                {"min_value", saved.so_far.min_value},
@@ -125,6 +128,13 @@ saved_run to_saved_run(const checkpoint& c) {
   saved.t = c.number("t");
   saved.anchor = c.number("anchor");
   saved.anchor_dt = c.number("anchor_dt");
+  if (c.numbers.count("startup_steps") > 0) {  // checkpoints of runs before there was a start-up have none
+    saved.startup_steps = count(c, "startup_steps");
+    saved.startup_done = count(c, "startup_done");
+    saved.startup_length = c.number("startup_length");
+    if (saved.startup_steps > 64 || saved.startup_done > saved.startup_steps)
+      throw io_error("the checkpoint has a wrong start-up (damaged file) give another checkpoint");
+  }
   saved.so_far.steps = saved.step;
   saved.so_far.t = saved.t;
   saved.so_far.dt = c.number("largest_dt");

@@ -20,7 +20,8 @@ bool has_entropy(const simulation& run) {
 
 json numbers(const simulation& run) {
   const run_summary s = run.summary();
-  json out = {{"steps", s.steps}, {"dt", s.dt}, {"t", s.t}, {"wall_s", s.wall_s}};
+  json out = {
+      {"steps", s.steps}, {"startup_steps", s.startup_steps}, {"dt", s.dt}, {"t", s.t}, {"wall_s", s.wall_s}};
   if (!find_model(run.config().model.name)->has_space) out["state"] = run.state();
   out["min_value"] = s.min_value;
   out["negative_values"] = s.negative_values;
@@ -84,6 +85,9 @@ std::string summary_text(const simulation& run, run_end end) {
   };
   line("state",
        fmt::format("{} at t = {:.10g} after {} steps of {}", to_string(end), s.t, s.steps, c.time.method));
+  if (s.startup_steps > 0)
+    line("start-up", s.startup_steps == 1 ? "not needed (no layer is thinner than the first step)"
+                                          : fmt::format("{} steps instead of 1", s.startup_steps));
   line("largest step", fmt::format("{:.6g}", s.dt));
   line("smallest value", fmt::format("{:.6g} ({} negative)", s.min_value, s.negative_values));
   if (!run.invariants().empty())

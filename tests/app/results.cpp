@@ -49,8 +49,8 @@ TEST(results, json_is_one_object_and_the_only_output) {
   ASSERT_EQ(result.code, 0) << result.err;
   const json object = json::parse(result.out);
   for (const std::string key :
-       {"case", "method", "steps", "dt", "t", "wall_s", "min_value", "negative_values", "conservation_defect",
-        "max_entropy_increase", "phase_points", "point_stages_per_s", "fields"})
+       {"case", "method", "steps", "startup_steps", "dt", "t", "wall_s", "min_value", "negative_values",
+        "conservation_defect", "max_entropy_increase", "phase_points", "point_stages_per_s", "fields"})
     EXPECT_TRUE(object.contains(key)) << key;
   EXPECT_EQ(object["t"].get<double>(), 0.005);
   EXPECT_EQ(object["phase_points"].get<long>(), 20 * 100);
@@ -146,6 +146,34 @@ TEST_P(interruption, gives_130_and_a_checkpoint_that_goes_on_bit_for_bit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(signals, interruption, testing::Values(SIGINT, SIGTERM));
+
+TEST(results, a_start_up_goes_on_from_a_checkpoint_bit_for_bit_and_says_what_it_cost) {
+  const work_folder folder;
+  // Steps slow enough for the run to be stopped of the start-up.
+  const std::vector<std::string> slow = {"run",
+                                         "paper/bgk-mixed",
+                                         "time.method=md-imex-4-2",
+                                         "space.cells=300",
+                                         "velocity.points=300",
+                                         "model.epsilon=1e-16",
+                                         "time.startup=graded",
+                                         "time.end=0.0002"};
+  ASSERT_EQ(run_apsis(folder, with(slow, {"--wall", "0.3", "--out", "stopped"})).code, 130);
+  const json stopped = json::parse(read(folder.path() / "stopped/manifest.json"))["result"];
+  ASSERT_LT(stopped["steps"].get<long>(), stopped["startup_steps"].get<long>());
+  const outcome resumed =
+      run_apsis(folder, with(slow, {"--restart", "stopped/checkpoint.h5", "--out", "resumed"}));
+  ASSERT_EQ(resumed.code, 0) << resumed.err;
+  const outcome whole = run_apsis(folder, with(slow, {"--out", "whole"}));
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  expect_same_results(folder.path() / "whole", folder.path() / "resumed");
+  const long steps =
+      json::parse(read(folder.path() / "whole/manifest.json"))["result"]["startup_steps"].get<long>();
+  EXPECT_GT(steps, 35);
+  EXPECT_THAT(whole.out, HasSubstr(std::to_string(steps) + " steps instead of 1"));
+  EXPECT_THAT(run_apsis(folder, {"run", "paper/ode", "model.epsilon=0", "time.startup=graded"}).out,
+              HasSubstr("not needed"));
+}
 
 TEST(results, the_wall_time_ends_a_run_like_an_interrupt) {
   const work_folder folder;

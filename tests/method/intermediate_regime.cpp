@@ -3,12 +3,16 @@
 
 #include "tableaux.hpp"
 
+#include <apsis/core/errors.hpp>
 #include <apsis/method/certificate.hpp>
+#include <apsis/method/export.hpp>
 #include <apsis/method/polish.hpp>
 
 #include <cmath>
 #include <string>
+#include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace apsis {
@@ -63,6 +67,90 @@ TEST(intermediate_regime, where_the_start_is_a_stage_only_consistent_data_are_ri
 
 TEST(intermediate_regime, does_not_apply_where_a_stage_is_explicit) {
   for (const std::string name : {"ssprk-3-3", "ssp2-222"}) EXPECT_FALSE(of(name).applies) << name;
+}
+
+TEST(intermediate_regime, has_the_next_terms_too) {
+  // md-imex-5-2 by hand: T counts at stages 1, 3, 4 with weights 1/3 and ĉ = 0, 1/2, 1; χ = (0, 0, 3, 0, 1).
+  // RÂĉ is (1/2) ĉ of the stage before, so (0, 0, 0, 1/4, 1/3·…): χ′ is 0 but for χ′_5; Rĉ²/2 is 1/8 at stage
+  // 3 and χ″_3 = (1/8)/(1/6).
+  const auto terms = of("md-imex-5-2");
+  const auto expect = [](const mp_real& value, double wanted) {
+    EXPECT_NEAR(value.convert_to<double>(), wanted, 1e-15);
+  };
+  expect(terms.flux_place, 0.5);
+  expect(terms.flux_slope, 0.0);
+  expect(terms.flux_curvature, 0.25);
+  expect(terms.flux_carried, 0.5);
+  expect(terms.last_slope, 1.0);
+  expect(terms.last_curvature, 0.5);
+  expect(terms.layer_place, 0.0);
+  expect(terms.layer_carried, 1.0);
+}
+
+TEST(intermediate_regime, is_reached_from_the_band_and_left_with_the_order) {
+  for (const auto& name : method_names()) {
+    const auto& m = find_method(name);
+    const auto form = m.coefficients<mp_real>();
+    const auto terms = analyse_intermediate_regime(form);
+    if (m.kind != method_kind::imex || !terms.applies) continue;
+    const auto b = to_butcher(form);
+    const auto stiff = at_finite_rate(b, mp_real(1e18)), soft = at_finite_rate(b, mp_real(1e-6)),
+               softer = at_finite_rate(b, mp_real(1e-7));
+    EXPECT_LT(abs(stiff.flux - terms.flux), mp_real(1e-15)) << name;
+    EXPECT_LT(abs(stiff.last - terms.last), mp_real(1e-15)) << name;
+    // flux(z) − 1 = O(z^p)
+    const int order = m.claims.order;
+    EXPECT_LT(abs(soft.flux - 1), 20 * pow(mp_real(1e-6), order)) << name;
+    EXPECT_LT(abs(softer.flux - 1), 20 * pow(mp_real(1e-7), order)) << name;
+  }
+}
+
+TEST(intermediate_claims, are_certified) {
+  EXPECT_EQ(find_certificate("md-imex-3-2").keeps(), "none");
+  EXPECT_EQ(find_certificate("md-imex-4-2").keeps(), "slow");
+  EXPECT_EQ(find_certificate("ars-222").keeps(), "slow");
+  EXPECT_EQ(find_certificate("md-imex-5-2").keeps(), "all");
+  EXPECT_EQ(find_certificate("md-imex-8-3").keeps(), "all");
+  EXPECT_FALSE(find_certificate("ssp2-222").regime.applies);
+  // The largest error in the band, from an independent program in 30 digits.
+  EXPECT_NEAR(find_certificate("md-imex-3-2").band.error, 0.20125, 1e-4);
+  EXPECT_NEAR(find_certificate("md-imex-5-2").band.error, 0.01806, 1e-4);
+  EXPECT_NEAR(find_certificate("md-imex-5-2").band.at, 4.47, 0.3);
+}
+
+std::vector<std::string> failures_with(const std::string& name, const std::string& claim,
+                                       const std::string& old = "", const std::string& replacement = "") {
+  std::string text = to_toml(find_method(name));
+  const auto change = [&text](const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  if (const auto at = text.find("intermediate = "); at != std::string::npos)
+    text.erase(at, text.find('\n', at) + 1 - at);
+  change("[claims]\n", "[claims]\nintermediate = \"" + claim + "\"\n");
+  if (!old.empty()) change(old, replacement);
+  return certify(parse_method(text, "m.toml")).failures;
+}
+
+TEST(intermediate_claims, that_do_not_hold_are_refused) {
+  using ::testing::Contains, ::testing::HasSubstr, ::testing::IsEmpty;
+  EXPECT_THAT(failures_with("md-imex-5-2", "slow"), IsEmpty());  // less than there is
+  EXPECT_THAT(failures_with("ars-222", "slow"), IsEmpty());
+  EXPECT_THAT(failures_with("md-imex-3-2", "slow"), Contains(HasSubstr("claims.intermediate = slow but the "
+                                                                       "O(epsilon) terms are flux 0")));
+  EXPECT_THAT(failures_with("md-imex-4-2", "all"), Contains(HasSubstr("layer 2.16")));
+  EXPECT_THAT(failures_with("ars-222", "all"), Contains(HasSubstr("claims.intermediate = all")));
+  EXPECT_THAT(failures_with("ssp2-222", "slow"), Contains(HasSubstr("neither relaxed nor u^n")));
+  // d_3 = 1/6 moved by a millionth moves the flux by six.
+  EXPECT_THAT(failures_with("md-imex-5-2", "slow", "1/6", "0.166667666666666666666666666667"),
+              Contains(HasSubstr("claims.intermediate = slow but the O(epsilon) terms are flux 0.99999")));
+  try {
+    failures_with("md-imex-5-2", "slwo");
+    ADD_FAILURE() << "accepted";
+  } catch (const input_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("did you mean 'slow'?"));
+  }
 }
 
 // Four digits, found by a search, are enough for Newton's method to find the other forty; zeros make sure

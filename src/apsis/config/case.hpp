@@ -44,6 +44,7 @@ struct case_config {
     std::string method;
     double end = 0.0;
     std::optional<double> dt, cfl, safety;  ///< exactly one is set
+    std::string startup = "none";           ///< "none" | "graded"
   } time;
   struct {
     double every = 0.0;               ///< time between snapshots; 0: only the end

@@ -68,6 +68,9 @@ std::vector<std::string> boundary_choices(const case_config&) {
 std::vector<std::string> equilibrium_choices(const case_config&) {
   return {"auto", "formula", "discrete"};
 }
+std::vector<std::string> startup_choices(const case_config&) {
+  return {"none", "graded"};
+}
 
 const std::string& text_of(const case_value& v) {
   return std::get<std::string>(v);
@@ -162,6 +165,13 @@ std::vector<case_key> make_schema() {
        "given.",
        [](c& o, const v& x) { o.time.safety = number_of(x); },
        [](const c& o) { return optional_number(o.time.safety); }},
+      {"time.startup", text, key_scope::epsilon, false, "", 0, 0, false, startup_choices,
+       "graded: the first step is cut into steps that double, from a quarter of the smallest epsilon/C on, "
+       "so "
+       "that the initial layer of data out of equilibrium is resolved; for methods whose layer is not 1 "
+       "(apsis "
+       "check). About log2(4 C dt/epsilon) more steps, none for epsilon = 0.",
+       [](c& o, const v& x) { o.time.startup = text_of(x); }, [](const c& o) { return v(o.time.startup); }},
       {"output.every", number, key_scope::always, false, none, 0, unlimited, false, nullptr,
        "Time between snapshots of the fields; 0 keeps the final state only.",
        [](c& o, const v& x) { o.output.every = number_of(x); }, [](const c& o) { return v(o.output.every); }},

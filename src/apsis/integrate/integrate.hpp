@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/graded_start.hpp>
 #include <apsis/integrate/stepper.hpp>
 
 #include <cmath>
@@ -9,19 +10,26 @@
 
 namespace apsis {
 
+/// The first step as it is, or cut into steps that double and resolve the initial layer of data out of
+/// equilibrium (graded_start): for methods that violate (N3) of docs/plateaus.md.
+enum class startup { none, graded };
+
 /// How long a step is: a given dt, or Δt = safety · r · Δt_FE (safety ≤ 1 keeps what forward Euler keeps).
 template <class Real>
 struct step_rule {
   std::optional<Real> dt;
   Real safety = Real(1);
+  startup start = startup::none;
 
-  static step_rule fixed(Real dt) { return {dt, Real(1)}; }
-  static step_rule ssp(Real safety = Real(1)) { return {std::nullopt, safety}; }
+  static step_rule fixed(Real dt) { return {dt, Real(1), startup::none}; }
+  static step_rule ssp(Real safety = Real(1)) { return {std::nullopt, safety, startup::none}; }
+  step_rule with(startup how) const { return {dt, safety, how}; }
 };
 
 /// Time from t0 to t1 in steps. With a given dt times are t0 + n dt (no accumulation of rounding); a dt that
 /// does not divide t1 − t0 (to 1e-12) is reduced until it does, see adjusted(). Without one, the last step is
-/// shortened to meet t1. An interval of length zero has no steps.
+/// shortened to meet t1. An interval of length zero has no steps. A start-up puts times between the first two
+/// and changes no other, unless the rule shortens steps on the way.
 template <class Real>
 class time_marcher {
  public:
@@ -29,6 +37,8 @@ class time_marcher {
   struct progress {
     long step, since_anchor;
     Real t, anchor, anchor_dt;
+    long startup_steps = 0, startup_done = 0;
+    Real startup_length = Real(0);
   };
 
   /// Throws input_error unless t0 ≤ t1 are finite and dt > 0.
@@ -54,7 +64,26 @@ class time_marcher {
     }
   }
 
-  bool done() const { return fixed_ ? n_ >= count_ : !(t_ < t1_); }
+  /// Cuts the first step, whose length the rule `proposed`, into steps that double from relaxation_time/4 on;
+  /// both as long as the interval at most. Nothing happens after the first step, or where there is none.
+  void start_up(Real proposed, Real relaxation_time) {
+    if (n_ > 0 || done()) return;
+    startup_length_ = next(proposed);
+    startup_steps_ = graded_levels(startup_length_, Real(relaxation_time / 4)) + 1;
+  }
+  /// The next step is one of those.
+  bool starting() const { return startup_done_ < startup_steps_; }
+  /// Their number; 1 if the first step is short enough, 0 without start-up. A rule that shortens steps on the
+  /// way ends the start-up.
+  long startup_steps() const { return startup_steps_; }
+  /// The steps after this one, if all are as long as `full`; the start-up counts with its own.
+  long steps_left(Real full) const {
+    using std::ceil;
+    const Real from = starting() ? t0_ + startup_length_ : t_;
+    return startup_steps_ - startup_done_ + static_cast<long>(ceil((t1_ - from) / full - Real(1e-9)));
+  }
+
+  bool done() const { return fixed_ ? whole_steps() >= count_ : !(t_ < t1_); }
   Real t() const { return t_; }
   long step() const { return n_; }
   /// The given dt did not divide the interval.
@@ -66,6 +95,7 @@ class time_marcher {
   /// Throws input_error if nothing limits it, numerical_error if it does not advance time.
   Real next(Real proposed) const {
     using std::isinf;
+    if (starting() && (fixed_ || startup_step() <= proposed)) return startup_step();
     if (fixed_) return *fixed_;
     if (isinf(proposed) && proposed > Real(0))
       throw input_error(
@@ -83,8 +113,18 @@ class time_marcher {
 
   void advance(Real dt) {
     ++n_;
+    if (starting() && (fixed_ || dt == startup_step())) {
+      ++startup_done_;
+      t_ = t0_ + halved(startup_length_, startup_steps_ - startup_done_);
+      if (starting()) return;
+      // From here on as after one step of the whole length.
+      t_ = t0_;
+      dt = startup_length_;
+    } else {
+      startup_steps_ = startup_done_;
+    }
     if (fixed_) {
-      t_ = n_ >= count_ ? t1_ : t0_ + Real(n_) * *fixed_;
+      t_ = whole_steps() >= count_ ? t1_ : t0_ + Real(whole_steps()) * *fixed_;
       return;
     }
     // While dt stays the same, t is a multiple of it from where it began to be so.
@@ -108,13 +148,27 @@ class time_marcher {
     anchor_ = saved.anchor;
     anchor_dt_ = saved.anchor_dt;
     since_anchor_ = saved.since_anchor;
+    startup_steps_ = saved.startup_steps;
+    startup_done_ = saved.startup_done;
+    startup_length_ = saved.startup_length;
   }
-  progress save() const { return {n_, since_anchor_, t_, anchor_, anchor_dt_}; }
+  progress save() const {
+    return {n_, since_anchor_, t_, anchor_, anchor_dt_, startup_steps_, startup_done_, startup_length_};
+  }
 
  private:
+  Real startup_step() const { return graded_step(startup_length_, startup_steps_ - 1, startup_done_); }
+  /// Steps of full length that are done; the start-up is one of them.
+  long whole_steps() const {
+    if (startup_steps_ == 0) return n_;
+    return starting() ? 0 : n_ - (startup_steps_ - 1);
+  }
+
   Real t0_, t1_, t_;
   Real anchor_ = Real(0), anchor_dt_ = Real(-1);
   long since_anchor_ = 0;
+  long startup_steps_ = 0, startup_done_ = 0;
+  Real startup_length_ = Real(0);
   std::optional<Real> fixed_;
   long n_ = 0, count_ = 0;
   bool adjusted_ = false;
@@ -125,7 +179,8 @@ template <class Real>
 struct integration_result {
   Real t;
   long steps;
-  Real dt;  ///< of the last full-length step; 0 if there was none
+  Real dt;             ///< of the last full-length step; 0 if there was none
+  long startup_steps;  ///< that took the place of the first; 0 without start-up
 };
 
 /// Observer that sees nothing.
@@ -136,7 +191,8 @@ struct no_observer {
 
 /// Integrates u from t0 to t1. observer(step, t, dt, u) is called for the initial state (step 0, dt 0) and
 /// after every step; if it returns bool, false ends the integration. A numerical_error leaves with step and
-/// time; u is then the last good state.
+/// time; u is then the last good state. A graded start-up needs a problem_with_relaxation_time: input_error
+/// otherwise.
 template <problem P, class Observer = no_observer>
 integration_result<typename P::real> integrate(stepper<P>& method_stepper, typename P::state& u,
                                                typename P::real t0, typename P::real t1,
@@ -152,13 +208,24 @@ integration_result<typename P::real> integrate(stepper<P>& method_stepper, typen
       return true;
     }
   };
+  const auto limit = [&]() -> real {
+    if (rule.dt) return *rule.dt;
+    return rule.safety * method_stepper.r() *
+           method_stepper.target_problem().forward_euler_step(march.t(), u);
+  };
   bool wanted = report(real(0));
+  if (wanted && rule.start == startup::graded && !march.done()) {
+    if constexpr (problem_with_relaxation_time<P>) {
+      march.start_up(limit(), method_stepper.target_problem().relaxation_time(t0, u));
+    } else {
+      throw input_error(
+          "a graded start needs the width of the initial layer (the problem has no relaxation_time(t, u)); "
+          "offer it, or start without");
+    }
+  }
   while (wanted && !march.done()) {
     try {
-      const real limit = rule.dt ? *rule.dt
-                                 : rule.safety * method_stepper.r() *
-                                       method_stepper.target_problem().forward_euler_step(march.t(), u);
-      const real dt = march.next(limit);
+      const real dt = march.next(limit());
       method_stepper.step(march.t(), dt, u);
       march.advance(dt);
       longest = longest > dt ? longest : dt;
@@ -167,7 +234,7 @@ integration_result<typename P::real> integrate(stepper<P>& method_stepper, typen
       throw failure.site().step >= 0 ? failure : failure.at(march.step(), static_cast<double>(march.t()));
     }
   }
-  return {march.t(), march.step(), longest};
+  return {march.t(), march.step(), longest, march.startup_steps()};
 }
 
 }  // namespace apsis

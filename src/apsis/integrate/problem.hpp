@@ -47,4 +47,13 @@ concept problem_with_explicit_collision =
       p.scatter_collision(x, u, targets);
     };
 
+/// A problem that knows how wide its initial layer is, for a graded start:
+///   relaxation_time(t, u)   smallest ε/C > 0 of the state; +infinity if nothing relaxes, or all at once (ε =
+///   0)
+template <class P>
+concept problem_with_relaxation_time =
+    problem<P> && requires(P p, const typename P::state& u, typename P::real x) {
+      { p.relaxation_time(x, u) } -> std::convertible_to<typename P::real>;
+    };
+
 }  // namespace apsis

@@ -95,18 +95,30 @@ class relaxation_problem {
     return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();
   }
 
+  /// ε/C; +infinity where nothing relaxes, and for ε = 0, where there is no layer to be resolved.
+  real relaxation_time(real, const State& u) const {
+    const real rate = checked_rate(moments_(u));
+    return rate > real(0) && epsilon_ > real(0) ? epsilon_ / rate : std::numeric_limits<real>::infinity();
+  }
+
   real epsilon() const { return epsilon_; }
 
  private:
-  /// work_ ← E(ℛu); returns C(ℛu).
-  real relaxation(const State& u) {
-    const auto omega = moments_(u);
+  template <class Omega>
+  real checked_rate(const Omega& omega) const {
     const real rate = rate_(omega);
     if (!(rate >= real(0)) || !(rate <= std::numeric_limits<real>::max()))
       throw numerical_error(
           "the relaxation rate is negative or not finite (the moments are not admissible); "
           "reduce the time step, or check the functions of the problem",
           {-1, std::nan(""), -1, static_cast<double>(rate)});
+    return rate;
+  }
+
+  /// work_ ← E(ℛu); returns C(ℛu).
+  real relaxation(const State& u) {
+    const auto omega = moments_(u);
+    const real rate = checked_rate(omega);
     work_ = u;
     equilibrium_(omega, work_);
     return rate;

@@ -146,6 +146,26 @@ void check_ssp_claim(const method& m, const mp_real& tolerance, certificate& c) 
                                      c.limiting_entry.empty() ? "" : " (" + c.limiting_entry + ")"));
 }
 
+void find_intermediate_regime(const shu_osher_form<mp_real>& form, const mp_real& tolerance, certificate& c) {
+  c.regime = analyse_intermediate_regime(form);
+  if (!c.regime.applies) return;
+  const auto is_one = [&](const mp_real& x) { return abs(x - 1) <= tolerance; };
+  c.keeps_slow_terms = is_one(c.regime.flux) && is_one(c.regime.last);
+  c.keeps_layer = is_one(c.regime.layer);
+}
+
+void check_intermediate_claim(const method& m, certificate& c) {
+  const auto& claimed = m.claims.intermediate;
+  if (!claimed || (c.keeps_slow_terms && (c.keeps_layer || *claimed == "slow"))) return;
+  c.failures.push_back(
+      c.regime.applies
+          ? fmt::format(
+                "claims.intermediate = {} but the O(epsilon) terms are flux {}, last stage {}, layer {} "
+                "times the exact ones",
+                *claimed, c.regime.flux.str(17), c.regime.last.str(17), c.regime.layer.str(17))
+          : fmt::format("claims.intermediate = {} but a stage is neither relaxed nor u^n", *claimed));
+}
+
 void check_structure_claims(const method& m, certificate& c) {
   if (m.claims.type && *m.claims.type != c.type)
     c.failures.push_back(
@@ -199,12 +219,22 @@ certificate certify(const method& m) {
   find_structure(m, form, b, c);
   if (m.kind != method_kind::explicit_only)
     c.stability = analyse_stability(to_butcher(m.coefficients<long double>()));
+  if (m.kind == method_kind::imex) {
+    find_intermediate_regime(form, tolerance, c);
+    c.band = find_intermediate_band(to_butcher(m.coefficients<double>()));
+  }
   check_order_claim(m, c);
   check_ssp_claim(m, tolerance, c);
   check_form(m, form, tolerance, c);
   check_structure_claims(m, c);
+  check_intermediate_claim(m, c);
   c.claims_hold = c.failures.empty();
   return c;
+}
+
+std::string certificate::keeps() const {
+  if (!keeps_slow_terms) return "none";
+  return keeps_layer ? "all" : "slow";
 }
 
 void require_claims(const certificate& c) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/method/intermediate_regime.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/precision.hpp>
 
@@ -51,6 +52,14 @@ struct certificate {
   int explicit_evaluations = 0;  ///< of T per step, n_F
   int implicit_solves = 0;
   implicit_stability stability;  ///< not for explicit methods
+
+  // Terms of size ε for ε ≪ Δt (docs/plateaus.md); of IMEX methods only.
+  intermediate_regime<mp_real> regime;  ///< the numbers; of no meaning if !regime.applies
+  intermediate_band band;               ///< where ε ~ Δt
+  bool keeps_slow_terms = false;  ///< (N1), (N2): right for data near equilibrium; for BGK the viscosity
+  bool keeps_layer = false;       ///< (N3): the integral of an initial layer too
+  /// "all" if it keeps both, "slow", or "none".
+  std::string keeps() const;
 
   bool claims_hold = false;
   std::vector<std::string> failures;  ///< condition, its value and its tree

@@ -123,6 +123,7 @@ std::string to_toml(const method& m) {
   if (m.claims.explicit_radius)
     out += fmt::format("explicit_radius = {}\n", quoted(*m.claims.explicit_radius));
   if (m.claims.l_stable) out += fmt::format("l_stable = {}\n", *m.claims.l_stable);
+  if (m.claims.intermediate) out += fmt::format("intermediate = {}\n", quoted(*m.claims.intermediate));
   if (m.is_tableau()) return out + butcher_table(m);
   out += "\n[shu_osher]\n";
   if (m.kind != method_kind::implicit_only) out += fmt::format("r = {}\n", quoted(m.exact.r));

@@ -2,6 +2,7 @@
 
 #include <apsis/method/tableau.hpp>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace apsis {
 ///   ω_t = ℛT(E) − flux · ℛT′(E) D,    exact: flux = 1,
 /// its initial layer moves it by `layer` times what the exact layer does, and the result has the deviation
 /// last · D. The O(ε) part of the error vanishes for data near equilibrium if flux = last = 1, and for any
-/// data if layer = 1. Dimensionless.
+/// data if layer = 1. Of the next terms, of size εΔt, each number belongs to one elementary differential of
+/// f = ℛT(E), g = E′f − T(E) and Ψ = ℛT′(E)/C. Dimensionless.
 template <class Real>
 struct intermediate_regime {
   bool applies = false;  ///< every stage has d ≠ 0 or ḋ ≠ 0, or is u^n itself
@@ -22,47 +24,159 @@ struct intermediate_regime {
   Real flux{};   ///< Σ_i b̂_i χ_i
   Real last{};   ///< χ_s
   Real layer{};  ///< Σ_i b̂_i λ_i, λ_i like χ_i with r_i for Σ_j w_ij/r; infinite where u^n is a stage
+
+  Real flux_place{};      ///< Σ b̂_i ĉ_i χ_i, of (Ψ′f) g; exact: 1/2
+  Real flux_slope{};      ///< Σ b̂_i χ′_i, of Ψ g′f, χ′ like χ from RÂĉ; exact: 1/2
+  Real flux_curvature{};  ///< Σ b̂_i χ″_i, of Ψ E″(f, f) with its part of g′f, χ″ from Rĉ²/2; exact: 1/2
+  Real flux_carried{};    ///< Σ b̂_i â_ij χ_j, of f′Ψ g; exact: 1/2
+  Real last_slope{};      ///< χ′_s, of g′f; exact: 1
+  Real last_curvature{};  ///< χ″_s, of E″(f, f); exact: 1
+  Real layer_place{};     ///< Σ b̂_i ĉ_i λ_i, of (Ψ′f) D₀; exact: 0
+  Real layer_carried{};   ///< Σ b̂_i â_ij λ_j, of f′Ψ D₀; exact: 1
+};
+
+/// Solves Σ_{j≤i} d_ij x_j = source_i for the stages with ḋ_i = 0 when z = CΔt/ε → ∞; where ḋ_i ≠ 0, x_i = 0.
+template <class Real>
+class relaxed_stages {
+ public:
+  explicit relaxed_stages(const shu_osher_form<Real>& m) : m_(m) {
+    const auto initial = initial_weights(m);
+    for (std::size_t i = 0; i < m.stages(); ++i) {
+      const bool relaxed = m.ddot[i] != Real(0) || m.D(i, i) != Real(0);
+      bool is_start = !relaxed && initial[i] == Real(1);
+      for (std::size_t j = 0; j < i; ++j)
+        is_start = is_start && m.P(i, j) == Real(0) && m.W(i, j) == Real(0) && m.D(i, j) == Real(0);
+      start_.push_back(is_start);
+      has_start_ = has_start_ || start_.back();
+      solvable_ = solvable_ && (relaxed || start_.back());
+    }
+    if (!solvable_) return;
+    of_start_ = solve(std::vector<Real>(m.stages()), Real(1));
+    solvable_ = of_start_.back() != Real(1);
+  }
+
+  /// False where a stage is neither relaxed nor u^n, or the last one is u^n.
+  bool solvable() const { return solvable_; }
+  bool has_start() const { return has_start_; }
+
+  /// A stage that is u^n itself has x_s − shift: the last stage of the step before, seen from this one.
+  std::vector<Real> operator()(const std::vector<Real>& source, const Real& shift) const {
+    auto x = solve(source, Real(0));
+    const Real start = (x.back() - shift) / (Real(1) - of_start_.back());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += of_start_[i] * start;
+    return x;
+  }
+
+ private:
+  std::vector<Real> solve(const std::vector<Real>& source, const Real& start) const {
+    std::vector<Real> x(m_.stages());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (start_[i]) x[i] = start;
+      if (start_[i] || m_.ddot[i] != Real(0)) continue;
+      Real sum = source[i];
+      for (std::size_t j = 0; j < i; ++j) sum -= m_.D(i, j) * x[j];
+      x[i] = sum / m_.D(i, i);
+    }
+    return x;
+  }
+
+  const shu_osher_form<Real>& m_;
+  std::vector<bool> start_;
+  std::vector<Real> of_start_;
+  bool has_start_ = false, solvable_ = true;
 };
 
 /// From the Shu–Osher form. Where u^n itself is a stage, it has the D of the last stage of the step before.
 template <class Real>
 intermediate_regime<Real> analyse_intermediate_regime(const shu_osher_form<Real>& m) {
-  const std::size_t s = m.stages();
-  const auto initial = initial_weights(m);
-  // Solutions of Σ_j d_ij x_j = source_i, with x_i = 0 where ḋ_i ≠ 0; x_i of a stage u^n is given.
-  std::vector<Real> kept(s), of_start(s), layer(s);
-  bool has_start = false;
-  for (std::size_t i = 0; i < s; ++i) {
-    if (m.ddot[i] != Real(0)) continue;
-    Real transported(0), started(0), from_start = initial[i];
-    for (std::size_t j = 0; j < i; ++j) {
-      transported += m.W(i, j) / m.r - m.D(i, j) * kept[j];
-      started -= m.D(i, j) * of_start[j];
-      from_start -= m.D(i, j) * layer[j];
-    }
-    if (m.D(i, i) != Real(0)) {
-      kept[i] = transported / m.D(i, i);
-      of_start[i] = started / m.D(i, i);
-      layer[i] = from_start / m.D(i, i);
-    } else if (initial[i] == Real(1)) {
-      of_start[i] = Real(1);
-      has_start = true;
-    } else {
-      return {};
-    }
-  }
   intermediate_regime<Real> out;
-  out.applies = of_start[s - 1] != Real(1);
+  const relaxed_stages<Real> relax(m);
+  out.applies = relax.solvable();
   if (!out.applies) return out;
-  out.last = kept[s - 1] / (Real(1) - of_start[s - 1]);
-  const auto butcher = to_butcher(m);
+  const std::size_t s = m.stages();
+  const auto A_hat = to_butcher(m).A_hat;
+  const auto weighted = [&](const std::vector<Real>& x) { return (A_hat * x).back(); };
+  const auto product = [s](std::vector<Real> x, const std::vector<Real>& y) {
+    for (std::size_t i = 0; i < s; ++i) x[i] *= y[i];
+    return x;
+  };
+  const auto c = A_hat * std::vector<Real>(s, Real(1));
+
+  // Right-hand sides Rĉ = We/r, RÂĉ = Wĉ/r and Rĉ²/2.
+  auto moved = m.W * std::vector<Real>(s, Real(1)), slope = m.W * c, curvature = product(c, c);
+  const auto of_P = m.P * curvature, of_W = m.W * curvature;
   for (std::size_t i = 0; i < s; ++i) {
-    out.kept.push_back(kept[i] + of_start[i] * out.last);
-    out.flux += butcher.A_hat(s - 1, i) * out.kept[i];
-    out.layer += butcher.A_hat(s - 1, i) * layer[i];
+    moved[i] /= m.r;
+    slope[i] /= m.r;
+    curvature[i] = (curvature[i] - of_P[i] - of_W[i]) / Real(2);
   }
-  if (has_start) out.layer = std::numeric_limits<Real>::infinity();
+  out.kept = relax(moved, Real(0));
+  out.flux = weighted(out.kept);
+  out.last = out.kept.back();
+  const auto slopes = relax(slope, out.last), curvatures = relax(curvature, out.last);
+  out.flux_place = weighted(product(c, out.kept));
+  out.flux_slope = weighted(slopes);
+  out.flux_curvature = weighted(curvatures);
+  out.flux_carried = weighted(A_hat * out.kept);
+  out.last_slope = slopes.back();
+  out.last_curvature = curvatures.back();
+
+  out.layer = out.layer_place = out.layer_carried = std::numeric_limits<Real>::infinity();
+  if (relax.has_start()) return out;
+  const auto seen = relax(initial_weights(m), Real(0));
+  out.layer = weighted(seen);
+  out.layer_place = weighted(product(c, seen));
+  out.layer_carried = weighted(A_hat * seen);
   return out;
+}
+
+/// flux and last at a finite z = CΔt/ε: stage i keeps κ_i(z) of the exact deviation, where
+///   (I + zA − z²Ȧ) κ = z ĉ + κ_s e,    flux(z) = Σ b̂_i κ_i,    last(z) = κ_s;
+/// with z fixed and Δt → 0 the numerical ω obeys ω_t = ℛT(E) − flux(z) ℛT′(E) D. They tend to 1 as z → 0 and
+/// to those of intermediate_regime as z → ∞. For methods of any type; z > 0.
+template <class Real>
+struct finite_rate {
+  Real flux{}, last{};
+};
+
+template <class Real>
+finite_rate<Real> at_finite_rate(const butcher_form<Real>& b, const Real& z) {
+  const std::size_t s = b.stages();
+  std::vector<Real> c(s), moved(s), of_start(s);
+  for (std::size_t i = 0; i < s; ++i) {
+    Real sum(0), start(1);
+    for (std::size_t j = 0; j < i; ++j) {
+      const Real coupling = z * (b.A(i, j) - z * b.A_dot(i, j));
+      c[i] += b.A_hat(i, j);
+      sum -= coupling * moved[j];
+      start -= coupling * of_start[j];
+    }
+    const Real diagonal = Real(1) + z * (b.A(i, i) - z * b.A_dot(i, i));
+    moved[i] = (sum + z * c[i]) / diagonal;
+    of_start[i] = start / diagonal;
+  }
+  finite_rate<Real> out;
+  out.last = moved[s - 1] / (Real(1) - of_start[s - 1]);
+  for (std::size_t i = 0; i < s; ++i) out.flux += b.A_hat(s - 1, i) * (moved[i] + of_start[i] * out.last);
+  return out;
+}
+
+/// Largest |flux(z) − 1|/z: where ε is neither small nor large against Δt, and Δt → 0 with it, the error of
+/// the O(ε) term is this times Δt at the worst ε/C = Δt/at.
+struct intermediate_band {
+  double error = 0.0, at = 0.0;
+};
+
+/// Over 10⁻³ ≤ z ≤ 10⁵, forty values to a decade.
+template <class Real>
+intermediate_band find_intermediate_band(const butcher_form<Real>& b) {
+  intermediate_band band;
+  for (int k = -120; k <= 200; ++k) {
+    const double z = std::pow(10.0, k / 40.0);
+    const double error = std::abs(static_cast<double>(at_finite_rate(b, Real(z)).flux) - 1.0) / z;
+    if (!(error <= band.error)) band = {error, z};
+  }
+  return band;
 }
 
 }  // namespace apsis

@@ -26,6 +26,8 @@ struct method_claims {
   std::optional<std::string>
       explicit_radius;           ///< as written; of the explicit part of an IMEX method by itself
   std::optional<bool> l_stable;  ///< of the implicit part
+  std::optional<std::string>
+      intermediate;  ///< O(ε) terms that are right where ε ≪ Δt: "slow" (N1, N2) or "all" (N1–N3)
 };
 
 /// A time integrator as data. Coefficients exist as the strings of its file (exact rationals "p/q" or
@@ -60,9 +62,10 @@ class method {
   shu_osher_form<Real> coefficients() const;
 };
 
-/// The method called `name`: of the catalogue (methods/*.toml), or a member of a family
-/// (family_registry.hpp); certified. Throws input_error with the nearest name if there is none, or the range
-/// of S if a family has no such member, claim_error if its claims do not hold.
+/// The method called `name`: of the catalogue (methods/*.toml), a member of a family (family_registry.hpp),
+/// or a file of the user, FILE.toml, read when first asked for; certified. Throws input_error with the
+/// nearest name if there is none, or the range of S if a family has no such member, claim_error if its claims
+/// do not hold.
 const method& find_method(std::string_view name);
 
 /// Names of the catalogue, sorted; without members of families.

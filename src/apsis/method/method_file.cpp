@@ -180,7 +180,7 @@ method_kind read_kind(const section& top) {
 
 method_claims read_claims(const toml::table& root, const std::string& file) {
   const section table(need_table(root, "claims", file), file, "claims",
-                      {"order", "ssp_coefficient", "type", "explicit_radius", "l_stable"});
+                      {"order", "ssp_coefficient", "type", "explicit_radius", "l_stable", "intermediate"});
   method_claims claims;
   claims.order = table.integer("order", 1, 8);
   if (table.has("type")) {
@@ -198,6 +198,13 @@ method_claims read_claims(const toml::table& root, const std::string& file) {
   }
   if (table.has("explicit_radius")) claims.explicit_radius = table.coefficient("explicit_radius");
   if (table.has("l_stable")) claims.l_stable = table.boolean("l_stable");
+  if (table.has("intermediate")) {
+    claims.intermediate = table.text("intermediate");
+    const std::vector<std::string> kinds = {"slow", "all"};
+    if (std::find(kinds.begin(), kinds.end(), *claims.intermediate) == kinds.end())
+      table.fail("intermediate", fmt::format("unknown claim '{}' {}", claims.intermediate->substr(0, 40),
+                                             suggest(*claims.intermediate, kinds)));
+  }
   return claims;
 }
 

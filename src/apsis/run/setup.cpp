@@ -102,6 +102,22 @@ void run_setup::check_method() {
            fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give time.dt "
                        "or time.cfl",
                        method_->name));
+  check_startup();
+}
+
+void run_setup::check_startup() const {
+  if (!has_graded_start()) return;
+  if (method_->kind == method_kind::explicit_only)
+    refuse(
+        config_, "time.startup",
+        fmt::format("time.startup = \"graded\" has no meaning for method '{}' (it is explicit: steps that do "
+                    "not resolve the layer are unstable later too); remove it or choose an IMEX method",
+                    method_->name));
+  if (dynamic_cast<const relaxation_model*>(equation.get()) == nullptr)
+    refuse(config_, "time.startup",
+           fmt::format("time.startup = \"graded\" has no meaning for model '{}' (its relaxation time is not "
+                       "known); remove it",
+                       config_.model.name));
 }
 
 void run_setup::choose_stencil() {

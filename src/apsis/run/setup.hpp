@@ -43,6 +43,7 @@ class run_setup {
   std::optional<double> given_dt() const { return config_.time.dt; }
   /// Δx/v_max, so that Δt = cfl · this.
   double cfl_length() const;
+  bool has_graded_start() const { return config_.time.startup == "graded"; }
 
   /// What a run with steps of dt ≤ r Δt_FE = `limit` promises; `nonnegative`: the initial state is.
   void decide_promises(run_promises& promises, double dt, double limit, bool nonnegative) const;
@@ -56,6 +57,7 @@ class run_setup {
                 const std::vector<double>& jumps) const;
   std::vector<double> epsilon_on(const std::vector<double>& x) const;
   void check_method();
+  void check_startup() const;
   void choose_stencil();
 
   case_config config_;

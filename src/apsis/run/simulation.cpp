@@ -44,19 +44,23 @@ struct simulation::impl {
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
     totals.phase_points = static_cast<long>(state.cells()) * state.components();
-    if (!march.done())
-      setup.decide_promises(promises, next_dt(), forward_euler_limit(), first.negative_values == 0);
+    if (march.done()) return;
+    setup.decide_promises(promises, next_dt(), forward_euler_limit(), first.negative_values == 0);
+    if (setup.has_graded_start()) march.start_up(limit(), problem->relaxation_time(march.t(), state));
   }
 
   double forward_euler_limit() {
     return setup.ssp_coefficient() * problem->forward_euler_step(march.t(), state);
   }
 
-  double next_dt() {
-    if (config.time.cfl) return march.next(*config.time.cfl * setup.cfl_length());
-    if (config.time.safety) return march.next(*config.time.safety * forward_euler_limit());
-    return march.next(0.0);
+  /// What the step rule of the case allows.
+  double limit() {
+    if (config.time.cfl) return *config.time.cfl * setup.cfl_length();
+    if (config.time.safety) return *config.time.safety * forward_euler_limit();
+    return *march.fixed_dt();
   }
+
+  double next_dt() { return march.next(limit()); }
 
   void record_step(double dt) {
     march.advance(dt);
@@ -149,7 +153,7 @@ long simulation::step() const {
 }
 long simulation::steps_total() const {
   if (finished()) return step();
-  return step() + static_cast<long>(std::ceil((impl_->config.time.end - t()) / dt() - 1e-9));
+  return step() + impl_->march.steps_left(impl_->march.starting() ? impl_->limit() : dt());
 }
 bool simulation::finished() const {
   return impl_->march.done();
@@ -182,6 +186,7 @@ run_summary simulation::summary() const {
   const double work = static_cast<double>(summary.phase_points) * static_cast<double>(summary.steps) *
                       static_cast<double>(impl_->setup.integrator().stages());
   summary.t = t();
+  summary.startup_steps = impl_->march.startup_steps();
   summary.point_stages_per_s = summary.wall_s > 0.0 ? work / summary.wall_s : 0.0;
   return summary;
 }
@@ -239,6 +244,9 @@ saved_run simulation::save() const {
   saved.t = march.t;
   saved.anchor = march.anchor;
   saved.anchor_dt = march.anchor_dt;
+  saved.startup_steps = march.startup_steps;
+  saved.startup_done = march.startup_done;
+  saved.startup_length = march.startup_length;
   saved.so_far = summary();
   saved.initial = impl_->first;
   saved.last = impl_->last;
@@ -253,7 +261,8 @@ void simulation::restore(const saved_run& saved) {
   for (int cell = 0; cell < cells(); ++cell)
     std::copy_n(saved.state.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
                 impl_->state.row(cell));
-  impl_->march.resume({saved.step, saved.since_anchor, saved.t, saved.anchor, saved.anchor_dt});
+  impl_->march.resume({saved.step, saved.since_anchor, saved.t, saved.anchor, saved.anchor_dt,
+                       saved.startup_steps, saved.startup_done, saved.startup_length});
   impl_->totals = saved.so_far;
   impl_->first = saved.initial;
   impl_->last = saved.last;

@@ -31,6 +31,7 @@ struct run_promises {
 /// Everything about a finished (or interrupted) run.
 struct run_summary {
   long steps = 0;
+  long startup_steps = 0;  ///< steps that took the place of the first; 0 without start-up
   double dt = 0.0, t = 0.0, wall_s = 0.0;
   double min_value = 0.0;    ///< over all steps, the initial state included
   long negative_values = 0;  ///< sum over all steps
@@ -46,6 +47,8 @@ struct saved_run {
   std::vector<double> state;  ///< [cells][components]
   long step = 0, since_anchor = 0;
   double t = 0.0, anchor = 0.0, anchor_dt = 0.0;  ///< see time_marcher::progress
+  long startup_steps = 0, startup_done = 0;
+  double startup_length = 0.0;
   run_summary so_far;
   step_record initial, last;
 };

@@ -24,6 +24,10 @@ class collision {
 
   /// Largest Δt for which u + Δt Q(u)/ε keeps what the collision keeps (for a relaxation: min ε/C).
   virtual double forward_euler_step(const field& u) const = 0;
+
+  /// Width in time of the thinnest initial layer: smallest ε/C > 0. +infinity where none is known, or ε = 0
+  /// everywhere.
+  virtual double relaxation_time(const field& u) const = 0;
 };
 
 /// Point values: the stage solve of every point is closed form,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 namespace apsis {
@@ -96,6 +97,16 @@ class cell_average_collision final : public collision {
       for (std::size_t q = 0; q < gauss3::points; ++q)
         fastest = std::max(fastest, local.rate(u.row(cell)) / epsilon_at(cell, q));
     return 1.0 / fastest;
+  }
+
+  double relaxation_time(const field& u) const override {
+    local_relaxation local;
+    local.attach(equation_);
+    double shortest = std::numeric_limits<double>::infinity();
+    for (int cell = 0; cell < u.cells(); ++cell)
+      for (std::size_t q = 0; q < gauss3::points; ++q)
+        shortest = std::min(shortest, local.relaxation_time(u.row(cell), epsilon_at(cell, q)));
+    return shortest;
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <apsis/semidiscrete/local_relaxation.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace apsis {
@@ -44,6 +45,16 @@ class pointwise_collision final : public collision {
     for (int cell = 0; cell < u.cells(); ++cell)
       fastest = std::max(fastest, local.rate(u.row(cell)) / epsilon_[static_cast<std::size_t>(cell)]);
     return 1.0 / fastest;
+  }
+
+  double relaxation_time(const field& u) const override {
+    local_relaxation local;
+    local.attach(equation_);
+    double shortest = std::numeric_limits<double>::infinity();
+    for (int cell = 0; cell < u.cells(); ++cell)
+      shortest =
+          std::min(shortest, local.relaxation_time(u.row(cell), epsilon_[static_cast<std::size_t>(cell)]));
+    return shortest;
   }
 
  private:

@@ -5,6 +5,8 @@
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/model/model.hpp>
 
+#include <limits>
+
 namespace apsis {
 
 /// Moments, rate and equilibrium of one point, in scratch space that is reused from point to point.
@@ -28,6 +30,12 @@ class local_relaxation {
   double rate(const double* u) {
     equation_->moments(u, omega_.data());
     return equation_->rate(omega_.data());
+  }
+
+  /// ε/C; +infinity where it is 0 or nothing relaxes.
+  double relaxation_time(const double* u, double epsilon) {
+    const double width = epsilon / rate(u);
+    return width > 0.0 ? width : std::numeric_limits<double>::infinity();
   }
 
   /// E(ℛu) into equilibrium(), and C/ε.

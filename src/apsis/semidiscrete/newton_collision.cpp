@@ -79,6 +79,8 @@ class newton_collision final : public collision {
 
   /// Unknown for a general Q; 0 promises nothing.
   double forward_euler_step(const field&) const override { return 0.0; }
+  /// Unknown as well.
+  double relaxation_time(const field&) const override { return std::numeric_limits<double>::infinity(); }
 
  private:
   void load(const field& u, int cell) { row_.assign(u.row(cell), u.row(cell) + u.components()); }

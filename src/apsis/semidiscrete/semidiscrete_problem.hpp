@@ -35,6 +35,7 @@ class semidiscrete_problem {
     if (!explicit_collision_) return of_transport;
     return 1.0 / (1.0 / of_transport + 1.0 / collision_->forward_euler_step(u));
   }
+  double relaxation_time(double, const field& u) const { return collision_->relaxation_time(u); }
 
  private:
   transport transport_;

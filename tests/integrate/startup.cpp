@@ -1,0 +1,200 @@
+// A graded start in the time loop: the first step, and nothing else, is cut into steps that double.
+#include "ode_model.hpp"
+#include "random.hpp"
+#include "support/property.hpp"
+
+#include <apsis/integrate/extrapolation.hpp>
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/method/precision.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace {
+
+using apsis::startup;
+using apsis::step_rule;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+struct visited {
+  std::vector<double> t, dt;
+  long startup_steps = 0;
+};
+
+/// All times and steps. `width` < 0: without start-up.
+visited march_through(apsis::time_marcher<double> march, double proposed, double width) {
+  visited out{{march.t()}, {}, 0};
+  if (width >= 0.0) march.start_up(proposed, width);
+  while (!march.done()) {
+    out.dt.push_back(march.next(proposed));
+    march.advance(out.dt.back());
+    out.t.push_back(march.t());
+  }
+  out.startup_steps = march.startup_steps();
+  return out;
+}
+
+apsis::time_marcher<double> random_march(double& proposed) {
+  const double t0 = random_input::one_in(2) ? 0.0 : random_input::uniform(-3.0, 3.0);
+  const double length = random_input::magnitude(-3, 2);
+  proposed = length / random_input::uniform(0.3, 40.0);
+  const bool given = proposed <= length && random_input::one_in(2);
+  return {t0, t0 + length, given ? std::optional<double>(proposed) : std::nullopt};
+}
+
+TEST(startup, cuts_the_first_step_and_leaves_all_later_times_to_the_last_digit) {
+  check_property("start-up", [] {
+    double proposed = 0.0;
+    const auto march = random_march(proposed);
+    const double width = proposed * random_input::magnitude(-14, 2);
+    const auto plain = march_through(march, proposed, -1.0), cut = march_through(march, proposed, width);
+    const auto extra = static_cast<std::size_t>(cut.startup_steps) - 1;
+    RC_ASSERT(cut.t.size() == plain.t.size() + extra);
+    for (std::size_t n = 1; n < plain.t.size(); ++n) RC_ASSERT(cut.t[n + extra] == plain.t[n]);
+    for (std::size_t n = 1; n < plain.dt.size(); ++n) RC_ASSERT(cut.dt[n + extra] == plain.dt[n]);
+    // Within the first step: the sum is the step, each is as long as the time before it, none is longer than
+    // the first step, and there are no more than needed.
+    double sum = 0.0;
+    for (std::size_t k = 0; k <= extra; ++k) {
+      RC_ASSERT(k == 0 || cut.dt[k] == sum);
+      sum += cut.dt[k];
+      RC_ASSERT(cut.t[k + 1] >= cut.t[k]);
+    }
+    RC_ASSERT(sum == plain.dt[0]);
+    RC_ASSERT(4 * cut.dt[0] <= width);
+    RC_ASSERT(extra == 0 || 8 * cut.dt[0] > width);
+    const double wanted = std::max(0.0, std::ceil(std::log2(4 * plain.dt[0] / width)));
+    RC_ASSERT(std::abs(static_cast<double>(extra) - wanted) <= 1.0);  // log2 rounds
+  });
+}
+
+TEST(startup, goes_on_after_a_save_at_any_step_to_the_last_digit) {
+  check_property("restart", [] {
+    double proposed = 0.0;
+    const auto march = random_march(proposed);
+    auto whole = march, part = march;
+    const double width = proposed * random_input::magnitude(-9, 0);
+    whole.start_up(proposed, width);
+    part.start_up(proposed, width);
+    for (int k = random_input::integer(0, 30); k > 0 && !part.done(); --k) part.advance(part.next(proposed));
+    auto rest = march;
+    rest.resume(part.save());
+    while (!rest.done()) rest.advance(rest.next(proposed));
+    while (!whole.done()) {
+      whole.advance(whole.next(proposed));
+      RC_ASSERT(whole.t() <= rest.t());
+    }
+    RC_ASSERT(whole.t() == rest.t());
+    RC_ASSERT(whole.step() == rest.step());
+    RC_ASSERT(whole.startup_steps() == rest.startup_steps());
+  });
+}
+
+TEST(startup, has_nothing_to_do_without_a_layer_and_an_end_for_every_width) {
+  const apsis::time_marcher<double> march(0.0, 1.0, 0.25);
+  for (const double width : {0.0, infinite, 1.0, 7.0})
+    EXPECT_EQ(march_through(march, 0.25, width).startup_steps, 1) << width;
+  // What a thinner layer moves is below rounding: as many steps as the digits have bits, and two.
+  for (const double width : {1e-16, 1e-40, 1e-300, 4e-308}) {
+    const auto cut = march_through(march, 0.25, width);
+    EXPECT_LE(cut.startup_steps, 56) << width;
+    EXPECT_GE(cut.startup_steps, 54) << width;
+    EXPECT_EQ(cut.t.back(), 1.0);
+    EXPECT_EQ(cut.dt.back(), 0.25);
+  }
+  EXPECT_EQ(march_through({2.0, 2.0}, 0.25, 1e-3).startup_steps, 0);      // no first step
+  EXPECT_EQ(march_through({0.0, 0.25, 0.25}, 0.0, 0.01).t.back(), 0.25);  // nothing but a first step
+  EXPECT_EQ(march_through({0.0, 0.1}, 0.25, 0.01).t.back(), 0.1);         // shortened at the end
+  EXPECT_THROW(march_through({0.0, 1.0}, infinite, 0.01), apsis::input_error);
+}
+
+TEST(startup, gives_way_to_a_rule_that_allows_less) {
+  apsis::time_marcher<double> march(0.0, 1.0);
+  march.start_up(0.5, 0.125);  // 1/32, 1/32, 1/16, 1/8, 1/4
+  double longest = 0.0;
+  for (double allowed = 0.5; !march.done(); allowed = 0.1) {
+    const double dt = march.next(allowed);
+    EXPECT_LE(dt, allowed);
+    march.advance(dt);
+    longest = std::max(longest, dt);
+  }
+  EXPECT_EQ(march.t(), 1.0);
+  EXPECT_EQ(longest, 0.1);
+  EXPECT_EQ(march.startup_steps(), 3);
+}
+
+TEST(startup, counts_the_steps_that_are_left) {
+  for (const bool given : {true, false}) {
+    apsis::time_marcher<double> march(0.0, 1.0, given ? std::optional<double>(0.125) : std::nullopt);
+    march.start_up(0.125, 1e-4);
+    long total = march.step() + march.steps_left(0.125);
+    while (!march.done()) {
+      EXPECT_EQ(march.step() + march.steps_left(0.125), total);
+      march.advance(march.next(0.125));
+    }
+    EXPECT_EQ(march.step(), total);
+  }
+}
+
+using real = long double;
+using state = std::array<real, 2>;
+
+double error(const std::string& method, state u, real epsilon, startup how) {
+  auto problem = ode_model::as_relaxation<state>(epsilon);
+  state exact = u;
+  apsis::extrapolate(problem, exact, real(0), real(1), {1e-12L}, [](const state& a, const state& b) {
+    return std::max(std::abs(a[0] - b[0]), std::abs(a[1] - b[1]));
+  });
+  apsis::stepper march(apsis::find_method(method), problem);
+  const auto done =
+      apsis::integrate(march, u, real(0), real(1), step_rule<real>::fixed(1.0L / 256).with(how));
+  EXPECT_EQ(done.t, 1);
+  EXPECT_EQ(done.steps, 256 + (done.startup_steps > 0 ? done.startup_steps - 1 : 0));
+  // log2(4 · 5/(256 ε)) = 9.6 for ε = 1e-4.
+  EXPECT_EQ(done.startup_steps, how == startup::graded ? 11 : 0);
+  return static_cast<double>(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1]));
+}
+
+TEST(startup, makes_data_out_of_equilibrium_as_accurate_as_data_near_it) {
+  const real epsilon = 1e-4L, e = std::sin(real(2));
+  const state near = {2, e - epsilon * std::cos(real(2)) * e / 5}, far = {2, 0};
+  const double consistent = error("md-imex-4-2", near, epsilon, startup::none);
+  const double resolved = error("md-imex-4-2", far, epsilon, startup::graded);
+  const double as_it_is = error("md-imex-4-2", far, epsilon, startup::none);
+  EXPECT_LT(resolved, 2 * consistent);
+  EXPECT_GT(as_it_is, 10 * resolved);  // without it the layer is not seen
+  EXPECT_LT(10 * consistent, error("md-imex-3-2", near, epsilon, startup::none));
+  EXPECT_LT(10 * resolved, error("md-imex-3-2", far, epsilon, startup::none));
+  EXPECT_LT(10 * resolved, error("md-imex-3-2", far, epsilon, startup::graded));
+}
+
+TEST(startup, takes_one_step_in_the_limit_and_asks_for_a_relaxation_time) {
+  auto limit = ode_model::as_relaxation<state>(0);
+  apsis::stepper march(apsis::find_method("md-imex-4-2"), limit);
+  state plain = {2, 0}, graded = plain;
+  const auto rule = step_rule<real>::fixed(1.0L / 64);
+  apsis::integrate(march, plain, real(0), real(1), rule);
+  const auto done = apsis::integrate(march, graded, real(0), real(1), rule.with(startup::graded));
+  EXPECT_EQ(done.startup_steps, 1);
+  EXPECT_EQ(plain, graded);
+  auto unknown = ode_model::as_newton<std::vector<double>>(1e-3);
+  apsis::stepper other(apsis::find_method("md-imex-4-2"), unknown);
+  std::vector<double> u = {2, 0};
+  EXPECT_THROW(apsis::integrate(other, u, 0.0, 1.0, step_rule<double>::fixed(1.0 / 64).with(startup::graded)),
+               apsis::input_error);
+}
+
+TEST(startup, works_in_any_precision) {
+  using apsis::mp_real;
+  apsis::time_marcher<mp_real> march(mp_real(0), mp_real(1), mp_real(1) / 3);
+  march.start_up(mp_real(0), mp_real("1e-20"));
+  long steps = 0;
+  for (; !march.done(); ++steps) march.advance(march.next(mp_real(0)));
+  EXPECT_EQ(steps, 3 + 67);  // ceil(log2(4e20/3))
+  EXPECT_EQ(march.t(), mp_real(1));
+}
+
+}  // namespace

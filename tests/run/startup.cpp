@@ -1,0 +1,150 @@
+// time.startup = "graded" through the production run.
+#include "cases.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/extrapolation.hpp>
+#include <apsis/run/setup.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+apsis::case_config ode(const std::string& method, const std::string& epsilon, const std::string& startup,
+                       const std::string& more = "") {
+  return apsis::parse_case("[model]\nname = \"ode\"\nepsilon = " + epsilon + "\n" + more +
+                               "[time]\nmethod = \"" + method +
+                               "\"\nend = 1.0\ndt = 0.00390625\nstartup = \"" + startup + "\"\n",
+                           "c.toml");
+}
+
+/// |Δu1| + |Δu2| at t = 1 against extrapolation.
+double error(const apsis::case_config& c) {
+  apsis::simulation run(c);
+  finish(run);
+  const apsis::run_setup setup(c);
+  const auto problem = setup.make_problem();
+  apsis::field u = setup.initial_state();
+  apsis::extrapolate(*problem, u, 0.0, 1.0, {1e-11}, [](const apsis::field& a, const apsis::field& b) {
+    return std::max(std::abs(a.row(0)[0] - b.row(0)[0]), std::abs(a.row(0)[1] - b.row(0)[1]));
+  });
+  return std::abs(run.state()[0] - u.row(0)[0]) + std::abs(run.state()[1] - u.row(0)[1]);
+}
+
+const std::string out_of_equilibrium, near_equilibrium = "initial = \"given\"\nu1 = 2.0\nu2 = 0.90930499\n";
+
+/// The state, the step and all records after each step, to the end.
+std::vector<std::vector<double>> rest_of(apsis::simulation& run) {
+  std::vector<std::vector<double>> all;
+  while (!run.finished()) {
+    const auto& r = run.advance();
+    auto row = run.state();
+    row.insert(row.end(), {static_cast<double>(r.step), r.t, r.dt, r.min_value, run.summary().dt});
+    all.push_back(row);
+  }
+  return all;
+}
+
+/// Stops after `steps`, goes on in a new run, and compares with one that was not stopped.
+void expect_same_after_restart(const apsis::case_config& c, long steps) {
+  apsis::simulation whole(c), first(c), second(c);
+  for (long k = 0; k < steps; ++k) {
+    whole.advance();
+    first.advance();
+  }
+  second.restore(first.save());
+  EXPECT_EQ(second.dt(), whole.dt());
+  EXPECT_EQ(second.steps_total(), whole.steps_total());
+  EXPECT_EQ(rest_of(whole), rest_of(second)) << steps;
+  EXPECT_EQ(whole.summary().startup_steps, second.summary().startup_steps);
+}
+
+}  // namespace
+
+TEST(startup, resolves_the_layer_of_the_ode_model) {
+  const double consistent = error(ode("md-imex-4-2", "1e-4", "none", near_equilibrium));
+  const double resolved = error(ode("md-imex-4-2", "1e-4", "graded", out_of_equilibrium));
+  EXPECT_LT(resolved, 2 * consistent);
+  EXPECT_LT(10 * resolved, error(ode("md-imex-3-2", "1e-4", "graded", out_of_equilibrium)));
+  EXPECT_LT(10 * resolved, error(ode("md-imex-4-2", "1e-4", "none", out_of_equilibrium)));
+}
+
+TEST(startup, counts_its_steps_and_keeps_all_other_times) {
+  apsis::simulation run(ode("md-imex-4-2", "1e-4", "graded"));
+  EXPECT_EQ(run.steps_total(), 266);
+  for (int k = 0; k < 11; ++k) run.advance();
+  EXPECT_EQ(run.t(), 0.00390625);
+  finish(run);
+  EXPECT_EQ(run.summary().startup_steps, 11);  // 1 + ceil(log2(4 · 5/(256 ε)))
+  EXPECT_EQ(run.summary().steps, 266);
+  EXPECT_EQ(run.t(), 1.0);
+  EXPECT_EQ(finished(ode("md-imex-4-2", "1e-4", "none")).startup_steps, 0);
+  const auto limit = finished(ode("md-imex-4-2", "0", "graded"));
+  EXPECT_EQ(limit.startup_steps, 1);
+  EXPECT_EQ(limit.steps, 256);
+}
+
+TEST(startup, restarts_in_its_middle_to_the_last_digit) {
+  for (const long steps : {0L, 1L, 5L, 10L, 11L, 12L})
+    expect_same_after_restart(ode("md-imex-4-2", "1e-4", "graded"), steps);
+  for (const char* rule : {"cfl", "safety"}) {
+    auto c = small("md-imex-4-2", apsis::formulation::finite_difference);
+    c.model.epsilon = "1e-6 + x";
+    c.time.startup = "graded";
+    c.time.end = 0.01;
+    c.time.cfl.reset();
+    (rule[0] == 'c' ? c.time.cfl : c.time.safety) = rule[0] == 'c' ? 0.3 : 1.0;
+    for (const long steps : {3L, 14L}) expect_same_after_restart(c, steps);
+  }
+}
+
+TEST(startup, follows_the_smallest_epsilon_of_the_mesh_and_keeps_the_promises) {
+  for (const auto how : {apsis::formulation::finite_volume, apsis::formulation::finite_difference}) {
+    auto c = small("md-imex-4-2", how);
+    c.time.startup = "graded";
+    c.time.cfl.reset();
+    c.time.safety = 1.0;
+    const auto steps = [&](const std::string& epsilon) {
+      c.model.epsilon = epsilon;
+      apsis::simulation run(c);
+      EXPECT_TRUE(run.promises().positivity) << epsilon;
+      const double allowed = run.summary().dt;
+      EXPECT_EQ(allowed, 0.0);
+      finish(run);  // throws where a promise is broken
+      EXPECT_EQ(run.summary().negative_values, 0);
+      return run.summary().startup_steps;
+    };
+    // From 1e-6 to 1: a thousand times thinner are ten more steps.
+    const long spread = steps("10^(-6*(x < 1 ? 1 : 2 - x))"), thin = steps("1e-6"), wide = steps("1e-3");
+    EXPECT_EQ(spread, thin);
+    EXPECT_NEAR(static_cast<double>(thin - wide), 10.0, 1.0);
+    EXPECT_EQ(steps("x < 1 ? 0 : 1e-6"), thin);  // cells in the limit have no layer
+    EXPECT_EQ(steps("0"), 1);
+    EXPECT_EQ(steps("1e12"), 1);
+    EXPECT_LE(steps("1e-60"), 56);
+  }
+}
+
+TEST(startup, is_refused_where_it_means_nothing) {
+  const auto complaint = [](const auto& make) -> std::string {
+    try {
+      const apsis::simulation run(make());
+    } catch (const apsis::input_error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  using testing::HasSubstr, testing::StartsWith;
+  EXPECT_THAT(complaint([] { return ode("ssprk-3-3", "1e-2", "graded"); }),
+              StartsWith("c.toml:8:1: time.startup = \"graded\" has no meaning for method 'ssprk-3-3'"));
+  EXPECT_THAT(complaint([] { return ode("md-imex-4-2", "1e-2", "gradd"); }),
+              HasSubstr("did you mean 'graded'?"));
+  EXPECT_EQ(complaint([] { return ode("ssprk-3-3", "1e-2", "none"); }), "");
+  EXPECT_THAT(complaint([] { return apsis::load_case("paper/decay", {"time.startup=graded"}); }),
+              HasSubstr("key 'time.startup' is not used (model 'decay' has no epsilon)"));
+  EXPECT_EQ(apsis::load_case("paper/ode", {"time.startup=graded"}).time.startup, "graded");
+}

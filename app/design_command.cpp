@@ -220,6 +220,8 @@ void add_design(CLI::App& program, action& chosen) {
   command->add_option("--objective", given->objective, "r, r/n_F or error: what the method is to be best in")
       ->capture_default_str();
   command->add_option("--ssp", d.least_r, "least SSP coefficient r")->capture_default_str();
+  command->add_option("--from", given->from,
+                      "a method (name or FILE.toml) to improve instead of random starts");
   command
       ->add_option("--regime", given->regime, "terms of size epsilon that are to be exact: none, slow or all")
       ->capture_default_str();

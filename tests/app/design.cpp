@@ -98,5 +98,8 @@ TEST(design, refuses_what_cannot_be_asked_for) {
   refused({"--order", "2", "--stages", "3", "--objective", "eror"}, "did you mean 'error'");
   refused({"--order", "2", "--stages", "3", "--regime", "fast"}, "unknown --regime 'fast'");
   refused({"--implicit", "--order", "2", "--stages", "1", "--regime", "slow"}, "there is no transport");
-  refused({"--order", "2", "--stages", "3", "--out", "found.txt"}, "found.txt");
+  const outcome result = run_apsis(folder, {"design", "--order", "2", "--stages", "3", "--out", "found.txt"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_THAT(result.err, HasSubstr("'found.txt' is not a method file"));
+  EXPECT_THAT(folder.listing(), IsEmpty());
 }

@@ -183,8 +183,7 @@ TEST(design_demands, pass_over_methods_that_do_not_meet_them) {
 }
 
 TEST(design_sparsify, gives_up_no_more_than_it_may) {
-  auto task = imex_task(3, 6, 2.0);
-  task.transports = 3;
+  auto task = imex_task(2, 4, 2.0);
   task.objective = design_objective::smallest_error;
   task.demands.least_r = 0.5;
   const auto found = look(task, 10);

@@ -1,6 +1,8 @@
 // Order of every method of the catalogue as observed through the stepper: far from the limit ε → 0 and in it,
 // where it must be what the certificate says of initial data. A method added tomorrow is tested by being
 // there.
+#include "support/catalogue.hpp"
+
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/method/certificate.hpp>
 
@@ -72,7 +74,10 @@ class every_method : public ::testing::TestWithParam<std::string> {};
 TEST_P(every_method, has_its_order) {
   const certificate& c = apsis::find_certificate(GetParam());
   const auto error = c.kind == method_kind::implicit_only ? decay_error : ode_error;
-  EXPECT_NEAR(std::log2(error(GetParam(), 128) / error(GetParam(), 256)), c.order, tolerance);
+  // Where the first term of the error is small, it takes shorter steps to be the largest; errors of fourth
+  // order would then be as small as that of the reference.
+  const long steps = c.order == 3 ? 256 : 128;
+  EXPECT_NEAR(std::log2(error(GetParam(), steps) / error(GetParam(), 2 * steps)), c.order, tolerance);
 }
 
 class every_imex_method : public ::testing::TestWithParam<std::string> {};
@@ -104,10 +109,7 @@ std::string name_of(const ::testing::TestParamInfo<std::string>& name) {
 }
 
 std::vector<std::string> imex_methods() {
-  auto names = apsis::method_names();
-  std::erase_if(names,
-                [](const auto& name) { return apsis::find_certificate(name).kind != method_kind::imex; });
-  return names;
+  return methods_where([](const apsis::method& m) { return m.kind == method_kind::imex; });
 }
 
 INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(apsis::method_names()), name_of);

@@ -1,4 +1,5 @@
 // A file whose coefficients are wrong must be refused, whatever is wrong about it.
+#include "support/catalogue.hpp"
 #include "tableaux.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -132,9 +133,7 @@ std::string name_of(const ::testing::TestParamInfo<std::string>& method_name) {
 
 /// Methods with many stages have some hundred mutants, some hundredths of a second each.
 std::vector<std::string> methods_with(bool many_stages) {
-  auto names = method_names();
-  std::erase_if(names, [&](const auto& name) { return (find_method(name).stages() > 12) != many_stages; });
-  return names;
+  return methods_where([&](const method& m) { return (m.stages() > 6) == many_stages; });
 }
 
 INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(methods_with(false)), name_of);

@@ -2,6 +2,8 @@
 // where it is sharp.
 #include <apsis/study/strong_stability.hpp>
 
+#include "support/catalogue.hpp"
+
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/study/adversaries.hpp>
 #include <apsis/study/case_problem.hpp>
@@ -59,14 +61,12 @@ std::string name_of(const testing::TestParamInfo<std::string>& method_name) {
 
 /// Some tenths of a second per stage.
 std::vector<std::string> methods_with(bool many_stages) {
-  auto names = method_names();
-  for (const char* member : {"md-imex-chain-3-2", "md-imex-chain-7-2", "md-imex-plateau-free-7-2"})
-    names.emplace_back(member);
-  std::erase_if(names, [&](const auto& name) { return (find_method(name).stages() > 12) != many_stages; });
-  return names;
+  return methods_where([&](const method& m) { return (m.stages() > 9) == many_stages; });
 }
 
 INSTANTIATE_TEST_SUITE_P(catalogue, every_method, testing::ValuesIn(methods_with(false)), name_of);
+INSTANTIATE_TEST_SUITE_P(families, every_method,
+                         testing::Values("md-imex-chain-5-2", "md-imex-plateau-free-6-2"), name_of);
 INSTANTIATE_TEST_SUITE_P(slow_catalogue, every_method, testing::ValuesIn(methods_with(true)), name_of);
 
 TEST(strong_stability, third_order_imex_loses_positivity_of_the_broadwell_model_just_above_r) {

@@ -37,12 +37,12 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& J, const Eigen::VectorXd& c,
 }  // namespace
 
 feasibility_result find_feasible(design_problem& problem, Eigen::VectorXd x, int most_iterations) {
-  constexpr double enough = 1e-11;
+  constexpr double enough = 1e-11, exact = 1e-14;
   feasibility_result result;
   x = x.cwiseMax(problem.lower()).cwiseMin(problem.upper());
   Eigen::VectorXd c = problem.residuals(x);
   double damping = 1e-2, slowest = c.norm();
-  for (; result.iterations < most_iterations && c.lpNorm<Eigen::Infinity>() > enough; ++result.iterations) {
+  for (; result.iterations < most_iterations && c.lpNorm<Eigen::Infinity>() > exact; ++result.iterations) {
     // Once in 25 iterations it must have come a tenth nearer.
     if (result.iterations % 25 == 24) {
       if (c.norm() > 0.9 * slowest) break;

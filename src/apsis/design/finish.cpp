@@ -10,10 +10,10 @@
 namespace apsis {
 namespace {
 
-/// Exact where the value is zero or on its bound, else a decimal long enough to be known as inexact.
-std::string to_text(double value, double lower, double upper) {
+/// Exact where the value is on a bound, as near as `near`; else a decimal long enough to be known as inexact.
+std::string to_text(double value, double lower, double upper, double near) {
   for (const double bound : {lower, upper})
-    if (std::abs(value - bound) < 1e-9) return fmt::format("{}", bound == 0.0 ? 0.0 : bound);
+    if (std::abs(value - bound) <= near) return fmt::format("{}", bound == 0.0 ? 0.0 : bound);
   return fmt::format("{:.14f}", value);
 }
 
@@ -39,9 +39,12 @@ std::vector<mp_real> missing(const design_task& task, const shu_osher_form<mp_re
   return equations;
 }
 
-}  // namespace
-
-method to_method(const design_task& task, const design_candidate& candidate, const std::string& name) {
+/// Coefficients as near to a bound as `near` are put on it.
+method in_words(const design_task& task, const design_candidate& candidate, const std::string& name,
+                double near) {
+  const auto text = [near](double value, double lower, double upper) {
+    return to_text(value, lower, upper, near);
+  };
   const design_problem problem(candidate.pattern, task.demands);
   const std::size_t s = task.stages;
   const auto value = problem.form(candidate.x);
@@ -56,26 +59,32 @@ method to_method(const design_task& task, const design_candidate& candidate, con
   e.P = e.W = e.D = matrix<std::string>(s, s);
   for (std::size_t i = 0; i < s; ++i) {
     for (std::size_t j = 0; j < s; ++j) {
-      e.P(i, j) = to_text(value.P(i, j), 0.0, 1.0);
-      e.W(i, j) = to_text(value.W(i, j), 0.0, 1.0);
+      e.P(i, j) = text(value.P(i, j), 0.0, 1.0);
+      e.W(i, j) = text(value.W(i, j), 0.0, 1.0);
       e.D(i, j) = "0";
     }
-    e.D(i, i) = to_text(value.D(i, i), candidate.pattern.ddot[i] != 0 ? 0.0 : limits.margin, limits.box);
+    e.D(i, i) = text(value.D(i, i), candidate.pattern.ddot[i] != 0 ? 0.0 : limits.margin, limits.box);
     if (candidate.pattern.d[i] == 0) e.D(i, i) = "0";
     e.ddot.push_back(
         candidate.pattern.ddot[i] == 0
             ? "0"
-            : to_text(value.ddot[i], -limits.box, candidate.pattern.d[i] != 0 ? 0.0 : -limits.margin));
+            : text(value.ddot[i], -limits.box, candidate.pattern.d[i] != 0 ? 0.0 : -limits.margin));
   }
-  e.r = problem.place_of_r() >= 0 ? to_text(value.r, limits.least_r, limits.largest_r) : "1";
+  e.r = problem.place_of_r() >= 0 ? text(value.r, limits.least_r, limits.largest_r) : "1";
   m.claims.ssp_coefficient = problem.place_of_r() >= 0 ? e.r : "unconditional";
   return m;
+}
+
+}  // namespace
+
+method to_method(const design_task& task, const design_candidate& candidate, const std::string& name) {
+  return in_words(task, candidate, name, 0.0);
 }
 
 method to_polished_method(const design_task& task, const design_candidate& candidate, const std::string& name,
                           int digits) {
   const auto equations = [&task](const shu_osher_form<mp_real>& m) { return missing(task, m); };
-  auto polished = polish(to_method(task, candidate, name), digits, equations).polished;
+  auto polished = polish(in_words(task, candidate, name, 1e-9), digits, equations).polished;
   if (polished.claims.ssp_coefficient != "unconditional") polished.claims.ssp_coefficient = polished.exact.r;
   return polished;
 }

@@ -63,7 +63,8 @@ design_candidate drop_zeros(design_problem& problem, const Eigen::VectorXd& x, d
     if (coefficient.size < zero) coefficient.in(pattern) = 0;
   design_problem smaller(pattern, problem.demands());
   const auto again = find_feasible(smaller, smaller.unknowns_of(problem.form(x)));
-  return again.feasible ? candidate_of(smaller, again.x) : candidate_of(problem, x);
+  if (again.feasible) return candidate_of(smaller, again.x);
+  return candidate_of(problem, find_feasible(problem, x).x);
 }
 
 design_candidate sparsify(const design_task& task, design_candidate candidate, double tolerance,

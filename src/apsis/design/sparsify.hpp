@@ -6,7 +6,8 @@
 namespace apsis {
 
 /// The method at x as a candidate whose pattern has no coefficient below `zero`: these are left out and the
-/// equations solved again for the others, nearest to x. If they then cannot be solved, x as it is.
+/// equations solved again for the others, nearest to x. If they then cannot be solved, the solution nearest
+/// to x with the pattern as it is.
 design_candidate drop_zeros(design_problem& problem, const Eigen::VectorXd& x, double zero = 1e-6);
 
 /// Leaves out one coefficient after the other, the smallest first, optimising again, as long as the objective

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <apsis/integrate/array_state.hpp>
 #include <apsis/core/random_source.hpp>
+#include <apsis/integrate/array_state.hpp>
 
 #include <cstdint>
 #include <functional>

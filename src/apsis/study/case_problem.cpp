@@ -1,7 +1,7 @@
 #include <apsis/study/case_problem.hpp>
 
-#include <apsis/study/model_properties.hpp>
 #include <apsis/core/random_source.hpp>
+#include <apsis/study/model_properties.hpp>
 
 #include <algorithm>
 #include <limits>

@@ -1,9 +1,9 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/extremes.hpp>
+#include <apsis/core/random_source.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/study/claim.hpp>
-#include <apsis/core/random_source.hpp>
 #include <apsis/study/square_decay.hpp>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include <apsis/core/extremes.hpp>
+#include <apsis/core/random_source.hpp>
 #include <apsis/study/claim.hpp>
 #include <apsis/study/model_properties.hpp>
-#include <apsis/core/random_source.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 #include <apsis/core/extremes.hpp>
+#include <apsis/core/random_source.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/transport.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
 #include <apsis/study/claim.hpp>
 #include <apsis/study/limit_equations.hpp>
-#include <apsis/core/random_source.hpp>
 
 #include <algorithm>
 #include <array>

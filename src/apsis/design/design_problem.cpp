@@ -16,7 +16,8 @@ condition_list equations_of(const zero_pattern& pattern, const design_demands& d
 /// Stages that relax without Q̇, whatever the values.
 std::vector<char> slow_stages(const zero_pattern& pattern) {
   std::vector<char> slow(pattern.stages(), 0);
-  for (std::size_t i = 0; i < slow.size(); ++i) slow[i] = pattern.d[i] != 0 && pattern.ddot[i] == 0;
+  for (std::size_t i = 0; i < slow.size(); ++i)
+    slow[i] = static_cast<char>(pattern.d[i] != 0 && pattern.ddot[i] == 0);
   return slow;
 }
 
@@ -35,7 +36,7 @@ zero_pattern full_pattern(method_kind kind, const std::vector<char>& transport) 
   zero_pattern p;
   p.kind = kind;
   p.P = p.W = matrix<char>(s, s);
-  p.d.assign(s, kind != method_kind::explicit_only);
+  p.d.assign(s, static_cast<char>(kind != method_kind::explicit_only));
   p.ddot = p.d;
   p.initial.assign(s, 1);
   for (std::size_t i = 0; i < s; ++i)

@@ -199,7 +199,7 @@ program_result optimise(design_problem& problem, design_objective objective, con
   program_result result;
   result.x = x;
   const std::lock_guard lock(solver_guard());
-  Ipopt::SmartPtr<Ipopt::IpoptApplication> solver = IpoptApplicationFactory();
+  const Ipopt::SmartPtr<Ipopt::IpoptApplication> solver = IpoptApplicationFactory();
   const auto options = solver->Options();
   options->SetStringValue("sb", "yes");
   options->SetIntegerValue("print_level", 0);

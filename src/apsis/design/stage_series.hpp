@@ -45,9 +45,9 @@ class stage_series {
       d_[i] = m.D(i, i);
       initial_[i] = Real(1.0);
       for (std::size_t j = 0; j < i; ++j) {
-        M(i, j) = m.P(i, j) + m.W(i, j);
-        V(i, j) = m.W(i, j) / r_;
-        initial_[i] -= M(i, j);
+        weight(i, j) = m.P(i, j) + m.W(i, j);
+        advance(i, j) = m.W(i, j) / r_;
+        initial_[i] -= weight(i, j);
       }
     }
     for (std::size_t n = 0; n < nodes_.size(); ++n) evaluate_node(n);
@@ -74,14 +74,14 @@ class stage_series {
         Real& w = M_bar_[i * s_ + j];
         out.P(i, j) += w;
         out.W(i, j) += w + v / r_;
-        out.r -= v * V(i, j) / r_;
+        out.r -= v * advance(i, j) / r_;
         v = w = Real(0.0);
       }
   }
 
  private:
-  Real& M(std::size_t i, std::size_t j) { return M_[i * s_ + j]; }
-  Real& V(std::size_t i, std::size_t j) { return V_[i * s_ + j]; }
+  Real& weight(std::size_t i, std::size_t j) { return M_[i * s_ + j]; }
+  Real& advance(std::size_t i, std::size_t j) { return V_[i * s_ + j]; }
 
   void resize() {
     const std::size_t all = nodes_.size() * s_;
@@ -112,7 +112,7 @@ class stage_series {
         if (slow_[i] == 0) continue;
         Real source = node.what == series_node::kind::layer ? initial_[i] : Real(0.0);
         if (node.what == series_node::kind::kept)
-          for (std::size_t j = 0; j < i; ++j) source += V(i, j);
+          for (std::size_t j = 0; j < i; ++j) source += advance(i, j);
         y[i] = source / d_[i];
       }
       return;
@@ -125,9 +125,9 @@ class stage_series {
         h[i] = Real(0.0);
         for (const auto& factors : node.merged) h[i] += product(factors, i, none);
         sum = d_[i] * g[i] + ddot_[i] * h[i];
-        for (std::size_t j = 0; j < i; ++j) sum += M(i, j) * y[j];
+        for (std::size_t j = 0; j < i; ++j) sum += weight(i, j) * y[j];
       } else {
-        for (std::size_t j = 0; j < i; ++j) sum += M(i, j) * y[j] + V(i, j) * g[j];
+        for (std::size_t j = 0; j < i; ++j) sum += weight(i, j) * y[j] + advance(i, j) * g[j];
       }
       y[i] = sum;
     }
@@ -167,11 +167,11 @@ class stage_series {
       const Real a = bar[i];
       bar[i] = Real(0.0);
       for (std::size_t j = 0; j < i; ++j) {
-        bar[j] += a * M(i, j);
+        bar[j] += a * weight(i, j);
         M_bar_[i * s_ + j] += a * y[j];
         if (relaxes) continue;
         V_bar_[i * s_ + j] += a * g[j];
-        g_bar_[j] += a * V(i, j);
+        g_bar_[j] += a * advance(i, j);
       }
       if (!relaxes) continue;
       out.D(i, i) += a * g[i];

@@ -65,10 +65,7 @@ std::optional<double> limit_table::slope(double limit_row::* column, double roun
   for (const limit_row& row : rows)
     if (row.epsilon > 0.0 && row.epsilon < 0.1 * dt && row.*column > round_off)
       points.emplace_back(std::log(row.epsilon), std::log(row.*column));
-  constexpr std::size_t enough = 3;
-  if (points.size() < enough) return std::nullopt;
-  std::sort(points.begin(), points.end());
-  points.resize(enough);
+  if (points.size() < 3) return std::nullopt;
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (const auto& [at, value] : points) {
     x += at / static_cast<double>(points.size());

@@ -29,9 +29,8 @@ struct limit_table {
 
   /// Distance at the smallest ε.
   double floor(double limit_row::* column) const;
-  /// Least-squares slope of log distance against log ε, over the three smallest ε < Δt/10 for which the
-  /// distance is above `round_off`; nothing if fewer than three are. Larger ε would show where terms ε²/Δt
-  /// end, late for methods whose term of size ε is small or that have a stage with small d or |ḋ|.
+  /// Least-squares slope of log distance against log ε, over the rows with ε < Δt/10 whose distance is above
+  /// `round_off`; nothing if fewer than three are.
   std::optional<double> slope(double limit_row::* column, double round_off = 1e-12) const;
   report_table report() const;
 };

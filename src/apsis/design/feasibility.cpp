@@ -1,38 +1,56 @@
 #include <apsis/design/feasibility.hpp>
 
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Cholesky>
 
 namespace apsis {
 namespace {
 
-/// The damped step for the unknowns that are free; those that would cross a bound go onto it.
-Eigen::VectorXd bounded_step(const Eigen::MatrixXd& J, const Eigen::VectorXd& c, const Eigen::VectorXd& x,
-                             const design_problem& problem, double damping) {
-  const Eigen::Index n = x.size();
-  const Eigen::VectorXd to_lower = problem.lower() - x, to_upper = problem.upper() - x;
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(n), free = Eigen::VectorXd::Ones(n);
-  for (int round = 0; round < 8; ++round) {
-    // The smallest step of the free unknowns: Jᵀ (J Jᵀ + damping)⁻¹ of what the fixed ones leave.
-    const Eigen::MatrixXd J_free = J * free.asDiagonal();
-    Eigen::MatrixXd normal = J_free * J_free.transpose();
-    normal.diagonal().array() += damping;
-    const Eigen::VectorXd fixed = step.cwiseProduct(Eigen::VectorXd::Ones(n) - free);
-    const Eigen::VectorXd rest = -c - J * fixed;
-    const Eigen::VectorXd proposal = J_free.transpose() * normal.ldlt().solve(rest);
-    step = fixed + proposal;
-    bool crossed = false;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      if (free(k) == 0.0 || (step(k) >= to_lower(k) && step(k) <= to_upper(k))) continue;
-      step(k) = step(k) < to_lower(k) ? to_lower(k) : to_upper(k);
-      free(k) = 0.0;
-      crossed = true;
-    }
-    if (!crossed) break;
+/// Damped steps from one point: Jᵀ (J Jᵀ + damping)⁻¹ (−c) for the unknowns that are free; those that would
+/// cross a bound go onto it, and leave J Jᵀ one column at a time.
+class bounded_steps {
+ public:
+  bounded_steps(const design_problem& problem, const Eigen::VectorXd& x, Eigen::MatrixXd jacobian,
+                Eigen::VectorXd c)
+      : J_(std::move(jacobian)),
+        c_(std::move(c)),
+        to_lower_(problem.lower() - x),
+        to_upper_(problem.upper() - x) {
+    normal_.setZero(J_.rows(), J_.rows());
+    normal_.selfadjointView<Eigen::Lower>().rankUpdate(J_);
   }
-  return step.cwiseMax(to_lower).cwiseMin(to_upper);
-}
+
+  Eigen::VectorXd step(double damping) const {
+    Eigen::MatrixXd normal = normal_;
+    normal.diagonal().array() += damping;
+    Eigen::VectorXd rest = -c_, step = Eigen::VectorXd::Zero(J_.cols());
+    std::vector<char> fixed(static_cast<std::size_t>(J_.cols()), 0);
+    for (int round = 0; round < most_rounds; ++round) {
+      const Eigen::VectorXd proposal =
+          J_.transpose() * normal.selfadjointView<Eigen::Lower>().ldlt().solve(rest);
+      std::vector<Eigen::Index> crossed;
+      for (Eigen::Index k = 0; k < step.size(); ++k) {
+        if (fixed[static_cast<std::size_t>(k)] != 0) continue;
+        step(k) = std::min(std::max(proposal(k), to_lower_(k)), to_upper_(k));
+        if (step(k) == proposal(k)) continue;
+        fixed[static_cast<std::size_t>(k)] = 1;
+        crossed.push_back(k);
+      }
+      if (crossed.empty()) break;
+      const Eigen::MatrixXd columns = J_(Eigen::all, crossed);
+      rest -= columns * step(crossed);
+      normal.selfadjointView<Eigen::Lower>().rankUpdate(columns, -1.0);
+    }
+    return step;
+  }
+
+ private:
+  static constexpr int most_rounds = 8;
+  Eigen::MatrixXd J_, normal_;
+  Eigen::VectorXd c_, to_lower_, to_upper_;
+};
 
 }  // namespace
 
@@ -48,10 +66,12 @@ feasibility_result find_feasible(design_problem& problem, Eigen::VectorXd x, int
       if (c.norm() > 0.9 * slowest) break;
       slowest = c.norm();
     }
-    const Eigen::MatrixXd J = problem.jacobian(x);
+    const bounded_steps steps(problem, x, problem.jacobian(x), c);
     bool moved = false;
     for (int attempt = 0; attempt < 12 && !moved; ++attempt) {
-      const Eigen::VectorXd trial = x + bounded_step(J, c, x, problem, damping * c.squaredNorm());
+      // A bound is met exactly, whatever x + (bound − x) rounds to.
+      const Eigen::VectorXd trial =
+          (x + steps.step(damping * c.squaredNorm())).cwiseMax(problem.lower()).cwiseMin(problem.upper());
       const Eigen::VectorXd there = problem.residuals(trial);
       if (there.allFinite() && there.squaredNorm() < c.squaredNorm()) {
         damping = std::max(damping / 5.0, 1e-12);

@@ -6,6 +6,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/core/parallel.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/design/fewer_stages.hpp>
 #include <apsis/design/finish.hpp>
 #include <apsis/design/search.hpp>
 #include <apsis/design/sparsify.hpp>
@@ -88,8 +89,8 @@ design_task task_of(const options& given) {
           "command line: --from '{}' is no method of the kind that is looked for ({} of the paper's "
           "class is needed)",
           given.from, to_string(task.kind)));
-    require(m.stages() == task.stages, "--stages", std::to_string(given.stages),
-            fmt::format("'{}' has {}", given.from, m.stages()));
+    require(m.stages() >= task.stages, "--stages", std::to_string(given.stages),
+            fmt::format("'{}' has {}: as many, or fewer", given.from, m.stages()));
     task.from = m.coefficients<double>();
   }
   if (!given.implicit) {
@@ -153,13 +154,32 @@ json summary(const design_task& task, const options& given, const design_progres
       {"found", found.best.has_value()}};
 }
 
+/// Takes stages out of the method to begin with until it has as many as asked for.
+void take_stages_out(design_task& task, const std::function<bool()>& stop) {
+  while (task.from && task.from->stages() > task.stages) {
+    const std::size_t stages = task.from->stages();
+    double least = std::numeric_limits<double>::infinity();
+    auto smaller = without_a_stage(task, *task.from, stop, [&](std::size_t stage, double left) {
+      least = std::min(least, left);
+      log::info(fmt::format("{} stages: weights of stage {} down to {:.2g}", stages, stage + 1, left));
+    });
+    if (!smaller)
+      throw numerical_error(
+          fmt::format("no stage of {} can be left out (least sum of weights {:.2g}) try another "
+                      "method to begin with, a larger box or a smaller --ssp",
+                      stages, least));
+    task.from = std::move(smaller);
+  }
+}
+
 int design(const options& given) {
-  const design_task task = task_of(given);
+  design_task task = task_of(given);
   method_file file(given.out);
   watch_for_interrupts();
   set_threads(given.threads);
   const auto begin = clock::now();
   const auto elapsed = [&begin] { return std::chrono::duration<double>(clock::now() - begin).count(); };
+  take_stages_out(task, [&] { return interrupted() || elapsed() > given.seconds; });
   task_progress bar;
   design_search how;
   how.starts = given.starts;
@@ -220,8 +240,10 @@ void add_design(CLI::App& program, action& chosen) {
   command->add_option("--objective", given->objective, "r, r/n_F or error: what the method is to be best in")
       ->capture_default_str();
   command->add_option("--ssp", d.least_r, "least SSP coefficient r")->capture_default_str();
-  command->add_option("--from", given->from,
-                      "a method (name or FILE.toml) to improve instead of random starts");
+  command->add_option(
+      "--from", given->from,
+      "a method (name or FILE.toml) to improve instead of random starts; of one with more stages some "
+      "are taken out");
   command
       ->add_option("--regime", given->regime, "terms of size epsilon that are to be exact: none, slow or all")
       ->capture_default_str();

@@ -39,18 +39,6 @@ bool is_fourth_order_imex(const design_task& task) {
   return task.kind == method_kind::imex && task.demands.order >= 4;
 }
 
-/// What a given method has, and every weight besides. Where its d or ḋ is zero, it may stay so for a reason
-/// (the intermediate regime, order 5 without transport).
-zero_pattern pattern_near(const design_task& task, const form_type& m) {
-  auto pattern = full_pattern(task.kind, transport_of(m));
-  const bool stages_differ = task.demands.regime != regime_demand::none || is_fifth_order_implicit(task);
-  for (std::size_t i = 0; i < m.stages() && stages_differ; ++i) {
-    pattern.d[i] = static_cast<char>(m.D(i, i) != 0.0);
-    pattern.ddot[i] = static_cast<char>(m.ddot[i] != 0.0);
-  }
-  return pattern;
-}
-
 /// Stages whose T is evaluated. An explicit SSP method of order 4 needs five evaluations, and in all methods
 /// of order 4 that are known the first stage is one of them.
 std::vector<char> draw_transport(const design_task& task, random_source& random) {
@@ -131,6 +119,16 @@ void draw_far_stages(form_type& m, const zero_pattern& pattern, double box, rand
 }
 
 }  // namespace
+
+zero_pattern pattern_near(const design_task& task, const form_type& m) {
+  auto pattern = full_pattern(task.kind, transport_of(m));
+  const bool stages_differ = task.demands.regime != regime_demand::none || is_fifth_order_implicit(task);
+  for (std::size_t i = 0; i < m.stages() && stages_differ; ++i) {
+    pattern.d[i] = static_cast<char>(m.D(i, i) != 0.0);
+    pattern.ddot[i] = static_cast<char>(m.ddot[i] != 0.0);
+  }
+  return pattern;
+}
 
 zero_pattern draw_pattern(const design_task& task, random_source& random) {
   if (task.from) return pattern_near(task, *task.from);

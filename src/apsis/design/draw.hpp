@@ -5,6 +5,10 @@
 
 namespace apsis {
 
+/// What a given method has, and every weight besides. Where its d or ḋ is zero, it stays so if that may have
+/// a reason (the intermediate regime, order 5 without transport).
+zero_pattern pattern_near(const design_task& task, const shu_osher_form<double>& m);
+
 /// Which coefficients a start leaves free: all that the task allows, and what must be chosen because the
 /// equations depend on it (stages whose T is evaluated; stages with ḋ = 0 for the intermediate regime; stages
 /// with d = 0 for order 5 without transport). Near `task.from` if there is one.

@@ -34,9 +34,9 @@ Eigen::Map<const Eigen::VectorXd> vector_of(Index n, const Number* x) {
 
 class program final : public Ipopt::TNLP {
  public:
-  program(design_problem& problem, design_objective objective, Eigen::VectorXd start,
+  program(design_problem& problem, program_goal goal, Eigen::VectorXd start,
           const std::function<bool()>& stop, program_result& result)
-      : problem_(problem), objective_(objective), start_(std::move(start)), stop_(stop), result_(result) {
+      : problem_(problem), goal_(std::move(goal)), start_(std::move(start)), stop_(stop), result_(result) {
     chosen_ = independent_equations(problem_.jacobian(start_));
   }
 
@@ -69,19 +69,16 @@ class program final : public Ipopt::TNLP {
 
   bool eval_f(Index n, const Number* x, bool, Number& value) override {
     const released_lock free;
-    value = objective_ != design_objective::smallest_error ? -x[problem_.place_of_r()]
-                                                           : problem_.half_square_error(vector_of(n, x));
+    value = goal_.linear.dot(vector_of(n, x));
+    if (goal_.error_weight != 0.0) value += goal_.error_weight * problem_.half_square_error(vector_of(n, x));
     return std::isfinite(value);
   }
 
   bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
     const released_lock free;
     Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
-    if (objective_ != design_objective::smallest_error) {
-      g(problem_.place_of_r()) = -1.0;
-    } else {
-      problem_.half_square_error(vector_of(n, x), &g);
-    }
+    if (goal_.error_weight != 0.0) problem_.half_square_error(vector_of(n, x), &g);
+    g = goal_.error_weight * g + goal_.linear;
     std::copy_n(g.data(), n, gradient);
     return g.allFinite();
   }
@@ -134,8 +131,7 @@ class program final : public Ipopt::TNLP {
     const released_lock free;
     Eigen::VectorXd all = Eigen::VectorXd::Zero(problem_.equations());
     for (std::size_t k = 0; k < chosen_.size(); ++k) all(chosen_[k]) = multipliers[k];
-    const double weight = objective_ == design_objective::smallest_error ? objective_factor : 0.0;
-    const Eigen::MatrixXd H = problem_.hessian(vector_of(n, x), all, weight);
+    const Eigen::MatrixXd H = problem_.hessian(vector_of(n, x), all, objective_factor * goal_.error_weight);
     for (Index i = 0; i < n; ++i)
       for (Index j = 0; j <= i; ++j) *values++ = H(i, j);
     return H.allFinite();
@@ -157,7 +153,7 @@ class program final : public Ipopt::TNLP {
   Index rows() const { return static_cast<Index>(chosen_.size() + problem_.inequalities().size()); }
 
   design_problem& problem_;
-  design_objective objective_;
+  program_goal goal_;
   Eigen::VectorXd start_;
   const std::function<bool()>& stop_;
   program_result& result_;
@@ -194,7 +190,17 @@ std::vector<Eigen::Index> independent_equations(const Eigen::MatrixXd& jacobian)
   return chosen;
 }
 
-program_result optimise(design_problem& problem, design_objective objective, const Eigen::VectorXd& x,
+program_goal goal_of(const design_problem& problem, design_objective objective) {
+  program_goal goal{Eigen::VectorXd::Zero(problem.unknowns()), 0.0};
+  if (objective == design_objective::smallest_error) {
+    goal.error_weight = 1.0;
+  } else {
+    goal.linear(problem.place_of_r()) = -1.0;
+  }
+  return goal;
+}
+
+program_result optimise(design_problem& problem, const program_goal& goal, const Eigen::VectorXd& x,
                         const std::function<bool()>& stop, int most_iterations) {
   program_result result;
   result.x = x;
@@ -213,7 +219,7 @@ program_result optimise(design_problem& problem, design_objective objective, con
     result.status = "Ipopt does not start";
     return result;
   }
-  const Ipopt::SmartPtr<Ipopt::TNLP> task = new program(problem, objective, x, stop, result);
+  const Ipopt::SmartPtr<Ipopt::TNLP> task = new program(problem, goal, x, stop, result);
   const auto status = solver->OptimizeTNLP(task);
   result.status = to_text(status);
   result.solved = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level;

@@ -21,10 +21,19 @@ struct program_result {
   std::string status;
 };
 
+/// What a program minimises: linear · x + error_weight · ½ Σ (residuals of the next order)².
+struct program_goal {
+  Eigen::VectorXd linear;
+  double error_weight = 0.0;
+};
+
+/// The goal of an objective: −r, or the error.
+program_goal goal_of(const design_problem& problem, design_objective objective);
+
 /// The best method near x: Ipopt (Wächter, Biegler, Math. Program. 106, 2006) with exact first and second
 /// derivatives. Of equations that depend on others at x, which makes a program singular, only independent
 /// ones are passed on. `stop` ends the iteration when it returns true. May be called from several threads.
-program_result optimise(design_problem& problem, design_objective objective, const Eigen::VectorXd& x,
+program_result optimise(design_problem& problem, const program_goal& goal, const Eigen::VectorXd& x,
                         const std::function<bool()>& stop = {}, int most_iterations = 500);
 
 /// Equations whose gradients at x are independent of each other, as far as double precision tells.

@@ -52,6 +52,51 @@ bool is_acceptable(const design_task& task, const design_candidate& candidate) {
   return analyse_stability(to_butcher(exact)).angle >= task.demands.least_angle;
 }
 
+namespace {
+
+/// The same method with the r that its Butcher form allows: Â = R⁻¹ W/r stays if W grows with r and P gives
+/// what W takes, until an entry of P is zero.
+Eigen::VectorXd with_largest_r(const design_problem& problem, const Eigen::VectorXd& x) {
+  auto m = problem.form(x);
+  double growth = problem.upper()(problem.place_of_r()) / m.r;
+  for (std::size_t i = 0; i < m.stages(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (m.W(i, j) > 0.0) growth = std::min(growth, 1.0 + m.P(i, j) / m.W(i, j));
+  for (std::size_t i = 0; i < m.stages(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      m.P(i, j) = std::max(0.0, m.P(i, j) - (growth - 1.0) * m.W(i, j));
+      m.W(i, j) *= growth;
+    }
+  m.r *= growth;
+  return problem.unknowns_of(m);
+}
+
+/// Optimised from a point that satisfies the equations, without coefficients that are zero. An optimisation
+/// may end with an r below that of the Butcher form; it goes on from there.
+design_candidate best_near(const design_task& task, design_problem& problem, Eigen::VectorXd x,
+                           const std::function<bool()>& stop) {
+  constexpr int most_rounds = 4;
+  const bool has_r = task.kind != method_kind::implicit_only;
+  const bool for_r = task.objective != design_objective::smallest_error;
+  design_candidate found = drop_zeros(problem, x);
+  for (int round = 0; round < most_rounds && (has_r || !for_r); ++round) {
+    const auto solution = optimise(problem, goal_of(problem, task.objective), x, stop);
+    if (solution.residual < 1e-9) {
+      auto better = drop_zeros(problem, solution.x);
+      if (round == 0 || is_better(task, better, found)) found = std::move(better);
+    }
+    if (!has_r) break;
+    design_problem sparse(found.pattern, task.demands);
+    const double before = found.r;
+    found = drop_zeros(sparse, with_largest_r(sparse, found.x));
+    if (!for_r || found.r <= before * (1.0 + 1e-6) || (stop && stop())) break;
+    x = problem.unknowns_of(sparse.form(found.x));
+  }
+  return found;
+}
+
+}  // namespace
+
 std::optional<design_candidate> search_once(const design_task& task, int start, double& residual,
                                             const std::function<bool()>& stop) {
   // Seeds of neighbouring starts must not be neighbours.
@@ -62,12 +107,7 @@ std::optional<design_candidate> search_once(const design_task& task, int start, 
   const auto feasible = find_feasible(problem, draw_coefficients(task, problem, random, start == 0));
   residual = feasible.residual;
   if (!feasible.feasible || (stop && stop())) return std::nullopt;
-  Eigen::VectorXd best = feasible.x;
-  if (task.kind != method_kind::implicit_only || task.objective == design_objective::smallest_error) {
-    const auto solution = optimise(problem, task.objective, feasible.x, stop);
-    if (solution.residual < 1e-9) best = solution.x;
-  }
-  auto found = drop_zeros(problem, best);
+  auto found = best_near(task, problem, feasible.x, stop);
   found.start = start;
   if (!is_acceptable(task, found)) return std::nullopt;
   return found;

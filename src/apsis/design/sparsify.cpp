@@ -81,7 +81,7 @@ design_candidate sparsify(const design_task& task, design_candidate candidate, d
       design_problem smaller(pattern, task.demands);
       const auto feasible = find_feasible(smaller, smaller.unknowns_of(problem.form(candidate.x)));
       if (!feasible.feasible) continue;
-      const auto solution = optimise(smaller, task.objective, feasible.x, stop);
+      const auto solution = optimise(smaller, goal_of(smaller, task.objective), feasible.x, stop);
       if (!(solution.residual < 1e-9)) continue;
       auto proposal = drop_zeros(smaller, solution.x);
       if (value_of(proposal, task.objective) < worst || !is_acceptable(task, proposal)) continue;

@@ -1,0 +1,71 @@
+// Taking stages out of a method: the smaller one has what is asked for, and where no stage can go it says so.
+#include <apsis/design/fewer_stages.hpp>
+
+#include <apsis/method/method.hpp>
+#include <apsis/method/order_conditions.hpp>
+#include <apsis/method/trees.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace apsis {
+namespace {
+
+design_task task_like(const method& m, int order) {
+  design_task task;
+  task.kind = m.kind;
+  task.stages = m.stages();
+  task.demands.order = order;
+  return task;
+}
+
+/// Largest |weight − 1/γ| of the trees up to an order, by the Butcher form: nothing of the designer's.
+double order_residual(const shu_osher_form<double>& m, int order) {
+  const auto trees = rooted_trees(order, tree_colours::both);
+  const auto weights = elementary_weights(to_butcher(m), trees);
+  double worst = 0.0;
+  for (std::size_t k = 0; k < trees.size(); ++k)
+    worst = std::max(worst, std::abs(weights[k] - 1.0 / trees[k].density));
+  return worst;
+}
+
+// Eight stages are more than third order needs: six are enough (md-imex-6-3).
+TEST(fewer_stages, keep_order_and_signs) {
+  const method& m = find_method("md-imex-8-3-accurate");
+  const auto task = task_like(m, 3);
+  const auto smaller = without_a_stage(task, m.coefficients<double>());
+  ASSERT_TRUE(smaller);
+  EXPECT_EQ(smaller->stages(), m.stages() - 1);
+  // The equations were solved to 1e-11.
+  EXPECT_LT(order_residual(*smaller, 3), 1e-10);
+  for (std::size_t i = 0; i < smaller->stages(); ++i) {
+    EXPECT_GE(initial_weights(*smaller)[i], -1e-12);
+    EXPECT_GE(smaller->D(i, i), 0.0);
+    EXPECT_LE(smaller->ddot[i], 0.0);
+    EXPECT_GE(smaller->D(i, i) - smaller->ddot[i], task.demands.margin - 1e-12);
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_GE(smaller->P(i, j), 0.0);
+      EXPECT_GE(smaller->W(i, j), 0.0);
+    }
+  }
+}
+
+// One stage cannot have order 3 without transport: both stages of imdrk-2-3 are needed, and each is tried.
+TEST(fewer_stages, says_what_is_left_where_all_are_needed) {
+  const method& m = find_method("imdrk-2-3");
+  std::size_t tried = 0;
+  double least = 1.0;
+  const auto smaller =
+      without_a_stage(task_like(m, 3), m.coefficients<double>(), {}, [&](std::size_t, double left) {
+        ++tried;
+        least = std::min(least, left);
+      });
+  EXPECT_FALSE(smaller);
+  EXPECT_EQ(tried, m.stages() - 1);
+  EXPECT_GT(least, 1e-3);
+}
+
+}  // namespace
+}  // namespace apsis

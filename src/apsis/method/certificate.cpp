@@ -106,7 +106,8 @@ void find_structure(const method& m, const shu_osher_form<mp_real>& form, const 
 void check_order_claim(const method& m, certificate& c) {
   if (c.order == m.claims.order) return;
   if (c.order > m.claims.order) {
-    c.failures.push_back(fmt::format("order = {} is claimed but the order is {}", m.claims.order, c.order));
+    c.failures.push_back(
+        fmt::format("claims.order = {} but the method has order {}", m.claims.order, c.order));
     return;
   }
   for (const auto& condition : c.next)
@@ -263,8 +264,17 @@ void find_embedded_solution(const method& m, certificate& c) {
     e.explicit_evaluations += form.W(s, j) != 0 && !evaluated ? 1 : 0;
   }
   c.embedded = e;
-  check_order_claim(extended, row);
-  for (const auto& failure : row.failures) c.failures.push_back("[embedded] " + failure);
+  if (m.embedded->order >= m.claims.order)
+    c.failures.push_back(
+        fmt::format("embedded.order = {} is not below that of the method, {}: nothing could be estimated",
+                    m.embedded->order, m.claims.order));
+  if (e.order > m.embedded->order) {
+    c.failures.push_back(fmt::format("embedded.order = {} but the embedded solution has order {}",
+                                     m.embedded->order, e.order));
+  } else {
+    check_order_claim(extended, row);
+    for (const auto& failure : row.failures) c.failures.push_back("[embedded] " + failure);
+  }
   check_embedded_signs(form, tolerance, c);
 }
 

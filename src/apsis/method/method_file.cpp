@@ -247,11 +247,8 @@ void read_embedded(const toml::table& table, const std::string& file, method& m)
   if (m.kind != method_kind::implicit_only) keys.emplace_back("W");
   if (m.kind != method_kind::explicit_only) keys.insert(keys.end(), {"d", "ddot"});
   const section form(table, file, "embedded", keys);
-  if (m.claims.order < 2)
-    throw input_error(place_of(table, file),
-                      "[embedded] has a lower order than the method, whose order is 1; leave it out");
   embedded_row row;
-  row.order = form.integer("order", 1, m.claims.order - 1);
+  row.order = form.integer("order", 1, 8);
   if (form.has("origin")) row.origin = form.text("origin");
   const auto weights = [&](const std::string& key) {
     auto values = form.vector(key);

@@ -322,7 +322,7 @@ std::string entry(const json& number, const std::string& none = "-") {
 std::string method_table(const json& all) {
   const auto row = [](const auto&... cells) {
     std::string line =
-        fmt::format("{:<23}{:>3}{:>4}{:>5}{:>8}{:>10}{:>8}{:>10}{:>9}{:>5}  {:<9}{:<6}{}", cells...);
+        fmt::format("{:<23}{:>3}{:>4}{:>5}{:>8}{:>10}{:>7}{:>9}{:>8}{:>4}  {:<9}{:<6}{}", cells...);
     line.erase(line.find_last_not_of(' ') + 1);
     return line + "\n";
   };

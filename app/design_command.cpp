@@ -1,6 +1,8 @@
 #include "commands.hpp"
+#include "design_embedded.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
+#include "method_writer.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
@@ -10,16 +12,13 @@
 #include <apsis/design/finish.hpp>
 #include <apsis/design/search.hpp>
 #include <apsis/design/sparsify.hpp>
-#include <apsis/method/export.hpp>
 #include <apsis/output/progress.hpp>
-#include <apsis/output/result_folder.hpp>
 
 #include <chrono>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -31,9 +30,10 @@ using json = nlohmann::ordered_json;
 using clock = std::chrono::steady_clock;
 
 struct options {
-  int order = 2, stages = 3, evaluations = 0, starts = 1000, threads = 0;
+  std::optional<int> order, stages;
+  int evaluations = 0, starts = 1000, threads = 0;
   bool implicit = false, json = false;
-  std::string objective = "r", regime = "none", from, out;
+  std::string objective = "r", regime = "none", from, out, embedded, cost = "one-solve";
   double seconds = 60.0, sparsify = 0.0;
   std::uint64_t seed = 1;
   design_demands demands;
@@ -54,10 +54,16 @@ void require(bool good, const std::string& option, const std::string& value, con
   if (!good) throw input_error(fmt::format("command line: {} {} is out of range ({})", option, value, range));
 }
 
+int needed(const std::optional<int>& value, const std::string& option) {
+  if (!value) throw input_error(fmt::format("command line: {} is required (apsis design)", option));
+  return *value;
+}
+
 design_task task_of(const options& given) {
-  require(given.order >= 1 && given.order <= 6, "--order", std::to_string(given.order), "from 1 to 6");
-  require(given.stages >= 1 && given.stages <= 32, "--stages", std::to_string(given.stages), "from 1 to 32");
-  require(given.evaluations >= 0 && given.evaluations < given.stages, "--evaluations",
+  const int order = needed(given.order, "--order"), stages = needed(given.stages, "--stages");
+  require(order >= 1 && order <= 6, "--order", std::to_string(order), "from 1 to 6");
+  require(stages >= 1 && stages <= 32, "--stages", std::to_string(stages), "from 1 to 32");
+  require(given.evaluations >= 0 && given.evaluations < stages, "--evaluations",
           std::to_string(given.evaluations), "fewer than stages: the last stage is the result");
   require(given.starts >= 1, "--starts", std::to_string(given.starts), "at least 1");
   require(given.seconds > 0.0, "--time", fmt::format("{}", given.seconds), "positive, in seconds");
@@ -70,10 +76,10 @@ design_task task_of(const options& given) {
           "from 0 to 1: the part of the objective that may be lost");
   design_task task;
   task.kind = given.implicit ? method_kind::implicit_only : method_kind::imex;
-  task.stages = static_cast<std::size_t>(given.stages);
+  task.stages = static_cast<std::size_t>(stages);
   if (given.evaluations > 0) task.transports = given.evaluations;
   task.demands = d;
-  task.demands.order = given.order;
+  task.demands.order = order;
   task.demands.regime = choice<regime_demand>(
       "--regime", given.regime,
       {{"none", regime_demand::none}, {"slow", regime_demand::slow}, {"all", regime_demand::all}});
@@ -89,12 +95,12 @@ design_task task_of(const options& given) {
           "command line: --from '{}' is no method of the kind that is looked for ({} of the paper's "
           "class is needed)",
           given.from, to_string(task.kind)));
-    require(m.stages() >= task.stages, "--stages", std::to_string(given.stages),
+    require(m.stages() >= task.stages, "--stages", std::to_string(stages),
             fmt::format("'{}' has {}: as many, or fewer", given.from, m.stages()));
     task.from = m.coefficients<double>();
   }
   if (!given.implicit) {
-    require(given.stages >= 2, "--stages", std::to_string(given.stages),
+    require(stages >= 2, "--stages", std::to_string(stages),
             "an IMEX method needs 2; --implicit gives one without transport");
     return task;
   }
@@ -106,32 +112,6 @@ design_task task_of(const options& given) {
   task.objective = design_objective::smallest_error;
   return task;
 }
-
-/// The method file, with the best method so far at any time.
-class method_file {
- public:
-  explicit method_file(const std::string& path)
-      : path_(path), folder_(path_.has_parent_path() ? path_.parent_path() : std::filesystem::path(".")) {
-    if (!path_.has_filename() || path_.extension() != ".toml")
-      throw input_error(fmt::format("command line: --out '{}' is not a method file (.toml)", path));
-  }
-
-  std::string name() const { return path_.stem().string(); }
-  std::string path() const { return path_.string(); }
-
-  void write(const method& m) {
-    folder_.publish(path_.filename().string(), [&m](const std::string& temporary) {
-      std::ofstream out(temporary, std::ios::binary);
-      out << to_toml(m);
-      out.close();
-      if (!out) throw io_error(fmt::format("cannot write '{}' (no space left) free some space", temporary));
-    });
-  }
-
- private:
-  std::filesystem::path path_;
-  result_folder folder_;
-};
 
 std::string state_of(const design_progress& p) {
   const std::string best = p.best ? fmt::format("r {:.6f}, error {:.4g}", p.best->r, p.best->error)
@@ -173,8 +153,10 @@ void take_stages_out(design_task& task, const std::function<bool()>& stop) {
 }
 
 int design(const options& given) {
+  if (!given.embedded.empty())
+    return design_embedded({given.embedded, given.order, given.cost, given.out, given.json});
   design_task task = task_of(given);
-  method_file file(given.out);
+  method_writer file(given.out);
   watch_for_interrupts();
   set_threads(given.threads);
   const auto begin = clock::now();
@@ -230,8 +212,9 @@ void add_design(CLI::App& program, action& chosen) {
   auto& d = given->demands;
   CLI::App* command =
       program.add_subcommand("design", "Find a new method: order, stages, what it is to be best in");
-  command->add_option("--order", given->order, "order of accuracy")->required();
-  command->add_option("--stages", given->stages, "stages; the last one is the result")->required();
+  command->add_option("--order", given->order,
+                      "order of accuracy (with --embedded: of the embedded solution)");
+  command->add_option("--stages", given->stages, "stages; the last one is the result");
   command->add_flag("--implicit", given->implicit, "a method without transport, u' = Q(u)");
   command->add_option("--evaluations", given->evaluations,
                       "transport evaluations in a step (any number if not given)");
@@ -258,6 +241,15 @@ void add_design(CLI::App& program, action& chosen) {
   command->add_option("--threads", given->threads, "threads; 0 for all cores");
   command->add_option("--out", given->out, "method file to write (FILE.toml)")->required();
   command->add_flag("--json", given->json, "print one JSON object");
+  CLI::Option* embedded = command->add_option(
+      "--embedded", given->embedded, "find an embedded solution of this method (name or FILE.toml) instead");
+  for (CLI::Option* option : command->get_options())
+    if (!option->check_lname("order") && !option->check_lname("out") && !option->check_lname("json") &&
+        !option->check_lname("help") && option != embedded)
+      embedded->excludes(option);
+  command->add_option("--cost", given->cost, "of the embedded solution in a step: nothing or one-solve")
+      ->needs(embedded)
+      ->capture_default_str();
   command->callback([given, &chosen] { chosen = [given] { return design(*given); }; });
 }
 

@@ -89,7 +89,42 @@ json document_json(const method& m) {
   if (m.claims.explicit_radius) out["claims"]["explicit_radius"] = *m.claims.explicit_radius;
   if (m.claims.l_stable) out["claims"]["l_stable"] = *m.claims.l_stable;
   if (m.claims.intermediate) out["claims"]["intermediate"] = *m.claims.intermediate;
+  if (m.embedded)
+    out["embedded"] = {{"order", m.embedded->order}, {"origin", m.embedded->origin},
+                       {"P", m.embedded->P},         {"W", m.embedded->W},
+                       {"d", m.embedded->d},         {"ddot", m.embedded->ddot}};
   return out;
+}
+
+/// What the embedded solution is and what it adds to a step; null without one.
+json embedded_json(const method& m, const certificate& c) {
+  if (!c.embedded) return nullptr;
+  const schedule steps(m.with_embedded_row().coefficients<double>(), true);
+  return {{"order", c.embedded->order},
+          {"order_residual", c.embedded->order_residual.convert_to<double>()},
+          {"estimate", c.embedded->estimate.convert_to<double>()},
+          {"alignment", c.embedded->alignment.convert_to<double>()},
+          {"relaxes", c.embedded->relaxes},
+          {"last", c.embedded->last ? json(c.embedded->last->convert_to<double>()) : json(nullptr)},
+          {"explicit_evaluations", c.embedded->explicit_evaluations},
+          {"implicit_solves", c.embedded->implicit_solves},
+          {"buffers", steps.buffers()}};
+}
+
+std::string embedded_text(const json& e) {
+  return fmt::format("order {}, estimate {:.4g} (2-norm of its residuals of order {}), alignment {:.3g}",
+                     e["order"].get<int>(), e["estimate"].get<double>(), e["order"].get<int>() + 1,
+                     e["alignment"].get<double>());
+}
+
+std::string embedded_cost_text(const json& e) {
+  return fmt::format("{} transport evaluations and {} implicit solves more, {} buffers in all{}",
+                     e["explicit_evaluations"].get<int>(), e["implicit_solves"].get<int>(),
+                     e["buffers"].get<int>(), e["relaxes"].get<bool>() ? "; relaxed" : "");
+}
+
+std::string embedded_term_text(const json& e) {
+  return fmt::format("where epsilon << dt, last stage {:.4g} times the exact one", e["last"].get<double>());
 }
 
 /// null where the method has stages that the analysis does not cover, or the term is infinite.
@@ -201,6 +236,7 @@ json check_json(const method& m) {
       {"implicit_solves", c.implicit_solves},
       {"r_per_evaluation", figure_of_merit(c)},
       {"buffers", steps.buffers()},
+      {"embedded", embedded_json(m, c)},
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
   if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(c);
@@ -240,6 +276,12 @@ std::string check_text(const method& m) {
   }
   line("cost of a step", fmt::format("{} transport evaluations, {} implicit solves, {} buffers",
                                      c.explicit_evaluations, c.implicit_solves, steps.buffers()));
+  if (c.embedded) {
+    const json e = embedded_json(m, c);
+    line("embedded solution", embedded_text(e));
+    line("", embedded_cost_text(e));
+    if (!e["last"].is_null()) line("", embedded_term_text(e));
+  }
   if (m.kind != method_kind::explicit_only)
     line("implicit part",
          fmt::format("{}, |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
@@ -280,14 +322,14 @@ std::string entry(const json& number, const std::string& none = "-") {
 std::string method_table(const json& all) {
   const auto row = [](const auto&... cells) {
     std::string line =
-        fmt::format("{:<23}{:>3}{:>4}{:>5}{:>8}{:>10}{:>8}{:>10}{:>9}  {:<9}{:<6}{}", cells...);
+        fmt::format("{:<23}{:>3}{:>4}{:>5}{:>8}{:>10}{:>7}{:>9}{:>8}{:>4}  {:<9}{:<6}{}", cells...);
     line.erase(line.find_last_not_of(' ') + 1);
     return line + "\n";
   };
   std::string out;
   for (const auto kind : {method_kind::imex, method_kind::implicit_only, method_kind::explicit_only}) {
     out += fmt::format("{}{} methods\n", out.empty() ? "" : "\n", to_string(kind));
-    out += row("name", "p", "s", "n_F", "solves", "r", "r/n_F", "error", "buffers", "AP", "eps",
+    out += row("name", "p", "s", "n_F", "solves", "r", "r/n_F", "error", "buffers", "emb", "AP", "eps",
                "recommended for");
     for (const auto& c : all) {
       if (c["kind"] != to_string(kind)) continue;
@@ -296,6 +338,7 @@ std::string method_table(const json& all) {
                  c["explicit_evaluations"].get<int>(), c["implicit_solves"].get<int>(),
                  entry(c["ssp_coefficient"], "unbounded"), entry(c["r_per_evaluation"]),
                  entry(c["error_constant"]), c["buffers"].get<int>(),
+                 c["embedded"].is_null() ? "-" : std::to_string(c["embedded"]["order"].get<int>()),
                  short_data(c["ap_data"].get<std::string>()),
                  has_terms ? c["intermediate_regime"]["keeps"].get<std::string>() : std::string("-"),
                  c["purpose"].get<std::string>());
@@ -303,7 +346,8 @@ std::string method_table(const json& all) {
   }
   return out + R"(
 p order, s stages, n_F transport evaluations, solves of Q, r SSP coefficient, error: 2-norm of the residuals of
-order p + 1, buffers of the size of a state, AP: the initial data for which the limit epsilon -> 0 is right (cons.:
+order p + 1, buffers of the size of a state, emb: order of the embedded solution, from which the error of a step is
+estimated (time.tolerance), AP: the initial data for which the limit epsilon -> 0 is right (cons.:
 consistent data only, m: in the moments only), eps: which terms of size epsilon are right for epsilon << dt
 (slow: for data near equilibrium).
 )";

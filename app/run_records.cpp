@@ -115,6 +115,12 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records) {
                {"negative_values", static_cast<double>(saved.so_far.negative_values)},
                {"conservation_defect", saved.so_far.conservation_defect},
                {"max_entropy_increase", saved.so_far.max_entropy_increase}};
+  if (run.config().time.tolerance) {
+    c.numbers["proposed_dt"] = saved.proposed_dt;
+    c.numbers["previous_error"] = saved.previous_error;
+    c.numbers["step_holds"] = saved.step_holds ? 1.0 : 0.0;
+    c.numbers["rejected_steps"] = static_cast<double>(saved.so_far.rejected_steps);
+  }
   c.history = records.history();
   c.fields = records.fields();
   return c;
@@ -134,6 +140,12 @@ saved_run to_saved_run(const checkpoint& c) {
     saved.startup_length = c.number("startup_length");
     if (saved.startup_steps > 64 || saved.startup_done > saved.startup_steps)
       throw io_error("the checkpoint has a wrong start-up (damaged file) give another checkpoint");
+  }
+  if (c.numbers.count("proposed_dt") > 0) {  // of runs that keep a tolerance
+    saved.proposed_dt = c.number("proposed_dt");
+    saved.previous_error = c.number("previous_error");
+    saved.step_holds = count(c, "step_holds") > 0;
+    saved.so_far.rejected_steps = count(c, "rejected_steps");
   }
   saved.so_far.steps = saved.step;
   saved.so_far.t = saved.t;

@@ -20,8 +20,12 @@ bool has_entropy(const simulation& run) {
 
 json numbers(const simulation& run) {
   const run_summary s = run.summary();
-  json out = {
-      {"steps", s.steps}, {"startup_steps", s.startup_steps}, {"dt", s.dt}, {"t", s.t}, {"wall_s", s.wall_s}};
+  json out = {{"steps", s.steps},
+              {"startup_steps", s.startup_steps},
+              {"rejected_steps", s.rejected_steps},
+              {"dt", s.dt},
+              {"t", s.t},
+              {"wall_s", s.wall_s}};
   if (!find_model(run.config().model.name)->has_space) out["state"] = run.state();
   out["min_value"] = s.min_value;
   out["negative_values"] = s.negative_values;
@@ -88,6 +92,8 @@ std::string summary_text(const simulation& run, run_end end) {
   if (s.startup_steps > 0)
     line("start-up", s.startup_steps == 1 ? "not needed (no layer is thinner than the first step)"
                                           : fmt::format("{} steps instead of 1", s.startup_steps));
+  if (c.time.tolerance)
+    line("tolerance", fmt::format("{:g} ({} steps rejected)", *c.time.tolerance, s.rejected_steps));
   line("largest step", fmt::format("{:.6g}", s.dt));
   line("smallest value", fmt::format("{:.6g} ({} negative)", s.min_value, s.negative_values));
   if (!run.invariants().empty())

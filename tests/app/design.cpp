@@ -103,3 +103,60 @@ TEST(design, refuses_what_cannot_be_asked_for) {
   EXPECT_THAT(result.err, HasSubstr("'found.txt' is not a method file"));
   EXPECT_THAT(folder.listing(), IsEmpty());
 }
+
+TEST(design, writes_a_method_again_with_its_embedded_solution) {
+  const work_folder folder;
+  const outcome result =
+      run_apsis(folder, {"design", "--embedded", "md-imex-chain-7-2", "--out", "with.toml", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json found = json::parse(result.out);
+  EXPECT_TRUE(found["claims_hold"].get<bool>());
+  EXPECT_EQ(found["embedded"]["order"], 1);
+  EXPECT_EQ(found["embedded"]["implicit_solves"], 1);
+  EXPECT_GT(found["embedded"]["estimate"].get<double>(), 0.01);
+  const outcome check = run_apsis(folder, {"check", "with.toml", "--json"});
+  ASSERT_EQ(check.code, 0) << check.err;
+  EXPECT_EQ(json::parse(check.out), found);
+  EXPECT_THAT(run_apsis(folder, {"check", "with.toml"}).out, HasSubstr("embedded solution       order 1"));
+  // It is used, where the method by itself cannot be.
+  const std::vector<std::string> run = {"run", "paper/ode", "time.tolerance=1e-3"};
+  const auto with_method = [&run](const std::string& method) {
+    auto arguments = run;
+    arguments.push_back("time.method=" + method);
+    return arguments;
+  };
+  EXPECT_EQ(run_apsis(folder, with_method("with.toml")).code, 0);
+  const outcome without = run_apsis(folder, with_method("ars-443"));
+  EXPECT_EQ(without.code, 2);
+  EXPECT_THAT(without.err, HasSubstr("method 'ars-443' has no embedded solution"));
+  // A damaged row is caught.
+  std::string text = read(folder.path() / "with.toml");
+  text.replace(text.rfind("d = \"1/2\""), 9, "d = \"1/3\"");
+  folder.file("damaged.toml", text);
+  const outcome damaged = run_apsis(folder, {"check", "damaged.toml"});
+  EXPECT_EQ(damaged.code, 5);
+  EXPECT_THAT(damaged.out, HasSubstr("[embedded] order 1: the condition of tree G is"));
+}
+
+TEST(design, says_why_there_is_no_embedded_solution) {
+  const work_folder folder;
+  const auto refused = [&folder](const std::vector<std::string>& more, int code, const std::string& message) {
+    std::vector<std::string> arguments = {"design", "--embedded"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), {"--out", "found.toml"});
+    const outcome result = run_apsis(folder, arguments);
+    EXPECT_EQ(result.code, code) << message;
+    EXPECT_THAT(result.err, HasSubstr(message));
+    EXPECT_THAT(folder.listing(), IsEmpty());
+  };
+  refused({"md-imex-3-2", "--cost", "nothing"}, 3,
+          "(order 1: nearest residual 4.0e-01) try --cost one-solve");
+  refused({"imdrk-7-4", "--order", "3"}, 3, "order 3: sees 0 of the error, 0.15 is asked for");
+  refused({"ars-443"}, 2, "Q of a stage enters a later one");
+  refused({"ssprk-3-3"}, 2, "it is explicit and solves nothing");
+  refused({"forward-backward-euler"}, 2, "its order is 1");
+  refused({"md-imex-3-3"}, 2, "did you mean 'md-imex-3-2'?");
+  refused({"md-imex-3-2", "--order", "2"}, 2, "--order 2 is out of range (from 1 to 1");
+  refused({"md-imex-3-2", "--cost", "two"}, 2, "unknown --cost 'two'");
+  refused({"md-imex-3-2", "--stages", "3"}, 2, "--stages excludes --embedded");
+}

@@ -48,9 +48,9 @@ TEST(results, json_is_one_object_and_the_only_output) {
   const outcome result = run_apsis(folder, with(small, {"time.end=0.005", "--json"}));
   ASSERT_EQ(result.code, 0) << result.err;
   const json object = json::parse(result.out);
-  for (const std::string key :
-       {"case", "method", "steps", "startup_steps", "dt", "t", "wall_s", "min_value", "negative_values",
-        "conservation_defect", "max_entropy_increase", "phase_points", "point_stages_per_s", "fields"})
+  for (const std::string key : {"case", "method", "steps", "startup_steps", "rejected_steps", "dt", "t",
+                                "wall_s", "min_value", "negative_values", "conservation_defect",
+                                "max_entropy_increase", "phase_points", "point_stages_per_s", "fields"})
     EXPECT_TRUE(object.contains(key)) << key;
   EXPECT_EQ(object["t"].get<double>(), 0.005);
   EXPECT_EQ(object["phase_points"].get<long>(), 20 * 100);
@@ -272,4 +272,26 @@ TEST(results, a_full_output_device_is_an_output_error) {
   folder.file("go.sh", std::string("exec \"") + APSIS_PROGRAM + "\" list models > /dev/full");
   const int status = std::system(("sh " + (folder.path() / "go.sh").string() + " 2>/dev/null").c_str());
   EXPECT_EQ(WEXITSTATUS(status), 4);
+}
+
+TEST(results, a_run_to_a_tolerance_goes_on_from_a_checkpoint_bit_for_bit_and_says_what_it_rejected) {
+  const work_folder folder;
+  const auto run = with(small, {"time.method=md-imex-8-3", "time.tolerance=1e-5", "time.end=0.4"});
+  ASSERT_EQ(run_apsis(folder, with(run, {"--wall", "0.2", "--out", "stopped"})).code, 130);
+  const outcome resumed =
+      run_apsis(folder, with(run, {"--restart", "stopped/checkpoint.h5", "--out", "resumed"}));
+  ASSERT_EQ(resumed.code, 0) << resumed.err;
+  const outcome whole = run_apsis(folder, with(run, {"--out", "whole"}));
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  expect_same_results(folder.path() / "whole", folder.path() / "resumed");
+  const auto result = [&folder](const std::string& name) {
+    return json::parse(read(folder.path() / name / "manifest.json"))["result"];
+  };
+  EXPECT_EQ(result("whole")["rejected_steps"], result("resumed")["rejected_steps"]);
+  EXPECT_LT(result("stopped")["steps"].get<long>(), result("whole")["steps"].get<long>());
+  const outcome rejecting = run_apsis(folder, {"run", "paper/ode", "time.method=md-imex-8-3", "time.dt=0.5",
+                                               "time.tolerance=1e-6", "--json"});
+  ASSERT_EQ(rejecting.code, 0) << rejecting.err;
+  EXPECT_GE(json::parse(rejecting.out)["rejected_steps"].get<long>(), 1);
+  EXPECT_THAT(whole.out, HasSubstr("steps rejected)"));
 }

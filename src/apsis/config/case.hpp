@@ -45,6 +45,7 @@ struct case_config {
     double end = 0.0;
     std::optional<double> dt, cfl, safety;  ///< exactly one is set
     std::string startup = "none";           ///< "none" | "graded"
+    std::optional<double> tolerance;        ///< of a step; dt, cfl or safety then says how long one may be
   } time;
   struct {
     double every = 0.0;               ///< time between snapshots; 0: only the end

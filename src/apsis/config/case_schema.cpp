@@ -172,6 +172,13 @@ std::vector<case_key> make_schema() {
        "(apsis "
        "check). About log2(4 C dt/epsilon) more steps, none for epsilon = 0.",
        [](c& o, const v& x) { o.time.startup = text_of(x); }, [](const c& o) { return v(o.time.startup); }},
+      {"time.tolerance", number, key_scope::always, false, none, 0, unlimited, true, nullptr,
+       "Steps are chosen so that the estimated error of each, the 2-norm of the difference to the method's "
+       "embedded solution relative to that of the state, stays below this; dt, cfl or safety then says how "
+       "long "
+       "they may be. For methods with an embedded solution (apsis list methods).",
+       [](c& o, const v& x) { o.time.tolerance = number_of(x); },
+       [](const c& o) { return optional_number(o.time.tolerance); }},
       {"output.every", number, key_scope::always, false, none, 0, unlimited, false, nullptr,
        "Time between snapshots of the fields; 0 keeps the final state only.",
        [](c& o, const v& x) { o.output.every = number_of(x); }, [](const c& o) { return v(o.output.every); }},

@@ -189,19 +189,17 @@ struct no_observer {
   void operator()(Args&&...) const {}
 };
 
-/// Integrates u from t0 to t1. observer(step, t, dt, u) is called for the initial state (step 0, dt 0) and
-/// after every step; if it returns bool, false ends the integration. A numerical_error leaves with step and
-/// time; u is then the last good state. A graded start-up needs a problem_with_relaxation_time: input_error
-/// otherwise.
-template <problem P, class Observer = no_observer>
-integration_result<typename P::real> integrate(stepper<P>& method_stepper, typename P::state& u,
-                                               typename P::real t0, typename P::real t1,
-                                               step_rule<typename P::real> rule, Observer&& observer = {}) {
+/// Integrates u along `march`; take(march, limit, u) takes one step within what the rule allows and returns
+/// its length, without moving the marcher.
+template <problem P, class Take, class Observer>
+integration_result<typename P::real> integrate_with(const Take& take, stepper<P>& method_stepper,
+                                                    time_marcher<typename P::real> march,
+                                                    typename P::state& u, step_rule<typename P::real> rule,
+                                                    Observer&& observer) {
   using real = typename P::real;
-  time_marcher<real> march(t0, t1, rule.dt);
   real longest(0);
   const auto report = [&](real dt) {
-    if constexpr (std::is_convertible_v<decltype(observer(0L, t0, dt, u)), bool>) {
+    if constexpr (std::is_convertible_v<decltype(observer(0L, dt, dt, u)), bool>) {
       return static_cast<bool>(observer(march.step(), march.t(), dt, u));
     } else {
       observer(march.step(), march.t(), dt, u);
@@ -216,7 +214,7 @@ integration_result<typename P::real> integrate(stepper<P>& method_stepper, typen
   bool wanted = report(real(0));
   if (wanted && rule.start == startup::graded && !march.done()) {
     if constexpr (problem_with_relaxation_time<P>) {
-      march.start_up(limit(), method_stepper.target_problem().relaxation_time(t0, u));
+      march.start_up(limit(), method_stepper.target_problem().relaxation_time(march.t(), u));
     } else {
       throw input_error(
           "a graded start needs the width of the initial layer (the problem has no relaxation_time(t, u)); "
@@ -225,8 +223,7 @@ integration_result<typename P::real> integrate(stepper<P>& method_stepper, typen
   }
   while (wanted && !march.done()) {
     try {
-      const real dt = march.next(limit());
-      method_stepper.step(march.t(), dt, u);
+      const real dt = take(march, limit(), u);
       march.advance(dt);
       longest = longest > dt ? longest : dt;
       wanted = report(dt);
@@ -235,6 +232,23 @@ integration_result<typename P::real> integrate(stepper<P>& method_stepper, typen
     }
   }
   return {march.t(), march.step(), longest, march.startup_steps()};
+}
+
+/// Integrates u from t0 to t1. observer(step, t, dt, u) is called for the initial state (step 0, dt 0) and
+/// after every step; if it returns bool, false ends the integration. A numerical_error leaves with step and
+/// time; u is then the last good state. A graded start-up needs a problem_with_relaxation_time: input_error
+/// otherwise.
+template <problem P, class Observer = no_observer>
+integration_result<typename P::real> integrate(stepper<P>& method_stepper, typename P::state& u,
+                                               typename P::real t0, typename P::real t1,
+                                               step_rule<typename P::real> rule, Observer&& observer = {}) {
+  using real = typename P::real;
+  const auto take = [&](const time_marcher<real>& march, real limit, typename P::state& state) {
+    const real dt = march.next(limit);
+    method_stepper.step(march.t(), dt, state);
+    return dt;
+  };
+  return integrate_with(take, method_stepper, time_marcher<real>(t0, t1, rule.dt), u, rule, observer);
 }
 
 }  // namespace apsis

@@ -8,7 +8,8 @@ namespace apsis {
 
 /// Which coefficients are not zero; indices 0 … s with 0 for u^n.
 struct schedule::pattern {
-  int stages = 0;
+  int stages = 0;                 ///< rows
+  int result = 0;                 ///< the row of u^{n+1}: the last one, or that before an embedded solution
   matrix<char> weight;            ///< u_j enters u_k
   matrix<char> transport;         ///< T(u_j) enters u_k
   matrix<char> collision;         ///< Q(u_j) enters u_k, k > j
@@ -26,7 +27,7 @@ class schedule::builder {
 
   void run() {
     for (int k = 1; k <= p_.stages; ++k) {
-      if (p_.is_initial[index(k)] && k < p_.stages) {
+      if (p_.is_initial[index(k)] && k < p_.result) {
         buffer_[index(k)] = 0;
       } else {
         open(k);
@@ -35,7 +36,8 @@ class schedule::builder {
       spread(k);
       release_unneeded(k);
     }
-    out_.result_ = buffer_[index(p_.stages)];
+    out_.result_ = buffer_[index(p_.result)];
+    if (p_.stages > p_.result) out_.embedded_ = buffer_[index(p_.stages)];
     out_.buffers_ = static_cast<int>(in_use_.size()) + 1;
   }
 
@@ -65,23 +67,27 @@ class schedule::builder {
     out_.instructions_.push_back({what, j, buffer_[index(j)], std::move(to)});
   }
 
-  bool needed_after(int j, int except) const {
-    for (int k = j + 1; k <= p_.stages; ++k)
+  bool needed_by(int last, int j, int except) const {
+    for (int k = j + 1; k <= last; ++k)
       if (k != except && weighs(k, j) && !done_(index(k), index(j))) return true;
-    return j == p_.stages;
+    return j >= p_.result;
   }
+  bool needed_after(int j, int except) const { return needed_by(p_.stages, j, except); }
 
   /// Gives accumulator k a buffer and brings in the multiples of u^n and of known stages that were waiting.
   void open(int k) {
     if (buffer_[index(k)] >= 0) return;
     bool fresh = true;
-    for (int j = 1; j < known_; ++j) {  // a dying stage hands over its buffer
+    for (int j = 1; j < known_; ++j) {  // a stage that dies hands over its buffer
       const bool waits = weighs(k, j) && !done(k, j) && buffer_[index(j)] > 0;
-      if (!waits || carries_transport(k, j) || carries_collision(k, j) || needed_after(j, k)) continue;
-      buffer_[index(k)] = buffer_[index(j)];
+      // If only an embedded solution needs it, it comes first all the same, so that the sum is not another.
+      const int last = k <= p_.result ? p_.result : p_.stages;
+      if (!waits || carries_transport(k, j) || carries_collision(k, j) || needed_by(last, j, k)) continue;
+      const bool dies = !needed_after(j, k);
+      buffer_[index(k)] = dies ? buffer_[index(j)] : acquire();
       emit(action::scatter, j, {{k, buffer_[index(k)], {term::weight}, true}});
       done(k, j) = 1;
-      buffer_[index(j)] = -1;
+      if (dies) buffer_[index(j)] = -1;
       fresh = false;
       break;
     }
@@ -168,10 +174,11 @@ class schedule::builder {
 };
 
 template <class Real>
-schedule::schedule(const shu_osher_form<Real>& m) {
+schedule::schedule(const shu_osher_form<Real>& m, bool embedded) {
   const std::size_t s = m.stages();
   pattern p;
   p.stages = static_cast<int>(s);
+  p.result = embedded ? p.stages - 1 : p.stages;
   p.weight = p.transport = p.collision = matrix<char>(s + 1, s + 1);
   p.solve = p.recoverable = p.is_initial = std::vector<char>(s + 1, 0);
   const auto initial = initial_weights(m);
@@ -191,8 +198,8 @@ schedule::schedule(const shu_osher_form<Real>& m) {
   builder(p, *this).run();
 }
 
-template schedule::schedule(const shu_osher_form<double>&);
-template schedule::schedule(const shu_osher_form<long double>&);
-template schedule::schedule(const shu_osher_form<mp_real>&);
+template schedule::schedule(const shu_osher_form<double>&, bool);
+template schedule::schedule(const shu_osher_form<long double>&, bool);
+template schedule::schedule(const shu_osher_form<mp_real>&, bool);
 
 }  // namespace apsis

@@ -37,13 +37,18 @@ class schedule {
     std::vector<contribution> to;
   };
 
+  /// `embedded`: the last row of m is an embedded solution, and u^{n+1} the row before it. The stages are
+  /// then made by the same sums in the same order as without it; what the row costs is counted with the
+  /// others.
   template <class Real>
-  explicit schedule(const shu_osher_form<Real>& m);
+  explicit schedule(const shu_osher_form<Real>& m, bool embedded = false);
 
   const std::vector<instruction>& instructions() const { return instructions_; }
   /// State-sized buffers that a step needs, u^n (buffer 0) included.
   int buffers() const { return buffers_; }
   int result_buffer() const { return result_; }
+  /// Of the embedded solution; −1 if there is none.
+  int embedded_buffer() const { return embedded_; }
   /// Evaluations of T, of Q (explicit), and implicit solves per step.
   int transport_evaluations() const { return transports_; }
   int collision_evaluations() const { return collisions_; }
@@ -55,7 +60,7 @@ class schedule {
   void build(const pattern& p);
 
   std::vector<instruction> instructions_;
-  int buffers_ = 1, result_ = 0, transports_ = 0, collisions_ = 0, solves_ = 0;
+  int buffers_ = 1, result_ = 0, embedded_ = -1, transports_ = 0, collisions_ = 0, solves_ = 0;
 };
 
 }  // namespace apsis

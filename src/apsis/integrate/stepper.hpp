@@ -11,6 +11,9 @@
 
 namespace apsis {
 
+/// What a stepper computes in a step: u^{n+1}, or the embedded solution of the method besides.
+enum class solutions { result, result_and_embedded };
+
 /// One step of any method on any problem: carries out the method's schedule. The method is data; nothing here
 /// knows its name. Buffers are allocated at the first step as copies of the state.
 template <problem P>
@@ -20,12 +23,21 @@ class stepper {
   using real = typename P::real;
 
   /// Both are kept by reference/copy: the problem must outlive the stepper.
-  /// Throws input_error if the method evaluates Q explicitly and the problem cannot.
-  stepper(const method& m, P& p) : stepper(m.coefficients<real>(), m.kind, p, m.name) {}
+  /// Throws input_error if the method evaluates Q explicitly and the problem cannot, or if it has no embedded
+  /// solution and one is asked for.
+  stepper(const method& m, P& p, solutions which = solutions::result)
+      : stepper(which == solutions::result ? m.coefficients<real>()
+                                           : require_embedded_row(m).with_embedded_row().coefficients<real>(),
+                m.kind, p, m.name, which) {}
 
-  /// The same from coefficients that are in no file (a method under design, an optimiser).
-  stepper(shu_osher_form<real> coefficients, method_kind kind, P& p, const std::string& name = "method")
-      : problem_(p), m_(std::move(coefficients)), plan_(m_), initial_(initial_weights(m_)) {
+  /// The same from coefficients that are in no file (a method under design, an optimiser), the last row being
+  /// the embedded solution where it is to be computed.
+  stepper(shu_osher_form<real> coefficients, method_kind kind, P& p, const std::string& name = "method",
+          solutions which = solutions::result)
+      : problem_(p),
+        m_(std::move(coefficients)),
+        plan_(m_, which == solutions::result_and_embedded),
+        initial_(initial_weights(m_)) {
     const auto butcher = to_butcher(m_);
     // Time is a component of u with derivative 1, integrated by T where there is one (then Q̇ has no ∂_t
     // part).
@@ -45,12 +57,22 @@ class stepper {
 
   /// u ← u^{n+1} from u = u^n at time t. Strong guarantee: if a stage fails, u is still u^n.
   void step(real t, real dt, state& u) {
-    while (static_cast<int>(buffers_.size()) + 1 < plan_.buffers()) buffers_.push_back(u);
-    for (const auto& instruction : plan_.instructions()) execute(instruction, t, dt, u);
-    if (plan_.result_buffer() > 0) {
-      using std::swap;
-      swap(u, buffers_[static_cast<std::size_t>(plan_.result_buffer()) - 1]);
-    }
+    carry_out(t, dt, u);
+    accept(u);
+  }
+
+  /// u^{n+1} and the embedded solution of a step from u = u^n, which stays as it is: accept(u) takes the
+  /// step, the next attempt forgets it. Only with solutions::result_and_embedded.
+  struct attempted {
+    const state &result, &embedded;
+  };
+  attempted attempt(real t, real dt, state& u) {
+    carry_out(t, dt, u);
+    return {buffer(plan_.result_buffer(), u), buffer(plan_.embedded_buffer(), u)};
+  }
+  void accept(state& u) {
+    using std::swap;
+    if (plan_.result_buffer() > 0) swap(u, buffer(plan_.result_buffer(), u));
   }
 
   /// r of the Shu–Osher form: Δt ≤ r Δt_FE keeps what forward Euler steps of T keep. Where no form is convex
@@ -61,6 +83,11 @@ class stepper {
 
  private:
   using instruction_type = schedule::instruction;
+
+  void carry_out(real t, real dt, state& u) {
+    while (static_cast<int>(buffers_.size()) + 1 < plan_.buffers()) buffers_.push_back(u);
+    for (const auto& instruction : plan_.instructions()) execute(instruction, t, dt, u);
+  }
 
   state& buffer(int b, state& u) { return b == 0 ? u : buffers_[static_cast<std::size_t>(b) - 1]; }
 

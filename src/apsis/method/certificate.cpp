@@ -205,6 +205,79 @@ void check_form(const method& m, const shu_osher_form<mp_real>& form, const mp_r
   }
 }
 
+/// Cosine between the residuals of order p and 1/γ, without sign.
+mp_real alignment_of(const butcher_form<mp_real>& b, int p, method_kind kind) {
+  const auto trees = rooted_trees(p, colours_of(kind));
+  const auto weights = elementary_weights(b, trees);
+  mp_real along(0), residuals(0), exact(0);
+  for (std::size_t k = 0; k < trees.size(); ++k) {
+    if (trees[k].order != p) continue;
+    const mp_real wanted = mp_real(1) / mp_real(trees[k].density);
+    along += (weights[k] - wanted) * wanted;
+    residuals += (weights[k] - wanted) * (weights[k] - wanted);
+    exact += wanted * wanted;
+  }
+  return residuals == 0 ? mp_real(0) : mp_real(abs(along) / sqrt(residuals * exact));
+}
+
+/// An embedded solution is there for what it keeps, so its row must be convex.
+void check_embedded_signs(const shu_osher_form<mp_real>& form, const mp_real& tolerance, certificate& c) {
+  const std::size_t last = form.stages() - 1;
+  const auto check = [&](const std::string& what, const mp_real& value, const mp_real& least) {
+    if (value < least)
+      c.failures.push_back(
+          fmt::format("{} = {} is negative: the embedded solution is not convex", what, short_text(value)));
+  };
+  for (std::size_t j = 0; j < last; ++j) {
+    check(fmt::format("embedded.P_{}", j + 1), form.P(last, j), 0);
+    check(fmt::format("embedded.W_{}", j + 1), form.W(last, j), 0);
+  }
+  check("the weight of u^n in [embedded]", initial_weights(form)[last], -tolerance);
+  if (c.kind == method_kind::explicit_only) return;
+  check("embedded.d", form.D(last, last), 0);
+  check("-embedded.ddot", -form.ddot[last], 0);
+}
+
+void find_embedded_solution(const method& m, certificate& c) {
+  if (!m.embedded) return;
+  const method extended = m.with_embedded_row();
+  const auto form = extended.coefficients<mp_real>();
+  const auto b = to_butcher(form);
+  const mp_real tolerance = tolerance_of(extended.precision());
+  certificate row;
+  row.kind = m.kind;
+  find_order(b, tolerance, row);
+  embedded_certificate e;
+  e.order = row.order;
+  e.conditions = row.conditions;
+  e.order_residual = row.order_residual;
+  e.estimate = row.error_constant;
+  e.alignment = alignment_of(b, row.order + 1, m.kind);
+  e.relaxes = m.kind != method_kind::explicit_only && !extended.ends_with_update();
+  e.implicit_solves = e.relaxes ? 1 : 0;
+  if (m.kind == method_kind::imex && e.relaxes)
+    if (const auto terms = analyse_intermediate_regime(form); terms.applies) e.last = terms.last;
+  const std::size_t s = m.stages();
+  for (std::size_t j = 0; j < s; ++j) {
+    bool evaluated = false;
+    for (std::size_t i = 0; i < s; ++i) evaluated = evaluated || form.W(i, j) != 0;
+    e.explicit_evaluations += form.W(s, j) != 0 && !evaluated ? 1 : 0;
+  }
+  c.embedded = e;
+  if (m.embedded->order >= m.claims.order)
+    c.failures.push_back(
+        fmt::format("embedded.order = {} is not below that of the method, {}: nothing could be estimated",
+                    m.embedded->order, m.claims.order));
+  if (e.order > m.embedded->order) {
+    c.failures.push_back(fmt::format("embedded.order = {} but the embedded solution has order {}",
+                                     m.embedded->order, e.order));
+  } else {
+    check_order_claim(extended, row);
+    for (const auto& failure : row.failures) c.failures.push_back("[embedded] " + failure);
+  }
+  check_embedded_signs(form, tolerance, c);
+}
+
 }  // namespace
 
 certificate certify(const method& m) {
@@ -228,6 +301,7 @@ certificate certify(const method& m) {
   check_form(m, form, tolerance, c);
   check_structure_claims(m, c);
   check_intermediate_claim(m, c);
+  find_embedded_solution(m, c);
   c.claims_hold = c.failures.empty();
   return c;
 }

@@ -4,6 +4,7 @@
 #include <apsis/method/method.hpp>
 #include <apsis/method/precision.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,20 @@ struct implicit_stability {
   double at_infinity = 0;                ///< |R(−∞)|
   double angle = 0;                      ///< α of A(α) in degrees: |R| ≤ 1 on the sector |arg(−z)| ≤ α
   bool l_stable = false;                 ///< A-stable and R(−∞) = 0
+};
+
+/// What can be said of an embedded solution ũ, the last row of with_embedded_row().
+struct embedded_certificate {
+  int order = 0;           ///< q, by the order conditions of all rows
+  int conditions = 0;      ///< number of conditions up to it
+  mp_real order_residual;  ///< largest residual of them
+  mp_real estimate;      ///< 2-norm of φ̃(τ) − 1/γ(τ) over all trees τ of order q + 1: the size of u^{n+1} − ũ
+  mp_real alignment;     ///< cosine between these residuals and 1/γ(τ), without sign: 1 if u^{n+1} − ũ is a
+                         ///< multiple of the Taylor term of order q + 1
+  bool relaxes = false;  ///< it has an implicit part, so that ε → 0 projects it to equilibrium
+  std::optional<mp_real> last;   ///< its term of size ε in parts of the exact one (intermediate_regime::last)
+  int explicit_evaluations = 0;  ///< of T at stages where u^{n+1} needs none
+  int implicit_solves = 0;       ///< 0 or 1
 };
 
 /// All that can be said of a method from its coefficients alone.
@@ -60,6 +75,8 @@ struct certificate {
   bool keeps_layer = false;       ///< (N3): the integral of an initial layer too
   /// "all" if it keeps both, "slow", or "none".
   std::string keeps() const;
+
+  std::optional<embedded_certificate> embedded;
 
   bool claims_hold = false;
   std::vector<std::string> failures;  ///< condition, its value and its tree

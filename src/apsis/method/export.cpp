@@ -87,6 +87,16 @@ std::vector<std::string> diagonal_of(const matrix<std::string>& m) {
   return values;
 }
 
+std::string embedded_table(const embedded_row& row, method_kind kind) {
+  std::string out = fmt::format("\n[embedded]\norder = {}\n", row.order);
+  if (!row.origin.empty()) out += fmt::format("origin = {}\n", quoted(row.origin));
+  out += fmt::format("P = {}\n", list(row.P));
+  if (kind != method_kind::implicit_only) out += fmt::format("W = {}\n", list(row.W));
+  if (kind != method_kind::explicit_only)
+    out += fmt::format("d = {}\nddot = {}\n", quoted(row.d), quoted(row.ddot));
+  return out;
+}
+
 /// A number as LaTeX: "\frac{1}{2}", "0.25".
 std::string number(const std::string& text, int digits) {
   const auto slash = text.find('/');
@@ -132,7 +142,7 @@ std::string to_toml(const method& m) {
     out += fmt::format("W = {}\n", triangle(m.exact.W, 0, m.stages()));
   if (m.kind != method_kind::explicit_only)
     out += fmt::format("d = {}\nddot = {}\n", list(diagonal_of(m.exact.D)), list(m.exact.ddot));
-  return out;
+  return m.embedded ? out + embedded_table(*m.embedded, m.kind) : out;
 }
 
 std::string to_latex(const method& m, int digits) {

@@ -32,6 +32,27 @@ bool method::is_tableau() const {
   return false;
 }
 
+method method::with_embedded_row() const {
+  const std::size_t s = stages();
+  const auto grown = [s](const matrix<std::string>& rows, const std::vector<std::string>& last) {
+    matrix<std::string> all(s + 1, s + 1);
+    for (std::size_t i = 0; i <= s; ++i)
+      for (std::size_t j = 0; j <= s; ++j) all(i, j) = i < s && j < s ? rows(i, j) : "0";
+    for (std::size_t j = 0; j < last.size(); ++j) all(s, j) = last[j];
+    return all;
+  };
+  method m = *this;
+  m.claims = {};
+  m.claims.order = embedded->order;
+  m.embedded.reset();
+  m.exact.P = grown(exact.P, embedded->P);
+  m.exact.W = grown(exact.W, embedded->W);
+  m.exact.D = grown(exact.D, {});
+  m.exact.D(s, s) = embedded->d;
+  m.exact.ddot.push_back(embedded->ddot);
+  return m;
+}
+
 int method::precision() const {
   int most = 0;
   const auto see = [&most](const std::string& text) { most = std::max(most, decimals(text)); };

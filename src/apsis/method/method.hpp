@@ -30,6 +30,19 @@ struct method_claims {
       intermediate;  ///< O(ε) terms that are right where ε ≪ Δt: "slow" (N1, N2) or "all" (N1–N3)
 };
 
+/// One more row of the Shu–Osher form, a solution ũ of lower order beside u^{n+1} from which the error of a
+/// step is estimated:
+///   ũ = r̃ u^n + Σ_j p̃_j u_j + Σ_j w̃_j (u_j + (Δt/r) T(u_j)) + Δt d̃ Q(ũ) + Δt² d̃̇ Q̇(ũ),
+///   r̃ = 1 − Σ_j (p̃_j + w̃_j),
+/// with the r of the method, j over all its stages. With all weights and d̃ ≥ 0 and d̃̇ ≤ 0 it keeps what the
+/// stages keep. Coefficients as strings, as those of the method.
+struct embedded_row {
+  int order = 0;
+  std::string origin;             ///< how it was found; "" if nothing is said
+  std::vector<std::string> P, W;  ///< p̃ and w̃, as many as stages
+  std::string d = "0", ddot = "0";
+};
+
 /// A time integrator as data. Coefficients exist as the strings of its file (exact rationals "p/q" or
 /// decimals of any length) and are converted to the precision in which they are asked for.
 class method {
@@ -40,6 +53,7 @@ class method {
   method_kind kind = method_kind::imex;
   method_claims claims;
   shu_osher_form<std::string> exact;  ///< as in the file; "0" where nothing stands
+  std::optional<embedded_row> embedded;
 
   /// Rows of the form, the last of which is u^{n+1}.
   std::size_t stages() const { return exact.stages(); }
@@ -55,6 +69,10 @@ class method {
   /// exact.
   int precision() const;
 
+  /// The method of s + 1 rows whose result is the embedded solution: its order is claimed, nothing else. Only
+  /// if there is an embedded row.
+  method with_embedded_row() const;
+
   /// Shu–Osher form in `Real` (double, long double or mp_real), each coefficient correctly rounded
   /// from its exact value. In double and long double the convex weights are then set on a common
   /// grid so that r_i + Σ_j (p_ij + w_ij) is 1 without rounding and no step drifts.
@@ -67,6 +85,10 @@ class method {
 /// nearest name if there is none, or the range of S if a family has no such member, claim_error if its claims
 /// do not hold.
 const method& find_method(std::string_view name);
+
+/// The same method. Throws input_error with the names of those of the catalogue that have one if it has no
+/// embedded row.
+const method& require_embedded_row(const method& m);
 
 /// Names of the catalogue, sorted; without members of families.
 std::vector<std::string> method_names();

@@ -241,6 +241,29 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   for (std::size_t i = 0; i < s; ++i) e.D(i, i) = d[i];
 }
 
+/// [embedded]: a row of the Shu–Osher form, with T and implicit part as far as the method has them.
+void read_embedded(const toml::table& table, const std::string& file, method& m) {
+  std::vector<std::string> keys = {"order", "origin", "P"};
+  if (m.kind != method_kind::implicit_only) keys.emplace_back("W");
+  if (m.kind != method_kind::explicit_only) keys.insert(keys.end(), {"d", "ddot"});
+  const section form(table, file, "embedded", keys);
+  embedded_row row;
+  row.order = form.integer("order", 1, 8);
+  if (form.has("origin")) row.origin = form.text("origin");
+  const auto weights = [&](const std::string& key) {
+    auto values = form.vector(key);
+    if (values.size() != m.stages())
+      form.fail(key, fmt::format("'embedded.{}' has {} entries (the method has {} stages)", key,
+                                 values.size(), m.stages()));
+    return values;
+  };
+  row.P = weights("P");
+  row.W = form.has("W") ? weights("W") : std::vector<std::string>(m.stages(), "0");
+  if (form.has("d")) row.d = form.coefficient("d");
+  if (form.has("ddot")) row.ddot = form.coefficient("ddot");
+  m.embedded = row;
+}
+
 /// The rows of `key` and, below them, the update `weights` of a method whose u^{n+1} is not its last stage.
 matrix<std::string> read_tableau(const section& form, const std::string& key, const std::string& weights,
                                  std::size_t diagonal, std::size_t s, bool update) {
@@ -314,9 +337,9 @@ method parse_method(std::string_view text, const std::string& file) {
                       "not TOML (" + std::string(failure.description()) + ")");
   }
   method m;
-  const section top(
-      root, file, "",
-      {"name", "title", "citation", "origin", "purpose", "kind", "claims", "shu_osher", "butcher"});
+  const section top(root, file, "",
+                    {"name", "title", "citation", "origin", "purpose", "kind", "claims", "shu_osher",
+                     "butcher", "embedded"});
   m.name = top.text("name");
   m.title = top.text("title");
   m.citation = top.text("citation");
@@ -332,6 +355,11 @@ method parse_method(std::string_view text, const std::string& file) {
   } else {
     read_butcher(need_table(root, "butcher", file), file, m);
   }
+  if (!top.has("embedded")) return m;
+  if (!top.has("shu_osher"))
+    throw input_error(place_of(top.need("embedded"), file),
+                      "[embedded] is a row of the Shu-Osher form; give the method as [shu_osher]");
+  read_embedded(need_table(root, "embedded", file), file, m);
   return m;
 }
 

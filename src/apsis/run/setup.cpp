@@ -103,6 +103,7 @@ void run_setup::check_method() {
                        "or time.cfl",
                        method_->name));
   check_startup();
+  check_tolerance();
 }
 
 void run_setup::check_startup() const {
@@ -118,6 +119,18 @@ void run_setup::check_startup() const {
            fmt::format("time.startup = \"graded\" has no meaning for model '{}' (its relaxation time is not "
                        "known); remove it",
                        config_.model.name));
+}
+
+void run_setup::check_tolerance() const {
+  if (!has_tolerance()) return;
+  if (has_graded_start())
+    refuse(config_, "time.tolerance",
+           "time.tolerance and time.startup = \"graded\" both choose the first steps; remove one of them");
+  try {
+    require_embedded_row(*method_);
+  } catch (const input_error& missing) {
+    refuse(config_, "time.tolerance", std::string("time.tolerance cannot be kept: ") + missing.what());
+  }
 }
 
 void run_setup::choose_stencil() {

@@ -39,8 +39,9 @@ class run_setup {
   double cell_volume() const { return has_space() ? mesh_.cell_volume() : 1.0; }
   std::vector<double> centres() const;
   std::vector<double> epsilon_at_centres() const;
-  /// dt if it was given as a number.
-  std::optional<double> given_dt() const { return config_.time.dt; }
+  /// dt if it was given as a number and every step is that long.
+  std::optional<double> given_dt() const { return has_tolerance() ? std::nullopt : config_.time.dt; }
+  bool has_tolerance() const { return config_.time.tolerance.has_value(); }
   /// Δx/v_max, so that Δt = cfl · this.
   double cfl_length() const;
   bool has_graded_start() const { return config_.time.startup == "graded"; }
@@ -58,6 +59,7 @@ class run_setup {
   std::vector<double> epsilon_on(const std::vector<double>& x) const;
   void check_method();
   void check_startup() const;
+  void check_tolerance() const;
   void choose_stencil();
 
   case_config config_;

@@ -2,7 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
-#include <apsis/integrate/integrate.hpp>
+#include <apsis/integrate/error_control.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/setup.hpp>
 
@@ -27,12 +27,27 @@ std::string run_promises::text() const {
                       : fmt::format("promised at every step: {}", fmt::join(kept, ", "));
 }
 
+namespace {
+/// ‖u − v‖₂/‖u‖₂ over all cells and components.
+double relative_distance(const field& u, const field& v) {
+  double difference = 0.0, size = 0.0;
+  for (int cell = 0; cell < u.cells(); ++cell)
+    for (int k = 0; k < u.components(); ++k) {
+      const double x = u.row(cell)[k], d = x - v.row(cell)[k];
+      difference += d * d;
+      size += x * x;
+    }
+  return difference == 0.0 ? 0.0 : std::sqrt(difference / size);
+}
+}  // namespace
+
 struct simulation::impl {
   explicit impl(case_config configured)
       : config(std::move(configured)),
         setup(config),
         problem(setup.make_problem()),
-        integrator(setup.integrator(), *problem),
+        integrator(setup.integrator(), *problem,
+                   setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
         watch(*setup.equation, setup.cell_volume()),
         state(setup.initial_state()),
         march(0.0, config.time.end, setup.given_dt()) {
@@ -40,6 +55,7 @@ struct simulation::impl {
       log::warning(
           fmt::format("time.dt = {:.17g} does not divide time.end = {:g}; dt = {:.17g} is used instead",
                       *config.time.dt, config.time.end, *march.fixed_dt()));
+    if (setup.has_tolerance()) control.emplace(*config.time.tolerance, setup.integrator().embedded->order);
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
@@ -57,10 +73,18 @@ struct simulation::impl {
   double limit() {
     if (config.time.cfl) return *config.time.cfl * setup.cfl_length();
     if (config.time.safety) return *config.time.safety * forward_euler_limit();
-    return *march.fixed_dt();
+    return control ? *config.time.dt : *march.fixed_dt();
   }
 
-  double next_dt() { return march.next(limit()); }
+  double next_dt() { return march.next(control ? std::min(limit(), control->proposed()) : limit()); }
+
+  /// u ← u^{n+1}; returns Δt.
+  double step() {
+    if (control) return step_within_tolerance(integrator, march, *control, limit(), state, relative_distance);
+    const double dt = next_dt();
+    integrator.step(march.t(), dt, state);
+    return dt;
+  }
 
   void record_step(double dt) {
     march.advance(dt);
@@ -114,6 +138,7 @@ struct simulation::impl {
   monitor watch;
   field state;
   time_marcher<double> march;
+  std::optional<step_controller<double>> control;
   run_promises promises;
   step_record first, last;
   run_summary totals;
@@ -163,9 +188,7 @@ const step_record& simulation::advance() {
   const auto start = std::chrono::steady_clock::now();
   impl& run = *impl_;
   try {
-    const double dt = run.next_dt();
-    run.integrator.step(run.march.t(), dt, run.state);
-    run.record_step(dt);
+    run.record_step(run.step());
   } catch (const numerical_error& failure) {
     throw failure.site().step >= 0 ? failure : failure.at(run.march.step() + 1, run.march.t());
   }
@@ -183,8 +206,11 @@ const step_record& simulation::initial_record() const {
 
 run_summary simulation::summary() const {
   run_summary summary = impl_->totals;
-  const double work = static_cast<double>(summary.phase_points) * static_cast<double>(summary.steps) *
-                      static_cast<double>(impl_->setup.integrator().stages());
+  const auto& control = impl_->control;
+  summary.rejected_steps = control ? control->rejected() : 0;
+  const double work = static_cast<double>(summary.phase_points) *
+                      static_cast<double>(summary.steps + summary.rejected_steps) *
+                      static_cast<double>(impl_->setup.integrator().stages() + (control ? 1 : 0));
   summary.t = t();
   summary.startup_steps = impl_->march.startup_steps();
   summary.point_stages_per_s = summary.wall_s > 0.0 ? work / summary.wall_s : 0.0;
@@ -247,6 +273,12 @@ saved_run simulation::save() const {
   saved.startup_steps = march.startup_steps;
   saved.startup_done = march.startup_done;
   saved.startup_length = march.startup_length;
+  if (impl_->control) {
+    const auto control = impl_->control->save();
+    saved.proposed_dt = control.proposed;
+    saved.previous_error = control.previous;
+    saved.step_holds = control.holds;
+  }
   saved.so_far = summary();
   saved.initial = impl_->first;
   saved.last = impl_->last;
@@ -263,6 +295,9 @@ void simulation::restore(const saved_run& saved) {
                 impl_->state.row(cell));
   impl_->march.resume({saved.step, saved.since_anchor, saved.t, saved.anchor, saved.anchor_dt,
                        saved.startup_steps, saved.startup_done, saved.startup_length});
+  if (impl_->control)
+    impl_->control->resume(
+        {saved.proposed_dt, saved.previous_error, saved.step_holds, saved.so_far.rejected_steps});
   impl_->totals = saved.so_far;
   impl_->first = saved.initial;
   impl_->last = saved.last;

@@ -3,6 +3,7 @@
 #include <apsis/config/case.hpp>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ struct run_promises {
 /// Everything about a finished (or interrupted) run.
 struct run_summary {
   long steps = 0;
-  long startup_steps = 0;  ///< steps that took the place of the first; 0 without start-up
+  long startup_steps = 0;   ///< steps that took the place of the first; 0 without start-up
+  long rejected_steps = 0;  ///< whose estimated error was above the tolerance; not among the steps
   double dt = 0.0, t = 0.0, wall_s = 0.0;
   double min_value = 0.0;    ///< over all steps, the initial state included
   long negative_values = 0;  ///< sum over all steps
@@ -49,6 +51,9 @@ struct saved_run {
   double t = 0.0, anchor = 0.0, anchor_dt = 0.0;  ///< see time_marcher::progress
   long startup_steps = 0, startup_done = 0;
   double startup_length = 0.0;
+  /// See step_controller::progress; as at the start where no tolerance is kept.
+  double proposed_dt = std::numeric_limits<double>::infinity(), previous_error = 1.0;
+  bool step_holds = false;
   run_summary so_far;
   step_record initial, last;
 };

@@ -1,0 +1,70 @@
+#include "commands.hpp"
+#include "design_embedded.hpp"
+#include "method_report.hpp"
+#include "method_writer.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/design/embedded.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace apsis::app {
+namespace {
+
+embedded_task task_of(const embedded_options& given, const method& m) {
+  embedded_task task;
+  if (given.order && (*given.order < 1 || *given.order >= m.claims.order))
+    throw input_error(
+        fmt::format("command line: --order {} is out of range (from 1 to {}: below that of '{}')",
+                    *given.order, m.claims.order - 1, m.name));
+  task.order = given.order.value_or(0);
+  if (given.cost != "nothing" && given.cost != "one-solve")
+    throw input_error(fmt::format("command line: unknown --cost '{}' {}", given.cost.substr(0, 60),
+                                  suggest(given.cost, {"nothing", "one-solve"})));
+  task.cost = given.cost == "nothing" ? embedded_cost::nothing : embedded_cost::one_solve;
+  return task;
+}
+
+std::string text_of(const embedded_attempt& tried, double useful) {
+  if (tried.nearest < 1e-15)  // the row of u^{n+1} always is a solution
+    return fmt::format("order {}: sees {:.2g} of the error, {:.2g} is asked for", tried.order,
+                       tried.seen < 1e-12 ? 0.0 : tried.seen, useful);
+  return fmt::format("order {}: nearest residual {:.1e}", tried.order, tried.nearest);
+}
+
+}  // namespace
+
+int design_embedded(const embedded_options& given) {
+  method m = find_method(given.method);
+  const embedded_task task = task_of(given, m);
+  method_writer file(given.out);
+  const embedded_search search = find_embedded(m, task);
+  if (!search.found) {
+    std::vector<std::string> tried;
+    for (const auto& attempt : search.attempts) tried.push_back(text_of(attempt, task.useful));
+    throw numerical_error(fmt::format(
+        "'{}' has no embedded solution with the cost {} ({}) {}", m.name, given.cost, fmt::join(tried, "; "),
+        task.cost == embedded_cost::nothing ? "try --cost one-solve" : "try a lower --order"));
+  }
+  m.embedded = search.found;
+  m.embedded->origin = fmt::format(
+      "apsis design --embedded {}{}: of all convex rows of order {} {}that whose distance to u^(n+1) is "
+      "nearest to "
+      "1/{} of the Taylor term of order {}",
+      m.name, given.cost == "nothing" ? " --cost nothing" : "", m.embedded->order,
+      m.claims.intermediate ? "that keep the terms of size epsilon of the last stage, " : "", task.parts,
+      m.embedded->order + 1);
+  file.write(m);
+  const auto report = check_json(m);
+  print(given.json ? report.dump(2) + "\n"
+                   : fmt::format("written to '{}'\n\n{}", file.path(), check_text(m)));
+  if (!report["claims_hold"].get<bool>())
+    throw claim_error(fmt::format("the method in '{}' does not hold what was asked for ({}) report this",
+                                  file.path(), first_failure(m)));
+  return 0;
+}
+
+}  // namespace apsis::app

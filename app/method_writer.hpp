@@ -1,0 +1,28 @@
+#pragma once
+
+#include <apsis/method/method.hpp>
+#include <apsis/output/result_folder.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace apsis::app {
+
+/// The method file that a command leaves, with the best method so far at any time.
+class method_writer {
+ public:
+  /// Throws input_error unless the path ends in .toml.
+  explicit method_writer(const std::string& path);
+
+  std::string name() const { return path_.stem().string(); }
+  std::string path() const { return path_.string(); }
+
+  /// Throws io_error; what was there before is then still there.
+  void write(const method& m);
+
+ private:
+  std::filesystem::path path_;
+  result_folder folder_;
+};
+
+}  // namespace apsis::app

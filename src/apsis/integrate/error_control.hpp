@@ -1,0 +1,103 @@
+#pragma once
+
+#include <apsis/integrate/integrate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace apsis {
+
+/// Step size from an estimate of the error, such that it stays below a tolerance. A step is rejected if its
+/// error err is larger; then, and after a step that was good,
+///   Δt ← 0.9 Δt (tol/err)^{1/k},      Δt ← 0.9 Δt (tol/err)^{0.7/k} (err_{n−1}/tol)^{0.4/k},
+/// by a factor from 0.2 to 5, and no longer right after a rejection. err ~ Δt^k: k is the order of the
+/// embedded solution and one. The second is Gustafsson's proportional–integral controller: where stability or
+/// a limit of the step keeps err small or rough, it does not swing as the first would (Hairer, Wanner,
+/// Solving Ordinary Differential Equations II, section IV.2; Söderlind, ACM Trans. Math. Softw. 29 (2003)
+/// 1–26).
+template <class Real>
+class step_controller {
+ public:
+  /// All that changes on the way, so that a restart goes on to the same last digit.
+  struct progress {
+    Real proposed = std::numeric_limits<Real>::infinity();
+    Real previous = Real(1);  ///< err/tol of the last good step
+    bool holds = false;       ///< the last step was rejected
+    long rejected = 0;
+  };
+
+  /// Throws input_error unless the tolerance is a positive number.
+  step_controller(Real tolerance, int order) : tolerance_(tolerance), order_(order) {
+    if (!(tolerance > Real(0)) || !(tolerance < std::numeric_limits<Real>::infinity()))
+      throw input_error("the tolerance is not a positive number; give one above 0");
+  }
+
+  /// The length that the next step should have at most; +infinity at first.
+  Real proposed() const { return now_.proposed; }
+  long rejected() const { return now_.rejected; }
+
+  /// Whether a step of length dt with this estimated error is good; what is proposed changes.
+  bool accepts(Real dt, Real error) {
+    using std::pow;
+    const Real k(order_ + 1), ratio = error / tolerance_;
+    const bool good = ratio <= Real(1);
+    if (good) {
+      const Real now = std::max(ratio, Real(1e-4));  // an error of nothing says nothing
+      const Real factor = Real(0.9) * pow(now, Real(-0.7) / k) * pow(now_.previous, Real(0.4) / k);
+      now_.proposed = dt * std::clamp(factor, Real(0.2), now_.holds ? Real(1) : Real(5));
+      now_.previous = now;
+    } else {
+      const bool number = ratio < std::numeric_limits<Real>::infinity();
+      const Real factor = number ? Real(0.9) * pow(ratio, Real(-1) / k) : Real(0);
+      now_.proposed = dt * std::max(factor, Real(0.2));
+      ++now_.rejected;
+    }
+    now_.holds = !good;
+    return good;
+  }
+
+  progress save() const { return now_; }
+  void resume(const progress& saved) { now_ = saved; }
+
+ private:
+  Real tolerance_;
+  int order_;
+  progress now_;
+};
+
+/// One step that the controller accepts, of length `limit` at most: u ← u^{n+1}, and its length is returned.
+/// distance(u^{n+1}, ũ) is the estimated error, in the norm of the caller. Throws numerical_error if steps
+/// become too small to advance time; u is then u^n.
+template <problem P, class Distance>
+typename P::real step_within_tolerance(stepper<P>& method_stepper,
+                                       const time_marcher<typename P::real>& march,
+                                       step_controller<typename P::real>& control, typename P::real limit,
+                                       typename P::state& u, const Distance& distance) {
+  while (true) {
+    const auto dt = march.next(std::min(limit, control.proposed()));
+    const auto tried = method_stepper.attempt(march.t(), dt, u);
+    if (!control.accepts(dt, distance(tried.result, tried.embedded))) continue;
+    method_stepper.accept(u);
+    return dt;
+  }
+}
+
+/// integrate() with steps as long as `control` finds good; the rule says how long they may be at most, a
+/// given dt too. The stepper computes solutions::result_and_embedded.
+template <problem P, class Distance, class Observer = no_observer>
+integration_result<typename P::real> integrate_to_tolerance(stepper<P>& method_stepper, typename P::state& u,
+                                                            typename P::real t0, typename P::real t1,
+                                                            step_rule<typename P::real> rule,
+                                                            step_controller<typename P::real>& control,
+                                                            const Distance& distance,
+                                                            Observer&& observer = {}) {
+  using real = typename P::real;
+  const auto take = [&](const time_marcher<real>& march, real limit, typename P::state& state) {
+    return step_within_tolerance(method_stepper, march, control, limit, state, distance);
+  };
+  return integrate_with(take, method_stepper, time_marcher<real>(t0, t1), u, rule, observer);
+}
+
+}  // namespace apsis

@@ -1,0 +1,323 @@
+// Embedded solutions through the stepper: what they cost, their order, and step size control with them.
+#include "support/catalogue.hpp"
+
+#include <apsis/integrate/error_control.hpp>
+#include <apsis/method/certificate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <integrate/ode_model.hpp>
+#include <integrate/reference.hpp>
+#include <support/property.hpp>
+
+namespace {
+
+using apsis::method_kind;
+using apsis::solutions;
+using apsis::step_controller;
+using apsis::step_rule;
+using real = long double;
+using state = std::vector<real>;
+
+std::vector<std::string> methods_with_embedded_row() {
+  return methods_where([](const apsis::method& m) { return m.embedded.has_value(); });
+}
+
+const auto distance = [](const auto& u, const auto& v) {
+  auto sum = std::abs(u[0] - v[0]);
+  for (std::size_t k = 1; k < u.size(); ++k) sum += std::abs(u[k] - v[k]);
+  return sum;
+};
+
+/// The ODE model of the paper from u2(0) = `rest`, or u' = −10u² for methods without transport (as
+/// tests/integrate/method_orders.cpp).
+template <class Use>
+auto with_problem(const std::string& name, real epsilon, real rest, const Use& use) {
+  const apsis::method& m = apsis::find_method(name);
+  if (m.kind == method_kind::implicit_only) {
+    auto problem = apsis::make_newton_problem<state>(
+        apsis::no_transport{}, [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; });
+    apsis::stepper march(m, problem, solutions::result_and_embedded);
+    return use(march, state{real(1) / 10});
+  }
+  auto problem = ode_model::as_relaxation<state>(epsilon);
+  apsis::stepper march(m, problem, solutions::result_and_embedded);
+  return use(march, state{2, rest});
+}
+
+/// In equilibrium Q is 0, and with it all elementary differentials of the ODE model that a method of order 1
+/// may be blind for.
+const real consistent = std::sin(real(2)), inconsistent = 0;
+
+/// ‖u^{n+1} − ũ‖ after one step.
+double estimate(const std::string& name, real epsilon, real rest, real dt) {
+  return with_problem(name, epsilon, rest, [dt](auto& march, state u) {
+    const auto tried = march.attempt(0, dt, u);
+    return static_cast<double>(distance(tried.result, tried.embedded));
+  });
+}
+
+/// The error at t = 1 if ũ is carried on instead of u^{n+1}.
+double error_carried_on(const std::string& name, long steps) {
+  return with_problem(name, 1, inconsistent, [steps](auto& march, state u) {
+    const real dt = real(1) / static_cast<real>(steps);
+    for (long n = 0; n < steps; ++n) u = state(march.attempt(static_cast<real>(n) * dt, dt, u).embedded);
+    if (u.size() == 1) return static_cast<double>(std::abs(u[0] - real(1) / 20));
+    const auto exact = reference::radau(1, 1);
+    return static_cast<double>(distance(u, state{exact[0], exact[1]}));
+  });
+}
+
+class every_embedded_row : public ::testing::TestWithParam<std::string> {};
+
+/// Where the first term of an error is small, it takes short steps for the next to be below a tenth of it:
+/// 0.15 in the slope.
+constexpr double tolerance = 0.15;
+
+TEST_P(every_embedded_row, has_its_order) {
+  const int q = apsis::find_certificate(GetParam()).embedded->order;
+  EXPECT_NEAR(std::log2(error_carried_on(GetParam(), 4096) / error_carried_on(GetParam(), 8192)), q,
+              tolerance);
+}
+
+TEST_P(every_embedded_row, estimates_a_term_of_its_order_and_one) {
+  const int q = apsis::find_certificate(GetParam()).embedded->order;
+  const real dt = real(1) / 1024;
+  const auto slope = [&](real epsilon, real rest) {
+    return std::log2(estimate(GetParam(), epsilon, rest, dt) / estimate(GetParam(), epsilon, rest, dt / 2));
+  };
+  EXPECT_NEAR(slope(1, inconsistent), q + 1, tolerance);
+  // In the limit ũ is on the equilibrium manifold as u^{n+1} is, and what is left are the trees of T alone.
+  // Terms of size ε Δt are 1e-17: far below the smallest estimate, 1e-12.
+  if (apsis::find_method(GetParam()).kind == method_kind::imex) {
+    EXPECT_NEAR(slope(1e-14L, consistent), q + 1, tolerance);
+    EXPECT_NEAR(slope(1e-14L, inconsistent), q + 1, tolerance);
+  }
+}
+
+TEST_P(every_embedded_row, leaves_the_result_as_it_is_to_the_last_bit) {
+  with_problem(GetParam(), 1e-2L, inconsistent, [&](auto& march, state u) {
+    auto& problem = march.target_problem();
+    apsis::stepper alone(apsis::find_method(GetParam()), problem);
+    state v = u;
+    for (int n = 0; n < 20; ++n) {
+      const real dt = real(0.01) * static_cast<real>(1 + n % 3);
+      alone.step(real(0), dt, v);
+      const auto tried = march.attempt(real(0), dt, u);
+      EXPECT_EQ(tried.result, v);
+      EXPECT_NE(tried.embedded, v);
+      EXPECT_NE(u, v);  // u^n stays until the step is accepted
+      march.accept(u);
+      EXPECT_EQ(u, v);
+    }
+    return 0;
+  });
+}
+
+TEST_P(every_embedded_row, costs_what_its_certificate_says) {
+  const apsis::method& m = apsis::find_method(GetParam());
+  const auto& c = apsis::find_certificate(GetParam());
+  const apsis::schedule alone(m.coefficients<double>()),
+      both(m.with_embedded_row().coefficients<double>(), true);
+  EXPECT_EQ(both.transport_evaluations(), c.explicit_evaluations + c.embedded->explicit_evaluations);
+  EXPECT_EQ(both.implicit_solves(), c.implicit_solves + c.embedded->implicit_solves);
+  EXPECT_GE(both.buffers(), alone.buffers());
+  EXPECT_LE(both.buffers(), alone.buffers() + 2);  // ũ, and a stage that waits for it
+}
+
+std::string name_of(const ::testing::TestParamInfo<std::string>& name) {
+  std::string text = name.param;
+  std::replace(text.begin(), text.end(), '-', '_');
+  return text;
+}
+
+INSTANTIATE_TEST_SUITE_P(catalogue, every_embedded_row, ::testing::ValuesIn(methods_with_embedded_row()),
+                         name_of);
+
+/// u' = λ_T u + λ_Q u.
+class linear {
+ public:
+  using state = std::vector<double>;
+  using real = double;
+  double transport = 0.0, collision = 0.0;
+  void scatter(double, const state& u, std::span<const apsis::target<state, double>> targets) const {
+    for (const auto& to : targets) (*to.acc)[0] = to.combine((*to.acc)[0], u[0], transport * u[0]);
+  }
+  void collide(double, double a, double b, state& u) const {
+    u[0] /= 1.0 - a * collision - b * collision * collision;
+  }
+  void scatter_collision(double, const state& u,
+                         std::span<const apsis::target<state, double>> targets) const {
+    for (const auto& to : targets) (*to.acc)[0] = to.combine((*to.acc)[0], u[0], collision * u[0]);
+  }
+  double forward_euler_step(double, const state&) const { return 1.0; }
+};
+
+/// A form of 2 to 7 rows with a random zero pattern, Q of earlier stages included.
+apsis::shu_osher_form<double> random_form() {
+  const auto s = *rc::gen::inRange<std::size_t>(2, 8);
+  const auto number = [] { return *rc::gen::inRange(0, 3) == 0 ? *rc::gen::inRange(1, 1000) * 1e-3 : 0.0; };
+  apsis::shu_osher_form<double> m;
+  m.P = m.W = m.D = apsis::matrix<double>(s, s);
+  m.r = 0.7;
+  for (std::size_t i = 0; i < s; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      m.P(i, j) = number() / static_cast<double>(s);
+      m.W(i, j) = number() / static_cast<double>(s);
+      m.D(i, j) = number() - number();
+    }
+    m.D(i, i) = number();
+    m.ddot.push_back(-number());
+  }
+  return m;
+}
+
+apsis::shu_osher_form<double> without_last_row(const apsis::shu_osher_form<double>& m) {
+  const std::size_t s = m.stages() - 1;
+  apsis::shu_osher_form<double> rest;
+  rest.P = rest.W = rest.D = apsis::matrix<double>(s, s);
+  rest.r = m.r;
+  rest.ddot.assign(m.ddot.begin(), m.ddot.end() - 1);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      rest.P(i, j) = m.P(i, j);
+      rest.W(i, j) = m.W(i, j);
+      rest.D(i, j) = m.D(i, j);
+    }
+  return rest;
+}
+
+TEST(embedded_schedule, of_any_zero_pattern_makes_both_solutions) {
+  check_property("random forms", [] {
+    const auto form = random_form();
+    linear p;
+    p.transport = *rc::gen::inRange(-1000, 1000) * 1e-3;
+    p.collision = -*rc::gen::inRange(1, 1000) * 1e-3;
+    const auto kind = method_kind::imex;
+    std::vector<double> u = {1.0}, result = u, last = u;
+    apsis::stepper<linear> both(form, kind, p, "both", solutions::result_and_embedded);
+    apsis::stepper<linear> alone(without_last_row(form), kind, p), whole(form, kind, p);
+    alone.step(0.0, 1.0, result);
+    whole.step(0.0, 1.0, last);
+    const auto tried = both.attempt(0.0, 1.0, u);
+    RC_ASSERT(tried.result == result);  // to the last bit
+    RC_ASSERT(std::abs(tried.embedded[0] - last[0]) <= 1e-11 * (1.0 + std::abs(last[0])));
+    RC_ASSERT(u[0] == 1.0);
+  });
+}
+
+TEST(embedded_solution, is_asked_for_in_vain_where_there_is_none) {
+  auto problem = ode_model::as_relaxation<state>(1);
+  const apsis::method& m = apsis::find_method("ars-443");
+  try {
+    const apsis::stepper march(m, problem, solutions::result_and_embedded);
+    FAIL();
+  } catch (const apsis::input_error& refused) {
+    EXPECT_THAT(refused.what(), ::testing::HasSubstr("method 'ars-443' has no embedded solution"));
+    EXPECT_THAT(refused.what(), ::testing::HasSubstr("md-imex-3-2"));
+  }
+}
+
+struct controlled {
+  double error;
+  long steps, rejected;
+};
+
+/// The ODE model from data out of equilibrium, whose layer of width ε asks for short steps first.
+controlled solve_to(const std::string& name, real tol, real epsilon, real longest) {
+  const apsis::method& m = apsis::find_method(name);
+  const auto exact = reference::radau(epsilon, 1);
+  auto problem = ode_model::as_relaxation<state>(epsilon);
+  apsis::stepper march(m, problem, solutions::result_and_embedded);
+  step_controller<real> control(tol, m.embedded->order);
+  auto u = ode_model::initial_state<state>();
+  real last = 0;
+  const auto done =
+      apsis::integrate_to_tolerance(march, u, real(0), real(1), step_rule<real>::fixed(longest), control,
+                                    distance, [&](long, real t, real dt, const state&) {
+                                      EXPECT_LE(dt, longest);
+                                      EXPECT_TRUE(t > last || t == 0);
+                                      last = t;
+                                    });
+  EXPECT_EQ(done.t, 1);
+  return {static_cast<double>(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1])), done.steps,
+          control.rejected()};
+}
+
+TEST(step_control, makes_the_error_as_small_as_is_asked) {
+  const auto coarse = solve_to("md-imex-8-3-accurate", 1e-5L, 1e-2L, 1),
+             fine = solve_to("md-imex-8-3-accurate", 1e-8L, 1e-2L, 1);
+  // Of a method of order p with an estimate of order q + 1, errors per step below tol, the error at the end
+  // is about tol^{(p+1)/(q+1)} times the number of steps: a thousand times smaller tolerance, about 1e-4 of
+  // it.
+  EXPECT_LT(fine.error, 1e-2 * coarse.error);
+  EXPECT_LT(fine.error, 1e-6);
+  // Steps go with tol^{-1/(q+1)} = 10.
+  EXPECT_GT(fine.steps, 4 * coarse.steps);
+  EXPECT_LT(fine.steps, 25 * coarse.steps);
+  EXPECT_GE(coarse.rejected, 1);  // the first one, of length 1
+  EXPECT_LT(fine.rejected, fine.steps / 4);
+}
+
+TEST(step_control, has_no_plateau_with_a_method_that_has_none) {
+  // ε = 1e-4 is far above the tolerance. A ũ that lost the term of size ε forces steps as short as ε for
+  // ever; one that keeps it leaves them behind with the layer.
+  const real tol = 3e-6L, epsilon = 1e-4L;
+  const auto kept = solve_to("md-imex-8-3", tol, epsilon, 1),
+             in_the_limit = solve_to("md-imex-8-3", tol, 1e-12L, 1);
+  EXPECT_LT(kept.error, 1e-4);
+  EXPECT_LT(kept.steps, 4 * in_the_limit.steps);
+  EXPECT_GT(solve_to("md-imex-3-2", tol, epsilon, 1).steps, 20 * kept.steps);
+}
+
+TEST(step_control, never_takes_longer_steps_than_the_rule_allows) {
+  EXPECT_EQ(solve_to("md-imex-8-3", 1.0L, 1, real(1) / 8).steps, 8);
+  EXPECT_EQ(solve_to("md-imex-8-3", 1.0L, 1, real(1) / 8).rejected, 0);
+}
+
+TEST(step_control, rejects_what_is_no_number_and_refuses_no_tolerance) {
+  step_controller<double> control(1e-3, 2);
+  EXPECT_FALSE(control.accepts(1.0, std::nan("")));
+  EXPECT_DOUBLE_EQ(control.proposed(), 0.2);
+  EXPECT_FALSE(control.accepts(0.2, std::numeric_limits<double>::infinity()));
+  EXPECT_DOUBLE_EQ(control.proposed(), 0.04);
+  EXPECT_TRUE(control.accepts(0.04, 0.0));
+  EXPECT_DOUBLE_EQ(control.proposed(), 0.04);  // no longer right after a rejection
+  EXPECT_TRUE(control.accepts(0.04, 0.0));
+  // An error of nothing counts as 1e-4 of the tolerance: (1e-4)^{-0.7/3 + 0.4/3}.
+  EXPECT_DOUBLE_EQ(control.proposed(), 0.04 * 0.9 * std::pow(1e-4, -0.1));
+  EXPECT_EQ(control.rejected(), 2);
+  for (const double wrong : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(step_controller<double>(wrong, 2), apsis::input_error);
+}
+
+TEST(step_control, settles_where_the_error_is_the_tolerance) {
+  // err = Δt³: the fixed point of Δt ← 0.9 Δt (tol/err)^{0.7/3} (err/tol)^{0.4/3} is err = 0.9^{10} tol.
+  step_controller<double> control(1e-6, 2);
+  double dt = 1.0;
+  for (int n = 0; n < 200; ++n) {
+    control.accepts(dt, dt * dt * dt);
+    dt = control.proposed();
+  }
+  EXPECT_NEAR(dt, 1e-2 * std::pow(0.9, 10.0 / 3.0), 1e-8);
+}
+
+TEST(step_control, ends_where_no_step_is_short_enough) {
+  auto problem = ode_model::as_relaxation<state>(1);
+  apsis::stepper march(apsis::find_method("md-imex-3-2"), problem, solutions::result_and_embedded);
+  step_controller<real> control(1e-3L, 1);
+  auto u = ode_model::initial_state<state>();
+  const auto hopeless = [](const state&, const state&) { return real(1); };
+  EXPECT_THROW(
+      apsis::integrate_to_tolerance(march, u, real(1), real(2), step_rule<real>::fixed(1), control, hopeless),
+      apsis::numerical_error);
+  EXPECT_EQ(u, ode_model::initial_state<state>());
+}
+
+}  // namespace

@@ -1,0 +1,219 @@
+// Embedded rows of method files: what is read, what is written, and what the certificate says of them.
+#include "support/catalogue.hpp"
+#include "tableaux.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/method/coefficient.hpp>
+#include <apsis/method/export.hpp>
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace apsis::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// md-imex-3-2 with u + Δt T(u_1)/2 + … of order 1. Lines: 16 [embedded], 17 order, 18 P, 19 W, 20 d, 21 ddot.
+const std::string good = R"(name = "x"
+title = "t"
+citation = "c"
+kind = "imex"
+
+[claims]
+order = 2
+ssp_coefficient = "1"
+
+[shu_osher]
+r = "1"
+P = [[], ["0"], ["1/2", "0"]]
+W = [[], ["1"], ["0", "1/2"]]
+d = ["1/2", "0", "1/2"]
+ddot = ["0", "-1/2", "0"]
+[embedded]
+order = 1
+P = ["9/20", "0", "0"]
+W = ["1/10", "9/20", "0"]
+d = "1/2"
+ddot = "-3/40"
+)";
+
+std::string changed(const std::string& old, const std::string& replacement) {
+  std::string text = good;
+  const auto at = text.rfind(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return text.replace(at, old.size(), replacement);
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    parse_method(text, "m.toml");
+  } catch (const input_error& refused) {
+    return refused.what();
+  }
+  return "";
+}
+
+std::vector<std::string> failures(const std::string& text) {
+  return certify(parse_method(text, "m.toml")).failures;
+}
+
+TEST(embedded_row, is_certified_with_its_estimate) {
+  const auto c = certify(parse_method(good, "m.toml"));
+  EXPECT_TRUE(c.claims_hold);
+  ASSERT_TRUE(c.embedded);
+  EXPECT_EQ(c.embedded->order, 1);
+  EXPECT_EQ(c.embedded->conditions, 2);
+  EXPECT_EQ(c.embedded->implicit_solves, 1);
+  EXPECT_EQ(c.embedded->explicit_evaluations, 0);
+  EXPECT_TRUE(c.embedded->relaxes);
+  // By hand: u_1 has c = (1/2), ĉ = 0; u_2 = u_1 + Δt T(u_1) − Δt² Q̇/2 has ĉ = 1. Of the four conditions of
+  // order 2, whose 1/γ is 1/2, ũ = 0.45 u_1 + 0.1 (u_1 + Δt T(u_1)) + 0.45 (u_2 + Δt T(u_2)) + … satisfies
+  //   T[T] = 0.45 · 1 = 0.45,   T[Q] = 0.55 · ½ + 0.45 · ½ = ½,   Q[T] = d̃ = ½,
+  //   Q[Q] = ¼ (of u_1) − 0.45 · ½ (of Q̇ in u_2) + d̃ − 3/40 = 0.45.
+  EXPECT_NEAR(c.embedded->estimate.convert_to<double>(), 0.05 * std::sqrt(2.0), 1e-15);
+  EXPECT_NEAR(c.embedded->alignment.convert_to<double>(), std::sqrt(0.5), 1e-15);
+}
+
+TEST(embedded_row, changes_nothing_that_is_said_of_the_method) {
+  for (const auto& name : methods_where([](const method& m) { return m.embedded.has_value(); })) {
+    method m = find_method(name);
+    const auto with = find_certificate(name);
+    m.embedded.reset();
+    const auto without = certify(m);
+    EXPECT_EQ(with.order, without.order) << name;
+    EXPECT_EQ(with.ssp_coefficient, without.ssp_coefficient) << name;
+    EXPECT_EQ(with.type, without.type) << name;
+    EXPECT_EQ(with.implicit_solves, without.implicit_solves) << name;
+    EXPECT_FALSE(without.embedded) << name;
+  }
+}
+
+TEST(embedded_row, is_there_for_every_recommended_method_and_costs_one_solve) {
+  const auto names = methods_where([](const method& m) {
+    return !m.purpose.empty() || m.name == "md-imex-3-2" || m.name == "md-imex-6-3";
+  });
+  EXPECT_GE(names.size(), 16U);
+  for (const auto& name : names) {
+    const auto& e = find_certificate(name).embedded;
+    ASSERT_TRUE(e) << name;
+    EXPECT_LT(e->order, find_certificate(name).order) << name;
+    EXPECT_EQ(e->implicit_solves, 1) << name;
+    EXPECT_EQ(e->explicit_evaluations, 0) << name;
+    EXPECT_LT(e->order_residual, mp_real(1e-42)) << name;  // 45 digits, sums of a dozen
+    if (find_certificate(name).keeps_slow_terms) {
+      ASSERT_TRUE(e->last) << name;
+      EXPECT_LT(abs(*e->last - 1), mp_real(1e-40)) << name;
+    }
+    // A tenth of the Taylor term was asked for, and at least 0.15 of that in the limit ε → 0. The terms
+    // of the limit are 0.4 of all.
+    EXPECT_GT(e->estimate, mp_real(0.15 * 0.1 * 0.4)) << name;
+    EXPECT_LT(e->estimate, mp_real(0.15)) << name;
+  }
+}
+
+TEST(embedded_row, is_written_as_it_was_read) {
+  auto names = methods_where([](const method& m) { return m.embedded.has_value(); });
+  for (const auto& name : names) {
+    const method& m = find_method(name);
+    const method again = parse_method(to_toml(m), name);
+    ASSERT_TRUE(again.embedded) << name;
+    EXPECT_EQ(again.embedded->order, m.embedded->order);
+    EXPECT_EQ(again.embedded->origin, m.embedded->origin);
+    EXPECT_EQ(again.embedded->P, m.embedded->P);
+    EXPECT_EQ(again.embedded->W, m.embedded->W);
+    EXPECT_EQ(again.embedded->d, m.embedded->d);
+    EXPECT_EQ(again.embedded->ddot, m.embedded->ddot);
+  }
+  // What may be left out is zero: a solution of order 1 of the two stages of forward Euler steps.
+  const std::string explicit_method =
+      "name = \"x\"\ntitle = \"t\"\ncitation = \"c\"\nkind = \"explicit\"\n[claims]\norder = 2\n"
+      "[shu_osher]\nr = \"1\"\nP = [[], [\"0\"], [\"1/2\", \"0\"]]\nW = [[], [\"1\"], [\"0\", \"1/2\"]]\n"
+      "[embedded]\norder = 1\nP = [\"0\", \"1\", \"0\"]\n";
+  const auto c = certify(parse_method(explicit_method, "m.toml"));
+  EXPECT_THAT(c.failures, ::testing::IsEmpty());
+  EXPECT_EQ(c.embedded->implicit_solves, 0);
+  EXPECT_FALSE(c.embedded->relaxes);
+}
+
+TEST(embedded_row, is_refused_with_place_and_reason) {
+  const auto refused = [](const std::string& old, const std::string& replacement, const std::string& place,
+                          const std::string& reason) {
+    const std::string message = complaint(changed(old, replacement));
+    EXPECT_THAT(message, StartsWith("m.toml:" + place + ": "));
+    EXPECT_THAT(message, HasSubstr(reason));
+  };
+  refused("order = 1", "order = 9", "17:9", "'embedded.order' = 9 is out of range (from 1 to 8)");
+  refused("order = 1\n", "", "16:1", "missing key 'order' in [embedded]");
+  refused("W = [\"1/10\"", "Q = [\"1/10\"", "19:1", "unknown key 'Q' in [embedded]");
+  refused("[\"9/20\", \"0\", \"0\"]", "[\"9/20\", \"0\"]", "18:5",
+          "'embedded.P' has 2 entries (the method has 3 stages)");
+  refused("\"9/20\", \"0\"]", "\"9/20\"]", "19:5", "'embedded.W' has 2 entries");
+  refused("d = \"1/2\"", "d = 0.5", "20:5", "a coefficient in quotes");
+  refused("ddot = \"-3/40\"", "ddot = \"-3/0\"", "21:8", "is no coefficient");
+  std::string implicit = good;
+  implicit.replace(implicit.find("\"imex\""), 6, "\"implicit\"");
+  for (const char* row : {"r = \"1\"\n", "W = [[], [\"1\"], [\"0\", \"1/2\"]]\n"})
+    implicit.erase(implicit.find(row), std::string(row).size());
+  EXPECT_THAT(complaint(implicit), HasSubstr("unknown key 'W' in [embedded]"));
+}
+
+TEST(embedded_row, needs_the_shu_osher_form) {
+  const std::string text =
+      "name = \"x\"\ntitle = \"t\"\ncitation = \"c\"\nkind = \"explicit\"\n[claims]\norder = 2\n"
+      "[butcher]\nA_hat = [[], [\"1\"]]\nb_hat = [\"1/2\", \"1/2\"]\n"
+      "[embedded]\norder = 1\nP = [\"0\", \"1\"]\n";
+  EXPECT_THAT(complaint(text), HasSubstr("[embedded] is a row of the Shu-Osher form"));
+}
+
+TEST(embedded_row, of_another_order_or_sign_fails_the_check) {
+  using ::testing::Contains, ::testing::ElementsAre;
+  // Order 2 is claimed by moving a claim only: u^{n+1} itself as embedded solution has order 2, not 1.
+  EXPECT_THAT(failures(changed(good.substr(good.find("P = [\"9/20\"")),
+                               "P = [\"1/2\", \"0\", \"0\"]\nW = [\"0\", \"1/2\", \"0\"]\nd = \"1/2\"\n")),
+              ElementsAre("embedded.order = 1 but the embedded solution has order 2"));
+  EXPECT_THAT(failures(changed("order = 1", "order = 2")),
+              Contains("embedded.order = 2 is not below that of the method, 2: nothing could be estimated"));
+  EXPECT_THAT(failures(changed("ddot = \"-3/40\"", "ddot = \"3/40\"")),
+              ElementsAre(HasSubstr("embedded.ddot = -0.075 is negative")));
+  EXPECT_THAT(failures(changed("[\"9/20\", \"0\", \"0\"]", "[\"19/20\", \"-1/2\", \"0\"]")),
+              Contains(HasSubstr("embedded.P_2 = -0.5 is negative")));
+  EXPECT_THAT(failures(changed("[\"1/10\", \"9/20\"", "[\"1/5\", \"9/20\"")),
+              Contains(HasSubstr("the weight of u^n in [embedded] = -0.1 is negative")));
+}
+
+/// A coefficient that is moved by a millionth breaks a condition. Those of order 1 do not know Q̇, so neither
+/// d̃̇ nor the weight of a first stage with ḋ alone, whose u_1 is u^n + O(Δt²).
+void expect_damage_is_noticed(const method& m) {
+  method damaged = m;
+  const auto expect_noticed = [&](std::string& place, const std::string& what) {
+    const std::string kept = place;
+    if (coefficient_value(kept) == 0) return;
+    place = mp_real(coefficient_value(kept) + mp_real(1e-6)).str(45, std::ios_base::fixed);
+    EXPECT_FALSE(certify(damaged).claims_hold) << m.name << " " << what;
+    place = kept;
+  };
+  auto& e = *damaged.embedded;
+  for (std::size_t j = 0; j < m.stages(); ++j) {
+    if (e.order > 1) expect_noticed(e.P[j], "P" + std::to_string(j + 1));
+    expect_noticed(e.W[j], "W" + std::to_string(j + 1));
+  }
+  expect_noticed(e.d, "d");
+  if (e.order > 1) expect_noticed(e.ddot, "ddot");
+}
+
+TEST(embedded_row, that_is_damaged_is_noticed) {
+  for (const auto& name : methods_where([](const method& m) { return m.embedded && m.stages() < 9; }))
+    expect_damage_is_noticed(find_method(name));
+}
+
+TEST(embedded_row, of_many_stages_that_is_damaged_is_noticed_slow) {
+  for (const auto& name : methods_where([](const method& m) { return m.embedded && m.stages() >= 9; }))
+    expect_damage_is_noticed(find_method(name));
+}
+
+}  // namespace
+}  // namespace apsis::test

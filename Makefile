@@ -9,7 +9,7 @@ export CTEST_PARALLEL_LEVEL ?= $(CORES)
 FORMATTED = $(shell find src app tests bench examples -name '*.[ch]pp' 2>/dev/null)
 
 .DEFAULT_GOAL := help
-.PHONY: help run reproduce program figures test test-all test-slow clang asan bench format format-check tidy clean
+.PHONY: help run reproduce study program figures test test-all test-slow clang asan bench format format-check tidy clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' Makefile
@@ -22,6 +22,10 @@ run: program ## packages, program, the mixed-regime problem by both methods and 
 
 reproduce: program ## every claim of the paper checked, its figures redrawn: results/reproduce/report.html
 	$(APSIS) reproduce --out results/reproduce
+
+study: program ## which methods exist and which to take: designs, work and precision (hours; goes on after an interrupt)
+	$(PYTHON) studies/run.py --apsis $(APSIS) --out results/study
+	$(PYTHON) studies/report.py --apsis $(APSIS) --results results/study
 
 figures: ## the pictures again, from the results that are there
 	$(PYTHON) python/apsis_plot.py mixed --second results/bgk-mixed-second-order --third results/bgk-mixed \

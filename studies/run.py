@@ -59,7 +59,7 @@ def design(apsis, run, folder):
 
 
 def work(apsis, study, methods, folder):
-    """Errors and costs of one study, on one thread: the wall clock is then CPU time."""
+    """Errors and costs of one study. Runs are one after the other: side by side they would share caches."""
     result_file = folder / f"{study['name']}.json"
     if result_file.exists():
         return False

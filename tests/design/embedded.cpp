@@ -57,6 +57,18 @@ TEST(nonnegative_least_squares, satisfies_its_optimality_conditions) {
   });
 }
 
+/// Rounding once let the entry that blocks a step keep a last digit, and the search ended away from the
+/// minimum.
+TEST(nonnegative_least_squares, goes_on_where_a_step_is_blocked) {
+  Eigen::MatrixXd A(2, 6);
+  A << -1.0, -1.0, -1.0, -0.13, -1.0, -0.39, -1.0, -1.0, -1.0, -0.44, -1.0, -0.87;
+  const Eigen::VectorXd b = Eigen::Vector2d(-0.08, -1.0);
+  const Eigen::VectorXd x = nonnegative_least_squares<double>(A, b, 1e-12);
+  // The fourth column alone: (0.13 · 0.08 + 0.44) / (0.13² + 0.44²).
+  EXPECT_NEAR(x(3), 0.4504 / 0.2105, 1e-14);
+  EXPECT_EQ(x.sum(), x(3));
+}
+
 /// What the files hold is what is found: the highest order that serves, and that row.
 void expect_found_again(const std::string& name) {
   const method& m = find_method(name);

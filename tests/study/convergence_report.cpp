@@ -51,7 +51,7 @@ TEST(convergence_report, csv_and_json_hold_every_bit_of_the_table) {
   ASSERT_EQ(csv.size(), 7U);
   ASSERT_EQ(rows.size(), 6U);
   EXPECT_THAT(csv[0], ElementsAre("model.epsilon", "time.method", "time.dt", "error", "rate", "steps", "dt",
-                                  "wall_s", "min_value", "problem"));
+                                  "wall_s", "cpu_s", "min_value", "problem"));
   std::size_t k = 0;
   for (const auto& block : table.blocks) {
     for (const auto& row : block.rows) {

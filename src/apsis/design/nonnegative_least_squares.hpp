@@ -29,19 +29,25 @@ Eigen::Vector<Real, Eigen::Dynamic> nonnegative_least_squares(
     while (!positive.empty()) {
       const vector best = A(Eigen::all, positive).colPivHouseholderQr().solve(b);
       Real step(1);  // of the way from x to the best point without bounds
+      std::size_t blocking = positive.size();
       for (std::size_t k = 0; k < positive.size(); ++k) {
         const Real from = x(positive[k]), to = best(static_cast<Eigen::Index>(k));
-        if (to <= Real(0) && from < step * (from - to)) step = from / (from - to);
+        if (to > Real(0) || from >= step * (from - to)) continue;
+        step = from / (from - to);
+        blocking = k;
       }
+      const bool inside = blocking == positive.size();
       std::vector<Eigen::Index> kept;
       for (std::size_t k = 0; k < positive.size(); ++k) {
-        const Real to = best(static_cast<Eigen::Index>(k));
         Real& value = x(positive[k]);
-        const bool leaves = to <= Real(0) && value <= step * (value - to);
-        value = leaves ? Real(0) : Real(value + step * (to - value));
-        if (!leaves) kept.push_back(positive[k]);
+        value += step * (best(static_cast<Eigen::Index>(k)) - value);
+        // The one that blocks is zero, whatever its step rounds to; so every round takes one out.
+        if (k == blocking || value <= Real(0)) {
+          value = Real(0);
+        } else {
+          kept.push_back(positive[k]);
+        }
       }
-      const bool inside = kept.size() == positive.size();
       positive = kept;
       if (inside) break;
     }

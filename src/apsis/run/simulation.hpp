@@ -35,6 +35,7 @@ struct run_summary {
   long startup_steps = 0;   ///< steps that took the place of the first; 0 without start-up
   long rejected_steps = 0;  ///< whose estimated error was above the tolerance; not among the steps
   double dt = 0.0, t = 0.0, wall_s = 0.0;
+  double cpu_s = 0.0;        ///< CPU time of the calling thread in steps, since the start or the last restart
   double min_value = 0.0;    ///< over all steps, the initial state included
   long negative_values = 0;  ///< sum over all steps
   double conservation_defect = 0.0;

@@ -38,6 +38,7 @@ struct convergence::impl {
     row.steps = done.steps;
     row.dt = done.dt;
     row.wall_s = done.wall_s;
+    row.cpu_s = done.cpu_s;
     row.min_value = done.min_value;
     measure(planned, *result, row);
     return row;

@@ -29,8 +29,9 @@ struct convergence_row {
   double error = 0.0;  ///< norm of the difference to the reference; NaN if there is none, see `problem`
   double rate = 0.0;   ///< log(error before/error) / log(h before/h); NaN in the first row and without errors
   long steps = 0;
-  double dt = 0.0, wall_s = 0.0, min_value = 0.0;  ///< largest step, seconds, smallest unknown of all steps
-  std::string problem;                             ///< why there is no error: what failed, and where
+  double dt = 0.0, min_value = 0.0;  ///< largest step; smallest unknown of all steps
+  double wall_s = 0.0, cpu_s = 0.0;  ///< of the steps; every run is on one thread
+  std::string problem;               ///< why there is no error: what failed, and where
 };
 
 /// The runs with the same values of all keys but the refined one, from coarse to fine.

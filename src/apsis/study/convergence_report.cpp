@@ -43,6 +43,7 @@ json to_json(const convergence_table& table, const convergence_row& row) {
   out["steps"] = row.steps;
   out["dt"] = number(row.dt);
   out["wall_s"] = number(row.wall_s);
+  out["cpu_s"] = number(row.cpu_s);
   out["min_value"] = number(row.min_value);
   if (!row.problem.empty()) out["problem"] = row.problem;
   return out;
@@ -136,11 +137,11 @@ std::string to_text(const convergence_table& table) {
   for (const auto& block : table.blocks) {
     out += fmt::format("\n{}{}", block.title, block.title.empty() ? "" : "\n");
     out += fmt::format("  {:>{}}  {:>10}  {:>6}  {:>9}  {:>10}  {:>8}  {:>10}\n", head, width, "error",
-                       "rate", "steps", "dt", "wall_s", "min_value");
+                       "rate", "steps", "dt", "cpu_s", "min_value");
     for (const auto& row : block.rows) {
       out += fmt::format("  {:>{}}  {:>10}  {:>6}  {:>9}  {:>10}  {:>8}  {:>10}\n", row_name(table, row),
                          width, or_dash("{:.3e}", row.error), or_dash("{:.2f}", row.rate), row.steps,
-                         or_dash("{:.4e}", row.dt), or_dash("{:.2f}", row.wall_s),
+                         or_dash("{:.4e}", row.dt), or_dash("{:.2f}", row.cpu_s),
                          or_dash("{:.3e}", row.min_value));
       if (!row.problem.empty()) out += fmt::format("  {:>{}}  {}\n", "", width, row.problem);
     }
@@ -150,7 +151,7 @@ std::string to_text(const convergence_table& table) {
 
 std::string to_csv(const convergence_table& table) {
   std::vector<std::string> columns = table.keys;
-  for (const char* name : {"error", "rate", "steps", "dt", "wall_s", "min_value", "problem"})
+  for (const char* name : {"error", "rate", "steps", "dt", "wall_s", "cpu_s", "min_value", "problem"})
     columns.emplace_back(name);
   std::string out = fmt::format("{}\n", fmt::join(columns, ","));
   for (const json& row : to_json(table)) {

@@ -9,11 +9,11 @@
 
 namespace apsis {
 
-/// One block after the other, a line per run: the refined key, error, rate, steps, dt, wall_s, min_value.
+/// One block after the other, a line per run: the refined key, error, rate, steps, dt, cpu_s, min_value.
 std::string to_text(const convergence_table& table);
 
-/// One line per run: the varied keys, error, rate, steps, dt, wall_s, min_value, problem; 17 significant
-/// digits, an empty cell where there is no number.
+/// One line per run: the varied keys, error, rate, steps, dt, wall_s, cpu_s, min_value, problem; 17
+/// significant digits, an empty cell where there is no number.
 std::string to_csv(const convergence_table& table);
 
 /// An array with one object per run, with the columns of the CSV; null where there is no number, `problem`

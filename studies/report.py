@@ -116,28 +116,38 @@ def design_tables(data):
     return "\n".join(lines)
 
 
+def cost_text(study, cost):
+    if study["cost"] == "evaluations":
+        return f"{cost:.0f}"
+    return f"{cost:.2f} s" if cost >= 0.1 else f"{1e3 * cost:.2g} ms"
+
+
 def work_table(study, found, paper, methods):
-    """Cost of each method at some errors, relative to the better of the paper's methods (both without start-up)."""
+    """Cost of each method at some errors, with or without start-up, whichever is less; in brackets relative to the better of
+    the paper's methods as the paper has them, without."""
     blocks = []
     for epsilon in dict.fromkeys(key[0] for key in found):
         title = f"ε = {epsilon:g}" if isinstance(epsilon, float) else study["title"]
         levels = LEVELS[study["name"]]
-        lines = [f"*{title}*", "", "| method | start-up | " + " | ".join(f"error {level:.0e}" for level in levels) + " |",
-                 "|---|---|" + "---|" * len(levels)]
-        best = {level: min((c for m in paper if (epsilon, m, "none") in found
-                            and (c := cost_at(found[epsilon, m, "none"], level)) is not None), default=None)
+        lines = [f"*{title}*", "", "| method | " + " | ".join(f"error {level:.0e}" for level in levels) + " |",
+                 "|---|" + "---|" * len(levels)]
+        at = {(method, startup, level): cost_at(found[epsilon, method, startup], level)
+              for method in methods for startup in ("none", "graded") for level in levels
+              if (epsilon, method, startup) in found}
+        best = {level: min((at[m, "none", level] for m in paper if at.get((m, "none", level)) is not None), default=None)
                 for level in levels}
         for method in methods:
-            for startup in ("none", "graded"):
-                if (epsilon, method, startup) not in found:
+            cells = []
+            for level in levels:
+                costs = {startup: cost for startup in ("none", "graded")
+                         if (cost := at.get((method, startup, level))) is not None}
+                if not costs:
+                    cells.append("—")
                     continue
-                cells = []
-                for level in levels:
-                    cost = cost_at(found[epsilon, method, startup], level)
-                    ratio = "" if cost is None or best[level] is None else f" ({cost / best[level]:.2f})"
-                    shown = f"{cost:.0f}" if study["cost"] == "evaluations" and cost else f"{cost:.2f} s" if cost else "—"
-                    cells.append(shown + ratio)
-                lines.append(f"| `{method}` | {startup} | " + " | ".join(cells) + " |")
+                startup = min(costs, key=costs.get)
+                ratio = f" ({costs[startup] / best[level]:.2f})" if best[level] is not None else ""
+                cells.append(cost_text(study, costs[startup]) + (" g" if startup == "graded" else "") + ratio)
+            lines.append(f"| `{method}` | " + " | ".join(cells) + " |")
         blocks.append("\n".join(lines))
     return "\n\n".join(blocks) + "\n"
 
@@ -198,7 +208,8 @@ def stability_function(method, z):
     value = lambda text: eval(text, {"__builtins__": {}})  # noqa: E731  (rationals and decimals of a method file)
     stages = []
     for i, (d, ddot) in enumerate(zip(form["d"], form["ddot"])):
-        weights = [value(p) + value(w) for p, w in zip(form["P"][i], form["W"][i] or ["0"] * i)]
+        transported = form["W"][i] if "W" in form else ["0"] * i
+        weights = [value(p) + value(w) for p, w in zip(form["P"][i], transported)]
         total = (1.0 - sum(weights)) + sum(w * y for w, y in zip(weights, stages))
         stages.append(total / (1.0 - z * value(d) - z * z * value(ddot)))
     return stages[-1]

@@ -65,15 +65,26 @@ def gather(plan, results):
     return data
 
 
-def curves(rows, cost_of):
-    """{(epsilon, method, startup): (error, cost, steps, least value)} from coarse to fine; runs that failed are left out."""
+def curves(rows, cost_of, positive):
+    """{(epsilon, method, startup): (error, cost)} from coarse to fine, without runs that failed or, if so wanted, were negative
+    anywhere."""
     found = {}
     for row in rows:
-        if row.get("error") is None:
+        if row.get("error") is None or (positive and row["min_value"] < 0.0):
             continue
         key = (row.get("model.epsilon"), row["time.method"], row["time.startup"])
-        found.setdefault(key, []).append((row["error"], cost_of(row), row["steps"], row["min_value"]))
+        found.setdefault(key, []).append((row["error"], cost_of(row)))
     return {key: np.array(values, dtype=float) for key, values in found.items()}
+
+
+def seconds_of_steps(rows):
+    """Median CPU time of a step of each method over all its runs of a study: the speed of a machine changes while it runs, the
+    number of steps does not."""
+    seconds = {}
+    for row in rows:
+        if row["steps"] > 0:
+            seconds.setdefault(row["time.method"], []).append(row["cpu_s"] / row["steps"])
+    return {method: float(np.median(values)) for method, values in seconds.items()}
 
 
 def cost_at(curve, level):
@@ -297,9 +308,8 @@ def main():
         if study["name"] == "positivity":
             page = insert(page, "positivity", positivity_table(rows))
             continue
-        cost = (lambda row: row["steps"] * steps[row["time.method"]]) if study["cost"] == "evaluations" else \
-            (lambda row: row["cpu_s"])
-        found = curves(rows, cost)
+        of_step = steps if study["cost"] == "evaluations" else seconds_of_steps(rows)
+        found = curves(rows, lambda row: row["steps"] * of_step[row["time.method"]], study.get("positive", False))
         page = insert(page, f"work {study['name']}", work_table(study, found, plan["work"]["paper"], methods))
         draw_work(study, found, methods, images)
     draw_fronts(data, images)

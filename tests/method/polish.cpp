@@ -4,9 +4,11 @@
 
 #include "tableaux.hpp"
 
+#include <apsis/core/errors.hpp>
 #include <apsis/method/coefficient.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -182,6 +184,15 @@ INSTANTIATE_TEST_SUITE_P(papers, printed_digits,
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+// A largest residual that drops NaN would call this converged.
+TEST(polish, does_not_take_what_is_no_number_for_a_solution) {
+  const method& m = find_method("md-imex-6-3");
+  const auto broken = [](const shu_osher_form<mp_real>&) {
+    return std::vector<mp_real>{std::numeric_limits<mp_real>::quiet_NaN()};
+  };
+  EXPECT_THROW(polish(m, 45, broken), numerical_error);
+}
 
 }  // namespace
 }  // namespace apsis::test

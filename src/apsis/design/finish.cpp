@@ -1,5 +1,6 @@
 #include <apsis/design/finish.hpp>
 
+#include <apsis/core/errors.hpp>
 #include <apsis/method/intermediate_regime.hpp>
 #include <apsis/method/polish.hpp>
 
@@ -84,7 +85,16 @@ method to_method(const design_task& task, const design_candidate& candidate, con
 method to_polished_method(const design_task& task, const design_candidate& candidate, const std::string& name,
                           int digits) {
   const auto equations = [&task](const shu_osher_form<mp_real>& m) { return missing(task, m); };
-  auto polished = polish(in_words(task, candidate, name, 1e-9), digits, equations).polished;
+  // With coefficients near their bounds on them there may be none left to move.
+  const auto polish_near = [&](double near) {
+    return polish(in_words(task, candidate, name, near), digits, equations).polished;
+  };
+  method polished;
+  try {
+    polished = polish_near(1e-9);
+  } catch (const numerical_error&) {
+    polished = polish_near(0.0);
+  }
   if (polished.claims.ssp_coefficient != "unconditional") polished.claims.ssp_coefficient = polished.exact.r;
   return polished;
 }

@@ -145,9 +145,13 @@ mp_vector solve(std::vector<mp_vector> a, mp_vector b) {
   return b;
 }
 
+/// NaN if there is one: std::max would drop it.
 mp_real largest_of(const mp_vector& v) {
   mp_real largest(0);
-  for (const auto& x : v) largest = std::max(largest, mp_real(abs(x)));
+  for (const auto& x : v) {
+    if (isnan(x)) return x;
+    largest = std::max(largest, mp_real(abs(x)));
+  }
   return largest;
 }
 

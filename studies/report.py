@@ -51,6 +51,12 @@ def summary_of(run, result):
     return kept
 
 
+def compact(row):
+    """A row with six digits, which is more than a table or a picture shows."""
+    return {key: float(f"{value:.6g}") if isinstance(value, float) else value for key, value in row.items()
+            if key not in ("rate", "wall_s", "dt")}
+
+
 def gather(plan, results):
     """All results that are there, in the order of the plan."""
     data = {"design": [], "work": {}}
@@ -61,7 +67,7 @@ def gather(plan, results):
     for study in plan["work"]["study"]:
         file = results / "work" / f"{study['name']}.json"
         if file.exists():
-            data["work"][study["name"]] = read_json(file)
+            data["work"][study["name"]] = [compact(row) for row in read_json(file)]
     return data
 
 

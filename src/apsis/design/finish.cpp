@@ -85,16 +85,26 @@ method to_method(const design_task& task, const design_candidate& candidate, con
 method to_polished_method(const design_task& task, const design_candidate& candidate, const std::string& name,
                           int digits) {
   const auto equations = [&task](const shu_osher_form<mp_real>& m) { return missing(task, m); };
-  // With coefficients near their bounds on them there may be none left to move.
-  const auto polish_near = [&](double near) {
-    return polish(in_words(task, candidate, name, near), digits, equations).polished;
-  };
+  // With all coefficients near their bounds on them there may be too few left to move, and Newton's method
+  // goes elsewhere or nowhere. The equations hold to 1e-11 at the candidate.
+  constexpr double far = 1e-6;
   method polished;
-  try {
-    polished = polish_near(1e-9);
-  } catch (const numerical_error&) {
-    polished = polish_near(0.0);
+  bool good = false;
+  for (const double near : {1e-9, 1e-12, 1e-7}) {
+    try {
+      auto result = polish(in_words(task, candidate, name, near), digits, equations);
+      good = result.largest_move < far;
+      polished = std::move(result.polished);
+    } catch (const numerical_error&) {
+      good = false;
+    }
+    if (good) break;
   }
+  if (!good)
+    throw numerical_error(
+        fmt::format("'{}' cannot be polished to {} digits (its equations are singular to "
+                    "rounding); its digits are those of double precision",
+                    name, digits));
   if (polished.claims.ssp_coefficient != "unconditional") polished.claims.ssp_coefficient = polished.exact.r;
   return polished;
 }

@@ -13,6 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <integrate/ode_model.hpp>
+#include <integrate/random_form.hpp>
 #include <integrate/reference.hpp>
 #include <support/property.hpp>
 
@@ -159,25 +160,6 @@ class linear {
   double forward_euler_step(double, const state&) const { return 1.0; }
 };
 
-/// A form of 2 to 7 rows with a random zero pattern, Q of earlier stages included.
-apsis::shu_osher_form<double> random_form() {
-  const auto s = *rc::gen::inRange<std::size_t>(2, 8);
-  const auto number = [] { return *rc::gen::inRange(0, 3) == 0 ? *rc::gen::inRange(1, 1000) * 1e-3 : 0.0; };
-  apsis::shu_osher_form<double> m;
-  m.P = m.W = m.D = apsis::matrix<double>(s, s);
-  m.r = 0.7;
-  for (std::size_t i = 0; i < s; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      m.P(i, j) = number() / static_cast<double>(s);
-      m.W(i, j) = number() / static_cast<double>(s);
-      m.D(i, j) = number() - number();
-    }
-    m.D(i, i) = number();
-    m.ddot.push_back(-number());
-  }
-  return m;
-}
-
 apsis::shu_osher_form<double> without_last_row(const apsis::shu_osher_form<double>& m) {
   const std::size_t s = m.stages() - 1;
   apsis::shu_osher_form<double> rest;
@@ -195,7 +177,7 @@ apsis::shu_osher_form<double> without_last_row(const apsis::shu_osher_form<doubl
 
 TEST(embedded_schedule, of_any_zero_pattern_makes_both_solutions) {
   check_property("random forms", [] {
-    const auto form = random_form();
+    const auto form = random_input::form(2);
     linear p;
     p.transport = *rc::gen::inRange(-1000, 1000) * 1e-3;
     p.collision = -*rc::gen::inRange(1, 1000) * 1e-3;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include <integrate/random_form.hpp>
 #include <support/property.hpp>
 
 namespace {
@@ -63,25 +64,6 @@ double stepped(const shu_osher_form<double>& m, counted& p) {
   return u[0];
 }
 
-/// A random form of up to seven stages with a random zero pattern, off-diagonal Q included.
-shu_osher_form<double> random_form() {
-  const auto s = *rc::gen::inRange<std::size_t>(1, 8);
-  const auto number = [] { return *rc::gen::inRange(0, 3) == 0 ? *rc::gen::inRange(1, 1000) * 1e-3 : 0.0; };
-  shu_osher_form<double> m;
-  m.P = m.W = m.D = apsis::matrix<double>(s, s);
-  m.r = 0.7;
-  for (std::size_t i = 0; i < s; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      m.P(i, j) = number() / static_cast<double>(s);
-      m.W(i, j) = number() / static_cast<double>(s);
-      m.D(i, j) = number() - number();
-    }
-    m.D(i, i) = number();
-    m.ddot.push_back(-number());
-  }
-  return m;
-}
-
 }  // namespace
 
 TEST(schedule, methods_of_the_paper_need_three_and_six_buffers) {
@@ -128,7 +110,7 @@ TEST(schedule, a_step_of_every_method_is_its_stability_function) {
 
 TEST(schedule, a_step_of_any_zero_pattern_is_its_stability_function) {
   check_property("random forms", [] {
-    const auto form = random_form();
+    const auto form = random_input::form(1);
     counted p;
     p.transport = *rc::gen::inRange(-1000, 1000) * 1e-3;
     p.collision = -*rc::gen::inRange(1, 1000) * 1e-3;

@@ -1,9 +1,7 @@
 // time.startup = "graded" through the production run.
-#include "cases.hpp"
+#include "ode_runs.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/extrapolation.hpp>
-#include <apsis/run/setup.hpp>
 
 #include <cmath>
 #include <string>
@@ -22,32 +20,7 @@ apsis::case_config ode(const std::string& method, const std::string& epsilon, co
                            "c.toml");
 }
 
-/// |Δu1| + |Δu2| at t = 1 against extrapolation.
-double error(const apsis::case_config& c) {
-  apsis::simulation run(c);
-  finish(run);
-  const apsis::run_setup setup(c);
-  const auto problem = setup.make_problem();
-  apsis::field u = setup.initial_state();
-  apsis::extrapolate(*problem, u, 0.0, 1.0, {1e-11}, [](const apsis::field& a, const apsis::field& b) {
-    return std::max(std::abs(a.row(0)[0] - b.row(0)[0]), std::abs(a.row(0)[1] - b.row(0)[1]));
-  });
-  return std::abs(run.state()[0] - u.row(0)[0]) + std::abs(run.state()[1] - u.row(0)[1]);
-}
-
 const std::string out_of_equilibrium, near_equilibrium = "initial = \"given\"\nu1 = 2.0\nu2 = 0.90930499\n";
-
-/// The state, the step and all records after each step, to the end.
-std::vector<std::vector<double>> rest_of(apsis::simulation& run) {
-  std::vector<std::vector<double>> all;
-  while (!run.finished()) {
-    const auto& r = run.advance();
-    auto row = run.state();
-    row.insert(row.end(), {static_cast<double>(r.step), r.t, r.dt, r.min_value, run.summary().dt});
-    all.push_back(row);
-  }
-  return all;
-}
 
 /// Stops after `steps`, goes on in a new run, and compares with one that was not stopped.
 void expect_same_after_restart(const apsis::case_config& c, long steps) {
@@ -66,11 +39,11 @@ void expect_same_after_restart(const apsis::case_config& c, long steps) {
 }  // namespace
 
 TEST(startup, resolves_the_layer_of_the_ode_model) {
-  const double consistent = error(ode("md-imex-4-2", "1e-4", "none", near_equilibrium));
-  const double resolved = error(ode("md-imex-4-2", "1e-4", "graded", out_of_equilibrium));
+  const double consistent = error_at_one(ode("md-imex-4-2", "1e-4", "none", near_equilibrium));
+  const double resolved = error_at_one(ode("md-imex-4-2", "1e-4", "graded", out_of_equilibrium));
   EXPECT_LT(resolved, 2 * consistent);
-  EXPECT_LT(10 * resolved, error(ode("md-imex-3-2", "1e-4", "graded", out_of_equilibrium)));
-  EXPECT_LT(10 * resolved, error(ode("md-imex-4-2", "1e-4", "none", out_of_equilibrium)));
+  EXPECT_LT(10 * resolved, error_at_one(ode("md-imex-3-2", "1e-4", "graded", out_of_equilibrium)));
+  EXPECT_LT(10 * resolved, error_at_one(ode("md-imex-4-2", "1e-4", "none", out_of_equilibrium)));
 }
 
 TEST(startup, counts_its_steps_and_keeps_all_other_times) {

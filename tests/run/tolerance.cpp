@@ -1,9 +1,8 @@
 // time.tolerance: steps by the estimated error, through the production run.
-#include "cases.hpp"
+#include "ode_runs.hpp"
 #include "support/catalogue.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/extrapolation.hpp>
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/run/setup.hpp>
 
@@ -24,32 +23,6 @@ apsis::case_config ode(const std::string& method, const std::string& more) {
   return apsis::parse_case("[model]\nname = \"ode\"\nepsilon = 1e-2\n[time]\nmethod = \"" + method +
                                "\"\nend = 1.0\ndt = 0.5\n" + more,
                            "c.toml");
-}
-
-/// |Δu1| + |Δu2| at t = 1 against extrapolation.
-double error(const apsis::case_config& c) {
-  apsis::simulation run(c);
-  finish(run);
-  const apsis::run_setup setup(c);
-  const auto problem = setup.make_problem();
-  apsis::field u = setup.initial_state();
-  apsis::extrapolate(*problem, u, 0.0, 1.0, {1e-11}, [](const apsis::field& a, const apsis::field& b) {
-    return std::max(std::abs(a.row(0)[0] - b.row(0)[0]), std::abs(a.row(0)[1] - b.row(0)[1]));
-  });
-  return std::abs(run.state()[0] - u.row(0)[0]) + std::abs(run.state()[1] - u.row(0)[1]);
-}
-
-/// The state, the step and all records after each step, to the end.
-std::vector<std::vector<double>> rest_of(apsis::simulation& run) {
-  std::vector<std::vector<double>> all;
-  while (!run.finished()) {
-    const auto& r = run.advance();
-    auto row = run.state();
-    row.insert(row.end(), {static_cast<double>(r.step), r.t, r.dt, run.summary().dt,
-                           static_cast<double>(run.summary().rejected_steps)});
-    all.push_back(row);
-  }
-  return all;
 }
 
 /// Smallest value of ũ after one step of r Δt_FE.
@@ -77,12 +50,12 @@ double smallest_of_embedded(const std::string& method, const std::string& epsilo
 }  // namespace
 
 TEST(tolerance, makes_the_error_as_small_as_is_asked) {
-  const double coarse = error(ode("md-imex-8-3-accurate", "tolerance = 1e-4\n"));
-  const double fine = error(ode("md-imex-8-3-accurate", "tolerance = 1e-7\n"));
+  const double coarse = error_at_one(ode("md-imex-8-3-accurate", "tolerance = 1e-4\n"));
+  const double fine = error_at_one(ode("md-imex-8-3-accurate", "tolerance = 1e-7\n"));
   EXPECT_LT(fine, 1e-2 * coarse);
   EXPECT_LT(fine, 1e-5);
   // dt = 0.5 alone, which is now only the longest step, does not see the layer of width 0.002.
-  EXPECT_GT(error(ode("md-imex-8-3-accurate", "")), 1e3 * fine);
+  EXPECT_GT(error_at_one(ode("md-imex-8-3-accurate", "")), 1e3 * fine);
 }
 
 TEST(tolerance, counts_what_it_rejects_and_keeps_within_the_rule) {

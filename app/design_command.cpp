@@ -8,6 +8,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/core/parallel.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/design/draw.hpp>
 #include <apsis/design/fewer_stages.hpp>
 #include <apsis/design/finish.hpp>
 #include <apsis/design/search.hpp>
@@ -134,8 +135,9 @@ json summary(const design_task& task, const options& given, const design_progres
       {"found", found.best.has_value()}};
 }
 
-/// Takes stages out of the method to begin with until it has as many as asked for.
-void take_stages_out(design_task& task, const std::function<bool()>& stop) {
+/// Takes stages out of the method to begin with until it has as many as asked for, and writes each method on
+/// the way; false if it was stopped before.
+bool take_stages_out(design_task& task, method_writer& file, const std::function<bool()>& stop) {
   while (task.from && task.from->stages() > task.stages) {
     const std::size_t stages = task.from->stages();
     double least = std::numeric_limits<double>::infinity();
@@ -143,13 +145,19 @@ void take_stages_out(design_task& task, const std::function<bool()>& stop) {
       least = std::min(least, left);
       log::info(fmt::format("{} stages: weights of stage {} down to {:.2g}", stages, stage + 1, left));
     });
+    if (stop()) return false;
     if (!smaller)
       throw numerical_error(
           fmt::format("no stage of {} can be left out (least sum of weights {:.2g}) try another "
                       "method to begin with, a larger box or a smaller --ssp",
                       stages, least));
     task.from = std::move(smaller);
+    design_task on_the_way = task;
+    on_the_way.stages = task.from->stages();
+    design_problem problem(pattern_near(on_the_way, *task.from), task.demands);
+    file.write(to_method(on_the_way, drop_zeros(problem, problem.unknowns_of(*task.from)), file.name()));
   }
+  return true;
 }
 
 int design(const options& given) {
@@ -161,11 +169,16 @@ int design(const options& given) {
   set_threads(given.threads);
   const auto begin = clock::now();
   const auto elapsed = [&begin] { return std::chrono::duration<double>(clock::now() - begin).count(); };
-  take_stages_out(task, [&] { return interrupted() || elapsed() > given.seconds; });
+  const auto stop = [&] { return interrupted() || elapsed() > given.seconds; };
+  if (!take_stages_out(task, file, stop)) {
+    if (interrupted()) return static_cast<int>(exit_code::interrupted);
+    throw numerical_error(fmt::format("a method of {} stages is left after {:.0f} s give more --time",
+                                      task.from->stages(), elapsed()));
+  }
   task_progress bar;
   design_search how;
   how.starts = given.starts;
-  how.stop = [&] { return interrupted() || elapsed() > given.seconds; };
+  how.stop = stop;
   how.report = [&](const design_progress& p, bool improved) {
     if (improved) file.write(to_method(task, *p.best, file.name()));
     const double part = std::max(static_cast<double>(p.starts) / given.starts, elapsed() / given.seconds);

@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -219,16 +220,20 @@ def draw_errors(data, images):
     figure.savefig(images / "study-errors.png")
 
 
+def number(text):
+    """Of a rational or decimal of a method file."""
+    return float(Fraction(text))
+
+
 def stability_function(method, z):
     """R(z) of the implicit part: y_i = (r_i + Σ_j (p_ij + w_ij) y_j) / (1 − z d_i − z² ddot_i), R = y_s."""
     form = method["shu_osher"]
-    value = lambda text: eval(text, {"__builtins__": {}})  # noqa: E731  (rationals and decimals of a method file)
     stages = []
     for i, (d, ddot) in enumerate(zip(form["d"], form["ddot"])):
         transported = form["W"][i] if "W" in form else ["0"] * i
-        weights = [value(p) + value(w) for p, w in zip(form["P"][i], transported)]
+        weights = [number(p) + number(w) for p, w in zip(form["P"][i], transported)]
         total = (1.0 - sum(weights)) + sum(w * y for w, y in zip(weights, stages))
-        stages.append(total / (1.0 - z * value(d) - z * z * value(ddot)))
+        stages.append(total / (1.0 - z * number(d) - z * z * number(ddot)))
     return stages[-1]
 
 

@@ -160,3 +160,22 @@ TEST(design, says_why_there_is_no_embedded_solution) {
   refused({"md-imex-3-2", "--cost", "two"}, 2, "unknown --cost 'two'");
   refused({"md-imex-3-2", "--stages", "3"}, 2, "--stages excludes --embedded");
 }
+
+TEST(design, takes_stages_out_and_keeps_what_it_has_when_time_is_over) {
+  const work_folder folder;
+  const outcome smaller = run_apsis(folder, design({"--order", "3", "--stages", "7", "--from",
+                                                    "md-imex-8-3-accurate", "--starts", "1", "--json"}));
+  ASSERT_EQ(smaller.code, 0) << smaller.err;
+  EXPECT_EQ(json::parse(smaller.out)["method"]["stages"], 7);
+  EXPECT_EQ(run_apsis(folder, {"check", "found.toml"}).code, 0);
+  const outcome none = run_apsis(folder, {"design", "--implicit", "--order", "3", "--stages", "1", "--from",
+                                          "imdrk-2-3", "--out", "n.toml"});
+  EXPECT_EQ(none.code, 3);
+  EXPECT_THAT(none.err, HasSubstr("no stage of 2 can be left out (least sum of weights 0.08"));
+  EXPECT_FALSE(fs::exists(folder.path() / "n.toml"));
+  // A stage of 16 takes seconds, so that the second cannot be taken out in time.
+  const outcome late = run_apsis(folder, {"design", "--order", "4", "--stages", "14", "--time", "0.5",
+                                          "--from", "md-imex-16-4-large-r", "--out", "late.toml"});
+  EXPECT_EQ(late.code, 3);
+  EXPECT_THAT(late.err, HasSubstr("stages is left after"));
+}

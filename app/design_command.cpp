@@ -87,7 +87,8 @@ design_task task_of(const options& given) {
   task.objective = choice<design_objective>("--objective", given.objective,
                                             {{"r", design_objective::largest_r},
                                              {"r/n_F", design_objective::efficiency},
-                                             {"error", design_objective::smallest_error}});
+                                             {"error", design_objective::smallest_error},
+                                             {"band", design_objective::smallest_band}});
   task.seed = given.seed;
   if (!given.from.empty()) {
     const method& m = find_method(given.from);
@@ -115,8 +116,10 @@ design_task task_of(const options& given) {
 }
 
 std::string state_of(const design_progress& p) {
-  const std::string best = p.best ? fmt::format("r {:.6f}, error {:.4g}", p.best->r, p.best->error)
-                                  : fmt::format("nearest residual {:.1e}", p.best_residual);
+  const std::string best =
+      p.best ? fmt::format("r {:.6f}, error {:.4g}{}", p.best->r, p.best->error,
+                           p.best->band > 0.0 ? fmt::format(", band {:.3g}", p.best->band) : "")
+             : fmt::format("nearest residual {:.1e}", p.best_residual);
   return fmt::format("{} starts, {} feasible, {}", p.starts, p.feasible, best);
 }
 
@@ -233,7 +236,9 @@ void add_design(CLI::App& program, action& chosen) {
                       "transport evaluations in a step (any number if not given)");
   command->add_option("--box", d.box, "largest d and |ddot|")->capture_default_str();
   command->add_option("--margin", d.margin, "least d + |ddot| of a stage")->capture_default_str();
-  command->add_option("--objective", given->objective, "r, r/n_F or error: what the method is to be best in")
+  command
+      ->add_option("--objective", given->objective,
+                   "r, r/n_F, error or band: what the method is to be best in")
       ->capture_default_str();
   command->add_option("--ssp", d.least_r, "least SSP coefficient r")->capture_default_str();
   command->add_option(

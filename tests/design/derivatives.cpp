@@ -4,15 +4,22 @@
 #include <apsis/design/design_problem.hpp>
 #include <apsis/method/intermediate_regime.hpp>
 #include <apsis/method/order_conditions.hpp>
+#include <apsis/method/stability.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
 
 namespace apsis {
 namespace {
+
+using measure = design_problem::measure;
+
+/// Away from the poles of stages with d = 0, which are on the imaginary axis.
+constexpr double demanded_angle = 60.0;
 
 /// A problem with some coefficients left out, and a point inside its bounds.
 struct sample {
@@ -36,6 +43,7 @@ sample draw(method_kind kind, int order, std::size_t stages, regime_demand regim
   design_demands demands;
   demands.order = order;
   demands.regime = regime;
+  demands.least_angle = demanded_angle;
   design_problem problem(pattern, demands);
   Eigen::VectorXd x(problem.unknowns());
   for (Eigen::Index k = 0; k < x.size(); ++k)
@@ -62,33 +70,103 @@ const std::vector<kind_and_order> all = {{method_kind::imex, 1, 2, regime_demand
 // third derivatives, and 1e-16/h; 1e-6 of the size of the row holds both.
 constexpr double h = 1e-5, near = 1e-6;
 
+Eigen::VectorXd draw_vector(Eigen::Index size, random_source& random) {
+  Eigen::VectorXd v(size);
+  for (double& entry : v) entry = random.uniform(-1.0, 1.0);
+  return v;
+}
+
+/// Σ λ residual + Σ μ limit + the weighted half squares: its gradient.
+Eigen::VectorXd gradient_of_sum(design_problem& problem, const Eigen::VectorXd& x,
+                                const design_problem::weights& given) {
+  Eigen::VectorXd g = problem.jacobian(x).transpose() * given.equations, part;
+  g += problem.limit_jacobian(x).transpose() * given.limits;
+  for (const auto& [what, weight] : {std::pair{measure::error, given.error}, {measure::band, given.band}}) {
+    if (weight == 0.0) continue;
+    problem.half_square(what, x, &part);
+    g += weight * part;
+  }
+  return g;
+}
+
 TEST(design_derivatives, agree_with_differences) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     auto [problem, x] = draw(all[k].kind, all[k].order, all[k].stages, all[k].regime, k + 1);
-    const auto J = problem.jacobian(x);
-    Eigen::VectorXd gradient;
-    problem.half_square_error(x, &gradient);
+    const bool transports = all[k].kind != method_kind::implicit_only;
+    const auto J = problem.jacobian(x), limit_J = problem.limit_jacobian(x);
+    EXPECT_EQ(problem.limits() > 0, all[k].kind != method_kind::explicit_only);
+    Eigen::VectorXd of_error, of_band;
+    problem.half_square(measure::error, x, &of_error);
+    if (transports) problem.half_square(measure::band, x, &of_band);
     random_source random(17);
-    Eigen::VectorXd multipliers(problem.equations());
-    for (double& m : multipliers) m = random.uniform(-1.0, 1.0);
-    const double weight = 0.7;
-    const auto H = problem.hessian(x, multipliers, weight);
+    design_problem::weights given;
+    given.equations = draw_vector(problem.equations(), random);
+    given.limits = draw_vector(problem.limits(), random);
+    given.error = 0.7;
+    given.band = transports ? 0.4 : 0.0;
+    const auto H = problem.hessian(x, given);
     EXPECT_LT((H - H.transpose()).norm(), 1e-12 * H.norm());
     for (Eigen::Index u = 0; u < x.size(); ++u) {
       auto above = x, below = x;
       above(u) += h;
       below(u) -= h;
-      const Eigen::VectorXd column = (problem.residuals(above) - problem.residuals(below)) / (2.0 * h);
-      EXPECT_LT((column - J.col(u)).norm(), near * (1.0 + J.col(u).norm())) << k << " " << u;
-      Eigen::VectorXd g_above, g_below;
-      const double difference =
-          problem.half_square_error(above, &g_above) - problem.half_square_error(below, &g_below);
-      EXPECT_NEAR(difference / (2.0 * h), gradient(u), near * (1.0 + std::abs(gradient(u))));
-      const Eigen::VectorXd second = (problem.jacobian(above).transpose() * multipliers + weight * g_above -
-                                      problem.jacobian(below).transpose() * multipliers - weight * g_below) /
-                                     (2.0 * h);
-      EXPECT_LT((second - H.col(u)).norm(), near * (1.0 + H.col(u).norm())) << k << " " << u;
+      const auto expect_slope = [&](const auto& quantity, const Eigen::VectorXd& slope) {
+        const Eigen::VectorXd column = (quantity(above) - quantity(below)) / (2.0 * h);
+        EXPECT_LT((column - slope).norm(), near * (1.0 + slope.norm())) << k << " " << u;
+      };
+      expect_slope([&](const auto& y) { return problem.residuals(y); }, J.col(u));
+      if (problem.limits() > 0) {
+        expect_slope([&](const auto& y) { return problem.limit_values(y); }, limit_J.col(u));
+      }
+      const auto square = [&](measure what) {
+        return [&problem, what](const Eigen::VectorXd& y) {
+          return Eigen::VectorXd::Constant(1, problem.half_square(what, y)).eval();
+        };
+      };
+      expect_slope(square(measure::error), of_error.segment(u, 1));
+      if (transports) expect_slope(square(measure::band), of_band.segment(u, 1));
+      expect_slope([&](const auto& y) { return gradient_of_sum(problem, y, given); }, H.col(u));
     }
+  }
+}
+
+/// The Butcher form in long double, which the formulas of the certificate take.
+butcher_form<long double> butcher_of(const shu_osher_form<double>& m) {
+  const auto b = to_butcher(m);
+  const auto wide = [](const matrix<double>& from) {
+    matrix<long double> to(from.rows(), from.cols());
+    for (std::size_t i = 0; i < from.rows(); ++i)
+      for (std::size_t j = 0; j < from.cols(); ++j) to(i, j) = from(i, j);
+    return to;
+  };
+  return {wide(b.A_hat), wide(b.A), wide(b.A_dot)};
+}
+
+// The residuals of the band and the limits of an angle, against the certificate's flux(z) and R(ζ). Both
+// sides solve triangular systems; what they differ by is rounding times the size of the terms.
+TEST(design_conditions, are_the_flux_and_the_stability_function_of_the_certificate) {
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k].kind == method_kind::explicit_only) continue;
+    auto [problem, x] = draw(all[k].kind, all[k].order, all[k].stages, all[k].regime, 200 + k);
+    const auto butcher = butcher_of(problem.form(x));
+    const auto limits = problem.limit_values(x);
+    ASSERT_EQ(limits.size(), 85);  // 24 to a decade from 10^-1 to 10^2.5
+    for (Eigen::Index l = 0; l < limits.size(); ++l) {
+      const long double radius = std::pow(10.0L, -1.0L + static_cast<long double>(l) / 24.0L);
+      const long double angle = demanded_angle * std::numbers::pi_v<long double> / 180.0L;
+      const auto R = stability_function(butcher, -std::polar(radius, -angle));
+      const auto expected = static_cast<double>(std::norm(R)) - 1.0;
+      EXPECT_NEAR(limits(l), expected, 1e-12 * (1.0 + std::abs(expected))) << k << " " << l;
+    }
+    if (all[k].kind == method_kind::implicit_only) continue;
+    double sum = 0.0;
+    for (int l = -8; l <= 20; ++l) {  // 8 to a decade
+      const long double z = std::pow(10.0L, l / 8.0L);
+      const long double R = stability_function(butcher, -z).real();
+      const long double residual = (at_finite_rate(butcher, z).flux - 1) / z * (1 - R) / -std::expm1(-z);
+      sum += static_cast<double>(residual * residual) / 8.0;
+    }
+    EXPECT_NEAR(problem.half_square(measure::band, x), 0.5 * sum, 1e-11 * (1.0 + sum)) << k;
   }
 }
 
@@ -116,7 +194,7 @@ TEST(design_conditions, are_those_of_the_butcher_form) {
         }
     }
     EXPECT_GT(seen, 0);
-    EXPECT_NEAR(problem.half_square_error(x), error, 1e-12 * (1.0 + error));
+    EXPECT_NEAR(problem.half_square(measure::error, x), error, 1e-12 * (1.0 + error));
     if (all[k].regime == regime_demand::none) continue;
     const auto terms = analyse_intermediate_regime(m);
     for (Eigen::Index e = 0; e < problem.equations(); ++e) {

@@ -3,6 +3,8 @@
 #include <apsis/method/trees.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -75,6 +77,26 @@ design_condition tree_condition(const std::vector<rooted_tree>& trees, std::size
   return {trees[k].name, {{1.0, {static_cast<int>(k)}, stages - 1}}, 1.0 / trees[k].density};
 }
 
+/// What stages make of ζ: the place of the real part, the next one is the imaginary part.
+int add_response(condition_list& list, series_node::kind what, std::complex<double> zeta) {
+  list.nodes.push_back({what, {}, {}, zeta});
+  list.nodes.push_back({series_node::kind::imaginary, {}, {}});
+  return static_cast<int>(list.nodes.size()) - 2;
+}
+
+int add_transport(condition_list& list, int child) {
+  list.nodes.push_back({series_node::kind::transport, {child}, {}});
+  return static_cast<int>(list.nodes.size()) - 1;
+}
+
+/// From 0.1 to 300.
+std::vector<double> radii(int to_a_decade) {
+  std::vector<double> all;
+  for (int k = -to_a_decade; k <= 2.5 * to_a_decade; ++k)
+    all.push_back(std::pow(10.0, static_cast<double>(k) / to_a_decade));
+  return all;
+}
+
 }  // namespace
 
 condition_list order_equations(method_kind kind, int order, std::size_t stages,
@@ -103,18 +125,49 @@ condition_list order_equations(method_kind kind, int order, std::size_t stages,
 
 void add_regime_equations(condition_list& list, regime_demand demand, std::size_t stages) {
   if (demand == regime_demand::none) return;
-  const auto add_node = [&list](series_node::kind what, std::vector<int> children) {
-    list.nodes.push_back({what, std::move(children), {}});
+  const auto add_node = [&list](series_node::kind what) {
+    list.nodes.push_back({what, {}, {}});
     return static_cast<int>(list.nodes.size()) - 1;
   };
-  const int kept = add_node(series_node::kind::kept, {});
+  const int kept = add_node(series_node::kind::kept);
   list.conditions.push_back({"last = 1", {{1.0, {kept}, stages - 1}}, 1.0});
-  list.conditions.push_back(
-      {"flux = 1", {{1.0, {add_node(series_node::kind::transport, {kept})}, stages - 1}}, 1.0});
+  list.conditions.push_back({"flux = 1", {{1.0, {add_transport(list, kept)}, stages - 1}}, 1.0});
   if (demand != regime_demand::all) return;
-  const int layer = add_node(series_node::kind::layer, {});
-  list.conditions.push_back(
-      {"layer = 1", {{1.0, {add_node(series_node::kind::transport, {layer})}, stages - 1}}, 1.0});
+  const int layer = add_node(series_node::kind::layer);
+  list.conditions.push_back({"layer = 1", {{1.0, {add_transport(list, layer)}, stages - 1}}, 1.0});
+}
+
+condition_list band_terms(std::size_t stages) {
+  constexpr int to_a_decade = 8;
+  const std::size_t last = stages - 1;
+  condition_list list;
+  for (const double z : radii(to_a_decade)) {
+    const int moved = add_response(list, series_node::kind::moved, -z);
+    const int start = add_response(list, series_node::kind::response, -z);
+    const int of_moved = add_transport(list, moved), of_start = add_transport(list, start);
+    // κ = moved + κ_s start, κ_s = moved_s/(1 − start_s); flux(z) − 1 times (1 − start_s) is a polynomial.
+    const double w = std::sqrt(1.0 / to_a_decade) / (z * -std::expm1(-z));
+    list.conditions.push_back({fmt::format("flux at z = {:.3g}", z),
+                               {{w, {of_moved}, last},
+                                {-w, {of_moved, start}, last},
+                                {w, {moved, of_start}, last},
+                                {w, {start}, last}},
+                               w});
+  }
+  return list;
+}
+
+condition_list stability_limits(double degrees, std::size_t stages) {
+  constexpr int to_a_decade = 24;
+  const double angle = degrees * std::numbers::pi / 180.0;
+  condition_list list;
+  for (const double radius : radii(to_a_decade)) {
+    const int re = add_response(list, series_node::kind::response, -std::polar(radius, -angle));
+    list.conditions.push_back({fmt::format("|R| at |z| = {:.3g}", radius),
+                               {{1.0, {re, re}, stages - 1}, {1.0, {re + 1, re + 1}, stages - 1}},
+                               1.0});
+  }
+  return list;
 }
 
 condition_list error_terms(method_kind kind, int order, std::size_t stages) {

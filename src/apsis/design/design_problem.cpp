@@ -51,8 +51,9 @@ design_problem::design_problem(zero_pattern pattern, const design_demands& deman
     : pattern_(std::move(pattern)),
       demands_(demands),
       slow_(slow_stages(pattern_)),
-      conditions_(equations_of(pattern_, demands_), slow_),
-      second_(equations_of(pattern_, demands_), slow_) {
+      conditions_(equations_of(pattern_, demands_), slow_) {
+  if (demands_.least_angle > 0.0 && pattern_.kind != method_kind::explicit_only)
+    limits_.emplace(stability_limits(demands_.least_angle, pattern_.stages()), slow_);
   for (const auto& c : equations_of(pattern_, demands_).conditions) names_.push_back(c.name);
   const std::size_t s = pattern_.stages();
   std::vector<std::pair<double, double>> bounds;
@@ -148,12 +149,20 @@ Eigen::VectorXd design_problem::unknowns_of(const shu_osher_form<double>& m) con
   return x;
 }
 
+namespace {
+
+Eigen::VectorXd values_of(const condition_sweep<double>& sweep, Eigen::Index size) {
+  Eigen::VectorXd values(size);
+  for (std::size_t k = 0; k < sweep.size(); ++k) values(static_cast<Eigen::Index>(k)) = sweep.residual(k);
+  return values;
+}
+
+}  // namespace
+
 Eigen::VectorXd design_problem::residuals(const Eigen::VectorXd& x) {
-  conditions_.evaluate(form(x));
-  Eigen::VectorXd c(equations());
-  Eigen::Index k = 0;
-  for (; k < static_cast<Eigen::Index>(conditions_.size()); ++k)
-    c(k) = conditions_.residual(static_cast<std::size_t>(k));
+  conditions_.first.evaluate(form(x));
+  Eigen::VectorXd c = values_of(conditions_.first, equations());
+  auto k = static_cast<Eigen::Index>(conditions_.first.size());
   for (const auto& row : rows_) {
     double sum = -1.0;
     for (const auto place : row) sum += x(place);
@@ -162,51 +171,71 @@ Eigen::VectorXd design_problem::residuals(const Eigen::VectorXd& x) {
   return c;
 }
 
-Eigen::MatrixXd design_problem::jacobian(const Eigen::VectorXd& x) {
-  conditions_.evaluate(form(x));
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(equations(), unknowns());
-  for (std::size_t k = 0; k < conditions_.size(); ++k) {
-    auto gradient = empty_form<double>();
-    conditions_.seed(k, 1.0);
-    conditions_.reverse(gradient);
-    for (std::size_t u = 0; u < unknowns_.size(); ++u)
-      if (const double* from = entry(gradient, unknowns_[u]); from != nullptr)
-        J(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(u)) = *from;
+Eigen::VectorXd design_problem::gradient_of(condition_sweep<double>& seeded) const {
+  auto g = empty_form<double>();
+  seeded.reverse(g);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(unknowns());
+  for (std::size_t u = 0; u < unknowns_.size(); ++u)
+    if (const double* from = entry(g, unknowns_[u]); from != nullptr)
+      gradient(static_cast<Eigen::Index>(u)) = *from;
+  return gradient;
+}
+
+Eigen::MatrixXd design_problem::gradients_of(condition_sweep<double>& sweep, Eigen::Index rows) const {
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, unknowns());
+  for (std::size_t k = 0; k < sweep.size(); ++k) {
+    sweep.seed(k, 1.0);
+    J.row(static_cast<Eigen::Index>(k)) = gradient_of(sweep);
   }
-  for (std::size_t row = 0; row < rows_.size(); ++row)
-    for (const auto place : rows_[row]) J(static_cast<Eigen::Index>(conditions_.size() + row), place) = 1.0;
   return J;
 }
 
-void design_problem::require_error_terms() {
-  if (error_) return;
-  const auto list = error_terms(pattern_.kind, demands_.order + 1, pattern_.stages());
-  error_.emplace(list, slow_);
-  error_second_.emplace(list, slow_);
+Eigen::MatrixXd design_problem::jacobian(const Eigen::VectorXd& x) {
+  conditions_.first.evaluate(form(x));
+  Eigen::MatrixXd J = gradients_of(conditions_.first, equations());
+  auto k = static_cast<Eigen::Index>(conditions_.first.size());
+  for (const auto& row : rows_) {
+    for (const auto place : row) J(k, place) = 1.0;
+    ++k;
+  }
+  return J;
 }
 
-double design_problem::half_square_error(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
-  require_error_terms();
-  error_->evaluate(form(x));
+Eigen::VectorXd design_problem::limit_values(const Eigen::VectorXd& x) {
+  if (!limits_) return {};
+  limits_->first.evaluate(form(x));
+  return values_of(limits_->first, limits());
+}
+
+Eigen::MatrixXd design_problem::limit_jacobian(const Eigen::VectorXd& x) {
+  if (!limits_) return Eigen::MatrixXd(0, unknowns());
+  limits_->first.evaluate(form(x));
+  return gradients_of(limits_->first, limits());
+}
+
+design_problem::sweeps& design_problem::terms_of(measure what) {
+  auto& terms = what == measure::error ? error_ : band_;
+  if (!terms)
+    terms.emplace(what == measure::error ? error_terms(pattern_.kind, demands_.order + 1, pattern_.stages())
+                                         : band_terms(pattern_.stages()),
+                  slow_);
+  return *terms;
+}
+
+double design_problem::half_square(measure what, const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+  auto& terms = terms_of(what).first;
+  terms.evaluate(form(x));
   double sum = 0.0;
-  for (std::size_t k = 0; k < error_->size(); ++k) {
-    const double residual = error_->residual(k);
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const double residual = terms.residual(k);
     sum += 0.5 * residual * residual;
-    if (gradient != nullptr) error_->seed(k, residual);
+    if (gradient != nullptr) terms.seed(k, residual);
   }
-  if (gradient == nullptr) return sum;
-  auto g = empty_form<double>();
-  error_->reverse(g);
-  gradient->setZero(unknowns());
-  for (std::size_t u = 0; u < unknowns_.size(); ++u)
-    if (const double* from = entry(g, unknowns_[u]); from != nullptr)
-      (*gradient)(static_cast<Eigen::Index>(u)) = *from;
+  if (gradient != nullptr) *gradient = gradient_of(terms);
   return sum;
 }
 
-Eigen::MatrixXd design_problem::hessian(const Eigen::VectorXd& x, const Eigen::VectorXd& multipliers,
-                                        double weight) {
-  if (weight != 0.0) require_error_terms();
+Eigen::MatrixXd design_problem::hessian(const Eigen::VectorXd& x, const weights& given) {
   const std::size_t n = unknowns_.size();
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(unknowns(), unknowns());
   for (std::size_t first = 0; first < n; first += tangent::width) {
@@ -215,16 +244,23 @@ Eigen::MatrixXd design_problem::hessian(const Eigen::VectorXd& x, const Eigen::V
     for (std::size_t k = first; k < last; ++k) point[k].slope[k - first] = 1.0;
     const auto m = form_of(point);
     auto gradient = empty_form<tangent>();
-    second_.evaluate(m);
-    for (std::size_t k = 0; k < second_.size(); ++k)
-      second_.seed(k, tangent(multipliers(static_cast<Eigen::Index>(k))));
-    second_.reverse(gradient);
-    if (weight != 0.0) {
-      error_second_->evaluate(m);
-      for (std::size_t k = 0; k < error_second_->size(); ++k)
-        error_second_->seed(k, tangent(weight) * error_second_->residual(k));
-      error_second_->reverse(gradient);
-    }
+    const auto add_linear = [&](condition_sweep<tangent>& sweep, const Eigen::VectorXd& factors) {
+      sweep.evaluate(m);
+      for (std::size_t k = 0; k < sweep.size(); ++k)
+        sweep.seed(k, tangent(factors(static_cast<Eigen::Index>(k))));
+      sweep.reverse(gradient);
+    };
+    const auto add_squares = [&](measure what, double weight) {
+      if (weight == 0.0) return;
+      auto& sweep = terms_of(what).second;
+      sweep.evaluate(m);
+      for (std::size_t k = 0; k < sweep.size(); ++k) sweep.seed(k, tangent(weight) * sweep.residual(k));
+      sweep.reverse(gradient);
+    };
+    add_linear(conditions_.second, given.equations);
+    if (limits_) add_linear(limits_->second, given.limits);
+    add_squares(measure::error, given.error);
+    add_squares(measure::band, given.band);
     for (std::size_t u = 0; u < n; ++u)
       if (const tangent* from = entry(gradient, unknowns_[u]); from != nullptr)
         for (std::size_t k = first; k < last; ++k)

@@ -32,10 +32,10 @@ struct design_demands {
   double least_r = 0.01;    ///< r ≥ least_r (methods with transport)
   double largest_r = 64.0;  ///< r ≤ largest_r
   regime_demand regime = regime_demand::none;
-  // Looked at once a method is found; those that fail are passed over.
   double least_angle = 0.0;  ///< α of A(α)-stability of the implicit part, in degrees
-  double least_pole = 0.0;   ///< poles of stages with d = 0 are at ±i/√|ḋ|: 1/√|ḋ| at least
-  int most_buffers = 1000;   ///< state-sized buffers of a step
+  // Looked at once a method is found; those that fail are passed over.
+  double least_pole = 0.0;  ///< poles of stages with d = 0 are at ±i/√|ḋ|: 1/√|ḋ| at least
+  int most_buffers = 1000;  ///< state-sized buffers of a step
   /// Rows that are given, the first ones, and r with them: only later rows are unknown.
   std::optional<shu_osher_form<double>> given_rows;
 };
@@ -43,7 +43,7 @@ struct design_demands {
 /// The unknown coefficients of a method with the equations and bounds that they must satisfy:
 ///   x = (p_ij, w_ij, r_i, d_i, ḋ_i, r), lower ≤ x ≤ upper,
 ///   order conditions (and those of the intermediate regime) = 0,    r_i + Σ_j (p_ij + w_ij) = 1,
-///   d_i − ḋ_i ≥ margin.
+///   d_i − ḋ_i ≥ margin,    |R|² − 1 ≤ 0 on a ray if an angle is demanded.
 /// Derivatives are exact: gradients by a reverse sweep, second derivatives by one over `tangent`. An object
 /// has its own work space: one for each thread. Dimensionless.
 class design_problem {
@@ -56,7 +56,9 @@ class design_problem {
   const Eigen::VectorXd& upper() const { return upper_; }
   Eigen::Index unknowns() const { return lower_.size(); }
   /// Order conditions and the like; then the row sums.
-  Eigen::Index equations() const { return static_cast<Eigen::Index>(conditions_.size() + rows_.size()); }
+  Eigen::Index equations() const {
+    return static_cast<Eigen::Index>(conditions_.first.size() + rows_.size());
+  }
   const std::string& equation_name(Eigen::Index k) const { return names_[static_cast<std::size_t>(k)]; }
   /// Place of r in x, −1 for methods without transport.
   Eigen::Index place_of_r() const { return r_place_; }
@@ -74,11 +76,22 @@ class design_problem {
   Eigen::VectorXd residuals(const Eigen::VectorXd& x);
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& x);
 
-  /// ½ Σ of the squared residuals of the next order, and its gradient.
-  double half_square_error(const Eigen::VectorXd& x, Eigen::VectorXd* gradient = nullptr);
+  /// What must not be positive: stability_limits(), if an angle is demanded.
+  Eigen::Index limits() const { return limits_ ? static_cast<Eigen::Index>(limits_->first.size()) : 0; }
+  Eigen::VectorXd limit_values(const Eigen::VectorXd& x);
+  Eigen::MatrixXd limit_jacobian(const Eigen::VectorXd& x);
 
-  /// Second derivatives of Σ_k λ_k residual_k + weight · half_square_error.
-  Eigen::MatrixXd hessian(const Eigen::VectorXd& x, const Eigen::VectorXd& multipliers, double weight);
+  /// ½ Σ of squared residuals: those of the next order (`error`), or band_terms(); and its gradient.
+  enum class measure { error, band };
+  double half_square(measure what, const Eigen::VectorXd& x, Eigen::VectorXd* gradient = nullptr);
+
+  /// Weights in a sum of second derivatives.
+  struct weights {
+    Eigen::VectorXd equations, limits;
+    double error = 0.0, band = 0.0;
+  };
+  /// Second derivatives of Σ_k λ_k residual_k + Σ_l μ_l limit_l + the weighted half squares.
+  Eigen::MatrixXd hessian(const Eigen::VectorXd& x, const weights& given);
 
  private:
   enum class part { P, W, initial, d, ddot, r };
@@ -93,7 +106,16 @@ class design_problem {
   shu_osher_form<Real> form_of(const std::vector<Real>& x) const;
   template <class Real>
   shu_osher_form<Real> empty_form() const;
-  void require_error_terms();
+  /// Values and gradients, and the same with second derivatives.
+  struct sweeps {
+    sweeps(const condition_list& list, const std::vector<char>& slow)
+        : first(list, slow), second(list, slow) {}
+    condition_sweep<double> first;
+    condition_sweep<tangent> second;
+  };
+  sweeps& terms_of(measure what);
+  Eigen::VectorXd gradient_of(condition_sweep<double>& seeded) const;
+  Eigen::MatrixXd gradients_of(condition_sweep<double>& sweep, Eigen::Index rows) const;
 
   zero_pattern pattern_;
   design_demands demands_;
@@ -104,10 +126,8 @@ class design_problem {
   std::vector<std::vector<Eigen::Index>> rows_;
   std::vector<std::string> names_;
   std::vector<inequality> inequalities_;
-  condition_sweep<double> conditions_;
-  condition_sweep<tangent> second_;
-  std::optional<condition_sweep<double>> error_;
-  std::optional<condition_sweep<tangent>> error_second_;
+  sweeps conditions_;
+  std::optional<sweeps> limits_, error_, band_;
 };
 
 }  // namespace apsis

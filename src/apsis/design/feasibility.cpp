@@ -52,13 +52,34 @@ class bounded_steps {
   Eigen::VectorXd c_, to_lower_, to_upper_;
 };
 
+/// Equations, and limits where they are passed.
+Eigen::VectorXd missing(design_problem& problem, const Eigen::VectorXd& x) {
+  Eigen::VectorXd c = problem.residuals(x);
+  if (problem.limits() == 0) return c;
+  const auto equations = c.size();
+  c.conservativeResize(equations + problem.limits());
+  c.tail(problem.limits()) = problem.limit_values(x).cwiseMax(0.0);
+  return c;
+}
+
+Eigen::MatrixXd slopes(design_problem& problem, const Eigen::VectorXd& x, const Eigen::VectorXd& c) {
+  Eigen::MatrixXd J = problem.jacobian(x);
+  if (problem.limits() == 0) return J;
+  const auto equations = J.rows();
+  J.conservativeResize(c.size(), Eigen::NoChange);
+  J.bottomRows(problem.limits()) = problem.limit_jacobian(x);
+  for (Eigen::Index k = equations; k < c.size(); ++k)
+    if (c(k) == 0.0) J.row(k).setZero();
+  return J;
+}
+
 }  // namespace
 
 feasibility_result find_feasible(design_problem& problem, Eigen::VectorXd x, int most_iterations) {
   constexpr double enough = 1e-11, exact = 1e-14;
   feasibility_result result;
   x = x.cwiseMax(problem.lower()).cwiseMin(problem.upper());
-  Eigen::VectorXd c = problem.residuals(x);
+  Eigen::VectorXd c = missing(problem, x);
   double damping = 1e-2, slowest = c.norm();
   for (; result.iterations < most_iterations && c.lpNorm<Eigen::Infinity>() > exact; ++result.iterations) {
     // Once in 25 iterations it must have come a tenth nearer.
@@ -66,13 +87,13 @@ feasibility_result find_feasible(design_problem& problem, Eigen::VectorXd x, int
       if (c.norm() > 0.9 * slowest) break;
       slowest = c.norm();
     }
-    const bounded_steps steps(problem, x, problem.jacobian(x), c);
+    const bounded_steps steps(problem, x, slopes(problem, x, c), c);
     bool moved = false;
     for (int attempt = 0; attempt < 12 && !moved; ++attempt) {
       // A bound is met exactly, whatever x + (bound − x) rounds to.
       const Eigen::VectorXd trial =
           (x + steps.step(damping * c.squaredNorm())).cwiseMax(problem.lower()).cwiseMin(problem.upper());
-      const Eigen::VectorXd there = problem.residuals(trial);
+      const Eigen::VectorXd there = missing(problem, trial);
       if (there.allFinite() && there.squaredNorm() < c.squaredNorm()) {
         damping = std::max(damping / 5.0, 1e-12);
         x = trial;

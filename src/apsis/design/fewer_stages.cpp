@@ -64,7 +64,7 @@ std::optional<form_type> without_a_stage(const design_task& task, const form_typ
     const Eigen::VectorXd zero = problem.unknowns_of(column);
     for (std::size_t i = stage + 1; i < s; ++i) column.P(i, stage) = column.W(i, stage) = 1.0;
     // r_i, which is 1 − Σ_j (p_ij + w_ij), is no weight of the stage.
-    const program_goal goal{(problem.unknowns_of(column) - zero).cwiseMax(0.0), 0.0};
+    const program_goal goal{(problem.unknowns_of(column) - zero).cwiseMax(0.0)};
     const auto solution = optimise(problem, goal, x, stop);
     const double left = goal.linear.dot(solution.x);
     if (report) report(stage, solution.residual < 1e-9 ? left : given[stage]);

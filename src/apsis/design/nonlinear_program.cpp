@@ -1,6 +1,7 @@
 #include <apsis/design/nonlinear_program.hpp>
 
 #include <algorithm>
+#include <array>
 #include <mutex>
 
 #include <Eigen/QR>
@@ -53,12 +54,15 @@ class program final : public Ipopt::TNLP {
   bool get_bounds_info(Index n, Number* lower, Number* upper, Index m, Number* least, Number* most) override {
     std::copy_n(problem_.lower().data(), n, lower);
     std::copy_n(problem_.upper().data(), n, upper);
-    const auto equations = static_cast<Index>(chosen_.size());
-    for (Index k = 0; k < m; ++k) {
-      const bool equation = k < equations;
-      least[k] = equation ? 0.0 : problem_.inequalities()[static_cast<std::size_t>(k - equations)].least;
-      most[k] = equation ? 0.0 : 2e19;
+    constexpr Number infinite = 2e19;
+    std::fill_n(least, m, 0.0);
+    std::fill_n(most, m, 0.0);
+    auto k = chosen_.size();
+    for (const auto& inequality : problem_.inequalities()) {
+      least[k] = inequality.least;
+      most[k++] = infinite;
     }
+    std::fill_n(least + k, problem_.limits(), -infinite);
     return true;
   }
 
@@ -70,15 +74,19 @@ class program final : public Ipopt::TNLP {
   bool eval_f(Index n, const Number* x, bool, Number& value) override {
     const released_lock free;
     value = goal_.linear.dot(vector_of(n, x));
-    if (goal_.error_weight != 0.0) value += goal_.error_weight * problem_.half_square_error(vector_of(n, x));
+    for (const auto& [what, weight] : squares())
+      if (weight != 0.0) value += weight * problem_.half_square(what, vector_of(n, x));
     return std::isfinite(value);
   }
 
   bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
     const released_lock free;
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
-    if (goal_.error_weight != 0.0) problem_.half_square_error(vector_of(n, x), &g);
-    g = goal_.error_weight * g + goal_.linear;
+    Eigen::VectorXd g = goal_.linear, part;
+    for (const auto& [what, weight] : squares()) {
+      if (weight == 0.0) continue;
+      problem_.half_square(what, vector_of(n, x), &part);
+      g += weight * part;
+    }
     std::copy_n(g.data(), n, gradient);
     return g.allFinite();
   }
@@ -92,7 +100,9 @@ class program final : public Ipopt::TNLP {
       for (const auto& [place, factor] : inequality.terms) sum += factor * x[place];
       *values++ = sum;
     }
-    return c.allFinite();
+    const Eigen::VectorXd limits = problem_.limit_values(vector_of(n, x));
+    std::copy_n(limits.data(), limits.size(), values);
+    return c.allFinite() && limits.allFinite();
   }
 
   bool eval_jac_g(Index n, const Number* x, bool, Index m, Index entries, Index* row, Index* column,
@@ -114,7 +124,10 @@ class program final : public Ipopt::TNLP {
       for (const auto& [place, factor] : inequality.terms) values[at + place] = factor;
       at += n;
     }
-    return J.allFinite();
+    const Eigen::MatrixXd limits = problem_.limit_jacobian(vector_of(n, x));
+    for (Eigen::Index k = 0; k < limits.rows(); ++k)
+      for (Index u = 0; u < n; ++u) values[at++] = limits(k, u);
+    return J.allFinite() && limits.allFinite();
   }
 
   bool eval_h(Index n, const Number* x, bool, Number objective_factor, Index, const Number* multipliers, bool,
@@ -129,9 +142,13 @@ class program final : public Ipopt::TNLP {
       return true;
     }
     const released_lock free;
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(problem_.equations());
-    for (std::size_t k = 0; k < chosen_.size(); ++k) all(chosen_[k]) = multipliers[k];
-    const Eigen::MatrixXd H = problem_.hessian(vector_of(n, x), all, objective_factor * goal_.error_weight);
+    design_problem::weights given;
+    given.equations = Eigen::VectorXd::Zero(problem_.equations());
+    for (std::size_t k = 0; k < chosen_.size(); ++k) given.equations(chosen_[k]) = multipliers[k];
+    given.limits = vector_of(static_cast<Index>(problem_.limits()), multipliers + rows() - problem_.limits());
+    given.error = objective_factor * goal_.error_weight;
+    given.band = objective_factor * goal_.band_weight;
+    const Eigen::MatrixXd H = problem_.hessian(vector_of(n, x), given);
     for (Index i = 0; i < n; ++i)
       for (Index j = 0; j <= i; ++j) *values++ = H(i, j);
     return H.allFinite();
@@ -150,7 +167,14 @@ class program final : public Ipopt::TNLP {
   }
 
  private:
-  Index rows() const { return static_cast<Index>(chosen_.size() + problem_.inequalities().size()); }
+  Index rows() const {
+    return static_cast<Index>(chosen_.size() + problem_.inequalities().size()) +
+           static_cast<Index>(problem_.limits());
+  }
+  std::array<std::pair<design_problem::measure, double>, 2> squares() const {
+    return {{{design_problem::measure::error, goal_.error_weight},
+             {design_problem::measure::band, goal_.band_weight}}};
+  }
 
   design_problem& problem_;
   program_goal goal_;
@@ -191,11 +215,18 @@ std::vector<Eigen::Index> independent_equations(const Eigen::MatrixXd& jacobian)
 }
 
 program_goal goal_of(const design_problem& problem, design_objective objective) {
-  program_goal goal{Eigen::VectorXd::Zero(problem.unknowns()), 0.0};
-  if (objective == design_objective::smallest_error) {
-    goal.error_weight = 1.0;
-  } else {
-    goal.linear(problem.place_of_r()) = -1.0;
+  program_goal goal{Eigen::VectorXd::Zero(problem.unknowns())};
+  switch (objective) {
+    case design_objective::largest_r:
+    case design_objective::efficiency:
+      goal.linear(problem.place_of_r()) = -1.0;
+      break;
+    case design_objective::smallest_band:
+      goal.band_weight = band_to_error * band_to_error;
+      [[fallthrough]];
+    case design_objective::smallest_error:
+      goal.error_weight = 1.0;
+      break;
   }
   return goal;
 }

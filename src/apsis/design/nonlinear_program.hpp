@@ -9,9 +9,10 @@ namespace apsis {
 
 /// What a design is to be best in.
 enum class design_objective {
-  largest_r,      ///< the SSP coefficient r
-  efficiency,     ///< r/n_F, what one evaluation of T pays for; the same as r for a given pattern
-  smallest_error  ///< the 2-norm of the residuals of the next order
+  largest_r,       ///< the SSP coefficient r
+  efficiency,      ///< r/n_F, what one evaluation of T pays for; the same as r for a given pattern
+  smallest_error,  ///< the 2-norm of the residuals of the next order
+  smallest_band    ///< the error of the term of size ε where ε ~ Δt, and a little of the former
 };
 
 struct program_result {
@@ -21,13 +22,18 @@ struct program_result {
   std::string status;
 };
 
-/// What a program minimises: linear · x + error_weight · ½ Σ (residuals of the next order)².
+/// What a program minimises: linear · x + error_weight · ½ Σ (residuals of the next order)² + band_weight · ½
+/// Σ (band_terms())².
 struct program_goal {
   Eigen::VectorXd linear;
-  double error_weight = 0.0;
+  double error_weight = 0.0, band_weight = 0.0;
 };
 
-/// The goal of an objective: −r, or the error.
+/// In smallest_band a band of 0.01 counts as much as an error constant of 0.1: both then cost about the same
+/// where ε(x) goes through Δt.
+constexpr double band_to_error = 10.0;
+
+/// The goal of an objective: −r, the error, or the band.
 program_goal goal_of(const design_problem& problem, design_objective objective);
 
 /// The best method near x: Ipopt (Wächter, Biegler, Math. Program. 106, 2006) with exact first and second

@@ -19,6 +19,8 @@ double value_of(const design_candidate& candidate, design_objective objective) {
       return candidate.r;
     case design_objective::efficiency:
       return candidate.r / std::max(1, candidate.evaluations);
+    case design_objective::smallest_band:
+      return -std::hypot(candidate.error, band_to_error * candidate.band);
     case design_objective::smallest_error:
       break;
   }
@@ -77,7 +79,8 @@ design_candidate best_near(const design_task& task, design_problem& problem, Eig
                            const std::function<bool()>& stop) {
   constexpr int most_rounds = 4;
   const bool has_r = task.kind != method_kind::implicit_only;
-  const bool for_r = task.objective != design_objective::smallest_error;
+  const bool for_r =
+      task.objective == design_objective::largest_r || task.objective == design_objective::efficiency;
   design_candidate found = drop_zeros(problem, x);
   for (int round = 0; round < most_rounds && (has_r || !for_r); ++round) {
     const auto solution = optimise(problem, goal_of(problem, task.objective), x, stop);

@@ -30,6 +30,7 @@ struct design_candidate {
   double r = 0.0;       ///< 1 without transport
   int evaluations = 0;  ///< of T, n_F
   double error = 0.0;   ///< 2-norm of the residuals of the next order
+  double band = 0.0;    ///< 2-norm of band_terms() (methods with transport)
   int start = -1;       ///< which start found it
 };
 
@@ -58,7 +59,7 @@ design_progress search(const design_task& task, const design_search& how);
 /// Whether a is better than b: in the objective of the task; the earlier start if that is equal.
 bool is_better(const design_task& task, const design_candidate& a, const design_candidate& b);
 
-/// What counts: larger is better. r, r/n_F or minus the error.
+/// What counts: larger is better. r, r/n_F, minus the error, or minus √(error² + (10 band)²).
 double value_of(const design_candidate& candidate, design_objective objective);
 
 /// Whether the demands that the equations do not know are met: angle, poles, buffers.

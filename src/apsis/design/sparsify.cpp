@@ -15,7 +15,9 @@ design_candidate candidate_of(design_problem& problem, const Eigen::VectorXd& x)
   c.r = problem.place_of_r() >= 0 ? x(problem.place_of_r()) : 1.0;
   const auto transport = c.pattern.transport();
   c.evaluations = static_cast<int>(std::count(transport.begin(), transport.end(), 1));
-  c.error = std::sqrt(2.0 * problem.half_square_error(x));
+  c.error = std::sqrt(2.0 * problem.half_square(design_problem::measure::error, x));
+  if (c.pattern.kind == method_kind::imex)
+    c.band = std::sqrt(2.0 * problem.half_square(design_problem::measure::band, x));
   return c;
 }
 

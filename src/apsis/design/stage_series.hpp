@@ -3,6 +3,7 @@
 #include <apsis/method/tableau.hpp>
 #include <apsis/method/trees.hpp>
 
+#include <complex>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -15,11 +16,15 @@ struct series_node {
     transport,   ///< R y = (W/r) Π children: a tree with root T
     relaxation,  ///< R y = D Π children + Ḋ Σ_k (Π_{l≠k} children)(Π children of child k): a tree with root Q
     kept,        ///< y_i = Σ_j w_ij/(r d_i) where ḋ_i = 0 and d_i > 0, else 0: χ of docs/plateaus.md
-    layer        ///< y_i = r_i/d_i there, else 0: λ of docs/plateaus.md
+    layer,       ///< y_i = r_i/d_i there, else 0: λ of docs/plateaus.md
+    response,  ///< y_i = (Σ_j m_ij y_j + r_i)/(1 − ζ d_i − ζ² ḋ_i), M = P + W: R(ζ) at stage i of u' = ζu/Δt
+    moved,     ///< the same with −ζ Σ_j w_ij/r for r_i: κ of docs/plateaus.md where ζ = −z, but for the start
+    imaginary  ///< imaginary part of the node before, which is `response` or `moved`
   };
   kind what = kind::transport;
   std::vector<int> children;
   std::vector<std::vector<int>> merged;  ///< the factors of each term of Ḋ (nodes of kind relaxation)
+  std::complex<double> zeta = 0.0;       ///< ζ (nodes of kind response and moved)
 };
 
 /// The stage vectors of trees, in the same order (rooted_trees() puts children first).
@@ -80,6 +85,12 @@ class stage_series {
   }
 
  private:
+  struct complex_pair {
+    Real re, im;
+  };
+  static bool is_response(const series_node& node) {
+    return node.what == series_node::kind::response || node.what == series_node::kind::moved;
+  }
   Real& weight(std::size_t i, std::size_t j) { return M_[i * s_ + j]; }
   Real& advance(std::size_t i, std::size_t j) { return V_[i * s_ + j]; }
 
@@ -101,8 +112,70 @@ class stage_series {
   }
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
+  /// 1 − ζ d_i − ζ² ḋ_i.
+  complex_pair denominator(std::complex<double> zeta, std::size_t i) const {
+    const auto square = zeta * zeta;
+    return {Real(1.0) - Real(zeta.real()) * d_[i] - Real(square.real()) * ddot_[i],
+            -(Real(zeta.imag()) * d_[i] + Real(square.imag()) * ddot_[i])};
+  }
+
+  void evaluate_response(std::size_t n) {
+    const auto zeta = nodes_[n].zeta;
+    const bool moved = nodes_[n].what == series_node::kind::moved;
+    Real* re = &y_[n * s_];
+    Real* im = &y_[(n + 1) * s_];
+    for (std::size_t i = 0; i < s_; ++i) {
+      complex_pair sum{Real(0.0), Real(0.0)};
+      if (!moved) sum.re = initial_[i];
+      for (std::size_t j = 0; j < i; ++j) {
+        sum.re += weight(i, j) * re[j];
+        sum.im += weight(i, j) * im[j];
+        if (!moved) continue;
+        sum.re -= Real(zeta.real()) * advance(i, j);
+        sum.im -= Real(zeta.imag()) * advance(i, j);
+      }
+      const auto q = denominator(zeta, i);
+      const Real size = q.re * q.re + q.im * q.im;
+      re[i] = (sum.re * q.re + sum.im * q.im) / size;
+      im[i] = (sum.im * q.re - sum.re * q.im) / size;
+    }
+  }
+
+  /// With S/q = y and the adjoint A of y: that of S is S̄ = A q/|q|², that of q is −S̄ conj(y).
+  void reverse_response(std::size_t n, shu_osher_form<Real>& out) {
+    const auto zeta = nodes_[n].zeta, square = zeta * zeta;
+    const bool moved = nodes_[n].what == series_node::kind::moved;
+    const Real* re = &y_[n * s_];
+    const Real* im = &y_[(n + 1) * s_];
+    Real* bar_re = &adjoint_[n * s_];
+    Real* bar_im = &adjoint_[(n + 1) * s_];
+    for (std::size_t i = s_; i-- > 0;) {
+      const auto q = denominator(zeta, i);
+      const Real size = q.re * q.re + q.im * q.im;
+      const complex_pair S{(bar_re[i] * q.re - bar_im[i] * q.im) / size,
+                           (bar_re[i] * q.im + bar_im[i] * q.re) / size};
+      bar_re[i] = bar_im[i] = Real(0.0);
+      const complex_pair q_bar{-(S.re * re[i] + S.im * im[i]), S.re * im[i] - S.im * re[i]};
+      out.D(i, i) -= Real(zeta.real()) * q_bar.re + Real(zeta.imag()) * q_bar.im;
+      out.ddot[i] -= Real(square.real()) * q_bar.re + Real(square.imag()) * q_bar.im;
+      const Real source = Real(zeta.real()) * S.re + Real(zeta.imag()) * S.im;
+      for (std::size_t j = 0; j < i; ++j) {
+        bar_re[j] += weight(i, j) * S.re;
+        bar_im[j] += weight(i, j) * S.im;
+        M_bar_[i * s_ + j] += re[j] * S.re + im[j] * S.im;
+        if (moved) {
+          V_bar_[i * s_ + j] -= source;
+        } else {
+          M_bar_[i * s_ + j] -= S.re;
+        }
+      }
+    }
+  }
+
   void evaluate_node(std::size_t n) {
     const series_node& node = nodes_[n];
+    if (is_response(node)) evaluate_response(n);
+    if (is_response(node) || node.what == series_node::kind::imaginary) return;
     Real* y = &y_[n * s_];
     Real* g = &g_[n * s_];
     Real* h = &h_[n * s_];
@@ -154,6 +227,14 @@ class stage_series {
   void reverse_node(std::size_t n, shu_osher_form<Real>& out) {
     active_[n] = 0;
     const series_node& node = nodes_[n];
+    if (node.what == series_node::kind::imaginary) {
+      active_[n - 1] = 1;
+      return;
+    }
+    if (is_response(node)) {
+      reverse_response(n, out);
+      return;
+    }
     if (node.what == series_node::kind::kept || node.what == series_node::kind::layer) {
       reverse_source(n, out);
       return;

@@ -46,6 +46,8 @@ def summary_of(run, result):
             if "wall_s" in result else None, "starts": result.get("starts"), "feasible": result.get("feasible"),
             "nearest_residual": result.get("nearest_residual"), "reason": result.get("reason"), "seed": result.get("seed")}
     if method:
+        regime = method.get("intermediate_regime") or {}
+        kept |= {"band": regime["band"]["error"] if regime.get("keeps") == "all" else None}
         kept |= {"r": method["ssp_coefficient"], "evaluations": method["explicit_evaluations"], "stages": method["stages"],
                  "error": method["error_constant"], "angle": method["stability"]["angle_degrees"],
                  "buffers": method["buffers"], "start": result.get("start")}
@@ -116,8 +118,8 @@ def design_tables(data):
     lines = []
     for group in data["design"]:
         lines += [f"**{group['group'][0].upper()}{group['group'][1:]}**", "",
-                  "| command | s | n_F | r | r/n_F | error | found at start | starts, feasible | seconds |",
-                  "|---|---|---|---|---|---|---|---|---|"]
+                  "| command | s | n_F | r | r/n_F | error | band | angle | found at start | starts, feasible | seconds |",
+                  "|---|---|---|---|---|---|---|---|---|---|---|"]
         for run in group["runs"]:
             starts = f"{run['starts']}, {run['feasible']}" if run["starts"] else "—"
             if run["found"]:
@@ -125,10 +127,11 @@ def design_tables(data):
                 lines.append(f"| `{run['args']}` | {run['stages']} | {run['evaluations'] or '—'} | "
                              f"{format(run['r'], '.4f') if has_r else 'any'} | "
                              f"{format(run['r'] / run['evaluations'], '.4f') if has_r else '—'} | {run['error']:.3g} | "
+                             f"{format(run['band'], '.2g') if run.get('band') else '—'} | {run['angle']:.1f}° | "
                              f"{run['start']} | {starts} | {run['seconds']:.0f} |")
             else:
                 residual = f"nearest residual {run['nearest_residual']:.1e}" if run["nearest_residual"] else run["reason"]
-                lines.append(f"| `{run['args']}` | | | | | | **not found**, {residual.removeprefix('error: ')} | {starts} | "
+                lines.append(f"| `{run['args']}` | | | | | | | | **not found**, {residual.removeprefix('error: ')} | {starts} | "
                              f"{run['seconds'] or 0:.0f} |")
         lines.append("")
     return "\n".join(lines)

@@ -163,9 +163,11 @@ condition_list stability_limits(double degrees, std::size_t stages) {
   condition_list list;
   for (const double radius : radii(to_a_decade)) {
     const int re = add_response(list, series_node::kind::response, -std::polar(radius, -angle));
+    // Of order two and three |R|² − 1 is of size |ζ|⁴ on the imaginary axis.
+    const double w = std::pow(std::min(1.0, radius), -4.0);
     list.conditions.push_back({fmt::format("|R| at |z| = {:.3g}", radius),
-                               {{1.0, {re, re}, stages - 1}, {1.0, {re + 1, re + 1}, stages - 1}},
-                               1.0});
+                               {{w, {re, re}, stages - 1}, {w, {re + 1, re + 1}, stages - 1}},
+                               w});
   }
   return list;
 }

@@ -53,8 +53,8 @@ condition_list error_terms(method_kind kind, int order, std::size_t stages);
 /// the residuals is that of (flux(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}) over log₁₀ z, 0.1 ≤ z ≤ 300.
 condition_list band_terms(std::size_t stages);
 
-/// |R(ζ)|² − 1 on the ray at `degrees` from the negative axis: residuals that must not be positive for A(α)
-/// stability of the implicit part. 24 radii to a decade, 0.1 ≤ |ζ| ≤ 300.
+/// (|R(ζ)|² − 1)/min(1, |ζ|)⁴ on the ray at `degrees` from the negative axis: residuals that must not be
+/// positive for A(α) stability of the implicit part. 24 radii to a decade, 0.1 ≤ |ζ| ≤ 300.
 condition_list stability_limits(double degrees, std::size_t stages);
 
 /// Values and gradients of a list of conditions for one set of coefficients at a time.

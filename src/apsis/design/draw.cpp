@@ -118,6 +118,19 @@ void draw_far_stages(form_type& m, const zero_pattern& pattern, double box, rand
   }
 }
 
+/// T at further stages, chosen at random.
+zero_pattern with_more_transport(zero_pattern pattern, std::vector<char> transport, std::size_t more,
+                                 random_source& random) {
+  std::vector<std::size_t> without;
+  for (std::size_t i = 0; i + 1 < transport.size(); ++i)
+    if (transport[i] == 0) without.push_back(i);
+  const auto chosen = draw_subset(random, without.size(), more);
+  for (std::size_t k = 0; k < without.size(); ++k)
+    if (chosen[k] != 0) transport[without[k]] = 1;
+  pattern.W = full_pattern(pattern.kind, transport).W;
+  return pattern;
+}
+
 }  // namespace
 
 zero_pattern pattern_near(const design_task& task, const form_type& m) {
@@ -131,7 +144,13 @@ zero_pattern pattern_near(const design_task& task, const form_type& m) {
 }
 
 zero_pattern draw_pattern(const design_task& task, random_source& random) {
-  if (task.from) return pattern_near(task, *task.from);
+  if (task.from) {
+    auto transport = transport_of(*task.from);
+    const auto pattern = pattern_near(task, *task.from);
+    const auto more = task.transports.value_or(0) - std::count(transport.begin(), transport.end(), 1);
+    if (more <= 0) return pattern;
+    return with_more_transport(pattern, std::move(transport), static_cast<std::size_t>(more), random);
+  }
   auto pattern = full_pattern(task.kind, draw_transport(task, random));
   const std::size_t s = task.stages;
   if (task.kind == method_kind::imex && task.demands.regime != regime_demand::none)

@@ -13,6 +13,7 @@
 #include <apsis/design/finish.hpp>
 #include <apsis/design/search.hpp>
 #include <apsis/design/sparsify.hpp>
+#include <apsis/integrate/schedule.hpp>
 #include <apsis/output/progress.hpp>
 
 #include <chrono>
@@ -100,6 +101,9 @@ design_task task_of(const options& given) {
     require(m.stages() >= task.stages, "--stages", std::to_string(stages),
             fmt::format("'{}' has {}: as many, or fewer", given.from, m.stages()));
     task.from = m.coefficients<double>();
+    const int has = schedule(*task.from).transport_evaluations();
+    require(given.evaluations == 0 || given.evaluations >= has, "--evaluations",
+            std::to_string(given.evaluations), fmt::format("'{}' has {}: as many, or more", given.from, has));
   }
   if (!given.implicit) {
     require(stages >= 2, "--stages", std::to_string(stages),
@@ -243,8 +247,8 @@ void add_design(CLI::App& program, action& chosen) {
   command->add_option("--ssp", d.least_r, "least SSP coefficient r")->capture_default_str();
   command->add_option(
       "--from", given->from,
-      "a method (name or FILE.toml) to improve instead of random starts; of one with more stages some "
-      "are taken out");
+      "a method (name or FILE.toml) to improve instead of random starts; stages above --stages are taken "
+      "out, evaluations up to --evaluations are added");
   command
       ->add_option("--regime", given->regime, "terms of size epsilon that are to be exact: none, slow or all")
       ->capture_default_str();

@@ -173,6 +173,12 @@ TEST(design, takes_stages_out_and_keeps_what_it_has_when_time_is_over) {
   EXPECT_EQ(none.code, 3);
   EXPECT_THAT(none.err, HasSubstr("no stage of 2 can be left out (least sum of weights 0.08"));
   EXPECT_FALSE(fs::exists(folder.path() / "n.toml"));
+  const outcome fewer = run_apsis(folder, {"design", "--order", "3", "--stages", "6", "--evaluations", "2",
+                                           "--from", "md-imex-6-3", "--out", "n.toml"});
+  EXPECT_EQ(fewer.code, 2);
+  EXPECT_THAT(fewer.err,
+              HasSubstr("--evaluations 2 is out of range ('md-imex-6-3' has 3: as many, or more)"));
+  EXPECT_FALSE(fs::exists(folder.path() / "n.toml"));
   // A stage of 16 takes seconds, so that the second cannot be taken out in time.
   const outcome late = run_apsis(folder, {"design", "--order", "4", "--stages", "14", "--time", "0.5",
                                           "--from", "md-imex-16-4-large-r", "--out", "late.toml"});

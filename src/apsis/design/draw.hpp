@@ -11,7 +11,8 @@ zero_pattern pattern_near(const design_task& task, const shu_osher_form<double>&
 
 /// Which coefficients a start leaves free: all that the task allows, and what must be chosen because the
 /// equations depend on it (stages whose T is evaluated; stages with ḋ = 0 for the intermediate regime; stages
-/// with d = 0 for order 5 without transport). Near `task.from` if there is one.
+/// with d = 0 for order 5 without transport). Near `task.from` if there is one; if it has fewer evaluations
+/// of T than the task, T is free at further stages, others for each start.
 zero_pattern draw_pattern(const design_task& task, random_source& random);
 
 /// Where a start begins: coefficients within the bounds, in general far from satisfying the equations. The

@@ -19,7 +19,7 @@ struct design_task {
   design_objective objective = design_objective::largest_r;
   std::uint64_t seed = 1;
   /// A method to begin with: the first start is it, with every coefficient free that the task allows, the
-  /// others are near it, at most a tenth away. Its stages and evaluations are those of the task.
+  /// others are near it, at most a tenth away. It has the stages of the task, and no more evaluations.
   std::optional<shu_osher_form<double>> from;
 };
 

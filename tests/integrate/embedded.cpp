@@ -132,14 +132,8 @@ TEST_P(every_embedded_row, costs_what_its_certificate_says) {
   EXPECT_LE(both.buffers(), alone.buffers() + 2);  // ũ, and a stage that waits for it
 }
 
-std::string name_of(const ::testing::TestParamInfo<std::string>& name) {
-  std::string text = name.param;
-  std::replace(text.begin(), text.end(), '-', '_');
-  return text;
-}
-
 INSTANTIATE_TEST_SUITE_P(catalogue, every_embedded_row, ::testing::ValuesIn(methods_with_embedded_row()),
-                         name_of);
+                         test_name);
 
 /// u' = λ_T u + λ_Q u.
 class linear {

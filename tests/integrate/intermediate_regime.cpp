@@ -61,21 +61,7 @@ TEST_P(intermediate, flux_last_stage_and_layer_are_what_a_linear_problem_shows) 
   }
 }
 
-std::vector<std::string> methods_without_explicit_stages() {
-  return methods_where([](const apsis::method& m) {
-    return m.kind == apsis::method_kind::imex &&
-           apsis::analyse_intermediate_regime(m.coefficients<real>()).applies;
-  });
-}
-
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  for (auto& c : name)
-    if (c == '-') c = '_';
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(catalogue, intermediate, testing::ValuesIn(methods_without_explicit_stages()),
+INSTANTIATE_TEST_SUITE_P(catalogue, intermediate, testing::ValuesIn(methods_with_an_intermediate_regime()),
                          test_name);
 
 }  // namespace

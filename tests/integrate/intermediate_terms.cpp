@@ -161,21 +161,8 @@ TEST_P(intermediate_terms, of_the_band_are_those_of_the_slow_mode) {
   }
 }
 
-std::vector<std::string> covered() {
-  return methods_where([](const apsis::method& m) {
-    return m.kind == apsis::method_kind::imex &&
-           apsis::analyse_intermediate_regime(m.coefficients<real>()).applies;
-  });
-}
-
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  for (auto& c : name)
-    if (c == '-') c = '_';
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(catalogue, intermediate_terms, testing::ValuesIn(covered()), test_name);
+INSTANTIATE_TEST_SUITE_P(catalogue, intermediate_terms,
+                         testing::ValuesIn(methods_with_an_intermediate_regime()), test_name);
 
 /// With transport that is not linear in u the layer's integral is not linear in D₀: u1' = u2², E = cos u1.
 /// Methods with layer = 1 have its linear part, −2ED₀ instead of −2ED₀ + D₀²/2, times ε/C.

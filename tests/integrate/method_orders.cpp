@@ -102,24 +102,18 @@ TEST_P(every_imex_method, has_its_order_in_the_limit_for_the_data_of_its_certifi
   }
 }
 
-std::string name_of(const ::testing::TestParamInfo<std::string>& name) {
-  std::string text = name.param;
-  std::replace(text.begin(), text.end(), '-', '_');
-  return text;
-}
-
 std::vector<std::string> imex_methods() {
   return methods_where([](const apsis::method& m) { return m.kind == method_kind::imex; });
 }
 
-INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(apsis::method_names()), name_of);
-INSTANTIATE_TEST_SUITE_P(catalogue, every_imex_method, ::testing::ValuesIn(imex_methods()), name_of);
+INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(apsis::method_names()), test_name);
+INSTANTIATE_TEST_SUITE_P(catalogue, every_imex_method, ::testing::ValuesIn(imex_methods()), test_name);
 
 const auto members =
     ::testing::Values("md-imex-chain-3-2", "md-imex-chain-7-2", "md-imex-chain-20-2", "md-imex-chain-64-2",
                       "md-imex-plateau-free-6-2", "md-imex-plateau-free-20-2");
-INSTANTIATE_TEST_SUITE_P(families, every_method, members, name_of);
-INSTANTIATE_TEST_SUITE_P(families, every_imex_method, members, name_of);
+INSTANTIATE_TEST_SUITE_P(families, every_method, members, test_name);
+INSTANTIATE_TEST_SUITE_P(families, every_imex_method, members, test_name);
 
 // What docs/methods.md says of methods that are not globally stiffly accurate: u^{n+1} is not projected, and
 // how far it is from equilibrium is left to the weights b A⁻¹ of the stages.

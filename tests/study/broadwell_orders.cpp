@@ -1,10 +1,9 @@
-// Order in time on a PDE of every method of the paper's class with a transport, from data out of equilibrium, at
-// ε = 1 and in the limit. All runs of a method are on one mesh, so there is no error of space.
+// Order in time on a PDE of every method of the paper's class with a transport, from data out of equilibrium,
+// at ε = 1 and in the limit. All runs of a method are on one mesh, so there is no error of space.
 #include "support/catalogue.hpp"
 
 #include <apsis/study/convergence.hpp>
 
-#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -25,7 +24,8 @@ double slope(const std::string& method, const std::string& epsilon, const std::s
 
 class every_asymptotic_preserving_method : public ::testing::TestWithParam<std::string> {};
 
-// What the next term of the error leaves at these steps: up to 0.1, as the slopes of docs/convergence.md show.
+// What the next term of the error leaves at these steps: up to 0.1, as the slopes of docs/convergence.md
+// show.
 constexpr double tolerance = 0.15;
 
 TEST_P(every_asymptotic_preserving_method, has_its_order_on_the_broadwell_model) {
@@ -39,10 +39,6 @@ INSTANTIATE_TEST_SUITE_P(catalogue, every_asymptotic_preserving_method,
                          ::testing::ValuesIn(methods_where([](const method& m) {
                            return m.kind == method_kind::imex && m.claims.type == "A" && !m.is_tableau();
                          })),
-                         [](const auto& name) {
-                           std::string text = name.param;
-                           std::replace(text.begin(), text.end(), '-', '_');
-                           return text;
-                         });
+                         test_name);
 
 }  // namespace

@@ -53,21 +53,15 @@ TEST_P(every_method, keeps_what_it_promises) {
     EXPECT_TRUE(one.keeps_promise()) << one.problem << ", " << one.property << ": " << one.limit.lost << " "
                                      << one.worst;
 }
-std::string name_of(const testing::TestParamInfo<std::string>& method_name) {
-  std::string name = method_name.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
 /// Some tenths of a second per stage.
 std::vector<std::string> methods_with(bool many_stages) {
   return methods_where([&](const method& m) { return (m.stages() > 9) == many_stages; });
 }
 
-INSTANTIATE_TEST_SUITE_P(catalogue, every_method, testing::ValuesIn(methods_with(false)), name_of);
+INSTANTIATE_TEST_SUITE_P(catalogue, every_method, testing::ValuesIn(methods_with(false)), test_name);
 INSTANTIATE_TEST_SUITE_P(families, every_method,
-                         testing::Values("md-imex-chain-5-2", "md-imex-plateau-free-6-2"), name_of);
-INSTANTIATE_TEST_SUITE_P(slow_catalogue, every_method, testing::ValuesIn(methods_with(true)), name_of);
+                         testing::Values("md-imex-chain-5-2", "md-imex-plateau-free-6-2"), test_name);
+INSTANTIATE_TEST_SUITE_P(slow_catalogue, every_method, testing::ValuesIn(methods_with(true)), test_name);
 
 TEST(strong_stability, third_order_imex_loses_positivity_of_the_broadwell_model_just_above_r) {
   const method& m = find_method("md-imex-6-3");

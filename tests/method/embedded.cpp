@@ -115,6 +115,16 @@ TEST(embedded_row, is_there_for_every_recommended_method_and_costs_one_solve) {
   }
 }
 
+TEST(embedded_row, is_shown_in_latex) {
+  const std::string shown = to_latex(find_method("md-imex-3-2"));
+  EXPECT_THAT(shown, testing::HasSubstr("\\frac{9}{20} & 0 & 0 \\\\"));
+  EXPECT_THAT(shown, testing::HasSubstr("\\tilde w &="));
+  EXPECT_THAT(shown, testing::HasSubstr("\\frac{1}{10} & \\frac{9}{20} & 0"));
+  EXPECT_THAT(shown, testing::HasSubstr("\\tilde d &= \\frac{1}{2}"));
+  EXPECT_THAT(shown, testing::HasSubstr("\\tilde{\\dot d} &= -\\frac{3}{40}"));
+  EXPECT_THAT(to_latex(find_method("imdrk-2-3")), testing::Not(testing::HasSubstr("tilde")));
+}
+
 TEST(embedded_row, is_written_as_it_was_read) {
   auto names = methods_where([](const method& m) { return m.embedded.has_value(); });
   for (const auto& name : names) {

@@ -119,6 +119,18 @@ std::string array(const std::string& name, std::size_t rows, std::size_t cols,
   return out + "\\end{array}\\right)";
 }
 
+/// p̃, w̃, d̃ and d̃̇ as rows of their own.
+std::vector<std::string> embedded_parts(const embedded_row& row, method_kind kind, int digits) {
+  const auto of = [digits](const std::vector<std::string>& values) {
+    return [&values, digits](std::size_t, std::size_t j) { return number(values[j], digits); };
+  };
+  std::vector<std::string> parts = {array("\\tilde p", 1, row.P.size(), of(row.P))};
+  if (kind != method_kind::implicit_only) parts.push_back(array("\\tilde w", 1, row.W.size(), of(row.W)));
+  parts.push_back("\\tilde d &= " + number(row.d, digits));
+  parts.push_back("\\tilde{\\dot d} &= " + number(row.ddot, digits));
+  return parts;
+}
+
 }  // namespace
 
 std::string to_toml(const method& m) {
@@ -169,6 +181,8 @@ std::string to_latex(const method& m, int digits) {
           array("\\dot d", s, 1, [&](std::size_t i, std::size_t) { return number(e.ddot[i], digits); }));
     }
   }
+  if (m.embedded)
+    for (auto& part : embedded_parts(*m.embedded, m.kind, digits)) parts.push_back(std::move(part));
   return fmt::format("% {}: {}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n", m.name, m.title,
                      fmt::join(parts, " \\\\\n"));
 }

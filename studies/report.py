@@ -259,22 +259,24 @@ def draw_stability(apsis, methods, images):
     figure.savefig(images / "study-stability.png")
 
 
-def draw_work(study, found, methods, images):
+def draw_work(study, found, paper, methods, images):
+    """The paper's methods in black; dotted with start-up."""
+    colours = dict.fromkeys(paper, BLACK) | {m: plt.cm.tab10(k % 10) for k, m in enumerate(m for m in methods if m not in paper)}
     values = list(dict.fromkeys(key[0] for key in found))
     columns = 2 if len(values) > 1 else 1
     rows = -(-len(values) // columns)
-    figure, all_axes = plt.subplots(rows, columns, figsize=(5.2 * columns, 3.8 * rows), squeeze=False)
+    figure, all_axes = plt.subplots(rows, columns, figsize=(5.2 * columns + 2.2, 3.8 * rows), squeeze=False)
     for axes, epsilon in zip(all_axes.flat, values):
         for k, method in enumerate(methods):
             for startup, line in (("none", "-"), ("graded", ":")):
                 curve = found.get((epsilon, method, startup))
                 if curve is not None:
-                    axes.loglog(curve[:, 1], curve[:, 0], line, color=plt.cm.tab10(k % 10), marker=MARKERS[k % len(MARKERS)],
+                    axes.loglog(curve[:, 1], curve[:, 0], line, color=colours[method], marker=MARKERS[k % len(MARKERS)],
                                 markersize=3.5, linewidth=1.1, label=method if startup == "none" else None)
         axes.set_title(f"ε = {epsilon:g}" if isinstance(epsilon, float) else study["title"], fontsize=10)
         axes.set_xlabel("T and Q evaluations and solves" if study["cost"] == "evaluations" else "CPU time, s")
         axes.set_ylabel("temporal error")
-    all_axes.flat[0].legend(fontsize=7)
+    all_axes[0, -1].legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), fontsize=7)
     figure.savefig(images / f"study-work-{study['name']}.png")
 
 
@@ -325,7 +327,7 @@ def main():
         of_step = steps if study["cost"] == "evaluations" else seconds_of_steps(rows)
         found = curves(rows, lambda row: row["steps"] * of_step[row["time.method"]], study.get("positive", False))
         page = insert(page, f"work {study['name']}", work_table(study, found, plan["work"]["paper"], methods))
-        draw_work(study, found, methods, images)
+        draw_work(study, found, plan["work"]["paper"], methods, images)
     draw_fronts(data, images)
     draw_errors(data, images)
     draw_stability(given.apsis, plan["work"]["methods"] + ["imdrk-5-4", "imdrk-9-5"], images)

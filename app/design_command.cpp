@@ -72,6 +72,12 @@ design_task task_of(const options& given) {
   const auto& d = given.demands;
   require(d.box > 0.0 && d.box <= 1e3, "--box", fmt::format("{}", d.box), "positive, at most 1000");
   require(d.margin >= 0.0 && d.margin < d.box, "--margin", fmt::format("{}", d.margin), "from 0 to the box");
+  require(d.least_angle >= 0.0 && d.least_angle <= 90.0, "--angle", fmt::format("{}", d.least_angle),
+          "from 0 to 90 degrees");
+  require(d.least_pole >= 0.0 && d.least_pole * d.least_pole * d.margin <= 1.0, "--pole",
+          fmt::format("{}", d.least_pole),
+          fmt::format("from 0 to 1/sqrt(margin) = {:.4g}", 1.0 / std::sqrt(d.margin)));
+  require(d.most_buffers >= 1, "--buffers", std::to_string(d.most_buffers), "at least 1");
   require(d.least_r > 0.0 && d.least_r < d.largest_r, "--ssp", fmt::format("{}", d.least_r),
           fmt::format("positive, below {}", d.largest_r));
   require(given.sparsify >= 0.0 && given.sparsify < 1.0, "--sparsify", fmt::format("{}", given.sparsify),

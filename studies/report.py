@@ -242,7 +242,7 @@ def stability_function(method, z):
 
 def draw_stability(apsis, methods, images):
     x, y = np.meshgrid(np.linspace(-12, 12, 481), np.linspace(-12, 12, 481))
-    figure, all_axes = plt.subplots(2, -(-len(methods) // 2), figsize=(2.6 * -(-len(methods) // 2), 5.6), sharex=True, sharey=True)
+    figure, all_axes = plt.subplots(2, -(-len(methods) // 2), figsize=(2.6 * -(-len(methods) // 2), 6.2), sharex=True, sharey=True)
     for axes, name in zip(all_axes.flat, methods):
         text = subprocess.run([apsis, "show", name, "--format", "toml"], capture_output=True, text=True, check=True).stdout
         with np.errstate(all="ignore"):

@@ -93,6 +93,13 @@ TEST(design, refuses_what_cannot_be_asked_for) {
   refused({"--order", "2", "--stages", "3", "--box", "nan"}, "--box nan is out of range");
   refused({"--order", "2", "--stages", "3", "--margin", "5"}, "--margin 5 is out of range");
   refused({"--order", "2", "--stages", "3", "--ssp", "0"}, "--ssp 0 is out of range");
+  refused({"--order", "2", "--stages", "3", "--angle", "91"},
+          "--angle 91 is out of range (from 0 to 90 degrees)");
+  refused({"--order", "2", "--stages", "3", "--angle", "nan"}, "--angle nan is out of range");
+  refused({"--order", "2", "--stages", "3", "--pole", "-1"},
+          "--pole -1 is out of range (from 0 to 1/sqrt(margin) = 31.62)");
+  refused({"--order", "2", "--stages", "3", "--pole", "32"}, "--pole 32 is out of range");
+  refused({"--order", "2", "--stages", "3", "--buffers", "0"}, "--buffers 0 is out of range (at least 1)");
   refused({"--order", "2", "--stages", "3", "--time", "0"}, "--time 0 is out of range");
   refused({"--order", "2", "--stages", "3", "--starts", "0"}, "--starts 0 is out of range");
   refused({"--order", "2", "--stages", "3", "--objective", "eror"}, "did you mean 'error'");

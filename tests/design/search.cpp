@@ -10,6 +10,7 @@
 #include <apsis/method/export.hpp>
 #include <apsis/method/intermediate_regime.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -189,6 +190,26 @@ TEST(design_search, stops_when_asked) {
   const auto found = search(imex_task(2, 3, 2.0), how);
   EXPECT_GE(found.starts, 3);
   EXPECT_LT(found.starts, 10);
+}
+
+// Stages with d = 0 have poles at ±i/√|ḋ|, as the first stage of a third-order method with transport. To keep
+// them farther away costs r.
+TEST(design_demands, keep_poles_away_from_zero) {
+  auto task = imex_task(3, 6, 2.0);
+  task.transports = 3;
+  const auto nearest_pole = [&task](const design_candidate& c) {
+    const auto poles = certify(to_polished_method(task, c, "designed")).stability.imaginary_poles;
+    return poles.empty() ? 0.0 : *std::min_element(poles.begin(), poles.end());
+  };
+  const auto free = look(task, 40);
+  ASSERT_TRUE(free.best);
+  task.demands.least_pole = 1.2 * nearest_pole(*free.best);
+  ASSERT_GT(task.demands.least_pole, 0.0);
+  const auto far = look(task, 40);
+  ASSERT_TRUE(far.best);
+  EXPECT_GE(nearest_pole(*far.best), task.demands.least_pole * (1.0 - 1e-12));
+  EXPECT_LT(far.best->r, free.best->r);
+  expect_certified(task, *far.best);
 }
 
 TEST(design_demands, pass_over_methods_that_do_not_meet_them) {

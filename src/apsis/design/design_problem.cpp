@@ -23,6 +23,11 @@ std::vector<char> slow_stages(const zero_pattern& pattern) {
 
 }  // namespace
 
+double design_demands::largest_ddot(bool with_d) const {
+  const double square = least_pole * least_pole;
+  return !with_d && square * box > 1.0 ? 1.0 / square : box;
+}
+
 std::vector<char> zero_pattern::transport() const {
   std::vector<char> used(stages(), 0);
   for (std::size_t i = 0; i < stages(); ++i)
@@ -83,7 +88,9 @@ design_problem::design_problem(zero_pattern pattern, const design_demands& deman
     const bool both = pattern_.d[i] != 0 && pattern_.ddot[i] != 0;
     Eigen::Index d = -1, ddot = -1;
     if (pattern_.d[i] != 0) d = declare(part::d, i, i, both ? 0.0 : demands_.margin, demands_.box);
-    if (pattern_.ddot[i] != 0) ddot = declare(part::ddot, i, i, -demands_.box, both ? 0.0 : -demands_.margin);
+    if (pattern_.ddot[i] != 0)
+      ddot = declare(part::ddot, i, i, -demands_.largest_ddot(pattern_.d[i] != 0),
+                     both ? 0.0 : -demands_.margin);
     if (both && i >= given) inequalities_.push_back({{{d, 1.0}, {ddot, -1.0}}, demands_.margin});
   }
   if (pattern_.kind != method_kind::implicit_only)

@@ -33,11 +33,12 @@ struct design_demands {
   double largest_r = 64.0;  ///< r ≤ largest_r
   regime_demand regime = regime_demand::none;
   double least_angle = 0.0;  ///< α of A(α)-stability of the implicit part, in degrees
-  // Looked at once a method is found; those that fail are passed over.
-  double least_pole = 0.0;  ///< poles of stages with d = 0 are at ±i/√|ḋ|: 1/√|ḋ| at least
-  int most_buffers = 1000;  ///< state-sized buffers of a step
+  double least_pole = 0.0;   ///< poles of stages with d = 0 are at ±i/√|ḋ|: 1/√|ḋ| at least
+  int most_buffers = 1000;   ///< state-sized buffers of a step; looked at once a method is found
   /// Rows that are given, the first ones, and r with them: only later rows are unknown.
   std::optional<shu_osher_form<double>> given_rows;
+  /// Largest |ḋ| of a stage with or without d.
+  double largest_ddot(bool with_d) const;
 };
 
 /// The unknown coefficients of a method with the equations and bounds that they must satisfy:

@@ -66,10 +66,10 @@ method in_words(const design_task& task, const design_candidate& candidate, cons
     }
     e.D(i, i) = text(value.D(i, i), candidate.pattern.ddot[i] != 0 ? 0.0 : limits.margin, limits.box);
     if (candidate.pattern.d[i] == 0) e.D(i, i) = "0";
-    e.ddot.push_back(
-        candidate.pattern.ddot[i] == 0
-            ? "0"
-            : text(value.ddot[i], -limits.box, candidate.pattern.d[i] != 0 ? 0.0 : -limits.margin));
+    e.ddot.push_back(candidate.pattern.ddot[i] == 0
+                         ? "0"
+                         : text(value.ddot[i], -limits.largest_ddot(candidate.pattern.d[i] != 0),
+                                candidate.pattern.d[i] != 0 ? 0.0 : -limits.margin));
   }
   e.r = problem.place_of_r() >= 0 ? text(value.r, limits.least_r, limits.largest_r) : "1";
   m.claims.ssp_coefficient = problem.place_of_r() >= 0 ? e.r : "unconditional";

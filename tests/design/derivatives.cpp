@@ -153,7 +153,7 @@ TEST(design_conditions, are_the_flux_and_the_stability_function_of_the_certifica
     ASSERT_EQ(limits.size(), 85);  // 24 to a decade from 10^-1 to 10^2.5
     for (Eigen::Index l = 0; l < limits.size(); ++l) {
       const long double radius = std::pow(10.0L, -1.0L + static_cast<long double>(l) / 24.0L);
-      const long double angle = demanded_angle * std::numbers::pi_v<long double> / 180.0L;
+      const long double angle = problem.demands().aimed_angle() * std::numbers::pi_v<long double> / 180.0L;
       const auto R = stability_function(butcher, -std::polar(radius, -angle));
       const auto expected = static_cast<double>((std::norm(R) - 1) / std::pow(std::min(1.0L, radius), 4.0L));
       EXPECT_NEAR(limits(l), expected, 1e-11 * (1.0 + std::abs(expected))) << k << " " << l;

@@ -23,6 +23,10 @@ std::vector<char> slow_stages(const zero_pattern& pattern) {
 
 }  // namespace
 
+double design_demands::aimed_angle() const {
+  return least_angle + 0.05 * (90.0 - least_angle);
+}
+
 double design_demands::largest_ddot(bool with_d) const {
   const double square = least_pole * least_pole;
   return !with_d && square * box > 1.0 ? 1.0 / square : box;
@@ -58,7 +62,7 @@ design_problem::design_problem(zero_pattern pattern, const design_demands& deman
       slow_(slow_stages(pattern_)),
       conditions_(equations_of(pattern_, demands_), slow_) {
   if (demands_.least_angle > 0.0 && pattern_.kind != method_kind::explicit_only)
-    limits_.emplace(stability_limits(demands_.least_angle, pattern_.stages()), slow_);
+    limits_.emplace(stability_limits(demands_.aimed_angle(), pattern_.stages()), slow_);
   for (const auto& c : equations_of(pattern_, demands_).conditions) names_.push_back(c.name);
   const std::size_t s = pattern_.stages();
   std::vector<std::pair<double, double>> bounds;

@@ -37,6 +37,8 @@ struct design_demands {
   int most_buffers = 1000;   ///< state-sized buffers of a step; looked at once a method is found
   /// Rows that are given, the first ones, and r with them: only later rows are unknown.
   std::optional<shu_osher_form<double>> given_rows;
+  /// Where |R| ≤ 1 is asked for at some points, so that it holds between them on the ray of `least_angle`.
+  double aimed_angle() const;
   /// Largest |ḋ| of a stage with or without d.
   double largest_ddot(bool with_d) const;
 };

@@ -195,7 +195,8 @@ def draw_fronts(data, images):
         # Of several orders in a group each is a curve of its own.
         for order in sorted({r["args"].split()[1] for r in runs}):
             of_order = [r for r in runs if r["args"].split()[1] == order]
-            label = group["group"].split(",")[0] if group["group"].startswith("order") else \
+            of_work = ", for r/n_F" if group["group"].endswith("r/n_F") else ""
+            label = group["group"].split(",")[0] + of_work if group["group"].startswith("order") else \
                 ("N1, N2" if "equilibrium" in group["group"] else "N1–N3") + f", order {order}"
             style = dict(color=COLOURS[k % len(COLOURS)], marker=MARKERS[(k + 3 * (order == "3")) % len(MARKERS)], label=label,
                          linestyle="-" if group["group"].startswith("order") else "--")

@@ -146,7 +146,7 @@ zero_pattern pattern_near(const design_task& task, const form_type& m) {
 zero_pattern draw_pattern(const design_task& task, random_source& random) {
   if (task.from) {
     auto transport = transport_of(*task.from);
-    const auto pattern = pattern_near(task, *task.from);
+    auto pattern = pattern_near(task, *task.from);
     const auto more = task.transports.value_or(0) - std::count(transport.begin(), transport.end(), 1);
     if (more <= 0) return pattern;
     return with_more_transport(pattern, std::move(transport), static_cast<std::size_t>(more), random);

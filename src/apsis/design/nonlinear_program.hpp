@@ -12,7 +12,7 @@ enum class design_objective {
   largest_r,       ///< the SSP coefficient r
   efficiency,      ///< r/n_F, what one evaluation of T pays for; the same as r for a given pattern
   smallest_error,  ///< the 2-norm of the residuals of the next order
-  smallest_band    ///< the error of the term of size ε where ε ~ Δt, and a little of the former
+  smallest_band    ///< √(error² + (10 band)²), with the error of the term of size ε where ε ~ Δt
 };
 
 struct program_result {

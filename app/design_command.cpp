@@ -128,7 +128,7 @@ design_task task_of(const options& given) {
 std::string state_of(const design_progress& p) {
   const std::string best =
       p.best ? fmt::format("r {:.6f}, error {:.4g}{}", p.best->r, p.best->error,
-                           p.best->band > 0.0 ? fmt::format(", band {:.3g}", p.best->band) : "")
+                           p.best->band > 0.0 ? fmt::format(", 2-norm of the band {:.3g}", p.best->band) : "")
              : fmt::format("nearest residual {:.1e}", p.best_residual);
   return fmt::format("{} starts, {} feasible, {}", p.starts, p.feasible, best);
 }

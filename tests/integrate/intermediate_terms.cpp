@@ -136,7 +136,7 @@ TEST_P(intermediate_terms, of_the_layer_are_those_of_one_step) {
 
 /// u' = v, v' = (a u − v)/ε with ε = Δt/z: logarithm of the slow eigenvalue of one step over Δt, and the
 /// second component of its eigenvector.
-TEST_P(intermediate_terms, of_the_band_are_those_of_the_slow_mode) {
+TEST_P(intermediate_terms, of_the_band_are_those_of_the_hydrodynamic_mode) {
   const auto butcher = apsis::to_butcher(m.coefficients<real>());
   for (const char* z : {"0.01", "0.5", "3", "70", "1e4"}) {
     const auto at = apsis::at_finite_rate(butcher, real(z));

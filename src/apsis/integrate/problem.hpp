@@ -47,6 +47,24 @@ concept problem_with_explicit_collision =
       p.scatter_collision(x, u, targets);
     };
 
+/// A stage solve that is due as soon as a scatter is done: the arguments of collide, u among the targets.
+template <class State, class Real>
+struct due_collision {
+  Real t, a, b;
+  State* u;
+};
+
+/// A problem that can do both in one pass over memory:
+///   scatter_and_collide(t, u, targets, due)   scatter(t, u, targets), then collide(due.t, due.a, due.b,
+///   *due.u), to the same numbers
+template <class P>
+concept problem_with_fused_stages =
+    problem<P> && requires(P p, const typename P::state& u, typename P::real x,
+                           std::span<const target<typename P::state, typename P::real>> targets,
+                           due_collision<typename P::state, typename P::real> due) {
+      p.scatter_and_collide(x, u, targets, due);
+    };
+
 /// A problem that knows how wide its initial layer is, for a graded start:
 ///   relaxation_time(t, u)   smallest ε/C > 0 of the state; +infinity if nothing relaxes, or all at once (ε =
 ///   0)

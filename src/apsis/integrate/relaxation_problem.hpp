@@ -64,13 +64,12 @@ class relaxation_problem {
 
   /// u ← v. Throws numerical_error if u or v is not finite or not admissible, or the rate is not one.
   void collide(real, real a, real b, State& u) {
-    require_finite(u, "the explicit part of a stage");
     if (a != real(0) || b != real(0)) {
       const auto weights = relax_weights(a, b, relaxation(u), epsilon_);
       using size_type = decltype(u.size());
       for (size_type i = 0; i < u.size(); ++i) u[i] = weights.stay * u[i] + weights.relax * work_[i];
-      require_finite(u, "a stage");
     }
+    require_finite(u, "a stage");  // so is then its explicit part: neither weight makes a number of NaN
     if (admissible_ && !admissible_(u))
       throw numerical_error(
           "a stage is not admissible (the method or the time step does not keep it so); "

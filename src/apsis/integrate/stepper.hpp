@@ -5,6 +5,7 @@
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/method.hpp>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -82,35 +83,87 @@ class stepper {
   P& target_problem() { return problem_; }
 
  private:
-  using instruction_type = schedule::instruction;
+  using action = schedule::action;
+
+  /// An instruction of the schedule for one dt and one place of u.
+  struct prepared {
+    action what;
+    state* source;
+    real delay;              ///< of the stage: its time is t + delay
+    real a, b;               ///< of a collision
+    std::size_t begin, end;  ///< of a scatter: its targets among targets_
+    bool due;  ///< the next instruction is the collision of a target, and the problem can do both at once
+  };
 
   void carry_out(real t, real dt, state& u) {
     while (static_cast<int>(buffers_.size()) + 1 < plan_.buffers()) buffers_.push_back(u);
-    for (const auto& instruction : plan_.instructions()) execute(instruction, t, dt, u);
+    if (prepared_.empty() || dt != prepared_dt_ || &u != prepared_u_ || buffers_.data() != prepared_buffers_)
+      prepare(dt, u);
+    for (std::size_t i = 0; i < prepared_.size(); ++i) {
+      const prepared& now = prepared_[i];
+      if constexpr (problem_with_fused_stages<P>) {
+        if (now.due) {
+          problem_.scatter_and_collide(t + now.delay, *now.source, targets_of(now),
+                                       collision_of(prepared_[i + 1], t));
+          ++i;
+          continue;
+        }
+      }
+      execute(now, t);
+    }
   }
 
   state& buffer(int b, state& u) { return b == 0 ? u : buffers_[static_cast<std::size_t>(b) - 1]; }
 
-  void execute(const instruction_type& what, real t, real dt, state& u) {
-    const std::size_t j = static_cast<std::size_t>(what.stage);
-    const real stage_time = j == 0 ? t : t + abscissae_[j - 1] * dt;
-    state& source = buffer(what.buffer, u);
-    if (what.what == schedule::action::collide) {
-      problem_.collide(stage_time, dt * m_.D(j - 1, j - 1), dt * dt * m_.ddot[j - 1], source);
-      return;
-    }
-    targets_.clear();
-    for (const auto& to : what.to) targets_.push_back(make_target(what, to, dt, u));
-    const std::span<const target<state, real>> targets(targets_);
-    if (what.what == schedule::action::scatter) {
-      problem_.scatter(stage_time, source, targets);
+  void execute(const prepared& now, real t) {
+    if (now.what == action::collide) {
+      problem_.collide(t + now.delay, now.a, now.b, *now.source);
+    } else if (now.what == action::scatter) {
+      problem_.scatter(t + now.delay, *now.source, targets_of(now));
     } else if constexpr (problem_with_explicit_collision<P>) {
-      problem_.scatter_collision(stage_time, source, targets);
+      problem_.scatter_collision(t + now.delay, *now.source, targets_of(now));
     }
   }
 
-  target<state, real> make_target(const instruction_type& from, const schedule::contribution& to, real dt,
-                                  state& u) {
+  std::span<const target<state, real>> targets_of(const prepared& now) const {
+    return std::span<const target<state, real>>(targets_).subspan(now.begin, now.end - now.begin);
+  }
+
+  due_collision<state, real> collision_of(const prepared& now, real t) const {
+    return {t + now.delay, now.a, now.b, now.source};
+  }
+
+  /// All coefficients that depend on dt: most runs have one dt, and one u.
+  void prepare(real dt, state& u) {
+    prepared_.clear();
+    targets_.clear();
+    for (const auto& from : plan_.instructions()) {
+      const auto j = static_cast<std::size_t>(from.stage) - 1;
+      prepared now{from.what, &buffer(from.buffer, u), real(0), real(0), real(0), targets_.size(), 0, false};
+      if (from.stage > 0) now.delay = abscissae_[j] * dt;
+      if (from.what == action::collide) {
+        now.a = dt * m_.D(j, j);
+        now.b = dt * dt * m_.ddot[j];
+      }
+      for (const auto& to : from.to) targets_.push_back(make_target(from, to, dt, u));
+      now.end = targets_.size();
+      if (!prepared_.empty()) prepared_.back().due = completes(prepared_.back(), now);
+      prepared_.push_back(now);
+    }
+    prepared_dt_ = dt;
+    prepared_u_ = &u;
+    prepared_buffers_ = buffers_.data();
+  }
+
+  /// The collision `next` is that of a target of the scatter `now`.
+  bool completes(const prepared& now, const prepared& next) const {
+    if (now.what != action::scatter || next.what != action::collide) return false;
+    const auto to = targets_of(now);
+    return std::any_of(to.begin(), to.end(), [&](const auto& one) { return one.acc == next.source; });
+  }
+
+  target<state, real> make_target(const schedule::instruction& from, const schedule::contribution& to,
+                                  real dt, state& u) {
     const std::size_t k = static_cast<std::size_t>(to.stage) - 1;
     const std::size_t j = static_cast<std::size_t>(from.stage) - 1;
     real alpha(0), beta(0);
@@ -138,8 +191,11 @@ class stepper {
   shu_osher_form<real> m_;
   schedule plan_;
   std::vector<real> initial_, abscissae_;
-  std::vector<state> buffers_;
+  std::vector<prepared> prepared_;
   std::vector<target<state, real>> targets_;
+  real prepared_dt_ = real(0);
+  const state *prepared_u_ = nullptr, *prepared_buffers_ = nullptr;  // a copy of a stepper has its own
+  std::vector<state> buffers_;
 };
 
 }  // namespace apsis

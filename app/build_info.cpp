@@ -1,5 +1,6 @@
 #include "build_info.hpp"
 
+#include <apsis/core/instruction_set.hpp>
 #include <apsis/core/parallel.hpp>
 
 #include <chrono>
@@ -15,20 +16,6 @@
 
 namespace apsis::app {
 namespace {
-
-std::string instruction_set() {
-#if defined(__AVX512F__)
-  return "AVX-512";
-#elif defined(__AVX2__)
-  return "AVX2";
-#elif defined(__AVX__)
-  return "AVX";
-#elif defined(__x86_64__)
-  return "SSE2";
-#else
-  return "generic";
-#endif
-}
 
 std::string compiler() {
 #if defined(__clang__)
@@ -60,7 +47,7 @@ nlohmann::ordered_json build_info() {
   return {
       {"compiler", compiler()},
       {"build_type", APSIS_BUILD_TYPE},
-      {"instruction_set", instruction_set()},
+      {"instruction_set", kernel_instruction_set()},
       {"libraries",
        {{"hdf5", fmt::format("{}.{}.{}", major, minor, release)},
         {"boost", fmt::format("{}.{}", BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000)},

@@ -1,6 +1,6 @@
 # Headers, room libraries, the program and the package files, so that
 #   find_package(apsis REQUIRED)  target_link_libraries(x PRIVATE apsis::apsis)
-# works from another project. Warnings, -Werror and -march=native stay here: apsis_options is not exported.
+# works from another project. Warnings and -Werror stay here: apsis_options is not exported.
 include(CMakePackageConfigHelpers)
 set(apsis_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/apsis)
 

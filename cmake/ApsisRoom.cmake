@@ -8,6 +8,10 @@ add_library(apsis_options INTERFACE)
 target_compile_features(apsis_options INTERFACE cxx_std_20)
 # As Boost::headers has it; a precompiled header wants it in all files or in none.
 target_compile_definitions(apsis_options INTERFACE BOOST_ALL_NO_LIB)
+# Kernels are compiled for the plain architecture, 256 and 512 bit (core/simd-inl.hpp); what lies between, or differs in
+# instructions that no kernel uses, only costs time to build.
+target_compile_definitions(apsis_options INTERFACE
+  "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL)")
 target_compile_options(apsis_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion
   $<$<BOOL:${APSIS_WERROR}>:-Werror>
@@ -25,7 +29,10 @@ set(APSIS_PLAIN $<$<CONFIG:Release>:-O2>)
 # set, so other targets are built for the plain architecture and link with them safely.
 add_library(apsis_kernel_options INTERFACE)
 target_compile_options(apsis_kernel_options INTERFACE
-  -O3 -fopenmp-simd -fno-trapping-math $<$<BOOL:${APSIS_NATIVE}>:-march=native>
+  -O3 -fopenmp-simd -fno-trapping-math
+  # A number must be rounded alike in the middle and at the end of a row, where other loops treat it: fma where the
+  # source says so, nowhere else.
+  -ffp-contract=off
   # Sanitizers keep clang from vectorising some loops; that is no reason to fail there.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)
 

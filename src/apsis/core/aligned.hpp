@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -21,6 +22,24 @@ struct aligned_allocator {
   }
   void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(alignment)); }
   bool operator==(const aligned_allocator&) const { return true; }
+};
+
+/// The same for a vector that does not touch its memory when it is made: elements have no value before one is
+/// given.
+template <class T>
+struct untouched_allocator : aligned_allocator<T> {
+  using value_type = T;
+  untouched_allocator() = default;
+  template <class U>
+  untouched_allocator(const untouched_allocator<U>&) {}
+  template <class U>
+  struct rebind {
+    using other = untouched_allocator<U>;
+  };
+  template <class U, class... Args>
+  void construct(U* p, Args&&... args) {
+    if constexpr (sizeof...(Args) > 0) ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+  }
 };
 
 template <class T>

@@ -51,7 +51,7 @@ class first_failure {
 
 }  // namespace
 
-void parallel_for(int n, const std::function<void(int)>& body) {
+void run_parallel_for(int n, numbered_job body) {
   const int team = std::min(thread_count, n);
   if (team <= 1 || omp_in_parallel() != 0) {
     for (int k = 0; k < n; ++k) body(k);
@@ -63,7 +63,7 @@ void parallel_for(int n, const std::function<void(int)>& body) {
   failure.rethrow();
 }
 
-void parallel_tasks(int n, const std::function<void(int)>& body) {
+void run_parallel_tasks(int n, numbered_job body) {
   first_failure failure;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(std::max(1, std::min(thread_count, n)))
   for (int k = 0; k < n; ++k)

@@ -1,20 +1,38 @@
 #pragma once
 
-#include <functional>
-
 namespace apsis {
 
 /// Threads that loops over cells may use; 0 asks for all cores.
 void set_threads(int n);
 int threads();
 
-/// Runs body(k) for k = 0 … n−1, in any order, on all threads. Each k writes its own data, so results do not
-/// depend on the number of threads. An exception leaves once all have stopped; of several, the one of the
-/// smallest k is thrown.
-void parallel_for(int n, const std::function<void(int)>& body);
+/// A call of what was written as a lambda, without the allocation that std::function may need.
+struct numbered_job {
+  void (*call)(const void* body, int k);
+  const void* body;
+
+  template <class Body>
+  static numbered_job of(const Body& body) {
+    return {[](const void* b, int k) { (*static_cast<const Body*>(b))(k); }, &body};
+  }
+  void operator()(int k) const { call(body, k); }
+};
+void run_parallel_for(int n, numbered_job job);
+void run_parallel_tasks(int n, numbered_job job);
+
+/// Runs body(k) for k = 0 … n−1, in any order, on all threads; neighbouring k on the same one. Each k writes
+/// its own data, so results do not depend on the number of threads. An exception leaves once all have
+/// stopped; of several, the one of the smallest k is thrown.
+template <class Body>
+void parallel_for(int n, const Body& body) {
+  run_parallel_for(n, numbered_job::of(body));
+}
 
 /// The same for jobs of different length (whole runs): a thread that is free takes the next k. Loops inside a
 /// job run on its own thread. Once a job has failed no new one begins.
-void parallel_tasks(int n, const std::function<void(int)>& body);
+template <class Body>
+void parallel_tasks(int n, const Body& body) {
+  run_parallel_tasks(n, numbered_job::of(body));
+}
 
 }  // namespace apsis

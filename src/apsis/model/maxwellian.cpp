@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/model/vector_math.hpp>
+#include <apsis/model/velocity_rows.hpp>
 
 #include <algorithm>
 #include <array>
@@ -62,17 +63,10 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) 
   const int d = grid.dimensions();
   const double* half_square = grid.half_square().data();
   if (d == 1) {  // one pass
-    const double* v = grid.line().data();
-    double mass = 0.0, momentum = 0.0, energy = 0.0;
-#pragma omp simd reduction(+ : mass, momentum, energy)
-    for (int j = 0; j < n; ++j) {
-      mass += f[j];
-      momentum += v[j] * f[j];
-      energy += half_square[j] * f[j];
-    }
-    omega[0] = grid.weight() * mass;
-    omega[1] = grid.weight() * momentum;
-    omega[2] = grid.weight() * energy;
+    const auto sum = velocity_rows::moments(f, grid.line().data(), half_square, n);
+    omega[0] = grid.weight() * sum.mass;
+    omega[1] = grid.weight() * sum.momentum;
+    omega[2] = grid.weight() * sum.energy;
     return;
   }
   for (int k = 0; k < d + 2; ++k) {
@@ -118,6 +112,8 @@ class line_buffer {
     for (int j = 0; j < n; ++j) value[j] = exponent[j] < lowest ? 0.0 : value[j];
     return value;
   }
+
+  double* values() { return values_.data(); }
 
  private:
   int padded_;
@@ -169,14 +165,29 @@ std::array<double, 5> power_sums(const velocity_grid& grid, const double* g, dou
 }  // namespace
 
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m) {
+  const velocity_rows::points points{grid.points(), grid.spacing()};
+  const double of_one_direction = 1.0 / std::sqrt(2.0 * std::numbers::pi * state.T);
+  double factor = state.rho;
+  for (int k = 0; k < grid.dimensions(); ++k) factor *= of_one_direction;
+  if (grid.dimensions() == 1) return velocity_rows::gaussian(points, factor, state.u[0], state.T, m);
   auto& lines = buffers(grid.points());
-  const double scale = std::sqrt(state.T);
   std::array<const double*, 3> g{};
-  for (int k = 0; k < grid.dimensions(); ++k)
-    g[static_cast<std::size_t>(k)] =
-        lines[static_cast<std::size_t>(k)].exponential(grid, state.u[k], scale, 0.0, -0.5);
-  const double per_direction = 1.0 / std::sqrt(2.0 * std::numbers::pi * state.T);
-  tensor_product(grid, state.rho * std::pow(per_direction, grid.dimensions()), g, m);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(grid.dimensions()); ++k) {
+    velocity_rows::gaussian(points, 1.0, state.u[k], state.T, lines[k].values());
+    g[k] = lines[k].values();
+  }
+  tensor_product(grid, factor, g, m);
+}
+
+bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state) {
+  constexpr double enough = 40.0;  // 100 e^−40 is below the rounding of a sum
+  if (!(state.T >= enough / (2.0 * std::numbers::pi * std::numbers::pi) * grid.spacing() * grid.spacing()))
+    return false;
+  for (int k = 0; k < grid.dimensions(); ++k) {
+    const double room = grid.max() - std::abs(state.u[k]);
+    if (!(room > 0.0 && room * room >= 2.0 * enough * state.T)) return false;
+  }
+  return true;
 }
 
 namespace {

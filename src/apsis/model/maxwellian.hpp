@@ -47,6 +47,11 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega);
 /// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK).
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
 
+/// Sufficient for its midpoint-rule moments to be those of `state` to round-off: Poisson's sum formula bounds
+/// their relative error by about 100 exp(−2π²T/Δv²), and what lies beyond the grid is of the size exp(−(v_max
+/// − |u|)²/(2T)).
+bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state);
+
 /// exp(α + β·v + γ|v|²) whose midpoint-rule moments are those of `state` to round-off, on any grid
 /// (Mieussens, M3AS 10, 2000). Newton's method on the convex dual, damped. False if the grid has no such
 /// function (too coarse for √T, or u near its edge).

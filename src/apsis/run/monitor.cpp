@@ -2,6 +2,8 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/parallel.hpp>
+#include <apsis/core/profile.hpp>
+#include <apsis/space/row_check.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,20 +16,19 @@ monitor::totals monitor::sum(const field& u) const {
   const auto cells = static_cast<std::size_t>(u.cells());
   std::vector<double> densities(cells * count), entropies(cells), lowest(cells);
   std::vector<long> negative(cells);
-  parallel_for(u.cells(), [&](int cell) {
-    const auto c = static_cast<std::size_t>(cell);
-    const double* row = u.row(cell);
-    double low = row[0], total = 0.0;
-    long below = 0;
-    for (int k = 0; k < u.components(); ++k) {
-      low = std::min(low, row[k]);
-      below += row[k] < 0.0 ? 1 : 0;
-      total += row[k] - row[k];  // NaN if any number is not finite
+  constexpr int block = 16;
+  parallel_for((u.cells() + block - 1) / block, [&](int part) {
+    const profile::section timed(
+        kernel::monitor, std::min(block, u.cells() - part * block) * 1.0 * u.stride(), {0.0, sizeof(double)});
+    for (int cell = part * block; cell < std::min(u.cells(), (part + 1) * block); ++cell) {
+      const auto c = static_cast<std::size_t>(cell);
+      const double* row = u.row(cell);
+      const auto [low, below] = find_extremes(row, u.components());
+      lowest[c] = low;
+      negative[c] = below;
+      equation_.invariant_densities(row, densities.data() + c * count);
+      if (equation_.has_entropy() && below == 0) entropies[c] = equation_.entropy(row);
     }
-    lowest[c] = std::isnan(total) ? std::numeric_limits<double>::quiet_NaN() : low;
-    negative[c] = below;
-    equation_.invariant_densities(row, densities.data() + c * count);
-    if (equation_.has_entropy() && below == 0) entropies[c] = equation_.entropy(row);
   });
 
   totals t{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0), 0.0,

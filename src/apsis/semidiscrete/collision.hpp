@@ -30,6 +30,13 @@ class collision {
   virtual double relaxation_time(const field& u) const = 0;
 };
 
+/// A collision of which every cell can be solved without its neighbours.
+class cellwise_collision : public collision {
+ public:
+  /// solve() for cells begin … end−1, on this thread.
+  virtual void solve_cells(double a, double b, field& u, int begin, int end) = 0;
+};
+
 /// Point values: the stage solve of every point is closed form,
 ///   v = (u + μ E(ω))/(1 + μ), ω = ℛu, μ = aC/ε + |b|(C/ε)²   (paper, proof of Proposition AP).
 /// `epsilon` per cell.

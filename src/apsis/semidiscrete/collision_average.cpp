@@ -1,52 +1,17 @@
 #include <apsis/core/parallel.hpp>
+#include <apsis/core/profile.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/local_relaxation.hpp>
-#include <apsis/space/limiter.hpp>
+#include <apsis/semidiscrete/relaxation_rows.hpp>
 #include <apsis/space/quartic.hpp>
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
 namespace apsis {
 namespace {
-
-/// Values of the quartics of one cell at its three Gauss points, one row each.
-struct gauss_rows {
-  std::array<aligned_vector<double>, gauss3::points> rows;
-  aligned_vector<double> sum;
-
-  void resize(int width) {
-    for (auto& row : rows) row.resize(static_cast<std::size_t>(width));
-    sum.resize(static_cast<std::size_t>(width));
-  }
-};
-
-/// θ that brings the quartic to nonnegative values at its Gauss–Lobatto and Gauss–Legendre points.
-double positive_scaling(const quartic& q, double edges, double g0, double g1, double g2) {
-  const double inner = std::min(q.deviation(-lobatto4_inner), q.deviation(lobatto4_inner));
-  const double lowest = std::min(std::min(edges, inner), std::min(std::min(g0, g1), g2));
-  return limiter::scaling(q.c, q.c + lowest);
-}
-
-template <bool Limited>
-void gauss_values(const double* m, const double* c, const double* p, const double* l, const double* r,
-                  int width, gauss_rows& out) {
-  double* g0 = out.rows[0].data();
-  double* g1 = out.rows[1].data();
-  double* g2 = out.rows[2].data();
-#pragma omp simd
-  for (int k = 0; k < width; ++k) {
-    const quartic q(m[k], c[k], p[k], l[k], r[k]);
-    const double v0 = q.deviation(gauss3::xi[0]), v1 = q.deviation(gauss3::xi[1]),
-                 v2 = q.deviation(gauss3::xi[2]);
-    const double theta = Limited ? positive_scaling(q, std::min(l[k], r[k]) - c[k], v0, v1, v2) : 1.0;
-    g0[k] = c[k] + theta * v0;
-    g1[k] = c[k] + theta * v1;
-    g2[k] = c[k] + theta * v2;
-  }
-}
 
 class cell_average_collision final : public collision {
  public:
@@ -57,33 +22,44 @@ class cell_average_collision final : public collision {
   void solve(double a, double b, field& u) override {
     if (result_.cells() != u.cells() || result_.components() != u.components())
       result_ = field(u.cells(), u.components());
-    for_cells(u, [&](int cell, const gauss_rows& points, local_relaxation& local, double* sum) {
-      for (std::size_t q = 0; q < gauss3::points; ++q) {
-        const double* row = points.rows[q].data();
-        const auto weights = local.prepare(row, a, b, epsilon_at(cell, q), cell);
-        const double* e = local.equilibrium();
-        const double stay = weights.stay, relax = weights.relax, weight = gauss3::weight[q];
-#pragma omp simd
-        for (int k = 0; k < u.components(); ++k) sum[k] += weight * (stay * row[k] + relax * e[k]);
+    for_blocks(u, [&](int begin, int cells, const double* points, const local_relaxation& local) {
+      const auto pitch = static_cast<std::ptrdiff_t>(u.stride());
+      const profile::section timed(kernel::relaxation, static_cast<double>(cells) * u.stride(),
+                                   {relaxation::operations_of_average, sizeof(double)});
+      for (int i = 0; i < cells; ++i) {
+        relaxation::weighted_rows rows[gauss3::points];
+        for (int q = 0; q < gauss3::points; ++q) {
+          const int p = i * gauss3::points + q;
+          const auto weights = local.weights(p, a, b, epsilon_at(begin + i, q));
+          const double w = gauss3::weight[static_cast<std::size_t>(q)];
+          rows[q] = {w * weights.stay, w * weights.relax, points + p * pitch, local.equilibrium(p)};
+        }
+        relaxation::average(rows, u.stride(), result_.row(begin + i));
       }
-      std::copy_n(sum, u.components(), result_.row(cell));
     });
     std::swap(u, result_);  // neighbours need the old averages, so the new ones are made beside them
   }
 
   void scatter(const field& u, std::span<const target<field, double>> targets) override {
-    for_cells(u, [&](int cell, const gauss_rows& points, local_relaxation& local, double* sum) {
-      for (std::size_t q = 0; q < gauss3::points; ++q) {
-        const double* row = points.rows[q].data();
-        const double strength = gauss3::weight[q] * local.strength(row, epsilon_at(cell, q), cell);
-        const double* e = local.equilibrium();
+    for_blocks(u, [&](int begin, int cells, const double* points, const local_relaxation& local) {
+      thread_local aligned_vector<double> sum;
+      for (int i = 0; i < cells; ++i) {
+        sum.assign(static_cast<std::size_t>(u.stride()), 0.0);
+        for (int q = 0; q < gauss3::points; ++q) {
+          const int p = i * gauss3::points + q;
+          const double* row = points + static_cast<std::ptrdiff_t>(p) * u.stride();
+          const double* e = local.equilibrium(p);
+          const double strength = gauss3::weight[static_cast<std::size_t>(q)] *
+                                  local.strength(p, epsilon_at(begin + i, q), begin + i);
 #pragma omp simd
-        for (int k = 0; k < u.components(); ++k) sum[k] += strength * (e[k] - row[k]);
-      }
-      for (const auto& to : targets) {
-        double* acc = to.acc->row(cell);
-        const double* average = u.row(cell);
-        for (int k = 0; k < u.components(); ++k) acc[k] = to.combine(acc[k], average[k], sum[k]);
+          for (int k = 0; k < u.stride(); ++k) sum[static_cast<std::size_t>(k)] += strength * (e[k] - row[k]);
+        }
+        const double* average = u.row(begin + i);
+        for (const auto& to : targets) {
+          double* acc = to.acc->row(begin + i);
+          for (int k = 0; k < u.stride(); ++k)
+            acc[k] = to.combine(acc[k], average[k], sum[static_cast<std::size_t>(k)]);
+        }
       }
     });
   }
@@ -91,49 +67,63 @@ class cell_average_collision final : public collision {
   /// With the rate of the averages; the rates at the Gauss points differ by the accuracy of the scheme.
   double forward_euler_step(const field& u) const override {
     local_relaxation local;
-    local.attach(equation_);
+    local.attach(equation_, 1);
     double fastest = 0.0;
     for (int cell = 0; cell < u.cells(); ++cell)
-      for (std::size_t q = 0; q < gauss3::points; ++q)
+      for (int q = 0; q < gauss3::points; ++q)
         fastest = std::max(fastest, local.rate(u.row(cell)) / epsilon_at(cell, q));
     return 1.0 / fastest;
   }
 
   double relaxation_time(const field& u) const override {
     local_relaxation local;
-    local.attach(equation_);
+    local.attach(equation_, 1);
     double shortest = std::numeric_limits<double>::infinity();
     for (int cell = 0; cell < u.cells(); ++cell)
-      for (std::size_t q = 0; q < gauss3::points; ++q)
+      for (int q = 0; q < gauss3::points; ++q)
         shortest = std::min(shortest, local.relaxation_time(u.row(cell), epsilon_at(cell, q)));
     return shortest;
   }
 
  private:
-  double epsilon_at(int cell, std::size_t q) const {
-    return epsilon_[static_cast<std::size_t>(cell) * gauss3::points + q];
+  double epsilon_at(int cell, int q) const {
+    return epsilon_[static_cast<std::size_t>(cell) * gauss3::points + static_cast<std::size_t>(q)];
   }
 
-  /// body(cell, Gauss values, scratch, row of zeros) for every cell.
+  /// body(first cell, number of cells, rows of the values at their Gauss points, the equilibria there).
   template <class Body>
-  void for_cells(const field& u, Body body) {
-    const int length = block_length(u.stride());
+  void for_blocks(const field& u, Body body) {
+    const int length = block_length(u.stride()),
+              at_once = std::max(1, points_at_once(u.stride()) / gauss3::points);
     parallel_for((u.cells() + length - 1) / length, [&](int task) {
       thread_local pencil_block block;
-      thread_local gauss_rows points;
+      thread_local aligned_vector<double> points;
       thread_local local_relaxation local;
-      local.attach(equation_);
-      points.resize(u.stride());
+      local.attach(equation_, at_once * gauss3::points);
+      points.resize(static_cast<std::size_t>(at_once * gauss3::points * u.stride()));
       const int begin = task * length, end = std::min(u.cells(), begin + length);
-      block.load(u, mesh_, how_, 0, 0, begin, end, 0);
-      for (int i = begin; i < end; ++i) {
-        const auto values = how_.positivity != limiter_kind::none ? gauss_values<true> : gauss_values<false>;
-        values(block.row(i - 1), block.row(i), block.row(i + 1), block.left_edge(i), block.right_edge(i),
-               u.stride(), points);
-        std::fill(points.sum.begin(), points.sum.end(), 0.0);
-        body(i, points, local, points.sum.data());
+      {
+        const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(),
+                                     {how_.scheme->operations(true), sizeof(double)});
+        block.load(u, mesh_, how_, 0, 0, begin, end, 0);
+      }
+      for (int i = begin; i < end; i += at_once) {
+        const int cells = std::min(at_once, end - i);
+        find_points(block, i, cells, u.stride(), points.data());
+        local.find_equilibria(points.data(), u.stride(), cells * gauss3::points, i, gauss3::points);
+        body(i, cells, points.data(), local);
       }
     });
+  }
+
+  void find_points(pencil_block& block, int begin, int cells, int stride, double* points) const {
+    const bool limited = how_.positivity != limiter_kind::none;
+    const profile::section timed(kernel::points, static_cast<double>(cells) * stride,
+                                 {relaxation::operations_of_points(limited), 0.0});
+    for (int i = begin; i < begin + cells; ++i, points += gauss3::points * stride)
+      relaxation::gauss_values(
+          {block.row(i - 1), block.row(i), block.row(i + 1), block.left_edge(i), block.right_edge(i)},
+          limited, stride, points);
   }
 
   const relaxation_model& equation_;

@@ -1,6 +1,8 @@
 #include <apsis/core/parallel.hpp>
+#include <apsis/core/profile.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/local_relaxation.hpp>
+#include <apsis/semidiscrete/relaxation_rows.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -9,64 +11,82 @@
 namespace apsis {
 namespace {
 
-class pointwise_collision final : public collision {
+class pointwise_collision final : public cellwise_collision {
  public:
   pointwise_collision(const relaxation_model& equation, std::vector<double> epsilon)
       : equation_(equation), epsilon_(std::move(epsilon)) {}
 
   void solve(double a, double b, field& u) override {
-    for_blocks(u, [&](int cell, local_relaxation& local) {
-      double* row = u.row(cell);
-      const auto weights = local.prepare(row, a, b, epsilon_[static_cast<std::size_t>(cell)], cell);
-      const double* e = local.equilibrium();
-      const double stay = weights.stay, relax = weights.relax;
-#pragma omp simd
-      for (int k = 0; k < u.components(); ++k) row[k] = stay * row[k] + relax * e[k];
+    const int length = points_at_once(u.stride());
+    parallel_for((u.cells() + length - 1) / length, [&](int block) {
+      const int begin = block * length;
+      relax(a, b, u, begin, std::min(u.cells() - begin, length), 2.0 * sizeof(double));
     });
   }
 
+  void solve_cells(double a, double b, field& u, int begin, int end) override {
+    const int length = points_at_once(u.stride());
+    // Rows that were just written are in the cache.
+    for (int first = begin; first < end; first += length)
+      relax(a, b, u, first, std::min(end - first, length), 0.0);
+  }
+
   void scatter(const field& u, std::span<const target<field, double>> targets) override {
-    for_blocks(u, [&](int cell, local_relaxation& local) {
-      const double* row = u.row(cell);
-      const double strength = local.strength(row, epsilon_[static_cast<std::size_t>(cell)], cell);
-      const double* e = local.equilibrium();
-      for (const auto& to : targets) {
-        double* acc = to.acc->row(cell);
-        for (int k = 0; k < u.components(); ++k)
-          acc[k] = to.combine(acc[k], row[k], strength * (e[k] - row[k]));
+    const int length = points_at_once(u.stride());
+    parallel_for((u.cells() + length - 1) / length, [&](int block) {
+      const int begin = block * length, cells = std::min(u.cells() - begin, length);
+      const auto& local = equilibria_of(u, begin, cells);
+      for (int p = 0; p < cells; ++p) {
+        const int cell = begin + p;
+        const double* row = u.row(cell);
+        const double strength = local.strength(p, epsilon_at(cell), cell);
+        const double* e = local.equilibrium(p);
+        for (const auto& to : targets) {
+          double* acc = to.acc->row(cell);
+          for (int k = 0; k < u.stride(); ++k)
+            acc[k] = to.combine(acc[k], row[k], strength * (e[k] - row[k]));
+        }
       }
     });
   }
 
   double forward_euler_step(const field& u) const override {
     local_relaxation local;
-    local.attach(equation_);
+    local.attach(equation_, 1);
     double fastest = 0.0;
     for (int cell = 0; cell < u.cells(); ++cell)
-      fastest = std::max(fastest, local.rate(u.row(cell)) / epsilon_[static_cast<std::size_t>(cell)]);
+      fastest = std::max(fastest, local.rate(u.row(cell)) / epsilon_at(cell));
     return 1.0 / fastest;
   }
 
   double relaxation_time(const field& u) const override {
     local_relaxation local;
-    local.attach(equation_);
+    local.attach(equation_, 1);
     double shortest = std::numeric_limits<double>::infinity();
     for (int cell = 0; cell < u.cells(); ++cell)
-      shortest =
-          std::min(shortest, local.relaxation_time(u.row(cell), epsilon_[static_cast<std::size_t>(cell)]));
+      shortest = std::min(shortest, local.relaxation_time(u.row(cell), epsilon_at(cell)));
     return shortest;
   }
 
  private:
-  template <class Body>
-  void for_blocks(const field& u, Body body) {
-    const int length = block_length(u.stride());
-    parallel_for((u.cells() + length - 1) / length, [&](int block) {
-      thread_local local_relaxation local;
-      local.attach(equation_);
-      const int end = std::min(u.cells(), (block + 1) * length);
-      for (int cell = block * length; cell < end; ++cell) body(cell, local);
-    });
+  double epsilon_at(int cell) const { return epsilon_[static_cast<std::size_t>(cell)]; }
+
+  void relax(double a, double b, field& u, int begin, int cells, double bytes) const {
+    const auto& local = equilibria_of(u, begin, cells);
+    const profile::section timed(kernel::relaxation, static_cast<double>(cells) * u.stride(),
+                                 {relaxation::operations_of_combine, bytes});
+    for (int p = 0; p < cells; ++p) {
+      const auto weights = local.weights(p, a, b, epsilon_at(begin + p));
+      relaxation::combine(weights.stay, weights.relax, local.equilibrium(p), u.stride(), u.row(begin + p));
+    }
+  }
+
+  /// In scratch space of this thread, until the next call.
+  const local_relaxation& equilibria_of(const field& u, int begin, int cells) const {
+    thread_local local_relaxation local;
+    local.attach(equation_, points_at_once(u.stride()));
+    local.find_equilibria(u.row(begin), u.stride(), cells, begin);
+    return local;
   }
 
   const relaxation_model& equation_;

@@ -2,34 +2,69 @@
 
 #include <apsis/core/aligned.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/core/profile.hpp>
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/space/field.hpp>
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 
 namespace apsis {
 
-/// Moments, rate and equilibrium of one point, in scratch space that is reused from point to point.
+/// Moments, rates and equilibria of some points, in scratch space that is used again and again. All points
+/// pass through one step before any goes on to the next: each step is a chain of operations that wait for
+/// each other, and the processor works on those of several points at once.
 class local_relaxation {
  public:
-  void attach(const relaxation_model& equation) {
+  /// For at most `points` points at once.
+  void attach(const relaxation_model& equation, int points) {
     equation_ = &equation;
-    omega_.resize(static_cast<std::size_t>(equation.moment_count()));
-    equilibrium_.resize(static_cast<std::size_t>(equation.components()));
+    moments_ = equation.moment_count();
+    stride_ = field::padded(equation.components());
+    const auto n = static_cast<std::size_t>(points);
+    omega_.resize(n * static_cast<std::size_t>(moments_));
+    // Padded with zeros like the rows of a field. Of another model nothing may be left there.
+    if (equilibria_.size() != n * static_cast<std::size_t>(stride_))
+      equilibria_.assign(n * static_cast<std::size_t>(stride_), 0.0);
   }
 
-  const double* equilibrium() const { return equilibrium_.data(); }
+  /// E(ℛu) of the points whose rows are `pitch` numbers apart. Point p belongs to cell first_cell + p /
+  /// per_cell, which is for the message only.
+  void find_equilibria(const double* u, std::ptrdiff_t pitch, int points, int first_cell, int per_cell = 1) {
+    const profile::section timed(kernel::equilibria,
+                                 static_cast<double>(points) * static_cast<double>(stride_),
+                                 {equation_->operations_of_equilibrium(), 0.0});
+    for (int p = 0; p < points; ++p) equation_->moments(u + p * pitch, omega(p));
+    for (int p = 0; p < points; ++p)
+      if (!equation_->equilibrium(omega(p), equilibrium(p)))
+        throw numerical_error("no local equilibrium (" + equation_->why_inadmissible(omega(p)) +
+                                  "); use the positivity limiter or a smaller step",
+                              {-1, site_unknown, first_cell + p / per_cell, *omega(p)});
+  }
 
-  /// E(ℛu) into equilibrium(), and the weights of the stage solve. `cell` is for the message only.
-  relaxation_weights<double> prepare(const double* u, double a, double b, double epsilon, int cell) {
-    find_equilibrium(u, cell);
-    return relax_weights(a, b, equation_->rate(omega_.data()), epsilon);
+  const double* equilibrium(int p) const { return equilibria_.data() + p * stride_; }
+
+  /// Weights of the stage solve of a point that has its equilibrium.
+  relaxation_weights<double> weights(int p, double a, double b, double epsilon) const {
+    return relax_weights(a, b, equation_->rate(omega(p)), epsilon);
+  }
+
+  /// C/ε of such a point.
+  double strength(int p, double epsilon, int cell) const {
+    if (!(epsilon > 0.0))
+      throw numerical_error(
+          "Q/epsilon does not exist for epsilon = 0 (the method evaluates it explicitly); choose an "
+          "implicit or IMEX method",
+          {-1, site_unknown, cell, epsilon});
+    return equation_->rate(omega(p)) / epsilon;
   }
 
   /// C(ℛu).
   double rate(const double* u) {
-    equation_->moments(u, omega_.data());
-    return equation_->rate(omega_.data());
+    equation_->moments(u, omega(0));
+    return equation_->rate(omega(0));
   }
 
   /// ε/C; +infinity where it is 0 or nothing relaxes.
@@ -38,30 +73,21 @@ class local_relaxation {
     return width > 0.0 ? width : std::numeric_limits<double>::infinity();
   }
 
-  /// E(ℛu) into equilibrium(), and C/ε.
-  double strength(const double* u, double epsilon, int cell) {
-    find_equilibrium(u, cell);
-    if (!(epsilon > 0.0))
-      throw numerical_error(
-          "Q/epsilon does not exist for epsilon = 0 (the method evaluates it explicitly); choose an "
-          "implicit or IMEX method",
-          {-1, site_unknown, cell, epsilon});
-    return equation_->rate(omega_.data()) / epsilon;
-  }
-
  private:
   static constexpr double site_unknown = std::numeric_limits<double>::quiet_NaN();
 
-  void find_equilibrium(const double* u, int cell) {
-    equation_->moments(u, omega_.data());
-    if (!equation_->equilibrium(omega_.data(), equilibrium_.data()))
-      throw numerical_error("no local equilibrium (" + equation_->why_inadmissible(omega_.data()) +
-                                "); use the positivity limiter or a smaller step",
-                            {-1, site_unknown, cell, omega_[0]});
-  }
+  double* omega(int p) { return omega_.data() + p * moments_; }
+  const double* omega(int p) const { return omega_.data() + p * moments_; }
+  double* equilibrium(int p) { return equilibria_.data() + p * stride_; }
 
   const relaxation_model* equation_ = nullptr;
-  aligned_vector<double> omega_, equilibrium_;
+  std::ptrdiff_t moments_ = 0, stride_ = 0;
+  aligned_vector<double> omega_, equilibria_;
 };
+
+/// Points whose equilibria, and as many rows besides, fit into half of a first-level cache of 32 KiB.
+inline int points_at_once(int width) {
+  return std::clamp(1024 / std::max(width, 1), 2, 64);
+}
 
 }  // namespace apsis

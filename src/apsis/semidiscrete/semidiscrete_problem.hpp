@@ -17,7 +17,9 @@ class semidiscrete_problem {
 
   /// Both references must outlive the problem.
   semidiscrete_problem(const model& equation, const grid& mesh, stencil how, std::unique_ptr<collision> q)
-      : transport_(equation, mesh, std::move(how)), collision_(std::move(q)) {}
+      : transport_(equation, mesh, std::move(how)),
+        collision_(std::move(q)),
+        cellwise_(dynamic_cast<cellwise_collision*>(collision_.get())) {}
 
   /// Methods that treat T and Q explicitly keep what u + Δt (T + Q) keeps: with 1/Δt = 1/Δt_T + 1/Δt_Q that
   /// is a convex combination of a step of T and a step of Q.
@@ -27,6 +29,14 @@ class semidiscrete_problem {
     transport_.scatter(u, targets);
   }
   void collide(double, double a, double b, field& u) { collision_->solve(a, b, u); }
+  void scatter_and_collide(double, const field& u, std::span<const target<field, double>> targets,
+                           due_collision<field, double> due) {
+    const auto collide_cells = [&](int begin, int end) {
+      cellwise_->solve_cells(due.a, due.b, *due.u, begin, end);
+    };
+    const bool done = transport_.scatter(u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
+    if (!done) collision_->solve(due.a, due.b, *due.u);
+  }
   void scatter_collision(double, const field& u, std::span<const target<field, double>> targets) {
     collision_->scatter(u, targets);
   }
@@ -40,6 +50,7 @@ class semidiscrete_problem {
  private:
   transport transport_;
   std::unique_ptr<collision> collision_;
+  cellwise_collision* cellwise_;  ///< the same, if it needs no neighbours; else null
   bool explicit_collision_ = false;
 };
 

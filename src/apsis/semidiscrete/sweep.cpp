@@ -1,5 +1,7 @@
 #include <apsis/semidiscrete/sweep.hpp>
 
+#include <apsis/core/parallel.hpp>
+
 #include <algorithm>
 
 namespace apsis {
@@ -25,6 +27,12 @@ int block_length(int width) {
   // cells of a block cost little.
   constexpr int doubles = 2048;
   return std::clamp(doubles / std::max(width, 1), 8, 256);
+}
+
+int sweep_blocks(int cells, int columns) {
+  constexpr int doubles = 2048;  // edges of the columns in half of a first-level cache of 32 KiB
+  const int length = std::max(doubles / std::max(columns, 1), 16);
+  return std::max(1, (cells + length / 2) / length);
 }
 
 }  // namespace apsis

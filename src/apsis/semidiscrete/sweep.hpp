@@ -15,6 +15,20 @@ namespace apsis {
 /// fluxes of point values.
 enum class limiter_kind { none, edges, fluxes };
 
+/// What is to be done with cells begin … end−1 (a call of a lambda, without an allocation); nothing by
+/// default.
+struct cells_job {
+  void (*call)(const void* body, int begin, int end) = nullptr;
+  const void* body = nullptr;
+
+  template <class Body>
+  static cells_job of(const Body& body) {
+    return {[](const void* b, int begin, int end) { (*static_cast<const Body*>(b))(begin, end); }, &body};
+  }
+  explicit operator bool() const { return call != nullptr; }
+  void operator()(int begin, int end) const { call(body, begin, end); }
+};
+
 /// How transport and collision see neighbouring cells.
 struct stencil {
   std::shared_ptr<const reconstruction> scheme;
@@ -45,5 +59,10 @@ struct pencil_block {
 
 /// Cells per block for rows of `width` numbers.
 int block_length(int width);
+
+/// In how many blocks of about equal length a pencil is swept if `columns` numbers of every cell are swept
+/// together: short enough for the first-level cache, and so long that the few edges at their ends which are
+/// computed twice cost little. Does not depend on the number of threads.
+int sweep_blocks(int cells, int columns);
 
 }  // namespace apsis

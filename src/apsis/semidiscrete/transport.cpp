@@ -1,6 +1,8 @@
 #include <apsis/semidiscrete/transport.hpp>
 
 #include <apsis/core/parallel.hpp>
+#include <apsis/core/profile.hpp>
+#include <apsis/semidiscrete/upwind_rows.hpp>
 #include <apsis/space/limiter.hpp>
 
 #include <algorithm>
@@ -13,18 +15,34 @@ namespace {
 
 using targets_view = std::span<const target<field, double>>;
 
-/// acc ← (fresh ? 0 : acc) + α u + β T for one row.
-void accumulate(const target<field, double>& to, int cell, const double* u, const double* t, int width,
-                bool first) {
-  double* acc = to.acc->row(cell);
-  const double alpha = first ? to.alpha : 0.0, beta = to.beta;
-  if (first && to.fresh) {
-#pragma omp simd
-    for (int k = 0; k < width; ++k) acc[k] = alpha * u[k] + beta * t[k];
-  } else {
-#pragma omp simd
-    for (int k = 0; k < width; ++k) acc[k] += alpha * u[k] + beta * t[k];
-  }
+/// Cells of a run that are treated as one row: so many that a row of few components fills some vectors.
+int cells_of_a_row(int stride) {
+  constexpr int enough = 64;
+  return std::max(1, enough / std::max(stride, 1));
+}
+
+/// Components of a cell that a sweep takes along at once: with some dozens of cells, what it keeps of them
+/// fits into the first-level cache.
+constexpr int most_columns = 32;
+
+/// Rows are cut at whole vectors of the widest instruction set.
+constexpr int packet_length = 8;
+
+/// Into `rows`, what `targets` say from component `k` of a cell on, `apart` cells from one to the next;
+/// `weighted`: u itself counts, and old content may be forgotten.
+void rows_of(targets_view targets, int cell, int k, int apart, bool weighted,
+             std::vector<upwind::row_target>& rows) {
+  rows.clear();
+  for (const auto& to : targets)
+    rows.push_back({to.acc->row(cell) + k, static_cast<std::ptrdiff_t>(apart) * to.acc->stride(),
+                    weighted ? to.alpha : 0.0, to.beta, weighted && to.fresh});
+}
+
+/// Bytes of accumulators for each number: written, and read before unless they are fresh.
+work traffic(targets_view targets) {
+  work each;
+  for (const auto& to : targets) each.bytes += sizeof(double) * (to.fresh ? 1.0 : 2.0);
+  return each;
 }
 
 }  // namespace
@@ -35,13 +53,12 @@ transport::transport(const model& equation, const grid& mesh, stencil how)
   const field layout(1, equation.components());
   for (int direction = 0; direction < mesh.dimensions(); ++direction) {
     line_speeds line;
-    line.per_cell.assign(static_cast<std::size_t>(layout.stride()), 0.0);
-    line.forward.assign(static_cast<std::size_t>(layout.stride()), 0.0);
     const auto v = equation.speeds(direction);
-    for (std::size_t k = 0; k < v.size(); ++k) {
-      line.per_cell[k] = std::abs(v[k]) / mesh.spacing(direction);
-      line.forward[k] = v[k] > 0.0 ? 1.0 : 0.0;
-    }
+    for (int cell = 0; cell < cells_of_a_row(layout.stride()); ++cell)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(layout.stride()); ++k) {
+        line.per_cell.push_back(k < v.size() ? std::abs(v[k]) / mesh.spacing(direction) : 0.0);
+        line.forward.push_back(k < v.size() && v[k] > 0.0 ? 1.0 : 0.0);
+      }
     speeds_.push_back(std::move(line));
   }
 }
@@ -54,176 +71,211 @@ double transport::forward_euler_step() const {
   return safe * (how_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) / rate;
 }
 
-void transport::scatter(const field& u, targets_view targets) const {
+bool transport::scatter(const field& u, targets_view targets, const cells_job& then) const {
   const bool moves =
       std::any_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta != 0.0; });
-  if (!moves) return scatter_weights(u, targets);
-  if (equation_.space_dimensions() == 0) return scatter_source(u, targets);
-  for (int direction = 0; direction < mesh_.dimensions(); ++direction)
-    scatter_direction(u, targets, direction);
+  if (!moves) {
+    scatter_weights(u, targets, then);
+    return static_cast<bool>(then);
+  }
+  if (equation_.space_dimensions() == 0) {
+    scatter_source(u, targets);
+    return false;
+  }
+  for (int direction = 0; direction + 1 < mesh_.dimensions(); ++direction)
+    scatter_direction(u, targets, direction, {});
+  // Cells are complete pencil by pencil only where one direction is all there is.
+  return scatter_direction(u, targets, mesh_.dimensions() - 1, mesh_.dimensions() == 1 ? then : cells_job());
 }
 
 void transport::scatter_source(const field& u, targets_view targets) const {
   std::vector<double> t(static_cast<std::size_t>(u.stride()), 0.0);
   for (int cell = 0; cell < u.cells(); ++cell) {
     if (equation_.has_source()) equation_.source(u.row(cell), t.data());
-    for (const auto& to : targets) accumulate(to, cell, u.row(cell), t.data(), u.stride(), true);
+    for (const auto& to : targets)
+      for (int k = 0; k < u.stride(); ++k) {
+        double& acc = to.acc->row(cell)[k];
+        acc = to.combine(acc, u.row(cell)[k], t[static_cast<std::size_t>(k)]);
+      }
   }
 }
 
-void transport::scatter_weights(const field& u, targets_view targets) const {
-  const int width = u.stride();
-  const int length = block_length(width);
-  const int blocks = (u.cells() + length - 1) / length;
-  parallel_for(blocks, [&](int block) {
-    const int end = std::min(u.cells(), (block + 1) * length);
-    for (int cell = block * length; cell < end; ++cell) {
-      const double* row = u.row(cell);
-      for (const auto& to : targets) {
-        double* acc = to.acc->row(cell);
-        const double alpha = to.alpha;
-        if (to.fresh) {
-#pragma omp simd
-          for (int k = 0; k < width; ++k) acc[k] = alpha * row[k];
-        } else {
-#pragma omp simd
-          for (int k = 0; k < width; ++k) acc[k] += alpha * row[k];
-        }
-      }
+void transport::scatter_weights(const field& u, targets_view targets, const cells_job& then) const {
+  const int length = block_length(u.stride());
+  parallel_for((u.cells() + length - 1) / length, [&](int block) {
+    thread_local std::vector<upwind::row_target> rows;
+    const int begin = block * length, cells = std::min(u.cells() - begin, length);
+    rows_of(targets, begin, 0, 1, true, rows);
+    {
+      work each = traffic(targets);
+      each.bytes += sizeof(double);
+      each.operations = 2.0 * static_cast<double>(targets.size());
+      const profile::section timed(kernel::multiples, static_cast<double>(cells) * u.stride(), each);
+      upwind::add_weights(u.row(begin), cells * u.stride(), rows);
     }
+    if (then) then(begin, begin + cells);
   });
 }
 
-/// T along one direction for the cells of one block, cell by cell.
+/// T along one direction for some components of some cells of a pencil.
 class transport::block_sweep {
  public:
-  void attach(const stencil& how, const line_speeds& line) {
-    how_ = &how;
-    line_ = &line;
-  }
+  struct place {
+    int direction, pencil, begin, end;  ///< cells of the pencil
+    int first, last;                    ///< components
+  };
 
-  /// Edge values of cells begin … end−1 and of the neighbours that their fluxes need.
-  void load(const field& u, const grid& mesh, int direction, int pencil, int begin, int end) {
-    width_ = u.stride();
-    const bool fluxes = how_->positivity == limiter_kind::fluxes;
-    block_.load(u, mesh, *how_, direction, pencil, begin, end, fluxes ? 2 : 1);
-    change_.resize(static_cast<std::size_t>(width_));
-    if (how_->positivity == limiter_kind::edges)
-      for (int i = begin - 1; i <= end; ++i)
-        limiter::apply(block_.row(i), width_, block_.left_edge(i), block_.right_edge(i));
-    if (!fluxes) return;
-    first_fraction_ = begin - 1;
-    fractions_.resize(static_cast<std::size_t>(end - begin + 2) * static_cast<std::size_t>(width_));
-    for (int i = begin - 1; i <= end; ++i) find_fractions(i);
-  }
-
-  const double* row(int i) const { return block_.row(i); }
-
-  /// |v|/Δx (inflow − outflow) of cell i.
-  double* change(int i) {
-    if (how_->positivity == limiter_kind::fluxes) {
-      limited_change(i);
-    } else {
-      plain_change(i);
+  void run(const transport& from, const field& u, const place& at, targets_view targets) {
+    prepare(from, u, at);
+    const double numbers = static_cast<double>(at.end - at.begin) * width_;
+    {
+      const profile::section timed(kernel::edges, numbers,
+                                   {from.how_.scheme->operations(both_edges()), sizeof(double)});
+      for (int i = at.begin - halo_; i < at.end + halo_;) {
+        const run_of_cells run = run_from(i, at.end + halo_ - i);
+        make_edges(i, run);
+        i += run.cells * run.joined;
+      }
     }
-    return change_.data();
-  }
-
-  void add_source(const model& equation, int i) {
-    source_.assign(static_cast<std::size_t>(width_), 0.0);
-    equation.source(row(i), source_.data());
-    for (std::size_t k = 0; k < source_.size(); ++k) change_[k] += source_[k];
+    const profile::section timed(kernel::fluxes, numbers, work_of(targets));
+    for (int i = at.begin; i < at.end;) {
+      const run_of_cells run = run_from(i, at.end - i);
+      add(i, run, at, targets);
+      i += run.cells * run.joined;
+    }
   }
 
  private:
-  double* fraction(int i) {
-    return fractions_.data() +
-           static_cast<std::size_t>(i - first_fraction_) * static_cast<std::size_t>(width_);
-  }
-
-  /// Cell i and its neighbours seen in the direction of motion of every component.
-  struct motion {
-    const double *before, *here, *after, *from_left, *left, *right, *from_right, *forward;
-
-    bool ahead(int k) const { return forward[k] > 0.5; }
-    double upstream(int k) const { return ahead(k) ? before[k] : after[k]; }
-    double inflow(int k) const { return ahead(k) ? from_left[k] : from_right[k]; }
-    double outflow(int k) const { return ahead(k) ? right[k] : left[k]; }
+  /// Either one cell after another, or cells that are one row in memory and so are their neighbours: a single
+  /// "cell" for the kernels.
+  struct run_of_cells {
+    int cells, joined;
   };
 
-  motion around(int i) {
-    return {row(i - 1),
-            row(i),
-            row(i + 1),
-            block_.right_edge(i - 1),
-            block_.left_edge(i),
-            block_.right_edge(i),
-            block_.left_edge(i + 1),
-            line_->forward.data()};
+  bool both_edges() const { return from_->how_.positivity == limiter_kind::edges; }
+
+  work work_of(targets_view targets) const {
+    work each = traffic(targets);
+    each.operations = upwind::operations(from_->how_.positivity == limiter_kind::fluxes) +
+                      upwind::operations_of_target * static_cast<double>(targets.size());
+    return each;
   }
 
-  void plain_change(int i) {
-    const motion cell = around(i);
-    const double* per_cell = line_->per_cell.data();
-    double* t = change_.data();
-#pragma omp simd
-    for (int k = 0; k < width_; ++k) t[k] = per_cell[k] * (cell.inflow(k) - cell.outflow(k));
+  void prepare(const transport& from, const field& u, const place& at) {
+    from_ = &from;
+    line_ = &from.speeds_[static_cast<std::size_t>(at.direction)];
+    width_ = at.last - at.first;
+    first_component_ = at.first;
+    whole_rows_ = width_ == u.stride();
+    const auto limiting = from.how_.positivity;
+    halo_ = limiting == limiter_kind::fluxes ? 2 : 1;
+    ghosts_ = from.how_.scheme->ghost_width();
+    first_edge_ = at.begin - halo_;
+    const int beyond = halo_ + ghosts_;
+    first_row_ = at.begin - beyond;
+    pencil_rows(u, from.mesh_, at.direction, at.pencil, from.how_.boundary, first_row_, at.end + beyond,
+                rows_);
+    joined_.assign(rows_.size(), 1);
+    if (cells_of_a_row(u.stride()) > 1)
+      for (std::size_t j = rows_.size() - 1; j-- > 0;)
+        if (rows_[j] + width_ == rows_[j + 1]) joined_[j] = joined_[j + 1] + 1;
+    for (auto& row : rows_) row += at.first;
+    // Where neighbours are joined, a row of edges ends beyond its last cell.
+    const auto numbers =
+        static_cast<std::size_t>(at.end - at.begin + 2 * halo_) * static_cast<std::size_t>(width_);
+    for (auto* edges : {&left_, &right_})
+      if (edges->size() < numbers) edges->resize(numbers);
+    if (from.equation_.has_source() && source_.size() < numbers) source_.resize(numbers);
   }
 
-  void find_fractions(int i) {
-    const motion cell = around(i);
-    double* r = fraction(i);
-#pragma omp simd
-    for (int k = 0; k < width_; ++k)
-      r[k] = limiter::harmless_fraction(cell.upstream(k), cell.here[k], cell.inflow(k) - cell.upstream(k),
-                                        cell.outflow(k) - cell.here[k]);
+  const double* const* row(int i) const { return rows_.data() + (i - first_row_); }
+  std::size_t offset(int i) const {
+    return static_cast<std::size_t>(i - first_edge_) * static_cast<std::size_t>(width_);
   }
 
-  void limited_change(int i) {
-    const motion cell = around(i);
-    const double *r_before = fraction(i - 1), *r_here = fraction(i), *r_after = fraction(i + 1);
-    const double* per_cell = line_->per_cell.data();
-    double* t = change_.data();
-#pragma omp simd
-    for (int k = 0; k < width_; ++k) {
-      const double r_up = cell.ahead(k) ? r_before[k] : r_after[k];
-      const double r_down = cell.ahead(k) ? r_after[k] : r_before[k];
-      const double u_up = cell.upstream(k), u = cell.here[k];
-      const double a_in = cell.inflow(k) - u_up, a_out = cell.outflow(k) - u;
-      // A positive correction harms the donor, a negative one the receiver.
-      const double in = u_up + (a_in > 0.0 ? r_up : r_here[k]) * a_in;
-      const double out = u + (a_out > 0.0 ? r_here[k] : r_down) * a_out;
-      t[k] = per_cell[k] * (in - out);
+  run_of_cells run_from(int i, int most) const {
+    const int long_enough = cells_of_a_row(width_);
+    if (!whole_rows_ || long_enough == 1) return {most, 1};
+    const int together = joined_[static_cast<std::size_t>(i - ghosts_ - first_row_)] - 2 * ghosts_;
+    return {1, std::max(1, std::min({long_enough, most, together}))};
+  }
+
+  void make_edges(int i, const run_of_cells& run) {
+    const auto& scheme = *from_->how_.scheme;
+    const int width = run.joined * width_;
+    double *left = left_.data() + offset(i), *right = right_.data() + offset(i);
+    if (!both_edges())
+      return scheme.outflow_edges(row(i), run.cells, width, line_->forward.data() + first_component_, right);
+    scheme.edges(row(i), run.cells, width, left, right);
+    for (int j = 0; j < run.cells; ++j)
+      limiter::apply(*row(i + j), width, left + j * width, right + j * width);
+  }
+
+  const double* source(int i, const run_of_cells& run) {
+    for (int j = i; j < i + run.cells * run.joined; ++j)
+      from_->equation_.source(*row(j), source_.data() + offset(j));
+    return source_.data() + offset(i);
+  }
+
+  void add(int i, const run_of_cells& run, const place& at, targets_view targets) {
+    const bool first = at.direction == 0;
+    const auto& mesh = from_->mesh_;
+    const int apart = mesh.stride(at.direction), cell = mesh.first_cell(at.direction, at.pencil) + i * apart;
+    rows_of(targets, cell, at.first, apart, first, targets_);
+    const double* right = right_.data() + offset(i);
+    const upwind::cells some{row(i),
+                             both_edges() ? left_.data() + offset(i) : right,
+                             right,
+                             width_,
+                             run.cells,
+                             run.joined * width_,
+                             line_->forward.data() + at.first,
+                             line_->per_cell.data() + at.first,
+                             first && from_->equation_.has_source() ? source(i, run) : nullptr};
+    if (from_->how_.positivity == limiter_kind::fluxes) {
+      upwind::add_limited(some, targets_);
+    } else {
+      upwind::add(some, targets_);
     }
   }
 
-  const stencil* how_ = nullptr;
+  const transport* from_ = nullptr;
   const line_speeds* line_ = nullptr;
-  pencil_block block_;
-  aligned_vector<double> change_, fractions_, source_;
-  int width_ = 0, first_fraction_ = 0;
+  std::vector<const double*> rows_;
+  std::vector<int> joined_;
+  std::vector<upwind::row_target> targets_;
+  aligned_vector<double> left_, right_, source_;
+  int width_ = 0, first_component_ = 0, halo_ = 0, ghosts_ = 0, first_row_ = 0, first_edge_ = 0;
+  bool whole_rows_ = false;
 };
 
-void transport::scatter_direction(const field& u, targets_view targets, int direction) const {
-  const int n = mesh_.cells(direction);
-  const int length = block_length(u.stride());
-  const int blocks = (n + length - 1) / length;
-  const auto& line = speeds_[static_cast<std::size_t>(direction)];
-  const bool first = direction == 0;
-
-  parallel_for(mesh_.pencils(direction) * blocks, [&](int task) {
-    thread_local block_sweep sweep;
-    sweep.attach(how_, line);
-    const int pencil = task / blocks;
-    const int begin = task % blocks * length, end = std::min(n, begin + length);
-    sweep.load(u, mesh_, direction, pencil, begin, end);
-    for (int i = begin; i < end; ++i) {
-      double* t = sweep.change(i);
-      if (first && equation_.has_source()) sweep.add_source(equation_, i);
-      const int cell = mesh_.first_cell(direction, pencil) + i * mesh_.stride(direction);
-      for (const auto& to : targets) accumulate(to, cell, sweep.row(i), t, u.stride(), first);
-    }
-  });
+bool transport::scatter_direction(const field& u, targets_view targets, int direction,
+                                  const cells_job& then) const {
+  const int n = mesh_.cells(direction), pencils = mesh_.pencils(direction), width = u.stride();
+  // A source is a function of all components of a cell.
+  const int columns = equation_.has_source() ? 1 : (width + most_columns - 1) / most_columns;
+  const int blocks = sweep_blocks(n, std::min(width, most_columns));
+  const auto cell = [&](int block) { return static_cast<int>(static_cast<long>(n) * block / blocks); };
+  const auto component = [&](int column) {
+    return column == columns ? width : width / packet_length * column / columns * packet_length;
+  };
+  const auto sweep = [&](int pencil, int block, int column) {
+    thread_local block_sweep here;
+    here.run(*this, u,
+             {direction, pencil, cell(block), cell(block + 1), component(column), component(column + 1)},
+             targets);
+  };
+  if (then && blocks >= threads()) {
+    parallel_for(blocks, [&](int block) {
+      for (int column = 0; column < columns; ++column) sweep(0, block, column);
+      then(cell(block), cell(block + 1));
+    });
+    return true;
+  }
+  // A small mesh has work for all threads in parts of its rows.
+  parallel_for(pencils * blocks * columns,
+               [&](int task) { sweep(task / columns / blocks, task / columns % blocks, task % columns); });
+  return false;
 }
 
 }  // namespace apsis

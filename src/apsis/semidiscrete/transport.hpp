@@ -17,7 +17,10 @@ class transport {
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(u). One evaluation of T, none if every β is 0.
   /// With the positivity limiter and β max|v|/Δx ≤ α/12 no result is negative, in floating point.
-  void scatter(const field& u, std::span<const target<field, double>> targets) const;
+  /// `then` is called with cells of all targets that are complete, while they are in the cache, and the
+  /// result says so; on a mesh, or with a number of threads, where that is of no use, it is not called.
+  bool scatter(const field& u, std::span<const target<field, double>> targets,
+               const cells_job& then = {}) const;
 
   /// Δt_FE = κ / Σ_k (max|v_k|/Δx_k): κ = 1/12 with the positivity limiter (Zhang & Shu 2010), else 1, which
   /// for first-order upwind keeps positivity, total variation and entropy. +infinity without space.
@@ -25,8 +28,10 @@ class transport {
 
  private:
   void scatter_source(const field& u, std::span<const target<field, double>> targets) const;
-  void scatter_weights(const field& u, std::span<const target<field, double>> targets) const;
-  void scatter_direction(const field& u, std::span<const target<field, double>> targets, int direction) const;
+  void scatter_weights(const field& u, std::span<const target<field, double>> targets,
+                       const cells_job& then) const;
+  bool scatter_direction(const field& u, std::span<const target<field, double>> targets, int direction,
+                         const cells_job& then) const;
 
   const model& equation_;
   const grid& mesh_;

@@ -17,12 +17,35 @@ class field {
       : cells_(cells),
         components_(components),
         stride_(padded(components)),
-        data_(static_cast<std::size_t>(cells) * static_cast<std::size_t>(stride_), 0.0) {}
+        data_(static_cast<std::size_t>(cells) * static_cast<std::size_t>(stride_)) {
+    fill_rows(nullptr);
+  }
+  field(const field& other)
+      : cells_(other.cells_),
+        components_(other.components_),
+        stride_(other.stride_),
+        data_(other.data_.size()) {
+    fill_rows(other.data_.data());
+  }
+  field& operator=(const field& other) {
+    if (data_.size() != other.data_.size()) return *this = field(other);
+    cells_ = other.cells_;
+    components_ = other.components_;
+    stride_ = other.stride_;
+    fill_rows(other.data_.data());
+    return *this;
+  }
+  field(field&&) noexcept = default;
+  field& operator=(field&&) noexcept = default;
+  ~field() = default;
 
   int cells() const { return cells_; }
   int components() const { return components_; }
   /// Numbers from one row to the next, padding included.
   int stride() const { return stride_; }
+
+  /// The stride of rows of so many components.
+  static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
 
   double* row(int cell) {
     return data_.data() + static_cast<std::size_t>(cell) * static_cast<std::size_t>(stride_);
@@ -32,10 +55,12 @@ class field {
   }
 
  private:
-  static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
+  /// From `values`, or zeros where that is null. Each thread writes the rows that it works on later, so that
+  /// their memory lies near to it (a page belongs to whom touches it first).
+  void fill_rows(const double* values);
 
   int cells_ = 0, components_ = 0, stride_ = 0;
-  aligned_vector<double> data_;
+  std::vector<double, untouched_allocator<double>> data_;
 };
 
 }  // namespace apsis

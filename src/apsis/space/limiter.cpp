@@ -1,17 +1,37 @@
-#include <apsis/space/limiter.hpp>
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/space/limiter.cpp"
+#include <hwy/foreach_target.h>
 
-#include <algorithm>
+#include <apsis/space/limiter-inl.hpp>
 
-namespace apsis::limiter {
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
 
-void apply(const double* c, int width, double* left, double* right) {
-#pragma omp simd
-  for (int k = 0; k < width; ++k) {
-    const double lowest = std::min(std::min(left[k], right[k]), interior(c[k], left[k], right[k]));
-    const double theta = scaling(c[k], lowest);
-    left[k] = c[k] + theta * (left[k] - c[k]);
-    right[k] = c[k] + theta * (right[k] - c[k]);
-  }
+void limit_edges(const double* c, int width, double* left, double* right) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    const N average = N::load(c + k), l = N::load(left + k), r = N::load(right + k);
+    const N lowest = smaller(smaller(l, r), limiter::interior(average, l, r));
+    if (!N::any(lowest < limiter::floor * average)) return;
+    const N theta = limiter::scaling(average, lowest);
+    const auto limited = theta < N(1.0);
+    select(limited, fma(theta, l - average, average), l).store(left + k);
+    select(limited, fma(theta, r - average, average), r).store(right + k);
+  });
 }
 
-}  // namespace apsis::limiter
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace apsis {
+namespace {
+HWY_EXPORT(limit_edges);
+}
+
+void limiter::apply(const double* c, int width, double* left, double* right) {
+  HWY_DYNAMIC_DISPATCH(limit_edges)(c, width, left, right);
+}
+
+}  // namespace apsis
+#endif

@@ -1,22 +1,56 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/space/reconstructions/weno5_js.cpp"
+#include <hwy/foreach_target.h>
+
+#include <apsis/space/weno5-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+/// g_k = 1/(β_k + 1e-6)² (Jiang & Shu, JCP 126, 1996). The 1e-6 is theirs and has the unit of the data
+/// squared.
+struct weights_js {
+  template <class N>
+  static HWY_INLINE weno5::factors<N> factors(const weno5::window<N>& u) {
+    const auto y = weno5::scale(weno5::indicators(u), N(4e-6));
+    const N z0 = y.y0 * y.y0, z1 = y.y1 * y.y1, z2 = y.y2 * y.y2;
+    return {z1 * z2, z0 * z2, z0 * z1};
+  }
+};
+
+void edges_js(const double* const* rows, int count, int width, double* left, double* right) {
+  weno5::sweep_edges<weights_js>(rows, count, width, left, right);
+}
+
+void outflow_js(const double* const* rows, int count, int width, const double* forward, double* edge) {
+  weno5::sweep_outflow<weights_js>(rows, count, width, forward, edge);
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 #include <apsis/space/reconstruction_registry.hpp>
-#include <apsis/space/weno5.hpp>
 
 namespace apsis {
 namespace {
 
-/// g_k = 1/(β_k + 1e-6)² (Jiang & Shu, JCP 126, 1996). The 1e-6 is theirs and has the unit of the data
-/// squared.
+HWY_EXPORT(edges_js);
+HWY_EXPORT(outflow_js);
+
 class weno5_js final : public reconstruction {
  public:
   int ghost_width() const override { return 2; }
   int order() const override { return 5; }
   void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
-    weno5::sweep(rows, count, width, left, right, [](const weno5::smoothness& s) {
-      constexpr double delta = 1e-6;
-      const auto [y0, y1, y2, per_largest] = weno5::scale(s, delta);
-      const double z0 = y0 * y0, z1 = y1 * y1, z2 = y2 * y2;
-      return weno5::factors{z1 * z2, z0 * z2, z0 * z1};
-    });
+    HWY_DYNAMIC_DISPATCH(edges_js)(rows, count, width, left, right);
+  }
+  void outflow_edges(const double* const* rows, int count, int width, const double* forward,
+                     double* edge) const override {
+    HWY_DYNAMIC_DISPATCH(outflow_js)(rows, count, width, forward, edge);
+  }
+  double operations(bool both_edges) const override {
+    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>(both_edges);
   }
 };
 
@@ -28,3 +62,4 @@ const reconstruction_entry reconstruction_weno5_js = {
     []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_js>(); }};
 
 }  // namespace apsis
+#endif

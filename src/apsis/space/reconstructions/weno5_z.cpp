@@ -1,27 +1,61 @@
-#include <apsis/space/reconstruction_registry.hpp>
-#include <apsis/space/weno5.hpp>
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/space/reconstructions/weno5_z.cpp"
+#include <hwy/foreach_target.h>
 
-#include <cmath>
+#include <apsis/space/weno5-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+/// g_k = 1 + (τ/(β_k + δ))², τ = |β₀ − β₂| (Borges, Carmona, Costa & Don, JCP 227, 2008, with power 2, which
+/// keeps fifth order at smooth extrema).
+struct weights_z {
+  template <class N>
+  static HWY_INLINE weno5::factors<N> factors(const weno5::window<N>& u) {
+    const auto s = weno5::indicators(u);
+    // Relative to the data, so that the scheme does not change with their scale: variations below a
+    // thousandth of the value count as smooth, also where the first two derivatives vanish together.
+    const N delta = fma(4e-6 * u.here, u.here, N(4e-200));
+    const auto y = weno5::scale(s, delta);
+    const N tau = (s.s0 - s.s2) * y.scale;
+    const N t = tau * tau, z0 = y.y0 * y.y0, z1 = y.y1 * y.y1, z2 = y.y2 * y.y2;
+    return {z1 * z2 * (z0 + t), z0 * z2 * (z1 + t), z0 * z1 * (z2 + t)};
+  }
+};
+
+void edges_z(const double* const* rows, int count, int width, double* left, double* right) {
+  weno5::sweep_edges<weights_z>(rows, count, width, left, right);
+}
+
+void outflow_z(const double* const* rows, int count, int width, const double* forward, double* edge) {
+  weno5::sweep_outflow<weights_z>(rows, count, width, forward, edge);
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <apsis/space/reconstruction_registry.hpp>
 
 namespace apsis {
 namespace {
 
-/// g_k = 1 + (τ/(β_k + δ))², τ = |β₀ − β₂| (Borges, Carmona, Costa & Don, JCP 227, 2008, with power 2, which
-/// keeps fifth order at smooth extrema).
+HWY_EXPORT(edges_z);
+HWY_EXPORT(outflow_z);
+
 class weno5_z final : public reconstruction {
  public:
   int ghost_width() const override { return 2; }
   int order() const override { return 5; }
   void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
-    weno5::sweep(rows, count, width, left, right, [](const weno5::smoothness& s) {
-      // Relative to the data, so that the scheme does not change with their scale: variations below a
-      // thousandth of the local size count as smooth, also where the first two derivatives vanish together.
-      const double delta = 1e-6 * s.mean_square + 1e-200;
-      const auto [y0, y1, y2, per_largest] = weno5::scale(s, delta);
-      const double tau = (s.s0 - s.s2) * per_largest;
-      const double t = tau * tau, z0 = y0 * y0, z1 = y1 * y1, z2 = y2 * y2;
-      return weno5::factors{z1 * z2 * (z0 + t), z0 * z2 * (z1 + t), z0 * z1 * (z2 + t)};
-    });
+    HWY_DYNAMIC_DISPATCH(edges_z)(rows, count, width, left, right);
+  }
+  void outflow_edges(const double* const* rows, int count, int width, const double* forward,
+                     double* edge) const override {
+    HWY_DYNAMIC_DISPATCH(outflow_z)(rows, count, width, forward, edge);
+  }
+  double operations(bool both_edges) const override {
+    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_z>(both_edges);
   }
 };
 
@@ -34,3 +68,4 @@ const reconstruction_entry reconstruction_weno5_z = {
     []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_z>(); }};
 
 }  // namespace apsis
+#endif

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+
+namespace apsis {
+
+/// A number that counts what is done with it: formulas that are written for packs of numbers
+/// (core/simd-inl.hpp) tell by it how many operations they are. An addition, multiplication, division,
+/// comparison, minimum, maximum and absolute value is one operation, a multiply–add two; choosing between two
+/// numbers and moving them is none. Nothing is limited and nothing exceptional: branches that need a reason
+/// are not taken.
+class counted {
+ public:
+  struct mask {};
+
+  counted(double) {}
+  static counted load(const double*) { return 0.0; }
+  void store(double*) const {}
+  static bool any(mask) { return false; }
+  static bool all(mask) { return true; }
+
+  /// Operations of body().
+  template <class Body>
+  static double operations_of(const Body& body) {
+    const double before = operations_;
+    body();
+    return operations_ - before;
+  }
+
+  friend counted operator+(counted, counted) { return one(); }
+  friend counted operator-(counted, counted) { return one(); }
+  friend counted operator*(counted, counted) { return one(); }
+  friend counted operator/(counted, counted) { return one(); }
+  friend counted operator-(counted) { return 0.0; }
+  friend mask operator<(counted, counted) { return one(), mask(); }
+  friend mask operator>(counted, counted) { return one(), mask(); }
+  friend counted fma(counted, counted, counted) { return one(), one(); }
+  friend counted negative_fma(counted, counted, counted) { return one(), one(); }
+  friend counted select(mask, counted, counted) { return 0.0; }
+  friend counted smaller(counted, counted) { return one(); }
+  friend counted larger(counted, counted) { return one(); }
+  friend counted minimum(counted, counted) { return one(); }
+  friend counted maximum(counted, counted) { return one(); }
+  friend counted absolute(counted) { return one(); }
+  friend counted inverse_power_of_two(counted) { return 0.0; }
+
+ private:
+  static counted one() {
+    ++operations_;
+    return 0.0;
+  }
+  inline static thread_local double operations_ = 0.0;
+};
+
+/// Walks along a pencil of counted numbers (space/walk-inl.hpp).
+struct counting_walk {
+  using number = counted;
+  template <class... Where>
+  counted load(const Where&...) const {
+    return 0.0;
+  }
+  template <class... Where>
+  counted load_downstream(const Where&...) const {
+    return 0.0;
+  }
+  template <class... Where>
+  void store(const Where&...) const {}
+};
+
+}  // namespace apsis

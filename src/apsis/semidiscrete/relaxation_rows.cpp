@@ -1,0 +1,128 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/semidiscrete/relaxation_rows.cpp"
+#include <hwy/foreach_target.h>
+
+#include <apsis/semidiscrete/relaxation_rows.hpp>
+
+#include <apsis/core/counted.hpp>
+#include <apsis/space/limiter-inl.hpp>
+#include <apsis/space/quartic.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+void combine(double stay, double relax, const double* e, int width, double* u) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    fma(N(stay), N::load(u + k), N(relax) * N::load(e + k)).store(u + k);
+  });
+}
+
+void average(const relaxation::weighted_rows points[3], int width, double* average) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    N sum(0.0);
+    for (int q = 0; q < 3; ++q)
+      sum = fma(N(points[q].stay), N::load(points[q].u + k),
+                fma(N(points[q].relax), N::load(points[q].e + k), sum));
+    sum.store(average + k);
+  });
+}
+
+/// The quartic of space/quartic.hpp at the Gauss points and at the inner points of the Gauss–Lobatto rule,
+/// minus its average. Both rules give the average, which leaves one term of the even parts.
+template <class N>
+struct gauss_points {
+  N g0, g1, g2;
+};
+
+template <bool Limited, class N>
+HWY_INLINE gauss_points<N> quartic_values(N before, N c, N after, N l, N r) {
+  constexpr double outer = gauss3::outer, inner = lobatto4_inner;
+  const N to_left = l - c, to_right = r - c, edges = to_left + to_right, slope = r - l;
+  const N neighbours = (before - c) + (after - c), rise = after - before;
+  const N middle = fma(N(-9.0 / 32.0), edges, N(1.0 / 192.0) * neighbours), even = N(-0.8) * middle;
+  // ξ (1.25 − ξ²) of the slope and ξ (ξ²/2 − 1/8) of the rise.
+  const N odd =
+      fma(N(outer * (1.25 - outer * outer)), slope, N(outer * (0.5 * outer * outer - 0.125)) * rise);
+  N g0 = even - odd, g1 = middle, g2 = even + odd;
+  if constexpr (Limited) {
+    const N odd_inner =
+        fma(N(inner * (1.25 - inner * inner)), slope, N(inner * (0.5 * inner * inner - 0.125)) * rise);
+    const N lowest_inner = N(-0.1) * edges - absolute(odd_inner),
+            lowest_gauss = minimum(even - absolute(odd), middle);
+    const N lowest = c + minimum(minimum(to_left, to_right), minimum(lowest_inner, lowest_gauss));
+    if (N::any(lowest < N(limiter::floor) * c)) {
+      const N theta = limiter::scaling(c, lowest);
+      g0 = theta * g0;
+      g1 = theta * g1;
+      g2 = theta * g2;
+    }
+  }
+  return {c + g0, c + g1, c + g2};
+}
+
+template <bool Limited>
+HWY_INLINE void quartics(const relaxation::quartic_rows& cell, int width, double* points) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    const auto [g0, g1, g2] =
+        quartic_values<Limited>(N::load(cell.before + k), N::load(cell.average + k), N::load(cell.after + k),
+                                N::load(cell.left + k), N::load(cell.right + k));
+    g0.store(points + k);
+    g1.store(points + width + k);
+    g2.store(points + 2 * width + k);
+  });
+}
+
+double operations_of_points(bool limited) {
+  const counted x(0.0);
+  return counted::operations_of([&] {
+    if (limited) {
+      quartic_values<true>(x, x, x, x, x);
+    } else {
+      quartic_values<false>(x, x, x, x, x);
+    }
+  });
+}
+
+void gauss_values(const relaxation::quartic_rows& cell, bool limited, int width, double* points) {
+  if (limited) {
+    quartics<true>(cell, width, points);
+  } else {
+    quartics<false>(cell, width, points);
+  }
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace apsis {
+namespace {
+HWY_EXPORT(combine);
+HWY_EXPORT(average);
+HWY_EXPORT(gauss_values);
+}  // namespace
+
+namespace relaxation {
+
+void combine(double stay, double relax, const double* e, int width, double* u) {
+  HWY_DYNAMIC_DISPATCH(combine)(stay, relax, e, width, u);
+}
+
+void average(const weighted_rows points[3], int width, double* average) {
+  HWY_DYNAMIC_DISPATCH(average)(points, width, average);
+}
+
+double operations_of_points(bool limited) {
+  return HWY_NAMESPACE::operations_of_points(limited);
+}
+
+void gauss_values(const quartic_rows& cell, bool limited, int width, double* points) {
+  HWY_DYNAMIC_DISPATCH(gauss_values)(cell, limited, width, points);
+}
+
+}  // namespace relaxation
+}  // namespace apsis
+#endif

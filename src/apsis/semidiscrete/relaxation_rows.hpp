@@ -1,0 +1,34 @@
+#pragma once
+
+namespace apsis {
+
+/// The work of a relaxation on one row, for the instruction set of this processor.
+namespace relaxation {
+
+/// u ← stay u + relax e, the convex combination of a stage solve.
+void combine(double stay, double relax, const double* e, int width, double* u);
+
+/// stay u + relax e at one of three quadrature points, the weight of the point in both factors.
+struct weighted_rows {
+  double stay, relax;
+  const double *u, *e;
+};
+
+/// average ← the sum over the points.
+void average(const weighted_rows points[3], int width, double* average);
+
+/// Averages of cells i−1, i, i+1 and the edge values of cell i.
+struct quartic_rows {
+  const double *before, *average, *after, *left, *right;
+};
+
+/// points[q·width + k] ← values of the quartics (space/quartic.hpp) at the Gauss–Legendre points; `limited`:
+/// moved towards the average until these and those at the Gauss–Lobatto points are not negative.
+void gauss_values(const quartic_rows& cell, bool limited, int width, double* points);
+
+/// Operations of each of these for one number of a row.
+inline constexpr double operations_of_combine = 3.0, operations_of_average = 12.0;
+double operations_of_points(bool limited);
+
+}  // namespace relaxation
+}  // namespace apsis

@@ -1,0 +1,156 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/semidiscrete/upwind_rows.cpp"
+#include <hwy/foreach_target.h>
+
+#include <apsis/semidiscrete/upwind_rows.hpp>
+
+#include <apsis/core/counted.hpp>
+#include <apsis/space/limiter-inl.hpp>
+#include <apsis/space/walk-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+using upwind::cells;
+using upwind::row_target;
+
+template <class Walk, class N = typename Walk::number>
+HWY_INLINE N outflow(const Walk& way, const cells& run, int j) {
+  return way.load_downstream(run.left, run.right, run.pitch, j);
+}
+
+template <class Walk, class N = typename Walk::number>
+HWY_INLINE void accumulate(const Walk& way, const cells& run, std::span<const row_target> targets, int j, N u,
+                           N change) {
+  if (run.source != nullptr) change = change + way.load(run.source, run.pitch, j);
+  for (const auto& to : targets) {
+    const N add = fma(N(to.alpha), u, N(to.beta) * change);
+    way.store(to.fresh ? add : way.load(to.acc, to.pitch, j) + add, to.acc, to.pitch, j);
+  }
+}
+
+template <class Walk, class N = typename Walk::number>
+HWY_INLINE void add_along(const Walk& way, N speed, const cells& run, std::span<const row_target> targets) {
+  N in = outflow(way, run, -1);
+  for (int j = 0; j < run.count; ++j) {
+    const N out = outflow(way, run, j);
+    accumulate(way, run, targets, j, way.load(run.u, j), speed * (in - out));
+    in = out;
+  }
+}
+
+void add(const cells& run, std::span<const row_target> targets) {
+  for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
+    using N = typename std::decay_t<decltype(way)>::number;
+    add_along(way, N::load(run.per_cell + k), run, targets);
+  });
+}
+
+/// A cell and its outflow seen in the direction of motion, and the fraction of its corrections that does no
+/// harm.
+template <class N>
+struct limited_cell {
+  N u, edge, correction, fraction;
+  bool harms;  ///< some component has a fraction below 1
+};
+
+template <class Walk, class N = typename Walk::number>
+HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j, N upstream, N correction_in) {
+  limited_cell<N> cell{way.load(run.u, j), outflow(way, run, j), N(0.0), N(1.0), false};
+  cell.correction = cell.edge - cell.u;
+  const limiter::bearing<N> of(upstream, cell.u, correction_in, cell.correction);
+  cell.harms = of.too_much();
+  if (cell.harms) cell.fraction = of.fraction();
+  return cell;
+}
+
+/// The flux from `donor` to `receiver`.
+template <class N>
+HWY_INLINE N limited_flux(const limited_cell<N>& donor, const limited_cell<N>& receiver) {
+  if (!donor.harms && !receiver.harms) return donor.edge;
+  const N fraction = select(donor.correction > N(0.0), donor.fraction, receiver.fraction);
+  return select(fraction < N(1.0), fma(fraction, donor.correction, donor.u), donor.edge);
+}
+
+template <class Walk, class N = typename Walk::number>
+HWY_INLINE void add_limited_along(const Walk& way, N speed, const cells& run,
+                                  std::span<const row_target> targets) {
+  const N first = way.load(run.u, -2);
+  const auto before = next_cell(way, run, -1, first, outflow(way, run, -2) - first);
+  auto here = next_cell(way, run, 0, before.u, before.correction);
+  N in = limited_flux(before, here);
+  for (int j = 0; j < run.count; ++j) {
+    const auto after = next_cell(way, run, j + 1, here.u, here.correction);
+    const N out = limited_flux(here, after);
+    accumulate(way, run, targets, j, here.u, speed * (in - out));
+    here = after;
+    in = out;
+  }
+}
+
+void add_limited(const cells& run, std::span<const row_target> targets) {
+  for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
+    using N = typename std::decay_t<decltype(way)>::number;
+    add_limited_along(way, N::load(run.per_cell + k), run, targets);
+  });
+}
+
+/// Of the last of two cells: what one more costs.
+double operations(bool limited) {
+  const auto of_cells = [limited](int count) {
+    cells run{};
+    run.count = count;
+    return counted::operations_of([&] {
+      if (limited) {
+        add_limited_along(counting_walk(), counted(0.0), run, {});
+      } else {
+        add_along(counting_walk(), counted(0.0), run, {});
+      }
+    });
+  };
+  return of_cells(2) - of_cells(1);
+}
+
+void add_weights(const double* u, int width, std::span<const row_target> targets) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    const N here = N::load(u + k);
+    for (const auto& to : targets) {
+      const N add = N(to.alpha) * here;
+      (to.fresh ? add : N::load(to.acc + k) + add).store(to.acc + k);
+    }
+  });
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace apsis {
+namespace {
+HWY_EXPORT(add);
+HWY_EXPORT(add_limited);
+HWY_EXPORT(add_weights);
+}  // namespace
+
+namespace upwind {
+
+double operations(bool limited) {
+  return HWY_NAMESPACE::operations(limited);
+}
+
+void add(const cells& run, std::span<const row_target> targets) {
+  HWY_DYNAMIC_DISPATCH(add)(run, targets);
+}
+
+void add_limited(const cells& run, std::span<const row_target> targets) {
+  HWY_DYNAMIC_DISPATCH(add_limited)(run, targets);
+}
+
+void add_weights(const double* u, int width, std::span<const row_target> targets) {
+  HWY_DYNAMIC_DISPATCH(add_weights)(u, width, targets);
+}
+
+}  // namespace upwind
+}  // namespace apsis
+#endif

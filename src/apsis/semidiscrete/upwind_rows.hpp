@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace apsis {
+
+/// What flows between the cells of a pencil: the work of transport on a run of cells, for the instruction set
+/// of this processor.
+namespace upwind {
+
+/// Cells 0 … count−1 of a pencil, some components of each.
+struct cells {
+  const double* const* u;  ///< u[i] is the row of cell i, two cells beyond either end included
+  const double *left,
+      *right;            ///< edge values of cell 0; only that of the outflow is read, so they may be the same
+  std::ptrdiff_t pitch;  ///< from the edges of a cell to those of the next
+  int count, width;
+  const double *forward, *per_cell;  ///< of every component: 1 if it moves forward, else 0; |v|/Δx
+  const double* source;              ///< S(u) of cell 0, at the same pitch; null if there is none
+};
+
+/// acc ← (fresh ? 0 : acc) + α u + β T.
+struct row_target {
+  double* acc;           ///< the row of cell 0
+  std::ptrdiff_t pitch;  ///< to that of the next cell
+  double alpha, beta;
+  bool fresh;
+};
+
+/// T = |v|/Δx (inflow − outflow) + source into all targets. Edges of cells −1 … count are read.
+void add(const cells& run, std::span<const row_target> targets);
+
+/// The same with each flux limited to what its donor and its receiver can bear (limiter::harmless_fraction):
+/// a positive correction of first-order upwind harms the donor, a negative one the receiver. Edges of cells
+/// −2 … count+1 are read.
+void add_limited(const cells& run, std::span<const row_target> targets);
+
+/// Operations of add and add_limited for one number: those of T, and those of each target.
+double operations(bool limited);
+inline constexpr double operations_of_target = 4.0;
+
+/// One row, for targets that need u alone: β = 0 everywhere.
+void add_weights(const double* u, int width, std::span<const row_target> targets);
+
+}  // namespace upwind
+}  // namespace apsis

@@ -1,0 +1,193 @@
+#if defined(APSIS_SPACE_WENO5_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef APSIS_SPACE_WENO5_INL_HPP
+#undef APSIS_SPACE_WENO5_INL_HPP
+#else
+#define APSIS_SPACE_WENO5_INL_HPP
+#endif
+
+#include <apsis/core/counted.hpp>
+#include <apsis/space/walk-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE::weno5 {
+
+/// Fifth-order WENO edge values of a cell from the cells i−2 … i+2. Three third-order candidates at each edge
+/// are weighted by (linear weight) × g_k, where g_k depends on the indicators of smoothness β_k (Jiang & Shu,
+/// JCP 126, 1996). Right edge: linear weights (1, 6, 3)/10; left edge by mirror symmetry. Everything is
+/// written with first and second differences, which neighbouring cells share, and the edge as the cell's own
+/// value and a deviation.
+
+/// u_{i−1} − 2u_i + u_{i+1}, and 13/3 of its square.
+template <class N>
+struct bend {
+  N second, square;
+  HWY_INLINE bend(N before, N after) : second(after - before), square(N(13.0 / 3.0) * second * second) {}
+};
+
+/// What the formulas need of the cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} −
+/// u_i, and the second differences at i−1, i and i+1.
+template <class N>
+class window {
+ public:
+  HWY_INLINE window(N a, N b, N c, N d, N e)
+      : here(c),
+        before(c - b),
+        after(d - c),
+        bend0(b - a, before),
+        bend1(before, after),
+        bend2(after, e - d),
+        next_(d),
+        last_(e) {}
+
+  /// One cell on; `value` is u_{i+2} of the new cell i.
+  HWY_INLINE void advance(N value) {
+    here = next_;
+    next_ = last_;
+    before = after;
+    after = next_ - here;
+    bend0 = bend1;
+    bend1 = bend2;
+    bend2 = bend<N>(after, value - next_);
+    last_ = value;
+  }
+
+  N here, before, after;
+  bend<N> bend0, bend1, bend2;
+
+ private:
+  N next_, last_;
+};
+
+/// 4β_k.
+template <class N>
+struct smoothness {
+  N s0, s1, s2;
+};
+
+template <class N>
+HWY_INLINE smoothness<N> indicators(const window<N>& u) {
+  const N two(2.0), y0 = fma(two, u.before, u.bend0.second), y1 = u.before + u.after,
+                    y2 = negative_fma(two, u.after, u.bend2.second);
+  return {fma(y0, y0, u.bend0.square), fma(y1, y1, u.bend1.square), fma(y2, y2, u.bend2.square)};
+}
+
+/// 4(β_k + δ) times the power of two that brings the largest of them to about 1, and kept above 1e-40:
+/// products of six of these neither overflow nor underflow, whatever the size of the data. Where the data are
+/// so small that only δ is left, all three are equal.
+template <class N>
+struct scaled_smoothness {
+  N y0, y1, y2, scale;
+};
+
+template <class N>
+HWY_INLINE scaled_smoothness<N> scale(const smoothness<N>& s, N delta) {
+  const N by = inverse_power_of_two(maximum(maximum(s.s1, s.s2), s.s0) + delta),
+          least = fma(delta, by, N(1e-40));
+  return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least), by};
+}
+
+/// g_k > 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over one common denominator.
+template <class N>
+struct factors {
+  N g0, g1, g2;
+};
+
+/// Twice the candidates minus u_i.
+template <class N>
+struct deviations {
+  N r0, r1, r2;
+};
+
+template <class N>
+HWY_INLINE deviations<N> right_deviations(const window<N>& u) {
+  const N sixth(-1.0 / 3.0);
+  return {fma(N(2.0 / 3.0), u.bend0.second, u.before), fma(sixth, u.bend1.second, u.after),
+          fma(sixth, u.bend2.second, u.after)};
+}
+
+/// Of the left edge, in the order of the right edge of the mirrored cells; with the opposite sign.
+template <class N>
+HWY_INLINE deviations<N> left_deviations(const window<N>& u) {
+  const N sixth(1.0 / 3.0);
+  return {fma(N(-2.0 / 3.0), u.bend2.second, u.after), fma(sixth, u.bend1.second, u.before),
+          fma(sixth, u.bend0.second, u.before)};
+}
+
+template <class N>
+HWY_INLINE N right_edge(const window<N>& u, const factors<N>& g) {
+  const auto [r0, r1, r2] = right_deviations(u);
+  const N middle = 6.0 * g.g1, far = 3.0 * g.g2, sum = g.g0 + middle + far;
+  return u.here + fma(far, r2, fma(middle, r1, g.g0 * r0)) / (sum + sum);
+}
+
+/// Both edges with one division.
+template <class N>
+HWY_INLINE void both_edges(const window<N>& u, const factors<N>& g, N& left, N& right) {
+  const auto [r0, r1, r2] = right_deviations(u);
+  const auto [l0, l1, l2] = left_deviations(u);
+  const N middle = 6.0 * g.g1, right_far = 3.0 * g.g2, left_far = 3.0 * g.g0;
+  const N right_sum = g.g0 + middle + right_far, left_sum = left_far + middle + g.g2;
+  const N half = 0.5 / (right_sum * left_sum);
+  right = fma(fma(right_far, r2, fma(middle, r1, g.g0 * r0)), left_sum * half, u.here);
+  left = negative_fma(fma(left_far, l2, fma(middle, l1, g.g2 * l0)), right_sum * half, u.here);
+}
+
+/// Calls body(window, j) for cells 0 … count−1 of the walk.
+template <class Walk, class Body>
+HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Body& body) {
+  window<typename Walk::number> u(way.load(rows, -2), way.load(rows, -1), way.load(rows, 0),
+                                  way.load(rows, 1), way.load(rows, 2));
+  for (int j = 0;;) {
+    body(u, j);
+    if (++j >= count) break;
+    u.advance(way.load(rows, j + 2));
+  }
+}
+
+/// Applies `Weights::factors(window) → factors` along a pencil; see reconstruction::edges for the arguments.
+template <class Weights>
+HWY_INLINE void sweep_edges(const double* const* rows, int count, int width, double* left, double* right) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using D = decltype(lanes);
+    using N = pack<D>;
+    const walk<course::forward, D> way(count, k, nullptr);
+    along(way, rows, count, [&](const window<N>& u, int j) APSIS_PACKED {
+      N l(0.0), r(0.0);
+      both_edges(u, Weights::factors(u), l, r);
+      way.store(l, left, width, j);
+      way.store(r, right, width, j);
+    });
+  });
+}
+
+/// The same for reconstruction::outflow_edges.
+template <class Weights>
+HWY_INLINE void sweep_outflow(const double* const* rows, int count, int width, const double* forward,
+                              double* edge) {
+  for_walks(forward, count, width, [&](const auto& way, int) APSIS_PACKED {
+    along(way, rows, count, [&](const auto& u, int j) APSIS_PACKED {
+      way.store(right_edge(u, Weights::factors(u)), edge, width, j);
+    });
+  });
+}
+
+/// Operations for one number of a long pencil.
+template <class Weights>
+double operations(bool both) {
+  const counted x(0.0);
+  window<counted> u(x, x, x, x, x);
+  return counted::operations_of([&] {
+    counted left(0.0), right(0.0);
+    u.advance(x);
+    if (both) {
+      both_edges(u, Weights::factors(u), left, right);
+    } else {
+      right_edge(u, Weights::factors(u));
+    }
+  });
+}
+
+}  // namespace apsis::HWY_NAMESPACE::weno5
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,108 @@
+// Sums and Gaussians over velocity points, in every instruction set, against long double.
+#include <apsis/model/velocity_rows.hpp>
+
+#include <apsis/model/maxwellian.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <support/instruction_sets.hpp>
+
+namespace {
+
+/// Distance in units of the last place of the larger one.
+double relative(double value, long double exact) {
+  return static_cast<double>(std::abs((static_cast<long double>(value) - exact) / exact));
+}
+
+}  // namespace
+
+TEST(velocity_rows, sums_are_those_of_long_double) {
+  for_each_instruction_set([] {
+    for (const int n : {1, 4, 7, 8, 23, 150, 1000}) {
+      std::vector<double> f, v, half;
+      long double mass = 0, momentum = 0, energy = 0, entropy = 0, size = 0;
+      for (int j = 0; j < n; ++j) {
+        v.push_back(30.0 * (j + 0.5) / n - 15.0);
+        half.push_back(0.5 * v.back() * v.back());
+        f.push_back(j % 9 == 0 ? 0.0 : (2.0 + std::sin(j)) * std::exp(-half.back()));
+        const long double value = f.back();
+        mass += value;
+        momentum += v.back() * value;
+        energy += half.back() * value;
+        size += std::abs(v.back()) * value;
+        if (value > 0) entropy += value * std::log(value);
+      }
+      const auto sums = apsis::velocity_rows::moments(f.data(), v.data(), half.data(), n);
+      // Partial sums of nonnegative terms: n/8 roundings at most.
+      const double rounding = 1e-16 * (8.0 + n / 4.0);
+      EXPECT_NEAR(sums.mass, static_cast<double>(mass), rounding * static_cast<double>(mass)) << n;
+      EXPECT_NEAR(sums.momentum, static_cast<double>(momentum), rounding * static_cast<double>(size)) << n;
+      EXPECT_NEAR(sums.energy, static_cast<double>(energy), rounding * static_cast<double>(energy)) << n;
+      // The logarithm is good to a few units in the last place.
+      EXPECT_NEAR(apsis::velocity_rows::entropy(f.data(), n), static_cast<double>(entropy),
+                  1e-14 * static_cast<double>(mass) * 100.0)
+          << n;
+    }
+  });
+}
+
+TEST(velocity_rows, a_gaussian_is_one_wherever_its_centre_and_width_are) {
+  for_each_instruction_set([] {
+    for (const int n : {4, 13, 150, 151})
+      for (const double T : {0.003, 0.05, 1.0, 30.0})
+        for (const double u : {0.0, 0.3, -14.9, 15.0, -40.0, 200.0}) {
+          const apsis::velocity_rows::points line{n, 30.0 / n};
+          std::vector<double> m(static_cast<std::size_t>(n) + 1, -7.0);
+          apsis::velocity_rows::gaussian(line, 2.0, u, T, m.data());
+          EXPECT_EQ(m.back(), -7.0) << "nothing behind the row is touched";
+          const auto exact = [&](int j) {
+            const long double x = 0.5L * line.spacing * (2.0L * j + 1 - n) - u;
+            return 2 * std::exp(-x * x / (2 * T));
+          };
+          long double largest = 0;
+          for (int j = 0; j < n; ++j) largest = std::max(largest, exact(j));
+          for (int j = 0; j < n; ++j) {
+            const double value = m[static_cast<std::size_t>(j)];
+            if (exact(j) < 1e-299L) {
+              EXPECT_LT(value, 2e-299) << u << " " << T;
+              EXPECT_GE(value, 0.0);
+            } else {
+              // The exponential of a rounded argument x is good to some 1e-16 (1 + x), x < 700.
+              EXPECT_LT(relative(value, exact(j)), 1e-12) << n << " " << u << " " << T << " " << j;
+              // The distance v − u has the rounding of v and u, which the exponent multiplies by x/T.
+              const double v = 0.5 * line.spacing * (2.0 * j + 1 - n);
+              const double moved = 3e-16 * (std::abs(v) + std::abs(u)) * std::abs(v - u) / T;
+              const double exponent = static_cast<double>(-std::log(largest / 2));
+              EXPECT_NEAR(value, static_cast<double>(exact(j)),
+                          (6e-15 + 4e-16 * exponent) * static_cast<double>(largest) +
+                              moved * static_cast<double>(exact(j)))
+                  << n << " " << u << " " << T << " " << j;
+            }
+          }
+        }
+  });
+}
+
+TEST(velocity_rows, where_the_moments_of_the_formula_are_called_exact_they_are) {
+  const apsis::velocity_grid grid(1, 150, 15.0);
+  int exact = 0, other = 0;
+  std::vector<double> m(150);
+  for (double T = 0.005; T < 30.0; T *= 1.3)
+    for (const double u : {0.0, 1.0, -5.0, 11.0}) {
+      const apsis::fluid_state state{1.0, {u, 0.0, 0.0}, T};
+      const double omega[3] = {1.0, u, 0.5 * (u * u + T)};
+      if (!apsis::formula_has_exact_moments(grid, state)) {
+        ++other;
+        continue;
+      }
+      ++exact;
+      apsis::formula_maxwellian(grid, state, m.data());
+      // Rounding of a sum of 150 terms, relative to (ρ, ρ√T, ρT).
+      EXPECT_LT(apsis::moment_defect(grid, m.data(), omega, state), 4e-14) << u << " " << T;
+    }
+  EXPECT_GT(exact, 20);
+  EXPECT_GT(other, 20);
+}

@@ -1,0 +1,108 @@
+// What a step takes from the heap: its buffers at the first step, as the schedule says, and then nothing.
+#include "bgk_case.hpp"
+
+#include <apsis/core/parallel.hpp>
+#include <apsis/integrate/stepper.hpp>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::atomic<long> allocations = 0, bytes_of_fields = 0;
+std::atomic<std::size_t> size_of_field = ~std::size_t{0};
+
+void* counted_allocation(std::size_t size, std::size_t alignment) {
+  ++allocations;
+  if (size >= size_of_field) bytes_of_fields += static_cast<long>(size);
+  void* p = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
+}
+
+}  // namespace
+
+// The whole test program allocates through these. The compiler sees half of a pair where it inlines the
+// other.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+#endif
+void* operator new(std::size_t size) {
+  return counted_allocation(size, alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted_allocation(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+
+namespace {
+
+enum class unknowns { averages, points };
+
+apsis::semidiscrete_problem problem_of(const apsis::relaxation_model& m, const apsis::grid& mesh,
+                                       unknowns what) {
+  const auto cells = static_cast<std::size_t>(mesh.size());
+  if (what == unknowns::points)
+    return {m, mesh, scheme("weno5-z", apsis::limiter_kind::fluxes),
+            apsis::make_pointwise_collision(m, std::vector<double>(cells, 1e-3))};
+  const auto how = scheme("weno5-z", apsis::limiter_kind::edges);
+  return {m, mesh, how,
+          apsis::make_cell_average_collision(m, mesh, how, std::vector<double>(3 * cells, 1e-3))};
+}
+
+struct heap_use {
+  long fields, in_later_steps;
+};
+
+heap_use measure(const std::string& method, unknowns what) {
+  constexpr int cells = 200;
+  const auto m = small_bgk();
+  const apsis::grid mesh = apsis::grid::line(cells, 0.0, 2.0);
+  auto problem = problem_of(*m, mesh, what);
+  apsis::stepper stepper(apsis::find_method(method), problem);
+  apsis::field u = sample(mesh, m->components(), false, [](double x, int k) {
+    return (1.5 + std::sin(3.0 * x)) * std::exp(-0.1 * (k - 20.0) * (k - 20.0));
+  });
+  const double dt = stepper.r() * problem.forward_euler_step(0.0, u);
+  size_of_field = static_cast<std::size_t>(cells) * static_cast<std::size_t>(u.stride()) * sizeof(double);
+  bytes_of_fields = 0;
+  stepper.step(0.0, dt, u);
+  const long fields = bytes_of_fields / static_cast<long>(size_of_field.load());
+  EXPECT_EQ(bytes_of_fields % static_cast<long>(size_of_field.load()), 0);
+  size_of_field = ~std::size_t{0};
+  stepper.step(0.0, dt, u);
+  const long before = allocations;
+  for (int step = 0; step < 5; ++step) stepper.step(0.0, dt, u);
+  return {fields, allocations - before};
+}
+
+}  // namespace
+
+TEST(allocations, a_step_takes_the_buffers_of_its_schedule_once_and_then_nothing) {
+  for (const int threads : {1, 2}) {
+    apsis::set_threads(threads);
+    for (const char* method :
+         {"md-imex-3-2", "md-imex-6-3", "md-imex-8-3-mixed", "ssprk-3-3", "hsz-ars-4-2"}) {
+      const apsis::schedule plan(apsis::find_method(method).coefficients<double>());
+      const auto points = measure(method, unknowns::points), averages = measure(method, unknowns::averages);
+      EXPECT_EQ(points.fields, plan.buffers() - 1) << method << ", u^n itself is the user's";
+      // Cell averages collide with the old values of their neighbours, beside which the new ones are made.
+      EXPECT_EQ(averages.fields, plan.buffers() - 1 + (plan.implicit_solves() > 0 ? 1 : 0)) << method;
+      EXPECT_EQ(points.in_later_steps, 0) << method << ", " << threads << " threads";
+      EXPECT_EQ(averages.in_later_steps, 0) << method << ", " << threads << " threads";
+    }
+  }
+  apsis::set_threads(1);
+}

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+/// Runs body() with the kernels of every instruction set that was built and that this processor has, the plain one
+/// among them; at the end the best is chosen again.
+template <class Body>
+void for_each_instruction_set(const Body& body) {
+  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    body();
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}

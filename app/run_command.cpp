@@ -1,10 +1,12 @@
 #include "commands.hpp"
+#include "run_profile.hpp"
 #include "run_session.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/output/case_json.hpp>
 
 #include <memory>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -14,8 +16,18 @@ namespace {
 int run(const run_options& options) {
   run_session session(options);
   const run_end end = session.run();
-  print(options.json ? json_text(to_json(session.computed(), session.records())) + "\n"
-                     : summary_text(session.computed(), end));
+  const simulation& computed = session.computed();
+  std::optional<run_profile> profile;
+  if (options.profile)
+    profile = finish_profile(computed.summary().wall_s, static_cast<std::size_t>(computed.cells()) *
+                                                            static_cast<std::size_t>(computed.components()));
+  if (options.json) {
+    auto out = to_json(computed, session.records());
+    if (profile) out["profile"] = to_json(*profile);
+    print(json_text(out) + "\n");
+  } else {
+    print(summary_text(computed, end) + (profile ? profile_text(*profile) : ""));
+  }
   return static_cast<int>(end == run_end::complete ? exit_code::success : exit_code::interrupted);
 }
 
@@ -36,6 +48,8 @@ void add_run(CLI::App& program, action& chosen) {
       ->add_option("--threads", options->threads,
                    "threads to use, 0 for all cores; results do not depend on it")
       ->check(CLI::Range(0, 1024));
+  command->add_flag("--profile", options->profile,
+                    "tell how long each kernel took, and how near it came to the ceilings of this machine");
   command->add_option("--restart", options->restart, "go on from a checkpoint.h5 of the same case");
   command
       ->add_option("--wall", options->wall,

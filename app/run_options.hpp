@@ -13,7 +13,7 @@ struct run_options {
   std::optional<std::string> out, restart;
   std::optional<double> wall;  ///< seconds
   int threads = 1;
-  bool json = false;
+  bool json = false, profile = false;
 };
 
 }  // namespace apsis::app

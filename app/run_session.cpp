@@ -5,6 +5,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/parallel.hpp>
+#include <apsis/core/profile.hpp>
 #include <apsis/output/case_json.hpp>
 
 #include <cmath>
@@ -80,6 +81,7 @@ void run_session::resume(const std::string& path) {
 }
 
 run_end run_session::run() {
+  if (options_.profile) profile::start();
   try {
     loop();
   } catch (const numerical_error& failure) {

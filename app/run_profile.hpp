@@ -1,0 +1,26 @@
+#pragma once
+
+#include <apsis/core/profile.hpp>
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace apsis::app {
+
+/// What `apsis run --profile` tells of: the kernels of a run against ceilings of this machine.
+struct run_profile {
+  std::vector<work_done> kernels;
+  double seconds;               ///< of the run, times the number of threads
+  double multiply_adds, triad;  ///< ceilings of one core: multiply–adds and bytes per second
+};
+
+/// Stops profiling and measures the ceilings, the triad on arrays of `numbers` doubles.
+run_profile finish_profile(double wall_seconds, std::size_t numbers);
+
+/// A table: time, and operations and bytes as fractions of the ceilings.
+std::string profile_text(const run_profile& profile);
+nlohmann::ordered_json to_json(const run_profile& profile);
+
+}  // namespace apsis::app

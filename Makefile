@@ -63,11 +63,11 @@ tidy: ## clang-tidy over the library and the program
 	cmake --build build/clang --target app/apsis
 	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app)/.*'
 
-bench: program ## micro benchmarks, as fractions of a measured ceiling
+bench: ## speed, measured: every table of docs/speed.md, in results/bench/speed.json (an hour, on an idle machine)
 	@scripts/install-packages.sh test
-	cmake --preset release -DAPSIS_BENCH=ON >/dev/null
-	cmake --build build/release --target apsis_bench
-	build/release/bench/apsis_bench
+	cmake --preset release -DAPSIS_BENCH=ON -DAPSIS_PCH=ON >/dev/null
+	cmake --build build/release --target apsis_measure
+	build/release/bench/apsis_measure --out results/bench/speed.json
 
 format: ## clang-format over all sources
 	clang-format-19 -i $(FORMATTED)

@@ -1,0 +1,101 @@
+// apsis_measure: measures what docs/speed.md states, prints the tables and adds them to a file.
+#include "table.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace {
+
+using apsis::bench::entry;
+using nlohmann::json;
+
+json read_results(const std::string& path) {
+  std::ifstream file(path);
+  return file ? json::parse(file) : json::object();
+}
+
+/// Under a temporary name first, so that an interrupt leaves the old results.
+void write_results(const std::string& path, const json& results) {
+  const std::filesystem::path target(path), beside(path + ".part");
+  if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path());
+  std::ofstream(beside) << results.dump(1) << "\n";
+  std::filesystem::rename(beside, target);
+}
+
+std::vector<entry> chosen(const std::vector<std::string>& names) {
+  const auto all = apsis::bench::entries();
+  if (names.empty()) return all;
+  std::vector<entry> some;
+  std::vector<std::string> known;
+  for (const auto& one : all) known.push_back(one.name);
+  for (const auto& name : names) {
+    bool found = false;
+    for (const auto& one : all)
+      if (one.name == name) {
+        some.push_back(one);
+        found = true;
+      }
+    if (!found)
+      throw apsis::input_error("there is no measurement '" + name + "' " + apsis::suggest(name, known));
+  }
+  return some;
+}
+
+int measure(const std::vector<std::string>& names, const std::string& path,
+            const apsis::bench::settings& how) {
+  for (const auto& one : chosen(names)) {
+    fmt::print(stderr, "measuring {}: {}\n", one.name, one.description);
+    json result;
+    const auto table = one.measure(how);
+    result = to_json(table);
+    result["machine"] = apsis::bench::machine();
+    result["repeats"] = how.repeats;
+    fmt::print("{}\n", markdown(table));
+    std::fflush(stdout);
+    if (path.empty()) continue;
+    json results = read_results(path);
+    results[one.name] = result;
+    write_results(path, results);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program{"Measures the speed of Apsis as ratios and as fractions of ceilings of the same run."};
+  std::vector<std::string> names;
+  std::string path;
+  apsis::bench::settings how;
+  bool list = false;
+  program.add_option("NAME", names, "measurements; all of them where none is named");
+  program.add_option("--out", path, "JSON file that the results are added to");
+  program.add_option("--repeats", how.repeats, "turns of which the median is taken")
+      ->check(CLI::Range(1, 1000));
+  program.add_flag("--quick", how.quick, "small problems: shows that it works, measures nothing");
+  program.add_flag("--list", list, "what can be measured");
+  CLI11_PARSE(program, argc, argv);
+  try {
+    if (list) {
+      for (const auto& one : apsis::bench::entries()) fmt::print("{:<14} {}\n", one.name, one.description);
+      return 0;
+    }
+    return measure(names, path, how);
+  } catch (const apsis::input_error& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,41 @@
+#include "clock.hpp"
+#include "mixed_step.hpp"
+
+#include <algorithm>
+
+namespace apsis::bench {
+
+mixed_step::mixed_step(const std::string& formulation, const std::string& method, int cells)
+    : setup_(load_case("paper/bgk-mixed", {"space.formulation=" + formulation, "time.method=" + method,
+                                           "space.cells=" + std::to_string(cells)})),
+      problem_(setup_.make_problem()),
+      stepper_(setup_.integrator(), *problem_),
+      u_(setup_.initial_state()),
+      dt_(0.9 * stepper_.r() * problem_->forward_euler_step(0.0, u_)) {
+  take(1);  // buffers exist from here on
+}
+
+work mixed_step::count_work() {
+  profile::start();
+  take(1);
+  profile::stop();
+  work sum;
+  for (const auto& done : profile::read()) {
+    sum.operations += done.operations;
+    sum.bytes += done.bytes;
+  }
+  return sum;
+}
+
+double mixed_step::point_stages() const {
+  return static_cast<double>(u_.cells()) * u_.components() *
+         static_cast<double>(setup_.integrator().stages());
+}
+
+int mixed_step::steps_in(double seconds) {
+  const double start = wall_seconds();
+  take(1);
+  return std::max(1, static_cast<int>(seconds / (wall_seconds() - start)));
+}
+
+}  // namespace apsis::bench

@@ -1,0 +1,98 @@
+#include "../clock.hpp"
+#include "../mixed_step.hpp"
+#include "../table.hpp"
+
+#include <apsis/core/ceilings.hpp>
+#include <apsis/core/parallel.hpp>
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::bench {
+namespace {
+
+/// Rates of all threads together, of one turn.
+struct turn {
+  double multiply_adds, triad, steps;
+};
+
+/// Seconds of the wall until `threads` threads have each done `job`, best of a few: a ceiling.
+double best_together(const job& what) {
+  double best = 1e300;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const double start = wall_seconds();
+    parallel_for(threads(), [&](int) { what(); });
+    best = std::min(best, wall_seconds() - start);
+  }
+  return best;
+}
+
+turn measure_turn(mixed_step& run, int steps) {
+  constexpr double count = 1e7;
+  turn now{};
+  now.multiply_adds = threads() * count / best_together([] { seconds_of_multiply_adds(count); });
+  // Every thread has its part of the field, and its own loops over it.
+  const std::size_t part = run.numbers() / static_cast<std::size_t>(threads());
+  std::vector<double> rates(static_cast<std::size_t>(threads()));
+  parallel_for(threads(), [&](int k) { rates[static_cast<std::size_t>(k)] = triad_bytes_per_second(part); });
+  for (const double rate : rates) now.triad += rate;
+  const double start = wall_seconds();
+  run.take(steps);
+  now.steps = steps / (wall_seconds() - start);
+  return now;
+}
+
+std::vector<nlohmann::json> row_of(const std::string& formulation, const std::string& method, int cells,
+                                   const settings& how) {
+  mixed_step run(formulation, method, cells);
+  const auto each = run.count_work();
+  const int steps = run.steps_in(how.quick ? 0.01 : 0.2);
+  std::vector<double> speed, of_operations, of_bytes, binding;
+  for (int k = 0; k < how.repeats; ++k) {
+    const turn now = measure_turn(run, steps);
+    speed.push_back(now.steps * run.point_stages());
+    of_operations.push_back(now.steps * each.operations / (2.0 * now.multiply_adds));
+    of_bytes.push_back(now.steps * each.bytes / now.triad);
+    binding.push_back(std::max(of_operations.back(), of_bytes.back()));
+  }
+  const auto per = [&](double x) { return x / run.point_stages(); };
+  return {formulation,
+          method,
+          threads(),
+          median(speed),
+          fmt::format("{:.1f}", per(each.operations)),
+          fmt::format("{:.1f}", per(each.bytes)),
+          fmt::format("{:.0f} %", 100.0 * median(of_operations)),
+          fmt::format("{:.0f} %", 100.0 * median(of_bytes)),
+          fmt::format("{:.0f} %", 100.0 * median(binding))};
+}
+
+table measure(const settings& how) {
+  const int cells = how.quick ? 50 : 1000;
+  table result;
+  result.title = fmt::format("Throughput, N = {} × 150 velocities, positivity limiter", cells);
+  result.note =
+      "Point·stages per second of whole steps. Operations are floating-point operations of the formulas (a "
+      "multiply–add "
+      "is two, a division one), bytes those of fields that no cache could save; each per point·stage. "
+      "Ceilings: "
+      "multiply–adds in registers, and the triad on arrays as long as the field, on as many threads, in the "
+      "same turn.";
+  result.columns = {"formulation", "method",           "threads",  "point·stages/s",        "operations",
+                    "bytes",       "of multiply–adds", "of triad", "of the binding ceiling"};
+  for (const int n : {1, 2})
+    for (const char* formulation : {"finite-difference", "finite-volume"})
+      for (const char* method : {"md-imex-3-2", "md-imex-6-3"}) {
+        set_threads(n);
+        result.rows.push_back(row_of(formulation, method, cells, how));
+      }
+  set_threads(1);
+  return result;
+}
+
+const registered here({"throughput", "steps against the ceilings of the machine", measure});
+
+}  // namespace
+}  // namespace apsis::bench

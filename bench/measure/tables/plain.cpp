@@ -1,0 +1,143 @@
+// How much faster the library is than its formulas written down in plain loops.
+#include "measure/clock.hpp"
+#include "measure/table.hpp"
+#include "plain/bgk.hpp"
+
+#include <apsis/core/expression.hpp>
+#include <apsis/integrate/stepper.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+#include <apsis/space/quartic.hpp>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::bench {
+namespace {
+
+const char* const test = "paper/bgk-mixed";
+
+case_config case_with(const std::string& name) {
+  return load_case(test, {"time.method=" + name, "time.end=1e6"});
+}
+
+plain::method plain_method(const method& m) {
+  const auto form = m.coefficients<double>();
+  const std::size_t s = form.stages();
+  plain::method same{
+      static_cast<int>(s), std::vector<double>(s * s), std::vector<double>(s * s), {}, form.ddot, form.r};
+  for (std::size_t i = 0; i < s; ++i) {
+    same.d.push_back(form.D(i, i));
+    for (std::size_t j = 0; j < s; ++j) {
+      same.P[i * s + j] = form.P(i, j);
+      same.W[i * s + j] = form.W(i, j);
+    }
+  }
+  return same;
+}
+
+plain::bgk::mesh plain_mesh(const case_config& config, const run_setup& setup) {
+  const auto v = setup.equation->speeds(0);
+  const auto& [from, to] = config.space.domain;
+  plain::bgk::mesh mesh{config.space.cells, (to - from) / config.space.cells, {v.begin(), v.end()}, {}};
+  const expression formula(config.model.epsilon);
+  for (const double centre : setup.centres())
+    for (const double xi : gauss3::xi) mesh.epsilon.push_back(formula.evaluate(centre + xi * mesh.dx));
+  return mesh;
+}
+
+std::vector<double> numbers_of(const field& u) {
+  std::vector<double> numbers;
+  for (int cell = 0; cell < u.cells(); ++cell)
+    numbers.insert(numbers.end(), u.row(cell), u.row(cell) + u.components());
+  return numbers;
+}
+
+double relative_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double difference = 0.0, size = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    difference += (a[k] - b[k]) * (a[k] - b[k]);
+    size += b[k] * b[k];
+  }
+  return std::sqrt(difference / size);
+}
+
+/// The same run three times.
+struct contest {
+  explicit contest(const std::string& name)
+      : config(case_with(name)),
+        setup(config),
+        problem(setup.make_problem()),
+        march(setup.integrator(), *problem),
+        by_library(setup.initial_state()),
+        by_formulas(plain_mesh(config, setup), plain_method(setup.integrator())),
+        f(numbers_of(by_library)),
+        with_checks(config),
+        dt(with_checks.dt()) {}
+
+  void library(int steps) {
+    for (int n = 0; n < steps; ++n, t += dt) march.step(t, dt, by_library);
+  }
+  void formulas(int steps) {
+    for (int n = 0; n < steps; ++n) by_formulas.step(dt, f);
+  }
+  void simulated(int steps) {
+    for (int n = 0; n < steps; ++n) with_checks.advance();
+  }
+
+  case_config config;
+  run_setup setup;
+  std::unique_ptr<semidiscrete_problem> problem;
+  stepper<semidiscrete_problem> march;
+  field by_library;
+  plain::bgk by_formulas;
+  std::vector<double> f;
+  simulation with_checks;
+  double dt, t = 0.0;
+};
+
+/// Both compute the same, or the comparison means nothing.
+double require_agreement(contest& both, int steps) {
+  both.library(steps);
+  both.formulas(steps);
+  const double difference = relative_difference(both.f, numbers_of(both.by_library));
+  if (!(difference < 1e-10))
+    throw std::runtime_error(
+        fmt::format("the plain code differs from the library by {:.2g} after {} steps", difference, steps));
+  return difference;
+}
+
+table measure(const settings& how) {
+  table result;
+  result.title = "Library and plain loops, mixed-regime BGK";
+  result.note =
+      "Milliseconds of one thread for a step of paper/bgk-mixed (40 cells, 150 velocities, finite volumes): "
+      "formulas "
+      "written down in loops (bench/plain), the library's step alone, and simulation::advance(), which also "
+      "checks every "
+      "step. The ratios are medians over the turns. `difference`: relative, in the 2-norm over f, of both "
+      "results after a few steps.";
+  result.columns = {"method",        "plain (ms)",    "library (ms)", "advance (ms)",
+                    "plain/library", "plain/advance", "difference"};
+  const int steps = how.quick ? 2 : 40;
+  for (const std::string name : {"md-imex-3-2", "md-imex-6-3"}) {
+    contest all(name);
+    const double difference = require_agreement(all, how.quick ? 5 : 20);
+    const auto seconds =
+        in_turns({[&] { all.formulas(steps); }, [&] { all.library(steps); }, [&] { all.simulated(steps); }},
+                 how.repeats);
+    const auto milliseconds = [&](std::size_t job) { return 1e3 * median(seconds[job]) / steps; };
+    result.rows.push_back({name, milliseconds(0), milliseconds(1), milliseconds(2),
+                           median_ratio(seconds, 0, 1), median_ratio(seconds, 0, 2), difference});
+  }
+  return result;
+}
+
+const registered here({"plain", "library against its formulas in plain loops", measure});
+
+}  // namespace
+}  // namespace apsis::bench

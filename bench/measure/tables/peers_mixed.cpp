@@ -1,0 +1,168 @@
+// Work and precision on the mixed-regime problem: Apsis, SUNDIALS and an explicit method, with the same
+// kernels.
+#include "measure/table.hpp"
+#include "peers/mixed.hpp"
+#include "peers/sundials_mixed.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::bench {
+namespace {
+
+using namespace peers;
+using integrator = sundials_options::integrator;
+
+/// A run that takes as long is hopeless: the best ones need a fiftieth.
+double patience = 10.0;
+
+void add_ours(contest& all, mixed_regime& what, const std::string& name, const std::vector<double>& factors) {
+  const method& m = find_method(name);
+  for (const double factor : factors)
+    for (const bool graded : {false, true}) {
+      const long steps = std::lround(static_cast<double>(what.positive_steps(m)) / factor);
+      all.add({name, fmt::format("dt = {:g} r dt_FE{}", factor, graded ? ", graded start" : ""), true,
+               [&what, &m, steps, graded] { return what.run(m, steps, graded, patience); }});
+    }
+}
+
+/// Every pair of tolerances.
+struct ladder {
+  std::vector<double> rtol, atol_by_rtol;
+};
+
+void add_sundials(contest& all, mixed_regime& what, const std::string& name, sundials_options how,
+                  const std::vector<double>& nonlinear, const ladder& tolerances) {
+  how.seconds_allowed = patience;
+  for (const double coefficient : nonlinear)
+    for (const double share : tolerances.atol_by_rtol)
+      for (const double rtol : tolerances.rtol) {
+        how.nonlinear = coefficient;
+        how.rtol = rtol;
+        how.atol = share * rtol;
+        const auto test =
+            coefficient > 0.0 ? fmt::format(", nonlinear coefficient {:g}", coefficient) : std::string();
+        all.add({name, fmt::format("rtol {:g}, atol {:g}{}", how.rtol, how.atol, test), false,
+                 [&what, how] { return run_sundials(what, how); }});
+      }
+}
+
+sundials_options options(integrator which, int order, linear_solver linear, bool tuned,
+                         bool constrained = false) {
+  sundials_options how;
+  how.which = which;
+  how.order = order;
+  how.linear = linear;
+  how.tuned = tuned;
+  how.constrained = constrained;
+  return how;
+}
+
+void add_arkode(contest& all, mixed_regime& what, const ladder& fine, const ladder& few) {
+  for (const int order : {3, 4}) {
+    add_sundials(all, what, fmt::format("ARKODE {}, defaults", order),
+                 options(integrator::arkode, order, linear_solver::spgmr, false), {0.0}, {few.rtol, {1e-3}});
+    add_sundials(all, what, fmt::format("ARKODE {}, tuned, GMRES", order),
+                 options(integrator::arkode, order, linear_solver::preconditioned, true), {0.1}, few);
+    add_sundials(all, what, fmt::format("ARKODE {}, tuned", order),
+                 options(integrator::arkode, order, linear_solver::projection_only, true), {0.1, 0.01}, fine);
+    add_sundials(all, what, fmt::format("ARKODE {}, tuned, f ≥ 0", order),
+                 options(integrator::arkode, order, linear_solver::projection_only, true, true), {0.1, 0.01},
+                 {few.rtol, {1e-4}});
+  }
+  add_sundials(all, what, "ARKODE 5, tuned",
+               options(integrator::arkode, 5, linear_solver::projection_only, true), {0.01}, fine);
+}
+
+void add_cvode(contest& all, mixed_regime& what, const ladder& fine, const ladder& few) {
+  add_sundials(all, what, "CVODE, defaults", options(integrator::cvode, 5, linear_solver::spgmr, false),
+               {0.0}, {few.rtol, {1e-3}});
+  for (const bool constrained : {false, true}) {
+    const char* more = constrained ? ", f ≥ 0" : "";
+    add_sundials(all, what, fmt::format("CVODE, tuned, GMRES{}", more),
+                 options(integrator::cvode, 5, linear_solver::preconditioned, false, constrained),
+                 {0.1, 0.01}, fine);
+    add_sundials(all, what, fmt::format("CVODE, tuned{}", more),
+                 options(integrator::cvode, 5, linear_solver::projection_only, true, constrained), {0.1},
+                 fine);
+  }
+}
+
+/// Explicit Runge–Kutta steps at the largest stable dt: 2.51 times the smallest ε on the negative real axis.
+long explicit_steps(double end, double smallest_epsilon) {
+  return static_cast<long>(std::ceil(end / (2.5 * smallest_epsilon)));
+}
+
+/// f of an explicit method with small steps; returns how far the solution of an entirely different method
+/// with a tight tolerance is away from it.
+double find_reference(mixed_regime& what, bool quick) {
+  field exact, second;
+  const auto& rk = find_method("ssprk-3-3");
+  what.run(rk, explicit_steps(what.end(), 0.8e-5), false, 1e3, &exact);
+  auto tight = options(integrator::arkode, 4, linear_solver::projection_only, true);
+  tight.nonlinear = 0.01;
+  tight.rtol = quick ? 1e-5 : 1e-6;
+  tight.atol = 1e-4 * tight.rtol;
+  tight.seconds_allowed = 1e3;
+  run_sundials(what, tight, &second);
+  const double apart = mixed_regime::distance(second, exact);
+  if (!(apart < 2e-6))
+    throw std::runtime_error(fmt::format("the reference solutions differ by {:.2g}", apart));
+  what.set_reference(exact);
+  return apart;
+}
+
+const char* const note =
+    "CPU seconds of one thread, in brackets relative to the best Apsis method, that f of paper/bgk-mixed (40 "
+    "cells, 150 "
+    "velocities) takes to have a given relative error of time at t = {:g} (2-norm over all cells and "
+    "velocities), and the "
+    "smallest f after any step. Of each contestant the cheapest run that reaches the error, whatever its "
+    "setting; runs of "
+    "Apsis count only with f ≥ 0 throughout. All have the same T and Q. ARKODE: T explicit, Q/ε implicit; "
+    "tuned: implicit "
+    "right-hand side deduced, 20 nonlinear iterations, and the inverse of the linearised collision as "
+    "preconditioner of "
+    "GMRES or in its place. CVODE: BDF, tuned likewise. f ≥ 0: with their constraint. — : no run in {:g} s "
+    "reached the "
+    "error. The reference (explicit, small steps) is right to {:.1e}, by comparison with ARKODE.";
+
+table measure(const settings& how) {
+  const double end = how.quick ? 0.004 : 0.5;
+  if (how.quick) patience = 0.3;
+  mixed_regime what(end);
+  const double apart = find_reference(what, how.quick);
+  contest all({1e-3, 3e-4, 1e-4, 1e-5});
+  const std::vector<double> factors =
+      how.quick ? std::vector<double>{4} : std::vector<double>{16, 14, 12, 10, 8, 6, 4, 2, 1};
+  for (const char* name :
+       {"md-imex-3-2", "md-imex-6-3", "md-imex-5-2", "md-imex-6-2-mixed", "md-imex-8-3", "md-imex-8-3-mixed"})
+    add_ours(all, what, name, factors);
+  if (!how.quick) add_ours(all, what, "md-imex-8-3-mixed", {0.5});
+  const ladder few = how.quick ? ladder{{1e-3}, {1e-3}} : ladder{{1e-2, 1e-3, 1e-4}, {1e-3, 1e-4}};
+  const ladder fine = how.quick ? few : ladder{{1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, {1e-3, 1e-4}};
+  add_arkode(all, what, fine, few);
+  add_cvode(all, what, fine, few);
+  all.add({"SSP-RK3", "largest stable dt", false, [&what, end] {
+             return what.run(find_method("ssprk-3-3"), explicit_steps(end, 1e-5), false, 1e3);
+           }});
+  all.run(how.quick ? 0 : how.repeats, 3.0);
+  table result;
+  result.title = "Mixed-regime BGK: work and precision";
+  result.note = fmt::format(fmt::runtime(note), end, patience, apart);
+  result.columns = all.columns();
+  result.rows = all.rows();
+  for (auto& row : all.best_of_others()) result.rows.push_back(std::move(row));
+  result.data = {{"points", all.points()}, {"reference_error", apart}, {"end", end}};
+  return result;
+}
+
+const registered here({"peers-mixed", "work and precision against SUNDIALS and SSP-RK3, mixed regime",
+                       measure});
+
+}  // namespace
+}  // namespace apsis::bench

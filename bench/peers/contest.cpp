@@ -1,0 +1,142 @@
+#include "contest.hpp"
+#include "measure/clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace apsis::bench::peers {
+namespace {
+
+/// Nonnegative; nonnegative but for the rounding that a projection leaves; any sign.
+constexpr double floors[] = {0.0, -1e-20, -std::numeric_limits<double>::infinity()};
+
+}  // namespace
+
+void contest::run(int repeats, double seconds_each) {
+  for (auto& one : attempts_) {
+    one.seen = one.run();
+    fmt::print(stderr, "  {}, {}: {:.3g} s, error {:.3g}, smallest {:.2g}, {} steps {}\n", one.contestant,
+               one.setting, one.seen.seconds, one.seen.error, one.seen.smallest, one.seen.steps,
+               one.seen.failure);
+  }
+  choose();
+  std::map<std::size_t, std::vector<double>> seconds;
+  for (std::size_t k = 0; k < attempts_.size(); ++k)
+    if (attempts_[k].counts && attempts_[k].seen.seconds < seconds_each) seconds[k] = {};
+  for (int turn = 0; turn < repeats; ++turn)
+    for (auto& [index, times] : seconds) times.push_back(attempts_[index].run().seconds);
+  for (auto& [index, times] : seconds)
+    if (!times.empty()) attempts_[index].seen.seconds = median(times);
+}
+
+bool contest::reaches(const attempt& one, double error) const {
+  if (!one.seen.failure.empty() || !(one.seen.error <= error)) return false;
+  return !one.ours || !nonnegative_ || one.seen.smallest >= 0.0;
+}
+
+std::size_t contest::cheapest(double error, const std::function<bool(const attempt&)>& allowed) const {
+  std::size_t best = none;
+  for (std::size_t k = 0; k < attempts_.size(); ++k) {
+    const auto& one = attempts_[k];
+    if (!allowed(one) || !reaches(one, error)) continue;
+    if (best == none || one.seen.seconds < attempts_[best].seen.seconds) best = k;
+  }
+  return best;
+}
+
+void contest::choose() {
+  for (const auto& one : attempts_)
+    if (std::find(names_.begin(), names_.end(), one.contestant) == names_.end())
+      names_.push_back(one.contestant);
+  const auto take = [this](std::size_t index) {
+    if (index != none) attempts_[index].counts = true;
+    return index;
+  };
+  for (const auto& name : names_) {
+    chosen_.emplace_back();
+    for (const double error : errors_)
+      chosen_.back().push_back(
+          take(cheapest(error, [&](const attempt& one) { return one.contestant == name; })));
+  }
+  for (const double floor : floors)
+    for (const double error : errors_)
+      take(cheapest(error, [&](const attempt& one) { return !one.ours && one.seen.smallest >= floor; }));
+}
+
+double contest::best_seconds(std::size_t error) const {
+  const auto best = cheapest(errors_[error], [](const attempt& one) { return one.ours && one.counts; });
+  return best == none ? std::numeric_limits<double>::quiet_NaN() : attempts_[best].seen.seconds;
+}
+
+std::vector<std::vector<nlohmann::json>> contest::rows() const {
+  std::vector<std::vector<nlohmann::json>> all;
+  for (std::size_t n = 0; n < names_.size(); ++n) {
+    std::vector<nlohmann::json> row = {names_[n]};
+    for (std::size_t e = 0; e < errors_.size(); ++e) {
+      const auto index = chosen_[n][e];
+      if (index == none) {
+        row.insert(row.end(), {nullptr, nullptr});
+        continue;
+      }
+      const auto& seen = attempts_[index].seen;
+      row.emplace_back(fmt::format("{:.3g} ({:.2g})", seen.seconds, seen.seconds / best_seconds(e)));
+      row.emplace_back(fmt::format("{:.0e}", seen.smallest));
+    }
+    all.push_back(std::move(row));
+  }
+  return all;
+}
+
+std::vector<std::vector<nlohmann::json>> contest::best_of_others() const {
+  std::vector<std::vector<nlohmann::json>> all;
+  for (const double floor : floors) {
+    std::vector<nlohmann::json> row = {std::isinf(floor)
+                                           ? std::string("best of the others")
+                                           : fmt::format("best of the others with least ≥ {:g}", floor)};
+    for (std::size_t e = 0; e < errors_.size(); ++e) {
+      const auto best = cheapest(errors_[e], [&](const attempt& one) {
+        return !one.ours && one.counts && one.seen.smallest >= floor;
+      });
+      if (best == none) {
+        row.insert(row.end(), {nullptr, nullptr});
+        continue;
+      }
+      row.emplace_back(fmt::format("({:.3g})", attempts_[best].seen.seconds / best_seconds(e)));
+      row.emplace_back(attempts_[best].contestant);
+    }
+    all.push_back(std::move(row));
+  }
+  return all;
+}
+
+nlohmann::json contest::points() const {
+  nlohmann::json all = nlohmann::json::array();
+  for (const auto& one : attempts_) {
+    nlohmann::json point = {{"contestant", one.contestant},
+                            {"setting", one.setting},
+                            {"ours", one.ours},
+                            {"error", one.seen.error},
+                            {"seconds", one.seen.seconds},
+                            {"smallest", one.seen.smallest},
+                            {"smallest_final", one.seen.smallest_final},
+                            {"steps", one.seen.steps}};
+    if (!one.seen.failure.empty()) point["failure"] = one.seen.failure;
+    all.push_back(std::move(point));
+  }
+  return all;
+}
+
+std::vector<std::string> contest::columns() const {
+  std::vector<std::string> names = {"contestant"};
+  for (const double error : errors_) {
+    names.push_back(fmt::format("error {:g} (s)", error));
+    names.emplace_back("least");
+  }
+  return names;
+}
+
+}  // namespace apsis::bench::peers

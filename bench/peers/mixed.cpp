@@ -1,0 +1,114 @@
+#include "measure/clock.hpp"
+#include "mixed.hpp"
+
+#include <apsis/core/expression.hpp>
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/space/quartic.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace apsis::bench::peers {
+namespace {
+
+double smallest_of(const field& u) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int cell = 0; cell < u.cells(); ++cell)
+    for (int k = 0; k < u.components(); ++k) smallest = std::min(smallest, u.row(cell)[k]);
+  return smallest;
+}
+
+}  // namespace
+
+void watch::start() {
+  smallest_ = std::numeric_limits<double>::infinity();
+  begin_ = thread_seconds();
+}
+
+bool watch::stepped(const field& u) {
+  seconds_ += thread_seconds() - begin_;
+  ++steps_;
+  smallest_ = std::min(smallest_, smallest_of(u));
+  begin_ = thread_seconds();
+  return seconds_ < allowed_;
+}
+
+outcome watch::seen(const field& u) const {
+  outcome what;
+  what.seconds = seconds_;
+  what.smallest = smallest_;
+  what.smallest_final = smallest_of(u);
+  what.steps = steps_;
+  return what;
+}
+
+mixed_regime::mixed_regime(double end)
+    : config_(
+          load_case("paper/bgk-mixed", {"time.method=md-imex-3-2", fmt::format("time.end={:.17g}", end)})),
+      end_(end),
+      setup_(config_),
+      problem_(setup_.make_problem()),
+      initial_(setup_.initial_state()) {
+  const auto& [from, to] = config_.space.domain;
+  const double dx = (to - from) / config_.space.cells;
+  const expression formula(config_.model.epsilon);
+  for (const double centre : setup_.centres()) {
+    double mean = 0.0;
+    for (std::size_t q = 0; q < gauss3::points; ++q)
+      mean += gauss3::weight[q] / formula.evaluate(centre + gauss3::xi[q] * dx);
+    rates_.push_back(mean);
+  }
+}
+
+const relaxation_model& mixed_regime::equation() const {
+  return dynamic_cast<const relaxation_model&>(*setup_.equation);
+}
+
+long mixed_regime::positive_steps(const method& m) const {
+  const double longest = m.coefficients<double>().r * problem_->forward_euler_step(0.0, initial_);
+  return static_cast<long>(std::ceil(end_ / longest));
+}
+
+outcome mixed_regime::run(const method& m, long steps, bool graded, double seconds_allowed, field* result) {
+  stepper march(m, *problem_);
+  field u = initial_;
+  watch timer(seconds_allowed);
+  const auto rule = step_rule<double>::fixed(end_ / static_cast<double>(steps))
+                        .with(graded ? startup::graded : startup::none);
+  bool in_time = true;
+  std::string failure;
+  try {
+    integrate(march, u, 0.0, end_, rule, [&](long step, double, double, const field& now) {
+      if (step == 0)
+        timer.start();
+      else
+        in_time = timer.stepped(now);
+      return in_time;
+    });
+  } catch (const numerical_error&) {
+    failure = "failed";
+  }
+  outcome what = timer.seen(u);
+  what.failure = in_time ? failure : "too slow";
+  what.error = error(u);
+  if (!std::isfinite(what.error) && failure.empty()) what.failure = "failed";
+  if (result != nullptr) *result = u;
+  return what;
+}
+
+double mixed_regime::distance(const field& u, const field& exact) {
+  if (exact.cells() == 0) return 0.0;
+  double difference = 0.0, size = 0.0;
+  for (int cell = 0; cell < u.cells(); ++cell)
+    for (int k = 0; k < u.components(); ++k) {
+      const double e = exact.row(cell)[k], d = u.row(cell)[k] - e;
+      difference += d * d;
+      size += e * e;
+    }
+  return std::sqrt(difference / size);
+}
+
+}  // namespace apsis::bench::peers

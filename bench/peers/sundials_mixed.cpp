@@ -1,0 +1,174 @@
+#include "field_vector.hpp"
+#include "projection.hpp"
+#include "sundials_mixed.hpp"
+
+#include <apsis/core/errors.hpp>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include <arkode/arkode_arkstep.h>
+#include <cvode/cvode.h>
+#include <sunlinsol/sunlinsol_spgmr.h>
+
+namespace apsis::bench::peers {
+namespace {
+
+using goal = target<field, double>;
+
+struct system_of_equations {
+  semidiscrete_problem& problem;
+  projection inverse;
+};
+
+system_of_equations& of(void* data) {
+  return *static_cast<system_of_equations*>(data);
+}
+
+/// Moments without equilibrium: the step is too long, a shorter one may do.
+template <class Body>
+int recoverable(const Body& body) {
+  try {
+    body();
+  } catch (const numerical_error&) {
+    return 1;
+  }
+  return 0;
+}
+
+int transport_side(realtype t, N_Vector y, N_Vector out, void* data) {
+  const std::array<goal, 1> to = {{{&field_of(out), 0.0, 1.0, true}}};
+  return recoverable([&] { of(data).problem.scatter(t, field_of(y), to); });
+}
+
+int collision_side(realtype t, N_Vector y, N_Vector out, void* data) {
+  const std::array<goal, 1> to = {{{&field_of(out), 0.0, 1.0, true}}};
+  return recoverable([&] { of(data).problem.scatter_collision(t, field_of(y), to); });
+}
+
+int both_sides(realtype t, N_Vector y, N_Vector out, void* data) {
+  const std::array<goal, 1> add = {{{&field_of(out), 0.0, 1.0, false}}};
+  if (transport_side(t, y, out, data) != 0) return 1;
+  return recoverable([&] { of(data).problem.scatter_collision(t, field_of(y), add); });
+}
+
+int prepare_inverse(realtype, N_Vector y, N_Vector, booleantype still_good, booleantype* renewed, realtype,
+                    void* data) {
+  *renewed = still_good ? SUNFALSE : SUNTRUE;
+  if (!still_good) of(data).inverse.prepare(field_of(y));
+  return 0;
+}
+
+int apply_inverse(realtype, N_Vector, N_Vector, N_Vector r, N_Vector z, realtype gamma, realtype, int,
+                  void* data) {
+  of(data).inverse.solve(gamma, field_of(r), field_of(z));
+  return 0;
+}
+
+void require(int flag, const char* what) {
+  if (flag < 0) throw std::runtime_error(std::string(what) + " failed");
+}
+
+SUNLinearSolver make_linear_solver(linear_solver which, N_Vector like, SUNContext context) {
+  if (which == linear_solver::projection_only) return make_preconditioner_solver(context);
+  return SUNLinSol_SPGMR(like, which == linear_solver::spgmr ? SUN_PREC_NONE : SUN_PREC_LEFT, 0, context);
+}
+
+/// All that an integration holds.
+struct workspace {
+  owned_context sundials = make_context();
+  owned_vector y, constraints;
+  SUNLinearSolver linear = nullptr;
+  void* memory = nullptr;
+  bool is_arkode;
+
+  workspace(const field& initial, const sundials_options& how)
+      : y(make_field_vector(initial, sundials.get())),
+        constraints(N_VClone(y.get())),
+        linear(make_linear_solver(how.linear, y.get(), sundials.get())),
+        is_arkode(how.which == sundials_options::integrator::arkode) {
+    N_VConst(1.0, constraints.get());
+  }
+  workspace(const workspace&) = delete;
+  workspace& operator=(const workspace&) = delete;
+  ~workspace() {
+    if (memory != nullptr) is_arkode ? ARKStepFree(&memory) : CVodeFree(&memory);
+    SUNLinSolFree(linear);
+  }
+};
+
+constexpr long many = 100000000;
+
+void set_up_arkode(workspace& work, system_of_equations& equations, double end, const sundials_options& how) {
+  void* memory = work.memory =
+      ARKStepCreate(transport_side, collision_side, 0.0, work.y.get(), work.sundials.get());
+  require(ARKStepSetErrFile(memory, nullptr), "ARKStepSetErrFile");
+  require(ARKStepSetUserData(memory, &equations), "ARKStepSetUserData");
+  require(ARKStepSStolerances(memory, how.rtol, how.atol), "ARKStepSStolerances");
+  require(ARKStepSetOrder(memory, how.order), "ARKStepSetOrder");
+  require(ARKStepSetMaxNumSteps(memory, many), "ARKStepSetMaxNumSteps");
+  require(ARKStepSetStopTime(memory, end), "ARKStepSetStopTime");
+  require(ARKStepSetLinearSolver(memory, work.linear, nullptr), "ARKStepSetLinearSolver");
+  if (how.linear != linear_solver::spgmr)
+    require(ARKStepSetPreconditioner(memory, prepare_inverse, apply_inverse), "ARKStepSetPreconditioner");
+  if (how.tuned) {
+    require(ARKStepSetDeduceImplicitRhs(memory, SUNTRUE), "ARKStepSetDeduceImplicitRhs");
+    require(ARKStepSetMaxNonlinIters(memory, 20), "ARKStepSetMaxNonlinIters");
+  }
+  if (how.nonlinear > 0.0)
+    require(ARKStepSetNonlinConvCoef(memory, how.nonlinear), "ARKStepSetNonlinConvCoef");
+  if (how.constrained) {
+    require(ARKStepSetConstraints(memory, work.constraints.get()), "ARKStepSetConstraints");
+    require(ARKStepSetMaxNumConstrFails(memory, 100), "ARKStepSetMaxNumConstrFails");
+  }
+}
+
+void set_up_cvode(workspace& work, system_of_equations& equations, double end, const sundials_options& how) {
+  void* memory = work.memory = CVodeCreate(CV_BDF, work.sundials.get());
+  require(CVodeSetErrFile(memory, nullptr), "CVodeSetErrFile");
+  require(CVodeInit(memory, both_sides, 0.0, work.y.get()), "CVodeInit");
+  require(CVodeSetUserData(memory, &equations), "CVodeSetUserData");
+  require(CVodeSStolerances(memory, how.rtol, how.atol), "CVodeSStolerances");
+  require(CVodeSetMaxNumSteps(memory, many), "CVodeSetMaxNumSteps");
+  require(CVodeSetStopTime(memory, end), "CVodeSetStopTime");
+  require(CVodeSetLinearSolver(memory, work.linear, nullptr), "CVodeSetLinearSolver");
+  if (how.linear != linear_solver::spgmr)
+    require(CVodeSetPreconditioner(memory, prepare_inverse, apply_inverse), "CVodeSetPreconditioner");
+  if (how.tuned) require(CVodeSetMaxNonlinIters(memory, 20), "CVodeSetMaxNonlinIters");
+  if (how.nonlinear > 0.0) require(CVodeSetNonlinConvCoef(memory, how.nonlinear), "CVodeSetNonlinConvCoef");
+  if (how.constrained) require(CVodeSetConstraints(memory, work.constraints.get()), "CVodeSetConstraints");
+}
+
+}  // namespace
+
+outcome run_sundials(mixed_regime& what, const sundials_options& how, field* result) {
+  system_of_equations equations{what.problem(), projection(what.equation(), what.rates())};
+  workspace work(what.initial(), how);
+  if (work.is_arkode)
+    set_up_arkode(work, equations, what.end(), how);
+  else
+    set_up_cvode(work, equations, what.end(), how);
+  watch timer(how.seconds_allowed);
+  const field& u = field_of(work.y.get());
+  double t = 0.0;
+  std::string failure;
+  timer.start();
+  while (t < what.end() && failure.empty()) {
+    const int flag = work.is_arkode ? ARKStepEvolve(work.memory, what.end(), work.y.get(), &t, ARK_ONE_STEP)
+                                    : CVode(work.memory, what.end(), work.y.get(), &t, CV_ONE_STEP);
+    const bool in_time = timer.stepped(u);
+    if (flag < 0)
+      failure = "failed";
+    else if (!in_time)
+      failure = "too slow";
+  }
+  outcome seen = timer.seen(u);
+  seen.failure = failure;
+  seen.error = what.error(u);
+  if (!std::isfinite(seen.error) && failure.empty()) seen.failure = "failed";
+  if (result != nullptr) *result = u;
+  return seen;
+}
+
+}  // namespace apsis::bench::peers

@@ -19,6 +19,7 @@ constexpr double floors[] = {0.0, -1e-20, -std::numeric_limits<double>::infinity
 void contest::run(int repeats, double seconds_each) {
   for (auto& one : attempts_) {
     one.seen = one.run();
+    if (one.seen.seconds < 0.02) continue;  // nobody waits for these
     fmt::print(stderr, "  {}, {}: {:.3g} s, error {:.3g}, smallest {:.2g}, {} steps {}\n", one.contestant,
                one.setting, one.seen.seconds, one.seen.error, one.seen.smallest, one.seen.steps,
                one.seen.failure);
@@ -35,7 +36,7 @@ void contest::run(int repeats, double seconds_each) {
 
 bool contest::reaches(const attempt& one, double error) const {
   if (!one.seen.failure.empty() || !(one.seen.error <= error)) return false;
-  return !one.ours || !nonnegative_ || one.seen.smallest >= 0.0;
+  return !one.ours || rule_ == rule::any_sign || one.seen.smallest >= 0.0;
 }
 
 std::size_t contest::cheapest(double error, const std::function<bool(const attempt&)>& allowed) const {
@@ -72,19 +73,29 @@ double contest::best_seconds(std::size_t error) const {
   return best == none ? std::numeric_limits<double>::quiet_NaN() : attempts_[best].seen.seconds;
 }
 
+/// Seconds, or microseconds of what takes no second.
+std::string contest::time(std::size_t index) const {
+  const double seconds = attempts_[index].seen.seconds;
+  return rule_ == rule::any_sign ? fmt::format("{:.3g}", 1e6 * seconds) : fmt::format("{:.3g}", seconds);
+}
+
+std::string contest::ratio(std::size_t index, std::size_t error) const {
+  const double ratio = attempts_[index].seen.seconds / best_seconds(error);
+  if (std::isnan(ratio)) return "";
+  return ratio < 100.0 ? fmt::format("({:.2g})", ratio) : fmt::format("({:.0f})", ratio);
+}
+
 std::vector<std::vector<nlohmann::json>> contest::rows() const {
   std::vector<std::vector<nlohmann::json>> all;
   for (std::size_t n = 0; n < names_.size(); ++n) {
     std::vector<nlohmann::json> row = {names_[n]};
     for (std::size_t e = 0; e < errors_.size(); ++e) {
       const auto index = chosen_[n][e];
-      if (index == none) {
-        row.insert(row.end(), {nullptr, nullptr});
-        continue;
-      }
-      const auto& seen = attempts_[index].seen;
-      row.emplace_back(fmt::format("{:.3g} ({:.2g})", seen.seconds, seen.seconds / best_seconds(e)));
-      row.emplace_back(fmt::format("{:.0e}", seen.smallest));
+      const bool reached = index != none;
+      row.push_back(reached ? nlohmann::json(time(index) + " " + ratio(index, e)) : nlohmann::json());
+      if (rule_ == rule::any_sign) continue;
+      row.push_back(reached ? nlohmann::json(fmt::format("{:.0e}", attempts_[index].seen.smallest))
+                            : nlohmann::json());
     }
     all.push_back(std::move(row));
   }
@@ -94,6 +105,7 @@ std::vector<std::vector<nlohmann::json>> contest::rows() const {
 std::vector<std::vector<nlohmann::json>> contest::best_of_others() const {
   std::vector<std::vector<nlohmann::json>> all;
   for (const double floor : floors) {
+    if (rule_ == rule::any_sign && !std::isinf(floor)) continue;
     std::vector<nlohmann::json> row = {std::isinf(floor)
                                            ? std::string("best of the others")
                                            : fmt::format("best of the others with least ≥ {:g}", floor)};
@@ -101,12 +113,14 @@ std::vector<std::vector<nlohmann::json>> contest::best_of_others() const {
       const auto best = cheapest(errors_[e], [&](const attempt& one) {
         return !one.ours && one.counts && one.seen.smallest >= floor;
       });
-      if (best == none) {
-        row.insert(row.end(), {nullptr, nullptr});
-        continue;
+      const bool found = best != none;
+      const auto name = found ? attempts_[best].contestant : std::string();
+      if (rule_ == rule::any_sign) {
+        row.push_back(found ? nlohmann::json(name + " " + ratio(best, e)) : nlohmann::json());
+      } else {
+        row.push_back(found ? nlohmann::json(ratio(best, e)) : nlohmann::json());
+        row.push_back(found ? nlohmann::json(name) : nlohmann::json());
       }
-      row.emplace_back(fmt::format("({:.3g})", attempts_[best].seen.seconds / best_seconds(e)));
-      row.emplace_back(attempts_[best].contestant);
     }
     all.push_back(std::move(row));
   }
@@ -133,8 +147,8 @@ nlohmann::json contest::points() const {
 std::vector<std::string> contest::columns() const {
   std::vector<std::string> names = {"contestant"};
   for (const double error : errors_) {
-    names.push_back(fmt::format("error {:g} (s)", error));
-    names.emplace_back("least");
+    names.push_back(fmt::format("error {:g} ({})", error, rule_ == rule::any_sign ? "µs" : "s"));
+    if (rule_ == rule::nonnegative) names.emplace_back("least");
   }
   return names;
 }

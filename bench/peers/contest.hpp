@@ -28,12 +28,17 @@ struct attempt {
 };
 
 /// Who reaches an error with how much work. Of the runs of a contestant that reach an error, the cheapest
-/// counts, with whatever setting: no interpolation. Runs of Apsis count where no unknown was ever negative,
-/// those of others always.
+/// counts, with whatever setting: no interpolation.
 class contest {
  public:
-  explicit contest(std::vector<double> errors, bool nonnegative = true)
-      : errors_(std::move(errors)), nonnegative_(nonnegative) {}
+  enum class rule {
+    nonnegative,  ///< runs of Apsis count where no unknown was ever negative, those of others always; signs
+                  ///< are shown
+    any_sign      ///< all count
+  };
+
+  explicit contest(std::vector<double> errors, rule how = rule::nonnegative)
+      : errors_(std::move(errors)), rule_(how) {}
 
   void add(attempt one) { attempts_.push_back(std::move(one)); }
 
@@ -56,10 +61,12 @@ class contest {
   bool reaches(const attempt& one, double error) const;
   std::size_t cheapest(double error, const std::function<bool(const attempt&)>& allowed) const;
   double best_seconds(std::size_t error) const;
+  std::string ratio(std::size_t index, std::size_t error) const;
+  std::string time(std::size_t index) const;
   void choose();
 
   std::vector<double> errors_;
-  bool nonnegative_;
+  rule rule_;
   std::vector<attempt> attempts_;
   std::vector<std::string> names_;
   std::vector<std::vector<std::size_t>> chosen_;  ///< of every contestant for every error

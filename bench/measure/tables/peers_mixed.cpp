@@ -142,7 +142,7 @@ table measure(const settings& how) {
   for (const char* name :
        {"md-imex-3-2", "md-imex-6-3", "md-imex-5-2", "md-imex-6-2-mixed", "md-imex-8-3", "md-imex-8-3-mixed"})
     add_ours(all, what, name, factors);
-  if (!how.quick) add_ours(all, what, "md-imex-8-3-mixed", {0.5});
+  if (!how.quick) add_ours(all, what, "md-imex-8-3-mixed", {0.8, 0.65, 0.5});
   const ladder few = how.quick ? ladder{{1e-3}, {1e-3}} : ladder{{1e-2, 1e-3, 1e-4}, {1e-3, 1e-4}};
   const ladder fine = how.quick ? few : ladder{{1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, {1e-3, 1e-4}};
   add_arkode(all, what, fine, few);

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "contest.hpp"
+
+#include <apsis/method/method.hpp>
+#include <apsis/study/ode_study.hpp>
+
+namespace apsis::bench::peers {
+
+/// The ODE model of the paper from t = 0 to 1 (study/ode_study.hpp): two unknowns, u2 out of equilibrium at
+/// first.
+struct ode_task {
+  double epsilon;
+  ode_state<long double> exact;
+};
+
+/// `steps` equal steps; `graded`: the first of them cut into steps that resolve the initial layer. Seconds
+/// are those of one integration of many, without making the stepper; errors |Δu1| + |Δu2| at t = 1.
+outcome run_ode(const ode_task& task, const method& m, long steps, bool graded);
+
+struct sundials_ode_options {
+  enum class integrator {
+    cvode,        ///< BDF
+    arkode_imex,  ///< (u2, 0) explicit, the rest implicit
+    arkode_dirk,  ///< all implicit
+  } which = integrator::cvode;
+  int order = 5;             ///< of ARKODE
+  bool tuned = false;        ///< exact Jacobian; ARKODE also deduces the implicit right-hand side
+  bool constrained = false;  ///< CVODE: both unknowns ≥ 0 asked for, as they are
+  double nonlinear = 0.0;    ///< coefficient of the nonlinear convergence test; 0: as it comes
+  double rtol = 1e-6, atol = 1e-8;
+};
+
+/// The same with SUNDIALS, dense linear solver; memory is allocated once and the integrator started anew.
+outcome run_sundials_ode(const ode_task& task, const sundials_ode_options& how);
+
+}  // namespace apsis::bench::peers

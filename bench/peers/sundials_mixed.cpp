@@ -116,6 +116,7 @@ void set_up_arkode(workspace& work, system_of_equations& equations, double end, 
     require(ARKStepSetDeduceImplicitRhs(memory, SUNTRUE), "ARKStepSetDeduceImplicitRhs");
     require(ARKStepSetMaxNonlinIters(memory, 20), "ARKStepSetMaxNonlinIters");
   }
+  if (how.longest > 0.0) require(ARKStepSetMaxStep(memory, how.longest), "ARKStepSetMaxStep");
   if (how.nonlinear > 0.0)
     require(ARKStepSetNonlinConvCoef(memory, how.nonlinear), "ARKStepSetNonlinConvCoef");
   if (how.constrained) {

@@ -19,6 +19,7 @@ struct sundials_options {
   double nonlinear = 0.0;  ///< coefficient of the nonlinear convergence test; 0: as it comes
   bool constrained = false;  ///< f ≥ 0 asked for
   double rtol = 1e-4, atol = 1e-8;
+  double longest = 0.0;  ///< step; 0: no limit
   double seconds_allowed = 60.0;
 };
 

@@ -43,12 +43,12 @@ void add_sundials(contest& all, const ode_task& task, const std::string& name, s
 
 contest race(const ode_task& task, bool quick) {
   contest all({1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}, contest::rule::any_sign);
-  const long most_steps = quick ? 64 : 16384;
+  const long most_steps = quick ? 64 : 8192;
   for (const char* name :
        {"md-imex-3-2", "md-imex-6-3", "md-imex-5-2", "md-imex-6-2-mixed", "md-imex-8-3", "md-imex-8-3-mixed",
         "md-imex-8-3-accurate", "md-imex-14-4-accurate", "md-imex-16-4-accurate"})
     add_ours(all, task, name, most_steps);
-  const double tightest = quick ? 1e-4 : 1e-13;
+  const double tightest = quick ? 1e-4 : 1e-12;
   add_sundials(all, task, "CVODE, defaults", {integrator::cvode, 5, false}, {0.0}, tightest);
   add_sundials(all, task, "CVODE, tuned", {integrator::cvode, 5, true}, {0.1, 0.01}, tightest);
   add_sundials(all, task, "CVODE, tuned, u ≥ 0", {integrator::cvode, 5, true, true}, {0.1}, tightest);

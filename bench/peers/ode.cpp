@@ -139,7 +139,7 @@ class sundials_ode {
     for (double t = 0.0; t < 1.0; ++seen.steps) {
       const int flag = is_cvode() ? CVode(memory_, 1.0, y_.get(), &t, CV_ONE_STEP)
                                   : ARKStepEvolve(memory_, 1.0, y_.get(), &t, ARK_ONE_STEP);
-      if (flag < 0) return false;
+      if (flag < 0 || seen.steps >= most_steps) return false;
       seen.smallest = std::min({seen.smallest, value()[0], value()[1]});
     }
     return true;
@@ -200,7 +200,7 @@ class sundials_ode {
       require(ARKStepSetNonlinConvCoef(memory_, how_.nonlinear), "ARKStepSetNonlinConvCoef");
   }
 
-  static constexpr long most_steps = 100000;
+  static constexpr long most_steps = 20000;  ///< more is hopeless
   double epsilon_;
   sundials_ode_options how_;
   owned_context context_ = make_context();

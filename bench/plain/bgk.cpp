@@ -20,7 +20,7 @@ struct weno_z {
     const double beta0 = 13.0 / 12.0 * square(a - 2.0 * b + c) + 0.25 * square(a - 4.0 * b + 3.0 * c);
     const double beta1 = 13.0 / 12.0 * square(b - 2.0 * c + d) + 0.25 * square(b - d);
     const double beta2 = 13.0 / 12.0 * square(c - 2.0 * d + e) + 0.25 * square(3.0 * c - 4.0 * d + e);
-    const double delta = 1e-6 * (a * a + b * b + c * c + d * d + e * e) * 0.2 + 1e-200;
+    const double delta = 1e-6 * c * c + 1e-200;
     const double tau = std::abs(beta0 - beta2);
     g0 = 1.0 + square(tau / (beta0 + delta));
     g1 = 1.0 + square(tau / (beta1 + delta));

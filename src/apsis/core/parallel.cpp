@@ -1,7 +1,9 @@
 #include <apsis/core/parallel.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <exception>
 #include <limits>
 
@@ -51,15 +53,40 @@ class first_failure {
 
 }  // namespace
 
+namespace {
+
+/// Numbers that are left of the part of one thread; on a cache line of its own.
+struct alignas(64) remaining {
+  std::atomic<int> next;
+  int end;
+};
+constexpr int most_threads = 256;
+
+}  // namespace
+
 void run_parallel_for(int n, numbered_job body) {
-  const int team = std::min(thread_count, n);
+  const int team = std::min({thread_count, n, most_threads});
   if (team <= 1 || omp_in_parallel() != 0) {
     for (int k = 0; k < n; ++k) body(k);
     return;
   }
+  // Every thread does its own part first, whose memory is near to it, and then helps the others: cores may be
+  // of different speed, or do something else for a while.
+  std::array<remaining, most_threads> parts;
+  for (int p = 0; p < team; ++p) {
+    const auto first = [&](int part) { return static_cast<int>(static_cast<long>(n) * part / team); };
+    parts[static_cast<std::size_t>(p)].next = first(p);
+    parts[static_cast<std::size_t>(p)].end = first(p + 1);
+  }
   first_failure failure;
-#pragma omp parallel for schedule(static) num_threads(team)
-  for (int k = 0; k < n; ++k) failure.guard(k, body);
+#pragma omp parallel num_threads(team)
+  {
+    const int own = omp_get_thread_num();
+    for (int p = 0; p < team; ++p) {
+      auto& part = parts[static_cast<std::size_t>((own + p) % team)];
+      for (int k = part.next++; k < part.end; k = part.next++) failure.guard(k, body);
+    }
+  }
   failure.rethrow();
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace apsis {
 namespace {
@@ -42,24 +43,17 @@ class cell_average_collision final : public collision {
 
   void scatter(const field& u, std::span<const target<field, double>> targets) override {
     for_blocks(u, [&](int begin, int cells, const double* points, const local_relaxation& local) {
-      thread_local aligned_vector<double> sum;
+      thread_local std::vector<upwind::row_target> rows;
       for (int i = 0; i < cells; ++i) {
-        sum.assign(static_cast<std::size_t>(u.stride()), 0.0);
+        relaxation::strong_rows at[gauss3::points];
         for (int q = 0; q < gauss3::points; ++q) {
           const int p = i * gauss3::points + q;
-          const double* row = points + static_cast<std::ptrdiff_t>(p) * u.stride();
-          const double* e = local.equilibrium(p);
-          const double strength = gauss3::weight[static_cast<std::size_t>(q)] *
-                                  local.strength(p, epsilon_at(begin + i, q), begin + i);
-#pragma omp simd
-          for (int k = 0; k < u.stride(); ++k) sum[static_cast<std::size_t>(k)] += strength * (e[k] - row[k]);
+          const double w = gauss3::weight[static_cast<std::size_t>(q)];
+          at[q] = {w * local.strength(p, epsilon_at(begin + i, q), begin + i),
+                   points + static_cast<std::ptrdiff_t>(p) * u.stride(), local.equilibrium(p)};
         }
-        const double* average = u.row(begin + i);
-        for (const auto& to : targets) {
-          double* acc = to.acc->row(begin + i);
-          for (int k = 0; k < u.stride(); ++k)
-            acc[k] = to.combine(acc[k], average[k], sum[static_cast<std::size_t>(k)]);
-        }
+        upwind::rows_of(targets, begin + i, rows);
+        relaxation::scatter(at, u.row(begin + i), u.stride(), rows);
       }
     });
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace apsis {
 namespace {
@@ -36,16 +37,13 @@ class pointwise_collision final : public cellwise_collision {
     parallel_for((u.cells() + length - 1) / length, [&](int block) {
       const int begin = block * length, cells = std::min(u.cells() - begin, length);
       const auto& local = equilibria_of(u, begin, cells);
+      thread_local std::vector<upwind::row_target> rows;
       for (int p = 0; p < cells; ++p) {
         const int cell = begin + p;
-        const double* row = u.row(cell);
-        const double strength = local.strength(p, epsilon_at(cell), cell);
-        const double* e = local.equilibrium(p);
-        for (const auto& to : targets) {
-          double* acc = to.acc->row(cell);
-          for (int k = 0; k < u.stride(); ++k)
-            acc[k] = to.combine(acc[k], row[k], strength * (e[k] - row[k]));
-        }
+        upwind::rows_of(targets, cell, rows);
+        const relaxation::strong_rows point{local.strength(p, epsilon_at(cell), cell), u.row(cell),
+                                            local.equilibrium(p)};
+        relaxation::scatter({&point, 1}, u.row(cell), u.stride(), rows);
       }
     });
   }

@@ -29,6 +29,20 @@ void average(const relaxation::weighted_rows points[3], int width, double* avera
   });
 }
 
+void scatter(std::span<const relaxation::strong_rows> points, const double* u, int width,
+             std::span<const upwind::row_target> targets) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    N change(0.0);
+    for (const auto& p : points) change = fma(N(p.strength), N::load(p.e + k) - N::load(p.u + k), change);
+    const N here = N::load(u + k);
+    for (const auto& to : targets) {
+      const N add = fma(N(to.alpha), here, N(to.beta) * change);
+      (to.fresh ? add : N::load(to.acc + k) + add).store(to.acc + k);
+    }
+  });
+}
+
 /// The quartic of space/quartic.hpp at the Gauss points and at the inner points of the Gauss–Lobatto rule,
 /// minus its average. Both rules give the average, which leaves one term of the even parts.
 template <class N>
@@ -102,6 +116,7 @@ namespace apsis {
 namespace {
 HWY_EXPORT(combine);
 HWY_EXPORT(average);
+HWY_EXPORT(scatter);
 HWY_EXPORT(gauss_values);
 }  // namespace
 
@@ -115,8 +130,15 @@ void average(const weighted_rows points[3], int width, double* average) {
   HWY_DYNAMIC_DISPATCH(average)(points, width, average);
 }
 
+void scatter(std::span<const strong_rows> points, const double* u, int width,
+             std::span<const upwind::row_target> targets) {
+  HWY_DYNAMIC_DISPATCH(scatter)(points, u, width, targets);
+}
+
 double operations_of_points(bool limited) {
-  return HWY_NAMESPACE::operations_of_points(limited);
+  static const double with = HWY_NAMESPACE::operations_of_points(true),
+                      without = HWY_NAMESPACE::operations_of_points(false);
+  return limited ? with : without;
 }
 
 void gauss_values(const quartic_rows& cell, bool limited, int width, double* points) {

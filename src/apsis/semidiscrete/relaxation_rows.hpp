@@ -1,5 +1,9 @@
 #pragma once
 
+#include <apsis/semidiscrete/upwind_rows.hpp>
+
+#include <span>
+
 namespace apsis {
 
 /// The work of a relaxation on one row, for the instruction set of this processor.
@@ -16,6 +20,14 @@ struct weighted_rows {
 
 /// average ← the sum over the points.
 void average(const weighted_rows points[3], int width, double* average);
+
+/// Q/ε = Σ_p strength_p (e_p − u_p), and acc ← (fresh ? 0 : acc) + α u + β Q/ε for every target.
+struct strong_rows {
+  double strength;
+  const double *u, *e;
+};
+void scatter(std::span<const strong_rows> points, const double* u, int width,
+             std::span<const upwind::row_target> targets);
 
 /// Averages of cells i−1, i, i+1 and the edge values of cell i.
 struct quartic_rows {

@@ -31,7 +31,8 @@ int block_length(int width) {
 
 int sweep_blocks(int cells, int columns) {
   constexpr int doubles = 2048;  // edges of the columns in half of a first-level cache of 32 KiB
-  const int length = std::max(doubles / std::max(columns, 1), 16);
+  int length = std::max(doubles / std::max(columns, 1), 16);
+  if (threads() > 1 && cells < 16 * length * threads()) length = std::max(length / 2, 16);
   return std::max(1, (cells + length / 2) / length);
 }
 

@@ -24,19 +24,11 @@ int cells_of_a_row(int stride) {
 /// Components of a cell that a sweep takes along at once: with some dozens of cells, what it keeps of them
 /// fits into the first-level cache.
 constexpr int most_columns = 32;
+/// And what is worth a sweep of its own.
+constexpr int least_columns = 16;
 
 /// Rows are cut at whole vectors of the widest instruction set.
 constexpr int packet_length = 8;
-
-/// Into `rows`, what `targets` say from component `k` of a cell on, `apart` cells from one to the next;
-/// `weighted`: u itself counts, and old content may be forgotten.
-void rows_of(targets_view targets, int cell, int k, int apart, bool weighted,
-             std::vector<upwind::row_target>& rows) {
-  rows.clear();
-  for (const auto& to : targets)
-    rows.push_back({to.acc->row(cell) + k, static_cast<std::ptrdiff_t>(apart) * to.acc->stride(),
-                    weighted ? to.alpha : 0.0, to.beta, weighted && to.fresh});
-}
 
 /// Bytes of accumulators for each number: written, and read before unless they are fresh.
 work traffic(targets_view targets) {
@@ -105,7 +97,7 @@ void transport::scatter_weights(const field& u, targets_view targets, const cell
   parallel_for((u.cells() + length - 1) / length, [&](int block) {
     thread_local std::vector<upwind::row_target> rows;
     const int begin = block * length, cells = std::min(u.cells() - begin, length);
-    rows_of(targets, begin, 0, 1, true, rows);
+    upwind::rows_of(targets, begin, rows);
     {
       work each = traffic(targets);
       each.bytes += sizeof(double);
@@ -221,7 +213,7 @@ class transport::block_sweep {
     const bool first = at.direction == 0;
     const auto& mesh = from_->mesh_;
     const int apart = mesh.stride(at.direction), cell = mesh.first_cell(at.direction, at.pencil) + i * apart;
-    rows_of(targets, cell, at.first, apart, first, targets_);
+    upwind::rows_of(targets, cell, targets_, {at.first, apart, first});
     const double* right = right_.data() + offset(i);
     const upwind::cells some{row(i),
                              both_edges() ? left_.data() + offset(i) : right,
@@ -253,8 +245,12 @@ bool transport::scatter_direction(const field& u, targets_view targets, int dire
                                   const cells_job& then) const {
   const int n = mesh_.cells(direction), pencils = mesh_.pencils(direction), width = u.stride();
   // A source is a function of all components of a cell.
-  const int columns = equation_.has_source() ? 1 : (width + most_columns - 1) / most_columns;
+  const bool whole_cells = equation_.has_source();
+  int columns = whole_cells ? 1 : (width + most_columns - 1) / most_columns;
   const int blocks = sweep_blocks(n, std::min(width, most_columns));
+  // So many parts that threads of different speed end at about the same time.
+  const int enough = threads() == 1 ? 1 : 4 * threads();
+  if (!whole_cells && pencils * blocks * columns < enough) columns = std::max(columns, width / least_columns);
   const auto cell = [&](int block) { return static_cast<int>(static_cast<long>(n) * block / blocks); };
   const auto component = [&](int column) {
     return column == columns ? width : width / packet_length * column / columns * packet_length;
@@ -265,7 +261,7 @@ bool transport::scatter_direction(const field& u, targets_view targets, int dire
              {direction, pencil, cell(block), cell(block + 1), component(column), component(column + 1)},
              targets);
   };
-  if (then && blocks >= threads()) {
+  if (then && blocks >= enough) {
     parallel_for(blocks, [&](int block) {
       for (int column = 0; column < columns; ++column) sweep(0, block, column);
       then(cell(block), cell(block + 1));

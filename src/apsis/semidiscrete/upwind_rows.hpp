@@ -1,7 +1,11 @@
 #pragma once
 
+#include <apsis/integrate/problem.hpp>
+#include <apsis/space/field.hpp>
+
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace apsis {
 
@@ -27,6 +31,23 @@ struct row_target {
   double alpha, beta;
   bool fresh;
 };
+
+/// Where the rows of a target begin, and how far they are apart.
+struct row_places {
+  int component = 0;     ///< of the first number
+  int apart = 1;         ///< cells from one row to the next
+  bool weighted = true;  ///< u itself counts, and old content may be forgotten
+};
+
+/// Into `rows`, what `targets` say from a cell on.
+inline void rows_of(std::span<const target<field, double>> targets, int cell, std::vector<row_target>& rows,
+                    const row_places& where = {}) {
+  rows.clear();
+  for (const auto& to : targets)
+    rows.push_back({to.acc->row(cell) + where.component,
+                    static_cast<std::ptrdiff_t>(where.apart) * to.acc->stride(),
+                    where.weighted ? to.alpha : 0.0, to.beta, where.weighted && to.fresh});
+}
 
 /// T = |v|/Δx (inflow − outflow) + source into all targets. Edges of cells −1 … count are read.
 void add(const cells& run, std::span<const row_target> targets);

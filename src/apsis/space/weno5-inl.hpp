@@ -17,11 +17,12 @@ namespace apsis::HWY_NAMESPACE::weno5 {
 /// written with first and second differences, which neighbouring cells share, and the edge as the cell's own
 /// value and a deviation.
 
-/// u_{i−1} − 2u_i + u_{i+1}, and 13/3 of its square.
+/// u_{i−1} − 2u_i + u_{i+1}, a third of it, and 13/3 of its square.
 template <class N>
 struct bend {
-  N second, square;
-  HWY_INLINE bend(N before, N after) : second(after - before), square(N(13.0 / 3.0) * second * second) {}
+  N second, third, square;
+  HWY_INLINE bend(N before, N after)
+      : second(after - before), third(N(1.0 / 3.0) * second), square(N(13.0 / 3.0) * second * second) {}
 };
 
 /// What the formulas need of the cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} −
@@ -75,15 +76,10 @@ HWY_INLINE smoothness<N> indicators(const window<N>& u) {
 /// products of six of these neither overflow nor underflow, whatever the size of the data. Where the data are
 /// so small that only δ is left, all three are equal.
 template <class N>
-struct scaled_smoothness {
-  N y0, y1, y2, scale;
-};
-
-template <class N>
-HWY_INLINE scaled_smoothness<N> scale(const smoothness<N>& s, N delta) {
+HWY_INLINE smoothness<N> scale(const smoothness<N>& s, N delta) {
   const N by = inverse_power_of_two(maximum(maximum(s.s1, s.s2), s.s0) + delta),
           least = fma(delta, by, N(1e-40));
-  return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least), by};
+  return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least)};
 }
 
 /// g_k > 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over one common denominator.
@@ -98,25 +94,28 @@ struct deviations {
   N r0, r1, r2;
 };
 
+// Additions are cheap beside multiplications, which have fewer units: hence 3g = g + g + g.
 template <class N>
 HWY_INLINE deviations<N> right_deviations(const window<N>& u) {
-  const N sixth(-1.0 / 3.0);
-  return {fma(N(2.0 / 3.0), u.bend0.second, u.before), fma(sixth, u.bend1.second, u.after),
-          fma(sixth, u.bend2.second, u.after)};
+  return {u.before + u.bend0.third + u.bend0.third, u.after - u.bend1.third, u.after - u.bend2.third};
 }
 
 /// Of the left edge, in the order of the right edge of the mirrored cells; with the opposite sign.
 template <class N>
 HWY_INLINE deviations<N> left_deviations(const window<N>& u) {
-  const N sixth(1.0 / 3.0);
-  return {fma(N(-2.0 / 3.0), u.bend2.second, u.after), fma(sixth, u.bend1.second, u.before),
-          fma(sixth, u.bend0.second, u.before)};
+  return {u.after - u.bend2.third - u.bend2.third, u.before + u.bend1.third, u.before + u.bend0.third};
+}
+
+template <class N>
+HWY_INLINE N triple(N x) {
+  return x + x + x;
 }
 
 template <class N>
 HWY_INLINE N right_edge(const window<N>& u, const factors<N>& g) {
   const auto [r0, r1, r2] = right_deviations(u);
-  const N middle = 6.0 * g.g1, far = 3.0 * g.g2, sum = g.g0 + middle + far;
+  const N half_middle = triple(g.g1), middle = half_middle + half_middle, far = triple(g.g2);
+  const N sum = g.g0 + middle + far;
   return u.here + fma(far, r2, fma(middle, r1, g.g0 * r0)) / (sum + sum);
 }
 
@@ -125,9 +124,10 @@ template <class N>
 HWY_INLINE void both_edges(const window<N>& u, const factors<N>& g, N& left, N& right) {
   const auto [r0, r1, r2] = right_deviations(u);
   const auto [l0, l1, l2] = left_deviations(u);
-  const N middle = 6.0 * g.g1, right_far = 3.0 * g.g2, left_far = 3.0 * g.g0;
+  const N half_middle = triple(g.g1), middle = half_middle + half_middle;
+  const N right_far = triple(g.g2), left_far = triple(g.g0);
   const N right_sum = g.g0 + middle + right_far, left_sum = left_far + middle + g.g2;
-  const N half = 0.5 / (right_sum * left_sum);
+  const N half = N(0.5) / (right_sum * left_sum);
   right = fma(fma(right_far, r2, fma(middle, r1, g.g0 * r0)), left_sum * half, u.here);
   left = negative_fma(fma(left_far, l2, fma(middle, l1, g.g2 * l0)), right_sum * half, u.here);
 }

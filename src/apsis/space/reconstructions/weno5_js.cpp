@@ -13,7 +13,7 @@ struct weights_js {
   template <class N>
   static HWY_INLINE weno5::factors<N> factors(const weno5::window<N>& u) {
     const auto y = weno5::scale(weno5::indicators(u), N(4e-6));
-    const N z0 = y.y0 * y.y0, z1 = y.y1 * y.y1, z2 = y.y2 * y.y2;
+    const N z0 = y.s0 * y.s0, z1 = y.s1 * y.s1, z2 = y.s2 * y.s2;
     return {z1 * z2, z0 * z2, z0 * z1};
   }
 };
@@ -50,7 +50,9 @@ class weno5_js final : public reconstruction {
     HWY_DYNAMIC_DISPATCH(outflow_js)(rows, count, width, forward, edge);
   }
   double operations(bool both_edges) const override {
-    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>(both_edges);
+    static const double one = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>(false);
+    static const double both = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>(true);
+    return both_edges ? both : one;
   }
 };
 

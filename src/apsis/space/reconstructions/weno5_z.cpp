@@ -17,8 +17,8 @@ struct weights_z {
     // thousandth of the value count as smooth, also where the first two derivatives vanish together.
     const N delta = fma(4e-6 * u.here, u.here, N(4e-200));
     const auto y = weno5::scale(s, delta);
-    const N tau = (s.s0 - s.s2) * y.scale;
-    const N t = tau * tau, z0 = y.y0 * y.y0, z1 = y.y1 * y.y1, z2 = y.y2 * y.y2;
+    const N tau = y.s0 - y.s2, t = tau * tau;
+    const N z0 = y.s0 * y.s0, z1 = y.s1 * y.s1, z2 = y.s2 * y.s2;
     return {z1 * z2 * (z0 + t), z0 * z2 * (z1 + t), z0 * z1 * (z2 + t)};
   }
 };
@@ -55,7 +55,9 @@ class weno5_z final : public reconstruction {
     HWY_DYNAMIC_DISPATCH(outflow_z)(rows, count, width, forward, edge);
   }
   double operations(bool both_edges) const override {
-    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_z>(both_edges);
+    static const double one = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_z>(false);
+    static const double both = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_z>(true);
+    return both_edges ? both : one;
   }
 };
 

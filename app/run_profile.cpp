@@ -13,7 +13,7 @@ namespace apsis::app {
 namespace {
 
 double of_multiply_adds(const run_profile& profile, const work_done& kernel) {
-  return kernel.operations / kernel.seconds / (2.0 * profile.multiply_adds);
+  return kernel.operations / kernel.seconds / profile.multiply_adds;
 }
 
 double of_triad(const run_profile& profile, const work_done& kernel) {
@@ -55,7 +55,7 @@ std::string profile_text(const run_profile& profile) {
   const double rest = profile.seconds - in_kernels(profile);
   line("the rest", fmt::format("{:.3f}", rest), percent(rest / profile.seconds), "", "", "", "", "");
   out += fmt::format(
-      "  ceilings of a core, measured now: {:.1f} 10⁹ multiply–adds/s (two operations each), triad {:.1f} "
+      "  ceilings of a core, measured now: {:.1f} 10⁹ multiply–adds/s (one operation each), triad {:.1f} "
       "10⁹ bytes/s\n"
       "  operations and bytes are those of one number; bytes of fields that no cache could save\n",
       1e-9 * profile.multiply_adds, 1e-9 * profile.triad);

@@ -128,9 +128,8 @@ table measure(const settings& how) {
   for (const std::string name : {"md-imex-3-2", "md-imex-6-3"}) {
     contest all(name);
     const double difference = require_agreement(all, how.quick ? 5 : 20);
-    const auto seconds =
-        in_turns({[&] { all.formulas(steps); }, [&] { all.library(steps); }, [&] { all.simulated(steps); }},
-                 turns);
+    const auto seconds = in_turns(
+        {[&] { all.formulas(steps); }, [&] { all.library(steps); }, [&] { all.simulated(steps); }}, turns);
     const auto milliseconds = [&](std::size_t job) { return 1e3 * median(seconds[job]) / steps; };
     result.rows.push_back({name, milliseconds(0), milliseconds(1), milliseconds(2),
                            median_ratio(seconds, 0, 1), median_ratio(seconds, 0, 2), difference});

@@ -53,7 +53,7 @@ std::vector<nlohmann::json> row_of(const std::string& formulation, const std::st
   for (int k = 0; k < how.repeats; ++k) {
     const turn now = measure_turn(run, steps);
     speed.push_back(now.steps * run.point_stages());
-    of_operations.push_back(now.steps * each.operations / (2.0 * now.multiply_adds));
+    of_operations.push_back(now.steps * each.operations / now.multiply_adds);
     of_bytes.push_back(now.steps * each.bytes / now.triad);
     binding.push_back(std::max(of_operations.back(), of_bytes.back()));
   }
@@ -74,12 +74,13 @@ table measure(const settings& how) {
   table result;
   result.title = fmt::format("Throughput, N = {} × 150 velocities, positivity limiter", cells);
   result.note =
-      "Point·stages per second of whole steps. Operations are floating-point operations of the formulas (a "
-      "multiply–add "
-      "is two, a division one), bytes those of fields that no cache could save; each per point·stage. "
-      "Ceilings: "
-      "multiply–adds in registers, and the triad on arrays as long as the field, on as many threads, in the "
-      "same turn.";
+      "Point·stages per second of whole steps. Operations are arithmetic instructions on a number as the "
+      "formulas have them (a "
+      "multiply–add is one, as it is in the ceiling; so is a division), bytes those of fields that no cache "
+      "could save; each per "
+      "point·stage. Ceilings: multiply–adds in registers, and the triad on arrays as long as the field, on "
+      "as many threads, in "
+      "the same turn.";
   result.columns = {"formulation", "method",           "threads",  "point·stages/s",        "operations",
                     "bytes",       "of multiply–adds", "of triad", "of the binding ceiling"};
   for (const int n : {1, 2})

@@ -8,7 +8,9 @@
 #include <apsis/core/simd-inl.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <ctime>
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
@@ -23,6 +25,13 @@ void triad(const double* b, const double* c, double s, std::size_t count, double
 
 constexpr int chains = 16;
 
+/// One multiply–add on each number; written out by the pack expansion, so that all of them stay in registers
+/// whatever the compiler thinks of loops.
+template <class N, std::size_t... K>
+HWY_INLINE void advance(N (&x)[chains], N factor, N addend, std::index_sequence<K...>) {
+  ((x[K] = fma(x[K], factor, addend)), ...);
+}
+
 /// `rounds` times `chains` multiply–adds that do not wait for each other; the sum, so that none may be left
 /// out.
 double multiply_adds(long rounds) {
@@ -31,7 +40,7 @@ double multiply_adds(long rounds) {
   N x[chains] = {N(1.0), N(1.1), N(1.2), N(1.3), N(1.4), N(1.5), N(1.6), N(1.7),
                  N(1.8), N(1.9), N(2.0), N(2.1), N(2.2), N(2.3), N(2.4), N(2.5)};
   for (long round = 0; round < rounds; ++round)
-    for (auto& value : x) value = fma(value, factor, addend);
+    advance(x, factor, addend, std::make_index_sequence<chains>());
   N sum = x[0];
   for (int k = 1; k < chains; ++k) sum = sum + x[k];
   return hn::GetLane(hn::SumOfLanes(wide(), sum.v));

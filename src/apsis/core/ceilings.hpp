@@ -10,7 +10,7 @@ namespace apsis {
 /// Bytes per second of a ← b + s c on arrays of `count` doubles each, 24 bytes an element.
 double triad_bytes_per_second(std::size_t count);
 
-/// Multiply–adds per second on numbers in registers; each is two floating-point operations.
+/// Multiply–adds per second on numbers in registers.
 double multiply_adds_per_second();
 
 /// Seconds of CPU time of this thread for so many multiply–adds: a unit of time that follows the speed of a

@@ -5,10 +5,10 @@
 namespace apsis {
 
 /// A number that counts what is done with it: formulas that are written for packs of numbers
-/// (core/simd-inl.hpp) tell by it how many operations they are. An addition, multiplication, division,
-/// comparison, minimum, maximum and absolute value is one operation, a multiply–add two; choosing between two
-/// numbers and moving them is none. Nothing is limited and nothing exceptional: branches that need a reason
-/// are not taken.
+/// (core/simd-inl.hpp) tell by it how many operations they are. An addition, multiplication, multiply–add,
+/// division, comparison, minimum, maximum and absolute value is one operation each: one instruction on a
+/// pack. Choosing between two numbers and moving them is none. Nothing is limited and nothing exceptional:
+/// branches that need a reason are not taken.
 class counted {
  public:
   struct mask {};
@@ -34,8 +34,8 @@ class counted {
   friend counted operator-(counted) { return 0.0; }
   friend mask operator<(counted, counted) { return one(), mask(); }
   friend mask operator>(counted, counted) { return one(), mask(); }
-  friend counted fma(counted, counted, counted) { return one(), one(); }
-  friend counted negative_fma(counted, counted, counted) { return one(), one(); }
+  friend counted fma(counted, counted, counted) { return one(); }
+  friend counted negative_fma(counted, counted, counted) { return one(); }
   friend counted select(mask, counted, counted) { return 0.0; }
   friend counted smaller(counted, counted) { return one(); }
   friend counted larger(counted, counted) { return one(); }

@@ -39,7 +39,7 @@ struct quartic_rows {
 void gauss_values(const quartic_rows& cell, bool limited, int width, double* points);
 
 /// Operations of each of these for one number of a row.
-inline constexpr double operations_of_combine = 3.0, operations_of_average = 12.0;
+inline constexpr double operations_of_combine = 2.0, operations_of_average = 6.0;
 double operations_of_points(bool limited);
 
 }  // namespace relaxation

@@ -59,7 +59,7 @@ void add_limited(const cells& run, std::span<const row_target> targets);
 
 /// Operations of add and add_limited for one number: those of T, and those of each target.
 double operations(bool limited);
-inline constexpr double operations_of_target = 4.0;
+inline constexpr double operations_of_target = 3.0;
 
 /// One row, for targets that need u alone: β = 0 everywhere.
 void add_weights(const double* u, int width, std::span<const row_target> targets);

@@ -19,6 +19,7 @@ constexpr std::array<named_boundary, 2> boundaries = {
 
 /// The cell inside 0 … n−1 whose row stands at position i.
 int inside(boundary_kind kind, int i, int n) {
+  if (i >= 0 && i < n) return i;
   return kind == boundary_kind::outflow ? std::clamp(i, 0, n - 1) : ((i % n) + n) % n;
 }
 

@@ -48,7 +48,7 @@ class bgk_model final : public relaxation_model {
   /// An addition and d + 1 multiply–adds for ω; for M two multiplications a point of a line (what the first
   /// of its vectors costs is not counted), or one for a point of a product of lines.
   double operations_of_equilibrium() const override {
-    return 1.0 + 2.0 * (grid_.dimensions() + 1) + (grid_.dimensions() == 1 ? 2.0 : 1.0);
+    return 1.0 + (grid_.dimensions() + 1) + (grid_.dimensions() == 1 ? 2.0 : 1.0);
   }
 
   std::string why_inadmissible(const double* omega) const override {

@@ -43,10 +43,15 @@ void accumulate(std::span<const target<State, state_real<State>>> targets, const
   for (const auto& to : targets)
     if (f == nullptr && to.beta != real(0)) f = &evaluate();
   for (const auto& to : targets) {
-    const State* transport = to.beta != real(0) ? f : nullptr;
     State& acc = *to.acc;
-    for (size_type i = 0; i < u.size(); ++i)
-      acc[i] = to.combine(real(acc[i]), real(u[i]), transport ? real((*transport)[i]) : real(0));
+    // Without a choice for each number, a state of two of them costs no more than by hand.
+    if (f == nullptr || to.beta == real(0)) {
+      for (size_type i = 0; i < u.size(); ++i) acc[i] = to.combine(real(acc[i]), real(u[i]), real(0));
+    } else if (to.fresh) {
+      for (size_type i = 0; i < u.size(); ++i) acc[i] = to.alpha * u[i] + to.beta * (*f)[i];
+    } else {
+      for (size_type i = 0; i < u.size(); ++i) acc[i] += to.alpha * u[i] + to.beta * (*f)[i];
+    }
   }
 }
 

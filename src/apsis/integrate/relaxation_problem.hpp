@@ -21,7 +21,7 @@ namespace apsis {
 /// All quantities are dimensionless. The functions, with N = u.size():
 ///   transport(t, u, out)   out ← T(t, u), N numbers; `out` comes with N numbers of any content
 ///   moments(u)             ω of any type, a number or a struct
-///   equilibrium(ω, out)    out ← E(ω), N numbers
+///   equilibrium(ω, out)    out ← E(ω), likewise
 ///   rate(ω)                C(ω) ≥ 0
 /// relaxation_problem{…} has the state std::vector<double>, make_relaxation_problem<State>(…) any other.
 template <class Transport, class Moments, class Equilibrium, class Rate,
@@ -56,7 +56,7 @@ class relaxation_problem {
 
   void scatter(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
-      work_ = u;
+      give_size_of(u);
       transport_(t, u, work_);
       return work_;
     });
@@ -114,11 +114,15 @@ class relaxation_problem {
     return rate;
   }
 
+  void give_size_of(const State& u) {
+    if (work_.size() != u.size()) work_ = u;
+  }
+
   /// work_ ← E(ℛu); returns C(ℛu).
   real relaxation(const State& u) {
     const auto omega = moments_(u);
     const real rate = checked_rate(omega);
-    work_ = u;
+    give_size_of(u);
     equilibrium_(omega, work_);
     return rate;
   }

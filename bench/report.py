@@ -60,6 +60,17 @@ def rows_where(result, **wanted):
             if all(row[at[name]] == value for name, value in wanted.items())]
 
 
+def against(result, label, errors, epsilon=None):
+    """How long the row of `label` takes, in units of the best method of ours."""
+    row = next(row for row in result["rows"] if label in row and (epsilon is None or row[0] == epsilon))
+    ratios = []
+    for error in errors:
+        cell = row[next(k for k, name in enumerate(result["columns"]) if name.startswith(f"error {error} "))]
+        found = re.search(r"\(([^()]*)\)\s*$", cell or "") or re.fullmatch(r"\(?([0-9.e+]+)\)?", cell or "")
+        ratios.append(f"{found.group(1)}" if found else "—")
+    return f"{', '.join(ratios)} times as long as the best method here"
+
+
 def summary(results):
     """The rows of the README, from the same file."""
     rows = []
@@ -73,13 +84,20 @@ def summary(results):
         found = rows_where(results["threads"], N=400)
         rows.append(("two threads against one, N = 400",
                      ", ".join(f"{row['ratio']} ({row['formulation'].replace('-', ' ')}s)" for row in found)))
-    if "plain" in results and "summary" in results["plain"].get("data", {}):
-        rows.append(("mixed-regime run, N = 40, against plain scalar loops", results["plain"]["data"]["summary"]))
+    if "plain" in results:
+        rows.append(("mixed-regime run, N = 40, against the same in plain loops, second and third order",
+                     ", ".join(f"{row['plain/library']:.1f}" for row in rows_where(results["plain"])) + " times as fast"))
     if "overhead" in results:
-        rows.append(("a step of a system of two numbers against one written by hand", f"{results['overhead']['rows'][1][2]} times"))
-    for name, what in (("peers-mixed", "mixed-regime run against SUNDIALS and SSP-RK3"), ("peers-ode", "ODE model against SUNDIALS")):
-        if name in results and "summary" in results[name].get("data", {}):
-            rows.append((what, results[name]["data"]["summary"]))
+        rows.append(("a step of a system of two numbers against one written by hand",
+                     f"{results['overhead']['rows'][1][2]} times as long"))
+    if "peers-mixed" in results:
+        rows += [(f"mixed-regime run, {who}, at temporal errors 3e-4 and 1e-4", against(results["peers-mixed"], label, ("0.0003", "0.0001")))
+                 for who, label in (("best of SUNDIALS and SSP-RK3 with f ≥ 0", "best of the others with least ≥ 0"),
+                                    ("best of them with any f", "best of the others"))]
+    if "peers-ode" in results:
+        result = results["peers-ode"]
+        rows += [(f"ODE model, ε = {epsilon}, best of SUNDIALS at errors 1e-4 and 1e-6",
+                  against(result, "best of the others", ("0.0001", "1e-06"), epsilon)) for epsilon in ("1", "0.01", "1e-06", "1e-10")]
     return rows
 
 
@@ -90,7 +108,7 @@ def fronts(points):
     """Of every contestant, the runs that no other of its runs beats in both error and time."""
     by_name = {}
     for point in points:
-        if point.get("error") and point.get("seconds"):
+        if point.get("error") and point.get("seconds") and not point.get("failure"):
             by_name.setdefault(point["contestant"], []).append(point)
     for name, runs in by_name.items():
         runs.sort(key=lambda run: (run["seconds"], run["error"]))
@@ -104,22 +122,24 @@ def fronts(points):
 
 
 def draw_work(axes, points):
-    for k, (name, front) in enumerate(sorted(fronts(points).items())):
-        line, = axes.loglog([run["error"] for run in front], [run["seconds"] for run in front], "-",
-                            color=COLOURS[k % len(COLOURS)], label=name)
-        for run in front:
-            positive = run.get("smallest", 0.0) is not None and run.get("smallest", 0.0) >= 0.0
-            axes.loglog(run["error"], run["seconds"], MARKERS[k % len(MARKERS)], color=line.get_color(),
-                        markerfacecolor=line.get_color() if positive else "white")
+    """Filled marks: no value was negative in the run."""
+    for k, name in enumerate(sorted({point["contestant"] for point in points})):
+        front = fronts(points).get(name, [])
+        colour, mark = COLOURS[k % len(COLOURS)], MARKERS[k // len(COLOURS) % len(MARKERS)]
+        dashes = "-" if any(point["ours"] for point in points if point["contestant"] == name) else "--"
+        axes.loglog([run["error"] for run in front], [run["seconds"] for run in front], dashes, color=colour, marker=mark,
+                    label=name, markerfacecolor="white")
+        full = [run for run in front if run["smallest"] >= 0.0]
+        axes.loglog([run["error"] for run in full], [run["seconds"] for run in full], mark, color=colour)
     axes.invert_xaxis()
     axes.set_xlabel("temporal error")
     axes.set_ylabel("CPU time in s")
 
 
 def draw_mixed(result, path):
-    figure, axes = plt.subplots(figsize=(9.0, 6.0))
+    figure, axes = plt.subplots(figsize=(11.0, 6.0))
     draw_work(axes, result["data"]["points"])
-    axes.legend(fontsize="small", ncols=2)
+    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.02, 0.5))
     axes.set_title("mixed-regime run; open: some value of f was negative")
     figure.savefig(path)
     plt.close(figure)
@@ -128,19 +148,33 @@ def draw_mixed(result, path):
 def draw_ode(result, path):
     points = result["data"]["points"]
     epsilons = sorted({point["epsilon"] for point in points}, reverse=True)
-    figure, all_axes = plt.subplots(1, len(epsilons), figsize=(4.0 * len(epsilons), 4.5), sharey=True)
-    for axes, epsilon in zip(all_axes, epsilons):
+    figure, grid = plt.subplots(2, 3, figsize=(13.0, 8.5))
+    places = list(grid.flat)
+    for axes, epsilon in zip(places, epsilons):
         draw_work(axes, [point for point in points if point["epsilon"] == epsilon])
         axes.set_title(f"ε = {epsilon:g}")
-    for axes in all_axes[1:]:
-        axes.set_ylabel("")
-    handles, labels = all_axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize="small")
+    places[-1].axis("off")
+    handles, labels = places[0].get_legend_handles_labels()
+    places[-1].legend(handles, labels, loc="center", fontsize="small")
     figure.savefig(path)
     plt.close(figure)
 
 
 # --- all of it -------------------------------------------------------------------------------------------------------------------
+
+
+def compact(results):
+    """What the tables and pictures need: of many runs those that no other run of the contestant beats."""
+    kept = {}
+    for name, result in results.items():
+        points = result["data"].get("points", [])
+        groups = {}
+        for point in points:
+            groups.setdefault(point.get("epsilon"), []).append(point)
+        best = [{key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in run.items()}
+                for group in groups.values() for front in fronts(group).values() for run in front]
+        kept[name] = result | {"data": {"points": best}}
+    return kept
 
 
 def read_results(path, kept):
@@ -150,7 +184,7 @@ def read_results(path, kept):
     except (OSError, ValueError) as problem:
         raise ReportError(f"cannot read {source} ({problem}) run make bench") from problem
     if source == path:
-        kept.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        kept.write_text(json.dumps(compact(results), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     return results
 
 

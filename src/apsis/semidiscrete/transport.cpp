@@ -161,9 +161,9 @@ class transport::block_sweep {
     whole_rows_ = width_ == u.stride();
     const auto limiting = from.how_.positivity;
     halo_ = limiting == limiter_kind::fluxes ? 2 : 1;
-    ghosts_ = from.how_.scheme->ghost_width();
+    reach_ = std::max(from.how_.scheme->ghost_width(), halo_);  // as far as edges and limiter look
     first_edge_ = at.begin - halo_;
-    const int beyond = halo_ + ghosts_;
+    const int beyond = halo_ + reach_;
     first_row_ = at.begin - beyond;
     pencil_rows(u, from.mesh_, at.direction, at.pencil, from.how_.boundary, first_row_, at.end + beyond,
                 rows_);
@@ -188,7 +188,7 @@ class transport::block_sweep {
   run_of_cells run_from(int i, int most) const {
     const int long_enough = cells_of_a_row(width_);
     if (!whole_rows_ || long_enough == 1) return {most, 1};
-    const int together = joined_[static_cast<std::size_t>(i - ghosts_ - first_row_)] - 2 * ghosts_;
+    const int together = joined_[static_cast<std::size_t>(i - reach_ - first_row_)] - 2 * reach_;
     return {1, std::max(1, std::min({long_enough, most, together}))};
   }
 
@@ -237,7 +237,7 @@ class transport::block_sweep {
   std::vector<int> joined_;
   std::vector<upwind::row_target> targets_;
   aligned_vector<double> left_, right_, source_;
-  int width_ = 0, first_component_ = 0, halo_ = 0, ghosts_ = 0, first_row_ = 0, first_edge_ = 0;
+  int width_ = 0, first_component_ = 0, halo_ = 0, reach_ = 0, first_row_ = 0, first_edge_ = 0;
   bool whole_rows_ = false;
 };
 

@@ -62,7 +62,7 @@ int block_length(int width);
 
 /// In how many blocks of about equal length a pencil is swept if `columns` numbers of every cell are swept
 /// together: short enough for the first-level cache, and so long that the few edges at their ends which are
-/// computed twice cost little. Does not depend on the number of threads.
+/// computed twice cost little; half as long where threads would have few of them. No number depends on it.
 int sweep_blocks(int cells, int columns);
 
 }  // namespace apsis

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,10 @@ enum class kernel {
   relaxation,  ///< the convex combination with the equilibrium
   monitor      ///< smallest value, conserved sums, entropy
 };
-inline constexpr std::size_t kernel_count = 7;
+inline constexpr std::size_t kernel_count = static_cast<std::size_t>(kernel::monitor) + 1;
 const char* kernel_name(kernel which);
 
-/// What a kernel does for one number of the state: floating-point operations (core/counted.hpp), and bytes of
+/// What a kernel does for one number of the state: operations (core/counted.hpp), and bytes of
 /// fields that it must move through memory, whatever stays in caches.
 struct work {
   double operations = 0.0, bytes = 0.0;

@@ -2,6 +2,7 @@
 
 #include <apsis/core/parallel.hpp>
 #include <apsis/core/profile.hpp>
+#include <apsis/model/vector_math.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
 #include <apsis/space/limiter.hpp>
 
@@ -26,9 +27,6 @@ int cells_of_a_row(int stride) {
 constexpr int most_columns = 32;
 /// And what is worth a sweep of its own.
 constexpr int least_columns = 16;
-
-/// Rows are cut at whole vectors of the widest instruction set.
-constexpr int packet_length = 8;
 
 /// Bytes of accumulators for each number: written, and read before unless they are fresh.
 work traffic(targets_view targets) {
@@ -253,6 +251,7 @@ bool transport::scatter_direction(const field& u, targets_view targets, int dire
   if (!whole_cells && pencils * blocks * columns < enough) columns = std::max(columns, width / least_columns);
   const auto cell = [&](int block) { return static_cast<int>(static_cast<long>(n) * block / blocks); };
   const auto component = [&](int column) {
+    // Cut at whole vectors.
     return column == columns ? width : width / packet_length * column / columns * packet_length;
   };
   const auto sweep = [&](int pencil, int block, int column) {

@@ -26,7 +26,7 @@ class reconstruction {
   virtual void outflow_edges(const double* const* rows, int count, int width, const double* forward,
                              double* edge) const = 0;
 
-  /// Floating-point operations (core/counted.hpp) for both edges of one number, or for one edge.
+  /// Operations (core/counted.hpp) for both edges of one number, or for one edge.
   virtual double operations(bool both_edges) const = 0;
 };
 

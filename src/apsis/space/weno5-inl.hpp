@@ -173,7 +173,7 @@ HWY_INLINE void sweep_outflow(const double* const* rows, int count, int width, c
 
 /// Operations for one number of a long pencil.
 template <class Weights>
-double operations(bool both) {
+double count_operations(bool both) {
   const counted x(0.0);
   window<counted> u(x, x, x, x, x);
   return counted::operations_of([&] {
@@ -185,6 +185,13 @@ double operations(bool both) {
       right_edge(u, Weights::factors(u));
     }
   });
+}
+
+/// The same, counted once; see reconstruction::operations.
+template <class Weights>
+double operations(bool both) {
+  static const double of_one = count_operations<Weights>(false), of_both = count_operations<Weights>(true);
+  return both ? of_both : of_one;
 }
 
 }  // namespace apsis::HWY_NAMESPACE::weno5

@@ -50,9 +50,7 @@ class weno5_js final : public reconstruction {
     HWY_DYNAMIC_DISPATCH(outflow_js)(rows, count, width, forward, edge);
   }
   double operations(bool both_edges) const override {
-    static const double one = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>(false);
-    static const double both = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>(true);
-    return both_edges ? both : one;
+    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>(both_edges);
   }
 };
 

@@ -55,9 +55,7 @@ class weno5_z final : public reconstruction {
     HWY_DYNAMIC_DISPATCH(outflow_z)(rows, count, width, forward, edge);
   }
   double operations(bool both_edges) const override {
-    static const double one = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_z>(false);
-    static const double both = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_z>(true);
-    return both_edges ? both : one;
+    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_z>(both_edges);
   }
 };
 

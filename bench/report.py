@@ -177,6 +177,12 @@ def compact(results):
     return kept
 
 
+def text_of(results):
+    """JSON with a line for each row and each run, so that a change shows what changed."""
+    text = json.dumps(results, ensure_ascii=False)
+    return re.sub(r"(\}|\]), (?=[\{\[\"])", "\\1,\n", text) + "\n"
+
+
 def read_results(path, kept):
     source = path if path.exists() else kept
     try:
@@ -184,7 +190,7 @@ def read_results(path, kept):
     except (OSError, ValueError) as problem:
         raise ReportError(f"cannot read {source} ({problem}) run make bench") from problem
     if source == path:
-        kept.write_text(json.dumps(compact(results), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        kept.write_text(text_of(compact(results)), encoding="utf-8")
     return results
 
 

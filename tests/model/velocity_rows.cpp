@@ -35,7 +35,8 @@ TEST(velocity_rows, sums_are_those_of_long_double) {
         size += std::abs(v.back()) * value;
         if (value > 0) entropy += value * std::log(value);
       }
-      const auto sums = apsis::velocity_rows::moments(f.data(), v.data(), half.data(), n);
+      apsis::velocity_rows::sums sums{};
+      apsis::velocity_rows::moments(f.data(), 0, 1, v.data(), half.data(), n, &sums);
       // Partial sums of nonnegative terms: n/8 roundings at most.
       const double rounding = 1e-16 * (8.0 + n / 4.0);
       EXPECT_NEAR(sums.mass, static_cast<double>(mass), rounding * static_cast<double>(mass)) << n;
@@ -56,7 +57,8 @@ TEST(velocity_rows, a_gaussian_is_one_wherever_its_centre_and_width_are) {
         for (const double u : {0.0, 0.3, -14.9, 15.0, -40.0, 200.0}) {
           const apsis::velocity_rows::points line{n, 30.0 / n};
           std::vector<double> m(static_cast<std::size_t>(n) + 1, -7.0);
-          apsis::velocity_rows::gaussian(line, 2.0, u, T, m.data());
+          const apsis::velocity_rows::gaussian of_row{2.0, u, T};
+          apsis::velocity_rows::gaussians(line, &of_row, 1, m.data(), 0);
           EXPECT_EQ(m.back(), -7.0) << "nothing behind the row is touched";
           const auto exact = [&](int j) {
             const long double x = 0.5L * line.spacing * (2.0L * j + 1 - n) - u;
@@ -83,6 +85,35 @@ TEST(velocity_rows, a_gaussian_is_one_wherever_its_centre_and_width_are) {
             }
           }
         }
+  });
+}
+
+TEST(velocity_rows, rows_together_are_the_same_bits_as_one_by_one) {
+  for_each_instruction_set([] {
+    for (const int n : {5, 150})
+      for (const int rows : {1, 2, 3, 7, 8, 9, 20}) {
+        const apsis::velocity_rows::points line{n, 20.0 / n};
+        const std::ptrdiff_t pitch = n + 3;
+        std::vector<apsis::velocity_rows::gaussian> of;
+        for (int p = 0; p < rows; ++p) of.push_back({1.0 + p, 3.0 * std::sin(p), 0.01 * std::exp(0.5 * p)});
+        std::vector<double> m(static_cast<std::size_t>(rows * pitch), -7.0), one(static_cast<std::size_t>(n)),
+            v(one.size(), 0.3), half(one.size(), 0.7);
+        apsis::velocity_rows::gaussians(line, of.data(), rows, m.data(), pitch);
+        std::vector<apsis::velocity_rows::sums> sums(of.size());
+        apsis::velocity_rows::moments(m.data(), pitch, rows, v.data(), half.data(), n, sums.data());
+        for (int p = 0; p < rows; ++p) {
+          const auto k = static_cast<std::size_t>(p);
+          const double* row = m.data() + p * pitch;
+          apsis::velocity_rows::gaussians(line, &of[k], 1, one.data(), 0);
+          EXPECT_TRUE(std::equal(one.begin(), one.end(), row)) << n << " " << rows << " " << p;
+          EXPECT_EQ(row[n], -7.0) << "nothing between the rows is touched";
+          apsis::velocity_rows::sums alone{};
+          apsis::velocity_rows::moments(row, 0, 1, v.data(), half.data(), n, &alone);
+          EXPECT_EQ(alone.mass, sums[k].mass);
+          EXPECT_EQ(alone.momentum, sums[k].momentum);
+          EXPECT_EQ(alone.energy, sums[k].energy);
+        }
+      }
   });
 }
 

@@ -42,33 +42,39 @@ velocity_grid::velocity_grid(int dimensions, int points, double max)
   }
 }
 
-bool fluid_state::admissible() const {
-  return std::isfinite(rho) && std::isfinite(u[0] + u[1] + u[2]) && std::isfinite(T) && rho > 0.0 && T > 0.0;
+namespace {
+
+/// One velocity dimension: all three in one pass.
+void moments_on_line(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
+                     double* omega) {
+  constexpr int most = 16;
+  std::array<velocity_rows::sums, most> sums{};
+  for (int first = 0; first < rows; first += most) {
+    const int some = std::min(most, rows - first);
+    velocity_rows::moments(f + first * pitch, pitch, some, grid.line().data(), grid.half_square().data(),
+                           grid.size(), sums.data());
+    for (int r = 0; r < some; ++r, omega += 3) {
+      const auto& sum = sums[static_cast<std::size_t>(r)];
+      omega[0] = grid.weight() * sum.mass;
+      omega[1] = grid.weight() * sum.momentum;
+      omega[2] = grid.weight() * sum.energy;
+    }
+  }
 }
 
-fluid_state to_fluid_state(const double* omega, int dimensions) {
-  fluid_state s;
-  s.rho = omega[0];
-  double square = 0.0;
-  for (int k = 0; k < dimensions; ++k) {
-    s.u[k] = omega[1 + k] / s.rho;
-    square += s.u[k] * s.u[k];
-  }
-  s.T = (2.0 * omega[1 + dimensions] / s.rho - square) / dimensions;
-  return s;
+}  // namespace
+
+void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
+                     double* omega) {
+  if (grid.dimensions() == 1) return moments_on_line(grid, f, pitch, rows, omega);
+  for (int r = 0; r < rows; ++r) kinetic_moments(grid, f + r * pitch, omega + r * (grid.dimensions() + 2));
 }
 
 void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) {
   const int n = grid.size();
   const int d = grid.dimensions();
   const double* half_square = grid.half_square().data();
-  if (d == 1) {  // one pass
-    const auto sum = velocity_rows::moments(f, grid.line().data(), half_square, n);
-    omega[0] = grid.weight() * sum.mass;
-    omega[1] = grid.weight() * sum.momentum;
-    omega[2] = grid.weight() * sum.energy;
-    return;
-  }
+  if (d == 1) return moments_on_line(grid, f, 0, 1, omega);
   for (int k = 0; k < d + 2; ++k) {
     const double* phi = k == 0 ? nullptr : (k <= d ? grid.component(k - 1).data() : half_square);
     double sum = 0.0;
@@ -164,19 +170,52 @@ std::array<double, 5> power_sums(const velocity_grid& grid, const double* g, dou
 
 }  // namespace
 
-void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m) {
-  const velocity_rows::points points{grid.points(), grid.spacing()};
+namespace {
+
+/// ρ (2πT)^{−d/2}.
+double height(const fluid_state& state, int dimensions) {
   const double of_one_direction = 1.0 / std::sqrt(2.0 * std::numbers::pi * state.T);
   double factor = state.rho;
-  for (int k = 0; k < grid.dimensions(); ++k) factor *= of_one_direction;
-  if (grid.dimensions() == 1) return velocity_rows::gaussian(points, factor, state.u[0], state.T, m);
+  for (int k = 0; k < dimensions; ++k) factor *= of_one_direction;
+  return factor;
+}
+
+void maxwellians_on_line(const velocity_grid& grid, std::span<const fluid_state> states, double* m,
+                         std::ptrdiff_t pitch) {
+  constexpr std::size_t most = 16;
+  std::array<velocity_rows::gaussian, most> rows{};
+  for (std::size_t first = 0; first < states.size(); first += most) {
+    const std::size_t some = std::min(most, states.size() - first);
+    for (std::size_t r = 0; r < some; ++r) {
+      const fluid_state& state = states[first + r];
+      rows[r] = {height(state, 1), state.u[0], state.T};
+    }
+    velocity_rows::gaussians({grid.points(), grid.spacing()}, rows.data(), static_cast<int>(some),
+                             m + static_cast<std::ptrdiff_t>(first) * pitch, pitch);
+  }
+}
+
+}  // namespace
+
+void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m) {
+  if (grid.dimensions() == 1) return maxwellians_on_line(grid, {&state, 1}, m, 0);
   auto& lines = buffers(grid.points());
   std::array<const double*, 3> g{};
   for (std::size_t k = 0; k < static_cast<std::size_t>(grid.dimensions()); ++k) {
-    velocity_rows::gaussian(points, 1.0, state.u[k], state.T, lines[k].values());
+    const velocity_rows::gaussian of_line{1.0, state.u[k], state.T};
+    velocity_rows::gaussians({grid.points(), grid.spacing()}, &of_line, 1, lines[k].values(), 0);
     g[k] = lines[k].values();
   }
-  tensor_product(grid, factor, g, m);
+  tensor_product(grid, height(state, grid.dimensions()), g, m);
+}
+
+void formula_maxwellians(const velocity_grid& grid, std::span<const fluid_state> states, double* m,
+                         std::ptrdiff_t pitch) {
+  if (grid.dimensions() == 1) return maxwellians_on_line(grid, states, m, pitch);
+  for (const auto& state : states) {
+    formula_maxwellian(grid, state, m);
+    m += pitch;
+  }
 }
 
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state) {

@@ -2,6 +2,9 @@
 
 #include <apsis/core/aligned.hpp>
 
+#include <cmath>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,15 +40,33 @@ struct fluid_state {
   double rho = 0.0;
   double u[3] = {0.0, 0.0, 0.0};
   double T = 0.0;
-  bool admissible() const;  ///< all finite, ρ > 0 and T > 0
+  /// All finite, ρ > 0 and T > 0.
+  bool admissible() const {
+    return std::isfinite(rho) && std::isfinite(u[0] + u[1] + u[2]) && std::isfinite(T) && rho > 0.0 && T > 0.0;
+  }
 };
-fluid_state to_fluid_state(const double* omega, int dimensions);
+inline fluid_state to_fluid_state(const double* omega, int dimensions) {
+  fluid_state s;
+  s.rho = omega[0];
+  double square = 0.0;
+  for (int k = 0; k < dimensions; ++k) {
+    s.u[k] = omega[1 + k] / s.rho;
+    square += s.u[k] * s.u[k];
+  }
+  s.T = (2.0 * omega[1 + dimensions] / s.rho - square) / dimensions;
+  return s;
+}
 
-/// Midpoint-rule moments (ρ, ρu, 𝓔) of a row of grid values.
+/// Midpoint-rule moments (ρ, ρu, 𝓔) of a row of grid values, and of some rows `pitch` numbers apart.
 void kinetic_moments(const velocity_grid& grid, const double* f, double* omega);
+void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
+                     double* omega);
 
-/// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK).
+/// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK), and those of
+/// some states in rows `pitch` numbers apart.
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
+void formula_maxwellians(const velocity_grid& grid, std::span<const fluid_state> states, double* m,
+                         std::ptrdiff_t pitch);
 
 /// Sufficient for its midpoint-rule moments to be those of `state` to round-off: Poisson's sum formula bounds
 /// their relative error by about 100 exp(−2π²T/Δv²), and what lies beyond the grid is of the size exp(−(v_max

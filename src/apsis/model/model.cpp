@@ -24,6 +24,16 @@ misfit model::unfit_range(const double*, const double*) const {
   return {};
 }
 
+void relaxation_model::moments_of_rows(const double* u, std::ptrdiff_t pitch, int rows, double* omega) const {
+  for (int p = 0; p < rows; ++p) moments(u + p * pitch, omega + p * moment_count());
+}
+
+int relaxation_model::equilibria(const double* omega, int rows, double* e, std::ptrdiff_t pitch) const {
+  for (int p = 0; p < rows; ++p)
+    if (!equilibrium(omega + p * moment_count(), e + p * pitch)) return p;
+  return rows;
+}
+
 model_config default_config(const model_entry& entry) {
   model_config config;
   for (const auto& p : entry.parameters) config.parameters[p.name] = p.value;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <string>
@@ -76,6 +77,11 @@ class relaxation_model : public model {
   virtual void moments(const double* u, double* omega) const = 0;
   /// E(ω). False when ω is not admissible (NaN, ρ ≤ 0, T ≤ 0, …); e is then undefined.
   virtual bool equilibrium(const double* omega, double* e) const = 0;
+  /// The same for some rows `pitch` numbers apart. Rows of ω and of E are those of the functions of one row,
+  /// which is what these do where a model gains nothing by seeing several at once.
+  virtual void moments_of_rows(const double* u, std::ptrdiff_t pitch, int rows, double* omega) const;
+  /// Number of rows before the first ω that is not admissible.
+  virtual int equilibria(const double* omega, int rows, double* e, std::ptrdiff_t pitch) const;
   /// C(ω) > 0.
   virtual double rate(const double* omega) const = 0;
   /// For messages: "temperature -0.3 is not positive".

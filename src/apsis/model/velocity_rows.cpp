@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include <hwy/contrib/math/math-inl.h>
 
@@ -37,26 +38,45 @@ HWY_INLINE void store_some(N x, int count, double* to) {
   hn::BlendedStore(x.v, hn::FirstN(wide(), static_cast<std::size_t>(count)), wide(), to);
 }
 
-velocity_rows::sums moments(const double* f, const double* v, const double* half_square, int n) {
+struct partial_sums {
+  N mass, momentum, energy;
+
+  HWY_INLINE partial_sums() : mass(0.0), momentum(0.0), energy(0.0) {}
+  HWY_INLINE void add(N value, N v, N half_square) {
+    mass = mass + value;
+    momentum = fma(v, value, momentum);
+    energy = fma(half_square, value, energy);
+  }
+};
+
+/// Several rows share the loads of v and ½v².
+template <int Rows>
+HWY_INLINE void moments_of(const double* f, std::ptrdiff_t pitch, const double* v, const double* half_square,
+                           int n, velocity_rows::sums* of_rows) {
   const int length = static_cast<int>(hn::Lanes(wide()));
-  // Two sums of each kind: an addition waits for the one before it.
-  N mass[2] = {0.0, 0.0}, momentum[2] = {0.0, 0.0}, energy[2] = {0.0, 0.0};
+  partial_sums sums[Rows][2];  // two of each kind: an addition waits for the one before it
   int j = 0;
   for (; j + 2 * length <= n; j += 2 * length)
     for (int half = 0; half < 2; ++half) {
       const int k = j + half * length;
-      const N value = N::load(f + k);
-      mass[half] = mass[half] + value;
-      momentum[half] = fma(N::load(v + k), value, momentum[half]);
-      energy[half] = fma(N::load(half_square + k), value, energy[half]);
+      const N speed = N::load(v + k), square = N::load(half_square + k);
+      for (int r = 0; r < Rows; ++r) sums[r][half].add(N::load(f + r * pitch + k), speed, square);
     }
   for (; j < n; j += length) {
-    const N value = load_some(f + j, n - j);
-    mass[0] = mass[0] + value;
-    momentum[0] = fma(load_some(v + j, n - j), value, momentum[0]);
-    energy[0] = fma(load_some(half_square + j, n - j), value, energy[0]);
+    const N speed = load_some(v + j, n - j), square = load_some(half_square + j, n - j);
+    for (int r = 0; r < Rows; ++r) sums[r][0].add(load_some(f + r * pitch + j, n - j), speed, square);
   }
-  return {total(mass[0] + mass[1]), total(momentum[0] + momentum[1]), total(energy[0] + energy[1])};
+  for (int r = 0; r < Rows; ++r)
+    of_rows[r] = {total(sums[r][0].mass + sums[r][1].mass),
+                  total(sums[r][0].momentum + sums[r][1].momentum),
+                  total(sums[r][0].energy + sums[r][1].energy)};
+}
+
+void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square, int n,
+             velocity_rows::sums* of_rows) {
+  int r = 0;
+  for (; r + 3 <= rows; r += 3) moments_of<3>(f + r * pitch, pitch, v, half_square, n, of_rows + r);
+  for (; r < rows; ++r) moments_of<1>(f + r * pitch, pitch, v, half_square, n, of_rows + r);
 }
 
 double entropy(const double* f, int n) {
@@ -77,17 +97,23 @@ HWY_INLINE N exponential(N x) {
   return select(x > lowest, N(hn::Exp(wide(), larger(x, lowest).v)), N(0.0));
 }
 
-/// v − u of vector k of the points.
+/// v − u at the first point of vector k.
+HWY_INLINE N first_distance(const velocity_rows::points& line, N u, N k) {
+  const double length = static_cast<double>(hn::Lanes(wide()));
+  return line.spacing * (k * length + (0.5 - 0.5 * line.n)) - u;
+}
+
+/// v − u of all points of vector k.
 HWY_INLINE N distances(const velocity_rows::points& line, double u, int k) {
   const int length = static_cast<int>(hn::Lanes(wide()));
   return line.spacing * (N(hn::Iota(wide(), 0.0)) + N(k * length + 0.5 - 0.5 * line.n)) - N(u);
 }
 
-void gaussian_by_exponentials(const velocity_rows::points& line, double a, double u, double T, double* m) {
+void gaussian_by_exponentials(const velocity_rows::points& line, const velocity_rows::gaussian& of, double* m) {
   const int length = static_cast<int>(hn::Lanes(wide())), vectors = (line.n + length - 1) / length;
   for (int k = 0; k < vectors; ++k) {
-    const N x = distances(line, u, k);
-    store_some(a * exponential(-(x * x) / N(2.0 * T)), line.n - k * length, m + k * length);
+    const N x = distances(line, of.u, k);
+    store_some(of.a * exponential(-(x * x) / N(2.0 * of.T)), line.n - k * length, m + k * length);
   }
 }
 
@@ -125,27 +151,72 @@ HWY_INLINE void fill(const outwards& from, int centre, int n, double* m) {
   }
 }
 
-void gaussian(const velocity_rows::points& line, double a, double u, double T, double* m) {
-  const int length = static_cast<int>(hn::Lanes(wide())), vectors = (line.n + length - 1) / length;
-  const double at = (u / line.spacing + 0.5 * line.n) / length;
-  const int centre = static_cast<int>(std::clamp(at, 0.0, vectors - 1.0));
-  const double jump = line.spacing * length, per = 0.5 / T;
-  // The factors are exponentials of up to three times this, whose rounding they have; and k vectors away a
-  // value has k²/2 roundings of `change`, which may be many where the Gaussian is still large: at most one in
-  // 5 times this.
-  const double decay = jump * jump * per;
-  if (!(decay > 0.02 && decay < 8.0)) return gaussian_by_exponentials(line, a, u, T, m);
-  const N x = distances(line, u, centre);
-  N value = a * exponential(-(x * x) * per);
-  value = select(value > N(1e-300), value, N(0.0));
-  const N right = exponential(-(2.0 * jump * x + jump * jump) * per),
-          change = exponential(N(-2.0 * jump * jump * per));
-  const outwards from{value, right, change / right, change};
-  const double farthest = 0.5 * line.spacing * line.n + jump + std::abs(u);
-  if (farthest * farthest * per < 600.0 && a > 1e-30) {
-    fill<false>(from, centre, line.n, m);
-  } else {
-    fill<true>(from, centre, line.n, m);
+/// As many Gaussians as a vector has numbers, each of them a lane here, so that exponentials that are the same
+/// for all points of a Gaussian cost a lane and not a vector. With x the distances of vector `centre` and J
+/// the length of a vector, the next one has exp(−(x + J)²/(2T)) = exp(−x²/(2T)) × right, and right = exp(−(2xJ
+/// + J²)/(2T)) falls by the factor exp(−2Jh/(2T)) from point to point: `steps` are those of 1, 2, 4, … points.
+class first_vectors {
+ public:
+  first_vectors(const velocity_rows::points& line, const velocity_rows::gaussian* of, int rows) : line_(line) {
+    alignas(64) double u[most_lanes], T[most_lanes];
+    for (int p = 0; p < length; ++p) {
+      u[p] = p < rows ? of[p].u : 0.0;
+      T[p] = p < rows ? of[p].T : 1.0;
+    }
+    const double vectors = (line.n + length - 1) / length;
+    const N at = (N::load(u) / N(line.spacing) + N(0.5 * line.n)) / N(length);
+    const N centre(hn::Floor(smaller(larger(at, N(0.0)), N(vectors - 1.0)).v));
+    const N x = first_distance(line, N::load(u), centre), per = N(0.5) / N::load(T);
+    centre.store(centre_);
+    per.store(per_);
+    exponential(-(2.0 * jump() * x + N(jump() * jump())) * per).store(right_);
+    for (int s = 0, points = 1; points <= length; ++s, points *= 2)
+      exponential(N(-2.0 * jump() * line.spacing * points) * per).store(steps_[s]);
+  }
+
+  void fill_row(int p, const velocity_rows::gaussian& of, double* m) const {
+    // The factors are exponentials of up to three times this, whose rounding they have; and k vectors away a
+    // value has k²/2 roundings of `change`, which may be many where the Gaussian is still large: at most one
+    // in 5 times this.
+    const double decay = jump() * jump() * per_[p];
+    if (!(decay > 0.02 && decay < 8.0)) return gaussian_by_exponentials(line_, of, m);
+    const int centre = static_cast<int>(centre_[p]);
+    const N x = distances(line_, of.u, centre);
+    N value = of.a * exponential(-(x * x) * per_[p]);
+    value = select(value > N(1e-300), value, N(0.0));
+    N right(right_[p]);
+    int s = 0;
+    for (int points = 1; points < length; ++s, points *= 2) {
+      // Lanes with this bit in their number.
+      const hn::RebindToUnsigned<wide> bits;
+      const auto has = hn::TestBit(hn::Iota(bits, 0), hn::Set(bits, static_cast<std::uint64_t>(points)));
+      right = select(hn::RebindMask(wide(), has), right * N(steps_[s][p]), right);
+    }
+    const N change(steps_[s][p]);
+    const outwards from{value, right, change / right, change};
+    const double farthest = 0.5 * line_.spacing * line_.n + jump() + std::abs(of.u);
+    if (farthest * farthest * per_[p] < 600.0 && of.a > 1e-30) {
+      fill<false>(from, centre, line_.n, m);
+    } else {
+      fill<true>(from, centre, line_.n, m);
+    }
+  }
+
+ private:
+  static constexpr int length = static_cast<int>(hn::MaxLanes(wide()));
+  double jump() const { return line_.spacing * length; }
+
+  const velocity_rows::points& line_;
+  alignas(64) double centre_[most_lanes], per_[most_lanes], right_[most_lanes], steps_[4][most_lanes];
+};
+
+void gaussians(const velocity_rows::points& line, const velocity_rows::gaussian* of_rows, int rows, double* m,
+               std::ptrdiff_t pitch) {
+  const int length = static_cast<int>(hn::Lanes(wide()));
+  for (int first = 0; first < rows; first += length) {
+    const int some = std::min(length, rows - first);
+    const first_vectors of(line, of_rows + first, some);
+    for (int p = 0; p < some; ++p) of.fill_row(p, of_rows[first + p], m + (first + p) * pitch);
   }
 }
 
@@ -157,20 +228,21 @@ namespace apsis {
 namespace {
 HWY_EXPORT(moments);
 HWY_EXPORT(entropy);
-HWY_EXPORT(gaussian);
+HWY_EXPORT(gaussians);
 }  // namespace
 
-velocity_rows::sums velocity_rows::moments(const double* f, const double* v, const double* half_square,
-                                           int n) {
-  return HWY_DYNAMIC_DISPATCH(moments)(f, v, half_square, n);
+void velocity_rows::moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v,
+                            const double* half_square, int n, sums* of_rows) {
+  HWY_DYNAMIC_DISPATCH(moments)(f, pitch, rows, v, half_square, n, of_rows);
 }
 
 double velocity_rows::entropy(const double* f, int n) {
   return HWY_DYNAMIC_DISPATCH(entropy)(f, n);
 }
 
-void velocity_rows::gaussian(const points& line, double a, double u, double T, double* m) {
-  HWY_DYNAMIC_DISPATCH(gaussian)(line, a, u, T, m);
+void velocity_rows::gaussians(const points& line, const gaussian* of_rows, int rows, double* m,
+                              std::ptrdiff_t pitch) {
+  HWY_DYNAMIC_DISPATCH(gaussians)(line, of_rows, rows, m, pitch);
 }
 
 }  // namespace apsis

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 namespace apsis {
 
 /// Sums and functions over the points of one velocity direction, for the instruction set of this processor.
@@ -11,20 +13,28 @@ struct points {
   double spacing;
 };
 
-/// Σ f, Σ v f, Σ ½v² f over rows of n numbers.
+/// Σ f, Σ v f, Σ ½v² f over each of some rows of n numbers, which lie `pitch` apart. Those of a row do not
+/// depend on the others.
 struct sums {
   double mass, momentum, energy;
 };
-sums moments(const double* f, const double* v, const double* half_square, int n);
+void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square, int n,
+             sums* of_rows);
 
 /// Σ f log f over a row of n numbers ≥ 0, 0 log 0 = 0.
 double entropy(const double* f, int n);
 
-/// m_j = a exp(−(v_j − u)²/(2T)), T > 0, in about two multiplications a point: from one vector of points to
-/// the next a Gaussian changes by a factor, and that by a constant. It starts where v ≈ u and goes outwards,
-/// so that errors stay within some roundings of the largest value, and within 1e-12 of each; below 1e-300
-/// values are 0. Very wide and very narrow Gaussians are exponentials.
-void gaussian(const points& line, double a, double u, double T, double* m);
+/// a exp(−(v − u)²/(2T)), T > 0.
+struct gaussian {
+  double a, u, T;
+};
+
+/// The values of some Gaussians at all points, rows `pitch` apart, in about two multiplications a point: from
+/// one vector of points to the next a Gaussian changes by a factor, and that by a constant. It starts where
+/// v ≈ u and goes outwards, so that errors stay within some roundings of the largest value, and within 1e-12
+/// of each; below 1e-300 values are 0. Very wide and very narrow Gaussians are exponentials. A row does not
+/// depend on the others; several share the cost of their first vectors.
+void gaussians(const points& line, const gaussian* of_rows, int rows, double* m, std::ptrdiff_t pitch);
 
 }  // namespace velocity_rows
 }  // namespace apsis

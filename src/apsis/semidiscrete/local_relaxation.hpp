@@ -36,12 +36,12 @@ class local_relaxation {
     const profile::section timed(kernel::equilibria,
                                  static_cast<double>(points) * static_cast<double>(stride_),
                                  {equation_->operations_of_equilibrium(), 0.0});
-    for (int p = 0; p < points; ++p) equation_->moments(u + p * pitch, omega(p));
-    for (int p = 0; p < points; ++p)
-      if (!equation_->equilibrium(omega(p), equilibrium(p)))
-        throw numerical_error("no local equilibrium (" + equation_->why_inadmissible(omega(p)) +
-                                  "); use the positivity limiter or a smaller step",
-                              {-1, site_unknown, first_cell + p / per_cell, *omega(p)});
+    equation_->moments_of_rows(u, pitch, points, omega(0));
+    const int p = equation_->equilibria(omega(0), points, equilibrium(0), stride_);
+    if (p < points)
+      throw numerical_error("no local equilibrium (" + equation_->why_inadmissible(omega(p)) +
+                                "); use the positivity limiter or a smaller step",
+                            {-1, site_unknown, first_cell + p / per_cell, *omega(p)});
   }
 
   const double* equilibrium(int p) const { return equilibria_.data() + p * stride_; }

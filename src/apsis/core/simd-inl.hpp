@@ -43,6 +43,15 @@ struct pack {
   HWY_INLINE pack(double from) : v(hn::Set(D(), from)) {}
   static HWY_INLINE pack load(const double* from) { return {hn::LoadU(D(), from)}; }
   HWY_INLINE void store(double* to) const { hn::StoreU(v, D(), to); }
+  /// The same in a register. A compiler that sees a loaded number used three times may load it three times,
+  /// which costs where loads are the bottleneck.
+  HWY_INLINE pack loaded_once() const {
+    pack copy = *this;
+#if HWY_ARCH_X86 && HWY_COMPILER_GCC
+    asm("" : "+v"(copy.v.raw));
+#endif
+    return copy;
+  }
 
   /// Whether a comparison holds for some, or for every number of a pack.
   template <class Mask>

@@ -48,7 +48,7 @@ namespace {
 void moments_on_line(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega) {
   constexpr int most = 16;
-  std::array<velocity_rows::sums, most> sums{};
+  std::array<velocity_rows::sums, most> sums;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int first = 0; first < rows; first += most) {
     const int some = std::min(most, rows - first);
     velocity_rows::moments(f + first * pitch, pitch, some, grid.line().data(), grid.half_square().data(),
@@ -180,52 +180,53 @@ double height(const fluid_state& state, int dimensions) {
   return factor;
 }
 
-void maxwellians_on_line(const velocity_grid& grid, std::span<const fluid_state> states, double* m,
-                         std::ptrdiff_t pitch) {
-  constexpr std::size_t most = 16;
-  std::array<velocity_rows::gaussian, most> rows{};
-  for (std::size_t first = 0; first < states.size(); first += most) {
-    const std::size_t some = std::min(most, states.size() - first);
-    for (std::size_t r = 0; r < some; ++r) {
-      const fluid_state& state = states[first + r];
-      rows[r] = {height(state, 1), state.u[0], state.T};
-    }
-    velocity_rows::gaussians({grid.points(), grid.spacing()}, rows.data(), static_cast<int>(some),
-                             m + static_cast<std::ptrdiff_t>(first) * pitch, pitch);
-  }
-}
-
 }  // namespace
 
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m) {
-  if (grid.dimensions() == 1) return maxwellians_on_line(grid, {&state, 1}, m, 0);
+  const velocity_rows::points points{grid.points(), grid.spacing()};
+  const double factor = height(state, grid.dimensions());
+  if (grid.dimensions() == 1) {
+    const velocity_rows::gaussian row{factor, state.u[0], state.T};
+    return velocity_rows::gaussians(points, &row, 1, m, 0);
+  }
   auto& lines = buffers(grid.points());
   std::array<const double*, 3> g{};
   for (std::size_t k = 0; k < static_cast<std::size_t>(grid.dimensions()); ++k) {
     const velocity_rows::gaussian of_line{1.0, state.u[k], state.T};
-    velocity_rows::gaussians({grid.points(), grid.spacing()}, &of_line, 1, lines[k].values(), 0);
+    velocity_rows::gaussians(points, &of_line, 1, lines[k].values(), 0);
     g[k] = lines[k].values();
   }
-  tensor_product(grid, height(state, grid.dimensions()), g, m);
+  tensor_product(grid, factor, g, m);
 }
 
-void formula_maxwellians(const velocity_grid& grid, std::span<const fluid_state> states, double* m,
-                         std::ptrdiff_t pitch) {
-  if (grid.dimensions() == 1) return maxwellians_on_line(grid, states, m, pitch);
-  for (const auto& state : states) {
-    formula_maxwellian(grid, state, m);
-    m += pitch;
+int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, int rows, double* m,
+                                std::ptrdiff_t pitch, line_state* states) {
+  std::array<velocity_rows::gaussian, most_line_states> curves;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  int admissible = 0;
+  for (; admissible < rows; ++admissible, omega += 3) {
+    line_state& s = states[admissible];
+    s.rho = omega[0];
+    s.u = omega[1] / s.rho;
+    s.T = 2.0 * omega[2] / s.rho - s.u * s.u;
+    curves[static_cast<std::size_t>(admissible)] = {s.rho * (1.0 / std::sqrt(2.0 * std::numbers::pi * s.T)), s.u,
+                                                    s.T};
+    if (!s.admissible()) break;
   }
+  velocity_rows::gaussians({grid.points(), grid.spacing()}, curves.data(), admissible, m, pitch);
+  return admissible;
+}
+
+bool formula_has_exact_moments(const velocity_grid& grid, const line_state& state) {
+  constexpr double enough = 40.0;  // 100 e^−40 is below the rounding of a sum
+  constexpr double spacings = enough / (2.0 * std::numbers::pi * std::numbers::pi);
+  const double room = grid.max() - std::abs(state.u);
+  return state.T >= spacings * grid.spacing() * grid.spacing() && room > 0.0 &&
+         room * room >= 2.0 * enough * state.T;
 }
 
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state) {
-  constexpr double enough = 40.0;  // 100 e^−40 is below the rounding of a sum
-  if (!(state.T >= enough / (2.0 * std::numbers::pi * std::numbers::pi) * grid.spacing() * grid.spacing()))
-    return false;
-  for (int k = 0; k < grid.dimensions(); ++k) {
-    const double room = grid.max() - std::abs(state.u[k]);
-    if (!(room > 0.0 && room * room >= 2.0 * enough * state.T)) return false;
-  }
+  for (int k = 0; k < grid.dimensions(); ++k)
+    if (!formula_has_exact_moments(grid, line_state{state.rho, state.u[k], state.T})) return false;
   return true;
 }
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -62,16 +61,25 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega);
 void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega);
 
-/// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK), and those of
-/// some states in rows `pitch` numbers apart.
+/// The same in one velocity dimension, in no more memory than it takes.
+struct line_state {
+  double rho, u, T;
+  bool admissible() const { return rho > 0.0 && T > 0.0 && std::isfinite(rho + std::abs(u) + T); }
+};
+
+/// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK).
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
-void formula_maxwellians(const velocity_grid& grid, std::span<const fluid_state> states, double* m,
-                         std::ptrdiff_t pitch);
+/// In one velocity dimension those of at most most_line_states rows of ω, in rows `pitch` apart, and the states.
+/// Returns the number of rows before the first ω that is not admissible.
+inline constexpr int most_line_states = 16;
+int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, int rows, double* m,
+                                std::ptrdiff_t pitch, line_state* states);
 
 /// Sufficient for its midpoint-rule moments to be those of `state` to round-off: Poisson's sum formula bounds
 /// their relative error by about 100 exp(−2π²T/Δv²), and what lies beyond the grid is of the size exp(−(v_max
 /// − |u|)²/(2T)).
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state);
+bool formula_has_exact_moments(const velocity_grid& grid, const line_state& state);
 
 /// exp(α + β·v + γ|v|²) whose midpoint-rule moments are those of `state` to round-off, on any grid
 /// (Mieussens, M3AS 10, 2000). Newton's method on the convex dual, damped. False if the grid has no such

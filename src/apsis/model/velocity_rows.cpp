@@ -60,7 +60,7 @@ HWY_INLINE void moments_of(const double* f, std::ptrdiff_t pitch, const double* 
     for (int half = 0; half < 2; ++half) {
       const int k = j + half * length;
       const N speed = N::load(v + k), square = N::load(half_square + k);
-      for (int r = 0; r < Rows; ++r) sums[r][half].add(N::load(f + r * pitch + k), speed, square);
+      for (int r = 0; r < Rows; ++r) sums[r][half].add(N::load(f + r * pitch + k).loaded_once(), speed, square);
     }
   for (; j < n; j += length) {
     const N speed = load_some(v + j, n - j), square = load_some(half_square + j, n - j);
@@ -95,12 +95,6 @@ double entropy(const double* f, int n) {
 HWY_INLINE N exponential(N x) {
   const N lowest(-690.0);
   return select(x > lowest, N(hn::Exp(wide(), larger(x, lowest).v)), N(0.0));
-}
-
-/// v − u at the first point of vector k.
-HWY_INLINE N first_distance(const velocity_rows::points& line, N u, N k) {
-  const double length = static_cast<double>(hn::Lanes(wide()));
-  return line.spacing * (k * length + (0.5 - 0.5 * line.n)) - u;
 }
 
 /// v − u of all points of vector k.
@@ -166,12 +160,18 @@ class first_vectors {
     const double vectors = (line.n + length - 1) / length;
     const N at = (N::load(u) / N(line.spacing) + N(0.5 * line.n)) / N(length);
     const N centre(hn::Floor(smaller(larger(at, N(0.0)), N(vectors - 1.0)).v));
-    const N x = first_distance(line, N::load(u), centre), per = N(0.5) / N::load(T);
+    const N x = line.spacing * (centre * length + (0.5 - 0.5 * line.n)) - N::load(u), per = N(0.5) / N::load(T);
     centre.store(centre_);
     per.store(per_);
     exponential(-(2.0 * jump() * x + N(jump() * jump())) * per).store(right_);
     for (int s = 0, points = 1; points <= length; ++s, points *= 2)
       exponential(N(-2.0 * jump() * line.spacing * points) * per).store(steps_[s]);
+    // All of them before the first row is filled: exponentials are long chains, which then overlap.
+    for (int p = 0; p < rows; ++p) {
+      const N distance = distances(line, u[p], static_cast<int>(centre_[p]));
+      const N value = of[p].a * exponential(-(distance * distance) * per_[p]);
+      select(value > N(1e-300), value, N(0.0)).store(values_[p]);
+    }
   }
 
   void fill_row(int p, const velocity_rows::gaussian& of, double* m) const {
@@ -180,10 +180,6 @@ class first_vectors {
     // in 5 times this.
     const double decay = jump() * jump() * per_[p];
     if (!(decay > 0.02 && decay < 8.0)) return gaussian_by_exponentials(line_, of, m);
-    const int centre = static_cast<int>(centre_[p]);
-    const N x = distances(line_, of.u, centre);
-    N value = of.a * exponential(-(x * x) * per_[p]);
-    value = select(value > N(1e-300), value, N(0.0));
     N right(right_[p]);
     int s = 0;
     for (int points = 1; points < length; ++s, points *= 2) {
@@ -193,7 +189,8 @@ class first_vectors {
       right = select(hn::RebindMask(wide(), has), right * N(steps_[s][p]), right);
     }
     const N change(steps_[s][p]);
-    const outwards from{value, right, change / right, change};
+    const outwards from{N::load(values_[p]), right, change / right, change};
+    const int centre = static_cast<int>(centre_[p]);
     const double farthest = 0.5 * line_.spacing * line_.n + jump() + std::abs(of.u);
     if (farthest * farthest * per_[p] < 600.0 && of.a > 1e-30) {
       fill<false>(from, centre, line_.n, m);
@@ -207,7 +204,8 @@ class first_vectors {
   double jump() const { return line_.spacing * length; }
 
   const velocity_rows::points& line_;
-  alignas(64) double centre_[most_lanes], per_[most_lanes], right_[most_lanes], steps_[4][most_lanes];
+  alignas(64) double centre_[most_lanes], per_[most_lanes], right_[most_lanes], steps_[4][most_lanes],
+      values_[most_lanes][most_lanes];
 };
 
 void gaussians(const velocity_rows::points& line, const velocity_rows::gaussian* of_rows, int rows, double* m,

@@ -18,7 +18,9 @@ void combine(double stay, double relax, const double* e, int width, double* u) {
   });
 }
 
-void average(const relaxation::weighted_rows points[3], int width, double* average) {
+void average(const relaxation::weighted_rows of_points[3], int width, double* average) {
+  // A copy, which the compiler knows to stay as it is when the average is stored.
+  const relaxation::weighted_rows points[3] = {of_points[0], of_points[1], of_points[2]};
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     N sum(0.0);
@@ -77,7 +79,7 @@ HWY_INLINE gauss_points<N> quartic_values(N before, N c, N after, N l, N r) {
 }
 
 template <bool Limited>
-HWY_INLINE void quartics(const relaxation::quartic_rows& cell, int width, double* points) {
+HWY_INLINE void quartics(relaxation::quartic_rows cell, int width, double* points) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     const auto [g0, g1, g2] =

@@ -39,7 +39,8 @@ HWY_INLINE void add_along(const Walk& way, N speed, const cells& run, std::span<
   }
 }
 
-void add(const cells& run, std::span<const row_target> targets) {
+void add(const cells& of, std::span<const row_target> targets) {
+  const cells run = of;  // a copy, which the compiler knows to stay as it is when targets are stored
   for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
     using N = typename std::decay_t<decltype(way)>::number;
     add_along(way, N::load(run.per_cell + k), run, targets);
@@ -88,7 +89,8 @@ HWY_INLINE void add_limited_along(const Walk& way, N speed, const cells& run,
   }
 }
 
-void add_limited(const cells& run, std::span<const row_target> targets) {
+void add_limited(const cells& of, std::span<const row_target> targets) {
+  const cells run = of;  // a copy, which the compiler knows to stay as it is when targets are stored
   for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
     using N = typename std::decay_t<decltype(way)>::number;
     add_limited_along(way, N::load(run.per_cell + k), run, targets);

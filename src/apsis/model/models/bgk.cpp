@@ -40,14 +40,28 @@ class bgk_model final : public relaxation_model {
     kinetic_moments(grid_, f, pitch, rows, omega);
   }
 
-  bool equilibrium(const double* omega, double* m) const override { return equilibria(omega, 1, m, 0) == 1; }
+  bool equilibrium(const double* omega, double* m) const override {
+    const fluid_state state = to_fluid_state(omega, grid_.dimensions());
+    if (!state.admissible()) return false;
+    if (choice_ == equilibrium_choice::discrete) return discrete_maxwellian(grid_, state, m);
+    formula_maxwellian(grid_, state, m);
+    return is_good_enough(omega, state, m) || discrete_maxwellian(grid_, state, m);
+  }
+
   int equilibria(const double* omega, int rows, double* m, std::ptrdiff_t pitch) const override {
-    constexpr int most = 16;
-    std::array<fluid_state, most> states;
-    for (int first = 0; first < rows; first += most) {
-      const int some = std::min(most, rows - first);
-      const int found = maxwellians(omega + first * moment_count(), std::span(states).first(as_size(some)),
-                                    m + first * pitch, pitch);
+    if (grid_.dimensions() != 1 || choice_ == equilibrium_choice::discrete)
+      return relaxation_model::equilibria(omega, rows, m, pitch);
+    std::array<line_state, most_line_states> states;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+    for (int first = 0; first < rows; first += most_line_states) {
+      const int some = std::min(most_line_states, rows - first);
+      const double* of = omega + first * 3;
+      double* to = m + first * pitch;
+      const int found = formula_maxwellians_on_line(grid_, of, some, to, pitch, states.data());
+      for (int p = 0; p < found; ++p) {
+        const auto& state = states[static_cast<std::size_t>(p)];
+        if (!is_good_enough(of + p * 3, state, to + p * pitch) && !equilibrium(of + p * 3, to + p * pitch))
+          return first + p;
+      }
       if (found < some) return first + found;
     }
     return rows;
@@ -136,29 +150,12 @@ class bgk_model final : public relaxation_model {
   /// Rounding of sums over a row, with a margin (measured: below 1e-15 on 150 points).
   static constexpr double round_off = 4e-15;
 
-  static std::size_t as_size(int n) { return static_cast<std::size_t>(n); }
-
-  /// Equilibria for as many ω as there is room for states; how many there are before the first without one.
-  int maxwellians(const double* omega, std::span<fluid_state> states, double* m, std::ptrdiff_t pitch) const {
-    const int rows = static_cast<int>(states.size());
-    int admissible = 0;
-    for (; admissible < rows; ++admissible) {
-      states[as_size(admissible)] = to_fluid_state(omega + admissible * moment_count(), grid_.dimensions());
-      if (!states[as_size(admissible)].admissible()) break;
-    }
-    if (choice_ != equilibrium_choice::discrete)
-      formula_maxwellians(grid_, states.first(as_size(admissible)), m, pitch);
-    for (int p = 0; p < admissible; ++p)
-      if (!conserves(omega + p * moment_count(), states[as_size(p)], m + p * pitch)) return p;
-    return admissible;
-  }
-
-  /// Whether m has the moments ω, as it is or made anew.
-  bool conserves(const double* omega, const fluid_state& state, double* m) const {
-    if (choice_ == equilibrium_choice::discrete) return discrete_maxwellian(grid_, state, m);
+  /// Whether the Maxwellian m of the formula has the moments ω of its state.
+  template <class State>
+  bool is_good_enough(const double* omega, const State& state, const double* m) const {
     if (choice_ == equilibrium_choice::formula || formula_has_exact_moments(grid_, state)) return true;
     // The midpoint rule is spectrally accurate: either the defect is round-off or the grid is too coarse.
-    return moment_defect(grid_, m, omega, state) <= round_off || discrete_maxwellian(grid_, state, m);
+    return moment_defect(grid_, m, omega, to_fluid_state(omega, grid_.dimensions())) <= round_off;
   }
 
   /// a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃] at x, the form of all of the paper's data; u points along x.

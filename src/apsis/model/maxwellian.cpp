@@ -201,15 +201,16 @@ void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, dou
 
 int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, int rows, double* m,
                                 std::ptrdiff_t pitch, line_state* states) {
-  std::array<velocity_rows::gaussian, most_line_states> curves;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  std::array<velocity_rows::gaussian, most_line_states>
+      curves;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   int admissible = 0;
   for (; admissible < rows; ++admissible, omega += 3) {
     line_state& s = states[admissible];
     s.rho = omega[0];
     s.u = omega[1] / s.rho;
     s.T = 2.0 * omega[2] / s.rho - s.u * s.u;
-    curves[static_cast<std::size_t>(admissible)] = {s.rho * (1.0 / std::sqrt(2.0 * std::numbers::pi * s.T)), s.u,
-                                                    s.T};
+    curves[static_cast<std::size_t>(admissible)] = {s.rho * (1.0 / std::sqrt(2.0 * std::numbers::pi * s.T)),
+                                                    s.u, s.T};
     if (!s.admissible()) break;
   }
   velocity_rows::gaussians({grid.points(), grid.spacing()}, curves.data(), admissible, m, pitch);

@@ -41,7 +41,8 @@ struct fluid_state {
   double T = 0.0;
   /// All finite, ρ > 0 and T > 0.
   bool admissible() const {
-    return std::isfinite(rho) && std::isfinite(u[0] + u[1] + u[2]) && std::isfinite(T) && rho > 0.0 && T > 0.0;
+    return std::isfinite(rho) && std::isfinite(u[0] + u[1] + u[2]) && std::isfinite(T) && rho > 0.0 &&
+           T > 0.0;
   }
 };
 inline fluid_state to_fluid_state(const double* omega, int dimensions) {
@@ -69,8 +70,8 @@ struct line_state {
 
 /// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK).
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
-/// In one velocity dimension those of at most most_line_states rows of ω, in rows `pitch` apart, and the states.
-/// Returns the number of rows before the first ω that is not admissible.
+/// In one velocity dimension those of at most most_line_states rows of ω, in rows `pitch` apart, and the
+/// states. Returns the number of rows before the first ω that is not admissible.
 inline constexpr int most_line_states = 16;
 int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, int rows, double* m,
                                 std::ptrdiff_t pitch, line_state* states);

@@ -60,20 +60,20 @@ HWY_INLINE void moments_of(const double* f, std::ptrdiff_t pitch, const double* 
     for (int half = 0; half < 2; ++half) {
       const int k = j + half * length;
       const N speed = N::load(v + k), square = N::load(half_square + k);
-      for (int r = 0; r < Rows; ++r) sums[r][half].add(N::load(f + r * pitch + k).loaded_once(), speed, square);
+      for (int r = 0; r < Rows; ++r)
+        sums[r][half].add(N::load(f + r * pitch + k).loaded_once(), speed, square);
     }
   for (; j < n; j += length) {
     const N speed = load_some(v + j, n - j), square = load_some(half_square + j, n - j);
     for (int r = 0; r < Rows; ++r) sums[r][0].add(load_some(f + r * pitch + j, n - j), speed, square);
   }
   for (int r = 0; r < Rows; ++r)
-    of_rows[r] = {total(sums[r][0].mass + sums[r][1].mass),
-                  total(sums[r][0].momentum + sums[r][1].momentum),
+    of_rows[r] = {total(sums[r][0].mass + sums[r][1].mass), total(sums[r][0].momentum + sums[r][1].momentum),
                   total(sums[r][0].energy + sums[r][1].energy)};
 }
 
-void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square, int n,
-             velocity_rows::sums* of_rows) {
+void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square,
+             int n, velocity_rows::sums* of_rows) {
   int r = 0;
   for (; r + 3 <= rows; r += 3) moments_of<3>(f + r * pitch, pitch, v, half_square, n, of_rows + r);
   for (; r < rows; ++r) moments_of<1>(f + r * pitch, pitch, v, half_square, n, of_rows + r);
@@ -103,7 +103,8 @@ HWY_INLINE N distances(const velocity_rows::points& line, double u, int k) {
   return line.spacing * (N(hn::Iota(wide(), 0.0)) + N(k * length + 0.5 - 0.5 * line.n)) - N(u);
 }
 
-void gaussian_by_exponentials(const velocity_rows::points& line, const velocity_rows::gaussian& of, double* m) {
+void gaussian_by_exponentials(const velocity_rows::points& line, const velocity_rows::gaussian& of,
+                              double* m) {
   const int length = static_cast<int>(hn::Lanes(wide())), vectors = (line.n + length - 1) / length;
   for (int k = 0; k < vectors; ++k) {
     const N x = distances(line, of.u, k);
@@ -145,13 +146,16 @@ HWY_INLINE void fill(const outwards& from, int centre, int n, double* m) {
   }
 }
 
-/// As many Gaussians as a vector has numbers, each of them a lane here, so that exponentials that are the same
-/// for all points of a Gaussian cost a lane and not a vector. With x the distances of vector `centre` and J
-/// the length of a vector, the next one has exp(−(x + J)²/(2T)) = exp(−x²/(2T)) × right, and right = exp(−(2xJ
-/// + J²)/(2T)) falls by the factor exp(−2Jh/(2T)) from point to point: `steps` are those of 1, 2, 4, … points.
+/// As many Gaussians as a vector has numbers, each of them a lane here, so that exponentials that are the
+/// same for all points of a Gaussian cost a lane and not a vector. With x the distances of vector `centre`
+/// and J the length of a vector, the next one has exp(−(x + J)²/(2T)) = exp(−x²/(2T)) × right, and right =
+/// exp(−(2xJ
+/// + J²)/(2T)) falls by the factor exp(−2Jh/(2T)) from point to point: `steps` are those of 1, 2, 4, …
+/// points.
 class first_vectors {
  public:
-  first_vectors(const velocity_rows::points& line, const velocity_rows::gaussian* of, int rows) : line_(line) {
+  first_vectors(const velocity_rows::points& line, const velocity_rows::gaussian* of, int rows)
+      : line_(line) {
     alignas(64) double u[most_lanes], T[most_lanes];
     for (int p = 0; p < length; ++p) {
       u[p] = p < rows ? of[p].u : 0.0;
@@ -160,7 +164,8 @@ class first_vectors {
     const double vectors = (line.n + length - 1) / length;
     const N at = (N::load(u) / N(line.spacing) + N(0.5 * line.n)) / N(length);
     const N centre(hn::Floor(smaller(larger(at, N(0.0)), N(vectors - 1.0)).v));
-    const N x = line.spacing * (centre * length + (0.5 - 0.5 * line.n)) - N::load(u), per = N(0.5) / N::load(T);
+    const N x = line.spacing * (centre * length + (0.5 - 0.5 * line.n)) - N::load(u),
+            per = N(0.5) / N::load(T);
     centre.store(centre_);
     per.store(per_);
     exponential(-(2.0 * jump() * x + N(jump() * jump())) * per).store(right_);

@@ -18,8 +18,8 @@ struct points {
 struct sums {
   double mass, momentum, energy;
 };
-void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square, int n,
-             sums* of_rows);
+void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square,
+             int n, sums* of_rows);
 
 /// Σ f log f over a row of n numbers ≥ 0, 0 log 0 = 0.
 double entropy(const double* f, int n);

@@ -23,15 +23,16 @@ class cell_average_collision final : public collision {
   void solve(double a, double b, field& u) override {
     if (result_.cells() != u.cells() || result_.components() != u.components())
       result_ = field(u.cells(), u.components());
-    for_blocks(u, [&](int begin, int cells, const double* points, const local_relaxation& local) {
+    for_blocks(u, [&](int begin, int cells, const double* points, local_relaxation& local) {
       const auto pitch = static_cast<std::ptrdiff_t>(u.stride());
       const profile::section timed(kernel::relaxation, static_cast<double>(cells) * u.stride(),
                                    {relaxation::operations_of_average, sizeof(double)});
+      local.find_weights(a, b, epsilon_.data() + begin * gauss3::points, cells * gauss3::points);
       for (int i = 0; i < cells; ++i) {
         relaxation::weighted_rows rows[gauss3::points];
         for (int q = 0; q < gauss3::points; ++q) {
           const int p = i * gauss3::points + q;
-          const auto weights = local.weights(p, a, b, epsilon_at(begin + i, q));
+          const auto weights = local.weights(p);
           const double w = gauss3::weight[static_cast<std::size_t>(q)];
           rows[q] = {w * weights.stay, w * weights.relax, points + p * pitch, local.equilibrium(p)};
         }

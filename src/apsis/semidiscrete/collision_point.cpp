@@ -70,17 +70,18 @@ class pointwise_collision final : public cellwise_collision {
   double epsilon_at(int cell) const { return epsilon_[static_cast<std::size_t>(cell)]; }
 
   void relax(double a, double b, field& u, int begin, int cells, double bytes) const {
-    const auto& local = equilibria_of(u, begin, cells);
+    auto& local = equilibria_of(u, begin, cells);
     const profile::section timed(kernel::relaxation, static_cast<double>(cells) * u.stride(),
                                  {relaxation::operations_of_combine, bytes});
+    local.find_weights(a, b, epsilon_.data() + begin, cells);
     for (int p = 0; p < cells; ++p) {
-      const auto weights = local.weights(p, a, b, epsilon_at(begin + p));
+      const auto weights = local.weights(p);
       relaxation::combine(weights.stay, weights.relax, local.equilibrium(p), u.stride(), u.row(begin + p));
     }
   }
 
   /// In scratch space of this thread, until the next call.
-  const local_relaxation& equilibria_of(const field& u, int begin, int cells) const {
+  local_relaxation& equilibria_of(const field& u, int begin, int cells) const {
     thread_local local_relaxation local;
     local.attach(equation_, points_at_once(u.stride()));
     local.find_equilibria(u.row(begin), u.stride(), cells, begin);

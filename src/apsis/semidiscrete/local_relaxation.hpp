@@ -25,6 +25,7 @@ class local_relaxation {
     stride_ = field::padded(equation.components());
     const auto n = static_cast<std::size_t>(points);
     omega_.resize(n * static_cast<std::size_t>(moments_));
+    for (auto* numbers : {&rates_, &stay_, &relax_}) numbers->resize(n);
     // Padded with zeros like the rows of a field. Of another model nothing may be left there.
     if (equilibria_.size() != n * static_cast<std::size_t>(stride_))
       equilibria_.assign(n * static_cast<std::size_t>(stride_), 0.0);
@@ -37,7 +38,7 @@ class local_relaxation {
                                  static_cast<double>(points) * static_cast<double>(stride_),
                                  {equation_->operations_of_equilibrium(), 0.0});
     equation_->moments_of_rows(u, pitch, points, omega(0));
-    const int p = equation_->equilibria(omega(0), points, equilibrium(0), stride_);
+    const int p = equation_->equilibria(omega(0), points, equilibrium_row(0), stride_);
     if (p < points)
       throw numerical_error("no local equilibrium (" + equation_->why_inadmissible(omega(p)) +
                                 "); use the positivity limiter or a smaller step",
@@ -46,9 +47,20 @@ class local_relaxation {
 
   const double* equilibrium(int p) const { return equilibria_.data() + p * stride_; }
 
-  /// Weights of the stage solve of a point that has its equilibrium.
-  relaxation_weights<double> weights(int p, double a, double b, double epsilon) const {
-    return relax_weights(a, b, equation_->rate(omega(p)), epsilon);
+  /// Weights of the stage solves of points that have their equilibria, ε being that of each.
+  void find_weights(double a, double b, const double* epsilon, int points) {
+    double *rates = rates_.data(), *stay = stay_.data(), *relax = relax_.data();
+    for (int p = 0; p < points; ++p) rates[p] = equation_->rate(omega(p));
+#pragma omp simd
+    for (int p = 0; p < points; ++p) {
+      const auto weights = relax_weights(a, b, rates[p], epsilon[p]);
+      stay[p] = weights.stay;
+      relax[p] = weights.relax;
+    }
+  }
+  relaxation_weights<double> weights(int p) const {
+    const auto k = static_cast<std::size_t>(p);
+    return {stay_[k], relax_[k]};
   }
 
   /// C/ε of such a point.
@@ -78,11 +90,11 @@ class local_relaxation {
 
   double* omega(int p) { return omega_.data() + p * moments_; }
   const double* omega(int p) const { return omega_.data() + p * moments_; }
-  double* equilibrium(int p) { return equilibria_.data() + p * stride_; }
+  double* equilibrium_row(int p) { return equilibria_.data() + p * stride_; }
 
   const relaxation_model* equation_ = nullptr;
   std::ptrdiff_t moments_ = 0, stride_ = 0;
-  aligned_vector<double> omega_, equilibria_;
+  aligned_vector<double> omega_, equilibria_, rates_, stay_, relax_;
 };
 
 /// Points whose equilibria, and as many rows besides, fit into half of a first-level cache of 32 KiB.

@@ -61,21 +61,20 @@ HWY_INLINE gauss_points<N> quartic_values(N before, N c, N after, N l, N r) {
   // ξ (1.25 − ξ²) of the slope and ξ (ξ²/2 − 1/8) of the rise.
   const N odd =
       fma(N(outer * (1.25 - outer * outer)), slope, N(outer * (0.5 * outer * outer - 0.125)) * rise);
-  N g0 = even - odd, g1 = middle, g2 = even + odd;
+  const N g0 = even - odd, g1 = middle, g2 = even + odd;
+  gauss_points<N> values{c + g0, c + g1, c + g2};
   if constexpr (Limited) {
     const N odd_inner =
         fma(N(inner * (1.25 - inner * inner)), slope, N(inner * (0.5 * inner * inner - 0.125)) * rise);
-    const N lowest_inner = N(-0.1) * edges - absolute(odd_inner),
-            lowest_gauss = minimum(even - absolute(odd), middle);
-    const N lowest = c + minimum(minimum(to_left, to_right), minimum(lowest_inner, lowest_gauss));
+    const N lowest_inner = fma(N(-0.1), edges, c) - absolute(odd_inner);
+    const N lowest =
+        minimum(minimum(minimum(l, r), minimum(values.g0, values.g1)), minimum(values.g2, lowest_inner));
     if (N::any(lowest < N(limiter::floor) * c)) {
       const N theta = limiter::scaling(c, lowest);
-      g0 = theta * g0;
-      g1 = theta * g1;
-      g2 = theta * g2;
+      values = {fma(theta, g0, c), fma(theta, g1, c), fma(theta, g2, c)};
     }
   }
-  return {c + g0, c + g1, c + g2};
+  return values;
 }
 
 template <bool Limited>

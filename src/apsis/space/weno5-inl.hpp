@@ -82,6 +82,22 @@ HWY_INLINE smoothness<N> scale(const smoothness<N>& s, N delta) {
   return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least)};
 }
 
+/// What the edges of a cell need of its window.
+template <class Weights, class N>
+struct measured {
+  N here, before, after, third0, third1, third2;
+  smoothness<N> y;
+
+  HWY_INLINE measured(const window<N>& u)
+      : here(u.here),
+        before(u.before),
+        after(u.after),
+        third0(u.bend0.third),
+        third1(u.bend1.third),
+        third2(u.bend2.third),
+        y(scale(indicators(u), Weights::delta(u.here))) {}
+};
+
 /// g_k > 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over one common denominator.
 template <class N>
 struct factors {
@@ -95,15 +111,15 @@ struct deviations {
 };
 
 // Additions are cheap beside multiplications, which have fewer units: hence 3g = g + g + g.
-template <class N>
-HWY_INLINE deviations<N> right_deviations(const window<N>& u) {
-  return {u.before + u.bend0.third + u.bend0.third, u.after - u.bend1.third, u.after - u.bend2.third};
+template <class Cell, class N = decltype(Cell::here)>
+HWY_INLINE deviations<N> right_deviations(const Cell& u) {
+  return {u.before + u.third0 + u.third0, u.after - u.third1, u.after - u.third2};
 }
 
 /// Of the left edge, in the order of the right edge of the mirrored cells; with the opposite sign.
-template <class N>
-HWY_INLINE deviations<N> left_deviations(const window<N>& u) {
-  return {u.after - u.bend2.third - u.bend2.third, u.before + u.bend1.third, u.before + u.bend0.third};
+template <class Cell, class N = decltype(Cell::here)>
+HWY_INLINE deviations<N> left_deviations(const Cell& u) {
+  return {u.after - u.third2 - u.third2, u.before + u.third1, u.before + u.third0};
 }
 
 template <class N>
@@ -111,37 +127,75 @@ HWY_INLINE N triple(N x) {
   return x + x + x;
 }
 
+/// An edge but for the division: u + numerator/denominator.
 template <class N>
-HWY_INLINE N right_edge(const window<N>& u, const factors<N>& g) {
-  const auto [r0, r1, r2] = right_deviations(u);
-  const N half_middle = triple(g.g1), middle = half_middle + half_middle, far = triple(g.g2);
-  const N sum = g.g0 + middle + far;
-  return u.here + fma(far, r2, fma(middle, r1, g.g0 * r0)) / (sum + sum);
-}
+struct right_fraction {
+  N here, numerator, denominator;
+
+  template <class Weights>
+  HWY_INLINE right_fraction(const measured<Weights, N>& u)
+      : here(u.here), numerator(u.here), denominator(u.here) {
+    const auto g = Weights::factors(u.y);
+    const auto [r0, r1, r2] = right_deviations(u);
+    const N half_middle = triple(g.g1), middle = half_middle + half_middle, far = triple(g.g2);
+    numerator = fma(far, r2, fma(middle, r1, g.g0 * r0));
+    denominator = g.g0 + middle + far;
+  }
+
+  HWY_INLINE N edge() const { return here + numerator / (denominator + denominator); }
+};
 
 /// Both edges with one division.
 template <class N>
-HWY_INLINE void both_edges(const window<N>& u, const factors<N>& g, N& left, N& right) {
-  const auto [r0, r1, r2] = right_deviations(u);
-  const auto [l0, l1, l2] = left_deviations(u);
-  const N half_middle = triple(g.g1), middle = half_middle + half_middle;
-  const N right_far = triple(g.g2), left_far = triple(g.g0);
-  const N right_sum = g.g0 + middle + right_far, left_sum = left_far + middle + g.g2;
-  const N half = N(0.5) / (right_sum * left_sum);
-  right = fma(fma(right_far, r2, fma(middle, r1, g.g0 * r0)), left_sum * half, u.here);
-  left = negative_fma(fma(left_far, l2, fma(middle, l1, g.g2 * l0)), right_sum * half, u.here);
-}
+struct both_fractions {
+  N here, right, right_sum, left, left_sum;
 
-/// Calls body(window, j) for cells 0 … count−1 of the walk.
-template <class Walk, class Body>
-HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Body& body) {
-  window<typename Walk::number> u(way.load(rows, -2), way.load(rows, -1), way.load(rows, 0),
-                                  way.load(rows, 1), way.load(rows, 2));
-  for (int j = 0;;) {
-    body(u, j);
-    if (++j >= count) break;
-    u.advance(way.load(rows, j + 2));
+  template <class Weights>
+  HWY_INLINE both_fractions(const measured<Weights, N>& u)
+      : here(u.here), right(u.here), right_sum(u.here), left(u.here), left_sum(u.here) {
+    const auto g = Weights::factors(u.y);
+    const auto [r0, r1, r2] = right_deviations(u);
+    const auto [l0, l1, l2] = left_deviations(u);
+    const N half_middle = triple(g.g1), middle = half_middle + half_middle;
+    const N right_far = triple(g.g2), left_far = triple(g.g0);
+    right_sum = g.g0 + middle + right_far;
+    left_sum = left_far + middle + g.g2;
+    right = fma(right_far, r2, fma(middle, r1, g.g0 * r0));
+    left = fma(left_far, l2, fma(middle, l1, g.g2 * l0));
   }
+
+  HWY_INLINE void edges(N& left_edge, N& right_edge) const {
+    const N half = N(0.5) / (right_sum * left_sum);
+    right_edge = fma(right, left_sum * half, here);
+    left_edge = negative_fma(left, right_sum * half, here);
+  }
+};
+
+/// Calls put(fraction, j) for cells 0 … count−1 of the walk. The formulas of a cell are one long chain,
+/// longer than a processor looks ahead; so they are cut in three, and those of three cells are under way at a
+/// time.
+template <class Weights, template <class> class Fraction, class Walk, class Put>
+HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Put& put) {
+  using N = typename Walk::number;
+  window<N> u(way.load(rows, -2), way.load(rows, -1), way.load(rows, 0), way.load(rows, 1),
+              way.load(rows, 2));
+  measured<Weights, N> newest(u);
+  Fraction<N> waiting(newest);
+  if (count > 1) {
+    u.advance(way.load(rows, 3));
+    newest = measured<Weights, N>(u);
+  }
+  for (int j = 2; j < count; ++j) {
+    put(waiting, j - 2);
+    waiting = Fraction<N>(newest);
+    u.advance(way.load(rows, j + 2));
+    newest = measured<Weights, N>(u);
+  }
+  if (count > 1) {
+    put(waiting, count - 2);
+    waiting = Fraction<N>(newest);
+  }
+  put(waiting, count - 1);
 }
 
 /// Applies `Weights::factors(window) → factors` along a pencil; see reconstruction::edges for the arguments.
@@ -149,11 +203,10 @@ template <class Weights>
 HWY_INLINE void sweep_edges(const double* const* rows, int count, int width, double* left, double* right) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using D = decltype(lanes);
-    using N = pack<D>;
     const walk<course::forward, D> way(count, k, nullptr);
-    along(way, rows, count, [&](const window<N>& u, int j) APSIS_PACKED {
-      N l(0.0), r(0.0);
-      both_edges(u, Weights::factors(u), l, r);
+    along<Weights, both_fractions>(way, rows, count, [&](const auto& cell, int j) APSIS_PACKED {
+      pack<D> l(0.0), r(0.0);
+      cell.edges(l, r);
       way.store(l, left, width, j);
       way.store(r, right, width, j);
     });
@@ -165,8 +218,8 @@ template <class Weights>
 HWY_INLINE void sweep_outflow(const double* const* rows, int count, int width, const double* forward,
                               double* edge) {
   for_walks(forward, count, width, [&](const auto& way, int) APSIS_PACKED {
-    along(way, rows, count, [&](const auto& u, int j) APSIS_PACKED {
-      way.store(right_edge(u, Weights::factors(u)), edge, width, j);
+    along<Weights, right_fraction>(way, rows, count, [&](const auto& cell, int j) APSIS_PACKED {
+      way.store(cell.edge(), edge, width, j);
     });
   });
 }
@@ -180,9 +233,9 @@ double count_operations(bool both) {
     counted left(0.0), right(0.0);
     u.advance(x);
     if (both) {
-      both_edges(u, Weights::factors(u), left, right);
+      both_fractions<counted>(measured<Weights, counted>(u)).edges(left, right);
     } else {
-      right_edge(u, Weights::factors(u));
+      right_fraction<counted>(measured<Weights, counted>(u)).edge();
     }
   });
 }

@@ -11,8 +11,11 @@ namespace apsis::HWY_NAMESPACE {
 /// squared.
 struct weights_js {
   template <class N>
-  static HWY_INLINE weno5::factors<N> factors(const weno5::window<N>& u) {
-    const auto y = weno5::scale(weno5::indicators(u), N(4e-6));
+  static HWY_INLINE N delta(N) {
+    return N(4e-6);
+  }
+  template <class N>
+  static HWY_INLINE weno5::factors<N> factors(const weno5::smoothness<N>& y) {
     const N z0 = y.s0 * y.s0, z1 = y.s1 * y.s1, z2 = y.s2 * y.s2;
     return {z1 * z2, z0 * z2, z0 * z1};
   }

@@ -10,16 +10,18 @@ namespace apsis::HWY_NAMESPACE {
 /// g_k = 1 + (τ/(β_k + δ))², τ = |β₀ − β₂| (Borges, Carmona, Costa & Don, JCP 227, 2008, with power 2, which
 /// keeps fifth order at smooth extrema).
 struct weights_z {
+  /// Relative to the data, so that the scheme does not change with their scale: variations below a thousandth
+  /// of the value count as smooth, also where the first two derivatives vanish together.
   template <class N>
-  static HWY_INLINE weno5::factors<N> factors(const weno5::window<N>& u) {
-    const auto s = weno5::indicators(u);
-    // Relative to the data, so that the scheme does not change with their scale: variations below a
-    // thousandth of the value count as smooth, also where the first two derivatives vanish together.
-    const N delta = fma(4e-6 * u.here, u.here, N(4e-200));
-    const auto y = weno5::scale(s, delta);
+  static HWY_INLINE N delta(N u) {
+    return fma(4e-6 * u, u, N(4e-200));
+  }
+  template <class N>
+  static HWY_INLINE weno5::factors<N> factors(const weno5::smoothness<N>& y) {
     const N tau = y.s0 - y.s2, t = tau * tau;
     const N z0 = y.s0 * y.s0, z1 = y.s1 * y.s1, z2 = y.s2 * y.s2;
-    return {z1 * z2 * (z0 + t), z0 * z2 * (z1 + t), z0 * z1 * (z2 + t)};
+    const N m0 = z1 * z2, m1 = z0 * z2, m2 = z0 * z1, all = m2 * z2;
+    return {fma(t, m0, all), fma(t, m1, all), fma(t, m2, all)};
   }
 };
 

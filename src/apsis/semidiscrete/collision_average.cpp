@@ -88,15 +88,18 @@ class cell_average_collision final : public collision {
   /// body(first cell, number of cells, rows of the values at their Gauss points, the equilibria there).
   template <class Body>
   void for_blocks(const field& u, Body body) {
-    const int length = block_length(u.stride()),
+    const int blocks = collision_blocks(u.cells(), u.stride()),
               at_once = std::max(1, points_at_once(u.stride()) / gauss3::points);
-    parallel_for((u.cells() + length - 1) / length, [&](int task) {
+    const auto cell = [&](int block) {
+      return static_cast<int>(static_cast<long>(u.cells()) * block / blocks);
+    };
+    parallel_for(blocks, [&](int task) {
       thread_local pencil_block block;
       thread_local aligned_vector<double> points;
       thread_local local_relaxation local;
       local.attach(equation_, at_once * gauss3::points);
       points.resize(static_cast<std::size_t>(at_once * gauss3::points * u.stride()));
-      const int begin = task * length, end = std::min(u.cells(), begin + length);
+      const int begin = cell(task), end = cell(task + 1);
       {
         const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(),
                                      {how_.scheme->operations(true), sizeof(double)});

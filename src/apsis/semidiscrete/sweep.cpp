@@ -23,10 +23,16 @@ void pencil_block::load(const field& u, const grid& mesh, const stencil& how, in
 }
 
 int block_length(int width) {
-  // Two edge rows per cell in half of a 32 KiB first-level cache; long enough that the two recomputed halo
-  // cells of a block cost little.
   constexpr int doubles = 2048;
   return std::clamp(doubles / std::max(width, 1), 8, 256);
+}
+
+int collision_blocks(int cells, int width) {
+  constexpr int doubles = 4096;  // two edges of each: 64 KiB
+  constexpr int least = 6;       // cells, or the beginnings of walks cost more than idle threads
+  const int length = std::clamp(doubles / std::max(width, 1), least, 256);
+  const int wanted = std::max((cells + length - 1) / length, threads() == 1 ? 1 : 4 * threads());
+  return std::max(1, std::min(wanted, cells / least));
 }
 
 int sweep_blocks(int cells, int columns) {

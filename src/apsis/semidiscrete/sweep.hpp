@@ -57,8 +57,13 @@ struct pencil_block {
   }
 };
 
-/// Cells per block for rows of `width` numbers.
+/// Cells per block for rows of `width` numbers that are read and written once.
 int block_length(int width);
+
+/// In how many blocks of about equal length cells collide whose edge values a pencil_block holds: long enough
+/// that the beginning of a walk costs little, and short enough for the second-level cache; shorter where
+/// threads would have few of them. No number depends on it.
+int collision_blocks(int cells, int width);
 
 /// In how many blocks of about equal length a pencil is swept if `columns` numbers of every cell are swept
 /// together: short enough for the first-level cache, and so long that the few edges at their ends which are

@@ -17,12 +17,11 @@ namespace apsis::HWY_NAMESPACE::weno5 {
 /// written with first and second differences, which neighbouring cells share, and the edge as the cell's own
 /// value and a deviation.
 
-/// u_{i−1} − 2u_i + u_{i+1}, a third of it, and 13/3 of its square.
+/// u_{i−1} − 2u_i + u_{i+1}, and 13/3 of its square.
 template <class N>
 struct bend {
-  N second, third, square;
-  HWY_INLINE bend(N before, N after)
-      : second(after - before), third(N(1.0 / 3.0) * second), square(N(13.0 / 3.0) * second * second) {}
+  N second, square;
+  HWY_INLINE bend(N before, N after) : second(after - before), square(N(13.0 / 3.0) * second * second) {}
 };
 
 /// What the formulas need of the cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} −
@@ -34,6 +33,8 @@ class window {
       : here(c),
         before(c - b),
         after(d - c),
+        three_before(N(3.0) * before),
+        three_after(N(3.0) * after),
         bend0(b - a, before),
         bend1(before, after),
         bend2(after, e - d),
@@ -46,13 +47,15 @@ class window {
     next_ = last_;
     before = after;
     after = next_ - here;
+    three_before = three_after;
+    three_after = N(3.0) * after;
     bend0 = bend1;
     bend1 = bend2;
     bend2 = bend<N>(after, value - next_);
     last_ = value;
   }
 
-  N here, before, after;
+  N here, before, after, three_before, three_after;
   bend<N> bend0, bend1, bend2;
 
  private:
@@ -85,16 +88,18 @@ HWY_INLINE smoothness<N> scale(const smoothness<N>& s, N delta) {
 /// What the edges of a cell need of its window.
 template <class Weights, class N>
 struct measured {
-  N here, before, after, third0, third1, third2;
+  N here, before, after, three_before, three_after, second0, second1, second2;
   smoothness<N> y;
 
   HWY_INLINE measured(const window<N>& u)
       : here(u.here),
         before(u.before),
         after(u.after),
-        third0(u.bend0.third),
-        third1(u.bend1.third),
-        third2(u.bend2.third),
+        three_before(u.three_before),
+        three_after(u.three_after),
+        second0(u.bend0.second),
+        second1(u.bend1.second),
+        second2(u.bend2.second),
         y(scale(indicators(u), Weights::delta(u.here))) {}
 };
 
@@ -104,30 +109,8 @@ struct factors {
   N g0, g1, g2;
 };
 
-/// Twice the candidates minus u_i.
-template <class N>
-struct deviations {
-  N r0, r1, r2;
-};
-
-// Additions are cheap beside multiplications, which have fewer units: hence 3g = g + g + g.
-template <class Cell, class N = decltype(Cell::here)>
-HWY_INLINE deviations<N> right_deviations(const Cell& u) {
-  return {u.before + u.third0 + u.third0, u.after - u.third1, u.after - u.third2};
-}
-
-/// Of the left edge, in the order of the right edge of the mirrored cells; with the opposite sign.
-template <class Cell, class N = decltype(Cell::here)>
-HWY_INLINE deviations<N> left_deviations(const Cell& u) {
-  return {u.after - u.third2 - u.third2, u.before + u.third1, u.before + u.third0};
-}
-
-template <class N>
-HWY_INLINE N triple(N x) {
-  return x + x + x;
-}
-
-/// An edge but for the division: u + numerator/denominator.
+/// An edge but for the division, u + numerator/denominator: twice the candidates minus u_i are r₀, q₁/3 and
+/// q₂/3, and their weights g₀, 6g₁ and 3g₂.
 template <class N>
 struct right_fraction {
   N here, numerator, denominator;
@@ -136,16 +119,17 @@ struct right_fraction {
   HWY_INLINE right_fraction(const measured<Weights, N>& u)
       : here(u.here), numerator(u.here), denominator(u.here) {
     const auto g = Weights::factors(u.y);
-    const auto [r0, r1, r2] = right_deviations(u);
-    const N half_middle = triple(g.g1), middle = half_middle + half_middle, far = triple(g.g2);
-    numerator = fma(far, r2, fma(middle, r1, g.g0 * r0));
-    denominator = g.g0 + middle + far;
+    const N r0 = fma(N(2.0 / 3.0), u.second0, u.before), q1 = u.three_after - u.second1,
+            q2 = u.three_after - u.second2;
+    const N twice = g.g1 + g.g1;
+    numerator = fma(g.g2, q2, fma(twice, q1, g.g0 * r0));
+    denominator = fma(N(3.0), twice + g.g2, g.g0);
   }
 
   HWY_INLINE N edge() const { return here + numerator / (denominator + denominator); }
 };
 
-/// Both edges with one division.
+/// Both edges with one division; the left one from the mirrored cells, its numerator with the opposite sign.
 template <class N>
 struct both_fractions {
   N here, right, right_sum, left, left_sum;
@@ -154,14 +138,16 @@ struct both_fractions {
   HWY_INLINE both_fractions(const measured<Weights, N>& u)
       : here(u.here), right(u.here), right_sum(u.here), left(u.here), left_sum(u.here) {
     const auto g = Weights::factors(u.y);
-    const auto [r0, r1, r2] = right_deviations(u);
-    const auto [l0, l1, l2] = left_deviations(u);
-    const N half_middle = triple(g.g1), middle = half_middle + half_middle;
-    const N right_far = triple(g.g2), left_far = triple(g.g0);
-    right_sum = g.g0 + middle + right_far;
-    left_sum = left_far + middle + g.g2;
-    right = fma(right_far, r2, fma(middle, r1, g.g0 * r0));
-    left = fma(left_far, l2, fma(middle, l1, g.g2 * l0));
+    const N r0 = fma(N(2.0 / 3.0), u.second0, u.before), q1 = u.three_after - u.second1,
+            q2 = u.three_after - u.second2;
+    const N l0 = negative_fma(N(2.0 / 3.0), u.second2, u.after), p1 = u.three_before + u.second1,
+            p2 = u.three_before + u.second0;
+    const N twice = g.g1 + g.g1;
+    right = fma(g.g2, q2, fma(twice, q1, g.g0 * r0));
+    left = fma(g.g0, p2, fma(twice, p1, g.g2 * l0));
+    const N common = fma(N(3.0), twice, g.g0 + g.g2);
+    right_sum = fma(N(2.0), g.g2, common);
+    left_sum = fma(N(2.0), g.g0, common);
   }
 
   HWY_INLINE void edges(N& left_edge, N& right_edge) const {

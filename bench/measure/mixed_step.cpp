@@ -11,6 +11,7 @@ mixed_step::mixed_step(const std::string& formulation, const std::string& method
       problem_(setup_.make_problem()),
       stepper_(setup_.integrator(), *problem_),
       u_(setup_.initial_state()),
+      collides_in_passing_(formulation == "finite-difference"),
       dt_(0.9 * stepper_.r() * problem_->forward_euler_step(0.0, u_)) {
   take(1);  // buffers exist from here on
 }
@@ -30,6 +31,11 @@ work mixed_step::count_work() {
 double mixed_step::point_stages() const {
   return static_cast<double>(u_.cells()) * u_.components() *
          static_cast<double>(setup_.integrator().stages());
+}
+
+int mixed_step::passes() const {
+  const auto& plan = stepper_.plan();
+  return static_cast<int>(plan.instructions().size()) - (collides_in_passing_ ? plan.implicit_solves() : 0);
 }
 
 int mixed_step::steps_in(double seconds) {

@@ -26,6 +26,8 @@ class mixed_step {
   std::size_t numbers() const {
     return static_cast<std::size_t>(u_.cells()) * static_cast<std::size_t>(u_.stride());
   }
+  /// How often a step passes over the field, all threads waiting for each other after each time.
+  int passes() const;
   /// So many steps take about this long.
   int steps_in(double seconds);
 
@@ -34,6 +36,7 @@ class mixed_step {
   std::unique_ptr<semidiscrete_problem> problem_;
   stepper<semidiscrete_problem> stepper_;
   field u_;
+  bool collides_in_passing_;  ///< point values: as soon as they are complete, in the pass that makes them
   double dt_;
 };
 

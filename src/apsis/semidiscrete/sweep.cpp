@@ -27,19 +27,33 @@ int block_length(int width) {
   return std::clamp(doubles / std::max(width, 1), 8, 256);
 }
 
-int collision_blocks(int cells, int width) {
-  constexpr int doubles = 4096;  // two edges of each: 64 KiB
-  constexpr int least = 6;       // cells, or the beginnings of walks cost more than idle threads
-  const int length = std::clamp(doubles / std::max(width, 1), least, 256);
-  const int wanted = std::max((cells + length - 1) / length, threads() == 1 ? 1 : 4 * threads());
-  return std::max(1, std::min(wanted, cells / least));
+cell_blocks::cell_blocks(int cells, int longest, int parts) : cells_(cells), parts_(std::max(1, parts)) {
+  const int length = cells_ / parts_;
+  whole_ = std::max(1, (length + longest / 2) / longest);
+  if (parts_ == 1) return;
+  // Beginnings of walks cost some cells.
+  const int last = length / whole_;
+  pieces_ = last >= 64 ? 4 : last >= 32 ? 2 : 1;
 }
 
-int sweep_blocks(int cells, int columns) {
+int cell_blocks::begin(int block) const {
+  // In eighths of a whole block: a half, a quarter and two eighths are the last one.
+  static constexpr int eighths[] = {0, 4, 6, 7};
+  const int part = block / per_part(), i = block % per_part();
+  const int whole = std::min(i, whole_ - 1), at = 8 * whole + eighths[i - whole];
+  const auto first = [this](int p) { return static_cast<int>(static_cast<long>(cells_) * p / parts_); };
+  if (part == parts_) return cells_;
+  return first(part) + static_cast<int>(static_cast<long>(first(part + 1) - first(part)) * at / (8 * whole_));
+}
+
+int collision_block_length(int width) {
+  constexpr int doubles = 4096;  // two edges of each: 64 KiB
+  return std::clamp(doubles / std::max(width, 1), 8, 256);
+}
+
+int sweep_block_length(int columns) {
   constexpr int doubles = 2048;  // edges of the columns in half of a first-level cache of 32 KiB
-  int length = std::max(doubles / std::max(columns, 1), 16);
-  if (threads() > 1 && cells < 16 * length * threads()) length = std::max(length / 2, 16);
-  return std::max(1, (cells + length / 2) / length);
+  return std::max(doubles / std::max(columns, 1), 16);
 }
 
 }  // namespace apsis

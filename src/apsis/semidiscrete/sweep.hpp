@@ -60,14 +60,28 @@ struct pencil_block {
 /// Cells per block for rows of `width` numbers that are read and written once.
 int block_length(int width);
 
-/// In how many blocks of about equal length cells collide whose edge values a pencil_block holds: long enough
-/// that the beginning of a walk costs little, and short enough for the second-level cache; shorter where
-/// threads would have few of them. No number depends on it.
-int collision_blocks(int cells, int width);
+/// Cells 0 … cells−1 cut into blocks. Threads do parts of equal length; in each the blocks are of about
+/// `longest` cells, and the last of them is cut again and again, so that a thread that comes to the end of
+/// its part finds something small to help the others with. No number depends on it.
+class cell_blocks {
+ public:
+  cell_blocks(int cells, int longest, int parts);
 
-/// In how many blocks of about equal length a pencil is swept if `columns` numbers of every cell are swept
-/// together: short enough for the first-level cache, and so long that the few edges at their ends which are
-/// computed twice cost little; half as long where threads would have few of them. No number depends on it.
-int sweep_blocks(int cells, int columns);
+  int count() const { return parts_ * per_part(); }
+  int begin(int block) const;  ///< begin(count()) is `cells`
+  int end(int block) const { return begin(block + 1); }
+
+ private:
+  int per_part() const { return whole_ - 1 + pieces_; }
+
+  int cells_, parts_, whole_ = 1, pieces_ = 1;
+};
+
+/// Cells of a block whose edge values a pencil_block holds for rows of `width` numbers: many enough that the
+/// beginning of a walk costs little, few enough for the second-level cache.
+int collision_block_length(int width);
+
+/// Likewise of a block of a sweep over `columns` numbers of every cell: for the first-level cache.
+int sweep_block_length(int columns);
 
 }  // namespace apsis

@@ -25,8 +25,8 @@ int cells_of_a_row(int stride) {
 /// Components of a cell that a sweep takes along at once: with some dozens of cells, what it keeps of them
 /// fits into the first-level cache.
 constexpr int most_columns = 32;
-/// And what is worth a sweep of its own.
-constexpr int least_columns = 16;
+/// And what is worth a sweep of its own, in columns and in cells.
+constexpr int least_columns = 16, least_cells = 16;
 
 /// Bytes of accumulators for each number: written, and read before unless they are fresh.
 work traffic(targets_view targets) {
@@ -245,31 +245,34 @@ bool transport::scatter_direction(const field& u, targets_view targets, int dire
   // A source is a function of all components of a cell.
   const bool whole_cells = equation_.has_source();
   int columns = whole_cells ? 1 : (width + most_columns - 1) / most_columns;
-  const int blocks = sweep_blocks(n, std::min(width, most_columns));
+  // Parts of one pencil for all threads, or pencils, or parts of rows.
+  const bool by_cells = pencils == 1 && n >= least_cells * threads();
+  const cell_blocks blocks(n, sweep_block_length(std::min(width, most_columns)), by_cells ? threads() : 1);
   // So many parts that threads of different speed end at about the same time.
   const int enough = threads() == 1 ? 1 : 4 * threads();
-  if (!whole_cells && pencils * blocks * columns < enough) columns = std::max(columns, width / least_columns);
-  const auto cell = [&](int block) { return static_cast<int>(static_cast<long>(n) * block / blocks); };
+  if (!whole_cells && !by_cells && pencils * blocks.count() * columns < enough)
+    columns = std::max(columns, width / least_columns);
   const auto component = [&](int column) {
     // Cut at whole vectors.
     return column == columns ? width : width / packet_length * column / columns * packet_length;
   };
   const auto sweep = [&](int pencil, int block, int column) {
     thread_local block_sweep here;
-    here.run(*this, u,
-             {direction, pencil, cell(block), cell(block + 1), component(column), component(column + 1)},
-             targets);
+    here.run(
+        *this, u,
+        {direction, pencil, blocks.begin(block), blocks.end(block), component(column), component(column + 1)},
+        targets);
   };
-  if (then && blocks >= enough) {
-    parallel_for(blocks, [&](int block) {
+  if (by_cells) {
+    parallel_for(blocks.count(), [&](int block) {
       for (int column = 0; column < columns; ++column) sweep(0, block, column);
-      then(cell(block), cell(block + 1));
+      if (then) then(blocks.begin(block), blocks.end(block));
     });
-    return true;
+    return static_cast<bool>(then);
   }
-  // A small mesh has work for all threads in parts of its rows.
-  parallel_for(pencils * blocks * columns,
-               [&](int task) { sweep(task / columns / blocks, task / columns % blocks, task % columns); });
+  parallel_for(pencils * blocks.count() * columns, [&](int task) {
+    sweep(task / columns / blocks.count(), task / columns % blocks.count(), task % columns);
+  });
   return false;
 }
 

@@ -1,0 +1,65 @@
+// What the vectors of the processor give: the same kernels, compiled for each instruction set.
+#include "../clock.hpp"
+#include "../mixed_step.hpp"
+#include "../table.hpp"
+
+#include <apsis/core/ceilings.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <hwy/targets.h>
+
+namespace apsis::bench {
+namespace {
+
+job with(std::int64_t instructions, job body) {
+  return [instructions, body = std::move(body)] {
+    hwy::SetSupportedTargetsForTest(instructions);
+    body();
+    hwy::SetSupportedTargetsForTest(0);
+  };
+}
+
+/// Seconds of `body` with each of the instruction sets, seconds[set][turn].
+std::vector<std::vector<double>> with_each(const std::vector<std::int64_t>& sets, const job& body,
+                                           int turns) {
+  std::vector<job> jobs;
+  for (const auto instructions : sets) jobs.push_back(with(instructions, body));
+  return in_turns(jobs, turns);
+}
+
+table measure(const settings& how) {
+  table result;
+  result.title = "The same kernels in each instruction set";
+  result.note =
+      "How many times as fast a step of the mixed-regime problem (40 cells, 150 velocities, md-imex-3-2, one "
+      "thread) is as with one number at a time, medians over the turns; and so for multiply–adds in "
+      "registers, "
+      "which is what the vectors of this processor can give.";
+  result.columns = {"instruction set", "finite volumes", "finite differences", "multiply–adds"};
+  const auto sets = hwy::SupportedAndGeneratedTargets();
+  const int turns = how.quick ? 1 : 5 * how.repeats;
+  const double seconds = how.quick ? 0.002 : 0.02;
+  mixed_step averages("finite-volume", "md-imex-3-2", 40), points("finite-difference", "md-imex-3-2", 40);
+  const int of_averages = averages.steps_in(seconds), of_points = points.steps_in(seconds);
+  const auto fv = with_each(
+                 sets, [&] { averages.take(of_averages); }, turns),
+             fd = with_each(
+                 sets, [&] { points.take(of_points); }, turns),
+             fma = with_each(sets, [&] { seconds_of_multiply_adds(seconds * 2e9); }, turns);
+  const std::size_t one_at_a_time = sets.size() - 1;  // the best comes first
+  const auto gain = [&](const std::vector<std::vector<double>>& all, std::size_t set) {
+    return fmt::format("{:.2f}", median_ratio(all, one_at_a_time, set));
+  };
+  for (std::size_t set = 0; set < sets.size(); ++set)
+    result.rows.push_back({hwy::TargetName(sets[set]), gain(fv, set), gain(fd, set), gain(fma, set)});
+  return result;
+}
+
+const registered here({"vectors", "what vectors of the processor give", measure});
+
+}  // namespace
+}  // namespace apsis::bench

@@ -71,7 +71,8 @@ void run_parallel_for(int n, numbered_job body) {
     return;
   }
   // Every thread does its own part first, whose memory is near to it, and then helps the others: cores may be
-  // of different speed, or do something else for a while.
+  // of different speed, or do something else for a while. The last number of a part is left to its own
+  // thread, which is about to come to it, or else short parts would wander between the caches.
   std::array<remaining, most_threads> parts;
   for (int p = 0; p < team; ++p) {
     const auto first = [&](int part) { return static_cast<int>(static_cast<long>(n) * part / team); };
@@ -81,13 +82,36 @@ void run_parallel_for(int n, numbered_job body) {
   first_failure failure;
 #pragma omp parallel num_threads(team)
   {
-    const int own = omp_get_thread_num();
+    const int own = omp_get_thread_num(), present = omp_get_num_threads();
     for (int p = 0; p < team; ++p) {
-      auto& part = parts[static_cast<std::size_t>((own + p) % team)];
-      for (int k = part.next++; k < part.end; k = part.next++) failure.guard(k, body);
+      const int whose = (own + p) % team;
+      auto& part = parts[static_cast<std::size_t>(whose)];
+      const int end = p > 0 && whose < present ? part.end - 1 : part.end;
+      while (part.next.load(std::memory_order_relaxed) < end) {
+        const int k = part.next++;
+        if (k < part.end) failure.guard(k, body);
+      }
     }
   }
   failure.rethrow();
+}
+
+part_blocks::part_blocks(int n, int longest, int parts) : n_(n), parts_(std::max(1, parts)) {
+  const int length = (n_ + parts_ - 1) / parts_;
+  whole_ = std::max(1, (length + longest - 1) / longest);
+  // To begin a block costs something, so that small ones are not cut.
+  const int last = length / whole_;
+  pieces_ = parts_ == 1 || last < 32 ? 1 : last < 64 ? 2 : 4;
+}
+
+int part_blocks::begin(int block) const {
+  // In eighths of a whole block: a half, a quarter and two eighths are the last one.
+  static constexpr int eighths[] = {0, 4, 6, 7};
+  const int part = block / per_part(), i = block % per_part();
+  if (part == parts_) return n_;
+  const int whole = std::min(i, whole_ - 1), at = 8 * whole + eighths[i - whole];
+  const auto first = [this](int p) { return static_cast<int>(static_cast<long>(n_) * p / parts_); };
+  return first(part) + static_cast<int>(static_cast<long>(first(part + 1) - first(part)) * at / (8 * whole_));
 }
 
 void run_parallel_tasks(int n, numbered_job body) {

@@ -28,6 +28,34 @@ void parallel_for(int n, const Body& body) {
   run_parallel_for(n, numbered_job::of(body));
 }
 
+/// 0 … n−1 cut into blocks of at most `longest`, in a part of equal length for each of `parts` threads. Parts
+/// of long blocks end with short ones, so that a thread that comes to the end of its own finds something
+/// small to help the others with.
+class part_blocks {
+ public:
+  part_blocks(int n, int longest, int parts);
+
+  int count() const { return parts_ * per_part(); }
+  int begin(int block) const;  ///< begin(count()) is n
+  int end(int block) const { return begin(block + 1); }
+
+ private:
+  int per_part() const { return whole_ - 1 + pieces_; }
+
+  int n_, parts_, whole_, pieces_;
+};
+
+/// Runs body(begin, end) for blocks of 0 … n−1 on all threads; see parallel_for. Whatever the length of the
+/// blocks, every thread has the same part of the range: loops over the cells of a field that use this find
+/// them in the caches of the core that wrote them.
+template <class Body>
+void parallel_blocks(int n, int longest, const Body& body) {
+  const part_blocks blocks(n, longest, threads());
+  parallel_for(blocks.count(), [&](int block) {
+    if (blocks.begin(block) < blocks.end(block)) body(blocks.begin(block), blocks.end(block));
+  });
+}
+
 /// The same for jobs of different length (whole runs): a thread that is free takes the next k. Loops inside a
 /// job run on its own thread. Once a job has failed no new one begins.
 template <class Body>

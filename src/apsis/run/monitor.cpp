@@ -17,10 +17,10 @@ monitor::totals monitor::sum(const field& u) const {
   std::vector<double> densities(cells * count), entropies(cells), lowest(cells);
   std::vector<long> negative(cells);
   constexpr int block = 16;
-  parallel_for((u.cells() + block - 1) / block, [&](int part) {
-    const profile::section timed(
-        kernel::monitor, std::min(block, u.cells() - part * block) * 1.0 * u.stride(), {0.0, sizeof(double)});
-    for (int cell = part * block; cell < std::min(u.cells(), (part + 1) * block); ++cell) {
+  parallel_blocks(u.cells(), block, [&](int begin, int end) {
+    const profile::section timed(kernel::monitor, static_cast<double>(end - begin) * u.stride(),
+                                 {0.0, sizeof(double)});
+    for (int cell = begin; cell < end; ++cell) {
       const auto c = static_cast<std::size_t>(cell);
       const double* row = u.row(cell);
       const auto [low, below] = find_extremes(row, u.components());

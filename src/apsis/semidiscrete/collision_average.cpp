@@ -88,15 +88,13 @@ class cell_average_collision final : public collision {
   /// body(first cell, number of cells, rows of the values at their Gauss points, the equilibria there).
   template <class Body>
   void for_blocks(const field& u, Body body) {
-    const cell_blocks blocks(u.cells(), collision_block_length(u.stride()), threads());
     const int at_once = std::max(1, points_at_once(u.stride()) / gauss3::points);
-    parallel_for(blocks.count(), [&](int task) {
+    parallel_blocks(u.cells(), collision_block_length(u.stride()), [&](int begin, int end) {
       thread_local pencil_block block;
       thread_local aligned_vector<double> points;
       thread_local local_relaxation local;
       local.attach(equation_, at_once * gauss3::points);
       points.resize(static_cast<std::size_t>(at_once * gauss3::points * u.stride()));
-      const int begin = blocks.begin(task), end = blocks.end(task);
       {
         const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(),
                                      {how_.scheme->operations(true), sizeof(double)});

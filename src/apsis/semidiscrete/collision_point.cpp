@@ -18,11 +18,8 @@ class pointwise_collision final : public cellwise_collision {
       : equation_(equation), epsilon_(std::move(epsilon)) {}
 
   void solve(double a, double b, field& u) override {
-    const int length = points_at_once(u.stride());
-    parallel_for((u.cells() + length - 1) / length, [&](int block) {
-      const int begin = block * length;
-      relax(a, b, u, begin, std::min(u.cells() - begin, length), 2.0 * sizeof(double));
-    });
+    parallel_blocks(u.cells(), points_at_once(u.stride()),
+                    [&](int begin, int end) { relax(a, b, u, begin, end - begin, 2.0 * sizeof(double)); });
   }
 
   void solve_cells(double a, double b, field& u, int begin, int end) override {
@@ -33,16 +30,13 @@ class pointwise_collision final : public cellwise_collision {
   }
 
   void scatter(const field& u, std::span<const target<field, double>> targets) override {
-    const int length = points_at_once(u.stride());
-    parallel_for((u.cells() + length - 1) / length, [&](int block) {
-      const int begin = block * length, cells = std::min(u.cells() - begin, length);
-      const auto& local = equilibria_of(u, begin, cells);
+    parallel_blocks(u.cells(), points_at_once(u.stride()), [&](int begin, int end) {
+      const auto& local = equilibria_of(u, begin, end - begin);
       thread_local std::vector<upwind::row_target> rows;
-      for (int p = 0; p < cells; ++p) {
-        const int cell = begin + p;
+      for (int cell = begin; cell < end; ++cell) {
         upwind::rows_of(targets, cell, rows);
-        const relaxation::strong_rows point{local.strength(p, epsilon_at(cell), cell), u.row(cell),
-                                            local.equilibrium(p)};
+        const relaxation::strong_rows point{local.strength(cell - begin, epsilon_at(cell), cell), u.row(cell),
+                                            local.equilibrium(cell - begin)};
         relaxation::scatter({&point, 1}, u.row(cell), u.stride(), rows);
       }
     });

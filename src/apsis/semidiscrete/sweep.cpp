@@ -1,7 +1,5 @@
 #include <apsis/semidiscrete/sweep.hpp>
 
-#include <apsis/core/parallel.hpp>
-
 #include <algorithm>
 
 namespace apsis {
@@ -25,25 +23,6 @@ void pencil_block::load(const field& u, const grid& mesh, const stencil& how, in
 int block_length(int width) {
   constexpr int doubles = 2048;
   return std::clamp(doubles / std::max(width, 1), 8, 256);
-}
-
-cell_blocks::cell_blocks(int cells, int longest, int parts) : cells_(cells), parts_(std::max(1, parts)) {
-  const int length = cells_ / parts_;
-  whole_ = std::max(1, (length + longest / 2) / longest);
-  if (parts_ == 1) return;
-  // Beginnings of walks cost some cells.
-  const int last = length / whole_;
-  pieces_ = last >= 64 ? 4 : last >= 32 ? 2 : 1;
-}
-
-int cell_blocks::begin(int block) const {
-  // In eighths of a whole block: a half, a quarter and two eighths are the last one.
-  static constexpr int eighths[] = {0, 4, 6, 7};
-  const int part = block / per_part(), i = block % per_part();
-  const int whole = std::min(i, whole_ - 1), at = 8 * whole + eighths[i - whole];
-  const auto first = [this](int p) { return static_cast<int>(static_cast<long>(cells_) * p / parts_); };
-  if (part == parts_) return cells_;
-  return first(part) + static_cast<int>(static_cast<long>(first(part + 1) - first(part)) * at / (8 * whole_));
 }
 
 int collision_block_length(int width) {

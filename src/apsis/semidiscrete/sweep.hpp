@@ -60,23 +60,6 @@ struct pencil_block {
 /// Cells per block for rows of `width` numbers that are read and written once.
 int block_length(int width);
 
-/// Cells 0 … cells−1 cut into blocks. Threads do parts of equal length; in each the blocks are of about
-/// `longest` cells, and the last of them is cut again and again, so that a thread that comes to the end of
-/// its part finds something small to help the others with. No number depends on it.
-class cell_blocks {
- public:
-  cell_blocks(int cells, int longest, int parts);
-
-  int count() const { return parts_ * per_part(); }
-  int begin(int block) const;  ///< begin(count()) is `cells`
-  int end(int block) const { return begin(block + 1); }
-
- private:
-  int per_part() const { return whole_ - 1 + pieces_; }
-
-  int cells_, parts_, whole_ = 1, pieces_ = 1;
-};
-
 /// Cells of a block whose edge values a pencil_block holds for rows of `width` numbers: many enough that the
 /// beginning of a walk costs little, few enough for the second-level cache.
 int collision_block_length(int width);

@@ -91,10 +91,9 @@ void transport::scatter_source(const field& u, targets_view targets) const {
 }
 
 void transport::scatter_weights(const field& u, targets_view targets, const cells_job& then) const {
-  const int length = block_length(u.stride());
-  parallel_for((u.cells() + length - 1) / length, [&](int block) {
+  parallel_blocks(u.cells(), block_length(u.stride()), [&](int begin, int end) {
     thread_local std::vector<upwind::row_target> rows;
-    const int begin = block * length, cells = std::min(u.cells() - begin, length);
+    const int cells = end - begin;
     upwind::rows_of(targets, begin, rows);
     {
       work each = traffic(targets);
@@ -103,7 +102,7 @@ void transport::scatter_weights(const field& u, targets_view targets, const cell
       const profile::section timed(kernel::multiples, static_cast<double>(cells) * u.stride(), each);
       upwind::add_weights(u.row(begin), cells * u.stride(), rows);
     }
-    if (then) then(begin, begin + cells);
+    if (then) then(begin, end);
   });
 }
 
@@ -247,7 +246,7 @@ bool transport::scatter_direction(const field& u, targets_view targets, int dire
   int columns = whole_cells ? 1 : (width + most_columns - 1) / most_columns;
   // Parts of one pencil for all threads, or pencils, or parts of rows.
   const bool by_cells = pencils == 1 && n >= least_cells * threads();
-  const cell_blocks blocks(n, sweep_block_length(std::min(width, most_columns)), by_cells ? threads() : 1);
+  const part_blocks blocks(n, sweep_block_length(std::min(width, most_columns)), by_cells ? threads() : 1);
   // So many parts that threads of different speed end at about the same time.
   const int enough = threads() == 1 ? 1 : 4 * threads();
   if (!whole_cells && !by_cells && pencils * blocks.count() * columns < enough)

@@ -63,7 +63,7 @@ tidy: ## clang-tidy over the library and the program
 	cmake --build build/clang --target app/apsis
 	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app)/.*'
 
-bench: ## speed, measured: every table of docs/speed.md, in results/bench/speed.json (an hour, on an idle machine)
+bench: ## speed, measured: every table of docs/speed.md, in results/bench/speed.json (half an hour, on an idle machine)
 	@scripts/install-packages.sh test
 	cmake --preset release -DAPSIS_BENCH=ON -DAPSIS_PCH=ON >/dev/null
 	cmake --build build/release --target apsis_measure

@@ -55,21 +55,27 @@ void accumulate(std::span<const target<State, state_real<State>>> targets, const
   }
 }
 
-/// Throws numerical_error with index and value at the first number that is not finite.
+/// What require_finite throws; apart from it, so that the check itself is a few instructions.
 template <class Row>
-void require_finite(const Row& row, const char* what) {
+[[noreturn, gnu::noinline, gnu::cold]] void throw_not_finite(const Row& row, const char* what) {
   using size_type = decltype(row.size());
-  using real = state_real<Row>;
-  // x − x is 0 or NaN: no branch but one for the whole row.
-  real none(0);
-  for (size_type i = 0; i < row.size(); ++i) none += row[i] - row[i];
-  if (none == real(0)) return;
   using std::isfinite;
   size_type i = 0;
   while (i + 1 < row.size() && isfinite(row[i])) ++i;
   throw numerical_error(std::string(what) + " is not finite (component " + std::to_string(i) +
                             "); reduce the time step, or check the functions of the problem",
                         {-1, std::nan(""), -1, static_cast<double>(row[i])});
+}
+
+/// Throws numerical_error with index and value at the first number that is not finite.
+template <class Row>
+inline void require_finite(const Row& row, const char* what) {
+  using size_type = decltype(row.size());
+  using real = state_real<Row>;
+  // x − x is 0 or NaN: no branch but one for the whole row.
+  real none(0);
+  for (size_type i = 0; i < row.size(); ++i) none += row[i] - row[i];
+  if (!(none == real(0))) throw_not_finite(row, what);
 }
 
 }  // namespace apsis

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include <hwy/contrib/math/math-inl.h>
 
@@ -146,12 +145,11 @@ HWY_INLINE void fill(const outwards& from, int centre, int n, double* m) {
   }
 }
 
-/// As many Gaussians as a vector has numbers, each of them a lane here, so that exponentials that are the
-/// same for all points of a Gaussian cost a lane and not a vector. With x the distances of vector `centre`
-/// and J the length of a vector, the next one has exp(−(x + J)²/(2T)) = exp(−x²/(2T)) × right, and right =
-/// exp(−(2xJ
-/// + J²)/(2T)) falls by the factor exp(−2Jh/(2T)) from point to point: `steps` are those of 1, 2, 4, …
-/// points.
+/// The first vectors of as many Gaussians as a vector has numbers. With x the distances of vector `centre`
+/// and J the length of a vector, the next one has exp(−(x + J)²/(2T)) = exp(−x²/(2T)) × right, right =
+/// exp(−(2xJ + J²)/(2T)), and right changes by exp(−J²/T) from vector to vector. The last is one number for a
+/// Gaussian, so that those of all of them are one exponential. The others could be made from a few numbers as
+/// well, but then all their numbers would err to the same side, and so would the moments.
 class first_vectors {
  public:
   first_vectors(const velocity_rows::points& line, const velocity_rows::gaussian* of, int rows)
@@ -163,19 +161,16 @@ class first_vectors {
     }
     const double vectors = (line.n + length - 1) / length;
     const N at = (N::load(u) / N(line.spacing) + N(0.5 * line.n)) / N(length);
-    const N centre(hn::Floor(smaller(larger(at, N(0.0)), N(vectors - 1.0)).v));
-    const N x = line.spacing * (centre * length + (0.5 - 0.5 * line.n)) - N::load(u),
-            per = N(0.5) / N::load(T);
-    centre.store(centre_);
+    N(hn::Floor(smaller(larger(at, N(0.0)), N(vectors - 1.0)).v)).store(centre_);
+    const N per = N(0.5) / N::load(T);
     per.store(per_);
-    exponential(-(2.0 * jump() * x + N(jump() * jump())) * per).store(right_);
-    for (int s = 0, points = 1; points <= length; ++s, points *= 2)
-      exponential(N(-2.0 * jump() * line.spacing * points) * per).store(steps_[s]);
+    exponential(N(-2.0 * jump() * jump()) * per).store(change_);
     // All of them before the first row is filled: exponentials are long chains, which then overlap.
     for (int p = 0; p < rows; ++p) {
-      const N distance = distances(line, u[p], static_cast<int>(centre_[p]));
-      const N value = of[p].a * exponential(-(distance * distance) * per_[p]);
+      const N x = distances(line, u[p], static_cast<int>(centre_[p]));
+      const N value = of[p].a * exponential(-(x * x) * per_[p]);
       select(value > N(1e-300), value, N(0.0)).store(values_[p]);
+      exponential(-(2.0 * jump() * x + N(jump() * jump())) * per_[p]).store(right_[p]);
     }
   }
 
@@ -185,15 +180,7 @@ class first_vectors {
     // in 5 times this.
     const double decay = jump() * jump() * per_[p];
     if (!(decay > 0.02 && decay < 8.0)) return gaussian_by_exponentials(line_, of, m);
-    N right(right_[p]);
-    int s = 0;
-    for (int points = 1; points < length; ++s, points *= 2) {
-      // Lanes with this bit in their number.
-      const hn::RebindToUnsigned<wide> bits;
-      const auto has = hn::TestBit(hn::Iota(bits, 0), hn::Set(bits, static_cast<std::uint64_t>(points)));
-      right = select(hn::RebindMask(wide(), has), right * N(steps_[s][p]), right);
-    }
-    const N change(steps_[s][p]);
+    const N right = N::load(right_[p]), change(change_[p]);
     const outwards from{N::load(values_[p]), right, change / right, change};
     const int centre = static_cast<int>(centre_[p]);
     const double farthest = 0.5 * line_.spacing * line_.n + jump() + std::abs(of.u);
@@ -209,8 +196,8 @@ class first_vectors {
   double jump() const { return line_.spacing * length; }
 
   const velocity_rows::points& line_;
-  alignas(64) double centre_[most_lanes], per_[most_lanes], right_[most_lanes], steps_[4][most_lanes],
-      values_[most_lanes][most_lanes];
+  alignas(64) double centre_[most_lanes], per_[most_lanes], change_[most_lanes],
+      right_[most_lanes][most_lanes], values_[most_lanes][most_lanes];
 };
 
 void gaussians(const velocity_rows::points& line, const velocity_rows::gaussian* of_rows, int rows, double* m,

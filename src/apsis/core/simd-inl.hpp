@@ -47,7 +47,7 @@ struct pack {
   /// which costs where loads are the bottleneck.
   HWY_INLINE pack loaded_once() const {
     pack copy = *this;
-#if HWY_ARCH_X86 && HWY_COMPILER_GCC
+#if HWY_ARCH_X86 && HWY_COMPILER_GCC_ACTUAL  // clang takes no such operand
     asm("" : "+v"(copy.v.raw));
 #endif
     return copy;

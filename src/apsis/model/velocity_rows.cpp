@@ -159,9 +159,9 @@ class first_vectors {
       u[p] = p < rows ? of[p].u : 0.0;
       T[p] = p < rows ? of[p].T : 1.0;
     }
-    const double vectors = (line.n + length - 1) / length;
+    const int vectors = (line.n + length - 1) / length;
     const N at = (N::load(u) / N(line.spacing) + N(0.5 * line.n)) / N(length);
-    N(hn::Floor(smaller(larger(at, N(0.0)), N(vectors - 1.0)).v)).store(centre_);
+    N(hn::Floor(smaller(larger(at, N(0.0)), N(static_cast<double>(vectors - 1))).v)).store(centre_);
     const N per = N(0.5) / N::load(T);
     per.store(per_);
     exponential(N(-2.0 * jump() * jump()) * per).store(change_);

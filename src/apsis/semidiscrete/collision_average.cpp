@@ -94,7 +94,8 @@ class cell_average_collision final : public collision {
       thread_local aligned_vector<double> points;
       thread_local local_relaxation local;
       local.attach(equation_, at_once * gauss3::points);
-      points.resize(static_cast<std::size_t>(at_once * gauss3::points * u.stride()));
+      points.resize(static_cast<std::size_t>(at_once * gauss3::points) *
+                    static_cast<std::size_t>(u.stride()));
       {
         const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(),
                                      {how_.scheme->operations(true), sizeof(double)});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,6 +40,35 @@ TEST(models, inadmissible_moments_are_refused_with_a_reason) {
     std::vector<double> e(static_cast<std::size_t>(m.relaxation->components()));
     EXPECT_FALSE(m.relaxation->equilibrium(omega.data(), e.data())) << m.entry->name;
     EXPECT_FALSE(m.relaxation->why_inadmissible(omega.data()).empty()) << m.entry->name;
+  }
+}
+
+TEST(models, rows_together_are_the_same_bits_as_one_by_one) {
+  for (const auto& m : relaxation_models()) {
+    const relaxation_model& model = *m.relaxation;
+    const auto moments = static_cast<std::size_t>(model.moment_count());
+    const auto size = static_cast<std::size_t>(model.components()), pitch = size + 3;
+    constexpr int rows = 21;  // more than are treated at once, and no multiple of anything
+    std::vector<double> u(rows * pitch), e(rows * pitch, -7.0), omega(rows * moments);
+    for (std::size_t p = 0; p < rows; ++p)
+      model.initial().front().point_value(0.07 * static_cast<double>(p), {u.data() + p * pitch, size});
+    model.moments_of_rows(u.data(), static_cast<std::ptrdiff_t>(pitch), rows, omega.data());
+    ASSERT_EQ(model.equilibria(omega.data(), rows, e.data(), static_cast<std::ptrdiff_t>(pitch)), rows);
+    std::vector<double> one(size), of_one(moments);
+    for (std::size_t p = 0; p < rows; ++p) {
+      model.moments(u.data() + p * pitch, of_one.data());
+      EXPECT_TRUE(std::equal(of_one.begin(), of_one.end(), omega.data() + p * moments)) << m.entry->name;
+      ASSERT_TRUE(model.equilibrium(of_one.data(), one.data()));
+      EXPECT_TRUE(std::equal(one.begin(), one.end(), e.data() + p * pitch)) << m.entry->name << " " << p;
+      EXPECT_EQ(e[p * pitch + size], -7.0) << "nothing between the rows is touched";
+    }
+    for (const std::size_t bad : {std::size_t{0}, std::size_t{5}, std::size_t{17}}) {
+      auto spoilt = omega;
+      spoilt[bad * moments] = std::nan("");
+      EXPECT_EQ(model.equilibria(spoilt.data(), rows, e.data(), static_cast<std::ptrdiff_t>(pitch)),
+                static_cast<int>(bad))
+          << m.entry->name;
+    }
   }
 }
 

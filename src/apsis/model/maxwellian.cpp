@@ -47,7 +47,7 @@ namespace {
 /// One velocity dimension: all three in one pass.
 void moments_on_line(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega) {
-  constexpr int most = 16;
+  constexpr int most = most_line_states;
   std::array<velocity_rows::sums, most> sums;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int first = 0; first < rows; first += most) {
     const int some = std::min(most, rows - first);

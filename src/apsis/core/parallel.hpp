@@ -52,7 +52,8 @@ template <class Body>
 void parallel_blocks(int n, int longest, const Body& body) {
   const part_blocks blocks(n, longest, threads());
   parallel_for(blocks.count(), [&](int block) {
-    if (blocks.begin(block) < blocks.end(block)) body(blocks.begin(block), blocks.end(block));
+    const int begin = blocks.begin(block), end = blocks.end(block);
+    if (begin < end) body(begin, end);
   });
 }
 

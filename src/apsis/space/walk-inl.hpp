@@ -8,6 +8,8 @@
 
 #include <apsis/core/simd-inl.hpp>
 
+#include <hwy/cache_control.h>
+
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
@@ -28,6 +30,11 @@ class walk {
     if constexpr (C == course::forward) return number::load(rows[j] + k_);
     if constexpr (C == course::backward) return number::load(rows[last_ - j] + k_);
     return select(ahead(), number::load(rows[j] + k_), number::load(rows[last_ - j] + k_));
+  }
+  /// Asks memory for the row `distance` numbers downstream of that of cell j, wherever that is.
+  HWY_INLINE void prefetch(const double* const* rows, int j, std::ptrdiff_t distance) const {
+    if constexpr (C != course::backward) hwy::Prefetch(rows[j] + distance + k_);
+    if constexpr (C != course::forward) hwy::Prefetch(rows[last_ - j] - distance + k_);
   }
   /// Rows at equal distances, from that of cell 0 of the pencil on.
   HWY_INLINE number load(const double* row, std::ptrdiff_t pitch, int j) const {

@@ -159,7 +159,8 @@ struct both_fractions {
 
 /// Calls put(fraction, j) for cells 0 … count−1 of the walk. The formulas of a cell are one long chain,
 /// longer than a processor looks ahead; so they are cut in three, and those of three cells are under way at a
-/// time.
+/// time. Rows of neighbouring cells are too far apart for the processor to guess which comes next: it is told
+/// as many cells ahead as memory is slow.
 template <class Weights, template <class> class Fraction, class Walk, class Put>
 HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Put& put) {
   using N = typename Walk::number;
@@ -171,7 +172,10 @@ HWY_INLINE void along(const Walk& way, const double* const* rows, int count, con
     u.advance(way.load(rows, 3));
     newest = measured<Weights, N>(u);
   }
+  constexpr int cells_ahead = 16;
+  const std::ptrdiff_t ahead = cells_ahead * (rows[1] - rows[0]);
   for (int j = 2; j < count; ++j) {
+    way.prefetch(rows, j, ahead);
     put(waiting, j - 2);
     waiting = Fraction<N>(newest);
     u.advance(way.load(rows, j + 2));

@@ -3,8 +3,9 @@
 
     bench/report.py [--results results/bench/speed.json] [--docs docs] [--readme README.md]
 
-Copies the results to DOCS/data/speed.json, or reads that file where there are none; writes the tables between the marks
-<!-- NAME --> and <!-- end --> of DOCS/speed.md and of the README, and draws DOCS/images/speed-*.png.
+Copies the results, if there are any, to DOCS/data/speed/PROCESSOR.json. Writes the tables of the newest file there between the
+marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, draws DOCS/images/speed-*.png, and writes the table of the README, which has
+a column for every processor.
 """
 import argparse
 import json
@@ -35,9 +36,13 @@ def markdown(columns, rows):
     return "\n".join(lines + ["| " + " | ".join(number(cell) for cell in row) + " |" for row in rows])
 
 
+def processor(result):
+    return " ".join(re.sub(r"\([^)]*\)|Processor|@.*", " ", result["machine"]["processor"]).split())
+
+
 def measured_on(result):
     machine = result["machine"]
-    return (f"{machine['date'][:10]}, {machine['processor']}, {machine['cores']} cores, kernels {machine['kernels']}, "
+    return (f"{machine['date'][:10]}, {processor(result)}, {machine['cores']} cores, kernels {machine['kernels']}, "
             f"{machine['compiler']}, median of {result['repeats']}")
 
 
@@ -99,6 +104,19 @@ def summary(results):
         rows += [(f"ODE model, ε = {epsilon}, best of SUNDIALS at errors 1e-4 and 1e-6",
                   against(result, "best of the others", ("0.0001", "1e-06"), epsilon)) for epsilon in ("1", "0.01", "1e-06", "1e-10")]
     return rows
+
+
+def any_of(results):
+    return next(iter(results.values()))
+
+
+def comparison(machines):
+    """The summaries side by side."""
+    columns = [dict(summary(results)) for results in machines]
+    measures = list(dict.fromkeys(measure for column in columns for measure in column))
+    table = markdown(("measure", *(processor(any_of(results)) for results in machines)),
+                     [(measure, *(column.get(measure) for column in columns)) for measure in measures])
+    return table + "\n\n" + "<br>\n".join(f"*{measured_on(any_of(results))}*" for results in machines)
 
 
 # --- pictures --------------------------------------------------------------------------------------------------------------------
@@ -183,15 +201,24 @@ def text_of(results):
     return re.sub(r"(\}|\]), (?=[\{\[\"])", "\\1,\n", text) + "\n"
 
 
-def read_results(path, kept):
-    source = path if path.exists() else kept
+def read(path):
     try:
-        results = json.loads(source.read_text(encoding="utf-8"))
+        return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as problem:
-        raise ReportError(f"cannot read {source} ({problem}) run make bench") from problem
-    if source == path:
-        kept.write_text(text_of(compact(results)), encoding="utf-8")
-    return results
+        raise ReportError(f"cannot read {path} ({problem}) run make bench") from problem
+
+
+def keep(results, folder):
+    name = re.sub(r"[^a-z0-9]+", "-", processor(any_of(results)).lower()).strip("-")
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}.json").write_text(text_of(compact(results)), encoding="utf-8")
+
+
+def newest_first(folder):
+    machines = [read(path) for path in sorted(folder.glob("*.json"))]
+    if not machines:
+        raise ReportError(f"no results in {folder} run make bench")
+    return sorted(machines, key=lambda results: any_of(results)["machine"]["date"], reverse=True)
 
 
 def main():
@@ -200,11 +227,14 @@ def main():
     parser.add_argument("--docs", type=Path, default=HERE.parent / "docs")
     parser.add_argument("--readme", type=Path, default=HERE.parent / "README.md")
     given = parser.parse_args()
-    results = read_results(given.results, given.docs / "data" / "speed.json")
+    folder = given.docs / "data" / "speed"
+    if given.results.exists():
+        keep(read(given.results), folder)
+    machines = newest_first(folder)
+    results = machines[0]
     for name, result in results.items():
         replace(given.docs / "speed.md", name, section(result))
-    machine = next(iter(results.values()))
-    replace(given.readme, "speed", markdown(("measure", "result"), summary(results)) + f"\n\n*{measured_on(machine)}*")
+    replace(given.readme, "speed", comparison(machines))
     if "peers-mixed" in results:
         draw_mixed(results["peers-mixed"], given.docs / "images" / "speed-mixed.png")
     if "peers-ode" in results:

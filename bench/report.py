@@ -4,8 +4,8 @@
     bench/report.py [--results results/bench/speed.json] [--docs docs] [--readme README.md]
 
 Copies the results, if there are any, to DOCS/data/speed/PROCESSOR.json. Writes the tables of the newest file there between the
-marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, draws DOCS/images/speed-*.png, and writes the table of the README, which has
-a column for every processor.
+marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, draws DOCS/images/speed-*.png, and writes the table with a column for every
+processor there and into the README.
 """
 import argparse
 import json
@@ -234,6 +234,7 @@ def main():
     results = machines[0]
     for name, result in results.items():
         replace(given.docs / "speed.md", name, section(result))
+    replace(given.docs / "speed.md", "processors", comparison(machines))
     replace(given.readme, "speed", comparison(machines))
     if "peers-mixed" in results:
         draw_mixed(results["peers-mixed"], given.docs / "images" / "speed-mixed.png")

@@ -31,10 +31,11 @@ class walk {
     if constexpr (C == course::backward) return number::load(rows[last_ - j] + k_);
     return select(ahead(), number::load(rows[j] + k_), number::load(rows[last_ - j] + k_));
   }
-  /// Asks memory for the row `distance` numbers downstream of that of cell j, wherever that is.
-  HWY_INLINE void prefetch(const double* const* rows, int j, std::ptrdiff_t distance) const {
-    if constexpr (C != course::backward) hwy::Prefetch(rows[j] + distance + k_);
-    if constexpr (C != course::forward) hwy::Prefetch(rows[last_ - j] - distance + k_);
+  /// Asks memory for the row of cell j, or of the last one before it. No further: rows behind the end may be
+  /// another core's.
+  HWY_INLINE void prefetch(const double* const* rows, int j) const {
+    if constexpr (C != course::backward) hwy::Prefetch(rows[j < last_ ? j : last_] + k_);
+    if constexpr (C != course::forward) hwy::Prefetch(rows[j < last_ ? last_ - j : 0] + k_);
   }
   /// Rows at equal distances, from that of cell 0 of the pencil on.
   HWY_INLINE number load(const double* row, std::ptrdiff_t pitch, int j) const {

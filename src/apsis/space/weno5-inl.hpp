@@ -173,9 +173,8 @@ HWY_INLINE void along(const Walk& way, const double* const* rows, int count, con
     newest = measured<Weights, N>(u);
   }
   constexpr int cells_ahead = 16;
-  const std::ptrdiff_t ahead = cells_ahead * (rows[1] - rows[0]);
   for (int j = 2; j < count; ++j) {
-    way.prefetch(rows, j, ahead);
+    way.prefetch(rows, j + cells_ahead);
     put(waiting, j - 2);
     waiting = Fraction<N>(newest);
     u.advance(way.load(rows, j + 2));

@@ -24,9 +24,8 @@ void average(const relaxation::weighted_rows of_points[3], int width, double* av
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     N sum(0.0);
-    for (int q = 0; q < 3; ++q)
-      sum = fma(N(points[q].stay), N::load(points[q].u + k),
-                fma(N(points[q].relax), N::load(points[q].e + k), sum));
+    for (const auto& point : points)
+      sum = fma(N(point.stay), N::load(point.u + k), fma(N(point.relax), N::load(point.e + k), sum));
     sum.store(average + k);
   });
 }

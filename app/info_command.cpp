@@ -1,7 +1,8 @@
-#include "build_info.hpp"
 #include "commands.hpp"
 
 #include <apsis/core/parallel.hpp>
+#include <apsis/core/version.hpp>
+#include <apsis/output/provenance.hpp>
 
 #include <memory>
 

@@ -1,8 +1,8 @@
-#include "build_info.hpp"
 #include "commands.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/core/version.hpp>
 
 #include <algorithm>
 #include <cstdio>

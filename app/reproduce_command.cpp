@@ -1,4 +1,3 @@
-#include "build_info.hpp"
 #include "commands.hpp"
 #include "drawing.hpp"
 #include "interrupt.hpp"
@@ -6,8 +5,10 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/parallel.hpp>
+#include <apsis/core/version.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/output/progress.hpp>
+#include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/study/claim_registry.hpp>
 #include <apsis/study/reproduce.hpp>

@@ -1,20 +1,47 @@
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "run_profile.hpp"
-#include "run_session.hpp"
+#include "run_report.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/parallel.hpp>
+#include <apsis/core/profile.hpp>
 #include <apsis/output/case_json.hpp>
+#include <apsis/output/progress.hpp>
+#include <apsis/run/session.hpp>
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
 namespace {
 
-int run(const run_options& options) {
-  run_session session(options);
+/// The command line of `apsis run`.
+struct run_options {
+  std::string case_name;
+  std::vector<std::string> overrides;
+  session_options session;
+  int threads = 1;
+  bool json = false, profile = false;
+};
+
+int run(run_options options) {
+  // First of all: an interrupt that comes before the first step is then no different from a later one.
+  watch_for_interrupts();
+  set_threads(options.threads);
+  case_config config = load_case(options.case_name, options.overrides);
+  progress bar(config.time.end);
+  options.session.stop = interrupted;
+  options.session.watch = [&bar](const simulation& now) {
+    if (bar.due()) bar.update(now.step(), now.steps_total(), now.t(), now.last().min_value);
+  };
+  options.session.stepped = [&bar] { bar.finish(); };
+  run_session session(std::move(config), options.session);
+  if (options.profile) profile::start();
   const run_end end = session.run();
   const simulation& computed = session.computed();
   std::optional<run_profile> profile;
@@ -42,7 +69,7 @@ void add_run(CLI::App& program, action& chosen) {
       ->required();
   command->add_option("key=value", options->overrides,
                       "keys of the case that take another value (apsis show case)");
-  command->add_option("--out", options->out, "folder for the results; without it nothing is written");
+  command->add_option("--out", options->session.out, "folder for the results; without it nothing is written");
   command->add_flag("--json", options->json, "print one JSON object on standard output, and nothing else");
   command
       ->add_option("--threads", options->threads,
@@ -50,9 +77,9 @@ void add_run(CLI::App& program, action& chosen) {
       ->check(CLI::Range(0, 1024));
   command->add_flag("--profile", options->profile,
                     "tell how long each kernel took, and how near it came to the ceilings of this machine");
-  command->add_option("--restart", options->restart, "go on from a checkpoint.h5 of the same case");
+  command->add_option("--restart", options->session.restart, "go on from a checkpoint.h5 of the same case");
   command
-      ->add_option("--wall", options->wall,
+      ->add_option("--wall", options->session.wall,
                    "stop after this many seconds with a checkpoint, as if interrupted (exit code 130)")
       ->check(CLI::PositiveNumber);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

@@ -1,22 +1,10 @@
 #pragma once
 
-#include "run_records.hpp"
+#include <apsis/run/manifest.hpp>
 
-#include <nlohmann/json_fwd.hpp>
+#include <string>
 
 namespace apsis::app {
-
-/// How a run ended.
-enum class run_end { complete, interrupted, wall_time, failed };
-
-std::string to_string(run_end end);
-
-/// The object that `apsis run --json` prints.
-nlohmann::ordered_json to_json(const simulation& run, const run_records& records);
-
-/// manifest.json: the case as resolved, how it ended, numbers of the run, build and machine. `message` is the
-/// error of a failed run.
-nlohmann::ordered_json manifest(const simulation& run, run_end end, const std::string& message);
 
 /// A few lines for a person.
 std::string summary_text(const simulation& run, run_end end);

@@ -48,9 +48,10 @@ struct case_config {
     std::optional<double> tolerance;        ///< of a step; dt, cfl or safety then says how long one may be
   } time;
   struct {
-    double every = 0.0;               ///< time between snapshots; 0: only the end
-    std::vector<std::string> fields;  ///< of the snapshot; empty: all of the model
-    int checkpoint_every = 0;         ///< steps; 0: only when interrupted
+    double every = 0.0;                ///< time between snapshots; 0: only the end
+    std::vector<std::string> fields;   ///< of the snapshot; empty: all of the model
+    int checkpoint_every = 0;          ///< steps; 0: not by steps
+    double checkpoint_minutes = 10.0;  ///< 0: not by time
   } output;
 };
 

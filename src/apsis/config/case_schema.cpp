@@ -187,9 +187,13 @@ std::vector<case_key> make_schema() {
        [](c& o, const v& x) { o.output.fields = std::get<std::vector<std::string>>(x); },
        [](const c& o) { return v(o.output.fields); }},
       {"output.checkpoint_every", integer, key_scope::always, false, "steps", 0, 1'000'000'000, false,
-       nullptr, "Steps between checkpoints; 0 writes one only when a run is interrupted.",
+       nullptr, "Steps between checkpoints; 0 writes none by steps. An interrupted run always leaves one.",
        [](c& o, const v& x) { o.output.checkpoint_every = integer_of(x); },
        [](const c& o) { return v(long{o.output.checkpoint_every}); }},
+      {"output.checkpoint_minutes", number, key_scope::always, false, "minutes", 0, unlimited, false, nullptr,
+       "Minutes of the clock between checkpoints; 0 writes none by time.",
+       [](c& o, const v& x) { o.output.checkpoint_minutes = number_of(x); },
+       [](const c& o) { return v(o.output.checkpoint_minutes); }},
   };
 }
 

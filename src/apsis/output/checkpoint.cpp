@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/output/hdf5_file.hpp>
+#include <apsis/output/sealed_file.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,8 +10,7 @@
 namespace apsis {
 namespace {
 
-// Changes when an older program could not read the file.
-constexpr double format_version = 1.0;
+const std::string kind = "checkpoint";
 
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
@@ -63,8 +63,7 @@ double checkpoint::number(const std::string& name) const {
 }
 
 void write_checkpoint(const std::string& path, const checkpoint& c) {
-  hdf5_file file = hdf5_file::create(path);
-  file.write_attribute("apsis_checkpoint", format_version);
+  hdf5_file file = hdf5_file::create(path, seal_length);
   for (const auto& [name, value] : c.numbers) file.write_attribute(name, value);
   file.write("case", c.case_text);
   file.write("state", c.state, {c.cells, c.components}, "unknowns");
@@ -81,15 +80,14 @@ void write_checkpoint(const std::string& path, const checkpoint& c) {
   }
   if (!snapshots.empty()) write_rows(file, "fields/snapshots", snapshots, snapshots.front().size());
   file.close();
+  seal(path, kind);
 }
 
 checkpoint read_checkpoint(const std::string& path) {
+  check_seal(path, kind);
   const hdf5_file file = hdf5_file::open(path);
   checkpoint c;
   for (const auto& [name, value] : file.attributes()) c.numbers[name] = value;
-  if (c.numbers.count("apsis_checkpoint") == 0) damaged(path, "an HDF5 file of another kind");
-  if (c.numbers["apsis_checkpoint"] != format_version) damaged(path, "written by another version");
-  c.numbers.erase("apsis_checkpoint");
   c.case_text = file.read_text("case");
   const auto extents = file.extents("state");
   if (extents.size() != 2) damaged(path, "'state' has a wrong shape");

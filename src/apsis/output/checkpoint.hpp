@@ -23,10 +23,11 @@ struct checkpoint {
   double number(const std::string& name) const;
 };
 
-/// Throws io_error.
+/// A sealed HDF5 file (sealed_file.hpp). Throws io_error.
 void write_checkpoint(const std::string& path, const checkpoint& c);
 
-/// Reads and checks that all parts fit together. Throws io_error: missing, damaged, or no checkpoint.
+/// Reads and checks that all parts fit together. Throws io_error: missing, damaged, of another version, or no
+/// checkpoint.
 checkpoint read_checkpoint(const std::string& path);
 
 }  // namespace apsis

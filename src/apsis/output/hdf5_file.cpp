@@ -75,9 +75,11 @@ void hdf5_file::fail(const std::string& what) const {
   throw io_error(fmt::format("'{}': {}", path_, what));
 }
 
-hdf5_file hdf5_file::create(const std::string& path) {
+hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes) {
   silence();
-  hdf5_file file(path, H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  const handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_userblock(creation, free_bytes);
+  hdf5_file file(path, H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT));
   if (file.id_ < 0) file.fail("cannot be created (no permission or no space?) choose another folder");
   return file;
 }

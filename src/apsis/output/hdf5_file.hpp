@@ -14,7 +14,8 @@ class hdf5_file {
  public:
   using shape = std::vector<std::uint64_t>;
 
-  static hdf5_file create(const std::string& path);
+  /// `free_bytes` at the beginning are left to others (the user block): 0 or a power of two from 512 on.
+  static hdf5_file create(const std::string& path, std::uint64_t free_bytes = 0);
   static hdf5_file open(const std::string& path);
   ~hdf5_file();
   hdf5_file(hdf5_file&& other) noexcept;

@@ -7,7 +7,9 @@
 #include <fstream>
 #include <ranges>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace apsis {
 namespace fs = std::filesystem;
@@ -27,6 +29,14 @@ void write_text(const std::string& path, const std::string& text) {
   out << text;
   out.close();
   if (!out) cannot("write", path, "no permission or no space left");
+}
+
+/// Names live in the folder, which has to reach the disk like a file.
+void see_names_through(const fs::path& folder) {
+  const int id = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (id < 0) return;  // some file systems know no such thing
+  fsync(id);
+  close(id);
 }
 
 }  // namespace
@@ -86,12 +96,17 @@ void result_folder::publish(const std::string& name, const std::function<void(co
   std::error_code problem;
   fs::rename(temporary(name), path_ / name, problem);
   if (problem) cannot("write", path_ / name, problem.message());
+  see_names_through(path_);
   prepared_.erase(std::find(prepared_.begin(), prepared_.end(), name));
   keep_ = true;
 }
 
 void result_folder::commit() {
   std::error_code problem;
+  // Of a run that was killed while it wrote them.
+  for (const char* name : result_names)
+    if (std::find(prepared_.begin(), prepared_.end(), name) == prepared_.end())
+      fs::remove(temporary(name), problem);
   // While names change there is no manifest: one that is there belongs to the files beside it.
   fs::remove(path_ / manifest, problem);
   std::partition(prepared_.begin(), prepared_.end(),
@@ -105,6 +120,7 @@ void result_folder::commit() {
     if (problem) cannot("write", path_ / name, problem.message());
     keep_ = true;
   }
+  see_names_through(path_);
   prepared_.clear();
 }
 

@@ -4,7 +4,7 @@
 #include <apsis/output/solution.hpp>
 #include <apsis/run/simulation.hpp>
 
-namespace apsis::app {
+namespace apsis {
 
 /// What a run leaves behind besides its state: a row for every step and the snapshots of the fields. The
 /// results know tables and not runs, so the translation between the two is here.
@@ -34,4 +34,4 @@ saved_run to_saved_run(const checkpoint& c);
 
 solution make_solution(const simulation& run, const run_records& records);
 
-}  // namespace apsis::app
+}  // namespace apsis

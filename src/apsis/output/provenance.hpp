@@ -4,10 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace apsis::app {
-
-/// Version of the program.
-const char* version();
+namespace apsis {
 
 /// Compiler, build type, instruction set and libraries.
 nlohmann::ordered_json build_info();
@@ -18,4 +15,4 @@ nlohmann::ordered_json machine_info();
 /// The present second in universal time, "2026-01-31T12:00:00Z".
 std::string time_stamp();
 
-}  // namespace apsis::app
+}  // namespace apsis

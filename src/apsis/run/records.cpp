@@ -1,11 +1,11 @@
-#include "run_records.hpp"
+#include <apsis/run/records.hpp>
 
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
 
-namespace apsis::app {
+namespace apsis {
 namespace {
 
 constexpr std::size_t columns_before_defects = 5, columns_after_defects = 2;
@@ -134,13 +134,11 @@ saved_run to_saved_run(const checkpoint& c) {
   saved.t = c.number("t");
   saved.anchor = c.number("anchor");
   saved.anchor_dt = c.number("anchor_dt");
-  if (c.numbers.count("startup_steps") > 0) {  // checkpoints of runs before there was a start-up have none
-    saved.startup_steps = count(c, "startup_steps");
-    saved.startup_done = count(c, "startup_done");
-    saved.startup_length = c.number("startup_length");
-    if (saved.startup_steps > 64 || saved.startup_done > saved.startup_steps)
-      throw io_error("the checkpoint has a wrong start-up (damaged file) give another checkpoint");
-  }
+  saved.startup_steps = count(c, "startup_steps");
+  saved.startup_done = count(c, "startup_done");
+  saved.startup_length = c.number("startup_length");
+  if (saved.startup_steps > 64 || saved.startup_done > saved.startup_steps)
+    throw io_error("the checkpoint has a wrong start-up (damaged file) give another checkpoint");
   if (c.numbers.count("proposed_dt") > 0) {  // of runs that keep a tolerance
     saved.proposed_dt = c.number("proposed_dt");
     saved.previous_error = c.number("previous_error");
@@ -175,4 +173,4 @@ solution make_solution(const simulation& run, const run_records& records) {
   return s;
 }
 
-}  // namespace apsis::app
+}  // namespace apsis

@@ -1,29 +1,19 @@
-#include "interrupt.hpp"
-#include "run_session.hpp"
+#include <apsis/run/session.hpp>
 
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
-#include <apsis/core/parallel.hpp>
-#include <apsis/core/profile.hpp>
 #include <apsis/output/case_json.hpp>
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace apsis::app {
+namespace apsis {
 namespace {
-
-// The first thing of a session: an interrupt that comes before the first step is then no different from a
-// later one.
-case_config load(const run_options& options) {
-  watch_for_interrupts();
-  set_threads(options.threads);
-  return load_case(options.case_name, options.overrides);
-}
 
 // What may differ between a run and its continuation: nothing that enters a step.
 std::string essential_text(case_config config) {
@@ -49,7 +39,8 @@ void check_same_case(const case_config& mine, const std::string& saved_text, con
 
 }  // namespace
 
-run_session::run_session(run_options options) : options_(std::move(options)), simulation_(load(options_)) {
+run_session::run_session(case_config configured, session_options options)
+    : options_(std::move(options)), simulation_(std::move(configured)) {
   if (options_.restart)
     resume(*options_.restart);
   else
@@ -61,7 +52,6 @@ run_session::run_session(run_options options) : options_(std::move(options)), si
     log::warning("no checkpoints are written (output.checkpoint_every needs a folder) give one with --out");
   log::info(fmt::format("{}: about {} steps of {}; {}", config.source, simulation_.steps_total(),
                         config.time.method, simulation_.promises().text()));
-  bar_ = std::make_unique<progress>(config.time.end);
 }
 
 void run_session::resume(const std::string& path) {
@@ -81,15 +71,14 @@ void run_session::resume(const std::string& path) {
 }
 
 run_end run_session::run() {
-  if (options_.profile) profile::start();
   try {
     loop();
   } catch (const numerical_error& failure) {
-    bar_->finish();
+    if (options_.stepped) options_.stepped();
     save_failure(failure.what());
     throw;
   }
-  bar_->finish();
+  if (options_.stepped) options_.stepped();
   finish_records();
   if (folder_)
     write_results(*folder_, end_, "");
@@ -105,8 +94,9 @@ void run_session::finish_records() {
 }
 
 void run_session::loop() {
+  if (options_.watch) options_.watch(simulation_);
   while (!simulation_.finished()) {
-    if (interrupted()) {
+    if (options_.stop && options_.stop()) {
       end_ = run_end::interrupted;
       return;
     }
@@ -129,12 +119,23 @@ void run_session::after_step() {
     if (passed > snapshots_) records_->add_snapshot(simulation_);
     snapshots_ = passed;
   }
-  const long every = config.output.checkpoint_every;
-  if (folder_ && every > 0 && last.step % every == 0)
-    folder_->publish("checkpoint.h5", [&](const std::string& path) {
-      write_checkpoint(path, make_checkpoint(simulation_, *records_));
-    });
-  if (bar_->due()) bar_->update(last.step, simulation_.steps_total(), last.t, last.min_value);
+  if (checkpoint_is_due()) publish_checkpoint();
+  if (options_.watch) options_.watch(simulation_);
+}
+
+bool run_session::checkpoint_is_due() const {
+  if (!folder_) return false;
+  const auto& output = simulation_.config().output;
+  const std::chrono::duration<double, std::ratio<60>> since = clock::now() - last_checkpoint_;
+  return (output.checkpoint_every > 0 && simulation_.step() % output.checkpoint_every == 0) ||
+         (output.checkpoint_minutes > 0.0 && since.count() >= output.checkpoint_minutes);
+}
+
+void run_session::publish_checkpoint() {
+  folder_->publish("checkpoint.h5", [&](const std::string& path) {
+    write_checkpoint(path, make_checkpoint(simulation_, *records_));
+  });
+  last_checkpoint_ = clock::now();
 }
 
 void run_session::write_results(result_folder& folder, run_end end, const std::string& message) {
@@ -168,4 +169,4 @@ void run_session::save_failure(const std::string& message) {
   }
 }
 
-}  // namespace apsis::app
+}  // namespace apsis

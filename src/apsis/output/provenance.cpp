@@ -1,7 +1,8 @@
-#include "build_info.hpp"
+#include <apsis/output/provenance.hpp>
 
 #include <apsis/core/instruction_set.hpp>
 #include <apsis/core/parallel.hpp>
+#include <apsis/core/version.hpp>
 
 #include <chrono>
 #include <fstream>
@@ -14,7 +15,7 @@
 #include <hdf5.h>
 #include <nlohmann/json.hpp>
 
-namespace apsis::app {
+namespace apsis {
 namespace {
 
 std::string compiler() {
@@ -37,16 +38,12 @@ std::string processor() {
 
 }  // namespace
 
-const char* version() {
-  return APSIS_VERSION;
-}
-
 nlohmann::ordered_json build_info() {
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
   return {
       {"compiler", compiler()},
-      {"build_type", APSIS_BUILD_TYPE},
+      {"build_type", build_type()},
       {"instruction_set", kernel_instruction_set()},
       {"libraries",
        {{"hdf5", fmt::format("{}.{}.{}", major, minor, release)},
@@ -65,4 +62,4 @@ std::string time_stamp() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
 }
 
-}  // namespace apsis::app
+}  // namespace apsis

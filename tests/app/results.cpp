@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <random>
 #include <sstream>
 #include <thread>
 
@@ -146,6 +147,38 @@ TEST_P(interruption, gives_130_and_a_checkpoint_that_goes_on_bit_for_bit) {
   ASSERT_EQ(resumed.code, 0) << resumed.err;
   ASSERT_EQ(run_apsis(folder, with(small, {end, "output.every=0.01", "--out", "whole"})).code, 0);
   expect_same_results(folder.path() / "whole", folder.path() / "resumed");
+}
+
+TEST(results, fifty_kills_at_random_moments_lose_nothing) {
+  const work_folder folder;
+  const auto long_run = with(small, {"time.end=3.0", "output.every=0.01"});
+  ASSERT_EQ(run_apsis(folder, with(long_run, {"--out", "whole"})).code, 0);
+  std::mt19937 random(2026);
+  std::uniform_int_distribution<int> milliseconds(1, 200);
+  const fs::path saved = folder.path() / "o/checkpoint.h5";
+  const auto go_on = [&](const std::string& checkpoints) {
+    auto arguments = with(long_run, {"output.checkpoint_every=" + checkpoints, "--out", "o"});
+    return fs::exists(saved) ? with(arguments, {"--restart", "o/checkpoint.h5"}) : arguments;
+  };
+  int kills = 0, in_steps = 0;
+  for (int attempt = 0; attempt < 50; ++attempt) {
+    const std::string before = read(saved);
+    process run(folder, go_on("1"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds(random)));
+    run.send(SIGKILL);
+    const outcome killed = run.wait();
+    if (killed.code == 1000 + SIGKILL) ++kills;
+    if (read(saved) != before) ++in_steps;
+    ASSERT_EQ(killed.code, 1000 + SIGKILL) << killed.err;
+    ASSERT_FALSE(fs::exists(folder.path() / "o/manifest.json"));
+  }
+  EXPECT_EQ(kills, 50);
+  EXPECT_GE(in_steps, 10);
+  const outcome last = run_apsis(folder, go_on("0"));
+  ASSERT_EQ(last.code, 0) << last.err;
+  expect_same_results(folder.path() / "whole", folder.path() / "o");
+  for (const auto& entry : fs::directory_iterator(folder.path() / "o"))
+    EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
 }
 
 INSTANTIATE_TEST_SUITE_P(signals, interruption, testing::Values(SIGINT, SIGTERM));

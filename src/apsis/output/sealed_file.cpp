@@ -1,7 +1,6 @@
 #include <apsis/output/sealed_file.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/version.hpp>
 
 #include <array>
 #include <cstdint>
@@ -83,9 +82,9 @@ void write_through(const std::string& path, const std::string& block) {
 
 }  // namespace
 
-void seal(const std::string& path, const std::string& kind) {
+void seal(const std::string& path, const std::string& kind, const std::string& written_by) {
   std::ifstream file(path, std::ios::binary);
-  const seal_text text{kind, version(), length_of(file)};
+  const seal_text text{kind, written_by, length_of(file)};
   const std::string block = text.block(checksum_of(file, text.head()));
   if (file.bad()) throw io_error(fmt::format("'{}' cannot be read back (damaged disk?)", path));
   write_through(path, block);

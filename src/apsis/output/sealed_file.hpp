@@ -1,5 +1,7 @@
 #pragma once
 
+#include <apsis/core/version.hpp>
+
 #include <string>
 
 namespace apsis {
@@ -11,7 +13,7 @@ inline constexpr unsigned long seal_length = 512;
 
 /// Writes the seal into the first seal_length bytes, which must be there, and sees the file through to the
 /// disk. `kind` is a word such as "checkpoint". Throws io_error.
-void seal(const std::string& path, const std::string& kind);
+void seal(const std::string& path, const std::string& kind, const std::string& written_by = version());
 
 /// Throws io_error with the reason: no such file, of another kind, cut short, changed, or written by another
 /// version.

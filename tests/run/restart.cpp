@@ -1,0 +1,190 @@
+// A run that was stopped and goes on is the same run, for everything in the registries; a checkpoint that is
+// not whole is refused.
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/version.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/output/checkpoint.hpp>
+#include <apsis/output/sealed_file.hpp>
+#include <apsis/run/session.hpp>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <support/folder.hpp>
+
+using namespace apsis;
+using testing::HasSubstr;
+
+namespace {
+
+/// Ten steps of a small mesh.
+std::string small_case(const model_entry& model, const std::string& method, const std::string& more) {
+  std::string text = "[model]\nname = \"" + model.name + "\"\n";
+  if (model.has_epsilon) text += "epsilon = 1e-3\n";
+  if (model.has_space) text += "[space]\ncells = 10\ndomain = [0.0, 2.0]\n";
+  if (model.has_velocity) text += "[velocity]\nmax = 9.0\npoints = 36\n";
+  text += "[time]\nmethod = \"" + method + "\"\ndt = 0.005\nend = 0.05\n" + more;
+  return text + "[output]\nevery = 0.011\n";
+}
+
+struct outcome {
+  std::vector<double> state;
+  table history;
+  field_series fields;
+};
+
+/// Runs until `steps` steps are done in all, or to the end; its checkpoint is then in the folder.
+outcome run(const case_config& c, const std::string& folder, long steps,
+            std::optional<std::string> restart = {}) {
+  session_options how;
+  how.out = folder;
+  how.restart = std::move(restart);
+  long done = 0;
+  how.watch = [&done](const simulation& now) { done = now.step(); };
+  how.stop = [&done, steps] { return done >= steps; };
+  run_session session(c, how);
+  session.run();
+  return {session.computed().state(), session.records().history(), session.records().fields()};
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+void expect_same(const outcome& a, const outcome& b, const std::string& what) {
+  EXPECT_TRUE(same_bits(a.state, b.state)) << what;
+  ASSERT_EQ(a.history.rows.size(), b.history.rows.size()) << what;
+  for (std::size_t k = 0; k < a.history.rows.size(); ++k)
+    EXPECT_TRUE(same_bits(a.history.rows[k], b.history.rows[k])) << what << ", step " << k;
+  ASSERT_EQ(a.fields.snapshots.size(), b.fields.snapshots.size()) << what;
+  for (std::size_t k = 0; k < a.fields.snapshots.size(); ++k) {
+    EXPECT_EQ(a.fields.snapshots[k].t, b.fields.snapshots[k].t) << what;
+    for (std::size_t n = 0; n < a.fields.names.size(); ++n)
+      EXPECT_TRUE(same_bits(a.fields.snapshots[k].values[n], b.fields.snapshots[k].values[n])) << what;
+  }
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_bytes(const std::string& path, const std::string& bytes) {
+  std::filesystem::remove(path);  // some file systems wait for the disk when a file is written over
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+/// Why a file is refused; "" if it is not.
+std::string refusal(const std::string& path) {
+  try {
+    static_cast<void>(read_checkpoint(path));
+  } catch (const io_error& why) {
+    return why.what();
+  }
+  return {};
+}
+
+/// The path of a small checkpoint.
+std::string some_checkpoint(const test_folder& folder) {
+  run(parse_case(small_case(*find_model("ode"), "md-imex-3-2", ""), "case"), folder / "some", 2);
+  return folder / "some/checkpoint.h5";
+}
+
+}  // namespace
+
+class restart : public testing::TestWithParam<std::string> {};
+
+TEST_P(restart, goes_on_bit_for_bit_with_every_method_from_any_step) {
+  const auto& model = *find_model(GetParam());
+  const test_folder folder;
+  std::mt19937 random(7);
+  int asked = 0;
+  for (const auto& name : method_names()) {
+    std::optional<case_config> c;
+    std::optional<outcome> whole;
+    try {
+      c = parse_case(small_case(model, name, ""), "case");
+      whole = run(*c, folder / "whole", 1000);
+    } catch (const input_error&) {
+      continue;  // this method cannot integrate this model
+    } catch (const numerical_error&) {
+      continue;  // or not with this step
+    }
+    ++asked;
+    for (const long at : {0L, std::uniform_int_distribution<long>(1, 9)(random)}) {
+      run(*c, folder / "half", at);
+      expect_same(*whole, run(*c, folder / "again", 1000, folder / "half/checkpoint.h5"),
+                  name + " from step " + std::to_string(at));
+    }
+  }
+  EXPECT_GE(asked, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(models, restart, testing::ValuesIn([] {
+                           std::vector<std::string> names;
+                           for (const auto* entry : model_entries()) names.push_back(entry->name);
+                           return names;
+                         }()));
+
+TEST(restart_from, a_start_up_and_a_tolerance_goes_on_bit_for_bit_from_every_step) {
+  const test_folder folder;
+  for (const std::string more : {"startup = \"graded\"\n", "tolerance = 1e-4\n"}) {
+    const auto c = parse_case(small_case(*find_model("ode"), "md-imex-8-3", more), "case");
+    const auto whole = run(c, folder / "whole", 1000);
+    const auto steps = static_cast<long>(whole.history.rows.size()) - 1;
+    ASSERT_GE(steps, 10);
+    for (long at = 0; at < steps; ++at) {
+      run(c, folder / "half", at);
+      expect_same(whole, run(c, folder / "again", 1000, folder / "half/checkpoint.h5"), more);
+    }
+  }
+}
+
+TEST(a_checkpoint, that_was_cut_short_at_any_byte_is_refused) {
+  const test_folder folder;
+  const std::string path = some_checkpoint(folder), whole = bytes_of(path);
+  ASSERT_EQ(refusal(path), "");
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    write_bytes(folder / "cut.h5", whole.substr(0, length));
+    ASSERT_NE(refusal(folder / "cut.h5"), "") << length;
+  }
+  EXPECT_THAT(refusal(folder / "cut.h5"), HasSubstr("its beginning says '" + std::to_string(whole.size())));
+  write_bytes(folder / "long.h5", whole + '\0');
+  EXPECT_NE(refusal(folder / "long.h5"), "");
+}
+
+TEST(a_checkpoint, in_which_any_bit_is_another_is_refused) {
+  const test_folder folder;
+  const std::string path = some_checkpoint(folder), whole = bytes_of(path);
+  std::mt19937 random(1);
+  for (std::size_t at = 0; at < whole.size(); ++at)
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      // All bits of the seal, one of every other byte.
+      if (at >= seal_length && bit != 0) continue;
+      const unsigned which = at < seal_length ? bit : random() % 8;
+      std::string changed = whole;
+      changed[at] = static_cast<char>(static_cast<unsigned char>(changed[at]) ^ (1U << which));
+      write_bytes(folder / "changed.h5", changed);
+      ASSERT_NE(refusal(folder / "changed.h5"), "") << "byte " << at << ", bit " << which;
+    }
+  EXPECT_THAT(refusal(folder / "changed.h5"), HasSubstr("checksum"));
+}
+
+TEST(a_checkpoint, of_another_kind_or_another_version_is_refused_with_the_reason) {
+  const test_folder folder;
+  EXPECT_THAT(refusal(folder / "none.h5"), HasSubstr("cannot be opened"));
+  write_bytes(folder / "text.h5", std::string(5000, 'x'));
+  EXPECT_THAT(refusal(folder / "text.h5"), HasSubstr("does not begin as one"));
+  // A whole checkpoint but for the version: sealed as any other.
+  const std::string path = some_checkpoint(folder);
+  seal(path, "checkpoint", "0.0.7");
+  EXPECT_THAT(refusal(path), HasSubstr(std::string("written by version 0.0.7, this is ") + version()));
+}

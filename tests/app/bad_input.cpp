@@ -125,7 +125,7 @@ const std::vector<bad_input> all = {
     {"restart_not_hdf5",
      {"run", "good.toml", "--restart", "not_hdf5.h5", "--out", "o"},
      4,
-     "cannot be opened"},
+     "does not begin as one"},
     {"wrong_claim", {"check", "wrong_claim.toml"}, 5, "do not hold"},
     {"wrong_claim_json", {"check", "wrong_claim.toml", "--json"}, 5, "do not hold"},
     {"case_as_method", {"check", "good.toml"}, 2, "good.toml:"},

@@ -2,9 +2,12 @@
 
 #include <apsis/output/hdf5_file.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <random>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -35,11 +38,56 @@ std::vector<std::string> lines(const std::string& text) {
   return out;
 }
 
+/// All numbers and the case; the manifest in the file says when it was written.
+void expect_same_solution(const fs::path& a, const fs::path& b) {
+  const auto one = apsis::hdf5_file::open(a.string()), other = apsis::hdf5_file::open(b.string());
+  ASSERT_EQ(one.datasets(), other.datasets());
+  EXPECT_GE(one.datasets().size(), 3U);
+  for (const auto& name : one.datasets()) {
+    ASSERT_EQ(one.extents(name), other.extents(name)) << name;
+    const auto x = one.read(name), y = other.read(name);
+    EXPECT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0) << name;
+  }
+  EXPECT_EQ(one.attributes(), other.attributes());
+  EXPECT_EQ(one.read_text_attribute("case"), other.read_text_attribute("case"));
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  if (fs::exists(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 void expect_same_results(const fs::path& a, const fs::path& b) {
-  for (const std::string name : {"history.csv", "fields.csv", "solution.h5", "solution.xdmf"}) {
+  for (const std::string name : {"history.csv", "fields.csv", "solution.xdmf"}) {
     ASSERT_FALSE(read(a / name).empty()) << name;
     EXPECT_TRUE(read(a / name) == read(b / name)) << name;
   }
+  expect_same_solution(a / "solution.h5", b / "solution.h5");
+  ASSERT_EQ(names_in(a / "snapshots"), names_in(b / "snapshots"));
+  for (const auto& name : names_in(a / "snapshots"))
+    EXPECT_TRUE(read(a / "snapshots" / name) == read(b / "snapshots" / name)) << name;
+}
+
+/// Every dataset that the description names is there, with as many numbers as it says. Returns how many.
+int check_references(const fs::path& folder) {
+  const std::string text = read(folder / "solution.xdmf");
+  static const std::regex item("Precision=\"([48])\" Dimensions=\"([0-9 ]+)\">([^:<]+):/([^<]+)<");
+  int found = 0;
+  for (std::sregex_iterator at(text.begin(), text.end(), item); at != std::sregex_iterator(); ++at, ++found) {
+    const auto file = apsis::hdf5_file::open((folder / (*at)[3].str()).string());
+    const std::string name = (*at)[4].str();
+    std::uint64_t said = 1, there = 1;
+    std::istringstream dimensions((*at)[2].str());
+    for (std::uint64_t n = 0; dimensions >> n;) said *= n;
+    for (const auto n : file.extents(name)) there *= n;
+    EXPECT_EQ(said, there) << at->str();
+    EXPECT_EQ((*at)[1].str() == "4", file.stored(name) == apsis::precision::float32) << at->str();
+  }
+  return found;
 }
 
 }  // namespace
@@ -107,6 +155,52 @@ TEST(results, files_agree_with_each_other) {
   EXPECT_THAT(read(folder.path() / "o/solution.xdmf"), HasSubstr("Dimensions=\"1 20 100\""));
 }
 
+TEST(results, a_solution_carries_its_case_and_its_manifest) {
+  const work_folder folder;
+  ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.004", "--out", "o"})).code, 0);
+  const auto file = apsis::hdf5_file::open((folder.path() / "o/solution.h5").string());
+  EXPECT_EQ(file.read_text_attribute("manifest"), read(folder.path() / "o/manifest.json"));
+  // The case that is in the file is the case: it runs, to the same numbers.
+  folder.file("again.toml", file.read_text_attribute("case"));
+  ASSERT_EQ(run_apsis(folder, {"run", "again.toml", "--out", "p"}).code, 0);
+  expect_same_solution(folder.path() / "o/solution.h5", folder.path() / "p/solution.h5");
+  EXPECT_GT(check_references(folder.path() / "o"), 5);
+}
+
+TEST(results, snapshots_of_the_distribution_are_of_some_cells_and_of_the_chosen_precision) {
+  const work_folder folder;
+  const auto run = with(small, {"time.end=0.006", "output.every=0.002"});
+  ASSERT_EQ(run_apsis(folder, with(run, {"output.distribution=snapshots", "--out", "all"})).code, 0);
+  ASSERT_EQ(run_apsis(folder, with(run, {"output.distribution=snapshots", "output.stride=3",
+                                         "output.precision=single", "--out", "some"}))
+                .code,
+            0);
+  const auto names = names_in(folder.path() / "all/snapshots");
+  ASSERT_EQ(names.size(), 4U);
+  EXPECT_EQ(names, names_in(folder.path() / "some/snapshots"));
+  for (const auto& name : names) {
+    const auto all = apsis::hdf5_file::open((folder.path() / "all/snapshots" / name).string());
+    const auto some = apsis::hdf5_file::open((folder.path() / "some/snapshots" / name).string());
+    EXPECT_EQ(all.read_attribute("t"), some.read_attribute("t"));
+    EXPECT_EQ(some.extents("f"), (apsis::hdf5_file::shape{7, 100}));
+    const auto f = all.read("f"), g = some.read("f"), x = all.read("x"), y = some.read("x");
+    for (std::size_t cell = 0; cell < 7; ++cell) {
+      EXPECT_EQ(y[cell], x[3 * cell]);
+      for (std::size_t k = 0; k < 100; ++k)
+        ASSERT_EQ(static_cast<float>(f[300 * cell + k]), static_cast<float>(g[100 * cell + k]));
+    }
+  }
+  // The last snapshot is the end, which has every digit of every cell.
+  const auto last = apsis::hdf5_file::open((folder.path() / "all/snapshots" / names.back()).string());
+  const auto end = apsis::hdf5_file::open((folder.path() / "some/solution.h5").string());
+  EXPECT_EQ(last.read("f"), end.read("f"));
+  for (const std::string which : {"all", "some"}) EXPECT_GT(check_references(folder.path() / which), 20);
+  // A run without them takes those of the earlier one away.
+  ASSERT_EQ(run_apsis(folder, with(run, {"output.distribution=none", "--out", "all"})).code, 0);
+  EXPECT_FALSE(fs::exists(folder.path() / "all/snapshots"));
+  EXPECT_FALSE(apsis::hdf5_file::open((folder.path() / "all/solution.h5").string()).has("f"));
+}
+
 TEST(results, two_runs_and_any_number_of_threads_give_the_same_bits) {
   const work_folder folder;
   ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.005", "--out", "a"})).code, 0);
@@ -151,7 +245,7 @@ TEST_P(interruption, gives_130_and_a_checkpoint_that_goes_on_bit_for_bit) {
 
 TEST(results, fifty_kills_at_random_moments_lose_nothing) {
   const work_folder folder;
-  const auto long_run = with(small, {"time.end=3.0", "output.every=0.01"});
+  const auto long_run = with(small, {"time.end=3.0", "output.every=0.01", "output.distribution=snapshots"});
   ASSERT_EQ(run_apsis(folder, with(long_run, {"--out", "whole"})).code, 0);
   std::mt19937 random(2026);
   std::uniform_int_distribution<int> milliseconds(1, 200);
@@ -177,8 +271,7 @@ TEST(results, fifty_kills_at_random_moments_lose_nothing) {
   const outcome last = run_apsis(folder, go_on("0"));
   ASSERT_EQ(last.code, 0) << last.err;
   expect_same_results(folder.path() / "whole", folder.path() / "o");
-  for (const auto& entry : fs::directory_iterator(folder.path() / "o"))
-    EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
+  for (const auto& name : names_in(folder.path() / "o")) EXPECT_NE(name.front(), '.') << name;
 }
 
 INSTANTIATE_TEST_SUITE_P(signals, interruption, testing::Values(SIGINT, SIGTERM));

@@ -50,6 +50,9 @@ struct case_config {
   struct {
     double every = 0.0;                ///< time between snapshots; 0: only the end
     std::vector<std::string> fields;   ///< of the snapshot; empty: all of the model
+    std::string distribution = "end";  ///< "none" | "end" | "snapshots"
+    int stride = 1;                    ///< cells from one to the next in snapshots of the distribution
+    std::string precision = "double";  ///< of these: "double" | "single"
     int checkpoint_every = 0;          ///< steps; 0: not by steps
     double checkpoint_minutes = 10.0;  ///< 0: not by time
   } output;

@@ -71,6 +71,12 @@ std::vector<std::string> equilibrium_choices(const case_config&) {
 std::vector<std::string> startup_choices(const case_config&) {
   return {"none", "graded"};
 }
+std::vector<std::string> distribution_choices(const case_config&) {
+  return {"none", "end", "snapshots"};
+}
+std::vector<std::string> precision_choices(const case_config&) {
+  return {"double", "single"};
+}
 
 const std::string& text_of(const case_value& v) {
   return std::get<std::string>(v);
@@ -186,6 +192,21 @@ std::vector<case_key> make_schema() {
        "Names of the macroscopic fields to write; empty writes all of the model.",
        [](c& o, const v& x) { o.output.fields = std::get<std::vector<std::string>>(x); },
        [](const c& o) { return v(o.output.fields); }},
+      {"output.distribution", text, key_scope::always, false, "", 0, 0, false, distribution_choices,
+       "Where the unknowns themselves (f) are written: nowhere, at the end into solution.h5, or also for "
+       "every "
+       "snapshot, into files of their own in snapshots/.",
+       [](c& o, const v& x) { o.output.distribution = text_of(x); },
+       [](const c& o) { return v(o.output.distribution); }},
+      {"output.stride", integer, key_scope::always, false, "cells", 1, 10'000'000, false, nullptr,
+       "Of every so many cells one is in the snapshots of f, beginning with the first.",
+       [](c& o, const v& x) { o.output.stride = integer_of(x); },
+       [](const c& o) { return v(long{o.output.stride}); }},
+      {"output.precision", text, key_scope::always, false, "", 0, 0, false, precision_choices,
+       "Of the numbers in the snapshots of f. In single precision they have 7 digits and are 0 below 1e-45. "
+       "The end and checkpoints have every digit.",
+       [](c& o, const v& x) { o.output.precision = text_of(x); },
+       [](const c& o) { return v(o.output.precision); }},
       {"output.checkpoint_every", integer, key_scope::always, false, "steps", 0, 1'000'000'000, false,
        nullptr, "Steps between checkpoints; 0 writes none by steps. An interrupted run always leaves one.",
        [](c& o, const v& x) { o.output.checkpoint_every = integer_of(x); },

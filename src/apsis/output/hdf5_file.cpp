@@ -47,17 +47,23 @@ bool write_text_attribute(hid_t object, const std::string& name, const std::stri
   return attribute.good() && H5Awrite(attribute, type, value.c_str()) >= 0;
 }
 
-// Properties of a new dataset: groups on the way are made, no time stamps.
-handle link_properties() {
-  const hid_t list = H5Pcreate(H5P_LINK_CREATE);
-  H5Pset_create_intermediate_group(list, 1);
+// Properties of a new object: no time stamps.
+handle creation_properties(hid_t what) {
+  const hid_t list = H5Pcreate(what);
+  H5Pset_obj_track_times(list, false);
   return {list, H5Pclose};
 }
 
-handle dataset_properties() {
-  const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
-  H5Pset_obj_track_times(list, false);
-  return {list, H5Pclose};
+/// Makes the groups on the way of "a/b/name".
+bool make_groups(hid_t file, const std::string& name) {
+  const handle properties = creation_properties(H5P_GROUP_CREATE);
+  for (auto slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1)) {
+    const std::string group = name.substr(0, slash);
+    if (H5Lexists(file, group.c_str(), H5P_DEFAULT) > 0) continue;
+    if (!handle(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose).good())
+      return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -77,9 +83,12 @@ void hdf5_file::fail(const std::string& what) const {
 
 hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes) {
   silence();
-  const handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  const handle creation = creation_properties(H5P_FILE_CREATE);
   H5Pset_userblock(creation, free_bytes);
-  hdf5_file file(path, H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT));
+  // Version 1.8 and later can have attributes of more than 64 KiB, such as a long case.
+  const handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
+  hdf5_file file(path, H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access));
   if (file.id_ < 0) file.fail("cannot be created (no permission or no space?) choose another folder");
   return file;
 }
@@ -99,14 +108,15 @@ void hdf5_file::close() {
 }
 
 void hdf5_file::write(const std::string& name, const std::vector<double>& values, const shape& extents,
-                      const std::string& long_name) {
+                      const std::string& long_name, precision stored) {
   const std::vector<hsize_t> dims(extents.begin(), extents.end());
   const handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
-  const handle links = link_properties();
-  const handle properties = dataset_properties();
-  const handle data(H5Dcreate2(id_, name.c_str(), H5T_IEEE_F64LE, space, links, properties, H5P_DEFAULT),
+  const handle properties = creation_properties(H5P_DATASET_CREATE);
+  const bool with_groups = make_groups(id_, name);
+  const hid_t type = stored == precision::float64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  const handle data(H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
                     H5Dclose);
-  const bool written = data.good() &&
+  const bool written = with_groups && data.good() &&
                        H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0 &&
                        write_text_attribute(data, "units", "dimensionless") &&
                        (long_name.empty() || write_text_attribute(data, "long_name", long_name));
@@ -114,12 +124,13 @@ void hdf5_file::write(const std::string& name, const std::vector<double>& values
 }
 
 void hdf5_file::write(const std::string& name, const std::string& text) {
+  const bool with_groups = make_groups(id_, name);
   const handle type = text_type(text.size());
   const handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const handle links = link_properties();
-  const handle properties = dataset_properties();
-  const handle data(H5Dcreate2(id_, name.c_str(), type, space, links, properties, H5P_DEFAULT), H5Dclose);
-  if (!data.good() || H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0)
+  const handle properties = creation_properties(H5P_DATASET_CREATE);
+  const handle data(H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+                    H5Dclose);
+  if (!with_groups || !data.good() || H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0)
     fail(fmt::format("'{}' cannot be written (disk full?) free some space", name));
 }
 
@@ -152,6 +163,14 @@ hdf5_file::shape hdf5_file::extents(const std::string& name) const {
   return {dims.begin(), dims.end()};
 }
 
+precision hdf5_file::stored(const std::string& name) const {
+  const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!data.good())
+    fail(fmt::format("has no data '{}' (not written by this program?) give another file", name));
+  const handle type(H5Dget_type(data), H5Tclose);
+  return H5Tget_size(type) == sizeof(float) ? precision::float32 : precision::float64;
+}
+
 std::vector<double> hdf5_file::read(const std::string& name) const {
   std::uint64_t count = 1;
   for (const std::uint64_t n : extents(name)) {
@@ -161,7 +180,8 @@ std::vector<double> hdf5_file::read(const std::string& name) const {
   }
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   // Storage that is not there reads as zeros: a file cut short must not pass for one with an empty state.
-  if (count > 0 && H5Dget_storage_size(data) < count * sizeof(double))
+  const std::uint64_t bytes = stored(name) == precision::float32 ? sizeof(float) : sizeof(double);
+  if (count > 0 && H5Dget_storage_size(data) < count * bytes)
     fail(fmt::format("'{}' is incomplete (damaged file) give another file", name));
   std::vector<double> values(count);
   if (H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
@@ -190,6 +210,50 @@ double hdf5_file::read_attribute(const std::string& name) const {
   for (const auto& [key, value] : attributes())
     if (key == name) return value;
   fail(fmt::format("has no number '{}' (not written by this program?) give another file", name));
+}
+
+namespace {
+
+/// Adds the datasets of a group and of those in it. False where something cannot be read.
+bool list_datasets(hid_t group, const std::string& prefix, std::vector<std::string>& names) {
+  H5G_info_t info;
+  if (H5Gget_info(group, &info) < 0) return false;
+  for (hsize_t k = 0; k < info.nlinks; ++k) {
+    std::vector<char> name(256);
+    if (H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, k, name.data(), name.size(), H5P_DEFAULT) <
+        0)
+      return false;
+    const handle object(H5Oopen(group, name.data(), H5P_DEFAULT), H5Oclose);
+    if (!object.good()) return false;
+    const std::string path = prefix + name.data();
+    const auto type = H5Iget_type(object);
+    if (type == H5I_DATASET) names.push_back(path);
+    if (type == H5I_GROUP && !list_datasets(object, path + "/", names)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::string> hdf5_file::datasets() const {
+  std::vector<std::string> names;
+  const handle root(H5Gopen2(id_, "/", H5P_DEFAULT), H5Gclose);
+  if (!root.good() || !list_datasets(root, "", names))
+    fail("its content cannot be listed (damaged file) give another file");
+  return names;
+}
+
+std::string hdf5_file::read_text_attribute(const std::string& name) const {
+  const handle attribute(H5Aopen(id_, name.c_str(), H5P_DEFAULT), H5Aclose);
+  if (!attribute.good())
+    fail(fmt::format("has no text '{}' (not written by this program?) give another file", name));
+  const handle type(H5Aget_type(attribute), H5Tclose);
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
+    fail(fmt::format("'{}' is no text (damaged file) give another file", name));
+  std::string text(H5Tget_size(type), '\0');
+  if (H5Aread(attribute, type, text.data()) < 0)
+    fail(fmt::format("'{}' cannot be read (damaged file) give another file", name));
+  return text;
 }
 
 std::vector<std::pair<std::string, double>> hdf5_file::attributes() const {

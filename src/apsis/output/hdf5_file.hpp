@@ -7,6 +7,9 @@
 
 namespace apsis {
 
+/// How numbers are stored.
+enum class precision { float64, float32 };
+
 /// An HDF5 file with the few operations that results need. Identifiers are closed by the destructor, objects
 /// carry no time stamps (the same results give the same bytes), and HDF5 prints nothing by itself. Everything
 /// throws io_error with the name of the file.
@@ -24,7 +27,7 @@ class hdf5_file {
   /// Groups on the way of `name` ("fields/rho") are made as needed. Attributes "units" = "dimensionless" and,
   /// where given, "long_name".
   void write(const std::string& name, const std::vector<double>& values, const shape& extents,
-             const std::string& long_name = "");
+             const std::string& long_name = "", precision stored = precision::float64);
   void write(const std::string& name, const std::string& text);
   void write_attribute(const std::string& name, double value);
   void write_attribute(const std::string& name, const std::string& value);
@@ -33,9 +36,13 @@ class hdf5_file {
 
   bool has(const std::string& name) const;
   shape extents(const std::string& name) const;
+  precision stored(const std::string& name) const;
   std::vector<double> read(const std::string& name) const;
   std::string read_text(const std::string& name) const;
   double read_attribute(const std::string& name) const;
+  /// Names of all datasets, those in groups with their path ("fields/rho"), sorted.
+  std::vector<std::string> datasets() const;
+  std::string read_text_attribute(const std::string& name) const;
   /// Numbers among the attributes of the file.
   std::vector<std::pair<std::string, double>> attributes() const;
 

@@ -19,6 +19,8 @@ constexpr std::array<const char*, 10> result_names = {
     result_folder::manifest, "history.csv",  "fields.csv",    "solution.h5",  "solution.xdmf",
     "checkpoint.h5",         "converge.csv", "converge.json", "picture.json", "converge.png"};
 
+constexpr std::array<const char*, 1> series_names = {"snapshots"};
+
 [[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::string& why) {
   throw io_error(fmt::format("cannot {} '{}' ({}) choose another folder with --out or free some space", verb,
                              path.string(), why));
@@ -74,6 +76,7 @@ void result_folder::discard() noexcept {
   for (const auto& name : prepared_) fs::remove(temporary(name), ignored);
   prepared_.clear();
   if (keep_) return;
+  for (const auto& series : series_) fs::remove_all(temporary(series), ignored);
   // Removes a folder only while it is empty.
   for (const auto& folder : std::views::reverse(made_)) fs::remove(folder, ignored);
 }
@@ -101,6 +104,73 @@ void result_folder::publish(const std::string& name, const std::function<void(co
   keep_ = true;
 }
 
+void result_folder::begin_series(const std::string& series) {
+  if (std::find(series_.begin(), series_.end(), series) != series_.end()) return;
+  std::error_code problem;
+  fs::remove_all(temporary(series), problem);
+  fs::create_directories(temporary(series), problem);
+  if (problem) cannot("make the folder", temporary(series), problem.message());
+  series_.push_back(series);
+}
+
+void result_folder::add_to_series(const std::string& series, const std::string& name,
+                                  const std::function<void(const std::string&)>& write) {
+  begin_series(series);
+  const fs::path target = temporary(series) / name, beside = temporary(series) / ("." + name + ".partial");
+  write(beside.string());
+  std::error_code problem;
+  fs::rename(beside, target, problem);
+  if (problem) cannot("write", target, problem.message());
+}
+
+std::vector<fs::path> result_folder::files_of_series(const std::string& series) const {
+  std::vector<fs::path> files;
+  std::error_code problem;
+  for (const auto& entry : fs::directory_iterator(temporary(series), problem))
+    if (entry.path().filename().string().front() != '.') files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void result_folder::resume_series(const std::string& series, const fs::path& from,
+                                  const std::function<bool(const std::string& path)>& keep) {
+  // A run that was killed has them under the temporary name still.
+  const fs::path left = from / temporary(series).filename();
+  std::error_code problem;
+  const fs::path source = fs::exists(left, problem) ? left : from / series;
+  const bool here = fs::equivalent(source, temporary(series), problem);
+  if (here) {
+    series_.push_back(series);
+    for (const auto& path : files_of_series(series))
+      if (!keep(path.string())) fs::remove(path, problem);
+    return;
+  }
+  begin_series(series);
+  for (const auto& entry : fs::directory_iterator(source, problem)) {
+    const auto name = entry.path().filename();
+    if (name.string().front() == '.' || !keep(entry.path().string())) continue;
+    fs::create_hard_link(entry.path(), temporary(series) / name, problem);
+    if (problem) fs::copy_file(entry.path(), temporary(series) / name, problem);
+    if (problem) cannot("copy", entry.path(), problem.message());
+  }
+}
+
+void result_folder::commit_series() {
+  std::error_code problem;
+  for (const std::string name : series_names) {
+    fs::remove_all(path_ / name, problem);
+    problem.clear();
+    if (std::find(series_.begin(), series_.end(), name) == series_.end()) {
+      fs::remove_all(temporary(name), problem);  // of a run that was killed and is not continued
+      continue;
+    }
+    fs::rename(temporary(name), path_ / name, problem);
+    if (problem) cannot("write", path_ / name, problem.message());
+    keep_ = true;
+  }
+  series_.clear();
+}
+
 void result_folder::commit() {
   std::error_code problem;
   // Of a run that was killed while it wrote them.
@@ -114,6 +184,7 @@ void result_folder::commit() {
   for (const char* name : result_names)
     if (std::find(prepared_.begin(), prepared_.end(), name) == prepared_.end())
       fs::remove(path_ / name, problem);
+  commit_series();
   for (const auto& name : prepared_) {
     problem.clear();
     fs::rename(temporary(name), path_ / name, problem);

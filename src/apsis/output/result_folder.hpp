@@ -27,19 +27,32 @@ class result_folder {
   /// Prepares and names one file at once (checkpoints of a run that goes on).
   void publish(const std::string& name, const std::function<void(const std::string&)>& write);
 
-  /// Gives every prepared file its name, the manifest last, and removes result files of an earlier run that
-  /// this run did not write.
+  /// Adds a file to a series, which is a folder below this one. Such files are whole as soon as they are
+  /// there, and a run that was killed leaves them for its continuation; the series takes its name in
+  /// commit().
+  void add_to_series(const std::string& series, const std::string& name,
+                     const std::function<void(const std::string&)>& write);
+  /// Begins a series with those files of `from`, the folder of an earlier run, that `keep` wants.
+  void resume_series(const std::string& series, const std::filesystem::path& from,
+                     const std::function<bool(const std::string& path)>& keep);
+  /// Paths of the files of a series so far, sorted.
+  std::vector<std::filesystem::path> files_of_series(const std::string& series) const;
+
+  /// Gives every prepared file and series its name, the manifest last, and removes result files of an earlier
+  /// run that this run did not write.
   void commit();
 
   static constexpr const char* manifest = "manifest.json";
 
  private:
   std::filesystem::path temporary(const std::string& name) const;
+  void begin_series(const std::string& series);
+  void commit_series();
   void discard() noexcept;
 
   std::filesystem::path path_;
   std::vector<std::filesystem::path> made_;  ///< folders that did not exist before, outermost first
-  std::vector<std::string> prepared_;
+  std::vector<std::string> prepared_, series_;
   bool keep_ = false;
 };
 

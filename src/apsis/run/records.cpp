@@ -159,14 +159,30 @@ saved_run to_saved_run(const checkpoint& c) {
   return saved;
 }
 
+distribution_snapshot make_distribution_snapshot(const simulation& run, int stride) {
+  distribution_snapshot now;
+  now.t = run.t();
+  now.step = run.step();
+  now.components = static_cast<std::uint64_t>(run.components());
+  now.velocities = run.velocities();
+  const std::vector<double> f = run.state(), x = run.has_space() ? run.fields().x : std::vector<double>();
+  for (int cell = 0; cell < run.cells(); cell += stride, ++now.cells) {
+    const auto row = f.begin() + static_cast<std::ptrdiff_t>(cell) * run.components();
+    now.f.insert(now.f.end(), row, row + run.components());
+    if (!x.empty()) now.x.push_back(x[static_cast<std::size_t>(cell)]);
+  }
+  return now;
+}
+
 solution make_solution(const simulation& run, const run_records& records) {
   solution s;
+  s.case_text = to_toml(run.config());
   s.title = run.config().title;
   s.t = run.t();
   s.step = run.step();
   s.cells = static_cast<std::uint64_t>(run.cells());
   s.components = static_cast<std::uint64_t>(run.components());
-  s.f = run.state();
+  if (run.config().output.distribution != "none") s.f = run.state();
   s.velocities = run.velocities();
   if (find_model(run.config().model.name)->has_epsilon) s.epsilon = run.epsilon();
   s.fields = records.fields();

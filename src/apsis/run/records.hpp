@@ -32,6 +32,9 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records);
 /// The part of a checkpoint that a simulation goes on from. Throws io_error where something is missing.
 saved_run to_saved_run(const checkpoint& c);
 
+/// Of every `stride`-th cell.
+distribution_snapshot make_distribution_snapshot(const simulation& run, int stride);
+
 solution make_solution(const simulation& run, const run_records& records);
 
 }  // namespace apsis

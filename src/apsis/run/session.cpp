@@ -6,6 +6,7 @@
 #include <apsis/output/case_json.hpp>
 
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 #include <utility>
 
@@ -14,6 +15,23 @@
 
 namespace apsis {
 namespace {
+
+const char* const snapshots = "snapshots";
+
+precision stored_precision(const case_config& config) {
+  return config.output.precision == "single" ? precision::float32 : precision::float64;
+}
+
+std::vector<distribution_file> distribution_files(const result_folder& folder) {
+  std::vector<distribution_file> files;
+  for (const auto& path : folder.files_of_series(snapshots)) {
+    const hdf5_file file = hdf5_file::open(path.string());
+    const auto extents = file.extents("f");
+    files.push_back({std::string(snapshots) + "/" + path.filename().string(), file.read_attribute("t"),
+                     extents.at(0), extents.at(1), file.has("x") && file.has("v"), file.stored("f")});
+  }
+  return files;
+}
 
 // What may differ between a run and its continuation: nothing that enters a step.
 std::string essential_text(case_config config) {
@@ -48,8 +66,16 @@ run_session::run_session(case_config configured, session_options options)
   const case_config& config = simulation_.config();
   if (config.output.every > 0.0) snapshots_ = static_cast<long>(simulation_.t() / config.output.every + 1e-9);
   if (options_.out) folder_ = std::make_unique<result_folder>(*options_.out);
+  if (folder_ && options_.restart)
+    resume_snapshots(*options_.restart);
+  else if (simulation_.step() == 0 && config.output.every > 0.0)
+    write_distribution_snapshot();
   if (!folder_ && config.output.checkpoint_every > 0)
     log::warning("no checkpoints are written (output.checkpoint_every needs a folder) give one with --out");
+  if (config.output.distribution == "snapshots" && !(folder_ && config.output.every > 0.0))
+    log::warning(
+        "no snapshots of f are written (output.distribution = \"snapshots\" needs output.every and a folder) "
+        "give both");
   log::info(fmt::format("{}: about {} steps of {}; {}", config.source, simulation_.steps_total(),
                         config.time.method, simulation_.promises().text()));
 }
@@ -93,6 +119,29 @@ void run_session::finish_records() {
   if (taken.empty() || taken.back().t != simulation_.t()) shown_->add_snapshot(simulation_);
 }
 
+void run_session::take_snapshot() {
+  records_->add_snapshot(simulation_);
+  write_distribution_snapshot();
+}
+
+void run_session::write_distribution_snapshot() {
+  const auto& output = simulation_.config().output;
+  if (!folder_ || output.distribution != "snapshots") return;
+  const distribution_snapshot now = make_distribution_snapshot(simulation_, output.stride);
+  folder_->add_to_series(snapshots, fmt::format("f-{:09}.h5", now.step), [&](const std::string& path) {
+    write_distribution(path, now, stored_precision(simulation_.config()));
+  });
+}
+
+/// Those that were taken before the checkpoint.
+void run_session::resume_snapshots(const std::string& checkpoint) {
+  if (simulation_.config().output.distribution != "snapshots") return;
+  folder_->resume_series(snapshots, std::filesystem::path(checkpoint).parent_path(),
+                         [this](const std::string& path) {
+                           return hdf5_file::open(path).read_attribute("t") <= simulation_.t();
+                         });
+}
+
 void run_session::loop() {
   if (options_.watch) options_.watch(simulation_);
   while (!simulation_.finished()) {
@@ -116,7 +165,7 @@ void run_session::after_step() {
   if (config.output.every > 0.0) {
     // A step may pass several snapshot times; the state is then kept once.
     const auto passed = static_cast<long>(std::floor(last.t / config.output.every + 1e-9));
-    if (passed > snapshots_) records_->add_snapshot(simulation_);
+    if (passed > snapshots_) take_snapshot();
     snapshots_ = passed;
   }
   if (checkpoint_is_due()) publish_checkpoint();
@@ -139,11 +188,13 @@ void run_session::publish_checkpoint() {
 }
 
 void run_session::write_results(result_folder& folder, run_end end, const std::string& message) {
-  const solution final_state = make_solution(simulation_, *shown_);
+  const std::string about = json_text(manifest(simulation_, end, message)) + "\n";
+  solution final_state = make_solution(simulation_, *shown_);
+  final_state.manifest = about;
   folder.prepare_text("history.csv", to_csv(shown_->history(), {"step", "negative_values"}));
   folder.prepare_text("fields.csv", to_csv(to_table(shown_->fields())));
   folder.prepare("solution.h5", [&](const std::string& path) { write_solution(path, final_state); });
-  folder.prepare_text("solution.xdmf", solution_xdmf(final_state));
+  folder.prepare_text("solution.xdmf", solution_xdmf(final_state, distribution_files(folder)));
   const bool stopped = end == run_end::interrupted || end == run_end::wall_time;
   if (stopped || (end == run_end::complete && simulation_.config().output.checkpoint_every > 0)) {
     // Without the snapshot of the present moment: the run that goes on from here would not have taken it.
@@ -151,7 +202,7 @@ void run_session::write_results(result_folder& folder, run_end end, const std::s
       write_checkpoint(path, make_checkpoint(simulation_, *records_));
     });
   }
-  folder.prepare_text(result_folder::manifest, json_text(manifest(simulation_, end, message)) + "\n");
+  folder.prepare_text(result_folder::manifest, about);
   folder.commit();
 }
 
@@ -161,6 +212,8 @@ void run_session::save_failure(const std::string& message) {
   // Good results of an earlier run are not given up for those of a failed one.
   if (std::filesystem::exists(folder_->path() / result_folder::manifest)) {
     result_folder beside(folder_->path() / "failed");
+    if (simulation_.config().output.distribution == "snapshots")
+      beside.resume_series(snapshots, folder_->path(), [](const std::string&) { return true; });
     write_results(beside, run_end::failed, message);
     log::warning(fmt::format("the results so far are in '{}' (the folder holds an earlier run)",
                              beside.path().string()));

@@ -43,6 +43,9 @@ class run_session {
   void after_step();
   bool checkpoint_is_due() const;
   void publish_checkpoint();
+  void take_snapshot();
+  void write_distribution_snapshot();
+  void resume_snapshots(const std::string& checkpoint);
   void finish_records();
   void write_results(result_folder& folder, run_end end, const std::string& message);
   void save_failure(const std::string& message);

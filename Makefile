@@ -6,7 +6,7 @@ APSIS  := build/release/app/apsis
 export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
 export CTEST_PARALLEL_LEVEL ?= $(CORES)
 
-FORMATTED = $(shell find src app tests bench examples -name '*.[ch]pp' 2>/dev/null)
+FORMATTED = $(shell find src app tests bench examples python -name '*.[ch]pp' 2>/dev/null)
 
 .DEFAULT_GOAL := help
 .PHONY: help run reproduce study program figures test test-all test-slow clang asan bench format format-check tidy clean
@@ -38,7 +38,7 @@ program: ## the program only, in build/release/app
 
 test: ## packages, everything built, every test but the slow ones
 	@scripts/install-packages.sh test
-	cmake --preset release -DAPSIS_TESTS=ON -DAPSIS_BENCH=ON -DAPSIS_PCH=ON >/dev/null
+	cmake --preset release -DAPSIS_TESTS=ON -DAPSIS_BENCH=ON -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) -DAPSIS_PCH=ON >/dev/null
 	cmake --build build/release
 	ctest --preset release -LE slow
 

@@ -1,0 +1,21 @@
+"""Apsis: stiff relaxation and kinetic equations u_t = T(u) + Q(u)/ε by SSP multi-derivative IMEX Runge–Kutta methods.
+
+    apsis.run("paper/bgk-mixed").fields["rho"]           a kinetic problem from a case
+    apsis.method("md-imex-6-3").certificate.order        methods and what can be said of them
+    apsis.integrate(problem, u0, t, method=…, dt=…)      a problem of your own
+
+All quantities are dimensionless.
+"""
+from ._core import Certificate
+from ._core import model_names as models
+from ._core import version as _version
+from .errors import ClaimError, Error, FileError, InputError, NumericalError
+from .methods import Method, OrderCondition, method, methods, order_conditions, read_method
+from .problems import RelaxationProblem, Solution, integrate
+from .runs import Case, Result, cases, run
+
+__version__: str = _version()
+
+__all__ = ["Case", "Certificate", "ClaimError", "Error", "FileError", "InputError", "Method", "NumericalError",
+           "OrderCondition", "RelaxationProblem", "Result", "Solution", "cases", "integrate", "method", "methods", "models",
+           "order_conditions", "read_method", "run"]

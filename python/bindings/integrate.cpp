@@ -1,0 +1,100 @@
+#include <apsis/integrate/integrate.hpp>
+
+#include "arrays.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/relaxation_problem.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <pybind11/stl.h>
+
+namespace apsis::python {
+namespace {
+
+using state = std::vector<double>;
+
+/// What a function of the user returned, as numbers of the state.
+void take(const py::object& returned, const char* function, const state& like, state& out) {
+  const auto numbers = array::ensure(returned);
+  if (!numbers) {
+    PyErr_Clear();
+    throw input_error(std::string(function) + " returned no numbers; return an array of the shape of u");
+  }
+  if (static_cast<std::size_t>(numbers.size()) != like.size())
+    throw input_error(std::string(function) + " returned " + std::to_string(numbers.size()) +
+                      " numbers (u has " + std::to_string(like.size()) +
+                      "); return an array of the shape of u");
+  std::copy_n(numbers.data(), out.size(), out.data());
+}
+
+struct functions {
+  py::function transport, moments, equilibrium, rate;
+  std::optional<py::function> forward_euler_step, admissible;
+};
+
+struct result {
+  py::array_t<double> t, u;
+  long steps;
+};
+
+/// States at the times t[0] < t[1] < …, beginning with u0 itself.
+result integrate_python(const functions& of, double epsilon, const array& u0, const std::vector<double>& t,
+                        const std::string& name, std::optional<double> dt, double safety, bool graded) {
+  const std::vector<py::ssize_t> shape(u0.shape(), u0.shape() + u0.ndim());
+  state u(u0.data(), u0.data() + u0.size());
+  if (u.empty()) throw input_error("u0 has no numbers; give an initial state");
+  if (t.size() < 2) throw input_error("there is no interval; give at least two times, t = (t0, t1)");
+  const auto look = [&shape](const state& v) { return view(v.data(), shape); };
+  auto problem = make_relaxation_problem<state>(
+      [&](double time, const state& v, state& out) {
+        take(of.transport(time, look(v)), "transport", v, out);
+      },
+      [&](const state& v) { return py::object(of.moments(look(v))); },
+      [&](const py::object& omega, state& out) { take(of.equilibrium(omega), "equilibrium", out, out); },
+      [&](const py::object& omega) { return of.rate(omega).cast<double>(); }, epsilon);
+  if (of.forward_euler_step)
+    problem.with_forward_euler_step(
+        [&](double time, const state& v) { return (*of.forward_euler_step)(time, look(v)).cast<double>(); });
+  if (of.admissible)
+    problem.with_admissible([&](const state& v) { return (*of.admissible)(look(v)).cast<bool>(); });
+  if (!dt && !of.forward_euler_step)
+    throw input_error("nothing says how long a step is; give dt, or forward_euler_step of the problem");
+  stepper march(find_method(name), problem);
+  auto rule = dt ? step_rule<double>::fixed(*dt) : step_rule<double>::ssp(safety);
+  state all = u;
+  long steps = 0;
+  for (std::size_t k = 1; k < t.size(); ++k) {
+    const auto check = [](long, double, double, const state&) {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    };
+    const auto done = integrate(march, u, t[k - 1], t[k],
+                                rule.with(graded && k == 1 ? startup::graded : startup::none), check);
+    steps += done.steps;
+    all.insert(all.end(), u.begin(), u.end());
+  }
+  std::vector<py::ssize_t> shape_of_all = {static_cast<py::ssize_t>(t.size())};
+  shape_of_all.insert(shape_of_all.end(), shape.begin(), shape.end());
+  return {to_array(std::vector<double>(t)), to_array(std::move(all), shape_of_all), steps};
+}
+
+}  // namespace
+
+void bind_integrate(py::module_& m) {
+  m.def("integrate",
+        [](const py::function& transport, const py::function& moments, const py::function& equilibrium,
+           const py::function& rate, const std::optional<py::function>& forward_euler_step,
+           const std::optional<py::function>& admissible, double epsilon, const array& u0,
+           const std::vector<double>& t, const std::string& method, std::optional<double> dt, double safety,
+           bool graded) {
+          auto [times, states, steps] =
+              integrate_python({transport, moments, equilibrium, rate, forward_euler_step, admissible},
+                               epsilon, u0, t, method, dt, safety, graded);
+          return py::make_tuple(times, states, steps);
+        });
+}
+
+}  // namespace apsis::python

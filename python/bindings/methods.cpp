@@ -1,0 +1,142 @@
+#include "arrays.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/method/certificate.hpp>
+#include <apsis/method/coefficient.hpp>
+#include <apsis/method/family_registry.hpp>
+#include <apsis/method/order_conditions.hpp>
+
+#include <string>
+
+#include <pybind11/stl.h>
+
+namespace apsis::python {
+namespace {
+
+using texts = std::vector<std::vector<std::string>>;
+
+texts rows_of(const matrix<std::string>& m) {
+  texts rows(m.rows());
+  for (std::size_t i = 0; i < m.rows(); ++i)
+    for (std::size_t j = 0; j < m.cols(); ++j) rows[i].push_back(m(i, j));
+  return rows;
+}
+
+py::dict exact_of(const method& m) {
+  py::dict all;
+  all["P"] = rows_of(m.exact.P);
+  all["W"] = rows_of(m.exact.W);
+  all["D"] = rows_of(m.exact.D);
+  all["ddot"] = m.exact.ddot;
+  all["r"] = m.exact.r;
+  return all;
+}
+
+matrix<mp_real> read_matrix(const texts& rows, const char* name, std::size_t stages) {
+  if (rows.size() != stages)
+    throw input_error(std::string(name) + " has another number of rows than A; give s × s");
+  matrix<mp_real> m(stages, stages);
+  for (std::size_t i = 0; i < stages; ++i) {
+    if (rows[i].size() != stages)
+      throw input_error(std::string(name) + " is not square; give s × s coefficients");
+    for (std::size_t j = 0; j < stages; ++j) {
+      if (!is_coefficient(rows[i][j]))
+        throw input_error("'" + rows[i][j] + "' in " + name +
+                          " is no coefficient; give numbers, fractions, or text such as \"1/3\"");
+      m(i, j) = coefficient_value(rows[i][j]);
+    }
+  }
+  return m;
+}
+
+/// A condition for each tree: name, order, left-hand side, 1/γ.
+std::vector<std::tuple<std::string, int, double, double>> conditions(const texts& A_hat, const texts& A,
+                                                                     const texts& A_dot, int order) {
+  constexpr int most = 8;
+  if (order < 1 || order > most) throw input_error("order must lie from 1 to 8; trees grow fivefold with it");
+  if (A.empty()) throw input_error("A has no stages; give s × s coefficients");
+  const std::size_t s = A.size();
+  butcher_form<mp_real> form;
+  form.A = read_matrix(A, "A", s);
+  form.A_hat = A_hat.empty() ? matrix<mp_real>(s, s) : read_matrix(A_hat, "A_hat", s);
+  form.A_dot = A_dot.empty() ? matrix<mp_real>(s, s) : read_matrix(A_dot, "A_dot", s);
+  const auto trees = rooted_trees(order, A_hat.empty() ? tree_colours::G_only : tree_colours::both);
+  const auto weights = elementary_weights(form, trees);
+  std::vector<std::tuple<std::string, int, double, double>> all;
+  for (std::size_t k = 0; k < trees.size(); ++k) {
+    // The difference in all digits, so that a residual of 1e-40 is seen.
+    const mp_real wanted = mp_real(1) / mp_real(trees[k].density);
+    all.emplace_back(trees[k].name, trees[k].order, static_cast<double>(weights[k]),
+                     static_cast<double>(mp_real(weights[k] - wanted)));
+  }
+  return all;
+}
+
+double number(const mp_real& x) {
+  return static_cast<double>(x);
+}
+
+void bind_certificate(py::module_& m) {
+  py::class_<certificate>(m, "Certificate")
+      .def_readonly("name", &certificate::name)
+      .def_property_readonly("kind", [](const certificate& c) { return to_string(c.kind); })
+      .def_readonly("order", &certificate::order)
+      .def_readonly("conditions", &certificate::conditions)
+      .def_property_readonly("order_residual", [](const certificate& c) { return number(c.order_residual); })
+      .def_property_readonly("error_constant", [](const certificate& c) { return number(c.error_constant); })
+      .def_readonly("unconditional", &certificate::unconditional)
+      .def_property_readonly("ssp_coefficient",
+                             [](const certificate& c) -> std::optional<double> {
+                               if (!c.bounded) return std::nullopt;
+                               return number(c.ssp_coefficient);
+                             })
+      .def_property_readonly("explicit_radius",
+                             [](const certificate& c) { return number(c.explicit_radius); })
+      .def_readonly("limiting_entry", &certificate::limiting_entry)
+      .def_readonly("type", &certificate::type)
+      .def_readonly("gsa", &certificate::gsa)
+      .def_readonly("ap", &certificate::ap)
+      .def_readonly("ap_data", &certificate::ap_data)
+      .def_readonly("explicit_evaluations", &certificate::explicit_evaluations)
+      .def_readonly("implicit_solves", &certificate::implicit_solves)
+      .def_property_readonly("angle", [](const certificate& c) { return c.stability.angle; })
+      .def_property_readonly("l_stable", [](const certificate& c) { return c.stability.l_stable; })
+      .def_property_readonly("keeps", &certificate::keeps)
+      .def_readonly("claims_hold", &certificate::claims_hold)
+      .def_readonly("failures", &certificate::failures);
+}
+
+}  // namespace
+
+void bind_methods(py::module_& m) {
+  bind_certificate(m);
+  py::class_<method>(m, "Method")
+      .def_readonly("name", &method::name)
+      .def_readonly("title", &method::title)
+      .def_readonly("citation", &method::citation)
+      .def_readonly("origin", &method::origin)
+      .def_readonly("purpose", &method::purpose)
+      .def_property_readonly("kind", [](const method& self) { return to_string(self.kind); })
+      .def_property_readonly("stages", &method::stages)
+      .def_property_readonly("P", [](const method& self) { return to_array(self.coefficients<double>().P); })
+      .def_property_readonly("W", [](const method& self) { return to_array(self.coefficients<double>().W); })
+      .def_property_readonly("D", [](const method& self) { return to_array(self.coefficients<double>().D); })
+      .def_property_readonly("ddot",
+                             [](const method& self) { return to_array(self.coefficients<double>().ddot); })
+      .def_property_readonly("r", [](const method& self) { return self.coefficients<double>().r; })
+      .def_property_readonly(
+          "A_hat", [](const method& self) { return to_array(to_butcher(self.coefficients<double>()).A_hat); })
+      .def_property_readonly(
+          "A", [](const method& self) { return to_array(to_butcher(self.coefficients<double>()).A); })
+      .def_property_readonly(
+          "A_dot", [](const method& self) { return to_array(to_butcher(self.coefficients<double>()).A_dot); })
+      .def_property_readonly("_exact", exact_of)
+      .def("_certify", [](const method& self) { return certify(self); });
+  m.def("find_method", [](const std::string& name) { return find_method(name); });
+  m.def("parse_method",
+        [](const std::string& text, const std::string& file) { return parse_method(text, file); });
+  m.def("method_names", &method_names);
+  m.def("conditions", &conditions);
+}
+
+}  // namespace apsis::python

@@ -1,0 +1,125 @@
+#include "arrays.hpp"
+
+#include <apsis/config/case_schema.hpp>
+#include <apsis/core/parallel.hpp>
+#include <apsis/core/version.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/output/case_json.hpp>
+#include <apsis/run/session.hpp>
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+#include <pybind11/stl.h>
+
+namespace apsis::python {
+namespace {
+
+/// How far a run is: step, steps in all (estimated), t, smallest value. False ends it.
+using progress_function = std::optional<py::function>;
+
+/// Asks Python now and then whether to go on: a signal, or the user's function.
+class attendant {
+ public:
+  explicit attendant(progress_function progress) : progress_(std::move(progress)) {}
+
+  void watch(const simulation& run) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - asked_ < std::chrono::milliseconds(50) && !run.finished()) return;
+    asked_ = now;
+    const py::gil_scoped_acquire python;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (!progress_) return;
+    const py::object answer = (*progress_)(run.step(), run.steps_total(), run.t(), run.last().min_value);
+    stopped_ = stopped_ || (py::isinstance<py::bool_>(answer) && !answer.cast<bool>());
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  progress_function progress_;
+  std::chrono::steady_clock::time_point asked_;
+  bool stopped_ = false;
+};
+
+py::dict columns_of(const table& rows) {
+  py::dict columns;
+  for (std::size_t k = 0; k < rows.columns.size(); ++k) {
+    std::vector<double> column;
+    for (const auto& row : rows.rows) column.push_back(row[k]);
+    columns[py::str(rows.columns[k])] = to_array(std::move(column));
+  }
+  return columns;
+}
+
+/// Snapshots of every field: [snapshots][cells].
+py::dict fields_of(const field_series& series, std::size_t cells) {
+  py::dict fields;
+  for (std::size_t k = 0; k < series.names.size(); ++k) {
+    std::vector<double> all;
+    for (const auto& one : series.snapshots)
+      all.insert(all.end(), one.values[k].begin(), one.values[k].end());
+    fields[py::str(series.names[k])] = to_array(
+        std::move(all), {static_cast<py::ssize_t>(series.snapshots.size()), static_cast<py::ssize_t>(cells)});
+  }
+  return fields;
+}
+
+py::dict result_of(const run_session& session, run_end end) {
+  const simulation& run = session.computed();
+  py::dict out;
+  out["state"] = to_string(end);
+  out["json"] = to_json(run, session.records()).dump();
+  out["f"] = to_array(run.state(), {run.cells(), run.components()});
+  out["x"] = to_array(run.has_space() ? run.fields().x : std::vector<double>());
+  out["v"] = to_array(run.velocities());
+  out["epsilon"] =
+      to_array(find_model(run.config().model.name)->has_epsilon ? run.epsilon() : std::vector<double>());
+  out["history"] = columns_of(session.records().history());
+  const auto& fields = session.records().fields();
+  std::vector<double> times;
+  for (const auto& one : fields.snapshots) times.push_back(one.t);
+  out["t"] = to_array(std::move(times));
+  out["fields"] = fields_of(fields, static_cast<std::size_t>(run.cells()));
+  return out;
+}
+
+py::dict run_case(const std::optional<std::string>& text, const std::string& name,
+                  const std::vector<std::string>& overrides, const std::optional<std::string>& out,
+                  const std::optional<std::string>& restart, std::optional<double> wall, int threads,
+                  const progress_function& progress) {
+  set_threads(threads);
+  attendant asks(progress);
+  session_options how;
+  how.out = out;
+  how.restart = restart;
+  how.wall = wall;
+  how.watch = [&asks](const simulation& run) { asks.watch(run); };
+  how.stop = [&asks] { return asks.stopped(); };
+  std::unique_ptr<run_session> session;
+  run_end end{};
+  {
+    const py::gil_scoped_release others;
+    session = std::make_unique<run_session>(
+        text ? parse_case(*text, name, overrides) : load_case(name, overrides), how);
+    end = session->run();
+  }
+  return result_of(*session, end);
+}
+
+}  // namespace
+
+void bind_runs(py::module_& m) {
+  m.def("run", &run_case);
+  m.def("case_names", &case_names);
+  m.def("read_case", &read_case);
+  m.def("model_names", [] {
+    std::vector<std::string> names;
+    for (const auto* entry : model_entries()) names.push_back(entry->name);
+    return names;
+  });
+  m.def("version", &version);
+}
+
+}  // namespace apsis::python

@@ -1,0 +1,82 @@
+"""Methods, certificates and tableaux as Python objects."""
+from fractions import Fraction
+
+import apsis
+import numpy as np
+import pytest
+
+
+@pytest.mark.parametrize("name", apsis.methods())
+def test_arrays_fractions_and_certificate_belong_together(name):
+    m = apsis.method(name)
+    s = m.stages
+    assert m.P.shape == m.W.shape == m.D.shape == m.A.shape == m.A_hat.shape == m.A_dot.shape == (s, s)
+    # Â = R⁻¹W/r, A = R⁻¹D with R = I − P − W. Coefficients are of size 1 to 10; s terms.
+    R = np.eye(s) - m.P - m.W
+    np.testing.assert_allclose(R @ m.A_hat, m.W / m.r, atol=1e-12)
+    np.testing.assert_allclose(R @ m.A, m.D, atol=1e-12)
+    exact = m.exact
+    # The convex weights of a double form are on a grid of 2^-53 or so.
+    np.testing.assert_allclose([[float(x) for x in row] for row in exact["W"]], m.W, atol=1e-15)
+    c = m.certificate
+    assert c.claims_hold and c.failures == []
+    assert c.order >= 1 and c.order_residual < 1e-9
+
+
+def test_the_certificate_is_that_of_the_paper():
+    c = apsis.method("md-imex-6-3").certificate
+    assert (c.order, c.type, c.gsa, c.ap) == (3, "A", True, True)
+    assert c.ssp_coefficient == pytest.approx(0.904402174130635, rel=1e-14)
+    assert apsis.method("imdrk-5-4").certificate.ssp_coefficient is None
+    assert apsis.method("md-imex-chain-7-2").certificate.ssp_coefficient == 5.0
+
+
+def test_conditions_of_a_tableau_are_exact():
+    # The trapezoidal rule as two stages, the classical order 2 and no more.
+    trapezoidal = [[0, 0], [Fraction(1, 2), Fraction(1, 2)]]
+    conditions = apsis.order_conditions(trapezoidal, order=3)
+    assert [one.residual for one in conditions if one.order <= 2] == [0.0, 0.0]
+    # Both trees of order 3: Σ b c² = 1/2 instead of 1/3, Σ b A c = 1/4 instead of 1/6.
+    assert sorted(one.residual for one in conditions if one.order == 3) == [float(Fraction(1, 12)), float(Fraction(1, 6))]
+    third = apsis.order_conditions([["1/3"]], order=1)
+    assert third[0].residual == float(Fraction(1, 3) - 1)
+    assert {one.tree for one in conditions} == {"G", "G[G]", "G[G,G]", "G[G[G]]"}
+
+
+@pytest.mark.parametrize("name", ["imdrk-5-4", "md-imex-3-2", "md-imex-6-3", "md-imex-14-4-accurate", "ssprk-5-4"])
+def test_methods_of_the_catalogue_satisfy_the_conditions_from_their_arrays(name):
+    m = apsis.method(name)
+    order = m.certificate.order
+    tableau = dict(A=m.A.tolist(), A_dot=m.A_dot.tolist(), A_hat=None if m.kind.startswith("implicit") else m.A_hat.tolist())
+    conditions = apsis.order_conditions(**tableau, order=order + 1)
+    # Double coefficients of size up to 10, products of up to five of them.
+    assert max(abs(one.residual) for one in conditions if one.order <= order) < 1e-10
+    assert max(abs(one.residual) for one in conditions if one.order == order + 1) > 1e-6
+
+
+@pytest.mark.parametrize("bad, message", [
+    (dict(A=[[1, 2]], order=1), "not square"), (dict(A=[["x"]], order=1), "'x' in A is no coefficient"),
+    (dict(A=[], order=1), "no stages"), (dict(A=[[1]], order=0), "from 1 to 8"),
+    (dict(A=[[1]], A_hat=[[1], [2]], order=1), "another number of rows"), (dict(A=[[float("nan")]], order=1), "no coefficient")])
+def test_bad_tableaux_have_a_message(bad, message):
+    with pytest.raises(apsis.InputError, match=message):
+        apsis.order_conditions(**bad)
+
+
+def test_names_that_are_wrong_have_a_suggestion():
+    with pytest.raises(apsis.InputError, match="md-imex-6-3"):
+        apsis.method("md-imex-6-4")
+    with pytest.raises(ValueError):
+        apsis.method("nothing of the kind")
+
+
+def test_a_file_that_claims_too_much_is_refused_and_can_be_looked_at(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text('name = "mine-1"\ntitle = "backward Euler"\nkind = "implicit"\ncitation = "none"\n'
+                    '[claims]\norder = 2\n[shu_osher]\nP = [[]]\nd = ["1"]\nddot = ["0"]\n', encoding="utf-8")
+    with pytest.raises(apsis.ClaimError, match="order"):
+        apsis.method(str(file))
+    c = apsis.read_method(file).certificate
+    assert c.order == 1 and not c.claims_hold and c.failures
+    with pytest.raises(apsis.FileError):
+        apsis.read_method(tmp_path / "none.toml")

@@ -1,0 +1,101 @@
+"""Runs of cases from Python."""
+import json
+import os
+import re
+import signal
+import threading
+import time
+from pathlib import Path
+
+import apsis
+import numpy as np
+import pytest
+
+SMALL = ["space.cells=20", "velocity.points=100", "time.end=0.005"]
+
+
+def test_a_case_from_a_name_a_file_and_a_mapping_is_the_same(tmp_path):
+    case = {"title": 'with "quotes"', "model": {"name": "bgk", "epsilon": 1e-3, "initial": "mixed-v"},
+            "space": {"cells": 20, "domain": (0.0, 2.0), "limiter": "positivity"}, "velocity": {"max": 15.0, "points": np.int64(100)},
+            "time": {"method": "md-imex-3-2", "end": 0.005, "cfl": 1 / 24}}
+    one = apsis.run(case)
+    (tmp_path / "case.toml").write_text(apsis.runs.to_toml(case), encoding="utf-8")
+    other = apsis.run(tmp_path / "case.toml")
+    third = apsis.run("paper/bgk-mixed", *SMALL, "model.epsilon=1e-3", "time.method=md-imex-3-2")
+    assert np.array_equal(one.f, other.f) and np.array_equal(one.f, third.f)
+    assert one.summary["case"]["title"] == 'with "quotes"'
+
+
+def test_arrays_agree_with_each_other_and_with_the_files(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    r = apsis.run("paper/bgk-mixed", *SMALL, "output.every=0.002", out=tmp_path / "o")
+    assert r.state == "complete" and r.f.shape == (20, 100) and r.f.min() >= 0.0
+    assert r.fields["rho"].shape == (len(r.t), 20) and r.t[0] == 0.0 and r.t[-1] == 0.005
+    # Midpoint sums of 100 numbers below 1.
+    np.testing.assert_allclose(r.f.sum(axis=1) * (r.v[1] - r.v[0]), r.fields["rho"][-1], rtol=1e-13)
+    with h5py.File(tmp_path / "o" / "solution.h5") as file:
+        assert np.array_equal(file["f"][()], r.f) and np.array_equal(file["epsilon"][()], r.epsilon)
+        assert json.loads(file.attrs["manifest"])["result"]["steps"] == r.summary["steps"]
+    assert len(r.history["t"]) == r.summary["steps"] + 1
+    assert not r.f.flags.owndata  # the numbers are those of the library
+
+
+def test_progress_is_told_and_can_end_the_run(tmp_path):
+    calls = []
+    def watch(step, steps, t, smallest):
+        calls.append((step, steps, t, smallest))
+        return len(calls) < 3
+    r = apsis.run("paper/bgk-mixed", "time.end=50.0", out=tmp_path / "o", progress=watch)
+    assert r.state == "interrupted" and len(calls) == 3 and calls[-1][0] > 0
+    t = float(r.t[-1])
+    again = apsis.run("paper/bgk-mixed", f"time.end={t + 0.001!r}", restart=tmp_path / "o" / "checkpoint.h5")
+    whole = apsis.run("paper/bgk-mixed", f"time.end={t + 0.001!r}")
+    assert np.array_equal(again.f, whole.f)
+
+
+def test_other_threads_run_meanwhile_and_control_c_ends_a_run():
+    ticks = []
+    def interrupt():
+        for _ in range(20):
+            time.sleep(0.01)
+            ticks.append(1)
+        os.kill(os.getpid(), signal.SIGINT)
+    thread = threading.Thread(target=interrupt)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        apsis.run("paper/bgk-mixed", "time.end=5000.0")
+    thread.join()
+    assert len(ticks) == 20
+
+
+def test_errors_are_those_of_the_program(tmp_path):
+    with pytest.raises(apsis.InputError, match="did you mean|cells"):
+        apsis.run("paper/bgk-mixed", "space.cell=3")
+    with pytest.raises(apsis.InputError, match="case:"):
+        apsis.run({"model": {"name": "none"}})
+    with pytest.raises(apsis.FileError):
+        apsis.run("paper/bgk-mixed", *SMALL, restart=tmp_path / "none.h5")
+    class Mine(Exception):
+        pass
+    def fail(*_):
+        raise Mine
+    with pytest.raises(Mine):
+        apsis.run("paper/bgk-mixed", *SMALL, progress=fail)
+
+
+@pytest.mark.parametrize("name", apsis.cases())
+def test_every_built_in_case_is_found(name):
+    assert apsis._core.read_case(name).startswith(("title", "#", "["))
+
+
+def test_the_readme_runs(capsys):
+    text = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    exec(block, {})
+    said = capsys.readouterr().out
+    # u2 relaxes to 0 within ε, and u1 = 2 + O(ε).
+    assert "0.904402" in said and "\n[2.0000000" in said, said
+
+
+def test_results_do_not_depend_on_threads():
+    assert np.array_equal(apsis.run("paper/bgk-mixed", *SMALL).f, apsis.run("paper/bgk-mixed", *SMALL, threads=2).f)

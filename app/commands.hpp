@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -19,6 +21,10 @@ void add_check(CLI::App& program, action& chosen);
 void add_design(CLI::App& program, action& chosen);
 void add_info(CLI::App& program, action& chosen);
 void add_reproduce(CLI::App& program, action& chosen);
+void add_manual(CLI::App& program, action& chosen);
+
+/// What `apsis list` can list.
+std::vector<std::string> list_names();
 
 /// Writes results to standard output. Throws io_error if they did not arrive.
 void print(const std::string& text);

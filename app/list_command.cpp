@@ -14,6 +14,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
@@ -113,35 +114,56 @@ std::string as_text(const std::string& what, const json& all) {
   return out;
 }
 
-int list(const std::string& what, bool as_json) {
-  static const std::map<std::string, json (*)()> lists = {{"methods", methods}, {"families", families},
-                                                          {"models", models},   {"cases", cases},
-                                                          {"schemes", schemes}, {"claims", claims}};
-  const auto found = lists.find(what);
-  if (found == lists.end()) {
-    std::vector<std::string> names;
-    for (const auto& [name, unused] : lists) names.push_back(name);
-    throw input_error(
-        fmt::format("command line: cannot list '{}' (there is no such list) {}", what, suggest(what, names)));
+const std::map<std::string, json (*)()>& lists() {
+  static const std::map<std::string, json (*)()> all = {{"methods", methods}, {"families", families},
+                                                        {"models", models},   {"cases", cases},
+                                                        {"schemes", schemes}, {"claims", claims}};
+  return all;
+}
+
+/// Nothing but names; those of methods without certifying them.
+std::string names_text(const std::string& what) {
+  if (what == "methods") return fmt::format("{}\n", fmt::join(method_names(), "\n"));
+  std::string out;
+  for (const auto& item : lists().at(what)()) out += item["name"].get<std::string>() + "\n";
+  return out;
+}
+
+struct options {
+  std::string what;
+  bool json = false, names = false;
+};
+
+int list(const options& given) {
+  const std::string& what = given.what;
+  if (lists().count(what) == 0)
+    throw input_error(fmt::format("command line: cannot list '{}' (there is no such list) {}", what,
+                                  suggest(what, list_names())));
+  if (given.names) {
+    print(names_text(what));
+    return 0;
   }
-  const json all = found->second();
-  print(as_json ? all.dump(2) + "\n" : as_text(what, all));
+  const auto all = lists().at(what)();
+  print(given.json ? all.dump(2) + "\n" : as_text(what, all));
   return 0;
 }
 
 }  // namespace
 
+std::vector<std::string> list_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : lists()) names.push_back(name);
+  return names;
+}
+
 void add_list(CLI::App& program, action& chosen) {
-  struct options {
-    std::string what;
-    bool json = false;
-  };
   auto given = std::make_shared<options>();
   CLI::App* command =
       program.add_subcommand("list", "List methods, families, models, cases, schemes or claims");
   command->add_option("WHAT", given->what, "methods, families, models, cases, schemes or claims")->required();
-  command->add_flag("--json", given->json, "print a JSON array");
-  command->callback([given, &chosen] { chosen = [given] { return list(given->what, given->json); }; });
+  auto* as_json = command->add_flag("--json", given->json, "print a JSON array");
+  command->add_flag("--names", given->names, "print names alone, a line each")->excludes(as_json);
+  command->callback([given, &chosen] { chosen = [given] { return list(*given); }; });
 }
 
 }  // namespace apsis::app

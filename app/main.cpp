@@ -69,6 +69,7 @@ int run_program(int argc, char** argv) {
   add_reproduce(program, chosen);
   add_design(program, chosen);
   add_info(program, chosen);
+  add_manual(program, chosen);
   const std::vector<std::string> names = command_names(program);
   if (argc < 2) throw input_error("command line: no command (one of them is needed) " + suggest("", names));
   const std::string first = argv[1];

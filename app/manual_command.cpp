@@ -1,0 +1,119 @@
+#include "commands.hpp"
+
+#include <apsis/core/version.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis::app {
+namespace {
+
+/// Text of a manual page: a backslash, and a dot or quote at the beginning of a line, mean something else
+/// there.
+std::string roff(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\\') {
+      out += "\\e";
+    } else if (c == '-') {
+      out += "\\-";
+    } else {
+      if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n')) out += "\\&";
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::vector<const CLI::App*> commands_of(const CLI::App& program) {
+  return program.get_subcommands([](const CLI::App* command) { return !command->get_name().empty(); });
+}
+
+std::vector<const CLI::Option*> options_of(const CLI::App& command) {
+  return command.get_options([](const CLI::Option*) { return true; });
+}
+
+/// "--out TEXT", "CASE".
+std::string usage_of(const CLI::Option& option) {
+  if (option.get_positional()) return option.get_single_name();
+  const std::string value = option.get_items_expected_max() > 0 ? " " + option.get_type_name() : "";
+  return option.get_name() + value;
+}
+
+std::string entry(const std::string& term, const std::string& text) {
+  return fmt::format(".TP\n.B {}\n{}\n", roff(term), roff(text));
+}
+
+std::string manual_page(const CLI::App& program) {
+  std::string text = fmt::format(
+      ".TH APSIS 1 \"\" \"apsis {}\" \"User Commands\"\n.SH NAME\napsis \\- stiff relaxation and kinetic "
+      "equations\n"
+      ".SH SYNOPSIS\n.B apsis\n.I command\n[options]\n.SH DESCRIPTION\n{}\n.SH COMMANDS\n",
+      version(), roff(program.get_description()));
+  for (const auto* command : commands_of(program))
+    text += entry(command->get_name(), command->get_description());
+  for (const auto* command : commands_of(program)) {
+    text += fmt::format(".SH apsis {}\n{}\n", roff(command->get_name()), roff(command->get_description()));
+    for (const auto* option : options_of(*command))
+      text += entry(usage_of(*option), option->get_description());
+  }
+  return text + fmt::format(".SH EXIT STATUS\n{}\n", roff(program.get_footer()));
+}
+
+/// Long options of a command.
+std::string words_of(const CLI::App& command) {
+  std::vector<std::string> words;
+  for (const auto* option : options_of(command))
+    for (const auto& name : option->get_lnames()) words.push_back("--" + name);
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+std::string bash_completion(const CLI::App& program) {
+  std::string cases;
+  std::vector<std::string> names;
+  for (const auto* command : commands_of(program)) {
+    names.push_back(command->get_name());
+    cases += fmt::format("    {}) words='{}' ;;\n", command->get_name(), words_of(*command));
+  }
+  return fmt::format(
+      "# Completion of apsis for bash, written by: apsis manual --format bash\n"
+      "_apsis() {{\n"
+      "  local word=${{COMP_WORDS[COMP_CWORD]}} words=''\n"
+      "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
+      "    mapfile -t COMPREPLY < <(compgen -W '{} --help --version' -- \"$word\")\n"
+      "    return\n"
+      "  fi\n"
+      "  case ${{COMP_WORDS[1]}} in\n{}  esac\n"
+      "  if [[ $word != -* ]]; then\n"
+      "    case ${{COMP_WORDS[1]}} in\n"
+      "      run | converge) words=$(apsis list cases --names 2>/dev/null) ;;\n"
+      "      check | show) words=$(apsis list methods --names 2>/dev/null) ;;\n"
+      "      list) words='{}' ;;\n"
+      "    esac\n"
+      "  fi\n"
+      "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n"
+      "}}\n"
+      "complete -o default -F _apsis apsis\n",
+      fmt::join(names, " "), cases, fmt::join(list_names(), " "));
+}
+
+}  // namespace
+
+void add_manual(CLI::App& program, action& chosen) {
+  auto format = std::make_shared<std::string>("man");
+  CLI::App* command =
+      program.add_subcommand("manual", "Print the manual page, or the completion of command lines for bash");
+  command->add_option("--format", *format, "man or bash")->check(CLI::IsMember({"man", "bash"}));
+  command->callback([format, &program, &chosen] {
+    chosen = [format, &program] {
+      print(*format == "man" ? manual_page(program) : bash_completion(program));
+      return 0;
+    };
+  });
+}
+
+}  // namespace apsis::app

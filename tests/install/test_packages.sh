@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# test_packages.sh BUILD WORK: makes the Debian packages and looks at what is in them.
+set -euo pipefail
+build=$1 work=$2
+rm -rf "$work" && mkdir -p "$work/root"
+(cd "$build" && cpack -B "$work" >"$work/cpack.log") || { cat "$work/cpack.log" && exit 1; }
+program=$(echo "$work"/apsis_*.deb) development=$(echo "$work"/libapsis-dev_*.deb)
+
+depends=$(dpkg-deb -f "$program" Depends)
+for library in libhdf5 libhwy libc6; do
+  grep -q "$library" <<<"$depends" || { echo "$library is not among the dependencies: $depends" && exit 1; }
+done
+dpkg-deb -f "$development" Depends | grep -q libhdf5-dev
+
+dpkg-deb -x "$program" "$work/root"
+cd "$work"
+apsis=$work/root/usr/bin/apsis
+"$apsis" run paper/ode --out result >summary.txt
+grep -q complete summary.txt
+"$apsis" info >/dev/null
+
+# The manual page names every command, and completion knows them and the cases.
+page=$work/root/usr/share/man/man1/apsis.1
+for command in run converge list show check reproduce design info; do
+  grep -q "^.SH apsis $command\$" "$page" || { echo "no apsis $command in the manual page" && exit 1; }
+done
+PATH=$work/root/usr/bin:$PATH bash -c '
+  source root/usr/share/bash-completion/completions/apsis
+  complete_line() { COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); COMPREPLY=(); _apsis; echo "${COMPREPLY[*]}"; }
+  [[ $(complete_line apsis conv) = converge ]]
+  [[ $(complete_line apsis run paper/bgk-mixed --res) = --restart ]]
+  [[ $(complete_line apsis run paper/bgk-mixed-r) = paper/bgk-mixed-reference ]]
+  [[ $(complete_line apsis check md-imex-6-3) = md-imex-6-3 ]]
+  [[ $(complete_line apsis list fam) = families ]]'

@@ -148,6 +148,32 @@ TEST(restart_from, a_start_up_and_a_tolerance_goes_on_bit_for_bit_from_every_ste
   }
 }
 
+TEST(restart_from, a_kill_leaves_the_snapshots_of_the_distribution_even_if_the_continuation_fails) {
+  const test_folder folder;
+  const auto& model = *find_model("relaxation");
+  const auto c = parse_case(small_case(model, "md-imex-3-2", "") + "distribution = \"snapshots\"\n", "case");
+  run(c, folder / "whole", 1000);
+  run(c, folder / "o", 6);
+  // As a kill leaves them.
+  std::filesystem::rename(folder / "o/snapshots", folder / "o/.snapshots.partial");
+  {
+    session_options how;
+    how.out = folder / "o";
+    how.restart = folder / "o/checkpoint.h5";
+    how.watch = [](const simulation&) { throw std::runtime_error("no"); };
+    run_session failing(c, how);
+    EXPECT_THROW(failing.run(), std::runtime_error);
+  }
+  run(c, folder / "o", 1000, folder / "o/checkpoint.h5");
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "whole/snapshots")) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_TRUE(bytes_of(entry.path().string()) == bytes_of(folder / ("o/snapshots/" + name))) << name;
+    ++files;
+  }
+  EXPECT_EQ(files, 5U);  // the beginning and the multiples 1 to 4 of 0.011 below 0.05
+}
+
 TEST(a_checkpoint, that_was_cut_short_at_any_byte_is_refused) {
   const test_folder folder;
   const std::string path = some_checkpoint(folder), whole = bytes_of(path);

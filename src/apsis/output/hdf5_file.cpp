@@ -10,6 +10,7 @@ namespace {
 
 // One larger than any result of this program; a damaged file must not make us ask for all memory.
 constexpr std::uint64_t most_elements = std::uint64_t{1} << 33U;
+constexpr std::size_t longest_text = 10'000'000;
 
 class handle {
  public:
@@ -196,8 +197,7 @@ std::string hdf5_file::read_text(const std::string& name) const {
   const handle type(H5Dget_type(data), H5Tclose);
   const handle space(H5Dget_space(data), H5Sclose);
   const std::size_t length = H5Tget_size(type);
-  constexpr std::size_t longest = 10'000'000;
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || length > longest ||
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || length > longest_text ||
       H5Sget_simple_extent_npoints(space) != 1)
     fail(fmt::format("'{}' is no text (damaged file) give another file", name));
   std::string text(length, '\0');
@@ -248,7 +248,7 @@ std::string hdf5_file::read_text_attribute(const std::string& name) const {
   if (!attribute.good())
     fail(fmt::format("has no text '{}' (not written by this program?) give another file", name));
   const handle type(H5Aget_type(attribute), H5Tclose);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Tget_size(type) > longest_text)
     fail(fmt::format("'{}' is no text (damaged file) give another file", name));
   std::string text(H5Tget_size(type), '\0');
   if (H5Aread(attribute, type, text.data()) < 0)

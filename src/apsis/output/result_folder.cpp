@@ -140,6 +140,7 @@ void result_folder::resume_series(const std::string& series, const fs::path& fro
   const fs::path source = fs::exists(left, problem) ? left : from / series;
   const bool here = fs::equivalent(source, temporary(series), problem);
   if (here) {
+    keep_ = true;  // they are of an earlier run, and stay if this one fails
     series_.push_back(series);
     for (const auto& path : files_of_series(series))
       if (!keep(path.string())) fs::remove(path, problem);

@@ -7,7 +7,7 @@
 
 namespace apsis {
 
-/// Pictures as data: what is to be seen, not how it is drawn (python/apsis_plot.py draws them, all in one
+/// Pictures as data: what is to be seen, not how it is drawn (python/apsis/plot draws them, all in one
 /// style). Numbers that are not finite, and numbers ≤ 0 on a logarithmic axis, are left out of a curve.
 enum class curve_style { line, dashed, dash_dot, markers, line_and_markers, dashed_and_markers };
 

@@ -91,8 +91,8 @@ std::string drawing::add(const std::string& name, const std::string& text) const
 
 int drawing::run(const std::string& module, const std::vector<std::string>& arguments, bool quiet) const {
   // A script beside the package finds it, whatever lies in the present folder.
-  const std::string script =
-      add(module + ".py", fmt::format("from apsis.{}.__main__ import main\nraise SystemExit(main())\n", module));
+  const std::string script = add(
+      module + ".py", fmt::format("from apsis.{}.__main__ import main\nraise SystemExit(main())\n", module));
   std::vector<std::string> words = {python_, "-B", script};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return execute(words, quiet ? dropped::output : dropped::nothing);

@@ -1,6 +1,8 @@
 """One style for all pictures: colours, markers, fonts, and how a picture is written."""
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +19,7 @@ COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY)
 # Markers differ too, so that curves are told apart without colour.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "h")
 __all__ = ["BLACK", "BLUE", "COLOURS", "FORMATS", "GREEN", "GREY", "MARKERS", "ORANGE", "PURPLE", "PictureError", "SKY", "UNDATED",
-           "VERMILLION", "palette", "plt", "save"]
+           "VERMILLION", "palette", "plt", "save", "whole_file"]
 FORMATS = ("png", "svg", "pdf")
 UNDATED = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
 
@@ -38,17 +40,23 @@ def palette(count: int) -> list[Any]:
     return list(COLOURS) if count <= len(COLOURS) else [plt.cm.viridis(t) for t in np.linspace(0.0, 0.9, count)]
 
 
-def save(figure: Any, path: Path) -> Path:
-    """Writes the figure, whole or not at all, in the format of the path's ending; without a date, so that equal data make
-    equal files."""
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A path to write to; the file takes its name when all is written. Raises PictureError."""
     partial = path.with_name(f".{path.name}.partial")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(partial, format=path.suffix[1:], metadata=UNDATED.get(path.suffix))
+        yield partial
         partial.replace(path)
     except OSError as problem:
-        raise PictureError(f"cannot write '{path}' ({problem.strerror}) choose another folder with --out") from problem
-    finally:
-        partial.unlink(missing_ok=True)
-        plt.close(figure)
+        with suppress(OSError):
+            partial.unlink()
+        raise PictureError(f"cannot write '{path}' ({problem.strerror}) choose another folder or free some space") from problem
+
+
+def save(figure: Any, path: Path) -> Path:
+    """Writes the figure in the format of the path's ending; without a date, so that equal data make equal files."""
+    with whole_file(path) as partial:
+        figure.savefig(partial, format=path.suffix[1:], metadata=UNDATED.get(path.suffix))
+    plt.close(figure)
     return path

@@ -4,9 +4,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..plot.results import read_json
-from ..plot.style import PictureError
+from ..plot.style import PictureError, whole_file
 from . import claims, run, study
-from .page import write
+
+
+def write(path: Path, content: str) -> None:
+    with whole_file(path) as partial:
+        partial.write_text(content, encoding="utf-8")
 
 
 def make_report(folder: str | Path) -> Path:

@@ -4,10 +4,11 @@ from __future__ import annotations
 import base64
 import html
 import io
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, Iterable, Sequence
+from typing import Any
 
-from ..plot.style import UNDATED, PictureError, plt, save
+from ..plot.style import UNDATED, save
 
 STYLE = """
 :root { color-scheme: light; }
@@ -20,10 +21,11 @@ caption { text-align: left; font-weight: 600; padding: .3rem 0; }
 td.number { font-variant-numeric: tabular-nums; white-space: nowrap; }
 .yes::before { content: "\\2713\\00a0"; } .no::before { content: "\\2717\\00a0"; }
 .yes { color: #00664b; white-space: nowrap; } .no { color: #a33b00; font-weight: 700; }
-figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; } figcaption { font-size: .9rem; color: #333; max-width: 50rem; }
+figure { margin: 1rem 0; overflow-x: auto; } figure img { max-width: 100%; height: auto; } figcaption { font-size: .9rem; color: #333; max-width: 50rem; }
 pre { background: #f6f6f6; padding: .6rem; overflow-x: auto; font-size: .85rem; }
 .small { color: #555; font-size: .85rem; } a { color: #00508a; }
-@media (max-width: 40rem) { table { font-size: .8rem; } th, td { padding-right: .4rem; } }
+@media (max-width: 48rem) { table { font-size: .8rem; } th, td { padding-right: .4rem; }
+  figure img.wide { max-width: none; width: 48rem; } }
 @media print { body { max-width: none; font-size: 11px; } h2, figure, tr { break-inside: avoid; } a { color: inherit; text-decoration: none; } }
 """
 
@@ -67,10 +69,13 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[str]], title: str = ""
 def embedded(figure: Any, name: str, title: str, caption: str, folder: Path) -> str:
     """The figure as an <img> with its data inside, and as <folder>/<name>.png."""
     stream = io.BytesIO()
+    width = figure.get_figwidth()
     figure.savefig(stream, format="svg", metadata=UNDATED[".svg"])
     data = base64.b64encode(stream.getvalue()).decode("ascii")
     save(figure, folder / f"{name}.png")
-    return (f'<figure><img alt="{text(title)}" src="data:image/svg+xml;base64,{data}">'
+    # Panels side by side would be too small on a narrow screen: such a picture scrolls instead.
+    wide = ' class="wide"' if width > 7.0 else ""
+    return (f'<figure><img{wide} alt="{text(title)}" src="data:image/svg+xml;base64,{data}">'
             f'<figcaption><b>{text(title)}.</b> {text(caption)}</figcaption></figure>\n')
 
 
@@ -79,15 +84,3 @@ def provenance(document: dict[str, Any], version: str) -> str:
     build, machine = document["build"], document["machine"]
     return (f'apsis {text(version)}, {text(build["compiler"])}, {text(build["build_type"])}, '
             f'{text(build["instruction_set"])}; {text(machine["processor"])}, {machine["threads"]} threads')
-
-
-def write(path: Path, content: str) -> None:
-    """Appears complete or not at all."""
-    partial = path.with_name(f".{path.name}.partial")
-    try:
-        partial.write_text(content, encoding="utf-8")
-        partial.replace(path)
-    except OSError as problem:
-        raise PictureError(f"cannot write '{path}' ({problem.strerror}) make the folder writable") from problem
-    finally:
-        partial.unlink(missing_ok=True)

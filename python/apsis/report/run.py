@@ -25,7 +25,7 @@ def summary(result: RunResult) -> str:
     manifest, numbers = result.manifest, result.manifest["result"]
     good = manifest["state"] == "complete"
     out = (f'<p>{verdict(good, (manifest["state"], manifest["state"]))} at t = {end_of(result):.10g} after {numbers["steps"]} steps of '
-           f'<code>{text(manifest["method"])}</code>, the largest {number(numbers["dt"])}; '
+           f'<code>{text(manifest["method"])}</code> of length {number(numbers["dt"])} or less; '
            f'{numbers["wall_s"]:.2f} s of computing. All quantities are dimensionless.</p>\n')
     if manifest.get("message"):
         out += f'<p class="no">{text(manifest["message"])}</p>\n'

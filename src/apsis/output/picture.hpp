@@ -50,7 +50,7 @@ struct picture {
   std::vector<panel> panels;  ///< drawn row by row
 };
 
-/// As python/apsis_picture.py reads it; numbers that are not finite become null.
+/// As python/apsis/plot reads it; numbers that are not finite become null.
 nlohmann::ordered_json to_json(const picture& p);
 
 }  // namespace apsis

@@ -9,7 +9,7 @@ export CTEST_PARALLEL_LEVEL ?= $(CORES)
 FORMATTED = $(shell find src app tests bench examples python -name '*.[ch]pp' 2>/dev/null)
 
 .DEFAULT_GOAL := help
-.PHONY: help run reproduce study program figures test test-all test-slow clang asan bench format format-check tidy clean
+.PHONY: help run reproduce study program figures test test-all test-slow clang asan bench packages format format-check tidy clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' Makefile
@@ -69,6 +69,11 @@ bench: ## speed, measured: every table of docs/speed.md, in results/bench/speed.
 	cmake --preset release -DAPSIS_BENCH=ON -DAPSIS_PCH=ON >/dev/null
 	cmake --build build/release --target apsis_measure
 	build/release/bench/apsis_measure --out results/bench/speed.json
+
+packages: program ## Debian packages in build/release, installed and run in a bare Debian 12 (as root, with a network)
+	@scripts/install-packages.sh dev
+	cd build/release && cpack
+	tests/install/on_a_bare_system.sh build/release
 
 format: ## clang-format over all sources
 	clang-format-19 -i $(FORMATTED)

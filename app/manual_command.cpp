@@ -91,7 +91,7 @@ std::string bash_completion(const CLI::App& program) {
       "  if [[ $word != -* ]]; then\n"
       "    case ${{COMP_WORDS[1]}} in\n"
       "      run | converge) words=$(apsis list cases --names 2>/dev/null) ;;\n"
-      "      check | show) words=$(apsis list methods --names 2>/dev/null) ;;\n"
+      "      check | show | plot) words=$(apsis list methods --names 2>/dev/null) ;;\n"
       "      list) words='{}' ;;\n"
       "    esac\n"
       "  fi\n"

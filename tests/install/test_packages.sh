@@ -21,7 +21,7 @@ grep -q complete summary.txt
 
 # The manual page names every command, and completion knows them and the cases.
 page=$work/root/usr/share/man/man1/apsis.1
-for command in run converge list show check reproduce design info; do
+for command in run converge list show check reproduce design plot report info; do
   grep -q "^.SH apsis $command\$" "$page" || { echo "no apsis $command in the manual page" && exit 1; }
 done
 PATH=$work/root/usr/bin:$PATH bash -c '

@@ -13,6 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from headers import Header, read_headers
 from reference import write_reference
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -37,6 +38,7 @@ class Site:
         source.mkdir(parents=True)
         self.places = dict(PLACES)
         self.places |= {str(page.relative_to(ROOT)): str(page.relative_to(ROOT / "docs")) for page in ROOT.glob("docs/**/*.md")}
+        self.places |= {f"docs/api/{room}.md": f"api/{room}.md" for room in [*rooms(), "index"]}
         self.places |= {f"src/apsis/{room}{file}": f"api/{room}.md" for room in rooms() for file in ("", "/README.md")}
 
     def add(self, place: str, text: str, origin: str | None = None):
@@ -65,6 +67,7 @@ class Site:
 
 
 def assemble(site: Site, program: Path, work: Path):
+    """All pages; doxygen has been run."""
     shutil.copytree(ROOT / "docs" / "_static", site.source / "_static")
     shutil.copytree(KATEX, site.source / "_static" / "katex", ignore=shutil.ignore_patterns("*.mjs", "contrib", "*.ttf", "*.woff"))
     shutil.copytree(ROOT / "docs" / "images", site.source / "images")
@@ -75,9 +78,9 @@ def assemble(site: Site, program: Path, work: Path):
     for page in (site.source / "reference").glob("*.md"):
         site.add(f"reference/{page.name}", page.read_text(encoding="utf-8"))
     for file, place in site.places.items():
-        if file.endswith(".md") and not place.startswith("api/") and file != "docs/index.md":
+        if file.endswith(".md") and not place.startswith("api/") and place != "index.md":
             site.add(place, (ROOT / file).read_text(encoding="utf-8"), file)
-    add_interfaces(site)
+    add_interfaces(site, read_headers(work / "doxygen" / "xml"))
     site.add("index.md", with_contents((ROOT / "docs" / "index.md").read_text(encoding="utf-8"), site, generated), "docs/index.md")
 
 
@@ -93,16 +96,14 @@ def with_contents(text: str, site: Site, generated: dict[str, list[str]]) -> str
                           for title, pages in contents.items())
 
 
-def add_interfaces(site: Site):
+def add_interfaces(site: Site, headers: dict[str, Header]):
     """A page for each room, with all its headers, and one for the Python package."""
     listed = ""
     for room in rooms():
         about = (ROOT / "src" / "apsis" / room / "README.md").read_text(encoding="utf-8")
         text = about.replace("\n", "\n\n", 1)
-        for header in sorted((ROOT / "src").glob(f"apsis/{room}/**/*.hpp")):
-            name = header.relative_to(ROOT / "src")
-            if not name.stem.endswith("-inl"):
-                text += f"\n## {name.relative_to(f'apsis/{room}')}\n\n```cpp\n#include <{name}>\n```\n\n```{{doxygenfile}} {name}\n```\n"
+        for name in sorted(name for name in headers if name.startswith(f"apsis/{room}/")):
+            text += f"\n## {name.removeprefix(f'apsis/{room}/')}\n\n```cpp\n#include <{name}>\n```\n\n{headers[name].directives(name)}"
         site.add(f"api/{room}.md", text, f"src/apsis/{room}/README.md")
         listed += f"- [{room}]({room}.md): {about.split(chr(10), 1)[1].split('. ')[0].strip().rstrip('.')}.\n"
     site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a row of rooms, each a library that is linked only to those before it. "
@@ -116,13 +117,14 @@ def main() -> int:
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
     given = parser.parse_args()
     build, work = given.build.resolve(), given.work.resolve()
-    site = Site(work / "source")
-    assemble(site, build / "app" / "apsis", work)
-    for problem in site.problems:
-        print(problem, file=sys.stderr)
+    (work / "doxygen").mkdir(parents=True, exist_ok=True)
     doxygen = subprocess.run(["doxygen", "-"], cwd=ROOT, text=True, input=(
         (ROOT / "docs" / "Doxyfile").read_text(encoding="utf-8") + f"\nOUTPUT_DIRECTORY = {work / 'doxygen'}\n"
         + os.environ.get("APSIS_DOXYGEN", "")))
+    site = Site(work / "source")
+    assemble(site, build / "app" / "apsis", work)
+    for problem in dict.fromkeys(site.problems):
+        print(problem, file=sys.stderr)
     shutil.rmtree(work / "html", ignore_errors=True)
     sphinx = subprocess.run(
         ["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-c", ROOT / "docs", "-d", work / "doctrees",

@@ -65,7 +65,7 @@ def methods(program: Program) -> str:
 
 def method(program: Program, m: dict) -> str:
     document = json.loads(program("show", m["name"], "--format", "json"))
-    stability = m["stability"] or {}
+    stability = m.get("stability") or {}
     text = f"## {m['name']}\n\n{plain(m['title'])}.\n\n" + facts({
         "order": f"{m['order']}, error constant {number(m['error_constant'])}",
         "SSP coefficient": coefficient(m) + (f" (that of the explicit part is {number(m['explicit_radius'])})"

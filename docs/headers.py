@@ -24,6 +24,9 @@ class Header:
 def read_headers(xml: Path) -> dict[str, Header]:
     """By name as it is included, "apsis/core/errors.hpp". Writes the groups beside the files of doxygen."""
     headers: dict[str, Header] = {}
+    for file in xml.glob("*.xml"):  # headers that a text names have no page of their own
+        text = file.read_text(encoding="utf-8")
+        file.write_text(re.sub(r'<ref refid="\w+_source"[^>]*>(.*?)</ref>', r"\1", text), encoding="utf-8")
     index = ElementTree.parse(xml / "index.xml")
     entries = {entry.get("refid"): entry.get("kind") for entry in index.getroot() if entry.get("kind") != "group"}
     inner = {}

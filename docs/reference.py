@@ -126,7 +126,7 @@ def keys(program: Program) -> str:
     for k in all_keys:
         if k["name"].rpartition(".")[0] != section:
             section = k["name"].rpartition(".")[0]
-            text += f"## [{section}]\n\n" if section else ""
+            text += f"## [{section}]\n\n" if section else "## The case\n\n"
         choices = [] if k["name"] in ("time.method", "model.initial") else k["choices"]
         default = "" if k["default"] in (None, '""') else f"default `{k['default']}`"
         about = [k["type"], k["range"], "" if k["unit"] == "dimensionless" else k["unit"], "required" if k["required"] else default]

@@ -12,14 +12,19 @@
 
 namespace apsis {
 
-enum class formulation { finite_volume, finite_difference };
+/// What the numbers of a cell are.
+enum class formulation {
+  finite_volume,     ///< averages over the cell
+  finite_difference  ///< values at its centre
+};
 
 /// A case as resolved: every key has its value, every name exists. What the keys mean is documented once,
 /// in case_schema.cpp (`apsis show case`).
 struct case_config {
   std::string source;                          ///< file or name of the built-in case
   std::map<std::string, source_place> places;  ///< where each key of the text stands, for later messages
-  std::string title;
+  std::string title;                           ///< one line
+  /// Table [model].
   struct {
     std::string name;
     std::string epsilon = "1";  ///< a number or an expression in x; dimensionless Knudsen number, ≥ 0
@@ -27,6 +32,7 @@ struct case_config {
     std::map<std::string, double> parameters;  ///< of the model; what is not there has its default
     std::map<std::string, std::string> texts;  ///< likewise
   } model;
+  /// Table [space], of models with space.
   struct {
     int cells = 40;
     std::array<double, 2> domain = {0.0, 1.0};
@@ -35,11 +41,13 @@ struct case_config {
     std::string limiter = "none";  ///< "none" | "positivity"
     std::string boundary = "periodic";
   } space;
+  /// Table [velocity], of models with a velocity grid.
   struct {
     double max = 0.0;
     int points = 0;
     std::string equilibrium = "auto";  ///< "auto" | "formula" | "discrete"
   } velocity;
+  /// Table [time].
   struct {
     std::string method;
     double end = 0.0;
@@ -47,6 +55,7 @@ struct case_config {
     std::string startup = "none";           ///< "none" | "graded"
     std::optional<double> tolerance;        ///< of a step; dt, cfl or safety then says how long one may be
   } time;
+  /// Table [output].
   struct {
     double every = 0.0;                ///< time between snapshots; 0: only the end
     std::vector<std::string> fields;   ///< of the snapshot; empty: all of the model

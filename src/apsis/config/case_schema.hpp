@@ -15,24 +15,38 @@ namespace apsis {
 using case_value =
     std::variant<std::monostate, long, double, std::string, std::vector<std::string>, std::array<double, 2>>;
 
-enum class key_type { integer, number, text, formula, text_list, number_pair };
+/// Which values a key takes.
+enum class key_type {
+  integer,     ///< long
+  number,      ///< double; an integer of TOML too
+  text,        ///< std::string
+  formula,     ///< std::string: a formula in x, or a number, written as text
+  text_list,   ///< std::vector<std::string>
+  number_pair  ///< std::array<double, 2>
+};
 
 /// Which models a key belongs to; a key that the model does not use is an error, not ignored.
-enum class key_scope { always, space, velocity, epsilon };
+enum class key_scope {
+  always,    ///< all
+  space,     ///< those with has_space
+  velocity,  ///< those with has_velocity
+  epsilon    ///< those with has_epsilon
+};
 
 /// One key of a case file. The table of all keys drives reading, writing and documentation.
 struct case_key {
-  std::string path;  ///< "space.cells"
-  key_type type;
-  key_scope scope;
-  bool required;  ///< else the default is that of case_config
-  std::string unit;
-  double lowest, highest;  ///< allowed range of numbers
-  bool lowest_excluded;
+  std::string path;      ///< "space.cells"
+  key_type type;         ///< which alternative of case_value it has
+  key_scope scope;       ///< models that use it
+  bool required;         ///< else the default is that of case_config
+  std::string unit;      ///< "dimensionless", "steps", …; "" where it is no number
+  double lowest,         ///< smallest allowed number; −∞ allows all
+      highest;           ///< largest allowed number, ∞ likewise
+  bool lowest_excluded;  ///< only numbers above `lowest`
   std::vector<std::string> (*choices)(const case_config&);  ///< valid names; nullptr: any text
-  std::string doc;
-  void (*store)(case_config&, const case_value&);
-  case_value (*load)(const case_config&);  ///< monostate where an optional key is not set
+  std::string doc;                                          ///< meaning, as `apsis show case` prints it
+  void (*store)(case_config&, const case_value&);           ///< puts a checked value in its place
+  case_value (*load)(const case_config&);                   ///< monostate where an optional key is not set
   /// Whether a name is valid besides `choices`: "" if it is, why not if it is meant to be, nothing otherwise.
   std::optional<std::string> (*also)(const std::string& name) = nullptr;
 };
@@ -46,7 +60,7 @@ bool applies(const case_key& key, const model_entry& model);
 /// "an integer", "a number", …, as messages and documentation say it.
 std::string type_text(key_type type);
 
-/// "from 1 to 100", "above 0", "at least 0"; "" without limits.
+/// "at least 1 and at most 100", "above 0"; "" without limits.
 std::string range_text(const case_key& key);
 
 /// The value as TOML.

@@ -14,17 +14,17 @@ namespace apsis {
 /// A value as it stands in a file, before anything is known about its key. `std::monostate` is a type that no
 /// key has (a boolean, a date, a nested table); `what` names it for messages.
 struct raw_value {
-  using list = std::vector<raw_value>;
-  std::variant<std::monostate, long, double, std::string, list> value;
-  std::string what;
-  source_place place;        ///< of the key, or the override
+  using list = std::vector<raw_value>;                                  ///< an array of TOML
+  std::variant<std::monostate, long, double, std::string, list> value;  ///< as TOML has it
+  std::string what;                                                     ///< "the integer 5", "a boolean"
+  source_place place;        ///< of the key, or the override; of an element of a list, that of its key
   source_place value_place;  ///< of the value
 };
 
 /// Keys of a case by dotted path, and where its tables begin.
 struct case_text {
-  std::map<std::string, raw_value> values;
-  std::map<std::string, source_place> tables;
+  std::map<std::string, raw_value> values;     ///< by path, "space.cells"
+  std::map<std::string, source_place> tables;  ///< by name, "space"
 };
 
 constexpr std::size_t longest_case_file = 1'000'000;  ///< bytes

@@ -11,13 +11,14 @@ namespace apsis {
 /// branches that need a reason are not taken.
 class counted {
  public:
+  /// What a comparison gives; it carries nothing.
   struct mask {};
 
-  counted(double) {}
-  static counted load(const double*) { return 0.0; }
-  void store(double*) const {}
-  static bool any(mask) { return false; }
-  static bool all(mask) { return true; }
+  counted(double) {}                                  ///< constants cost nothing, and have no value here
+  static counted load(const double*) { return 0.0; }  ///< reads nothing
+  void store(double*) const {}                        ///< writes nothing
+  static bool any(mask) { return false; }             ///< no pack is exceptional …
+  static bool all(mask) { return true; }              ///< … and every number is as usual
 
   /// Operations of body().
   template <class Body>
@@ -27,6 +28,8 @@ class counted {
     return operations_ - before;
   }
 
+  /// @cond
+  // The operations of a pack.
   friend counted operator+(counted, counted) { return one(); }
   friend counted operator-(counted, counted) { return one(); }
   friend counted operator*(counted, counted) { return one(); }
@@ -43,6 +46,7 @@ class counted {
   friend counted maximum(counted, counted) { return one(); }
   friend counted absolute(counted) { return one(); }
   friend counted inverse_power_of_two(counted) { return 0.0; }
+  /// @endcond
 
  private:
   static counted one() {
@@ -52,17 +56,20 @@ class counted {
   inline static thread_local double operations_ = 0.0;
 };
 
-/// Walks along a pencil of counted numbers (space/walk-inl.hpp).
+/// Walks along a pencil of counted numbers (space/walk-inl.hpp): nothing is read or written, wherever it is.
 struct counting_walk {
-  using number = counted;
+  using number = counted;  ///< type of what is loaded and stored
+  /// Some number, at no cost.
   template <class... Where>
   counted load(const Where&...) const {
     return 0.0;
   }
+  /// The same of the downstream one of two rows.
   template <class... Where>
   counted load_downstream(const Where&...) const {
     return 0.0;
   }
+  /// Nothing, at no cost.
   template <class... Where>
   void store(const Where&...) const {}
 };

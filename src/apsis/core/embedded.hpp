@@ -5,10 +5,10 @@
 
 namespace apsis {
 
-/// A text file that is part of the library: `name` is its path below its folder, without ending.
+/// A text file that is part of the library.
 struct embedded_text {
-  std::string_view name;
-  std::string_view text;
+  std::string_view name;  ///< path below its folder, without ending
+  std::string_view text;  ///< all of its bytes
 };
 
 namespace embedded {

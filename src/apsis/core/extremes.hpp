@@ -18,12 +18,13 @@ inline double minimum(double a, double b) {
   return std::isnan(a) || b >= a ? a : b;
 }
 
-/// Of no numbers: −∞.
+/// The largest, or NaN if one is NaN; −∞ of no numbers.
 inline double maximum(std::span<const double> values) {
   double largest = -std::numeric_limits<double>::infinity();
   for (const double value : values) largest = maximum(largest, value);
   return largest;
 }
+/// The same of numbers in braces.
 inline double maximum(std::initializer_list<double> values) {
   return maximum(std::span(values.begin(), values.size()));
 }

@@ -11,24 +11,29 @@ template <class Real>
 class matrix {
  public:
   matrix() = default;
+  /// Every entry is Real(): 0, or an empty text.
   matrix(std::size_t rows, std::size_t cols) : rows_(rows), cols_(cols), data_(rows * cols) {}
 
+  /// I of n rows.
   static matrix identity(std::size_t n) {
     matrix eye(n, n);
     for (std::size_t i = 0; i < n; ++i) eye(i, i) = Real(1);
     return eye;
   }
 
+  /// a_ij with i, j from 0, not checked.
   Real& operator()(std::size_t i, std::size_t j) { return data_[i * cols_ + j]; }
+  /// The same of a constant matrix.
   const Real& operator()(std::size_t i, std::size_t j) const { return data_[i * cols_ + j]; }
-  std::size_t rows() const { return rows_; }
-  std::size_t cols() const { return cols_; }
+  std::size_t rows() const { return rows_; }  ///< number of rows
+  std::size_t cols() const { return cols_; }  ///< number of columns
 
  private:
   std::size_t rows_ = 0, cols_ = 0;
   std::vector<Real> data_;
 };
 
+/// The product ab; that a.cols() = b.rows() is not checked.
 template <class Real>
 matrix<Real> operator*(const matrix<Real>& a, const matrix<Real>& b) {
   matrix<Real> c(a.rows(), b.cols());
@@ -38,6 +43,7 @@ matrix<Real> operator*(const matrix<Real>& a, const matrix<Real>& b) {
   return c;
 }
 
+/// The product ax; that a.cols() = x.size() is not checked.
 template <class Real>
 std::vector<Real> operator*(const matrix<Real>& a, const std::vector<Real>& x) {
   std::vector<Real> y(a.rows(), Real(0));

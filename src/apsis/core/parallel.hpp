@@ -4,20 +4,24 @@ namespace apsis {
 
 /// Threads that loops over cells may use; 0 asks for all cores.
 void set_threads(int n);
+/// The number that was set, 1 at the beginning.
 int threads();
 
 /// A call of what was written as a lambda, without the allocation that std::function may need.
 struct numbered_job {
-  void (*call)(const void* body, int k);
-  const void* body;
+  void (*call)(const void* body, int k);  ///< knows the type of the lambda
+  const void* body;                       ///< the lambda; it must outlive the job
 
+  /// The job that calls body(k).
   template <class Body>
   static numbered_job of(const Body& body) {
     return {[](const void* b, int k) { (*static_cast<const Body*>(b))(k); }, &body};
   }
-  void operator()(int k) const { call(body, k); }
+  void operator()(int k) const { call(body, k); }  ///< one call
 };
+/// parallel_for, compiled once.
 void run_parallel_for(int n, numbered_job job);
+/// parallel_tasks, compiled once.
 void run_parallel_tasks(int n, numbered_job job);
 
 /// Runs body(k) for k = 0 … n−1, in any order, on all threads; neighbouring k on the same one. Each k writes
@@ -33,11 +37,12 @@ void parallel_for(int n, const Body& body) {
 /// small to help the others with.
 class part_blocks {
  public:
+  /// n ≥ 0 and longest ≥ 1; fewer than one part counts as one.
   part_blocks(int n, int longest, int parts);
 
-  int count() const { return parts_ * per_part(); }
-  int begin(int block) const;  ///< begin(count()) is n
-  int end(int block) const { return begin(block + 1); }
+  int count() const { return parts_ * per_part(); }      ///< blocks, some of which may be empty
+  int begin(int block) const;                            ///< begin(count()) is n
+  int end(int block) const { return begin(block + 1); }  ///< one behind the last number of the block
 
  private:
   int per_part() const { return whole_ - 1 + pieces_; }

@@ -10,6 +10,7 @@ namespace apsis {
 /// do not promise.
 class random_source {
  public:
+  /// Equal seeds give equal numbers (64-bit Mersenne twister).
   explicit random_source(std::uint64_t seed) : engine_(seed) {}
 
   /// Uniform in [low, high).
@@ -20,6 +21,7 @@ class random_source {
   double magnitude(double low, double high) { return std::pow(10.0, uniform(low, high)); }
   /// An integer in [low, high).
   int integer(int low, int high) { return low + static_cast<int>(uniform() * (high - low)); }
+  /// True with probability 1/n, n ≥ 1.
   bool one_in(int n) { return integer(0, n) == 0; }
 
  private:

@@ -8,7 +8,8 @@ namespace apsis {
 /// relaxation Q(u) = C (E − u)/ε with conserved moments. Nonnegative, and stay + relax rounds to 1.
 template <class Real>
 struct relaxation_weights {
-  Real stay, relax;
+  Real stay,  ///< of u
+      relax;  ///< of E
 };
 
 /// stay = 1/(1 + μ), relax = μ/(1 + μ), μ = a C/ε + |b| (C/ε)², because there Q̇ = −(C/ε) Q (paper,

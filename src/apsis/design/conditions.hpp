@@ -11,25 +11,26 @@ namespace apsis {
 /// An equation between coefficients: Σ_t a_t Π_f y_f[stage_t] = target, with the stage vectors y of a list of
 /// nodes.
 struct design_condition {
+  /// a Π_f y_f[stage].
   struct term {
-    double factor;
-    std::vector<int> nodes;
-    std::size_t stage;
+    double factor;           ///< a
+    std::vector<int> nodes;  ///< places of the y_f in the list of nodes; a y may stand several times
+    std::size_t stage;       ///< counted from 0
   };
-  std::string name;
-  std::vector<term> terms;
-  double target = 0.0;
+  std::string name;         ///< for reports: "F[G,G]" for a tree, "c = c_hat at stage 2"
+  std::vector<term> terms;  ///< their sum is the left-hand side
+  double target = 0.0;      ///< right-hand side, 1/γ(τ) for a tree
 };
 
 /// Equations and the stage vectors that they need.
 struct condition_list {
-  std::vector<series_node> nodes;
-  std::vector<design_condition> conditions;
+  std::vector<series_node> nodes;            ///< each behind those that it is made of
+  std::vector<design_condition> conditions;  ///< their terms refer to `nodes`
 };
 
 /// What is demanded of the terms of size ε where ε ≪ Δt (docs/plateaus.md).
 enum class regime_demand {
-  none,
+  none,  ///< nothing
   slow,  ///< flux = last = 1: (N1) and (N2)
   all    ///< layer = 1 too: (N3)
 };
@@ -61,12 +62,16 @@ condition_list stability_limits(double degrees, std::size_t stages);
 template <class Real>
 class condition_sweep {
  public:
+  /// `slow[i]`: stage i has ḋ_i = 0 by design, see stage_series.
   condition_sweep(const condition_list& list, const std::vector<char>& slow)
       : series_(list.nodes, slow), conditions_(list.conditions) {}
 
+  /// Number of conditions.
   std::size_t size() const { return conditions_.size(); }
+  /// Computes the stage vectors of a method, which the other functions use.
   void evaluate(const shu_osher_form<Real>& m) { series_.evaluate(m); }
 
+  /// Left-hand side minus target of condition k.
   Real residual(std::size_t k) const {
     Real sum(-conditions_[k].target);
     for (const auto& term : conditions_[k].terms) {
@@ -88,6 +93,7 @@ class condition_sweep {
       }
   }
 
+  /// Adds the gradient of the seeded sum to `out`; the seeds are used up.
   void reverse(shu_osher_form<Real>& out) { series_.reverse(out); }
 
  private:

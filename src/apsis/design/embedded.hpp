@@ -16,7 +16,7 @@ enum class embedded_cost {
 /// What is asked of an embedded solution.
 struct embedded_task {
   int order = 0;  ///< q of ũ; 0: the highest below that of the method for which there is a useful one
-  embedded_cost cost = embedded_cost::one_solve;
+  embedded_cost cost = embedded_cost::one_solve;  ///< what ũ may cost
   int parts = 10;            ///< u^{n+1} − ũ is to be 1/parts of the Taylor term of order q + 1: θ = 1/parts
   double useful = 0.15;      ///< least embedded_attempt::seen
   double margin = 1.0 / 64;  ///< d̃ + |d̃̇| at least, where there is a solve
@@ -24,7 +24,7 @@ struct embedded_task {
 
 /// How the search for one order ended.
 struct embedded_attempt {
-  int order = 0;
+  int order = 0;  ///< the order q that was tried
   double nearest =
       0.0;  ///< largest |equation| at the nearest point of x ≥ 0; rounding if there is a solution
   /// ‖t − E x‖/(θ ‖t‖) over the trees of T alone, or over those of Q alone if that is smaller: what the
@@ -32,9 +32,10 @@ struct embedded_attempt {
   double seen = 0.0;
 };
 
+/// What find_embedded() found, and how it came to it.
 struct embedded_search {
-  std::optional<embedded_row> found;  ///< with 45 digits, or exact rationals where it has small ones
-  std::vector<embedded_attempt> attempts;
+  std::optional<embedded_row> found;       ///< with 45 digits, or exact rationals where it has small ones
+  std::vector<embedded_attempt> attempts;  ///< from the highest order down
 };
 
 /// An embedded solution of order q of a method of order p > q, convex, and useful to estimate the error with.

@@ -6,10 +6,10 @@ namespace apsis {
 
 /// How a search for a point that satisfies the equations within the bounds ended.
 struct feasibility_result {
-  Eigen::VectorXd x;
-  double residual = 0.0;  ///< largest |equation|
+  Eigen::VectorXd x;      ///< where it ended, within the bounds
+  double residual = 0.0;  ///< largest |equation| there, and largest limit above 0
   bool feasible = false;  ///< residual below 1e-11
-  int iterations = 0;
+  int iterations = 0;     ///< steps that were taken or tried
 };
 
 /// Levenberg–Marquardt within bounds from x: each step is the smallest change that satisfies the linearised

@@ -15,18 +15,20 @@ enum class design_objective {
   smallest_band    ///< √(error² + (10 band)²), with the error of the term of size ε where ε ~ Δt
 };
 
+/// How an optimisation ended.
 struct program_result {
-  Eigen::VectorXd x;
+  Eigen::VectorXd x;      ///< where it ended; the start if Ipopt does not start
   bool solved = false;    ///< a point where the first-order conditions hold
   double residual = 0.0;  ///< largest |equation| there
-  std::string status;
+  std::string status;     ///< for reports: "solved", "infeasible"
 };
 
 /// What a program minimises: linear · x + error_weight · ½ Σ (residuals of the next order)² + band_weight · ½
 /// Σ (band_terms())².
 struct program_goal {
-  Eigen::VectorXd linear;
-  double error_weight = 0.0, band_weight = 0.0;
+  Eigen::VectorXd linear;     ///< gradient of the linear part, one number for each unknown
+  double error_weight = 0.0,  ///< factor of half_square(measure::error, x)
+      band_weight = 0.0;      ///< factor of half_square(measure::band, x)
 };
 
 /// In smallest_band a band of 0.01 counts as much as an error constant of 0.1: both then cost about the same

@@ -12,6 +12,7 @@ namespace apsis {
 
 /// One stage vector y that a method defines, in terms of others (by their place in the list).
 struct series_node {
+  /// What defines y.
   enum class kind {
     transport,   ///< R y = (W/r) Π children: a tree with root T
     relaxation,  ///< R y = D Π children + Ḋ Σ_k (Π_{l≠k} children)(Π children of child k): a tree with root Q
@@ -21,8 +22,8 @@ struct series_node {
     moved,     ///< the same with −ζ Σ_j w_ij/r for r_i: κ of docs/plateaus.md where ζ = −z, but for the start
     imaginary  ///< imaginary part of the node before, which is `response` or `moved`
   };
-  kind what = kind::transport;
-  std::vector<int> children;
+  kind what = kind::transport;  ///< what defines y
+  std::vector<int> children;    ///< the factors of Π children (nodes of kind transport and relaxation)
   std::vector<std::vector<int>> merged;  ///< the factors of each term of Ḋ (nodes of kind relaxation)
   std::complex<double> zeta = 0.0;       ///< ζ (nodes of kind response and moved)
 };
@@ -38,9 +39,11 @@ std::vector<series_node> series_of(const std::vector<rooted_tree>& trees);
 template <class Real>
 class stage_series {
  public:
+  /// Nodes stand behind those that they are made of; `slow` has one entry for each stage.
   stage_series(std::span<const series_node> nodes, std::vector<char> slow)
       : nodes_(nodes.begin(), nodes.end()), slow_(std::move(slow)) {}
 
+  /// Computes all stage vectors of a method. Of D the diagonal counts.
   void evaluate(const shu_osher_form<Real>& m) {
     s_ = m.stages();
     r_ = m.r;
@@ -58,6 +61,7 @@ class stage_series {
     for (std::size_t n = 0; n < nodes_.size(); ++n) evaluate_node(n);
   }
 
+  /// y_stage of a node, after evaluate(); stages count from 0.
   const Real& value(int node, std::size_t stage) const {
     return y_[static_cast<std::size_t>(node) * s_ + stage];
   }

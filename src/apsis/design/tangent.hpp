@@ -8,13 +8,15 @@ namespace apsis {
 /// A number with its derivatives in eight directions. One pass over an algorithm written for any `Real` gives
 /// its exact derivatives in eight unknowns at once; over a gradient, eight columns of the Hessian.
 struct tangent {
-  static constexpr std::size_t width = 8;
-  double value = 0.0;
-  std::array<double, width> slope{};
+  static constexpr std::size_t width = 8;  ///< number of directions
+  double value = 0.0;                      ///< the number itself
+  std::array<double, width> slope{};       ///< its derivative in each direction
 
   tangent() = default;
+  /// A constant: all derivatives are zero.
   tangent(double v) : value(v) {}  // NOLINT(google-explicit-constructor): a constant is a number
 
+  /// @cond
   tangent& operator+=(const tangent& b) {
     value += b.value;
     for (std::size_t k = 0; k < width; ++k) slope[k] += b.slope[k];
@@ -40,6 +42,7 @@ struct tangent {
   friend tangent operator*(tangent a, const tangent& b) { return a *= b; }
   friend tangent operator/(tangent a, const tangent& b) { return a /= b; }
   friend tangent operator-(const tangent& a) { return tangent(0.0) - a; }
+  /// @endcond
 };
 
 }  // namespace apsis

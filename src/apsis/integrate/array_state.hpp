@@ -25,6 +25,7 @@ using state_real = std::remove_cvref_t<decltype(std::declval<State&>()[std::decl
 
 /// A system without the part that stands here: u' = Q(u) as newton_problem{no_transport{}, G}.
 struct no_transport {
+  /// out ← 0.
   template <class Real, class State>
   void operator()(Real, const State&, State& out) const {
     using size_type = decltype(out.size());

@@ -23,6 +23,7 @@ using nested_dual = boost::math::differentiation::autodiff_fvar<Real, 1, 1>;
 template <class Real, class G>
 class vector_field {
  public:
+  /// g(u, out) as above.
   explicit vector_field(G g) : g_(std::move(g)) {}
 
   /// out ← G(u).

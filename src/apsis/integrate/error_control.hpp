@@ -22,13 +22,14 @@ class step_controller {
  public:
   /// All that changes on the way, so that a restart goes on to the same last digit.
   struct progress {
-    Real proposed = std::numeric_limits<Real>::infinity();
-    Real previous = Real(1);  ///< err/tol of the last good step
-    bool holds = false;       ///< the last step was rejected
-    long rejected = 0;
+    Real proposed = std::numeric_limits<Real>::infinity();  ///< longest next step
+    Real previous = Real(1);                                ///< err/tol of the last good step, ≥ 1e-4
+    bool holds = false;                                     ///< the last step was rejected
+    long rejected = 0;                                      ///< number of steps that were
   };
 
-  /// Throws input_error unless the tolerance is a positive number.
+  /// `tolerance` in the unit of the errors, `order` that of the embedded solution, k − 1. Throws input_error
+  /// unless the tolerance is a positive number.
   step_controller(Real tolerance, int order) : tolerance_(tolerance), order_(order) {
     if (!(tolerance > Real(0)) || !(tolerance < std::numeric_limits<Real>::infinity()))
       throw input_error("the tolerance is not a positive number; give one above 0");
@@ -36,7 +37,7 @@ class step_controller {
 
   /// The length that the next step should have at most; +infinity at first.
   Real proposed() const { return now_.proposed; }
-  long rejected() const { return now_.rejected; }
+  long rejected() const { return now_.rejected; }  ///< number of steps that were not good
 
   /// Whether a step of length dt with this estimated error is good; what is proposed changes.
   bool accepts(Real dt, Real error) {
@@ -58,8 +59,8 @@ class step_controller {
     return good;
   }
 
-  progress save() const { return now_; }
-  void resume(const progress& saved) { now_ = saved; }
+  progress save() const { return now_; }                ///< for a checkpoint
+  void resume(const progress& saved) { now_ = saved; }  ///< goes to where an earlier run stopped
 
  private:
   Real tolerance_;

@@ -11,7 +11,7 @@ template <class Real>
 class stage_equation {
  public:
   virtual ~stage_equation() = default;
-  virtual std::size_t size() const = 0;
+  virtual std::size_t size() const = 0;  ///< n
   /// r ← R(v).
   virtual void residual(std::span<const Real> v, std::span<Real> r) = 0;
   /// The three terms of R'(v) x = x + y + z: y ← −a G'(v) x, z ← −b Ġ'(v) x. They come apart because
@@ -22,20 +22,23 @@ class stage_equation {
   virtual bool admissible(std::span<const Real> v) = 0;
 };
 
+/// How R'(v) x = −R(v) is solved.
 enum class linear_solver {
   automatic,  ///< dense up to newton_options::dense_limit unknowns
   dense,      ///< LU of R', columns from the differential in unit directions
   krylov      ///< restarted GMRES on the differential, no matrix
 };
 
+/// How guarded_newton() works.
 struct newton_options {
-  linear_solver solver = linear_solver::automatic;
-  std::size_t dense_limit = 96;
-  int max_iterations = 200;
+  linear_solver solver = linear_solver::automatic;  ///< of each iteration
+  std::size_t dense_limit = 96;                     ///< most unknowns for which `automatic` is dense
+  int max_iterations = 200;                         ///< more is an error
 };
 
+/// What guarded_newton() did.
 struct newton_report {
-  int iterations = 0;
+  int iterations = 0;   ///< linear systems solved
   double residual = 0;  ///< maximum norm at the end
   double step = 0;      ///< last Newton step relative to v, maximum norms
 };

@@ -17,12 +17,15 @@ enum class startup { none, graded };
 /// How long a step is: a given dt, or Δt = safety · r · Δt_FE (safety ≤ 1 keeps what forward Euler keeps).
 template <class Real>
 struct step_rule {
-  std::optional<Real> dt;
-  Real safety = Real(1);
-  startup start = startup::none;
+  std::optional<Real> dt;         ///< the given length; the other rule without one
+  Real safety = Real(1);          ///< of no meaning where dt is given
+  startup start = startup::none;  ///< of the first step
 
+  /// Steps of length dt.
   static step_rule fixed(Real dt) { return {dt, Real(1), startup::none}; }
+  /// Steps of safety · r · Δt_FE.
   static step_rule ssp(Real safety = Real(1)) { return {std::nullopt, safety, startup::none}; }
+  /// The same with another start.
   step_rule with(startup how) const { return {dt, safety, how}; }
 };
 
@@ -35,10 +38,14 @@ class time_marcher {
  public:
   /// All that changes on the way, so that a restart goes on to the same last digit.
   struct progress {
-    long step, since_anchor;
-    Real t, anchor, anchor_dt;
-    long startup_steps = 0, startup_done = 0;
-    Real startup_length = Real(0);
+    long step,                      ///< steps taken
+        since_anchor;               ///< of them of length anchor_dt at the end
+    Real t,                         ///< time reached
+        anchor,                     ///< time from which on steps have the length anchor_dt
+        anchor_dt;                  ///< −1 before the first step, and where dt was given
+    long startup_steps = 0,         ///< into which the first step is cut
+        startup_done = 0;           ///< of them
+    Real startup_length = Real(0);  ///< of the first step before it was cut
   };
 
   /// Throws input_error unless t0 ≤ t1 are finite and dt > 0.
@@ -83,9 +90,10 @@ class time_marcher {
     return startup_steps_ - startup_done_ + static_cast<long>(ceil((t1_ - from) / full - Real(1e-9)));
   }
 
+  /// The end t1 is reached.
   bool done() const { return fixed_ ? whole_steps() >= count_ : !(t_ < t1_); }
-  Real t() const { return t_; }
-  long step() const { return n_; }
+  Real t() const { return t_; }     ///< time reached
+  long step() const { return n_; }  ///< steps taken
   /// The given dt did not divide the interval.
   bool adjusted() const { return adjusted_; }
   /// The given dt after adjustment.
@@ -111,6 +119,7 @@ class time_marcher {
     return proposed;
   }
 
+  /// A step of the length dt that next() gave has been taken.
   void advance(Real dt) {
     ++n_;
     if (starting() && (fixed_ || dt == startup_step())) {
@@ -152,6 +161,7 @@ class time_marcher {
     startup_done_ = saved.startup_done;
     startup_length_ = saved.startup_length;
   }
+  /// For a checkpoint.
   progress save() const {
     return {n_, since_anchor_, t_, anchor_, anchor_dt_, startup_steps_, startup_done_, startup_length_};
   }
@@ -177,14 +187,15 @@ class time_marcher {
 /// What an integration did.
 template <class Real>
 struct integration_result {
-  Real t;
-  long steps;
-  Real dt;             ///< of the last full-length step; 0 if there was none
+  Real t;              ///< time reached: t1, or where the observer ended it
+  long steps;          ///< number of steps, those of a start-up included
+  Real dt;             ///< longest step; 0 if there was none
   long startup_steps;  ///< that took the place of the first; 0 without start-up
 };
 
 /// Observer that sees nothing.
 struct no_observer {
+  /// Nothing.
   template <class... Args>
   void operator()(Args&&...) const {}
 };

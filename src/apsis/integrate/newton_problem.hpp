@@ -27,9 +27,10 @@ namespace apsis {
 template <class F, class G, array_state State = std::vector<double>>
 class newton_problem {
  public:
-  using state = State;
-  using real = state_real<State>;
+  using state = State;             ///< what u is
+  using real = state_real<State>;  ///< its numbers
 
+  /// f and g as above.
   newton_problem(F f, G g, newton_options options = {})
       : f_(std::move(f)), equation_(std::move(g)), options_(options) {}
 
@@ -45,6 +46,7 @@ class newton_problem {
     return *this;
   }
 
+  /// As `problem` demands it, with T = F.
   void scatter(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       work_ = u;
@@ -53,6 +55,7 @@ class newton_problem {
     });
   }
 
+  /// As `problem_with_explicit_collision` demands it, with Q = G.
   void scatter_collision(real, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       load(u);
@@ -81,6 +84,7 @@ class newton_problem {
     unload(v_, u);
   }
 
+  /// Δt_FE of F; +infinity unless it was given.
   real forward_euler_step(real t, const State& u) const {
     return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();
   }
@@ -149,10 +153,12 @@ class newton_problem {
   std::vector<real> v_;
 };
 
+/// @cond
 template <class F, class G>
 newton_problem(F, G) -> newton_problem<F, G>;
 template <class F, class G>
 newton_problem(F, G, newton_options) -> newton_problem<F, G>;
+/// @endcond
 
 /// The same for a state other than std::vector<double>.
 template <array_state State, class F, class G>

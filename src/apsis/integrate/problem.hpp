@@ -9,9 +9,9 @@ namespace apsis {
 /// A target may be u itself only if no target of the same call has β ≠ 0.
 template <class State, class Real>
 struct target {
-  State* acc;
-  Real alpha;
-  Real beta;
+  State* acc;  ///< what is added to
+  Real alpha;  ///< of u
+  Real beta;   ///< of T(t, u), a multiple of Δt
   bool fresh;  ///< the old content of acc means nothing (it may even be NaN)
 
   /// The new value of one element of acc from its old value and the same element of u and T(u).
@@ -50,8 +50,10 @@ concept problem_with_explicit_collision =
 /// A stage solve that is due as soon as a scatter is done: the arguments of collide, u among the targets.
 template <class State, class Real>
 struct due_collision {
-  Real t, a, b;
-  State* u;
+  Real t,    ///< time of the stage
+      a,     ///< Δt d ≥ 0
+      b;     ///< Δt² ḋ ≤ 0
+  State* u;  ///< explicit part of the stage, replaced by its solution
 };
 
 /// A problem that can do both in one pass over memory:

@@ -28,8 +28,8 @@ template <class Transport, class Moments, class Equilibrium, class Rate,
           array_state State = std::vector<double>>
 class relaxation_problem {
  public:
-  using state = State;
-  using real = state_real<State>;
+  using state = State;             ///< what u is
+  using real = state_real<State>;  ///< its numbers
 
   /// Throws input_error unless ε ≥ 0 is finite.
   relaxation_problem(Transport transport, Moments moments, Equilibrium equilibrium, Rate rate, real epsilon)
@@ -54,6 +54,7 @@ class relaxation_problem {
     return *this;
   }
 
+  /// As `problem` demands it.
   void scatter(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       give_size_of(u);
@@ -76,7 +77,8 @@ class relaxation_problem {
           "use Δt ≤ r Δt_FE with an SSP method");
   }
 
-  /// Throws input_error for ε = 0, where Q is not defined off equilibrium.
+  /// As `problem_with_explicit_collision` demands it. Throws input_error for ε = 0, where Q is not defined
+  /// off equilibrium.
   void scatter_collision(real, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       if (epsilon_ == real(0))
@@ -90,6 +92,7 @@ class relaxation_problem {
     });
   }
 
+  /// Δt_FE of the transport; +infinity unless it was given.
   real forward_euler_step(real t, const State& u) const {
     return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();
   }
@@ -100,7 +103,7 @@ class relaxation_problem {
     return rate > real(0) && epsilon_ > real(0) ? epsilon_ / rate : std::numeric_limits<real>::infinity();
   }
 
-  real epsilon() const { return epsilon_; }
+  real epsilon() const { return epsilon_; }  ///< ε
 
  private:
   template <class Omega>
@@ -137,9 +140,11 @@ class relaxation_problem {
   State work_{};
 };
 
+/// @cond
 template <class Transport, class Moments, class Equilibrium, class Rate>
 relaxation_problem(Transport, Moments, Equilibrium, Rate, double)
     -> relaxation_problem<Transport, Moments, Equilibrium, Rate>;
+/// @endcond
 
 /// The same for a state other than std::vector<double>; throws as the constructor does.
 template <array_state State, class Transport, class Moments, class Equilibrium, class Rate>

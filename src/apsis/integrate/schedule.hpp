@@ -23,18 +23,21 @@ class schedule {
     plus_solved,     ///< … and α = +d_kj/d_jj after it: together Δt d_kj Q(u_j)
     collision        ///< β = Δt d_kj on Q(u_j), evaluated
   };
+  /// α u_j + β T(u_j) (or β Q(u_j)) to one accumulator.
   struct contribution {
-    int stage;   ///< k
-    int buffer;  ///< of accumulator k
-    std::vector<term> terms;
-    bool fresh;  ///< first contribution to k
+    int stage;                ///< k
+    int buffer;               ///< of accumulator k
+    std::vector<term> terms;  ///< whose sums α and β are
+    bool fresh;               ///< first contribution to k
   };
+  /// Functions of a problem; see `problem` and `problem_with_explicit_collision`.
   enum class action { scatter, scatter_collision, collide };
+  /// One call of such a function, for stage j.
   struct instruction {
-    action what;
-    int stage;   ///< j; 0 is u^n
-    int buffer;  ///< that holds u_j (or its explicit part)
-    std::vector<contribution> to;
+    action what;                   ///< the function
+    int stage;                     ///< j; 0 is u^n
+    int buffer;                    ///< that holds u_j (or its explicit part)
+    std::vector<contribution> to;  ///< none where stage j is solved
   };
 
   /// `embedded`: the last row of m is an embedded solution, and u^{n+1} the row before it. The stages are
@@ -43,16 +46,17 @@ class schedule {
   template <class Real>
   explicit schedule(const shu_osher_form<Real>& m, bool embedded = false);
 
+  /// In the order in which they are carried out.
   const std::vector<instruction>& instructions() const { return instructions_; }
   /// State-sized buffers that a step needs, u^n (buffer 0) included.
   int buffers() const { return buffers_; }
+  /// Of u^{n+1}.
   int result_buffer() const { return result_; }
   /// Of the embedded solution; −1 if there is none.
   int embedded_buffer() const { return embedded_; }
-  /// Evaluations of T, of Q (explicit), and implicit solves per step.
-  int transport_evaluations() const { return transports_; }
-  int collision_evaluations() const { return collisions_; }
-  int implicit_solves() const { return solves_; }
+  int transport_evaluations() const { return transports_; }  ///< of T per step
+  int collision_evaluations() const { return collisions_; }  ///< of Q per step, those in solves not counted
+  int implicit_solves() const { return solves_; }            ///< per step
 
  private:
   struct pattern;

@@ -20,10 +20,10 @@ enum class solutions { result, result_and_embedded };
 template <problem P>
 class stepper {
  public:
-  using state = typename P::state;
-  using real = typename P::real;
+  using state = typename P::state;  ///< what u is
+  using real = typename P::real;    ///< type of times and coefficients
 
-  /// Both are kept by reference/copy: the problem must outlive the stepper.
+  /// The method is copied, the problem is not and must outlive the stepper.
   /// Throws input_error if the method evaluates Q explicitly and the problem cannot, or if it has no embedded
   /// solution and one is asked for.
   stepper(const method& m, P& p, solutions which = solutions::result)
@@ -62,15 +62,18 @@ class stepper {
     accept(u);
   }
 
+  /// Both solutions of a step; valid until the next step, attempt or accept.
+  struct attempted {
+    const state &result,  ///< u^{n+1}
+        &embedded;        ///< ũ
+  };
   /// u^{n+1} and the embedded solution of a step from u = u^n, which stays as it is: accept(u) takes the
   /// step, the next attempt forgets it. Only with solutions::result_and_embedded.
-  struct attempted {
-    const state &result, &embedded;
-  };
   attempted attempt(real t, real dt, state& u) {
     carry_out(t, dt, u);
     return {buffer(plan_.result_buffer(), u), buffer(plan_.embedded_buffer(), u)};
   }
+  /// u ← u^{n+1} of the last attempt, which was made from this u.
   void accept(state& u) {
     using std::swap;
     if (plan_.result_buffer() > 0) swap(u, buffer(plan_.result_buffer(), u));
@@ -79,8 +82,8 @@ class stepper {
   /// r of the Shu–Osher form: Δt ≤ r Δt_FE keeps what forward Euler steps of T keep. Where no form is convex
   /// (the certificate says SSP coefficient 0) it is 1 and promises nothing.
   real r() const { return m_.r; }
-  const schedule& plan() const { return plan_; }
-  P& target_problem() { return problem_; }
+  const schedule& plan() const { return plan_; }  ///< of a step
+  P& target_problem() { return problem_; }        ///< that of the constructor
 
  private:
   using action = schedule::action;

@@ -13,8 +13,9 @@ namespace apsis {
 /// An order condition that does not hold.
 struct failed_condition {
   std::string tree;  ///< "G[F]"
-  int order = 0;
-  mp_real value, wanted;  ///< left-hand side and 1/γ
+  int order = 0;     ///< for which it is needed: the first that the method does not have
+  mp_real value,     ///< φ(τ), left-hand side
+      wanted;        ///< 1/γ(τ)
 };
 
 /// Linear stability of the implicit part, y' = λy: R(z) = e_s·(I − zA − z²Ȧ)⁻¹e, z = λΔt.
@@ -43,13 +44,13 @@ struct embedded_certificate {
 
 /// All that can be said of a method from its coefficients alone.
 struct certificate {
-  std::string name;
-  method_kind kind = method_kind::imex;
-  int order = 0;
-  mp_real order_residual;              ///< largest residual of the conditions up to `order`
-  std::vector<failed_condition> next;  ///< conditions of order + 1 that fail
-  int conditions = 0;                  ///< number of conditions up to `order`
-  mp_real error_constant;              ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order + 1
+  std::string name;                      ///< of the method
+  method_kind kind = method_kind::imex;  ///< says which order conditions count
+  int order = 0;                         ///< by the order conditions; 6 is the highest that is looked for
+  mp_real order_residual;                ///< largest residual of the conditions up to `order`
+  std::vector<failed_condition> next;    ///< conditions of order + 1 that fail
+  int conditions = 0;                    ///< number of conditions up to `order`
+  mp_real error_constant;                ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order + 1
 
   bool unconditional = false;   ///< SSP without a bound from Q
   bool bounded = true;          ///< the explicit part sets a bound Δt ≤ r Δt_FE
@@ -65,7 +66,7 @@ struct certificate {
   std::string ap_data;           ///< "any data", "consistent data" or "none"; "(moments only)" without GSA:
                                  ///< then u^{n+1} itself is not projected to equilibrium
   int explicit_evaluations = 0;  ///< of T per step, n_F
-  int implicit_solves = 0;
+  int implicit_solves = 0;       ///< stages with d_i ≠ 0 or ḋ_i ≠ 0
   implicit_stability stability;  ///< not for explicit methods
 
   // Terms of size ε for ε ≪ Δt (docs/plateaus.md); of IMEX methods only.
@@ -76,9 +77,9 @@ struct certificate {
   /// "all" if it keeps both, "slow", or "none".
   std::string keeps() const;
 
-  std::optional<embedded_certificate> embedded;
+  std::optional<embedded_certificate> embedded;  ///< of methods that have such a row
 
-  bool claims_hold = false;
+  bool claims_hold = false;           ///< there are no failures
   std::vector<std::string> failures;  ///< condition, its value and its tree
 };
 

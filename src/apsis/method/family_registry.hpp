@@ -12,9 +12,10 @@ namespace apsis {
 /// Methods in closed form, one for each number S of stages: a file of method/families/ defines
 /// `extern const family_entry family_<file>`. Members are found by name like methods of the catalogue.
 struct family_entry {
-  std::string pattern;          ///< name with the letter S for the number of stages: "md-imex-chain-S-2"
-  std::string description;      ///< one line; r and n_F in terms of S
-  std::size_t lowest, highest;  ///< S of its members
+  std::string pattern;      ///< name with the letter S for the number of stages: "md-imex-chain-S-2"
+  std::string description;  ///< one line; r and n_F in terms of S
+  std::size_t lowest,       ///< smallest S of its members
+      highest;              ///< largest S
   method (*make)(std::size_t stages);  ///< everything but the name
 };
 

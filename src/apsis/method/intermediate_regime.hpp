@@ -39,6 +39,7 @@ struct intermediate_regime {
 template <class Real>
 class relaxed_stages {
  public:
+  /// Keeps a reference to m.
   explicit relaxed_stages(const shu_osher_form<Real>& m) : m_(m) {
     const auto initial = initial_weights(m);
     for (std::size_t i = 0; i < m.stages(); ++i) {
@@ -57,6 +58,7 @@ class relaxed_stages {
 
   /// False where a stage is neither relaxed nor u^n, or the last one is u^n.
   bool solvable() const { return solvable_; }
+  /// Some stage is u^n itself.
   bool has_start() const { return has_start_; }
 
   /// A stage that is u^n itself has x_s − shift: the last stage of the step before, seen from this one.
@@ -130,15 +132,17 @@ intermediate_regime<Real> analyse_intermediate_regime(const shu_osher_form<Real>
   return out;
 }
 
-/// flux and last at a finite z = CΔt/ε: stage i keeps κ_i(z) of the exact deviation, where
+/// flux and last of intermediate_regime at a finite z = CΔt/ε.
+template <class Real>
+struct finite_rate {
+  Real flux{},  ///< Σ b̂_i κ_i(z)
+      last{};   ///< κ_s(z)
+};
+
+/// Stage i keeps κ_i(z) of the exact deviation, where
 ///   (I + zA − z²Ȧ) κ = z ĉ + κ_s e,    flux(z) = Σ b̂_i κ_i,    last(z) = κ_s;
 /// with z fixed and Δt → 0 the numerical ω obeys ω_t = ℛT(E) − flux(z) ℛT′(E) D. They tend to 1 as z → 0 and
 /// to those of intermediate_regime as z → ∞. For methods of any type; z > 0.
-template <class Real>
-struct finite_rate {
-  Real flux{}, last{};
-};
-
 template <class Real>
 finite_rate<Real> at_finite_rate(const butcher_form<Real>& b, const Real& z) {
   const std::size_t s = b.stages();
@@ -164,7 +168,8 @@ finite_rate<Real> at_finite_rate(const butcher_form<Real>& b, const Real& z) {
 /// Largest |flux(z) − 1|/z: where ε is neither small nor large against Δt, and Δt → 0 with it, the error of
 /// the O(ε) term is this times Δt at the worst ε/C = Δt/at.
 struct intermediate_band {
-  double error = 0.0, at = 0.0;
+  double error = 0.0,  ///< max |flux(z) − 1|/z
+      at = 0.0;        ///< z of the maximum
 };
 
 /// Over 10⁻³ ≤ z ≤ 10⁵, forty values to a decade.

@@ -16,11 +16,12 @@ enum class method_kind {
   explicit_only   ///< u' = T(u) + Q(u), both explicit with the same coefficients, A = Â
 };
 
+/// "implicit", "imex" or "explicit".
 std::string to_string(method_kind kind);
 
 /// What the file of a method says about it; certified when it is loaded.
 struct method_claims {
-  int order = 0;
+  int order = 0;                               ///< p, no higher
   std::optional<std::string> ssp_coefficient;  ///< as written; "unconditional" for implicit methods
   std::optional<std::string> type;             ///< "A", "ARS" or "CK"
   std::optional<std::string>
@@ -37,23 +38,27 @@ struct method_claims {
 /// with the r of the method, j over all its stages. With all weights and d̃ ≥ 0 and d̃̇ ≤ 0 it keeps what the
 /// stages keep. Coefficients as strings, as those of the method.
 struct embedded_row {
-  int order = 0;
-  std::string origin;             ///< how it was found; "" if nothing is said
-  std::vector<std::string> P, W;  ///< p̃ and w̃, as many as stages
-  std::string d = "0", ddot = "0";
+  int order = 0;               ///< q, below that of the method
+  std::string origin;          ///< how it was found; "" if nothing is said
+  std::vector<std::string> P,  ///< p̃, as many as stages
+      W;                       ///< w̃, likewise
+  std::string d = "0",         ///< d̃
+      ddot = "0";              ///< d̃̇, with its sign
 };
 
 /// A time integrator as data. Coefficients exist as the strings of its file (exact rationals "p/q" or
 /// decimals of any length) and are converted to the precision in which they are asked for.
 class method {
  public:
-  std::string name, title, citation;
-  std::string origin;   ///< how its coefficients were found; "" where the citation says it
-  std::string purpose;  ///< what it is recommended for, in a few words; "" where it is not
-  method_kind kind = method_kind::imex;
-  method_claims claims;
-  shu_osher_form<std::string> exact;  ///< as in the file; "0" where nothing stands
-  std::optional<embedded_row> embedded;
+  std::string name,                      ///< as in its file, or of the member of a family
+      title,                             ///< one line
+      citation;                          ///< where it was published
+  std::string origin;                    ///< how its coefficients were found; "" where the citation says it
+  std::string purpose;                   ///< what it is recommended for, in a few words; "" where it is not
+  method_kind kind = method_kind::imex;  ///< which equations it integrates
+  method_claims claims;                  ///< what certify() checks
+  shu_osher_form<std::string> exact;     ///< as in the file; "0" where nothing stands
+  std::optional<embedded_row> embedded;  ///< of methods that have one
 
   /// Rows of the form, the last of which is u^{n+1}.
   std::size_t stages() const { return exact.stages(); }

@@ -11,8 +11,10 @@ namespace apsis {
 /// (paper, eq. IMEXRKButcher). All matrices are s × s and lower triangular, Â strictly. Dimensionless.
 template <class Real>
 struct butcher_form {
-  matrix<Real> A_hat, A, A_dot;
-  std::size_t stages() const { return A.rows(); }
+  matrix<Real> A_hat,                              ///< Â, of T
+      A,                                           ///< of Q
+      A_dot;                                       ///< Ȧ, of Q̇
+  std::size_t stages() const { return A.rows(); }  ///< s
 };
 
 /// Shu–Osher form, with the off-diagonal multiples of Q that comparators outside the paper's class need:
@@ -22,10 +24,12 @@ struct butcher_form {
 /// D lower triangular; ddot carries its sign (≤ 0 for an SSP method). r > 0; for W = 0 it is 1.
 template <class Real>
 struct shu_osher_form {
-  matrix<Real> P, W, D;
-  std::vector<Real> ddot;
-  Real r{};
-  std::size_t stages() const { return ddot.size(); }
+  matrix<Real> P,                                     ///< weights p_ij of u_j
+      W,                                              ///< weights w_ij of forward Euler steps of length Δt/r
+      D;                                              ///< d_ij
+  std::vector<Real> ddot;                             ///< ḋ_i
+  Real r{};                                           ///< of a convex form at most the SSP coefficient
+  std::size_t stages() const { return ddot.size(); }  ///< s
 };
 
 /// Row sums of R = I − P − W, the weights r_i of u^n.

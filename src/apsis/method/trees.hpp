@@ -11,13 +11,14 @@ enum class colour { F, G };
 /// A rooted tree with coloured nodes. Children are indices into the list that it belongs to, sorted; equal
 /// subtrees stand as often as they occur.
 struct rooted_tree {
-  colour root = colour::F;
-  std::vector<int> children;
-  int order = 1;         ///< number of nodes
-  double density = 1.0;  ///< γ(τ) = |τ| Π γ(τ_k), an integer
-  std::string name;      ///< "G[F,G[F]]"
+  colour root = colour::F;    ///< of the root
+  std::vector<int> children;  ///< τ_1 … τ_m of τ = [τ_1 … τ_m]
+  int order = 1;              ///< number of nodes
+  double density = 1.0;       ///< γ(τ) = |τ| Π γ(τ_k), an integer
+  std::string name;           ///< "G[F,G[F]]"
 };
 
+/// Colours that the nodes of a list of trees have.
 enum class tree_colours { F_only, G_only, both };
 
 /// Every tree of order 1 … `order`, by order; every child stands before its parents. Numbers of trees per

@@ -15,12 +15,12 @@ class velocity_grid {
   /// Throws input_error unless 1 ≤ d ≤ 3, points ≥ 4 and max > 0.
   velocity_grid(int dimensions, int points, double max);
 
-  int dimensions() const { return dimensions_; }
-  int points() const { return points_; }  ///< per direction
-  int size() const { return size_; }      ///< points^d
-  double max() const { return max_; }
-  double spacing() const { return spacing_; }                   ///< Δv
-  double weight() const { return weight_; }                     ///< Δv^d
+  int dimensions() const { return dimensions_; }  ///< d
+  int points() const { return points_; }          ///< per direction
+  int size() const { return size_; }              ///< points^d
+  double max() const { return max_; }             ///< v_max, half a spacing beyond the last point
+  double spacing() const { return spacing_; }     ///< Δv
+  double weight() const { return weight_; }       ///< Δv^d
   const aligned_vector<double>& line() const { return line_; }  ///< the points of one direction
   /// Component k of the velocity of every grid point.
   const aligned_vector<double>& component(int k) const { return components_[static_cast<std::size_t>(k)]; }
@@ -34,17 +34,18 @@ class velocity_grid {
   std::vector<aligned_vector<double>> components_;
 };
 
-/// ω = (ρ, ρu_1 … ρu_d, 𝓔) with 𝓔 = ½ρ|u|² + (d/2)ρT, and the state it stands for. Dimensionless.
+/// The state that moments ω = (ρ, ρu_1 … ρu_d, 𝓔) with 𝓔 = ½ρ|u|² + (d/2)ρT stand for. Dimensionless.
 struct fluid_state {
-  double rho = 0.0;
-  double u[3] = {0.0, 0.0, 0.0};
-  double T = 0.0;
+  double rho = 0.0;               ///< density ρ
+  double u[3] = {0.0, 0.0, 0.0};  ///< bulk velocity; 0 from component d on
+  double T = 0.0;                 ///< temperature, in units in which the pressure is ρT
   /// All finite, ρ > 0 and T > 0.
   bool admissible() const {
     return std::isfinite(rho) && std::isfinite(u[0] + u[1] + u[2]) && std::isfinite(T) && rho > 0.0 &&
            T > 0.0;
   }
 };
+/// From the d + 2 moments ω. Whether it is admissible is left to the caller: ρ = 0 makes NaN or ±∞.
 inline fluid_state to_fluid_state(const double* omega, int dimensions) {
   fluid_state s;
   s.rho = omega[0];
@@ -57,22 +58,27 @@ inline fluid_state to_fluid_state(const double* omega, int dimensions) {
   return s;
 }
 
-/// Midpoint-rule moments (ρ, ρu, 𝓔) of a row of grid values, and of some rows `pitch` numbers apart.
+/// Midpoint-rule moments ω = (ρ, ρu, 𝓔), d + 2 numbers, of a row of grid.size() values.
 void kinetic_moments(const velocity_grid& grid, const double* f, double* omega);
+/// The same of some rows `pitch` numbers apart, one ω behind the other.
 void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega);
 
-/// The same in one velocity dimension, in no more memory than it takes.
+/// fluid_state in one velocity dimension, in no more memory than it takes.
 struct line_state {
-  double rho, u, T;
+  double rho,  ///< density
+      u,       ///< bulk velocity
+      T;       ///< temperature
+  /// All finite, ρ > 0 and T > 0.
   bool admissible() const { return rho > 0.0 && T > 0.0 && std::isfinite(rho + std::abs(u) + T); }
 };
 
 /// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK).
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
+/// Most rows that formula_maxwellians_on_line() takes at once.
+inline constexpr int most_line_states = 16;
 /// In one velocity dimension those of at most most_line_states rows of ω, in rows `pitch` apart, and the
 /// states. Returns the number of rows before the first ω that is not admissible.
-inline constexpr int most_line_states = 16;
 int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, int rows, double* m,
                                 std::ptrdiff_t pitch, line_state* states);
 
@@ -80,6 +86,7 @@ int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, 
 /// their relative error by about 100 exp(−2π²T/Δv²), and what lies beyond the grid is of the size exp(−(v_max
 /// − |u|)²/(2T)).
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state);
+/// The same in one velocity dimension.
 bool formula_has_exact_moments(const velocity_grid& grid, const line_state& state);
 
 /// exp(α + β·v + γ|v|²) whose midpoint-rule moments are those of `state` to round-off, on any grid
@@ -87,7 +94,8 @@ bool formula_has_exact_moments(const velocity_grid& grid, const line_state& stat
 /// function (too coarse for √T, or u near its edge).
 bool discrete_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
 
-/// Largest defect of the moments of m against `omega`, relative to (ρ, ρ√T, ρT) as fits.
+/// Largest defect of the moments of m against `omega`, the moments of `state`; relative to ρ, to ρ(√T +
+/// |u_k|) for each momentum, and to 𝓔.
 double moment_defect(const velocity_grid& grid, const double* m, const double* omega,
                      const fluid_state& state);
 

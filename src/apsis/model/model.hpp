@@ -14,20 +14,21 @@ struct field_name {
   std::string label;  ///< "density (dimensionless)"
 };
 
-/// Initial data by name: point values of all components at x (at a jump, those of its right side), and the
-/// exact solution that grows out of them where a formula for it is known (empty otherwise; it is smooth).
+/// Initial data, and the exact solution that grows out of them where a formula for it is known.
 struct initial_data {
-  std::string name;
-  std::string description;
+  std::string name;         ///< value of the key model.initial
+  std::string description;  ///< one line with the formula
+  /// u ← all components at x; at a jump, those of its right side.
   std::function<void(double x, std::span<double> u)> point_value;
+  /// u ← the solution at t and x, which is smooth; empty if no formula is known.
   std::function<void(double t, double x, std::span<double> u)> exact = {};
   std::vector<double> jumps = {};  ///< where the data are discontinuous, in increasing order
 };
 
-/// Data that a model cannot hold: the key of the case that must change, and a message; both "" if all is
-/// well.
+/// Data that a model cannot hold.
 struct misfit {
-  std::string key, problem;
+  std::string key,  ///< of the case, that must change; "" if all is well
+      problem;      ///< message; "" if all is well
 };
 
 /// An equation u_t + Σ_k ∂_xk(v_k u) = S(u) + Q(u)/ε, seen at one point of space: it knows no mesh and no
@@ -36,30 +37,37 @@ class model {
  public:
   virtual ~model() = default;
 
+  /// Numbers of a row, N.
   virtual int components() const = 0;
   /// 0 for an ordinary differential equation.
   virtual int space_dimensions() const = 0;
-  /// Transport speed of every component along a direction.
+  /// Transport speed of every component along a direction; empty without space.
   virtual std::span<const double> speeds(int direction) const;
 
-  /// Explicit local source S(u), part of the operator T; only where has_source().
+  /// Whether S(u) is not 0 everywhere.
   virtual bool has_source() const { return false; }
+  /// s ← S(u), the explicit local source, part of the operator T. Where there is none: 0.
   virtual void source(const double* u, double* s) const;
 
   /// Whether negative components have no meaning (then positivity can be promised).
   virtual bool positive() const { return false; }
-  /// Convex entropy density of a row, decaying under upwind transport and collision (row nonnegative).
+  /// Whether entropy() has a meaning.
   virtual bool has_entropy() const { return false; }
+  /// Convex entropy density of a nonnegative row, whose sum over all cells decays under upwind transport and
+  /// collision. Where there is none: NaN.
   virtual double entropy(const double* u) const;
 
-  /// Quantities that collisions and periodic transport conserve, linear in u; may be none.
+  /// Names of quantities that collisions and periodic transport conserve, linear in u; may be none.
   virtual std::vector<std::string> invariants() const = 0;
+  /// How much of each a row has per volume, in the order of invariants().
   virtual void invariant_densities(const double* u, double* densities) const = 0;
 
-  /// Macroscopic fields of a row for results.
+  /// Macroscopic fields that results have.
   virtual std::vector<field_name> fields() const = 0;
+  /// Their values for a row, in the order of fields().
   virtual void macroscopic(const double* u, double* values) const = 0;
 
+  /// At least one; the first is the default.
   virtual const std::vector<initial_data>& initial() const = 0;
 
   /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could.
@@ -72,6 +80,7 @@ class model {
 /// form.
 class relaxation_model : public model {
  public:
+  /// Length of ω.
   virtual int moment_count() const = 0;
   /// ω = ℛu.
   virtual void moments(const double* u, double* omega) const = 0;

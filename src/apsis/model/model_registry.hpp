@@ -11,26 +11,26 @@ namespace apsis {
 
 /// A number that a model can be given in its case file.
 struct model_parameter {
-  std::string name;
-  double value;     ///< default
-  double lowest;    ///< smallest allowed value
-  double highest;   ///< largest allowed value
-  std::string doc;  ///< meaning and unit
+  std::string name;  ///< key in the table [model]
+  double value;      ///< default
+  double lowest;     ///< smallest allowed value
+  double highest;    ///< largest allowed value
+  std::string doc;   ///< meaning and unit
 };
 
 /// A text that a model can be given in its case file: one of its names, or a formula.
 struct model_text {
-  std::string name;
+  std::string name;                  ///< key in the table [model]
   std::string value;                 ///< default
   std::vector<std::string> choices;  ///< names with a meaning of their own
   std::string variable;              ///< what a formula is written in, any finite value; "": names only
-  std::string doc;
+  std::string doc;                   ///< meaning
 };
 
 /// Velocity grid of a kinetic model: `points` midpoints on [−max, max] per velocity dimension.
 struct velocity_config {
-  double max = 0.0;
-  int points = 0;
+  double max = 0.0;                  ///< v_max > 0 (dimensionless)
+  int points = 0;                    ///< at least 4
   std::string equilibrium = "auto";  ///< "auto" | "formula" | "discrete"
 };
 
@@ -43,16 +43,17 @@ struct model_config {
 
 /// One equation of the registry: a file of model/models/ defines `extern const model_entry model_<file>`.
 struct model_entry {
-  std::string name;
-  std::string description;  ///< one line with the equation
-  std::string source;       ///< citation
-  bool has_space;           ///< needs the table [space]
-  bool has_velocity;        ///< needs the table [velocity]
-  bool has_epsilon;         ///< takes the key model.epsilon
-  std::vector<model_parameter> parameters;
-  std::vector<std::string> initial;  ///< names of its initial data, default first
+  std::string name;                         ///< value of the key model.name
+  std::string description;                  ///< one line with the equation
+  std::string source;                       ///< citation
+  bool has_space;                           ///< needs the table [space]
+  bool has_velocity;                        ///< needs the table [velocity]
+  bool has_epsilon;                         ///< takes the key model.epsilon
+  std::vector<model_parameter> parameters;  ///< in the order in which they are documented
+  std::vector<std::string> initial;         ///< names of its initial data, default first
+  /// Throws input_error where the velocity grid or a formula cannot be used.
   std::unique_ptr<model> (*make)(const model_config&);
-  std::vector<model_text> texts = {};
+  std::vector<model_text> texts = {};  ///< in the same order
 };
 
 /// What the model is made from if its case file says nothing; the velocity grid is left to the caller.

@@ -9,15 +9,18 @@ namespace velocity_rows {
 
 /// Points v_j = ½Δv (2j + 1 − n), j = 0 … n−1.
 struct points {
-  int n;
-  double spacing;
+  int n;           ///< number of points
+  double spacing;  ///< Δv
 };
 
-/// Σ f, Σ v f, Σ ½v² f over each of some rows of n numbers, which lie `pitch` apart. Those of a row do not
-/// depend on the others.
+/// Sums over a row, without the factor Δv.
 struct sums {
-  double mass, momentum, energy;
+  double mass,   ///< Σ f
+      momentum,  ///< Σ v f
+      energy;    ///< Σ ½v² f
 };
+/// Those of some rows of n numbers, which lie `pitch` apart; v and half_square are v and ½v² of the points.
+/// Sums of a row do not depend on the others.
 void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square,
              int n, sums* of_rows);
 
@@ -26,7 +29,9 @@ double entropy(const double* f, int n);
 
 /// a exp(−(v − u)²/(2T)), T > 0.
 struct gaussian {
-  double a, u, T;
+  double a,  ///< height
+      u,     ///< centre
+      T;     ///< square of the width
 };
 
 /// The values of some Gaussians at all points, rows `pitch` apart, in about two multiplications a point: from

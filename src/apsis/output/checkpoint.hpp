@@ -12,8 +12,9 @@ namespace apsis {
 
 /// Everything that a run needs to go on as if it had never stopped, bit for bit, its results so far included.
 struct checkpoint {
-  std::string case_text;  ///< the resolved case as TOML
-  std::uint64_t cells = 0, components = 0;
+  std::string case_text;                  ///< the resolved case as TOML
+  std::uint64_t cells = 0,                ///< rows of the state
+      components = 0;                     ///< unknowns of a cell
   std::vector<double> state;              ///< [cells][components]
   std::map<std::string, double> numbers;  ///< time, counters and totals, by name
   table history;                          ///< from the initial state to the last step

@@ -8,6 +8,7 @@ namespace apsis {
 /// A bar on standard error while a run goes on; silent where standard error is not a terminal.
 class progress {
  public:
+  /// For a run from t = 0 to `end`.
   explicit progress(double end);
   ~progress();
   progress(const progress&) = delete;
@@ -15,6 +16,7 @@ class progress {
 
   /// Whether update() would draw now: at most ten times a second, and never without a terminal.
   bool due() const;
+  /// Draws the bar if it is due(). The time left is estimated from that since the bar was made.
   void update(long step, long steps_total, double t, double min_value);
   /// Ends the line, so that messages start on a fresh one.
   void finish();
@@ -34,7 +36,9 @@ class task_progress {
   ~task_progress();
   task_progress(const task_progress&) = delete;
   task_progress& operator=(const task_progress&) = delete;
+  /// Draws a bar at `fraction` in [0, 1] with `what` behind it, at most ten times a second.
   void update(double fraction, const std::string& what);
+  /// Ends the line, so that messages start on a fresh one.
   void finish();
 
  private:

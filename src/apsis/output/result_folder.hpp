@@ -18,10 +18,12 @@ class result_folder {
   result_folder(const result_folder&) = delete;
   result_folder& operator=(const result_folder&) = delete;
 
+  /// As it was given.
   const std::filesystem::path& path() const { return path_; }
 
   /// Prepares a file of this name; `write` is called with the temporary path.
   void prepare(const std::string& name, const std::function<void(const std::string&)>& write);
+  /// Prepares a file with this content.
   void prepare_text(const std::string& name, const std::string& text);
 
   /// Prepares and names one file at once (checkpoints of a run that goes on).
@@ -42,6 +44,7 @@ class result_folder {
   /// run that this run did not write.
   void commit();
 
+  /// The file that says what the others are: none is there while they change.
   static constexpr const char* manifest = "manifest.json";
 
  private:

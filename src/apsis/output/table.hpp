@@ -8,8 +8,8 @@ namespace apsis {
 
 /// Numbers in named columns: rows[k][column]. Dimensionless throughout.
 struct table {
-  std::vector<std::string> columns;
-  std::vector<std::vector<double>> rows;
+  std::vector<std::string> columns;       ///< names, one for each number of a row
+  std::vector<std::vector<double>> rows;  ///< [row][column]
 };
 
 /// Comma-separated text with one header line; 17 significant digits, so that every double reads back

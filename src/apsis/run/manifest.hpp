@@ -9,8 +9,14 @@
 namespace apsis {
 
 /// How a run ended.
-enum class run_end { complete, interrupted, wall_time, failed };
+enum class run_end {
+  complete,     ///< at time.end
+  interrupted,  ///< stopped with a checkpoint, as session_options::stop asked
+  wall_time,    ///< likewise, because session_options::wall was over
+  failed        ///< with a numerical failure or a broken promise
+};
 
+/// As the manifest says it: "complete", "interrupted", "wall time reached", "failed".
 std::string to_string(run_end end);
 
 /// The object that `apsis run --json` prints.

@@ -17,11 +17,14 @@ class monitor {
 
   /// The state against which conservation is measured.
   step_record start(const field& u);
+  /// Measures against these instead: the invariants() and scales() of an earlier run.
   void resume(const std::vector<double>& invariants, const std::vector<double>& scales) {
     invariants_ = invariants;
     scales_ = scales;
   }
+  /// I₀ = Σ_cells volume · density of every invariant, in the state given to start().
   const std::vector<double>& invariants() const { return invariants_; }
+  /// Σ_cells volume · |density| of the same state: defects are |I − I₀| over this.
   const std::vector<double>& scales() const { return scales_; }
 
   /// Everything but step, t and dt. Throws numerical_error at the first number that is not finite.

@@ -10,14 +10,20 @@ namespace apsis {
 /// results know tables and not runs, so the translation between the two is here.
 class run_records {
  public:
+  /// Begins with the initial state: a row of the history, and a snapshot if the case wants some.
   explicit run_records(const simulation& run);
-  /// Goes on with the records of a checkpoint.
+  /// Goes on with the records of a checkpoint. Throws io_error if its history has other columns.
   run_records(const simulation& run, const checkpoint& from);
 
+  /// A row of the history.
   void add_step(const step_record& record);
+  /// The wanted fields (output.fields) of the present state.
   void add_snapshot(const simulation& run);
 
+  /// Columns step, t, dt, min_value, negative_values, conservation_NAME of every invariant, entropy,
+  /// entropy_change; a row for the initial state and every step.
   const table& history() const { return history_; }
+  /// The snapshots so far.
   const field_series& fields() const { return fields_; }
 
  private:
@@ -27,6 +33,7 @@ class run_records {
   field_series fields_;
 };
 
+/// What to_saved_run() and run_records need to go on, and the case.
 checkpoint make_checkpoint(const simulation& run, const run_records& records);
 
 /// The part of a checkpoint that a simulation goes on from. Throws io_error where something is missing.
@@ -35,6 +42,7 @@ saved_run to_saved_run(const checkpoint& c);
 /// Of every `stride`-th cell.
 distribution_snapshot make_distribution_snapshot(const simulation& run, int stride);
 
+/// All of solution.h5 but the manifest.
 solution make_solution(const simulation& run, const run_records& records);
 
 }  // namespace apsis

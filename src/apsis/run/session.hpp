@@ -32,6 +32,7 @@ class run_session {
   /// passes through after what was computed so far has been saved.
   run_end run();
 
+  /// The run as far as it has come.
   const simulation& computed() const { return simulation_; }
   /// Of the finished run: with a snapshot of its end.
   const run_records& records() const { return *shown_; }

@@ -21,29 +21,38 @@ class run_setup {
   /// not a finite number ≥ 0 on the mesh.
   explicit run_setup(const case_config& config);
 
-  std::unique_ptr<model> equation;
+  std::unique_ptr<model> equation;  ///< model.name with its parameters and velocity grid
 
+  /// time.method, of the catalogue or from a file.
   const method& integrator() const { return *method_; }
   /// r of Δt ≤ r Δt_FE; 0 if the method has none.
   double ssp_coefficient() const { return ssp_coefficient_; }
 
+  /// T and Q on the mesh of the case. Refers to this setup, which must outlive it.
   std::unique_ptr<semidiscrete_problem> make_problem() const;
   /// Cell averages (finite volume) or point values (finite difference) of the named initial data. Throws
   /// input_error where the velocity grid cannot hold them.
   field initial_state() const;
   /// The exact solution at time t in the same form; nothing where no formula is known for the data.
   std::optional<field> exact_state(double t) const;
+  /// Whether exact_state() knows a formula.
   bool has_exact_state() const { return static_cast<bool>(data().exact); }
 
+  /// Whether the model has a mesh; without one there is a single cell.
   bool has_space() const { return equation->space_dimensions() > 0; }
+  /// Δx, or 1 without space.
   double cell_volume() const { return has_space() ? mesh_.cell_volume() : 1.0; }
+  /// x of the cell centres; {0} without space.
   std::vector<double> centres() const;
+  /// ε(x) at the cell centres.
   std::vector<double> epsilon_at_centres() const;
   /// dt if it was given as a number and every step is that long.
   std::optional<double> given_dt() const { return has_tolerance() ? std::nullopt : config_.time.dt; }
+  /// Whether the steps keep time.tolerance.
   bool has_tolerance() const { return config_.time.tolerance.has_value(); }
   /// Δx/v_max, so that Δt = cfl · this.
   double cfl_length() const;
+  /// Whether the first step is cut into steps that resolve the initial layer (time.startup).
   bool has_graded_start() const { return config_.time.startup == "graded"; }
 
   /// What a run with steps of dt ≤ r Δt_FE = `limit` promises; `nonnegative`: the initial state is.

@@ -45,6 +45,7 @@ class local_relaxation {
                             {-1, site_unknown, first_cell + p / per_cell, *omega(p)});
   }
 
+  /// The row that find_equilibria() left for point p, padded with zeros like the rows of a field.
   const double* equilibrium(int p) const { return equilibria_.data() + p * stride_; }
 
   /// Weights of the stage solves of points that have their equilibria, ε being that of each.
@@ -58,6 +59,7 @@ class local_relaxation {
       relax[p] = weights.relax;
     }
   }
+  /// What find_weights() left for point p.
   relaxation_weights<double> weights(int p) const {
     const auto k = static_cast<std::size_t>(p);
     return {stay_[k], relax_[k]};

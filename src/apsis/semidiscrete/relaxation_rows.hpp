@@ -14,32 +14,44 @@ void combine(double stay, double relax, const double* e, int width, double* u);
 
 /// stay u + relax e at one of three quadrature points, the weight of the point in both factors.
 struct weighted_rows {
-  double stay, relax;
-  const double *u, *e;
+  double stay,      ///< factor of u
+      relax;        ///< factor of e
+  const double *u,  ///< values at the point, one row
+      *e;           ///< E(ω) there
 };
 
 /// average ← the sum over the points.
 void average(const weighted_rows points[3], int width, double* average);
 
-/// Q/ε = Σ_p strength_p (e_p − u_p), and acc ← (fresh ? 0 : acc) + α u + β Q/ε for every target.
+/// What a point contributes to Q/ε: strength (e − u).
 struct strong_rows {
-  double strength;
-  const double *u, *e;
+  double strength;  ///< C/ε times the weight of the point
+  const double *u,  ///< values at the point, one row
+      *e;           ///< E(ω) there
 };
+
+/// Q/ε = Σ_p strength_p (e_p − u_p), and acc ← (fresh ? 0 : acc) + α u + β Q/ε for every target, with the row
+/// u of the cell.
 void scatter(std::span<const strong_rows> points, const double* u, int width,
              std::span<const upwind::row_target> targets);
 
 /// Averages of cells i−1, i, i+1 and the edge values of cell i.
 struct quartic_rows {
-  const double *before, *average, *after, *left, *right;
+  const double *before,  ///< average of cell i−1
+      *average,          ///< average of cell i
+      *after,            ///< average of cell i+1
+      *left,             ///< value at the edge between i−1 and i
+      *right;            ///< value at the edge between i and i+1
 };
 
 /// points[q·width + k] ← values of the quartics (space/quartic.hpp) at the Gauss–Legendre points; `limited`:
 /// moved towards the average until these and those at the Gauss–Lobatto points are not negative.
 void gauss_values(const quartic_rows& cell, bool limited, int width, double* points);
 
-/// Operations of each of these for one number of a row.
-inline constexpr double operations_of_combine = 2.0, operations_of_average = 6.0;
+inline constexpr double operations_of_combine = 2.0,  ///< operations of combine() for one number of a row
+    operations_of_average = 6.0;                      ///< operations of average() for one number of a row
+/// Operations of gauss_values() for one number of a row, all three points; a multiply–add is one
+/// (core/counted.hpp).
 double operations_of_points(bool limited);
 
 }  // namespace relaxation

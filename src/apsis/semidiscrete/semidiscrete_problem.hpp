@@ -12,8 +12,8 @@ namespace apsis {
 /// integrate/problem.hpp).
 class semidiscrete_problem {
  public:
-  using state = field;
-  using real = double;
+  using state = field;  ///< f[cell][component]
+  using real = double;  ///< of time and coefficients
 
   /// Both references must outlive the problem.
   semidiscrete_problem(const model& equation, const grid& mesh, stencil how, std::unique_ptr<collision> q)
@@ -25,10 +25,15 @@ class semidiscrete_problem {
   /// is a convex combination of a step of T and a step of Q.
   void treat_collision_explicitly() { explicit_collision_ = true; }
 
+  /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target; T does not depend on time.
   void scatter(double, const field& u, std::span<const target<field, double>> targets) {
     transport_.scatter(u, targets);
   }
+  /// u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε². Throws numerical_error where there is no equilibrium, or
+  /// Newton's method finds no solution.
   void collide(double, double a, double b, field& u) { collision_->solve(a, b, u); }
+  /// scatter(), then collide() as `due` says, to the same numbers; where possible, cells are solved while
+  /// they are in the cache.
   void scatter_and_collide(double, const field& u, std::span<const target<field, double>> targets,
                            due_collision<field, double> due) {
     const auto collide_cells = [&](int begin, int end) {
@@ -37,14 +42,18 @@ class semidiscrete_problem {
     const bool done = transport_.scatter(u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
     if (!done) collision_->solve(due.a, due.b, *due.u);
   }
+  /// acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε for every target. Throws numerical_error where ε = 0
+  /// or there is no equilibrium.
   void scatter_collision(double, const field& u, std::span<const target<field, double>> targets) {
     collision_->scatter(u, targets);
   }
+  /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it.
   double forward_euler_step(double, const field& u) const {
     const double of_transport = transport_.forward_euler_step();
     if (!explicit_collision_) return of_transport;
     return 1.0 / (1.0 / of_transport + 1.0 / collision_->forward_euler_step(u));
   }
+  /// Smallest ε/C > 0; +infinity where none is known, or ε = 0 everywhere.
   double relaxation_time(double, const field& u) const { return collision_->relaxation_time(u); }
 
  private:

@@ -11,29 +11,35 @@
 
 namespace apsis {
 
-/// How positivity is kept: by cutting the edge values of cell averages (Zhang & Shu), or by cutting the
-/// fluxes of point values.
-enum class limiter_kind { none, edges, fluxes };
+/// How positivity is kept.
+enum class limiter_kind {
+  none,   ///< no limiter
+  edges,  ///< edge values of cell averages are moved towards the average (Zhang & Shu)
+  fluxes  ///< fluxes of point values are moved towards first-order upwind (Zalesak, Xu)
+};
 
 /// What is to be done with cells begin … end−1 (a call of a lambda, without an allocation); nothing by
 /// default.
 struct cells_job {
-  void (*call)(const void* body, int begin, int end) = nullptr;
-  const void* body = nullptr;
+  void (*call)(const void* body, int begin, int end) = nullptr;  ///< calls the lambda; null: nothing to do
+  const void* body = nullptr;                                    ///< the lambda, which is not copied
 
+  /// body(begin, end); `body` must outlive the job.
   template <class Body>
   static cells_job of(const Body& body) {
     return {[](const void* b, int begin, int end) { (*static_cast<const Body*>(b))(begin, end); }, &body};
   }
+  /// Whether there is anything to do.
   explicit operator bool() const { return call != nullptr; }
+  /// Calls the lambda, which must be there.
   void operator()(int begin, int end) const { call(body, begin, end); }
 };
 
 /// How transport and collision see neighbouring cells.
 struct stencil {
-  std::shared_ptr<const reconstruction> scheme;
-  limiter_kind positivity = limiter_kind::none;
-  boundary_kind boundary = boundary_kind::periodic;
+  std::shared_ptr<const reconstruction> scheme;      ///< of edge values; null without space
+  limiter_kind positivity = limiter_kind::none;      ///< limiter of edges or fluxes
+  boundary_kind boundary = boundary_kind::periodic;  ///< what lies beyond the ends of a pencil
 };
 
 /// A few consecutive cells of one pencil with their edge values, small enough to stay in the cache. Reused
@@ -43,13 +49,19 @@ struct pencil_block {
   void load(const field& u, const grid& mesh, const stencil& how, int direction, int pencil, int begin,
             int end, int halo);
 
+  /// The components of a cell of the pencil, or of a ghost cell.
   const double* row(int cell) const { return rows[static_cast<std::size_t>(cell - first_row)]; }
+  /// One row: the values of a cell of begin−halo … end−1+halo at its lower edge.
   double* left_edge(int cell) { return left.data() + offset(cell); }
+  /// One row: the values of such a cell at its upper edge.
   double* right_edge(int cell) { return right.data() + offset(cell); }
 
-  std::vector<const double*> rows;
-  aligned_vector<double> left, right;
-  int first_row = 0, first_edge = 0, width = 0;
+  std::vector<const double*> rows;  ///< of the cells from first_row on; they belong to the field
+  aligned_vector<double> left,      ///< values at lower edges, [cell − first_edge][width]
+      right;                        ///< values at upper edges, [cell − first_edge][width]
+  int first_row = 0,                ///< cell of rows[0]
+      first_edge = 0,               ///< first cell with edge values
+      width = 0;                    ///< of a row: the stride of the field
 
  private:
   std::size_t offset(int cell) const {

@@ -13,6 +13,7 @@ namespace apsis {
 /// operator is the same for cell averages (finite volume) and point values (finite difference).
 class transport {
  public:
+  /// Both references must outlive this. Without space `how` is not used.
   transport(const model& equation, const grid& mesh, stencil how);
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(u). One evaluation of T, none if every β is 0.

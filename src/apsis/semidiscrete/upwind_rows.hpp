@@ -16,20 +16,23 @@ namespace upwind {
 /// Cells 0 … count−1 of a pencil, some components of each.
 struct cells {
   const double* const* u;  ///< u[i] is the row of cell i, two cells beyond either end included
-  const double *left,
-      *right;            ///< edge values of cell 0; only that of the outflow is read, so they may be the same
-  std::ptrdiff_t pitch;  ///< from the edges of a cell to those of the next
-  int count, width;
-  const double *forward, *per_cell;  ///< of every component: 1 if it moves forward, else 0; |v|/Δx
-  const double* source;              ///< S(u) of cell 0, at the same pitch; null if there is none
+  const double *left,      ///< values of cell 0 at its lower edge
+      *right;              ///< at its upper edge; only that of the outflow is read, so they may be the same
+  std::ptrdiff_t pitch;    ///< from the edges of a cell to those of the next
+  int count,               ///< number of cells
+      width;               ///< number of components
+  const double *forward,   ///< of every component: 1 if it moves forward, else 0
+      *per_cell;           ///< of every component: |v|/Δx
+  const double* source;    ///< S(u) of cell 0, at the same pitch; null if there is none
 };
 
 /// acc ← (fresh ? 0 : acc) + α u + β T.
 struct row_target {
   double* acc;           ///< the row of cell 0
   std::ptrdiff_t pitch;  ///< to that of the next cell
-  double alpha, beta;
-  bool fresh;
+  double alpha,          ///< factor of u
+      beta;              ///< factor of T
+  bool fresh;            ///< the old content of acc means nothing
 };
 
 /// Where the rows of a target begin, and how far they are apart.
@@ -57,8 +60,9 @@ void add(const cells& run, std::span<const row_target> targets);
 /// −2 … count+1 are read.
 void add_limited(const cells& run, std::span<const row_target> targets);
 
-/// Operations of add and add_limited for one number: those of T, and those of each target.
+/// Operations of add, or of add_limited, that T takes for one number (core/counted.hpp).
 double operations(bool limited);
+/// Operations for one number that each target takes besides.
 inline constexpr double operations_of_target = 3.0;
 
 /// One row, for targets that need u alone: β = 0 everywhere.

@@ -12,9 +12,9 @@ namespace apsis {
 /// `outflow` is zero gradient: a ghost cell repeats the nearest cell inside.
 enum class boundary_kind { periodic, outflow };
 
-/// Names for case files.
+/// Names of all kinds in case files: "periodic", …
 std::vector<std::string> boundary_names();
-/// Throws input_error with the nearest name.
+/// The kind of that name. Throws input_error with the nearest name if there is none.
 boundary_kind find_boundary(const std::string& name);
 
 /// rows[i − begin] ← the row of cell i of a pencil for i = begin … end−1; cells outside 0 … n−1 are ghost

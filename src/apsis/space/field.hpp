@@ -13,6 +13,7 @@ namespace apsis {
 class field {
  public:
   field() = default;
+  /// All numbers are 0. Throws std::bad_alloc.
   field(int cells, int components)
       : cells_(cells),
         components_(components),
@@ -20,6 +21,7 @@ class field {
         data_(static_cast<std::size_t>(cells) * static_cast<std::size_t>(stride_)) {
     fill_rows(nullptr);
   }
+  /// Padding included, row by row on the thread that works on it.
   field(const field& other)
       : cells_(other.cells_),
         components_(other.components_),
@@ -27,6 +29,7 @@ class field {
         data_(other.data_.size()) {
     fill_rows(other.data_.data());
   }
+  /// Without allocation where the sizes are equal.
   field& operator=(const field& other) {
     if (data_.size() != other.data_.size()) return *this = field(other);
     cells_ = other.cells_;
@@ -35,21 +38,23 @@ class field {
     fill_rows(other.data_.data());
     return *this;
   }
-  field(field&&) noexcept = default;
-  field& operator=(field&&) noexcept = default;
+  field(field&&) noexcept = default;             ///< the other has sizes, but no rows then
+  field& operator=(field&&) noexcept = default;  ///< likewise
   ~field() = default;
 
-  int cells() const { return cells_; }
-  int components() const { return components_; }
+  int cells() const { return cells_; }            ///< number of rows
+  int components() const { return components_; }  ///< numbers of a row, padding not counted
   /// Numbers from one row to the next, padding included.
   int stride() const { return stride_; }
 
   /// The stride of rows of so many components.
   static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
 
+  /// The components of cell 0 … cells() − 1, not checked.
   double* row(int cell) {
     return data_.data() + static_cast<std::size_t>(cell) * static_cast<std::size_t>(stride_);
   }
+  /// The same of a constant field.
   const double* row(int cell) const {
     return data_.data() + static_cast<std::size_t>(cell) * static_cast<std::size_t>(stride_);
   }

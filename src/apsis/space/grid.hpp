@@ -16,11 +16,11 @@ class grid {
   /// The interval [a, b].
   static grid line(int cells, double a, double b) { return grid(1, {cells, 1, 1}, {a, 0, 0}, {b, 1, 1}); }
 
-  int dimensions() const { return dimensions_; }
-  int cells(int direction) const { return cells_[at(direction)]; }
-  int size() const { return cells_[0] * cells_[1] * cells_[2]; }
-  double spacing(int direction) const { return spacing_[at(direction)]; }
-  double cell_volume() const;
+  int dimensions() const { return dimensions_; }                           ///< D
+  int cells(int direction) const { return cells_[at(direction)]; }         ///< along a direction 0, 1 or 2
+  int size() const { return cells_[0] * cells_[1] * cells_[2]; }           ///< number of all cells
+  double spacing(int direction) const { return spacing_[at(direction)]; }  ///< Δx along a direction
+  double cell_volume() const;                                              ///< product of the D spacings
   /// Centre of cell number `cell` along `direction`.
   double centre(int cell, int direction) const;
   /// Distance in cell numbers between neighbours along `direction`.
@@ -28,6 +28,7 @@ class grid {
 
   /// Pencils along a direction: lines of cells(direction) cells, stride(direction) apart.
   int pencils(int direction) const { return size() / cells(direction); }
+  /// Number of the first cell of pencil 0 … pencils(direction) − 1.
   int first_cell(int direction, int pencil) const;
 
  private:

@@ -7,6 +7,7 @@ namespace apsis {
 /// step of upwind transport with Δt ≤ ŵ₁ Δx/v keeps the average nonnegative.
 namespace limiter {
 
+/// ŵ₁, the weight of each of the two edges.
 inline constexpr double end_weight = 1.0 / 12.0;
 
 /// Values are kept above this fraction of the average instead of above 0, so that the rounding of the update

@@ -9,8 +9,14 @@ namespace apsis {
 /// values is c. Written in the differences from c: flat data are reproduced without rounding, and no step
 /// drifts.
 struct quartic {
-  double c, d0, d1, d2, d3, d4;
+  double c,  ///< average
+      d0,    ///< deviation from it at the centre
+      d1,    ///< coefficient of ξ
+      d2,    ///< of ξ²
+      d3,    ///< of ξ³
+      d4;    ///< of ξ⁴
 
+  /// From the averages of the left neighbour, the cell and the right one, and the edge values L and R.
   quartic(double m, double average, double p, double l, double r) : c(average) {
     const double edges = (l - c) + (r - c), slope = r - l;
     const double neighbours = (m - c) + (p - c), rise = p - m;
@@ -23,14 +29,16 @@ struct quartic {
 
   /// Value minus average.
   double deviation(double xi) const { return d0 + xi * (d1 + xi * (d2 + xi * (d3 + xi * d4))); }
+  /// Value at ξ.
   double operator()(double xi) const { return c + deviation(xi); }
 };
 
 /// Three-point Gauss–Legendre rule on [−½, ½].
 struct gauss3 {
-  static constexpr int points = 3;
-  static constexpr double outer = 0.38729833462074168852;  ///< √(3/5)/2
-  static constexpr std::array<double, 3> xi = {-outer, 0.0, outer};
+  static constexpr int points = 3;                                   ///< number of nodes
+  static constexpr double outer = 0.38729833462074168852;            ///< √(3/5)/2
+  static constexpr std::array<double, 3> xi = {-outer, 0.0, outer};  ///< nodes
+  /// Weights; their sum is 1 without rounding.
   static constexpr std::array<double, 3> weight = {5.0 / 18.0, 1.0 - 2.0 * (5.0 / 18.0), 5.0 / 18.0};
 };
 

@@ -11,10 +11,10 @@ namespace apsis {
 /// One scheme: a file of space/reconstructions/ defines `extern const reconstruction_entry
 /// reconstruction_<file>`.
 struct reconstruction_entry {
-  std::string name;         ///< "weno5-z"
-  std::string description;  ///< one line
-  std::string source;       ///< citation
-  std::unique_ptr<reconstruction> (*make)();
+  std::string name;                           ///< "weno5-z"
+  std::string description;                    ///< one line
+  std::string source;                         ///< citation
+  std::unique_ptr<reconstruction> (*make)();  ///< a new one; it has no parameters
 };
 
 /// Every scheme, sorted by file name (generated).

@@ -18,9 +18,10 @@ namespace apsis {
 /// 0.
 class ring_advection {
  public:
-  using state = std::vector<double>;
-  using real = double;
+  using state = std::vector<double>;  ///< u around the ring
+  using real = double;                ///< of time and coefficients
 
+  /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target.
   void scatter(double, const state& u, std::span<const target<state, double>> targets) {
     accumulate<state>(targets, u, [&]() -> const state& {
       work_.resize(u.size());
@@ -28,13 +29,16 @@ class ring_advection {
       return work_;
     });
   }
+  /// u stays: Q = 0.
   void collide(double, double, double, state&) {}
+  /// acc ← (fresh ? 0 : acc) + α u for every target.
   void scatter_collision(double, const state& u, std::span<const target<state, double>> targets) {
     accumulate<state>(targets, u, [&]() -> const state& {
       work_.assign(u.size(), 0.0);
       return work_;
     });
   }
+  /// Δt_FE = 1.
   double forward_euler_step(double, const state&) const { return 1.0; }
 
  private:
@@ -47,24 +51,29 @@ std::vector<std::vector<double>> adversarial_rows(std::size_t cells, int random)
 /// T and Q that are different operators at every stage, which is what the theory allows and what makes its
 /// bounds sharp. The last number of the state is a clock, θ' = θ, whose value tells the stages apart; for the
 /// others, z = all but the clock,
-///   T(u) = S_θ z − z,   Q(u) = (E_θ(mass z) − z)/ε,   S_θ a linear map and E_θ an equilibrium that keep what
-///   is
-/// kept; both may depend on θ as they like, and θ is conserved by Q. So Properties 1–5 of the paper hold,
-/// with Δt_FE = 1. The first clock value that is seen gets number 0, the next one 1, …
+///   T(u) = S_θ z − z,   Q(u) = (E_θ(mass z) − z)/ε,
+/// S_θ a linear map and E_θ an equilibrium that keep what is kept; both may depend on θ as they like, and θ
+/// is conserved by Q. So Properties 1–5 of the paper hold, with Δt_FE = 1. The first clock value that is seen
+/// gets number 0, the next one 1, …
 class staged_problem {
  public:
-  using state = std::vector<double>;
-  using real = double;
-  /// out ← S_k z, and out ← E_k(mass), for the k-th value of the clock; both come with room.
+  using state = std::vector<double>;  ///< z, and the clock behind it
+  using real = double;                ///< of time and coefficients
+  /// out ← S_k z for the k-th value of the clock; `out` comes with room.
   using motion = std::function<void(int k, std::span<const double> z, std::span<double> out)>;
+  /// out ← E_k(mass) likewise.
   using equilibrium = std::function<void(int k, double mass, std::span<double> out)>;
 
-  /// ε = infinity: no collisions, E is not used.
+  /// ε = infinity: no collisions, E is not used. Throws input_error unless ε > 0.
   staged_problem(motion move, equilibrium relax, double epsilon);
 
+  /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target.
   void scatter(double t, const state& u, std::span<const target<state, double>> targets);
+  /// u ← v with v = u + a Q(v) + b Q̇(v), in closed form.
   void collide(double t, double a, double b, state& u);
+  /// acc ← (fresh ? 0 : acc) + α u + β Q(u) for every target.
   void scatter_collision(double t, const state& u, std::span<const target<state, double>> targets);
+  /// Δt_FE = 1.
   double forward_euler_step(double, const state&) const { return 1.0; }
 
  private:

@@ -12,17 +12,21 @@ namespace apsis {
 /// densities. The state between the two waves is found by bisection on u. Dimensionless.
 class broadwell_riemann {
  public:
+  /// The unknowns at one point.
   struct state {
-    double rho, m;
+    double rho,  ///< density
+        m;       ///< momentum
   };
   /// Throws input_error unless ρ > 0 and |m| < ρ on both sides.
   broadwell_riemann(state left, state right);
 
   /// The solution on the ray x/t = speed.
   state at(double speed) const;
+  /// The state between the two waves.
   state middle() const;
-  /// Speeds of the edges of the slow and the fast wave; equal for a shock.
+  /// Speeds of the two edges of the slow wave, in increasing order; equal for a shock.
   std::array<double, 2> slow_wave() const;
+  /// Speeds of the two edges of the fast wave, in increasing order; equal for a shock.
   std::array<double, 2> fast_wave() const;
 
  private:

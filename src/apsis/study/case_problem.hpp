@@ -14,8 +14,8 @@ struct case_problem {
   /// Throws as run_setup does.
   explicit case_problem(const case_config& config) : setup(config), equations(setup.make_problem()) {}
 
-  run_setup setup;
-  std::unique_ptr<semidiscrete_problem> equations;
+  run_setup setup;                                  ///< model, mesh and initial data
+  std::unique_ptr<semidiscrete_problem> equations;  ///< T and Q, which refer to `setup`
 };
 
 /// A small case of a model with space: periodic, `cells` cells on [0, 2], 16 velocities in [−8, 8] where the

@@ -7,13 +7,17 @@
 
 namespace apsis {
 
-/// Norms of a difference d: Σ |d| V, (Σ d² V)^½ and max |d|, over cells and components, with V the volume of
-/// a cell (length of a cell, times that of a velocity cell for kinetic models; 1 without space).
-/// Dimensionless.
-enum class error_norm { l1, l2, linf };
+/// Norms of a difference d over cells and components, with V the volume of a cell (length of a cell, times
+/// that of a velocity cell for kinetic models; 1 without space). Dimensionless.
+enum class error_norm {
+  l1,   ///< Σ |d| V
+  l2,   ///< (Σ d² V)^½
+  linf  ///< max |d|
+};
 
 /// Throws input_error with the nearest name; names are "l1", "l2" and "linf".
 error_norm find_norm(const std::string& name);
+/// The name that find_norm() knows.
 std::string to_string(error_norm norm);
 
 /// Whether results of the two cases can be subtracted: same model, end time, domain, formulation and

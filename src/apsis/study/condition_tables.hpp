@@ -18,8 +18,8 @@ std::pair<double, double> compare_with_print(const std::vector<rooted_tree>& tre
 
 /// How many conditions (or trees) there are of one order alone.
 struct condition_count {
-  int order;
-  long count;
+  int order;   ///< number of nodes of the trees
+  long count;  ///< how many there are
 };
 
 /// That the trees up to `up_to.order` are the printed table, `up_to.count` conditions, term by term; and how

@@ -18,8 +18,9 @@ class fourier_solution {
   fourier_solution(const limit_equations& system, double a, double b, int points,
                    const std::function<void(double, std::span<double>)>& initial, double end, int steps);
 
-  /// ω_k at x, and its average over [x − h/2, x + h/2].
+  /// ω_k at x.
   double value(int k, double x) const { return average(k, x, 0.0); }
+  /// The average of ω_k over [x − h/2, x + h/2]; the value at x for h = 0.
   double average(int k, double x, double h) const;
   /// Size of the highest Fourier modes relative to the largest: how well the points resolve the solution.
   double resolution() const;

@@ -9,21 +9,29 @@
 
 namespace apsis {
 
-/// Initial data of a study of the limit: as the case gives them, or moved to their local equilibrium first.
-enum class limit_start { given, equilibrium };
+/// Initial data of a study of the limit.
+enum class limit_start {
+  given,       ///< as the case gives them
+  equilibrium  ///< their local equilibrium
+};
 
 /// Distances of one run from the limit scheme, after the first step and at the end. Largest difference,
 /// relative to the largest value of what is compared.
 struct limit_row {
-  double epsilon = 0.0;
-  double moments_first = 0.0, moments_end = 0.0;  ///< ω against the moments of the limit scheme
-  double state_first = 0.0, state_end = 0.0;      ///< u against the equilibrium of the limit scheme
+  double epsilon = 0.0;        ///< ε of the run
+  double moments_first = 0.0,  ///< ω against the moments of the limit scheme, after the first step
+      moments_end = 0.0;       ///< ω against the moments of the limit scheme, at the end
+  double state_first = 0.0,    ///< u against the equilibrium of the limit scheme, after the first step
+      state_end = 0.0;         ///< u against the equilibrium of the limit scheme, at the end
 };
 
+/// How far runs of one case are from the limit scheme as ε falls.
 struct limit_table {
-  std::string model, method, formulation;  ///< formulation is "" without space
-  double dt = 0.0;
-  long steps = 0;
+  std::string model,             ///< model.name
+      method,                    ///< time.method
+      formulation;               ///< "finite volume" or "finite difference"; "" without space
+  double dt = 0.0;               ///< first step of the run with the first ε
+  long steps = 0;                ///< number of its steps
   double off_equilibrium = 0.0;  ///< distance of the initial data from their local equilibrium
   std::vector<limit_row> rows;   ///< in the order of the given epsilons
 
@@ -32,6 +40,7 @@ struct limit_table {
   /// Least-squares slope of log distance against log ε, over the rows with ε < Δt/10 whose distance is above
   /// `round_off`; nothing if fewer than three are.
   std::optional<double> slope(double limit_row::* column, double round_off = 1e-12) const;
+  /// A line for each ε, and the slopes below.
   report_table report() const;
 };
 

@@ -12,7 +12,7 @@ namespace apsis {
 /// models: independent of moments, equilibrium and transport of the model.
 struct limit_equations {
   std::string name;  ///< "compressible Euler equations"
-  int unknowns = 0;
+  int unknowns = 0;  ///< numbers in ω
   /// F(ω); empty without space.
   std::function<void(const double* omega, double* flux)> flux;
   /// S(ω); empty if there is none.

@@ -26,8 +26,8 @@ class limit_scheme {
   /// Throws input_error unless the model is a relaxation model and the method is IMEX.
   explicit limit_scheme(const case_config& config);
   ~limit_scheme();
-  limit_scheme(limit_scheme&&) noexcept;
-  limit_scheme& operator=(limit_scheme&&) noexcept;
+  limit_scheme(limit_scheme&&) noexcept;             ///< the other one has no scheme any more
+  limit_scheme& operator=(limit_scheme&&) noexcept;  ///< the other one has no scheme any more
 
   /// Begins from the state u, [cells][components]; it need not be an equilibrium.
   void start(std::span<const double> u);
@@ -39,8 +39,9 @@ class limit_scheme {
   /// The equilibrium of the present state: E(ω), or the averages Π, [cells][components].
   std::vector<double> equilibrium() const;
 
-  /// The same two of any state u, [cells][components].
+  /// ω of any state u, [cells][components].
   std::vector<double> moments_of(std::span<const double> u) const;
+  /// The equilibrium of any state u: E(ℛu), or the averages Π(u), [cells][components].
   std::vector<double> equilibrium_of(std::span<const double> u) const;
   /// Whether the method relaxes its first stage (type A), so that it finds the equilibrium by itself.
   bool relaxes_first_stage() const;

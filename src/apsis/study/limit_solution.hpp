@@ -20,9 +20,12 @@ double distance_from_limit_solution(const case_config& config, const fourier_sol
 
 /// A run of a Riemann problem of the Broadwell model with ε = 0 beside the exact solution of the limit.
 struct riemann_comparison {
-  std::vector<double> x, rho, m;           ///< cell averages
-  std::vector<double> rho_exact, m_exact;  ///< averages of the exact solution
-  double error = 0.0;                      ///< L1 norm of both differences, over the L1 norm of both exact
+  std::vector<double> x,          ///< cell centres
+      rho,                        ///< density of every cell
+      m;                          ///< momentum of every cell
+  std::vector<double> rho_exact,  ///< cell averages of the exact density
+      m_exact;                    ///< cell averages of the exact momentum
+  double error = 0.0;             ///< L1 norm of both differences, over the L1 norm of both exact
 };
 
 /// The states are those at the ends of the domain, the jump is where the initial data have it. Throws

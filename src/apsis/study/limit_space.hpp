@@ -20,6 +20,7 @@ class limit_space {
   /// `equation` must outlive this. Throws input_error for an unknown reconstruction or boundary.
   limit_space(const case_config& config, const relaxation_model& equation);
 
+  /// Cells of the mesh; 1 without space.
   int cells() const { return mesh_.size(); }
   /// Unknowns are averages of cells in which the equilibrium varies, so that their equilibrium is a mean over
   /// Gauss points; otherwise everything happens point by point.

@@ -9,8 +9,8 @@ namespace apsis {
 
 /// A model of the registry with its default parameters; kinetic ones on 40 velocities in [−8, 8].
 struct made_model {
-  const model_entry* entry;
-  std::unique_ptr<model> equation;
+  const model_entry* entry;         ///< of the registry
+  std::unique_ptr<model> equation;  ///< never null
   /// The same if Q = C(ω)(E(ω) − u), else nullptr.
   const relaxation_model* relaxation;
 };

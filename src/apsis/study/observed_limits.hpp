@@ -15,8 +15,8 @@ struct observed_limit {
   std::string problem;    ///< "upwind advection"
   std::string property;   ///< "total variation"
   double promised = 0.0;  ///< the SSP coefficient of the method
-  step_limit limit;
-  std::string worst;  ///< what was varied and was worst: "epsilon = 0.1"
+  step_limit limit;       ///< what was found, in the worst case
+  std::string worst;      ///< what was varied and was worst: "epsilon = 0.1"
 
   /// Nothing was lost below the promised step (to the accuracy of the search, and as far as it went).
   bool keeps_promise() const { return limit.kept >= (1.0 - 2e-3) * promised || std::isinf(limit.lost); }

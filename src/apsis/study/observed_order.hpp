@@ -11,8 +11,8 @@ namespace apsis {
 
 /// One integration with `steps` equal steps of length dt.
 struct observed_order {
-  long steps;
-  double dt;
+  long steps;    ///< number of steps
+  double dt;     ///< length of a step
   double error;  ///< distance to the reference
   double order;  ///< log(error before/error)/log(dt before/dt); NaN in the first row
 };

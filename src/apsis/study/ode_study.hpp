@@ -15,6 +15,7 @@ namespace apsis {
 template <class Real>
 using ode_state = std::array<Real, 2>;
 
+/// The model for integrate() and extrapolate(), in closed form at every stage.
 template <class Real>
 auto ode_problem(Real epsilon) {
   return make_relaxation_problem<ode_state<Real>>(
@@ -22,11 +23,13 @@ auto ode_problem(Real epsilon) {
       [](Real w, auto& out) { out = {w, std::sin(w)}; }, [](Real w) { return Real(1) + w * w; }, epsilon);
 }
 
+/// Initial data of the ODE model.
 enum class ode_data {
   inconsistent,  ///< u = (2, 0), far from equilibrium (the paper's)
   consistent     ///< u2 = E − ε E′E/C with E = sin 2, C = 5: the slow manifold but for O(ε²)
 };
 
+/// u(0) of these data.
 template <class Real>
 ode_state<Real> ode_initial(ode_data data, Real epsilon) {
   if (data == ode_data::inconsistent) return {2, 0};

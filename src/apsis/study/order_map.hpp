@@ -19,15 +19,19 @@ enum class order_class {
 /// Errors of a method on a case over ε and Δt, space discretised once (time_study): where the order of the
 /// method is seen, and where it is lost.
 struct order_map {
-  std::string model, method;
-  int order = 0;                    ///< p
-  std::vector<double> epsilon, dt;  ///< dt falls by 2
-  std::vector<std::vector<double>>
-      error;  ///< [epsilon][dt], largest difference to the exact solution in time
+  std::string model,            ///< model.name
+      method;                   ///< time.method
+  int order = 0;                ///< order p that the method claims
+  std::vector<double> epsilon,  ///< in the order in which they were given
+      dt;                       ///< each half of the one before
+  /// [epsilon][dt], largest difference to the exact solution in time.
+  std::vector<std::vector<double>> error;
 
   /// log2(error(Δt)/error(Δt/2)) for dt[k] and dt[k + 1]; NaN below what the reference can tell.
   double slope(std::size_t e, std::size_t k) const;
+  /// What slope(e, k) means for the order of the method.
   order_class kind(std::size_t e, std::size_t k) const;
+  /// Smallest slope of the map; +infinity if none could be measured.
   double smallest_slope() const;
   /// Mean slope at epsilon[e] from the largest Δt to the last with a measurable error above `smallest`; NaN
   /// if there is none.

@@ -10,10 +10,11 @@ namespace apsis {
 
 /// A run that went to its end.
 struct outcome {
-  case_config config;
-  run_summary summary;
-  field_table fields;
-  int cells = 0, components = 0;
+  case_config config;             ///< as resolved
+  run_summary summary;            ///< totals of its steps
+  field_table fields;             ///< macroscopic fields at the end
+  int cells = 0,                  ///< of the mesh; 1 without space
+      components = 0;             ///< unknowns of a cell
   std::vector<double> state;      ///< [cells][components]
   std::vector<double> exact;      ///< the exact solution in the same form; empty where none is known
   double cell_volume = 1.0;       ///< 1 without space

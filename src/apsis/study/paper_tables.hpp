@@ -11,26 +11,30 @@ namespace apsis {
 
 /// A condition as the paper prints it, evaluated on a tableau, with its tree in our notation.
 struct printed_condition {
-  std::string tree;
-  double left, right;
+  std::string tree;  ///< "G[F,G]"
+  double left,       ///< left-hand side on the tableau
+      right;         ///< right-hand side as printed
 };
 
-/// The tables of order conditions, typed from the page in its b, c notation: two-derivative implicit methods
-/// up to order 4 (section "Formulating the order conditions"), multi-derivative IMEX methods up to order 3
-/// (section "Formulating order conditions").
+/// The table of order conditions of two-derivative implicit methods up to order 4, typed from the page in its
+/// b, c notation (paper, section "Formulating the order conditions").
 std::vector<printed_condition> printed_implicit_conditions(const butcher_form<double>& t);
+/// The table of multi-derivative IMEX methods up to order 3 (paper, section "Formulating order conditions").
 std::vector<printed_condition> printed_imex_conditions(const butcher_form<double>& t);
 
 /// An entry of a matrix, counted from 1 as the page does.
 struct printed_entry {
-  std::size_t row, column;
-  double value;
+  std::size_t row,  ///< counted from 1
+      column;       ///< counted from 1
+  double value;     ///< with all printed digits
 };
 
 /// The Butcher matrices that the paper prints for one of its methods; entries that are not listed are 0.
 struct printed_tableau {
-  std::string method;
-  std::vector<printed_entry> A_hat, A, A_dot;
+  std::string method;                ///< its name in the catalogue
+  std::vector<printed_entry> A_hat,  ///< entries of Â; none for implicit methods
+      A,                             ///< entries of A
+      A_dot;                         ///< entries of Ȧ
 };
 
 /// Of imdrk-2-3, imdrk-5-4 (with the swapped indices of the page put right), md-imex-3-2, md-imex-6-3.

@@ -13,7 +13,9 @@ namespace apsis {
 /// The terms of size ε that a method shows on a case (docs/plateaus.md), each as a multiple of what the exact
 /// solution shows, with ε = 1e-6: two runs with steps Δt and Δt/2 are extrapolated to Δt → 0.
 struct measured_regime {
-  double flux, last, layer;
+  double flux,  ///< of the term of size ε in ω at the end, data at equilibrium
+      last,     ///< of the deviation E(ℛu) − u at the end, data at equilibrium
+      layer;    ///< of what the initial layer of the data as given adds to ω
 };
 
 /// For each method, from its difference between ε and ε = 0, which frees it of errors Δt^p, projected on the

@@ -11,8 +11,9 @@ namespace apsis {
 
 /// time.dt, time.cfl, time.safety: a case has one of them.
 const std::vector<std::string>& step_keys();
+/// Whether a key is one of step_keys().
 bool is_step_key(const std::string& key);
-/// Step keys, space.cells and velocity.points.
+/// Whether a key is a step key, space.cells or velocity.points.
 bool is_resolution_key(const std::string& key);
 
 /// "key" of "key=value".
@@ -30,6 +31,8 @@ double number_of(const case_config& config, const std::string& key);
 
 /// What a resolution key refines: Δx of space.cells, Δv of velocity.points; else the number itself.
 double resolution(const case_config& config, const std::string& key);
+/// What a key refines, by name: "Δx" of space.cells, "Δv" of velocity.points, "Δt" of step keys; else the
+/// key.
 std::string resolution_name(const std::string& key);
 
 }  // namespace apsis

@@ -16,11 +16,13 @@ std::vector<std::string> unconditional_methods();
 
 /// u' = −10u², u(0) = 10 (paper, numerical tests of the implicit methods), dimensionless.
 struct decay_run {
-  std::vector<double> t, u;  ///< all steps until a stage equation has no root, the initial state included
-  bool solvable = true;      ///< every stage equation has a root
-  bool positive = true;      ///< every stage and every step is > 0
-  bool decreasing = true;    ///< u^{n+1} < u^n at every step
+  std::vector<double> t,   ///< times of u
+      u;                   ///< all steps until a stage equation has no root, the initial state included
+  bool solvable = true;    ///< every stage equation has a root
+  bool positive = true;    ///< every stage and every step is > 0
+  bool decreasing = true;  ///< u^{n+1} < u^n at every step
 
+  /// As the exact solution: it exists, is positive and falls.
   bool qualitatively_right() const { return solvable && positive && decreasing; }
 };
 

@@ -20,7 +20,8 @@ namespace apsis {
 /// rounding: ≤ 0 where it is kept; NaN counts as lost. Dimensionless.
 template <class State>
 struct kept_property {
-  std::string name;
+  std::string name;  ///< "total variation"
+  /// By how much a step does not keep it; ≤ 0 where it does.
   std::function<double(const State& before, const State& after)> excess;
 };
 
@@ -53,12 +54,15 @@ double promised_coefficient(const certificate& c);
 template <problem P>
 class watched_problem {
  public:
-  using state = typename P::state;
-  using real = typename P::real;
+  using state = typename P::state;  ///< state of the problem
+  using real = typename P::real;    ///< number type of the problem
+  /// Accumulators of a scatter.
   using targets_type = std::span<const target<state, real>>;
 
+  /// `inner` must outlive this.
   watched_problem(P& inner, std::function<void(const state&)> look) : inner_(inner), look_(std::move(look)) {}
 
+  /// As the problem does it; u is looked at where T(u) is wanted.
   void scatter(real t, const state& u, targets_type targets) {
     // Where only multiples of u are asked for, it may be the explicit part of a stage.
     for (const auto& to : targets)
@@ -68,15 +72,18 @@ class watched_problem {
       }
     inner_.scatter(t, u, targets);
   }
+  /// As the problem does it; the solution is looked at.
   void collide(real t, real a, real b, state& u) {
     inner_.collide(t, a, b, u);
     look_(u);
   }
+  /// As the problem does it.
   void scatter_collision(real t, const state& u, targets_type targets)
     requires problem_with_explicit_collision<P>
   {
     inner_.scatter_collision(t, u, targets);
   }
+  /// Δt_FE of the problem.
   real forward_euler_step(real t, const state& u) const { return inner_.forward_euler_step(t, u); }
 
  private:

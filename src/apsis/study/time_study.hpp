@@ -11,11 +11,16 @@
 
 namespace apsis {
 
-/// Initial data of a time study: those of the case, or their local equilibrium E(ℛu), which is consistent up
-/// to O(ε).
-enum class start_data { given, equilibrium };
-/// The first step as long as the others, or cut into steps that resolve the initial layer (graded_start).
-enum class first_step { plain, resolved };
+/// Initial data of a time study.
+enum class start_data {
+  given,       ///< those of the case
+  equilibrium  ///< their local equilibrium E(ℛu), which is consistent up to O(ε)
+};
+/// The first step of a time study.
+enum class first_step {
+  plain,    ///< as long as the others
+  resolved  ///< cut into steps that resolve the initial layer (graded_start)
+};
 
 /// How accurate the steps in time are: a case with a relaxation model on its mesh, as a system of ordinary
 /// differential equations whose exact solution is known from extrapolate(). Space is discretised once and
@@ -26,8 +31,9 @@ class time_study {
   /// Throws input_error unless the model is a relaxation model; what run_setup throws.
   time_study(const case_config& config, double epsilon);
   ~time_study();
-  time_study(time_study&&) noexcept;
+  time_study(time_study&&) noexcept;  ///< the other one has no study any more
 
+  /// The initial state; always point values.
   field start(start_data data) const;
   /// The solution at the end time with `steps` equal steps.
   field solve(const method& m, long steps, start_data data = start_data::given,
@@ -36,6 +42,7 @@ class time_study {
   field reference(start_data data = start_data::given, double tolerance = 1e-11,
                   const study_control& control = {}) const;
 
+  /// time.end of the case.
   double end() const;
   /// ω = ℛu of all cells.
   std::vector<double> moments(const field& u) const;

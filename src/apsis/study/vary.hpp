@@ -18,6 +18,7 @@ varied_key parse_vary(const std::string& text);
 
 /// What errors are measured against.
 struct convergence_reference {
+  /// The ways to measure an error.
   enum class kind {
     automatic,   ///< exact where every run has an exact solution, next otherwise
     exact,       ///< the exact solution that the model knows
@@ -26,8 +27,8 @@ struct convergence_reference {
     space_time,  ///< one run with three times the cells of the finest and a third of its step
     given        ///< each run again with `overrides`
   };
-  kind how = kind::automatic;
-  std::vector<std::string> overrides = {};  ///< "key=value"
+  kind how = kind::automatic;               ///< the way that is taken
+  std::vector<std::string> overrides = {};  ///< "key=value", of kind::given
 };
 
 /// "exact", "next", "time", "space+time", "METHOD@STEP" (the method and dt of the reference) or

@@ -28,8 +28,9 @@ study: program ## which methods exist and which to take: designs, work and preci
 	$(PYTHON) studies/report.py --apsis $(APSIS) --results results/study
 
 figures: ## the pictures again, from the results that are there
-	$(PYTHON) python/apsis_plot.py mixed --second results/bgk-mixed-second-order --third results/bgk-mixed \
-	  --reference results/bgk-mixed-reference --out results
+	$(APSIS) plot --compare bgk-mixed --out results "second order=results/bgk-mixed-second-order" \
+	  "third order=results/bgk-mixed" "explicit reference=results/bgk-mixed-reference"
+	$(APSIS) report results/bgk-mixed
 
 program: ## the program only, in build/release/app
 	@scripts/install-packages.sh run

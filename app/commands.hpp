@@ -19,6 +19,8 @@ void add_list(CLI::App& program, action& chosen);
 void add_show(CLI::App& program, action& chosen);
 void add_check(CLI::App& program, action& chosen);
 void add_design(CLI::App& program, action& chosen);
+void add_plot(CLI::App& program, action& chosen);
+void add_report(CLI::App& program, action& chosen);
 void add_info(CLI::App& program, action& chosen);
 void add_reproduce(CLI::App& program, action& chosen);
 void add_manual(CLI::App& program, action& chosen);

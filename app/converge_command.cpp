@@ -71,7 +71,7 @@ void write_results(result_folder& folder, const options& given, const convergenc
   folder.commit();
   if (!drawable) return;
   try {
-    draw("apsis_picture", {(folder.path() / "picture.json").string()});
+    draw("plot", {folder.path().string(), "--out", folder.path().string()});
   } catch (const io_error& problem) {
     // The numbers are there, and the picture can be drawn from picture.json at any time.
     log::warning(problem.what());

@@ -4,7 +4,6 @@
 #include <apsis/core/errors.hpp>
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include <fcntl.h>
@@ -19,17 +18,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Exit status of a program, its standard output sent to our standard error (or nowhere); −1 if it cannot
-/// run.
-int execute(const std::vector<std::string>& words, bool quiet) {
+/// What is dropped of what a program prints.
+enum class dropped { nothing, output, everything };
+
+/// Exit status of a program; −1 if it cannot run.
+int execute(const std::vector<std::string>& words, dropped drop) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  if (quiet) posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  if (drop != dropped::nothing)
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  if (drop == dropped::everything)
+    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
   const int failed = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
@@ -44,48 +47,63 @@ std::string find_python() {
   std::vector<std::string> candidates = {"/usr/bin/python3", "python3"};
   if (const char* wanted = std::getenv("APSIS_PYTHON")) candidates = {wanted};
   for (const auto& candidate : candidates)
-    if (execute({candidate, "-c", "import matplotlib, numpy"}, true) == 0) return candidate;
+    if (execute({candidate, "-c", "import matplotlib, numpy, h5py"}, dropped::everything) == 0)
+      return candidate;
   throw io_error(
-      fmt::format("pictures cannot be drawn (no Python with matplotlib among: {}) install "
-                  "python3-matplotlib, or name a Python in APSIS_PYTHON",
+      fmt::format("pictures cannot be drawn (no Python with matplotlib and h5py among: {}) install "
+                  "python3-matplotlib and python3-h5py, or name a Python in APSIS_PYTHON",
                   fmt::join(candidates, ", ")));
 }
 
-/// The scripts as files, as long as this object lives.
-class script_folder {
- public:
-  script_folder() {
-    std::string pattern = (fs::temp_directory_path() / "apsis-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw io_error(fmt::format("cannot make a folder in '{}' (it is full or not writable) set TMPDIR",
-                                 fs::temp_directory_path().string()));
-    path_ = pattern;
-    for (const auto& script : embedded::scripts())
-      std::ofstream(path_ / (std::string(script.name) + ".py"), std::ios::binary) << script.text;
-  }
-  ~script_folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  script_folder(const script_folder&) = delete;
-  script_folder& operator=(const script_folder&) = delete;
-  std::string file(const std::string& script) const { return (path_ / (script + ".py")).string(); }
-
- private:
-  fs::path path_;
-};
+fs::path new_folder() {
+  std::string pattern = (fs::temp_directory_path() / "apsis-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr)
+    throw io_error(fmt::format("cannot make a folder in '{}' (it is full or not writable) set TMPDIR",
+                               fs::temp_directory_path().string()));
+  return pattern;
+}
 
 }  // namespace
 
-void draw(const std::string& script, const std::vector<std::string>& arguments) {
-  const std::string python = find_python();
-  const script_folder scripts;
-  std::vector<std::string> words = {python, "-B", scripts.file(script)};
+drawing::drawing() : python_(find_python()), folder_(new_folder()) {
+  add("apsis/__init__.py", "");
+  // The subpackages need nothing that is compiled; modules beside them are for the Python package alone.
+  for (const auto& script : embedded::scripts())
+    if (script.name.find('/') != std::string_view::npos)
+      add(fmt::format("apsis/{}.py", script.name), std::string(script.text));
+}
+
+drawing::~drawing() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+std::string drawing::add(const std::string& name, const std::string& text) const {
+  const fs::path path = folder_ / name;
+  std::error_code problem;
+  fs::create_directories(path.parent_path(), problem);
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw io_error(fmt::format("cannot write '{}' (no space left) set TMPDIR", path.string()));
+  return path.string();
+}
+
+int drawing::run(const std::string& module, const std::vector<std::string>& arguments, bool quiet) const {
+  // A script beside the package finds it, whatever lies in the present folder.
+  const std::string script = add(
+      module + ".py", fmt::format("from apsis.{}.__main__ import main\nraise SystemExit(main())\n", module));
+  std::vector<std::string> words = {python_, "-B", script};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  const int status = execute(words, false);
+  return execute(words, quiet ? dropped::output : dropped::nothing);
+}
+
+void draw(const std::string& module, const std::vector<std::string>& arguments) {
+  const int status = drawing().run(module, arguments, true);
   if (status != 0)
-    throw io_error(fmt::format(
-        "drawing failed (exit status {} of {}) see the message above; the data are saved", status, script));
+    throw io_error(
+        fmt::format("drawing failed (exit status {} of apsis.{}) see the message above; the data are saved",
+                    status, module));
 }
 
 }  // namespace apsis::app

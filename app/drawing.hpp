@@ -1,13 +1,35 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace apsis::app {
 
-/// Runs one of the Python scripts that are part of the program ("apsis_picture", "apsis_report") with these
-/// arguments. Throws io_error if no Python with matplotlib is found
-/// (the variable APSIS_PYTHON names one) or the script fails.
-void draw(const std::string& script, const std::vector<std::string>& arguments);
+/// The Python modules apsis.plot and apsis.report, which are part of the program, as files as long as this
+/// object lives.
+class drawing {
+ public:
+  /// Throws io_error if no Python with matplotlib is found (the variable APSIS_PYTHON names one), or there is
+  /// no place for the files.
+  drawing();
+  ~drawing();
+  drawing(const drawing&) = delete;
+  drawing& operator=(const drawing&) = delete;
+
+  /// Puts one more file beside the modules and returns its path.
+  std::string add(const std::string& name, const std::string& text) const;
+
+  /// Exit status of `python -m apsis.MODULE ARGUMENTS`; −1 if it cannot run. Where `quiet`, its standard
+  /// output is dropped; messages go to our standard error.
+  int run(const std::string& module, const std::vector<std::string>& arguments, bool quiet) const;
+
+ private:
+  std::string python_;
+  std::filesystem::path folder_;
+};
+
+/// Draws beside a computation, with nothing on standard output. Throws io_error if that fails.
+void draw(const std::string& module, const std::vector<std::string>& arguments);
 
 }  // namespace apsis::app

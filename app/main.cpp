@@ -68,6 +68,8 @@ int run_program(int argc, char** argv) {
   add_check(program, chosen);
   add_reproduce(program, chosen);
   add_design(program, chosen);
+  add_plot(program, chosen);
+  add_report(program, chosen);
   add_info(program, chosen);
   add_manual(program, chosen);
   const std::vector<std::string> names = command_names(program);

@@ -152,7 +152,7 @@ int reproduce(const options& given) {
   const auto failed = all.failed();
   std::string drawing_problem;
   try {
-    draw("apsis_report", {given.out});
+    draw("report", {given.out});
   } catch (const io_error& problem) {
     drawing_problem = problem.what();
   }

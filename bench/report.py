@@ -14,8 +14,8 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "python"))
-from apsis_picture import COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
+sys.path.insert(0, str(HERE.parent / "python" / "apsis"))
+from plot.style import COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
 
 
 class ReportError(Exception):

@@ -20,8 +20,6 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/apsisConfigVersion.cmake
 install(FILES ${PROJECT_BINARY_DIR}/apsisConfig.cmake ${PROJECT_BINARY_DIR}/apsisConfigVersion.cmake
         ${PROJECT_SOURCE_DIR}/cmake/FindIpopt.cmake
         DESTINATION ${apsis_package_dir} COMPONENT development)
-file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/python/*.py)
-install(FILES ${scripts} DESTINATION ${CMAKE_INSTALL_DATADIR}/apsis COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CITATION.cff
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 

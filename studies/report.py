@@ -12,14 +12,14 @@ import re
 import subprocess
 import sys
 import tomllib
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "python"))
-from apsis_picture import BLACK, COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
+sys.path.insert(0, str(HERE.parent / "python" / "apsis"))
+from plot.methods import stability_function  # noqa: E402
+from plot.style import BLACK, COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
 
 LEVELS = {"ode": (1e-4, 1e-6, 1e-8), "broadwell": (1e-4, 1e-5, 1e-6), "bgk": (1e-4, 1e-5, 1e-6),
           "bgk-mixed": (2e-4, 1e-4, 4e-5, 2e-5)}
@@ -224,30 +224,13 @@ def draw_errors(data, images):
     figure.savefig(images / "study-errors.png")
 
 
-def number(text):
-    """Of a rational or decimal of a method file."""
-    return float(Fraction(text))
-
-
-def stability_function(method, z):
-    """R(z) of the implicit part: y_i = (r_i + Σ_j (p_ij + w_ij) y_j) / (1 − z d_i − z² ddot_i), R = y_s."""
-    form = method["shu_osher"]
-    stages = []
-    for i, (d, ddot) in enumerate(zip(form["d"], form["ddot"])):
-        transported = form["W"][i] if "W" in form else ["0"] * i
-        weights = [number(p) + number(w) for p, w in zip(form["P"][i], transported)]
-        total = (1.0 - sum(weights)) + sum(w * y for w, y in zip(weights, stages))
-        stages.append(total / (1.0 - z * number(d) - z * z * number(ddot)))
-    return stages[-1]
-
-
 def draw_stability(apsis, methods, images):
     x, y = np.meshgrid(np.linspace(-12, 12, 481), np.linspace(-12, 12, 481))
     figure, all_axes = plt.subplots(2, -(-len(methods) // 2), figsize=(2.6 * -(-len(methods) // 2), 6.2), sharex=True, sharey=True)
     for axes, name in zip(all_axes.flat, methods):
-        text = subprocess.run([apsis, "show", name, "--format", "toml"], capture_output=True, text=True, check=True).stdout
+        text = subprocess.run([apsis, "show", name, "--format", "json"], capture_output=True, text=True, check=True).stdout
         with np.errstate(all="ignore"):
-            size = np.abs(stability_function(tomllib.loads(text), x + 1j * y))
+            size = np.abs(stability_function(json.loads(text), 0.0, x + 1j * y))
         axes.contourf(x, y, np.nan_to_num(size, nan=1e9), levels=[0.0, 1.0], colors=[COLOURS[5]], alpha=0.6)
         axes.contour(x, y, np.nan_to_num(size, nan=1e9), levels=[1.0], colors=[BLACK], linewidths=0.8)
         axes.axvline(0.0, color=BLACK, linewidth=0.5)

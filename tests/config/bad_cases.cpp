@@ -91,7 +91,7 @@ const std::vector<bad_case> all = {
     {"zero_cells", "cells = 40", "cells = 0", "6:1", "at least 1"},
     {"huge_cells", "cells = 40", "cells = 9223372036854775807", "6:1", "at most 10000000"},
     {"integer_overflow", "cells = 40", "cells = 9223372036854775808", "6:", "not valid TOML"},
-    {"one_velocity", "points = 150", "points = 1", "11:1", "at least 2"},
+    {"one_velocity", "points = 150", "points = 1", "11:1", "at least 4"},
     {"table_twice", "points = 150", "points = 150\n[space]", "12:", "not valid TOML"},
     {"nan_end", "end = 0.5", "end = nan", "14:1", "must be finite"},
     {"inf_end", "end = 0.5", "end = inf", "14:1", "must be finite"},
@@ -263,4 +263,9 @@ TEST(bad_case, large_garbage_is_refused_before_it_is_parsed) {
   for (int k = 0; k < 2000; ++k) deep += "a.";
   // A chain of two thousand dotted tables fits a line and must neither overflow the stack nor pass.
   EXPECT_THAT(error_of("[" + deep + "b]\n" + deep + "c = 1\n"), StartsWith("c.toml:"));
+}
+
+TEST(bad_case, a_number_of_dimensions_is_whole) {
+  EXPECT_EQ(error_of(good, {"model.velocity_dimensions=2"}), "accepted");
+  EXPECT_THAT(error_of(good, {"model.velocity_dimensions=1.7"}), HasSubstr("it must be an integer"));
 }

@@ -14,6 +14,9 @@ assert pathlib.Path(apsis.__file__).is_relative_to(pathlib.Path(__import__('sys'
 assert (pathlib.Path(apsis.__file__).parent / 'py.typed').exists()
 rho = apsis.run('paper/bgk-mixed', 'time.end=0.001').fields['rho']
 assert rho.shape[1] == 40 and rho.min() > 0
+apsis.run('paper/bgk-mixed', 'time.end=0.001', out='result')
+import apsis.report
+assert apsis.report.make_report('result').exists()
 print(apsis.__version__)
 """
 

@@ -96,6 +96,17 @@ TEST(promises, explicit_collisions_beyond_their_step_do_not_promise_conservation
   EXPECT_TRUE(promises("md-imex-3-2").entropy);
 }
 
+TEST(promises, momentum_across_the_pencil_is_conserved_though_it_is_zero) {
+  for (const int dimensions : {2, 3})
+    for (const auto how : both) {
+      auto c = small("md-imex-6-3", how);
+      c.model.parameters["velocity_dimensions"] = dimensions;
+      c.velocity = {8.0, 14, "discrete"};
+      c.time.end = 0.01;
+      EXPECT_LE(finished(c).conservation_defect, 1e-12) << dimensions;
+    }
+}
+
 TEST(promises, a_broken_one_ends_the_run_with_step_and_value) {
   // The Maxwellian by formula on a velocity grid with Δv close to √T does not conserve.
   auto c = small("md-imex-3-2", formulation::finite_difference);

@@ -148,6 +148,9 @@ class resolver {
           refuse(*raw, "model." + p.name,
                  fmt::format("it must be from {} to {}: {}", p.lowest, p.highest, p.doc),
                  "change it to a value in this range");
+        if (p.integer && value != std::floor(value))
+          refuse(*raw, "model." + p.name, fmt::format("it must be an integer: {}", p.doc),
+                 "give a whole number");
       }
       config_.model.parameters[p.name] = value;
     }

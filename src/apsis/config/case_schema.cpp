@@ -139,7 +139,7 @@ std::vector<case_key> make_schema() {
       {"velocity.max", number, key_scope::velocity, true, none, 0, 1e6, true, nullptr,
        "The velocity grid covers [-max, max]; it must hold the tails of the data.",
        [](c& o, const v& x) { o.velocity.max = number_of(x); }, [](const c& o) { return v(o.velocity.max); }},
-      {"velocity.points", integer, key_scope::velocity, true, none, 2, 100'000, false, nullptr,
+      {"velocity.points", integer, key_scope::velocity, true, none, 4, 100'000, false, nullptr,
        "Number of velocities (midpoints of equal intervals).",
        [](c& o, const v& x) { o.velocity.points = integer_of(x); },
        [](const c& o) { return v(long{o.velocity.points}); }},

@@ -239,7 +239,7 @@ integration_result<typename P::real> integrate_with(const Take& take, stepper<P>
       longest = longest > dt ? longest : dt;
       wanted = report(dt);
     } catch (const numerical_error& failure) {
-      throw failure.site().step >= 0 ? failure : failure.at(march.step(), static_cast<double>(march.t()));
+      throw failure.site().step >= 0 ? failure : failure.at(march.step() + 1, static_cast<double>(march.t()));
     }
   }
   return {march.t(), march.step(), longest, march.startup_steps()};

@@ -179,7 +179,8 @@ intermediate_band find_intermediate_band(const butcher_form<Real>& b) {
   for (int k = -120; k <= 200; ++k) {
     const double z = std::pow(10.0, k / 40.0);
     const double error = std::abs(static_cast<double>(at_finite_rate(b, Real(z)).flux) - 1.0) / z;
-    if (!(error <= band.error)) band = {error, z};
+    if (std::isnan(error)) return {error, z};
+    if (error > band.error) band = {error, z};
   }
   return band;
 }

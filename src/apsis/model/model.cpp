@@ -1,5 +1,6 @@
 #include <apsis/model/model_registry.hpp>
 
+#include <cmath>
 #include <limits>
 
 namespace apsis {
@@ -14,6 +15,10 @@ void model::source(const double*, double* s) const {
 
 double model::entropy(const double*) const {
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+void model::invariant_scales(const double* densities, double* scales) const {
+  for (std::size_t k = 0; k < invariants().size(); ++k) scales[k] = std::abs(densities[k]);
 }
 
 misfit model::unfit(const double*) const {

@@ -61,6 +61,9 @@ class model {
   virtual std::vector<std::string> invariants() const = 0;
   /// How much of each a row has per volume, in the order of invariants().
   virtual void invariant_densities(const double* u, double* densities) const = 0;
+  /// The size of what is added up in each of them, against which its rounding is small: |densities| where
+  /// a model says nothing else. A momentum may be zero because as much flies one way as the other.
+  virtual void invariant_scales(const double* densities, double* scales) const;
 
   /// Macroscopic fields that results have.
   virtual std::vector<field_name> fields() const = 0;

@@ -11,11 +11,12 @@ namespace apsis {
 
 /// A number that a model can be given in its case file.
 struct model_parameter {
-  std::string name;  ///< key in the table [model]
-  double value;      ///< default
-  double lowest;     ///< smallest allowed value
-  double highest;    ///< largest allowed value
-  std::string doc;   ///< meaning and unit
+  std::string name;      ///< key in the table [model]
+  double value;          ///< default
+  double lowest;         ///< smallest allowed value
+  double highest;        ///< largest allowed value
+  std::string doc;       ///< meaning and unit
+  bool integer = false;  ///< only whole numbers have a meaning
 };
 
 /// A text that a model can be given in its case file: one of its names, or a formula.

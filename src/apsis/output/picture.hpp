@@ -7,7 +7,7 @@
 
 namespace apsis {
 
-/// Pictures as data: what is to be seen, not how it is drawn (python/apsis_picture.py draws them, all in one
+/// Pictures as data: what is to be seen, not how it is drawn (python/apsis/plot draws them, all in one
 /// style). Numbers that are not finite, and numbers ≤ 0 on a logarithmic axis, are left out of a curve.
 enum class curve_style { line, dashed, dash_dot, markers, line_and_markers, dashed_and_markers };
 
@@ -50,7 +50,7 @@ struct picture {
   std::vector<panel> panels;  ///< drawn row by row
 };
 
-/// As python/apsis_picture.py reads it; numbers that are not finite become null.
+/// As python/apsis/plot reads it; numbers that are not finite become null.
 nlohmann::ordered_json to_json(const picture& p);
 
 }  // namespace apsis

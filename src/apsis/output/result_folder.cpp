@@ -15,9 +15,10 @@ namespace apsis {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array<const char*, 10> result_names = {
-    result_folder::manifest, "history.csv",  "fields.csv",    "solution.h5",  "solution.xdmf",
-    "checkpoint.h5",         "converge.csv", "converge.json", "picture.json", "converge.png"};
+constexpr std::array<const char*, 11> result_names = {
+    result_folder::manifest, "history.csv",   "fields.csv",   "solution.h5",
+    "solution.xdmf",         "checkpoint.h5", "converge.csv", "converge.json",
+    "picture.json",          "converge.png",  "report.html"};
 
 constexpr std::array<const char*, 1> series_names = {"snapshots"};
 

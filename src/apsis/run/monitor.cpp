@@ -14,7 +14,7 @@ namespace apsis {
 monitor::totals monitor::sum(const field& u) const {
   const std::size_t count = equation_.invariants().size();
   const auto cells = static_cast<std::size_t>(u.cells());
-  std::vector<double> densities(cells * count), entropies(cells), lowest(cells);
+  std::vector<double> densities(cells * count), entropies(cells), lowest(cells), scales(count);
   std::vector<long> negative(cells);
   constexpr int block = 16;
   parallel_blocks(u.cells(), block, [&](int begin, int end) {
@@ -41,9 +41,10 @@ monitor::totals monitor::sum(const field& u) const {
     t.lowest = std::min(t.lowest, lowest[c]);
     t.negative += negative[c];
     t.entropy += volume_ * entropies[c];
+    equation_.invariant_scales(densities.data() + c * count, scales.data());
     for (std::size_t k = 0; k < count; ++k) {
       t.invariants[k] += volume_ * densities[c * count + k];
-      t.scales[k] += volume_ * std::abs(densities[c * count + k]);
+      t.scales[k] += volume_ * scales[k];
     }
   }
   if (!equation_.has_entropy() || t.negative > 0) t.entropy = std::numeric_limits<double>::quiet_NaN();

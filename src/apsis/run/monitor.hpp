@@ -15,17 +15,9 @@ class monitor {
   /// `volume` is that of a cell (1 for an ordinary differential equation).
   monitor(const model& equation, double volume) : equation_(equation), volume_(volume) {}
 
-  /// The state against which conservation is measured.
+  /// The state against which conservation is measured: defects are |I − I₀| over Σ_cells volume ·
+  /// model::invariant_scales().
   step_record start(const field& u);
-  /// Measures against these instead: the invariants() and scales() of an earlier run.
-  void resume(const std::vector<double>& invariants, const std::vector<double>& scales) {
-    invariants_ = invariants;
-    scales_ = scales;
-  }
-  /// I₀ = Σ_cells volume · density of every invariant, in the state given to start().
-  const std::vector<double>& invariants() const { return invariants_; }
-  /// Σ_cells volume · |density| of the same state: defects are |I − I₀| over this.
-  const std::vector<double>& scales() const { return scales_; }
 
   /// Everything but step, t and dt. Throws numerical_error at the first number that is not finite.
   step_record check(const field& u, double previous_entropy) const;

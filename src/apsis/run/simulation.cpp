@@ -131,7 +131,7 @@ struct simulation::impl {
         broken(
             fmt::format(
                 "{} is not conserved to rounding{}", setup.equation->invariants()[k],
-                config.velocity.points > 0
+                config.velocity.points > 0 && config.velocity.equilibrium == "formula"
                     ? " (a Maxwellian by formula on a coarse velocity grid does that); use "
                       "velocity.equilibrium = \"auto\""
                     : " (the step is unstable, or values of very different size cancel); use a smaller step"),

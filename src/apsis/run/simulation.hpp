@@ -45,7 +45,6 @@ struct run_summary {
   double max_entropy_increase = 0.0;  ///< largest entropy_change; 0 if none was positive
   long phase_points = 0;              ///< cells × components
   double point_stages_per_s = 0.0;  ///< phase_points · stages per second of wall time, also of rejected steps
-  bool interrupted = false;         ///< always false; run_session::run() says how a run ended
 };
 
 /// A run between two steps, for checkpoints.

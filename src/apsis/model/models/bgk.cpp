@@ -97,6 +97,13 @@ class bgk_model final : public relaxation_model {
     return names;
   }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
+  /// Particles fly both ways: Σ|v_k| f ≤ √(2ρ𝓔), the Cauchy–Schwarz inequality.
+  void invariant_scales(const double* densities, double* scales) const override {
+    relaxation_model::invariant_scales(densities, scales);
+    const int d = grid_.dimensions();
+    const double bound = std::sqrt(2.0 * scales[0] * scales[d + 1]);
+    for (int k = 1; k <= d; ++k) scales[k] = std::max(scales[k], bound);
+  }
 
   std::vector<field_name> fields() const override {
     return {{"rho", "density (dimensionless)"},
@@ -212,7 +219,7 @@ const model_entry model_bgk = {
     true,
     true,
     true,
-    {{"velocity_dimensions", 1.0, 1.0, 3.0, "number of velocity dimensions (an integer)"}},
+    {{"velocity_dimensions", 1.0, 1.0, 3.0, "number of velocity dimensions (an integer)", true}},
     {"mixed-v", "mixed-s", "accuracy", "accuracy-consistent"},
     [](const model_config& config) -> std::unique_ptr<model> { return std::make_unique<bgk_model>(config); }};
 

@@ -61,6 +61,11 @@ class broadwell_model final : public relaxation_model {
   /// z is no third one: collisions change it.
   std::vector<std::string> invariants() const override { return {"mass", "momentum"}; }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
+  /// Particles fly both ways: f₊ + f₋ ≤ ρ.
+  void invariant_scales(const double* densities, double* scales) const override {
+    relaxation_model::invariant_scales(densities, scales);
+    scales[1] = std::max(scales[0], scales[1]);
+  }
 
   std::vector<field_name> fields() const override {
     return {{"rho", "density (dimensionless)"},

@@ -1,50 +1,29 @@
-#!/usr/bin/env python3
-"""Draws pictures that the program apsis wrote as data, all in one style.
+"""Draws pictures that the program apsis wrote as data.
 
-    apsis_picture.py FILE.json [--out DIR] [--format png|svg|pdf]
-
-FILE.json holds one picture, or an object with a list "pictures" (also inside "claims"). A picture has name, title, caption
-and panels; a panel has curves {label, x, y, style, colour} or one map {x, y, value}. null stands for "no number".
+A picture has name, title, caption and panels; a panel has curves {label, x, y, style, colour} or one map {x, y, value}. null
+stands for "no number". A document may hold one picture, or several in a list "pictures" (also inside "claims").
 """
-import argparse
-import json
-import sys
-from pathlib import Path
+from __future__ import annotations
 
-import matplotlib
+from collections.abc import Mapping
+from typing import Any
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-import numpy as np  # noqa: E402
-from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter  # noqa: E402
+import numpy as np
+from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
+from numpy.typing import NDArray
 
-# Okabe and Ito: distinct for colour-blind readers, and in lightness for print.
-BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
-SKY = "#56B4E9"
-COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, "#7F7F7F")
-# Markers differ too, so that curves are told apart without colour.
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "h")
+from .style import BLACK, MARKERS, palette, plt
+
 STYLES = {"line": ("-", False), "dashed": ("--", False), "dash_dot": ("-.", False), "markers": ("none", True),
           "line_and_markers": ("-", True), "dashed_and_markers": ("--", True)}
-
-plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "savefig.dpi": 150,
-                     "figure.constrained_layout.use": True, "svg.fonttype": "path", "svg.hashsalt": "apsis"})
+Document = Mapping[str, Any]
 
 
-class PictureError(Exception):
-    """A file that holds no picture; the message names it."""
-
-
-def numbers(values):
+def numbers(values: list[float | None]) -> NDArray[np.float64]:
     return np.array([np.nan if v is None else v for v in values], dtype=float)
 
 
-def palette(count):
-    """Colours of `count` curves: named ones while they last, else steps of a map that is read in grey as well."""
-    return COLOURS if count <= len(COLOURS) else [plt.cm.viridis(t) for t in np.linspace(0.0, 0.9, count)]
-
-
-def draw_curves(axes, panel):
+def draw_curves(axes: Any, panel: Document) -> None:
     following = 0
     colours = palette(1 + max((c["colour"] for c in panel["curves"]), default=0)
                       + sum(c["colour"] == -1 for c in panel["curves"]))
@@ -67,7 +46,7 @@ def draw_curves(axes, panel):
                   fillstyle="none" if is_open else "full", label=curve["label"] or None)
 
 
-def draw_slopes(axes, slopes):
+def draw_slopes(axes: Any, slopes: list[float]) -> None:
     """Triangles of the given orders in the corner that curves of such slopes leave empty."""
     if not slopes or not axes.lines:
         return
@@ -89,7 +68,7 @@ def draw_slopes(axes, slopes):
     axes.set_ylim(10**bottom, 10**top)
 
 
-def label_ticks(axis, limits):
+def label_ticks(axis: Any, limits: tuple[float, float]) -> None:
     """Logarithmic axes shorter than two decades also get numbers at 2 and 5, and no others."""
     axis.set_minor_formatter(NullFormatter())
     if np.ptp(np.log10(limits)) < 2:
@@ -97,7 +76,7 @@ def label_ticks(axis, limits):
         axis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(np.inf, np.inf)))
 
 
-def edges(values, logarithmic):
+def edges(values: list[float], logarithmic: bool) -> NDArray[np.float64]:
     """Borders of the fields of a map around their centres."""
     centres = np.log10(values) if logarithmic else np.asarray(values, dtype=float)
     if len(centres) == 1:
@@ -108,12 +87,12 @@ def edges(values, logarithmic):
     return 10**borders if logarithmic else borders
 
 
-def draw_map(figure, axes, panel):
+def draw_map(figure: Any, axes: Any, panel: Document) -> None:
     image = panel["maps"][0]
     value = np.array([numbers(row) for row in image["value"]])
     axes.grid(False)
     mesh = axes.pcolormesh(edges(image["x"], panel["log_x"]), edges(image["y"], panel["log_y"]),
-                           np.ma.masked_invalid(value), cmap="cividis", vmin=image["lowest"], vmax=image["highest"])
+                           value, cmap="cividis", vmin=image["lowest"], vmax=image["highest"])
     figure.colorbar(mesh, ax=axes, label=image["label"])
     if value.size > 400:
         return
@@ -125,7 +104,7 @@ def draw_map(figure, axes, panel):
                           color="white" if number < middle else "black")
 
 
-def draw(picture):
+def draw(picture: Document) -> Any:
     """The picture as a matplotlib figure."""
     panels = picture["panels"]
     columns = min(len(panels), 3) if len(panels) != 4 else 2
@@ -154,7 +133,7 @@ def draw(picture):
     return figure
 
 
-def pictures_of(document):
+def pictures_of(document: Document) -> list[Document]:
     """Every picture of a parsed JSON document."""
     if "panels" in document:
         return [document]
@@ -162,39 +141,3 @@ def pictures_of(document):
     for claim in document.get("claims", []):
         found += pictures_of(claim)
     return found
-
-
-def read_json(path):
-    try:
-        return json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as problem:
-        raise PictureError(f"cannot read {path} ({problem.strerror}) give a file that apsis wrote") from problem
-    except ValueError as problem:
-        raise PictureError(f"{path} is not JSON ({problem}) give a file that apsis wrote") from problem
-
-
-def main(arguments=None):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", type=Path)
-    parser.add_argument("--out", type=Path, help="folder of the pictures (default: that of the file)")
-    parser.add_argument("--format", choices=("png", "svg", "pdf"), default="png")
-    options = parser.parse_args(arguments)
-    try:
-        found = pictures_of(read_json(options.file))
-        if not found:
-            raise PictureError(f"{options.file} holds no picture (no \"panels\") give a file that apsis wrote")
-    except PictureError as problem:
-        print(f"apsis_picture: {problem}", file=sys.stderr)
-        return 4
-    out = options.out or options.file.parent
-    out.mkdir(parents=True, exist_ok=True)
-    for picture in found:
-        figure = draw(picture)
-        figure.savefig(out / f"{picture['name']}.{options.format}")
-        plt.close(figure)
-        print(out / f"{picture['name']}.{options.format}")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

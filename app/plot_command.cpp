@@ -1,0 +1,73 @@
+#include "commands.hpp"
+#include "drawing.hpp"
+#include "method_report.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/method/method.hpp>
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+namespace apsis::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct options {
+  std::vector<std::string> what;
+  std::string out, format = "png", compare;
+};
+
+/// A method as the file that the pictures are drawn from.
+std::string described(const drawing& pictures, std::size_t place, const method& m) {
+  return pictures.add(fmt::format("method-{}.json", place), method_document(m, "json"));
+}
+
+int plot(const options& given) {
+  const drawing pictures;
+  std::vector<std::string> arguments;
+  for (std::size_t k = 0; k < given.what.size(); ++k) {
+    const std::string& what = given.what[k];
+    if (!given.compare.empty() || fs::is_directory(what) || fs::path(what).extension() == ".json")
+      arguments.push_back(what);
+    else if (fs::is_regular_file(what))
+      arguments.push_back(described(pictures, k, load_method_file(what)));
+    else if (is_method_name(what))
+      arguments.push_back(described(pictures, k, find_method(what)));
+    else
+      throw input_error(fmt::format("cannot draw '{}' (no folder, file or method of this name) {}",
+                                    what.substr(0, 60), suggest(what, method_names())));
+  }
+  arguments.insert(arguments.end(), {"--format", given.format});
+  if (!given.out.empty()) arguments.insert(arguments.end(), {"--out", given.out});
+  if (!given.compare.empty()) arguments.insert(arguments.end(), {"--compare", given.compare});
+  const int status = pictures.run("plot", arguments, false);
+  if (status < 0) throw io_error("drawing failed (Python ended without a status) try again");
+  return status;
+}
+
+}  // namespace
+
+void add_plot(CLI::App& program, action& chosen) {
+  auto given = std::make_shared<options>();
+  CLI::App* command =
+      program.add_subcommand("plot", "Draw results of any kind, or the stability regions of a method");
+  command
+      ->add_option("WHAT", given->what,
+                   "folders of results (pictures go into DIR/pictures), picture.json files, methods or "
+                   "method files; with --compare folders of runs, also as LABEL=DIR")
+      ->required();
+  command->add_option("--out", given->out, "folder of the pictures");
+  command->add_option("--format", given->format, "png, svg or pdf")
+      ->check(CLI::IsMember({"png", "svg", "pdf"}))
+      ->capture_default_str();
+  command->add_option("--compare", given->compare,
+                      "draw these runs of one model into one picture of this name, and tell how far they are "
+                      "from the one with most cells");
+  command->callback([given, &chosen] { chosen = [given] { return plot(*given); }; });
+}
+
+}  // namespace apsis::app

@@ -1,0 +1,105 @@
+"""python -m apsis.plot: pictures of results and methods. `apsis plot` is the same command."""
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from . import methods, pictures, results
+from .style import FORMATS, PictureError, save
+
+DESCRIPTION = """Draws what apsis computed, as WHAT/pictures/*.png:
+
+  folder of a run              fields, f(x, v), history
+  folder of a study            convergence with slope triangles, every picture of a reproduction
+  picture.json                 the pictures in it
+  method, FILE.toml            NAME-tableau and NAME-stability, in the present folder
+
+  --compare draws runs of one model into one picture, and prints how far they are from the one with most cells."""
+
+
+def parse(arguments: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="apsis plot", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", nargs="+", metavar="WHAT", help="a folder of results, a picture.json, a method; "
+                        "with --compare also LABEL=FOLDER")
+    parser.add_argument("--out", type=Path, help="folder of the pictures")
+    parser.add_argument("--format", choices=FORMATS, default="png")
+    parser.add_argument("--compare", metavar="NAME", help="one picture NAME of all these runs")
+    return parser.parse_args(arguments)
+
+
+def method_description(name: str) -> dict[str, Any]:
+    """Name and Butcher form of a method of the catalogue or a file. Raises PictureError."""
+    try:
+        import apsis  # here, because everything else draws without the compiled part
+        method = apsis.read_method(name) if Path(name).is_file() else apsis.method(name)
+    except ImportError as problem:
+        raise PictureError(f"'{name}' is neither a folder nor a file of results ({problem}) give one of these") from problem
+    except apsis.Error as problem:
+        raise PictureError(str(problem), problem.exit_code) from problem
+    return {"name": method.name, "A_hat": method.A_hat, "A": method.A, "A_dot": method.A_dot}
+
+
+def of_method(description: dict[str, Any]) -> Iterable[tuple[str, Any]]:
+    yield f"{description['name']}-tableau", methods.tableau_figure(description)
+    yield f"{description['name']}-stability", methods.stability_figure(description)
+
+
+def of_document(document: dict[str, Any], path: Path) -> Iterable[tuple[str, Any]]:
+    if "A_hat" in document:
+        yield from of_method(document)
+        return
+    found = pictures.pictures_of(document)
+    if not found:
+        raise PictureError(f"'{path}' holds no picture (no \"panels\") give a file that apsis wrote")
+    for picture in found:
+        try:
+            yield picture["name"], pictures.draw(picture)
+        except (KeyError, TypeError, ValueError) as problem:
+            raise PictureError(f"'{path}' holds a damaged picture ({type(problem).__name__}: {problem}) make it anew") from problem
+
+
+def drawn(what: str) -> tuple[Path, Iterable[tuple[str, Any]]]:
+    """The folder where pictures of this thing go, and the pictures."""
+    path = Path(what)
+    if path.is_dir():
+        for name in ("picture.json", "reproduce.json"):
+            if (path / name).exists():
+                return path / "pictures", of_document(results.read_json(path / name), path / name)
+        return path / "pictures", results.figures(results.read_result(path)).items()
+    if path.suffix == ".json":
+        document = results.read_json(path)
+        return Path() if "A_hat" in document else path.parent / "pictures", of_document(document, path)
+    return Path(), of_method(method_description(what))
+
+
+def compare(what: list[str]) -> Any:
+    runs = []
+    for word in what:
+        label, separator, folder = word.rpartition("=")
+        runs.append((label if separator else Path(folder).resolve().name, results.read_result(folder)))
+    for line in results.differences(runs):
+        print(line)
+    return results.comparison_figure(runs)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    options = parse(arguments)
+    try:
+        if options.compare:
+            print(save(compare(options.what), (options.out or Path()) / f"{options.compare}.{options.format}"))
+            return 0
+        for what in options.what:
+            folder, figures = drawn(what)
+            for name, figure in figures:
+                print(save(figure, (options.out or folder) / f"{name}.{options.format}"))
+    except PictureError as problem:
+        print(f"error: {problem}", file=sys.stderr)
+        return problem.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,62 @@
+"""One style for all pictures: colours, markers, fonts, and how a picture is written."""
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+import numpy as np  # noqa: E402
+
+# Okabe and Ito: distinct for colour-blind readers, and in lightness for print.
+BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
+SKY, GREY = "#56B4E9", "#7F7F7F"
+COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY)
+# Markers differ too, so that curves are told apart without colour.
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "h")
+__all__ = ["BLACK", "BLUE", "COLOURS", "FORMATS", "GREEN", "GREY", "MARKERS", "ORANGE", "PURPLE", "PictureError", "SKY", "UNDATED",
+           "VERMILLION", "palette", "plt", "save", "whole_file"]
+FORMATS = ("png", "svg", "pdf")
+UNDATED = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
+
+plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "savefig.dpi": 150,
+                     "figure.constrained_layout.use": True, "svg.fonttype": "path", "svg.hashsalt": "apsis"})
+
+
+class PictureError(Exception):
+    """Something that cannot be drawn; the message says what, why and what to do, exit_code is the program's."""
+
+    def __init__(self, message: str, exit_code: int = 4) -> None:
+        super().__init__(message)
+        self.exit_code = exit_code
+
+
+def palette(count: int) -> list[Any]:
+    """Colours of `count` curves: named ones while they last, else steps of a map that is read in grey as well."""
+    return list(COLOURS) if count <= len(COLOURS) else [plt.cm.viridis(t) for t in np.linspace(0.0, 0.9, count)]
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A path to write to; the file takes its name when all is written. Raises PictureError."""
+    partial = path.with_name(f".{path.name}.partial")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield partial
+        partial.replace(path)
+    except OSError as problem:
+        with suppress(OSError):
+            partial.unlink()
+        raise PictureError(f"cannot write '{path}' ({problem.strerror}) choose another folder or free some space") from problem
+
+
+def save(figure: Any, path: Path) -> Path:
+    """Writes the figure in the format of the path's ending; without a date, so that equal data make equal files."""
+    with whole_file(path) as partial:
+        figure.savefig(partial, format=path.suffix[1:], metadata=UNDATED.get(path.suffix))
+    plt.close(figure)
+    return path

@@ -1,0 +1,35 @@
+"""Which page belongs to a folder."""
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..plot.results import read_json
+from ..plot.style import PictureError, whole_file
+from . import claims, run, study
+
+
+def write(path: Path, content: str) -> None:
+    with whole_file(path) as partial:
+        partial.write_text(content, encoding="utf-8")
+
+
+def make_report(folder: str | Path) -> Path:
+    """Writes <folder>/report.html, for a reproduction claims.md too, and the pictures. Raises PictureError."""
+    folder = Path(folder)
+    try:
+        if (folder / "reproduce.json").exists():
+            document = read_json(folder / "reproduce.json")
+            content = claims.report(document, folder)
+            write(folder / "claims.md", claims.markdown(document))
+        elif (folder / "converge.json").exists():
+            content = study.report(folder)
+        elif (folder / "manifest.json").exists():
+            content = run.report(folder)
+        else:
+            raise PictureError(f"'{folder}' holds no results (neither manifest.json nor reproduce.json) give a folder that "
+                               "apsis run --out, apsis converge --out or apsis reproduce wrote")
+    except (KeyError, TypeError, IndexError) as problem:
+        raise PictureError(f"results in '{folder}' are damaged or of another version ({type(problem).__name__}: {problem}) "
+                           "make them anew") from problem
+    write(folder / "report.html", content)
+    return folder / "report.html"

@@ -1,0 +1,86 @@
+"""Parts of a report page, which is one file that opens without a network."""
+from __future__ import annotations
+
+import base64
+import html
+import io
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..plot.style import UNDATED, save
+
+STYLE = """
+:root { color-scheme: light; }
+body { font: 16px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff; max-width: 62rem; margin: 0 auto; padding: 1rem; }
+h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.2rem; border-top: 1px solid #ccc; padding-top: .8rem; }
+h1, h2, p, td, figcaption { overflow-wrap: break-word; }
+table { border-collapse: collapse; font-size: .9rem; } .wide { overflow-x: auto; margin: .6rem 0; }
+th, td { text-align: left; padding: .2rem .7rem .2rem 0; border-bottom: 1px solid #e2e2e2; vertical-align: top; }
+caption { text-align: left; font-weight: 600; padding: .3rem 0; }
+td.number { font-variant-numeric: tabular-nums; white-space: nowrap; }
+.yes::before { content: "\\2713\\00a0"; } .no::before { content: "\\2717\\00a0"; }
+.yes { color: #00664b; white-space: nowrap; } .no { color: #a33b00; font-weight: 700; }
+figure { margin: 1rem 0; overflow-x: auto; } figure img { max-width: 100%; height: auto; } figcaption { font-size: .9rem; color: #333; max-width: 50rem; }
+pre { background: #f6f6f6; padding: .6rem; overflow-x: auto; font-size: .85rem; }
+.small { color: #555; font-size: .85rem; } a { color: #00508a; }
+@media (max-width: 48rem) { table { font-size: .8rem; } th, td { padding-right: .4rem; }
+  figure img.wide { max-width: none; width: 48rem; } }
+@media print { body { max-width: none; font-size: 11px; } h2, figure, tr { break-inside: avoid; } a { color: inherit; text-decoration: none; } }
+"""
+
+PAGE = """<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title><link rel="icon" href="data:,"><style>{style}</style></head>
+<body>
+<h1>{title}</h1>
+{body}
+</body></html>
+"""
+
+
+def page(title: str, body: str) -> str:
+    return PAGE.format(title=text(title), style=STYLE, body=body)
+
+
+def text(value: Any) -> str:
+    return html.escape(str(value))
+
+
+def number(value: float | None) -> str:
+    """Figures as a reader wants them: counts whole, measurements to four digits."""
+    if value is None:
+        return "not a number"
+    return f"{value:.0f}" if float(value).is_integer() and abs(value) < 1e6 else f"{value:.4g}"
+
+
+def verdict(good: bool, words: tuple[str, str] = ("holds", "fails")) -> str:
+    return f'<span class="{"yes" if good else "no"}">{words[0] if good else words[1]}</span>'
+
+
+def table(columns: Sequence[str], rows: Iterable[Sequence[str]], title: str = "") -> str:
+    """Cells are HTML already, columns and title are not. Without columns a table of names and values."""
+    head = "<thead><tr>" + "".join(f"<th>{text(c)}</th>" for c in columns) + "</tr></thead>" if columns else ""
+    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>\n" for row in rows)
+    caption = f"<caption>{text(title)}</caption>" if title else ""
+    return f'<div class="wide"><table>{caption}{head}<tbody>\n{body}</tbody></table></div>\n'
+
+
+def embedded(figure: Any, name: str, title: str, caption: str, folder: Path) -> str:
+    """The figure as an <img> with its data inside, and as <folder>/<name>.png."""
+    stream = io.BytesIO()
+    width = figure.get_figwidth()
+    figure.savefig(stream, format="svg", metadata=UNDATED[".svg"])
+    data = base64.b64encode(stream.getvalue()).decode("ascii")
+    save(figure, folder / f"{name}.png")
+    # Panels side by side would be too small on a narrow screen: such a picture scrolls instead.
+    wide = ' class="wide"' if width > 7.0 else ""
+    return (f'<figure><img{wide} alt="{text(title)}" src="data:image/svg+xml;base64,{data}">'
+            f'<figcaption><b>{text(title)}.</b> {text(caption)}</figcaption></figure>\n')
+
+
+def provenance(document: dict[str, Any], version: str) -> str:
+    """One line: by what, and on what."""
+    build, machine = document["build"], document["machine"]
+    return (f'apsis {text(version)}, {text(build["compiler"])}, {text(build["build_type"])}, '
+            f'{text(build["instruction_set"])}; {text(machine["processor"])}, {machine["threads"]} threads')

@@ -1,0 +1,81 @@
+"""The page of a run: what was computed, which promises were kept, pictures, the case, the manifest."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from ..plot.results import RunResult, end_of, figures, read_result, title_of
+from . import page
+from .page import number, table, text, verdict
+
+CAPTIONS = {
+    "fields": ("Macroscopic fields", "At the end, and at earlier snapshots in grey."),
+    "distribution": ("Distribution function", "f(x, v) at the end, and the Knudsen number ε(x) where it is not 0."),
+    "history": ("History", "What was checked after every step. A conservation defect is relative to the size of the quantity."),
+}
+PROMISES = {
+    "positivity": ("every unknown stays nonnegative", "min_value", "smallest value"),
+    "conservation": ("sums of the conserved quantities change by rounding only", "conservation_defect", "largest relative defect"),
+    "entropy": ("the entropy never grows", "max_entropy_increase", "largest increase in a step"),
+}
+
+
+def summary(result: RunResult) -> str:
+    manifest, numbers = result.manifest, result.manifest["result"]
+    good = manifest["state"] == "complete"
+    out = (f'<p>{verdict(good, (manifest["state"], manifest["state"]))} at t = {end_of(result):.10g} after {numbers["steps"]} steps of '
+           f'<code>{text(manifest["method"])}</code> of length {number(numbers["dt"])} or less; '
+           f'{numbers["wall_s"]:.2f} s of computing. All quantities are dimensionless.</p>\n')
+    if manifest.get("message"):
+        out += f'<p class="no">{text(manifest["message"])}</p>\n'
+    if "state" in numbers:
+        out += table(["unknown", "at the end"], [[text(result.label(name)), repr(value)]
+                                                 for name, value in zip(result.fields, numbers["state"])])
+    return out
+
+
+def promises(manifest: dict[str, Any]) -> str:
+    """A run ends when a promise breaks, so those of one that did not were kept at every step."""
+    broken = str(manifest.get("message", "")).startswith("broken promise")
+    rows = []
+    for name, promised in manifest["promises"].items():
+        what, key, measured = PROMISES[name]
+        value = manifest["result"][key]
+        if not promised:
+            kept = "not promised for this case"
+        elif not broken:
+            kept = verdict(True, ("kept at every step", ""))
+        elif name == "positivity":
+            kept = verdict(manifest["result"]["negative_values"] == 0, ("kept", "broken"))
+        else:
+            kept = "one was broken, see above"
+        rows.append([f"{name}: {text(what)}", kept, "none offered" if value is None else f"{measured} {number(value)}"])
+    return table(["promise", "verdict", "measured"], rows)
+
+
+def case_text(result: RunResult) -> str:
+    return f"<pre>{text(result.case.strip() or json.dumps(result.manifest['case'], indent=2))}</pre>\n"
+
+
+def flattened(value: Any, name: str = "") -> list[tuple[str, Any]]:
+    """Leaves of nested objects as ("build.compiler", value)."""
+    if isinstance(value, dict):
+        return [leaf for key, inner in value.items() for leaf in flattened(inner, f"{name}.{key}" if name else key)]
+    return [(name, value)]
+
+
+def report(folder: Path) -> str:
+    """The page; pictures go into <folder>/pictures as well. Raises PictureError."""
+    result = read_result(folder)
+    manifest = result.manifest
+    pictures = "".join(page.embedded(figure, name, *CAPTIONS[name], folder / "pictures")
+                       for name, figure in figures(result).items())
+    rest = {key: value for key, value in manifest.items() if key not in ("case", "message")}
+    body = (summary(result) + "<h2>Promises</h2>\n" + promises(manifest)
+            + ("<h2>Pictures</h2>\n" + pictures if pictures else "")
+            + "<h2>Case</h2>\n" + case_text(result)
+            + "<h2>Manifest</h2>\n" + table([], [[f"<code>{text(name)}</code>", text(value)] for name, value in flattened(rest)])
+            + f'<p class="small">{page.provenance(manifest, manifest["apsis"])}. Source of the case: '
+              f'{text(manifest["case"]["source"])}.</p>\n')
+    return page.page(title_of(result), body)

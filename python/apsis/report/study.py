@@ -1,0 +1,37 @@
+"""The page of `apsis converge --out`: the table and the picture."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ..plot.pictures import draw
+from ..plot.results import read_json, read_json_list
+from . import page
+from .page import number, table, text
+
+
+def cell(value: Any) -> str:
+    return "" if value is None else number(value) if isinstance(value, (int, float)) else text(value)
+
+
+def runs_table(runs: list[dict[str, Any]]) -> str:
+    columns = list(dict.fromkeys(key for run in runs for key in run))
+    return table(columns, [[cell(run.get(key)) for key in columns] for run in runs])
+
+
+def report(folder: Path) -> str:
+    """The page; the picture goes into <folder>/pictures as well. Raises PictureError."""
+    manifest = read_json(folder / "manifest.json")
+    study: dict[str, Any] = manifest["study"]
+    picture = folder / "picture.json"
+    drawing = ""
+    title = f"Convergence of {study['case']}"
+    if picture.exists():
+        data = read_json(picture)
+        title = data["title"]
+        drawing = page.embedded(draw(data), data["name"], data["title"], data["caption"], folder / "pictures")
+    rows = [[f"<code>{text(name)}</code>", text(value)] for name, value in study.items()]
+    body = (f"<p>{text(manifest['state'])}: {study['runs']} runs; {text(study['measure'])}. All quantities are dimensionless.</p>\n"
+            + drawing + "<h2>Runs</h2>\n" + runs_table(read_json_list(folder / "converge.json")) + "<h2>Study</h2>\n" + table([], rows)
+            + f'<p class="small">{page.provenance(manifest, manifest["apsis"])}</p>\n')
+    return page.page(title, body)

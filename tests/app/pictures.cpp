@@ -1,0 +1,92 @@
+// `apsis plot` and `apsis report`: what is drawn stands in tests/python/test_plot.py, here is how they are
+// called.
+#include "program.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+using namespace app_test;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_png(const fs::path& path) {
+  return read(path).starts_with("\x89PNG\r\n");
+}
+
+void make_runs(const work_folder& folder) {
+  ASSERT_EQ(run_apsis(folder, {"run", "paper/broadwell", "space.cells=10", "--out", "coarse"}).code, 0);
+  ASSERT_EQ(run_apsis(folder, {"run", "paper/broadwell", "space.cells=20", "--out", "fine"}).code, 0);
+}
+
+}  // namespace
+
+TEST(plot, draws_runs_studies_and_methods_without_the_python_package) {
+  const work_folder folder;
+  make_runs(folder);
+  ASSERT_EQ(run_apsis(folder, {"converge", "paper/ode", "--vary", "time.dt=1/8,1/16", "--out", "study"}).code,
+            0);
+  ASSERT_EQ(run_apsis(folder, {"show", "md-imex-3-2", "--format", "toml"}).code, 0);
+  std::ofstream(folder.path() / "mine.toml")
+      << run_apsis(folder, {"show", "md-imex-3-2", "--format", "toml"}).out;
+  // A package of the same name in the present folder is not taken for ours.
+  fs::create_directory(folder.path() / "apsis");
+  std::ofstream(folder.path() / "apsis" / "__init__.py") << "raise SystemExit(77)\n";
+  const auto drawn =
+      run_apsis(folder, {"plot", "fine", "study", "ars-222", "mine.toml", "md-imex-chain-7-2"});
+  EXPECT_EQ(drawn.code, 0) << drawn.err;
+  std::size_t count = 0;
+  std::istringstream made(drawn.out);
+  for (std::string path; std::getline(made, path); ++count) EXPECT_TRUE(is_png(folder.path() / path)) << path;
+  EXPECT_EQ(count, 2U + 1U + 2U + 2U + 2U);
+  EXPECT_THAT(drawn.out, HasSubstr("fine/pictures/fields.png\n"));
+  EXPECT_THAT(drawn.out, HasSubstr("md-imex-chain-7-2-stability.png\n"));
+}
+
+TEST(plot, compares_runs_and_takes_a_format_and_a_folder) {
+  const work_folder folder;
+  make_runs(folder);
+  const auto drawn = run_apsis(folder, {"plot", "--compare", "both", "--format", "svg", "--out", "pictures",
+                                        "few cells=coarse", "fine"});
+  EXPECT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_THAT(drawn.out, StartsWith("few cells against fine: rho "));
+  EXPECT_THAT(read(folder.path() / "pictures" / "both.svg"), HasSubstr("</svg>"));
+}
+
+TEST(plot, refuses_what_it_cannot_draw_and_leaves_nothing_behind) {
+  const work_folder folder;
+  fs::create_directory(folder.path() / "damaged");
+  folder.file("damaged/manifest.json", "{");
+  folder.file("no-method.toml", "name = \"x\"\n");
+  const auto before = folder.listing();
+  const auto unknown = run_apsis(folder, {"plot", "ars-223"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'ars-222'?"));
+  EXPECT_EQ(run_apsis(folder, {"plot", "ars-222", "--format", "gif"}).code, 2);
+  EXPECT_EQ(run_apsis(folder, {"plot", "no-method.toml"}).code, 2);
+  EXPECT_EQ(run_apsis(folder, {"plot"}).code, 2);
+  const auto damaged = run_apsis(folder, {"plot", "damaged"});
+  EXPECT_EQ(damaged.code, 4);
+  EXPECT_THAT(damaged.err, HasSubstr("damaged/manifest.json"));
+  EXPECT_EQ(run_apsis(folder, {"report", "damaged"}).code, 4);
+  EXPECT_EQ(run_apsis(folder, {"report", "nowhere"}).code, 4);
+  EXPECT_EQ(folder.listing(), before);
+}
+
+TEST(report, is_one_page_and_goes_with_the_results_that_it_reports) {
+  const work_folder folder;
+  make_runs(folder);
+  const auto made = run_apsis(folder, {"report", "fine", "coarse"});
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_EQ(made.out, "fine/report.html\ncoarse/report.html\n");
+  EXPECT_THAT(read(folder.path() / "fine" / "report.html"), HasSubstr("kept at every step"));
+  ASSERT_EQ(run_apsis(folder, {"run", "paper/broadwell", "--out", "fine"}).code, 0);
+  EXPECT_FALSE(fs::exists(folder.path() / "fine" / "report.html")) << "a report of results that are gone";
+}

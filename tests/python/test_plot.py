@@ -1,0 +1,235 @@
+"""Pictures of runs and methods: what is drawn, from results whose numbers are known."""
+import json
+import math
+
+import apsis
+import numpy as np
+import pytest
+from apsis.plot import __main__ as command
+from apsis.plot import comparison_figure, distribution_figure, draw, fields_figure, history_figure, read_result, stability_figure
+from apsis.plot import tableau_figure
+from apsis.plot.methods import stability_function
+from apsis.plot.results import differences
+from apsis.plot.style import PictureError, plt
+
+
+@pytest.fixture(autouse=True)
+def _closed_figures():
+    yield
+    plt.close("all")
+
+
+def describe(name):
+    m = apsis.method(name)
+    return {"name": name, "A_hat": m.A_hat, "A": m.A, "A_dot": m.A_dot}
+
+
+def run(folder, case, *overrides):
+    return apsis.run(case, *overrides, out=folder)
+
+
+SMALL_BGK = ("space.cells=12", "velocity.points=48", "time.end=0.01", "output.every=0.004")
+
+
+# --- runs ------------------------------------------------------------------------------------------------------------------------
+
+
+def test_fields_are_those_of_the_run_in_the_order_of_the_model(tmp_path):
+    computed = run(tmp_path, "paper/bgk-mixed", *SMALL_BGK)
+    figure = fields_figure(read_result(tmp_path))
+    assert [a.get_ylabel() for a in figure.axes] == [f"{name} (dimensionless)" for name in ("density", "bulk velocity", "temperature")]
+    for axes, name in zip(figure.axes, ("rho", "u", "T")):
+        # Earlier snapshots in grey, the end last.
+        assert len(computed.t) == 4
+        assert [line.get_label() for line in axes.lines] == [f"t = {t:.4g}" for t in computed.t]
+        for line, values in zip(axes.lines, computed.fields[name]):
+            np.testing.assert_array_equal(line.get_ydata(), values)
+
+
+def test_f_is_drawn_over_velocity_and_place(tmp_path):
+    computed = run(tmp_path, "paper/bgk-mixed", *SMALL_BGK)
+    figure = distribution_figure(read_result(tmp_path))
+    mesh = figure.axes[0].collections[0].get_array().reshape(len(computed.v), len(computed.x))
+    np.testing.assert_array_equal(mesh, computed.f.T)
+    np.testing.assert_array_equal(figure.axes[1].lines[0].get_ydata(), computed.epsilon)
+
+
+def test_f_of_two_velocities_is_integrated_over_the_second(tmp_path):
+    run(tmp_path, "paper/bgk-mixed", *SMALL_BGK, "model.velocity_dimensions=2")
+    result = read_result(tmp_path)
+    figure = distribution_figure(result)
+    mesh = np.asarray(figure.axes[0].collections[0].get_array()).reshape(48, 12)
+    dv = 30 / 48
+    # The density is the integral over both.
+    np.testing.assert_allclose(mesh.sum(axis=0) * dv, result.fields["rho"], rtol=1e-12)
+
+
+def test_a_few_speeds_make_no_map_and_six_fields_two_rows(tmp_path):
+    run(tmp_path, "paper/broadwell")
+    result = read_result(tmp_path)
+    assert distribution_figure(result) is None
+    figure = fields_figure(result)
+    assert len(figure.axes) == 6
+    assert len({round(a.get_position().y0, 3) for a in figure.axes}) == 2
+
+
+def test_without_space_unknowns_are_drawn_over_time(tmp_path):
+    computed = run(tmp_path, "paper/ode", "output.every=0.25")
+    figure = fields_figure(read_result(tmp_path))
+    np.testing.assert_array_equal(figure.axes[0].lines[0].get_ydata(), computed.fields["u1"][:, 0])
+    np.testing.assert_array_equal(figure.axes[0].lines[0].get_xdata(), computed.t)
+
+
+def test_history_shows_what_was_checked_and_steps_where_they_change(tmp_path):
+    computed = run(tmp_path / "a", "paper/bgk-mixed", *SMALL_BGK)
+    smallest, defects, entropy = history_figure(read_result(tmp_path / "a")).axes
+    np.testing.assert_array_equal(smallest.lines[0].get_ydata(), computed.history["min_value"])
+    assert [t.get_text() for t in defects.get_legend().get_texts()] == ["mass", "momentum", "energy"]
+    assert all(line.get_ydata().min() >= 1e-18 for line in defects.lines)  # exact zeros are seen
+    np.testing.assert_array_equal(entropy.lines[0].get_ydata(), computed.history["entropy"])
+    run(tmp_path / "b", "paper/ode", "time.tolerance=1e-6")
+    assert history_figure(read_result(tmp_path / "b")).axes[-1].get_ylabel() == "Δt (dimensionless)"
+
+
+def test_a_comparison_draws_the_finest_as_a_line_and_averages_it_onto_the_others(tmp_path):
+    coarse = run(tmp_path / "coarse", "paper/broadwell", "space.cells=10")
+    fine = run(tmp_path / "fine", "paper/broadwell", "space.cells=40")
+    runs = [("few", read_result(tmp_path / "coarse")), ("many", read_result(tmp_path / "fine"))]
+    first = comparison_figure(runs).axes[0]
+    assert [line.get_linestyle() for line in first.lines] == ["None", "-"]
+    averages = fine.fields["rho"][-1].reshape(10, 4).mean(axis=1)
+    distance = np.abs(coarse.fields["rho"][-1] - averages).max()
+    assert distance > 0
+    (line,) = differences(runs)
+    assert line.startswith(f"few against many: rho {distance:.2e}, ")
+
+
+def test_a_comparison_of_different_models_is_refused(tmp_path):
+    run(tmp_path / "a", "paper/ode")
+    run(tmp_path / "b", "paper/broadwell")
+    with pytest.raises(PictureError, match="nothing to compare"):
+        comparison_figure([("a", read_result(tmp_path / "a")), ("b", read_result(tmp_path / "b"))])
+
+
+# --- methods ---------------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["md-imex-6-3", "ars-222", "imdrk-5-4", "ssprk-3-3", "hsz-a-3-2"])
+def test_the_stability_function_is_one_step_of_the_integrator(name):
+    # u′ = −λ_Q (u − 0·w) with transport λ_T u: of RelaxationProblem with E = 0, Q = −u/ε, T = λ_T u.
+    z_T, z_Q, method = -0.3, -1.7, apsis.method(name)
+    if method.kind == "implicit":
+        z_T = 0.0
+    problem = apsis.RelaxationProblem(transport=lambda t, u: [z_T * u[0]], moments=lambda u: 0.0, equilibrium=lambda w: [0.0],
+                                      rate=lambda w: 1.0, epsilon=-1 / z_Q)
+    stepped = apsis.integrate(problem, [1.0], (0, 1), dt=1.0, method=name).u[-1][0]
+    # Rounding of some tens of operations.
+    assert complex(stability_function(describe(name), z_T, z_Q)) == pytest.approx(stepped, rel=1e-12)
+
+
+def test_regions_are_drawn_for_the_parts_that_a_method_has():
+    assert [a.get_xlabel() for a in stability_figure(describe("imdrk-5-4")).axes] == ["Re z_Q (dimensionless)"]
+    assert [a.get_xlabel() for a in stability_figure(describe("ssprk-10-4")).axes] == ["Re z_T (dimensionless)"]
+    both = stability_figure(describe("md-imex-6-3")).axes
+    assert [a.get_xlabel() for a in both] == ["Re z_Q (dimensionless)", "Re z_T (dimensionless)"]
+
+
+def test_a_tableau_shows_every_coefficient_and_leaves_zeros_empty():
+    method = describe("md-imex-3-2")
+    axes = [a for a in tableau_figure(method).axes if a.get_images()]
+    for a, name in zip(axes, ("A_hat", "A", "A_dot")):
+        shown = np.asarray(a.get_images()[0].get_array(), dtype=float)
+        np.testing.assert_array_equal(np.where(np.isnan(shown), 0, shown), method[name])
+        assert len(a.texts) == np.count_nonzero(method[name])
+
+
+# --- pictures that the program describes ------------------------------------------------------------------------------------------
+
+
+def curve(label, x, y, style="line_and_markers", colour=-1):
+    return {"label": label, "x": x, "y": y, "style": style, "colour": colour}
+
+
+def panel(**changes):
+    return {"title": "", "x_label": "Δt (dimensionless)", "y_label": "error", "log_x": True, "log_y": True,
+            "slopes": [2], "curves": [], "maps": []} | changes
+
+
+def picture(*panels):
+    return {"name": "one", "title": "A <title>", "caption": "See & believe", "panels": list(panels)}
+
+
+def test_curves_leave_out_what_no_logarithm_can_show():
+    axes = draw(picture(panel(curves=[curve("a", [1, 0.5, 0.25, 0.125], [1, 0, None, -1])]))).axes[0]
+    assert list(axes.lines[0].get_xdata()) == [1.0]
+    assert axes.get_xlabel() == "Δt (dimensionless)"
+
+
+@pytest.mark.parametrize("slope", [2, -5])
+def test_a_slope_triangle_has_the_slope(slope):
+    axes = draw(picture(panel(curves=[curve("a", [1, 0.1], [1, 0.1**slope])], slopes=[slope]))).axes[0]
+    (triangle,) = axes.patches
+    (x0, y0), (x1, _), (upright, y2) = triangle.get_xy()[:3]
+    foot = x0 if upright == x1 else x1
+    assert math.log(y2 / y0) / math.log(upright / foot) == pytest.approx(slope, rel=1e-12)
+    low, high = axes.get_ylim()
+    assert low < y0 and y2 < high
+
+
+def test_curves_of_one_colour_share_it_and_references_are_black():
+    data = panel(curves=[curve("a", [1, 2], [1, 2], "line", 0), curve("", [1, 2], [2, 1], "dashed", 0),
+                         curve("exact", [1, 2], [1, 1], "dash_dot", -2)])
+    lines = draw(picture(data)).axes[0].lines
+    assert lines[0].get_color() == lines[1].get_color()
+    assert lines[2].get_color() == "#000000"
+
+
+def test_maps_are_drawn_with_holes():
+    data = panel(maps=[{"label": "slope", "x": [1, 10], "y": [1, 10, 100], "value": [[1, 2], [None, 3], [2, 2]],
+                        "lowest": 0, "highest": 3}])
+    assert [t.get_text() for t in draw(picture(data)).axes[0].texts] == ["1.0", "2.0", "3.0", "2.0", "2.0"]
+
+
+# --- the command -----------------------------------------------------------------------------------------------------------------
+
+
+def test_the_command_draws_folders_files_and_methods(tmp_path, monkeypatch, capsys):
+    run(tmp_path / "run", "paper/bgk-mixed", *SMALL_BGK)
+    (tmp_path / "p.json").write_text(json.dumps(picture(panel(curves=[curve("a", [1, 2], [1, 4])]))))
+    monkeypatch.chdir(tmp_path)
+    assert command.main(["run", "p.json", "md-imex-3-2"]) == 0
+    made = capsys.readouterr().out.split()
+    assert made == ["run/pictures/fields.png", "run/pictures/distribution.png", "run/pictures/history.png", "pictures/one.png",
+                    "md-imex-3-2-tableau.png", "md-imex-3-2-stability.png"]
+    for name in made:
+        image = plt.imread(tmp_path / name)[..., :3]
+        assert image.std() > 0.01, f"{name} is blank"
+
+
+@pytest.mark.parametrize("form", ["png", "svg", "pdf"])
+def test_equal_results_make_equal_files(tmp_path, form):
+    run(tmp_path / "run", "paper/broadwell")
+    for out in ("a", "b"):
+        assert command.main([str(tmp_path / "run"), "--out", str(tmp_path / out), "--format", form]) == 0
+    for name in ("fields", "history"):
+        assert (tmp_path / "a" / f"{name}.{form}").read_bytes() == (tmp_path / "b" / f"{name}.{form}").read_bytes()
+
+
+def test_what_cannot_be_drawn_is_named(tmp_path, monkeypatch, capsys):
+    run(tmp_path / "run", "paper/ode")
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "none.json").write_text("{}")
+    (tmp_path / "list.json").write_text("[]")
+    (tmp_path / "damaged.json").write_text(json.dumps(picture({"title": "no axes"})))
+    (tmp_path / "binary.json").write_bytes(b"\x89HDF\xff")
+    monkeypatch.chdir(tmp_path)
+    for name, code in (("empty", 4), ("none.json", 4), ("list.json", 4), ("damaged.json", 4), ("binary.json", 4), ("nothing", 2)):
+        assert command.main([name]) == code, name
+        assert name in capsys.readouterr().err
+    for file in ("solution.h5", "history.csv", "manifest.json"):
+        kept = (tmp_path / "run" / file).read_bytes()
+        (tmp_path / "run" / file).write_bytes(kept[: len(kept) // 2])
+        assert command.main([str(tmp_path / "run")]) == 4, file
+        assert file in capsys.readouterr().err
+        (tmp_path / "run" / file).write_bytes(kept)
+    assert command.main([str(tmp_path / "run"), "--out", str(tmp_path / "none.json")]) == 4

@@ -1,0 +1,204 @@
+"""Report pages: what stands in them, and how a browser shows them."""
+import base64
+import json
+import re
+
+import apsis
+import pytest
+from apsis.report import __main__ as command
+from apsis.report import make_report
+from apsis.report.claims import markdown
+from apsis.plot.style import PictureError
+from test_plot import curve, panel, picture
+
+SMALL = ("space.cells=12", "velocity.points=48", "time.end=0.01")
+
+
+def claim(**changes):
+    return {"id": "C1", "section": "one", "statement": "1 < 2", "how": "by hand", "holds": True, "error": "", "wall_s": 0.5,
+            "findings": [{"what": "order", "value": 3.0, "condition": "3", "holds": True}],
+            "tables": [{"title": "t", "columns": ["a & b"], "rows": [["x<y"]]}], "pictures": [], "remarks": []} | changes
+
+
+def document(*claims):
+    return {"version": "0", "paper": "p", "build": {"compiler": "c", "build_type": "b", "instruction_set": "i"},
+            "machine": {"processor": "m", "threads": 2}, "wall_s": 1.0, "claims": list(claims)}
+
+
+def page_of(folder):
+    return make_report(folder).read_text(encoding="utf-8")
+
+
+def page_of_claims(folder, *claims):
+    (folder / "reproduce.json").write_text(json.dumps(document(*claims)), encoding="utf-8")
+    return page_of(folder)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A run with a title that HTML must not take for its own."""
+    folder = tmp_path_factory.mktemp("run")
+    apsis.run("paper/bgk-mixed", *SMALL, 'title="a <b> & \\"c\\""', out=folder)
+    return folder
+
+
+# --- a run -----------------------------------------------------------------------------------------------------------------------
+
+
+def test_a_run_has_summary_promises_pictures_case_and_manifest(run):
+    page = page_of(run)
+    manifest = json.loads((run / "manifest.json").read_text())
+    assert f"after {manifest['result']['steps']} steps of <code>md-imex-6-3</code>" in page
+    assert page.count("kept at every step") == 2 and page.count("not promised for this case") == 1
+    assert f"largest relative defect {manifest['result']['conservation_defect']:.4g}" in page
+    assert page.count("<img ") == 3
+    assert "epsilon = &quot;1e-5 + tanh" in page  # the case file, as text
+    assert f"<td>{manifest['build']['compiler']}</td>" in page
+    for name in ("fields", "distribution", "history"):
+        assert (run / "pictures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_text_is_escaped(run):
+    page = page_of(run)
+    assert "<h1>a &lt;b&gt; &amp; &quot;c&quot;</h1>" in page
+    assert "<b>" not in page.replace("<figcaption><b>", "")
+
+
+def test_a_run_that_broke_a_promise_says_so(tmp_path):
+    # The Maxwellian by formula does not conserve where the spacing comes near the thermal speed.
+    with pytest.raises(apsis.NumericalError):
+        apsis.run("paper/bgk-mixed", *SMALL, "velocity.points=30", "velocity.equilibrium=formula", out=tmp_path)
+    page = page_of(tmp_path)
+    assert "broken promise: " in page and ">failed<" in page
+    assert "one was broken, see above" in page
+
+
+def test_a_run_without_space_shows_its_numbers(tmp_path):
+    result = apsis.run("paper/ode", out=tmp_path)
+    page = page_of(tmp_path)
+    assert all(repr(float(x)) in page for x in result.f[0])
+
+
+def test_equal_results_make_equal_pages(run):
+    assert page_of(run) == page_of(run)
+
+
+# --- a reproduction ---------------------------------------------------------------------------------------------------------------
+
+
+def test_captions_and_statements_are_escaped(tmp_path):
+    page = page_of_claims(tmp_path, claim(pictures=[picture(panel(curves=[curve("a", [1, 2], [1, 4])]))]))
+    assert "1 &lt; 2" in page and "See &amp; believe" in page and "A <title>" not in page
+
+
+def test_a_failed_claim_shows_the_figure_that_fails(tmp_path):
+    bad = {"what": "slope", "value": 1.25, "condition": "at least 2.85", "holds": False}
+    page = page_of_claims(tmp_path, claim(), claim(id="C2", holds=False, findings=[claim()["findings"][0], bad]),
+                          claim(id="C3", holds=False, findings=[], error="it broke (why)"))
+    assert "1 of 3 claims hold" in page and "slope: 1.25 (at least 2.85)" in page and "it broke (why)" in page
+
+
+def test_the_table_for_documentation_has_a_row_for_each_claim():
+    table = markdown(document(claim(remarks=["misprint"]), claim(id="C2", statement="a | b", holds=False)))
+    assert re.findall(r"^\| (C\d+) \|", table, re.M) == ["C1", "C2"]
+    assert "1 of 2 claims hold" in table and "a \\| b" in table and "- **C1** misprint" in table
+
+
+# --- every page ------------------------------------------------------------------------------------------------------------------
+
+
+def test_nothing_is_loaded_from_outside(run, tmp_path):
+    for page in (page_of(run), page_of_claims(tmp_path, claim(pictures=[picture(panel(curves=[curve("a", [1, 2], [1, 4])]))]))):
+        targets = re.findall(r'(?:src|href)="([^"]*)"', page)
+        assert targets and all(re.match(r"data:|#", target) for target in targets)
+        inside = [base64.b64decode(data).decode() for data in re.findall(r"data:image/svg\+xml;base64,([^\"]+)", page)]
+        assert inside and all("<svg" in image for image in inside)
+        assert not any("url(http" in part for part in (page, *inside))
+
+
+def test_what_is_no_result_is_named_and_nothing_is_left(tmp_path, capsys):
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "damaged").mkdir()
+    (tmp_path / "damaged" / "reproduce.json").write_text(json.dumps({"claims": [{"id": "C1"}]}))
+    for name in ("empty", "damaged", "nothing"):
+        assert command.main([str(tmp_path / name)]) == 4
+        assert name in capsys.readouterr().err
+        assert not (tmp_path / name / "report.html").exists()
+    with pytest.raises(PictureError):
+        make_report(tmp_path / "empty")
+
+
+# --- in a browser ----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    """A headless Chromium that records its console and every request."""
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    yield driver
+    driver.quit()
+
+
+def requests_of(driver):
+    events = (json.loads(entry["message"])["message"] for entry in driver.get_log("performance"))
+    return [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
+
+
+def show(driver, page, width):
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                           {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600})
+    driver.get_log("browser"), driver.get_log("performance")
+    driver.get(page.as_uri())
+
+
+READABLE = """
+const broken = [...document.images].filter(i => !(i.complete && i.naturalWidth > 0)).length;
+const drawn = [...document.images].map(i => i.getBoundingClientRect().width / i.naturalWidth);
+const sizes = [...document.querySelectorAll('p, td, th, figcaption, h1, h2, pre')].map(e => parseFloat(getComputedStyle(e).fontSize));
+const paragraph = document.querySelector('p').getBoundingClientRect().width;
+return [innerWidth, document.documentElement.scrollWidth, broken, Math.min(...drawn), Math.min(...sizes), paragraph];
+"""
+
+
+@pytest.mark.parametrize("width", [400, 1600])
+@pytest.mark.parametrize("kind", ["run", "study", "claims"])
+def test_a_browser_shows_it_readably_and_asks_for_nothing(chromium, run, tmp_path, kind, width):
+    if kind == "run":
+        page = make_report(run)
+    elif kind == "study":
+        data = {"apsis": "0", "state": "complete", "study": {"case": "paper/ode", "measure": "l2 norm", "runs": 2}, **document()}
+        (tmp_path / "manifest.json").write_text(json.dumps(data))
+        (tmp_path / "converge.json").write_text(json.dumps([{"time.dt": 0.5, "error": 1e-3, "rate": None}, {"error": 1e-4}]))
+        (tmp_path / "picture.json").write_text(json.dumps(picture(panel(curves=[curve("a", [1, 2], [1, 4])]))))
+        page = make_report(tmp_path)
+    else:
+        long_words = claim(statement="w" * 300, tables=[{"title": "t", "columns": ["c"] * 20, "rows": [["number"] * 20]}],
+                           pictures=[picture(panel(curves=[curve("a", [1, 2], [1, 4])]))])
+        page_of_claims(tmp_path, long_words)
+        page = tmp_path / "report.html"
+    show(chromium, page, width)
+    window, content, broken, drawn, smallest, paragraph = chromium.execute_script(READABLE)
+    assert window == width
+    assert content <= width  # no sideways scrolling of the page; wide tables and pictures scroll in themselves
+    assert broken == 0
+    assert drawn * 10 * 4 / 3 >= 7.5  # pixels of the letters in pictures, which have 10 points
+    assert smallest >= 12 and paragraph <= 62 * 16  # pixels: small print, and lines that an eye can follow
+    assert chromium.get_log("browser") == []
+    assert [url for url in requests_of(chromium) if not url.startswith(("data:", page.as_uri()))] == []
+
+
+def test_the_browser_test_sees_what_it_looks_for(chromium, tmp_path):
+    page = tmp_path / "bad.html"
+    page.write_text('<meta charset="utf-8"><p>x</p><img src="gone.png"><div style="width: 5000px">w</div><script>undefined.x</script>')
+    show(chromium, page, 400)
+    _, content, broken, *_ = chromium.execute_script(READABLE)
+    assert content > 400 and broken == 1
+    assert any("gone.png" in url for url in requests_of(chromium))
+    assert chromium.get_log("browser") != []

@@ -2,6 +2,7 @@
 #include "method_report.hpp"
 
 #include <apsis/config/case.hpp>
+#include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/family_registry.hpp>
@@ -98,6 +99,27 @@ json claims() {
   return all;
 }
 
+json keys() {
+  json all = json::array();
+  for (const case_key& key : case_schema()) {
+    const case_value value = key.load(case_config{});
+    const bool has_default = !key.required && !std::holds_alternative<std::monostate>(value);
+    json models = json::array();
+    for (const model_entry* m : model_entries())
+      if (applies(key, *m)) models.push_back(m->name);
+    all.push_back({{"name", key.path},
+                   {"description", key.doc},
+                   {"type", type_text(key.type)},
+                   {"range", range_text(key)},
+                   {"unit", key.unit},
+                   {"required", key.required},
+                   {"default", has_default ? json(to_toml(value)) : json(nullptr)},
+                   {"choices", key.choices ? json(key.choices(case_config{})) : json::array()},
+                   {"models", models}});
+  }
+  return all;
+}
+
 std::string family_lines() {
   std::string out = "\nfamilies: any S of the range gives a method\n";
   for (const family_entry* f : family_entries())
@@ -115,9 +137,9 @@ std::string as_text(const std::string& what, const json& all) {
 }
 
 const std::map<std::string, json (*)()>& lists() {
-  static const std::map<std::string, json (*)()> all = {{"methods", methods}, {"families", families},
-                                                        {"models", models},   {"cases", cases},
-                                                        {"schemes", schemes}, {"claims", claims}};
+  static const std::map<std::string, json (*)()> all = {
+      {"methods", methods}, {"families", families}, {"models", models}, {"cases", cases},
+      {"schemes", schemes}, {"claims", claims},     {"keys", keys}};
   return all;
 }
 
@@ -158,9 +180,9 @@ std::vector<std::string> list_names() {
 
 void add_list(CLI::App& program, action& chosen) {
   auto given = std::make_shared<options>();
-  CLI::App* command =
-      program.add_subcommand("list", "List methods, families, models, cases, schemes or claims");
-  command->add_option("WHAT", given->what, "methods, families, models, cases, schemes or claims")->required();
+  const std::string all = fmt::format("{}", fmt::join(list_names(), ", "));
+  CLI::App* command = program.add_subcommand("list", "List what there is: " + all);
+  command->add_option("WHAT", given->what, all)->required();
   auto* as_json = command->add_flag("--json", given->json, "print a JSON array");
   command->add_flag("--names", given->names, "print names alone, a line each")->excludes(as_json);
   command->callback([given, &chosen] { chosen = [given] { return list(*given); }; });

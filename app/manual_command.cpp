@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 namespace apsis::app {
 namespace {
@@ -64,6 +65,30 @@ std::string manual_page(const CLI::App& program) {
   return text + fmt::format(".SH EXIT STATUS\n{}\n", roff(program.get_footer()));
 }
 
+std::string document(const CLI::App& program) {
+  using json = nlohmann::ordered_json;
+  json commands = json::array();
+  for (const auto* command : commands_of(program)) {
+    json options = json::array();
+    for (const auto* option : options_of(*command))
+      options.push_back({{"usage", usage_of(*option)},
+                         {"description", option->get_description()},
+                         {"required", option->get_required()},
+                         {"default", option->get_default_str()}});
+    const std::string more = command->get_footer();
+    commands.push_back({{"name", command->get_name()},
+                        {"description", command->get_description()},
+                        {"options", options},
+                        {"more", more == program.get_footer() ? "" : more}});
+  }
+  return json{{"version", version()},
+              {"description", program.get_description()},
+              {"commands", commands},
+              {"exit_codes", program.get_footer()}}
+             .dump(2) +
+         "\n";
+}
+
 /// Long options of a command.
 std::string words_of(const CLI::App& command) {
   std::vector<std::string> words;
@@ -107,10 +132,13 @@ void add_manual(CLI::App& program, action& chosen) {
   auto format = std::make_shared<std::string>("man");
   CLI::App* command =
       program.add_subcommand("manual", "Print the manual page, or the completion of command lines for bash");
-  command->add_option("--format", *format, "man or bash")->check(CLI::IsMember({"man", "bash"}));
+  command->add_option("--format", *format, "man, bash, or json for all commands with their options")
+      ->check(CLI::IsMember({"man", "bash", "json"}));
   command->callback([format, &program, &chosen] {
     chosen = [format, &program] {
-      print(*format == "man" ? manual_page(program) : bash_completion(program));
+      print(*format == "man"    ? manual_page(program)
+            : *format == "bash" ? bash_completion(program)
+                                : document(program));
       return 0;
     };
   });

@@ -6,8 +6,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <map>
 #include <random>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -331,7 +333,7 @@ TEST(results, a_checkpoint_of_another_case_or_a_damaged_one_is_refused) {
 
 TEST(results, lists_and_certificates_are_json) {
   const work_folder folder;
-  for (const std::string what : {"methods", "models", "cases", "schemes", "families"}) {
+  for (const std::string what : {"methods", "models", "cases", "schemes", "families", "keys"}) {
     const outcome result = run_apsis(folder, {"list", what, "--json"});
     ASSERT_EQ(result.code, 0) << result.err;
     const json all = json::parse(result.out);
@@ -354,6 +356,32 @@ TEST(results, lists_and_certificates_are_json) {
   EXPECT_EQ(run_apsis(folder, {"info", "--json"}).code, 0);
   EXPECT_THAT(run_apsis(folder, {"show", "case"}).out, HasSubstr("checkpoint_every"));
   EXPECT_THAT(run_apsis(folder, {"show", "paper/decay"}).out, HasSubstr("imdrk-2-3"));
+}
+
+TEST(results, keys_and_commands_are_json_with_what_their_documentation_says) {
+  const work_folder folder;
+  std::map<std::string, json> keys;
+  for (const auto& key : json::parse(run_apsis(folder, {"list", "keys", "--json"}).out))
+    keys[key["name"]] = key;
+  EXPECT_EQ(keys["space.limiter"]["choices"], json({"none", "positivity"}));
+  EXPECT_EQ(keys["space.limiter"]["default"], "\"none\"");
+  EXPECT_EQ(keys["space.cells"]["range"], "at least 1 and at most 10000000");
+  EXPECT_TRUE(keys["space.cells"]["required"].get<bool>());
+  EXPECT_TRUE(keys["space.cells"]["default"].is_null());
+  EXPECT_EQ(keys["velocity.max"]["models"], json({"bgk"}));
+  const std::string text = run_apsis(folder, {"show", "case"}).out;
+  for (const auto& [name, key] : keys)
+    EXPECT_THAT(text, HasSubstr("\n  " + name.substr(name.find('.') + 1) + " ("));
+
+  const json manual = json::parse(run_apsis(folder, {"manual", "--format", "json"}).out);
+  const std::string page = run_apsis(folder, {"manual"}).out;
+  std::set<std::string> names;
+  for (const auto& command : manual["commands"]) {
+    names.insert(command["name"]);
+    EXPECT_THAT(page, HasSubstr(".SH apsis " + command["name"].get<std::string>() + "\n"));
+    EXPECT_FALSE(command["options"].empty()) << command;
+  }
+  EXPECT_THAT(names, testing::IsSupersetOf({"run", "converge", "manual"}));
 }
 
 TEST(results, the_list_of_methods_fits_a_wide_terminal_and_names_the_families) {

@@ -1,4 +1,5 @@
-"""install.py BUILD: pip install . into a new virtual environment, with what BUILD has compiled, and a look at the result."""
+"""install.py BUILD: pip install . into a new virtual environment, with what BUILD has compiled, and a look at the result.
+This is the installation of README.md."""
 import os
 import shutil
 import subprocess

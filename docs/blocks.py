@@ -1,0 +1,184 @@
+"""The code blocks of a page of documentation, what the comments before them say, and whether an output is the one shown.
+
+A comment directly before a block says what is to be done with it; GitHub does not show comments:
+
+    <!-- file: NAME -->         the block is written to NAME in the folder of the page
+    <!-- from: PATH -->         an excerpt, to the letter, of a file of the repository or of the folder of the page; a line
+                                that is a comment with nothing but … stands for lines left out
+    <!-- output: 1e-3 -->       what the block before prints: numbers to this relative tolerance (1e-6 if none is given),
+                                … for anything up to the text that follows
+    <!-- exit: 2 -->            the block ends with this exit code; its output is what it prints and its messages
+    <!-- elsewhere: FILE -->    this test of the repository runs the block; it names the page
+"""
+import re
+import textwrap
+from dataclasses import dataclass, field
+from pathlib import Path
+
+MARKS = {"file", "from", "output", "exit", "elsewhere"}
+COMMENT = re.compile(r"\s*<!--\s*([a-z-]+)(?::\s*(.*?))?\s*-->\s*$")
+FENCE = re.compile(r"(\s*(?:(?:[-*+]|[0-9]+[.)])\s+)?)(`{3,}|~{3,})\s*([^\s`]*)[^`]*$")
+COMMAND = re.compile(r"\s*(\$ |>>> |#include\b|(sudo|apsis|make|cmake|ctest|cpack|python3?|pip3?|git|apt|apt-get|g\+\+|bash|"
+                     r"(build|scripts|docs|studies|bench|env)/\S+)( |$)|import \w+|from \w\S* import )")
+TOKEN = re.compile(r"(?<![\w.])[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|[^\W\d]\w*|\s+|.", re.DOTALL)
+
+
+class Problem(Exception):
+    """Something wrong with a page: problem (why) suggestion."""
+
+    def __init__(self, line: int, text: str):
+        super().__init__(text)
+        self.line = line
+
+
+@dataclass
+class Block:
+    """Lines of a page, first to last, counted from 1, the fences left out. `line` is that of the fence."""
+
+    language: str
+    line: int
+    last: int
+    text: str
+    indent: str = ""
+    marks: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def runs(self) -> bool:
+        """Whether the block is a program that is run as it stands."""
+        return self.language in ("sh", "python", "cpp") and not self.marks.keys() & {"file", "from", "output", "elsewhere"}
+
+
+def read_blocks(text: str) -> list[Block]:
+    """Fenced blocks in their order. Raises Problem."""
+    lines, blocks, marks, at = text.splitlines(), [], {}, 0
+    while at < len(lines):
+        comment, fence = COMMENT.match(lines[at]), FENCE.match(lines[at])
+        at += 1
+        if comment:
+            marks[comment[1]] = (comment[2] or "", at)
+            continue
+        if re.match(r"\s*>.*(```|~~~)", lines[at - 1]):
+            raise Problem(at, "a block stands in a quotation (it cannot be read there) take it out")
+        if not fence:
+            stray(marks, MARKS, "is not before a block")
+            marks = {}
+            continue
+        stray(marks, marks.keys() - MARKS, "is no instruction for a block")
+        first, indent = at, " " * len(fence[1])
+        while at < len(lines) and not (lines[at].strip().startswith(fence[2]) and not lines[at].strip(" `~")):
+            at += 1
+        if at == len(lines):
+            raise Problem(first, f"the block does not end (no closing {fence[2]}) add it")
+        body = "".join(line.removeprefix(indent) + "\n" for line in lines[first:at])
+        blocks.append(Block(fence[3], first, at, body, indent, {name: value for name, (value, _) in marks.items()}))
+        marks, at = {}, at + 1
+    stray(marks, MARKS, "is not before a block")
+    return blocks
+
+
+def stray(marks, names, why):
+    for name in marks.keys() & names:
+        raise Problem(marks[name][1], f"<!-- {name} --> {why} (instructions: {', '.join(sorted(MARKS))}) mend or remove it")
+
+
+def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
+    """Blocks that no rule covers: nothing would tell when they are wrong."""
+    found = []
+    for block in blocks:
+        if block.language in ("", "text") and not block.marks:
+            command = next((line for line in block.text.splitlines() if COMMAND.match(line)), None)
+            if command:
+                found.append(Problem(block.line, f"'{command.strip()}' stands in a block that is not run (its language is "
+                                     f"'{block.language}') write ```sh, ```python or ```cpp"))
+        elif block.language == "cpp" and block.runs and not re.search(r"\bint main\b", block.text):
+            found.append(Problem(block.line, "the program has no main (nothing can run it) say <!-- from: PATH --> or "
+                                 "<!-- file: NAME -->"))
+        elif not block.runs and not block.marks.keys() - {"exit"}:
+            found.append(Problem(block.line, f"nothing checks this block (language '{block.language}') put one of "
+                                 f"{', '.join(f'<!-- {mark} -->' for mark in sorted(MARKS))} before it"))
+        if "file" in block.marks and not is_used(block, blocks):
+            found.append(Problem(block.line, f"{block.marks['file']} is written and not used (no other block names it) run or "
+                                 "compile it in an ```sh block"))
+    inside = {n for block in blocks for n in range(block.line, block.last + 2)}
+    for number, line in enumerate(text.splitlines(), 1):
+        if number not in inside and line.startswith("    ") and COMMAND.match(line):
+            found.append(Problem(number, f"'{line.strip()}' is indented text (nothing runs it) write an ```sh block"))
+    return found
+
+
+def is_used(block: Block, blocks: list[Block]) -> bool:
+    """A case is checked by itself; anything else must be named by another block, CMakeLists.txt by a call of cmake."""
+    if block.language == "toml":
+        return True
+    name = Path(block.marks["file"])
+    word = "cmake" if name.name == "CMakeLists.txt" else name.stem
+    return any(word in other.text for other in blocks if other is not block)
+
+
+def is_excerpt(excerpt: str, text: str) -> bool:
+    """Whether all lines stand in the text, in this order and without gaps but those marked by …, at any common indentation."""
+    parts, lines, at = [[]], text.splitlines(), 0
+    for line in textwrap.dedent(excerpt).strip("\n").splitlines():
+        if re.fullmatch(r"\s*(//|#|--)?\s*…\s*", line):
+            parts.append([])
+        else:
+            parts[-1].append(line.rstrip())
+    parts = [part for part in parts if part]
+    for part in parts:
+        wanted = textwrap.dedent("\n".join(part))
+        while at + len(part) <= len(lines):
+            if textwrap.dedent("\n".join(line.rstrip() for line in lines[at:at + len(part)])) == wanted:
+                break
+            at += 1
+        else:
+            return False
+        at += len(part)
+    return bool(parts)
+
+
+def is_same_output(shown: str, printed: str, tolerance: float) -> bool:
+    """Whether an output is the one that the page shows, … standing for anything. Widths of columns do not count."""
+    pieces, rest = [[]], tokens(printed)
+    for token in tokens(shown):
+        if token == "…":
+            pieces.append([])
+        else:
+            pieces[-1].append(token)
+    for piece in pieces[:-1]:  # blanks beside … belong to it
+        while piece and piece[-1].isspace():
+            piece.pop()
+    for piece in pieces[1:]:
+        while piece and piece[0].isspace():
+            piece.pop(0)
+    if len(pieces) == 1:
+        return len(rest) == len(pieces[0]) and starts_with(rest, pieces[0], tolerance)
+    head, *middle, tail = pieces
+    if len(head) + len(tail) > len(rest) or not starts_with(rest, head, tolerance):
+        return False
+    end = len(rest) - len(tail)
+    if not starts_with(rest[end:], tail, tolerance):
+        return False
+    at = len(head)
+    for piece in middle:
+        at = next((i + len(piece) for i in range(at, end - len(piece) + 1) if starts_with(rest[i:], piece, tolerance)), None)
+        if at is None:
+            return False
+    return True
+
+
+def tokens(text: str) -> list[str]:
+    """Numbers, words and other characters; blanks as one blank, ends of lines as they are."""
+    found = TOKEN.findall("\n".join(line.rstrip() for line in text.strip().splitlines()))
+    return ["\n" * token.count("\n") or " " if token.isspace() else token for token in found]
+
+
+def starts_with(found: list[str], wanted: list[str], tolerance: float) -> bool:
+    return len(found) >= len(wanted) and all(is_same(a, b, tolerance) for a, b in zip(found, wanted))
+
+
+def is_same(a: str, b: str, tolerance: float) -> bool:
+    try:
+        x, y = float(a), float(b)
+    except ValueError:
+        return a == b
+    return a == b or abs(x - y) <= tolerance * max(abs(x), abs(y))

@@ -1,0 +1,139 @@
+#!/usr/bin/python3
+"""Builds the site: docs/build.py [--build build/release] [--work build/docs], pages in WORK/html.
+
+The pages of docs stay as GitHub shows them. A copy in WORK/source gets what belongs to the site only: reference pages from the
+program, a page for each room of the library from its headers, fresh pictures from the blocks that execute.py has run, tables of
+contents from the lists of docs/index.md, and links that lead to pages of the site or to copies of files.
+"""
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from headers import Header, read_headers
+from reference import write_reference
+
+ROOT = Path(__file__).resolve().parents[1]
+KATEX = Path("/usr/share/javascript/katex")
+# Pages that lie elsewhere in the repository, and folders that have a page.
+PLACES = {"README.md": "overview.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
+          "bench/README.md": "bench.md", "methods": "reference/methods.md", "cases": "reference/cases.md"}
+LINK = re.compile(r"(\]\()([^)\s]+)(\))")
+
+
+def rooms() -> list[str]:
+    """In the order in which they depend on each other."""
+    return re.findall(r"^apsis_room\((\w+)", (ROOT / "src" / "apsis" / "CMakeLists.txt").read_text(encoding="utf-8"), re.M)
+
+
+class Site:
+    """Markdown pages in a folder of their own, their links turned to where things are on the site."""
+
+    def __init__(self, source: Path):
+        self.source, self.problems = source, []
+        shutil.rmtree(source, ignore_errors=True)
+        source.mkdir(parents=True)
+        self.places = dict(PLACES)
+        self.places |= {str(page.relative_to(ROOT)): str(page.relative_to(ROOT / "docs")) for page in ROOT.glob("docs/**/*.md")}
+        self.places |= {f"docs/api/{room}.md": f"api/{room}.md" for room in [*rooms(), "index"]}
+        self.places |= {f"src/apsis/{room}{file}": f"api/{room}.md" for room in rooms() for file in ("", "/README.md")}
+
+    def add(self, place: str, text: str, origin: str | None = None):
+        """A page; `origin` is the file of the repository that its links start from, if they do not start from the site."""
+        page = self.source / place
+        page.parent.mkdir(parents=True, exist_ok=True)
+        parts = re.split(r"(^ *```.*?^ *```|`[^`\n]+`)", text, flags=re.M | re.S)  # no links in code
+        parts[::2] = [LINK.sub(lambda m: m[1] + self.link(m[2], place, origin or f"docs/{place}") + m[3], p) for p in parts[::2]]
+        page.write_text("".join(parts), encoding="utf-8")
+
+    def link(self, target: str, place: str, origin: str) -> str:
+        """The link of a page of the repository, as one from its place on the site."""
+        path, mark, anchor = target.partition("#")
+        if re.match(r"[a-z]+:", target) or not path:
+            return target
+        file = os.path.normpath(os.path.join(os.path.dirname(origin), path))
+        to = self.places.get(file) or (file.removeprefix("docs/") if file.startswith(("docs/reference/", "docs/images/")) else None)
+        if to is None and (ROOT / file).is_file():
+            to = f"files/{file}"  # a copy of the file, under the name that it has here
+            (self.source / to).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / file, self.source / to)
+        if to is None:
+            self.problems.append(f"{origin}: there is no {target} (neither a page nor a file) mend the link")
+            return target
+        return os.path.relpath(to, os.path.dirname(place) or ".") + mark + anchor
+
+
+def assemble(site: Site, program: Path, work: Path):
+    """All pages; doxygen has been run."""
+    shutil.copytree(ROOT / "docs" / "_static", site.source / "_static")
+    shutil.copytree(KATEX, site.source / "_static" / "katex", ignore=shutil.ignore_patterns("*.mjs", "contrib", "*.ttf", "*.woff"))
+    shutil.copytree(ROOT / "docs" / "images", site.source / "images")
+    for picture in work.glob("run/*/images/*.png"):
+        shutil.copy(picture, site.source / "images" / picture.name)
+    generated = {"Reference": [f"reference/{name}" for name in write_reference(program, site.source / "reference")],
+                 "C++ interface": ["api/index"], "Python interface": ["python-api"]}
+    for page in (site.source / "reference").glob("*.md"):
+        site.add(f"reference/{page.name}", page.read_text(encoding="utf-8"))
+    for file, place in site.places.items():
+        if file.endswith(".md") and not place.startswith("api/") and place != "index.md":
+            site.add(place, (ROOT / file).read_text(encoding="utf-8"), file)
+    add_interfaces(site, read_headers(work / "doxygen" / "xml"))
+    site.add("index.md", with_contents((ROOT / "docs" / "index.md").read_text(encoding="utf-8"), site, generated), "docs/index.md")
+
+
+def with_contents(text: str, site: Site, generated: dict[str, list[str]]) -> str:
+    """The front page, a table of contents for each of its sections: the pages that its list names, then the generated ones."""
+    contents = {}
+    for section in text.split("\n## ")[1:]:
+        links = [site.link(target, "index.md", "docs/index.md") for _, target, _ in LINK.findall(section)]
+        contents[section.splitlines()[0]] = [link for link in links if link.endswith(".md")]
+    for title, pages in generated.items():
+        contents[title] = contents.get(title, []) + pages
+    return text + "".join(f"\n```{{toctree}}\n:caption: {title}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
+                          for title, pages in contents.items())
+
+
+def add_interfaces(site: Site, headers: dict[str, Header]):
+    """A page for each room, with all its headers, and one for the Python package."""
+    listed = ""
+    for room in rooms():
+        about = (ROOT / "src" / "apsis" / room / "README.md").read_text(encoding="utf-8")
+        text = about.replace("\n", "\n\n", 1)
+        for name in sorted(name for name in headers if name.startswith(f"apsis/{room}/")):
+            text += f"\n## {name.removeprefix(f'apsis/{room}/')}\n\n```cpp\n#include <{name}>\n```\n\n{headers[name].directives(name)}"
+        site.add(f"api/{room}.md", text, f"src/apsis/{room}/README.md")
+        listed += f"- [{room}]({room}.md): {about.split(chr(10), 1)[1].split('. ')[0].strip().rstrip('.')}.\n"
+    site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a row of rooms, each a library that is linked only to those before it. "
+             f"`find_package(apsis)` brings all as `apsis::apsis`.\n\n{listed}\n```{{toctree}}\n:hidden:\n\n" + "\n".join(rooms()) + "\n```\n")
+    site.add("python-api.md", "# Python interface\n\n```{eval-rst}\n.. automodule:: apsis\n   :members:\n   :inherited-members: Exception\n```\n")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=ROOT / "build" / "release")
+    parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
+    given = parser.parse_args()
+    build, work = given.build.resolve(), given.work.resolve()
+    (work / "doxygen").mkdir(parents=True, exist_ok=True)
+    doxygen = subprocess.run(["doxygen", "-"], cwd=ROOT, text=True, input=(
+        (ROOT / "docs" / "Doxyfile").read_text(encoding="utf-8") + f"\nOUTPUT_DIRECTORY = {work / 'doxygen'}\n"
+        + os.environ.get("APSIS_DOXYGEN", "")))
+    site = Site(work / "source")
+    assemble(site, build / "app" / "apsis", work)
+    for problem in dict.fromkeys(site.problems):
+        print(problem, file=sys.stderr)
+    shutil.rmtree(work / "html", ignore_errors=True)
+    sphinx = subprocess.run(
+        ["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-c", ROOT / "docs", "-d", work / "doctrees",
+         site.source, work / "html"], env=os.environ | {"APSIS_BUILD": str(build), "APSIS_DOCS": str(work), "PYTHONDONTWRITEBYTECODE": "1"})
+    if site.problems or doxygen.returncode or sphinx.returncode:
+        return 1
+    print(f"the site is {work / 'html' / 'index.html'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,75 @@
+"""Sphinx, called by build.py, which sets APSIS_BUILD and APSIS_DOCS and assembles the pages."""
+import os
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+from docutils.nodes import SkipNode
+from sphinx.domains.cpp import ASTDeclaration
+
+ROOT = Path(__file__).resolve().parents[1]
+BUILD, WORK = Path(os.environ["APSIS_BUILD"]), Path(os.environ["APSIS_DOCS"])
+KATEX = Path("/usr/share/javascript/katex")  # libjs-katex: pages load nothing from elsewhere
+sys.path[:0] = [str(BUILD / "python")]
+
+project = "Apsis"
+author = copyright = "The Apsis authors"
+release = version = re.search(r"project\(apsis VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+extensions = ["myst_parser", "breathe", "sphinx.ext.autodoc"]
+html_theme = "furo"
+html_title = f"Apsis {version}"
+html_static_path = [str(WORK / "source" / "_static")]
+html_css_files = ["katex/katex.min.css", "site.css"]
+html_js_files = ["katex/katex.min.js", "site.js"]
+html_copy_source = False
+html_show_sphinx = False
+highlight_language = "text"
+
+myst_enable_extensions = ["dollarmath", "deflist"]
+myst_heading_anchors = 4
+myst_dmath_allow_digits = False  # "2$ and 3$" is no formula
+
+breathe_projects = {"apsis": str(WORK / "doxygen" / "xml")}
+breathe_default_project = "apsis"
+breathe_default_members = ("members",)
+breathe_show_include = False
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+
+# Names of others, whose documentation is elsewhere.
+index = ElementTree.parse(WORK / "doxygen" / "xml" / "index.xml").getroot()
+nitpick_ignore = [("cpp:identifier", part) for entry in index.iterfind("compound[@kind='namespace']")
+                  for part in (entry.findtext("name"), entry.findtext("name").rpartition("::")[2])]
+nitpick_ignore_regex = [
+    (r"py:.*", r"(numpy|collections|pathlib|typing)\..*|Array|ArrayLike|NDArray|Path|Tableau|Case|Progress|.*Fraction|apsis\._core\..*"),
+    (r"cpp:identifier", r"(std|boost|nlohmann|Eigen|hwy|fmt)(::.*)?|.*@\d+"),  # @: without a name
+]
+
+
+def render_inline(self, node):
+    self.body.append(self.starttag(node, "span", "", CLASS="math") + self.encode(node.astext()) + "</span>")
+    raise SkipNode
+
+
+def render_block(self, node):
+    self.body.append(self.starttag(node, "div", "", CLASS="math") + self.encode(node.astext()) + "</div>\n")
+    raise SkipNode
+
+
+def newest_id(declaration, compute=ASTDeclaration.get_newest_id):
+    """Sphinx asks for the same names again and again: half of the time of a build."""
+    if declaration.objectType == "enumerator":  # that of an enumerator changes
+        return compute(declaration)
+    if not hasattr(declaration, "newest_id"):
+        declaration.newest_id = compute(declaration)
+    return declaration.newest_id
+
+
+def setup(app):
+    ASTDeclaration.get_newest_id = newest_id
+    app.add_html_math_renderer("katex", (render_inline, None), (render_block, None))
+
+
+html_math_renderer = "katex"

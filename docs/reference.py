@@ -1,0 +1,176 @@
+"""Pages of reference from the program itself: methods, models, cases, keys, schemes, claims, commands."""
+import json
+import re
+import subprocess
+from pathlib import Path
+
+SHOWN = 4  # stages up to which the coefficients of a method fit on a page
+
+
+class Program:
+    def __init__(self, path: Path):
+        self.path = path
+
+    def __call__(self, *words: str) -> str:
+        return subprocess.run([self.path, *words], text=True, capture_output=True, check=True).stdout
+
+    def list(self, what: str) -> list[dict]:
+        return json.loads(self("list", what, "--json"))
+
+
+def plain(text: str) -> str:
+    """Text without meaning to Markdown; names of commands and keys in code."""
+    text = re.sub(r"([\\`*_<>\[\]$|~])", r"\\\1", text)
+    return re.sub(r"\((apsis [a-z-]+(?: [a-z]+)?)\)", r"(`\1`)", text)
+
+
+def table(columns: list[str], rows: list[list[str]]) -> str:
+    lines = [columns, ["---"] * len(columns), *rows]
+    return "".join("| " + " | ".join(str(cell) for cell in line) + " |\n" for line in lines) + "\n"
+
+
+def facts(pairs: dict[str, str]) -> str:
+    """A line for each fact that there is."""
+    return "".join(f"- {name}: {value}\n" for name, value in pairs.items() if value) + "\n"
+
+
+def number(x: float | None) -> str:
+    return "–" if x is None else f"{x:.4g}"
+
+
+def coefficient(m: dict) -> str:
+    return "any step" if m["unconditional"] else number(m["ssp_coefficient"]) if m["ssp_coefficient"] else "0"
+
+
+def limit(m: dict) -> str:
+    return f"{m['ap_data']}" if m["ap"] or m["ap_data"] != "none" else "no"
+
+
+def methods(program: Program) -> str:
+    all_methods = program.list("methods")
+    text = ("# Methods\n\nAll methods of the catalogue, as `apsis list methods` certifies them. *r* is the SSP coefficient: a step "
+            "keeps what forward Euler keeps for Δt ≤ r Δt_FE, whatever ε is. n_F counts evaluations of the transport in a step. What "
+            "the columns mean is told in [methods](../methods.md) and [the study](../study.md).\n\n")
+    for kind, title in (("imex", "With transport and collisions"), ("implicit", "Collisions alone"), ("explicit", "Explicit")):
+        chosen = [m for m in all_methods if m["kind"] == kind]
+        text += f"**{title}**\n\n" + table(
+            ["method", "order", "stages", "n_F", "r", "error constant", "recommended for"],
+            [[f"[{m['name']}](#{m['name']})", m["order"], m["stages"], m["explicit_evaluations"], coefficient(m),
+              number(m["error_constant"]), plain(m["purpose"])] for m in chosen])
+    text += "## Families\n\nAny number of stages S of the range gives a method, which is certified when it is asked for.\n\n" + table(
+        ["family", "S", "what"], [[f"`{f['name']}`", f"{f['lowest']} … {f['highest']}", plain(f["description"])]
+                                  for f in program.list("families")])
+    return text + "".join(method(program, m) for m in sorted(all_methods, key=lambda m: m["name"]))
+
+
+def method(program: Program, m: dict) -> str:
+    document = json.loads(program("show", m["name"], "--format", "json"))
+    stability = m.get("stability") or {}
+    text = f"## {m['name']}\n\n{plain(m['title'])}.\n\n" + facts({
+        "order": f"{m['order']}, error constant {number(m['error_constant'])}",
+        "SSP coefficient": coefficient(m) + (f" (that of the explicit part is {number(m['explicit_radius'])})"
+                                             if m["kind"] == "imex" else ""),
+        "type": f"{m['type']}, {'globally stiffly accurate' if m['gsa'] else 'not globally stiffly accurate'}"
+                if m["kind"] != "explicit" else "",
+        "asymptotic preserving": limit(m) if m["kind"] == "imex" else "",
+        "cost of a step": f"{m['explicit_evaluations']} evaluations of T, {m['implicit_solves']} implicit solves, "
+                          f"{m['buffers']} states in memory",
+        "stability of the implicit part": stability and f"A({number(stability['angle_degrees'])}°)"
+                                          + (", L-stable" if stability["l_stable"] else ""),
+        "embedded solution": m["embedded"] and f"of order {m['embedded']['order']}",
+        "recommended for": plain(m["purpose"]), "source": plain(document["citation"]), "origin": plain(document["origin"]),
+        "coefficients": f"[methods/{m['name']}.toml](../../methods/{m['name']}.toml)"})
+    if m["stages"] <= SHOWN:
+        text += "$$\n" + re.sub(r"^%.*\n", "", program("show", m["name"], "--format", "latex")) + "$$\n\n"
+    return text
+
+
+def models(program: Program) -> str:
+    text = ("# Models\n\nThe equations of `apsis list models`; what they are and what is known of them is told in "
+            "[models](../models.md). Parameters stand in the table `[model]` of a case.\n\n")
+    for m in program.list("models"):
+        text += f"## {m['name']}\n\n`{m['description']}`\n\n" + facts({
+            "source": plain(m["source"]),
+            "tables of a case": ", ".join(f"`[{t}]`" for t in ("space", "velocity") if m[t]) or "neither `[space]` nor `[velocity]`",
+            "takes `model.epsilon`": "yes" if m["epsilon"] else "no",
+            "initial data": ", ".join(f"`{name}`" for name in m["initial"])})
+        rows = [[f"`{p['name']}`", f"number, {p['lowest']:g} to {p['highest']:g}", f"`{p['default']:g}`", plain(p["doc"])]
+                for p in m["parameters"]]
+        rows += [[f"`{t['name']}`", ", ".join(f"`{c}`" for c in t["choices"])
+                  + (f" or a formula in `{t['formula_in']}`" if t["formula_in"] else ""), f"`{t['default']}`", plain(t["doc"])]
+                 for t in m["texts"]]
+        text += table(["parameter", "values", "default", "meaning"], rows) if rows else ""
+    return text
+
+
+def cases(program: Program) -> str:
+    all_cases = program.list("cases")
+    text = ("# Cases\n\nThe cases that are built in, from `apsis list cases`. `apsis run NAME` runs one, and `key=value` after the name "
+            "changes a [key](keys.md).\n\n")
+    text += table(["case", "what", "model", "method"],
+                  [[f"[{c['name']}](#{c['name'].replace('/', '')})", plain(c["description"]), f"[{c['model']}](models.md#{c['model']})",
+                    f"[{c['method']}](methods.md#{c['method']})"] for c in all_cases])
+    for c in all_cases:
+        file = program("show", c["name"])
+        comment = re.match(r"(?:#.*\n)*", file)[0]
+        text += (f"## {c['name']}\n\n{plain(re.sub(r'^# ?', '', comment, flags=re.M))}\n"
+                 f"```toml\n{file.removeprefix(comment).strip()}\n```\n\n")
+    return text
+
+
+def keys(program: Program) -> str:
+    all_keys, models_of = program.list("keys"), {m["name"] for m in program.list("models")}
+    text = ("# Keys of a case\n\nA case is a TOML file with these keys, `apsis list keys`. A key that is not listed, or that the model of "
+            "the case does not use, is an error. On the command line `space.cells=80` sets one; there a number may be a fraction.\n\n")
+    section = None
+    for k in all_keys:
+        if k["name"].rpartition(".")[0] != section:
+            section = k["name"].rpartition(".")[0]
+            text += f"## [{section}]\n\n" if section else "## The case\n\n"
+        choices = [] if k["name"] in ("time.method", "model.initial") else k["choices"]
+        default = "" if k["default"] in (None, '""') else f"default `{k['default']}`"
+        about = [k["type"], k["range"], "" if k["unit"] == "dimensionless" else k["unit"], "required" if k["required"] else default]
+        text += f"### `{k['name']}`\n\n*{', '.join(a for a in about if a)}*\n\n{plain(k['description'])}\n\n" + facts({
+            "one of": ", ".join(f"`{c}`" for c in choices),
+            "for the models": "" if set(k["models"]) == models_of else ", ".join(f"[{m}](models.md#{m})" for m in k["models"])})
+    return text + "The table `[model]` also takes the parameters of its [model](models.md).\n"
+
+
+def schemes(program: Program) -> str:
+    return ("# Schemes in space\n\nReconstructions of values at cell edges, for `space.reconstruction`; what is done with them is told "
+            "in [space](../space.md).\n\n" + table(
+                ["name", "order", "ghost cells", "what", "source"],
+                [[f"`{s['name']}`", s["order"], s["ghost_width"], plain(s["description"]), plain(s["source"])]
+                 for s in program.list("schemes")]))
+
+
+def claims(program: Program) -> str:
+    return ("# Claims\n\nWhat the paper behind the methods states, and how `apsis reproduce` checks it; [verdicts](../claims.md).\n\n"
+            + table(["", "statement", "section of the paper", "how it is checked"],
+                    [[c["name"], plain(c["description"]), plain(c["section"]), plain(c["how"])] for c in program.list("claims")]))
+
+
+def commands(program: Program) -> str:
+    manual = json.loads(program("manual", "--format", "json"))
+    text = f"# Commands\n\n{plain(manual['description'])}\n\n{plain(manual['exit_codes'])}\n\n"
+    for c in manual["commands"]:
+        text += f"## apsis {c['name']}\n\n{plain(c['description'])}.\n\n" + table(
+            ["argument", "meaning", "default"],
+            [[f"`{o['usage']}`", plain(o["description"]) + (" (required)" if o["required"] else ""),
+              f"`{o['default']}`" if o["default"] else ""] for o in c["options"] if o["usage"] != "--help"])
+        more = re.sub(r"(?:^  \S.*\n?)+", lambda m: f"```text\n{m[0]}\n```\n", c["more"], flags=re.M)
+        text += "".join(part if part.startswith("```") else plain(part) for part in re.split(r"(```text\n.*?```\n)", more, flags=re.S))
+        text += "\n\n" if more else ""
+    return text
+
+
+PAGES = {"commands": commands, "keys": keys, "cases": cases, "methods": methods, "models": models, "schemes": schemes,
+         "claims": claims}
+
+
+def write_reference(program: Path, folder: Path) -> list[str]:
+    """One page for each list; their names in the order of PAGES."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, page in PAGES.items():
+        (folder / f"{name}.md").write_text(page(Program(program)), encoding="utf-8")
+    return list(PAGES)

@@ -265,6 +265,11 @@ TEST(bad_case, large_garbage_is_refused_before_it_is_parsed) {
   EXPECT_THAT(error_of("[" + deep + "b]\n" + deep + "c = 1\n"), StartsWith("c.toml:"));
 }
 
+TEST(bad_case, a_misspelt_key_on_the_command_line_is_told_whatever_its_value_is) {
+  for (const std::string value : {"ars-222", "1", "[1, ", "x y"})
+    EXPECT_THAT(error_of(good, {"time.methd=" + value}), HasSubstr("did you mean 'time.method'?")) << value;
+}
+
 TEST(bad_case, a_number_of_dimensions_is_whole) {
   EXPECT_EQ(error_of(good, {"model.velocity_dimensions=2"}), "accepted");
   EXPECT_THAT(error_of(good, {"model.velocity_dimensions=1.7"}), HasSubstr("it must be an integer"));

@@ -296,4 +296,46 @@ TEST(step_control, ends_where_no_step_is_short_enough) {
   EXPECT_EQ(u, ode_model::initial_state<state>());
 }
 
+/// u' = −u with u ≥ 0 demanded of every stage, which steps beyond r violate.
+auto nonnegative_decay(bool possible) {
+  apsis::relaxation_problem problem(
+      [](double, const std::vector<double>& u, std::vector<double>& T) { T = {-u[0]}; },
+      [](const std::vector<double>& u) { return u[0]; }, [](double w, std::vector<double>& E) { E = {w}; },
+      [](double) { return 1.0; }, 1.0);
+  problem.with_admissible([possible](const std::vector<double>& u) { return possible && u[0] >= 0; });
+  return problem;
+}
+
+double no_distance(const std::vector<double>&, const std::vector<double>&) {
+  return 0.0;
+}
+
+TEST(step_control, takes_a_shorter_step_where_a_stage_fails) {
+  auto problem = nonnegative_decay(true);
+  apsis::stepper march(apsis::find_method("md-imex-8-3-mixed"), problem, solutions::result_and_embedded);
+  std::vector<double> u{1.0};
+  EXPECT_THROW(march.attempt(0.0, 8.0, u), apsis::numerical_error) << "the test would show nothing";
+  step_controller<double> control(1e-3, 1);
+  const auto done =
+      apsis::integrate_to_tolerance(march, u, 0.0, 8.0, step_rule<double>::fixed(8), control, no_distance);
+  EXPECT_EQ(done.t, 8.0);
+  EXPECT_GT(control.rejected(), 0);
+  EXPECT_GE(u[0], 0.0);
+}
+
+TEST(step_control, tells_why_no_step_is_possible) {
+  auto problem = nonnegative_decay(false);
+  apsis::stepper march(apsis::find_method("md-imex-8-3-mixed"), problem, solutions::result_and_embedded);
+  std::vector<double> u{1.0};
+  step_controller<double> control(1e-3, 1);
+  try {
+    apsis::integrate_to_tolerance(march, u, 1.0, 2.0, step_rule<double>::fixed(1), control, no_distance);
+    FAIL() << "a step was taken";
+  } catch (const apsis::numerical_error& failure) {
+    EXPECT_THAT(failure.problem(), testing::HasSubstr("admissible"));
+    EXPECT_EQ(failure.site().step, 1);
+  }
+  EXPECT_EQ(u[0], 1.0);
+}
+
 }  // namespace

@@ -247,14 +247,16 @@ class resolver {
   const model_entry* model_ = nullptr;
 };
 
+/// Whether a value on the command line needs no quotes. That of a key that does not exist needs none: it is
+/// the key that is wrong.
 bool takes_text(const std::string& path) {
   for (const case_key& key : case_schema())
     if (key.path == path) return key.type == key_type::text || key.type == key_type::formula;
   // No model has a number of the same name as a text of another.
   for (const model_entry* entry : model_entries())
-    for (const model_text& t : entry->texts)
-      if ("model." + t.name == path) return true;
-  return false;
+    for (const model_parameter& p : entry->parameters)
+      if ("model." + p.name == path) return false;
+  return true;
 }
 
 void apply_overrides(case_text& text, const std::vector<std::string>& overrides) {

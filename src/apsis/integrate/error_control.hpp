@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace apsis {
@@ -69,17 +70,32 @@ class step_controller {
 };
 
 /// One step that the controller accepts, of length `limit` at most: u ← u^{n+1}, and its length is returned.
-/// distance(u^{n+1}, ũ) is the estimated error, in the norm of the caller. Throws numerical_error if steps
-/// become too small to advance time; u is then u^n.
+/// distance(u^{n+1}, ũ) is the estimated error, in the norm of the caller. A step that ends with a
+/// numerical_error is rejected like one whose error is infinite; the error is thrown once steps are too small
+/// to advance time, and u is then u^n.
 template <problem P, class Distance>
 typename P::real step_within_tolerance(stepper<P>& method_stepper,
                                        const time_marcher<typename P::real>& march,
                                        step_controller<typename P::real>& control, typename P::real limit,
                                        typename P::state& u, const Distance& distance) {
+  using real = typename P::real;
+  std::optional<numerical_error> failure;
   while (true) {
-    const auto dt = march.next(std::min(limit, control.proposed()));
-    const auto tried = method_stepper.attempt(march.t(), dt, u);
-    if (!control.accepts(dt, distance(tried.result, tried.embedded))) continue;
+    real dt(0);
+    try {
+      dt = march.next(std::min(limit, control.proposed()));
+    } catch (const numerical_error&) {
+      if (failure) throw *failure;
+      throw;
+    }
+    try {
+      const auto tried = method_stepper.attempt(march.t(), dt, u);
+      if (!control.accepts(dt, distance(tried.result, tried.embedded))) continue;
+    } catch (const numerical_error& why) {
+      failure = why;
+      control.accepts(dt, std::numeric_limits<real>::infinity());
+      continue;
+    }
     method_stepper.accept(u);
     return dt;
   }

@@ -107,11 +107,12 @@ Real largest(const column<Real>& x) {
 }
 
 [[noreturn]] void fail_singular(int iteration, double measure) {
-  throw numerical_error(
-      fmt::format("the stage equation is singular to working precision (relative smallest singular value "
-                  "{:.2g} at Newton iteration {}; a stage with d = 0 is singular where Δt λ = ±i/√|ḋ| for an "
-                  "eigenvalue λ of G'); change the time step, or use a method with d > 0 at every stage",
-                  measure, iteration));
+  throw numerical_error(fmt::format(
+      "the stage equation is singular to working precision (relative smallest singular value "
+      "{:.2g} at Newton iteration {}; a stage with d = 0 is singular where Δt λ = ±i/√|ḋ| for an "
+      "eigenvalue λ of G', and any stage where G conserves something and is stiffer than 1/Δt by 10⁷); "
+      "change the time step, use a method with d > 0 at every stage, or relaxation_problem",
+      measure, iteration));
 }
 
 /// A Newton step, and the size that rounding alone gives to R(v).

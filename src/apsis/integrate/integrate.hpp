@@ -115,7 +115,7 @@ class time_marcher {
       throw numerical_error(
           "the time step does not advance time (it is not positive, or smaller than the "
           "rounding of t)",
-          {n_, static_cast<double>(t_), -1, static_cast<double>(proposed)});
+          {n_ + 1, static_cast<double>(t_), -1, static_cast<double>(proposed)});
     return proposed;
   }
 

@@ -38,23 +38,25 @@ class RelaxationProblem:
 
 @dataclass(frozen=True)
 class Solution:
-    """States u[k] at the times t[k], and how many steps they took."""
+    """States u[k] at the times t[k], how many steps they took, and how many were rejected for their error."""
 
     t: Array
     u: Array
     steps: int
+    rejected: int
 
 
 def integrate(problem: RelaxationProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str = "md-imex-6-3", *,
-              dt: float | None = None, safety: float = 1.0, startup: str = "none") -> Solution:
+              dt: float | None = None, safety: float = 1.0, startup: str = "none", tolerance: float | None = None) -> Solution:
     """Integrates from t[0], where u is u0, and returns the states at all times of t.
 
     Steps have the length dt, shortened until it divides each interval, or safety · r · Δt_FE. startup = "graded" resolves the
-    initial layer of data out of equilibrium. Raises InputError, NumericalError with step and t, and what the functions raise."""
+    initial layer of data out of equilibrium. With a tolerance steps are shorter where the estimated error of one, the largest
+    difference to the embedded solution of the method, would be above it. Raises InputError, NumericalError with step and t, and what the functions raise."""
     if startup not in ("none", "graded"):
         from .errors import InputError
         raise InputError(f"there is no start-up '{startup}' valid: none, graded")
-    times, states, steps = _core.integrate(
+    times, states, steps, rejected = _core.integrate(
         problem.transport, problem.moments, problem.equilibrium, problem.rate, problem.forward_euler_step,
-        problem.admissible, problem.epsilon, u0, [float(x) for x in t], method, dt, safety, startup == "graded")
-    return Solution(times, states, steps)
+        problem.admissible, problem.epsilon, u0, [float(x) for x in t], method, dt, safety, startup == "graded", tolerance)
+    return Solution(times, states, steps, rejected)

@@ -1,11 +1,11 @@
-#include <apsis/integrate/integrate.hpp>
-
 #include "arrays.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -36,14 +36,33 @@ struct functions {
   std::optional<py::function> forward_euler_step, admissible;
 };
 
+/// How long steps are: dt or safety · r · Δt_FE, and shorter where the estimated error asks for it.
+struct step_choice {
+  std::optional<double> dt;
+  double safety;
+  bool graded;
+  std::optional<double> tolerance;
+};
+
 struct result {
   py::array_t<double> t, u;
-  long steps;
+  long steps, rejected;
 };
+
+/// max_i |a_i − b_i|, or NaN if one is.
+double largest_difference(const state& a, const state& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = std::abs(a[i] - b[i]);
+    if (!(difference <= largest)) largest = difference;
+    if (std::isnan(difference)) return difference;
+  }
+  return largest;
+}
 
 /// States at the times t[0] < t[1] < …, beginning with u0 itself.
 result integrate_python(const functions& of, double epsilon, const array& u0, const std::vector<double>& t,
-                        const std::string& name, std::optional<double> dt, double safety, bool graded) {
+                        const std::string& name, const step_choice& choice) {
   const std::vector<py::ssize_t> shape(u0.shape(), u0.shape() + u0.ndim());
   state u(u0.data(), u0.data() + u0.size());
   if (u.empty()) throw input_error("u0 has no numbers; give an initial state");
@@ -61,24 +80,33 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
         [&](double time, const state& v) { return (*of.forward_euler_step)(time, look(v)).cast<double>(); });
   if (of.admissible)
     problem.with_admissible([&](const state& v) { return (*of.admissible)(look(v)).cast<bool>(); });
-  if (!dt && !of.forward_euler_step)
+  if (!choice.dt && !of.forward_euler_step)
     throw input_error("nothing says how long a step is; give dt, or forward_euler_step of the problem");
-  stepper march(find_method(name), problem);
-  auto rule = dt ? step_rule<double>::fixed(*dt) : step_rule<double>::ssp(safety);
+  const method& m = find_method(name);
+  if (choice.tolerance && !m.embedded)
+    throw input_error("method '" + name +
+                      "' has no embedded solution to estimate errors with; give dt alone, or another method");
+  stepper march(m, problem, choice.tolerance ? solutions::result_and_embedded : solutions::result);
+  const auto rule = choice.dt ? step_rule<double>::fixed(*choice.dt) : step_rule<double>::ssp(choice.safety);
+  std::optional<step_controller<double>> control;
+  if (choice.tolerance) control.emplace(*choice.tolerance, m.embedded->order);
   state all = u;
   long steps = 0;
   for (std::size_t k = 1; k < t.size(); ++k) {
     const auto check = [](long, double, double, const state&) {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
-    const auto done = integrate(march, u, t[k - 1], t[k],
-                                rule.with(graded && k == 1 ? startup::graded : startup::none), check);
+    const auto start = rule.with(choice.graded && k == 1 ? startup::graded : startup::none);
+    const auto done =
+        control ? integrate_to_tolerance(march, u, t[k - 1], t[k], start, *control, largest_difference, check)
+                : integrate(march, u, t[k - 1], t[k], start, check);
     steps += done.steps;
     all.insert(all.end(), u.begin(), u.end());
   }
   std::vector<py::ssize_t> shape_of_all = {static_cast<py::ssize_t>(t.size())};
   shape_of_all.insert(shape_of_all.end(), shape.begin(), shape.end());
-  return {to_array(std::vector<double>(t)), to_array(std::move(all), shape_of_all), steps};
+  return {to_array(std::vector<double>(t)), to_array(std::move(all), shape_of_all), steps,
+          control ? control->rejected() : 0};
 }
 
 }  // namespace
@@ -89,11 +117,11 @@ void bind_integrate(py::module_& m) {
            const py::function& rate, const std::optional<py::function>& forward_euler_step,
            const std::optional<py::function>& admissible, double epsilon, const array& u0,
            const std::vector<double>& t, const std::string& method, std::optional<double> dt, double safety,
-           bool graded) {
-          auto [times, states, steps] =
+           bool graded, std::optional<double> tolerance) {
+          auto [times, states, steps, rejected] =
               integrate_python({transport, moments, equilibrium, rate, forward_euler_step, admissible},
-                               epsilon, u0, t, method, dt, safety, graded);
-          return py::make_tuple(times, states, steps);
+                               epsilon, u0, t, method, {dt, safety, graded, tolerance});
+          return py::make_tuple(times, states, steps, rejected);
         });
 }
 

@@ -26,6 +26,23 @@ def test_it_is_the_integration_of_the_program():
     np.testing.assert_allclose(mine.u[-1], theirs.f[0], rtol=1e-13)
 
 
+def test_a_smaller_tolerance_makes_smaller_errors_by_more_steps():
+    name = "md-imex-8-3-accurate"
+    exact = apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), name, dt=1 / 4096).u[-1]
+    found = [apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 0.5, 1), name, dt=0.5, tolerance=tol) for tol in (1e-3, 1e-5)]
+    errors = [np.abs(one.u[-1] - exact).max() for one in found]
+    # Errors of steps add up, and what a step of the wanted size leaves is far below what its estimate says.
+    assert errors[0] < 1e-2 and errors[1] < 1e-4 and errors[1] < errors[0] / 10
+    assert found[1].steps > 2 * found[0].steps and found[1].rejected > 0
+
+
+def test_steps_that_fail_are_tried_shorter_where_there_is_a_tolerance():
+    problem = apsis.RelaxationProblem(lambda t, u: -u, lambda u: u[0], lambda w: [w], lambda w: 1.0, 1.0, admissible=lambda u: u[0] >= 0)
+    with pytest.raises(apsis.NumericalError, match="admissible"):
+        apsis.integrate(problem, [1.0], (0, 8), "md-imex-8-3-mixed", dt=8)
+    assert apsis.integrate(problem, [1.0], (0, 8), "md-imex-8-3-mixed", dt=8, tolerance=1.0).rejected > 0
+
+
 def test_states_at_times_and_shapes_of_arrays():
     x = np.linspace(0.0, 1.0, 20, endpoint=False)
     u0 = np.stack([np.sin(2 * np.pi * x) + 2.0, np.zeros_like(x)])
@@ -68,7 +85,8 @@ def test_exceptions_of_the_functions_come_out():
     (dict(transport=lambda t, u: "abc"), {}, "no numbers"),
     (dict(epsilon=-1.0), {}, "epsilon is negative"), ({}, dict(dt=None), "nothing says how long a step is"),
     ({}, dict(dt=-1.0), "dt is not a positive number"), ({}, dict(method="none"), "none"),
-    ({}, dict(startup="soft"), "there is no start-up")])
+    ({}, dict(startup="soft"), "there is no start-up"), ({}, dict(tolerance=0.0), "tolerance is not a positive number"),
+    ({}, dict(tolerance=1e-3, method="ars-222"), "no embedded solution")])
 def test_bad_arguments_have_a_message(change, arguments, message):
     problem = ode(1.0)
     for name, value in change.items():

@@ -22,6 +22,7 @@ KATEX = Path("/usr/share/javascript/katex")
 PLACES = {"README.md": "overview.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
           "bench/README.md": "bench.md", "methods": "reference/methods.md", "cases": "reference/cases.md"}
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
+ENTRY = re.compile(r"\[([^\]]+)\]\(([^)\s]+\.md)\)")
 
 
 def rooms() -> list[str]:
@@ -88,8 +89,8 @@ def with_contents(text: str, site: Site, generated: dict[str, list[str]]) -> str
     """The front page, a table of contents for each of its sections: the pages that its list names, then the generated ones."""
     contents = {}
     for section in text.split("\n## ")[1:]:
-        links = [site.link(target, "index.md", "docs/index.md") for _, target, _ in LINK.findall(section)]
-        contents[section.splitlines()[0]] = [link for link in links if link.endswith(".md")]
+        contents[section.splitlines()[0]] = [f"{title} <{site.link(target, 'index.md', 'docs/index.md')}>"
+                                             for title, target in ENTRY.findall(section)]
     for title, pages in generated.items():
         contents[title] = contents.get(title, []) + pages
     return text + "".join(f"\n```{{toctree}}\n:caption: {title}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
@@ -117,6 +118,7 @@ def main() -> int:
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
     given = parser.parse_args()
     build, work = given.build.resolve(), given.work.resolve()
+    shutil.rmtree(work / "doxygen", ignore_errors=True)
     (work / "doxygen").mkdir(parents=True, exist_ok=True)
     doxygen = subprocess.run(["doxygen", "-"], cwd=ROOT, text=True, input=(
         (ROOT / "docs" / "Doxyfile").read_text(encoding="utf-8") + f"\nOUTPUT_DIRECTORY = {work / 'doxygen'}\n"

@@ -39,7 +39,7 @@ def number(x: float | None) -> str:
 
 
 def coefficient(m: dict) -> str:
-    return "any step" if m["unconditional"] else number(m["ssp_coefficient"]) if m["ssp_coefficient"] else "0"
+    return "any step" if m["unconditional"] and m["kind"] == "implicit" else number(m["ssp_coefficient"])
 
 
 def limit(m: dict) -> str:

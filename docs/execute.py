@@ -229,11 +229,12 @@ class Page:
             lines[block.line:block.last] = [block.indent + line for line in self.outputs[block.line].rstrip().splitlines()]
         if self.outputs:
             self.path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-            self.problems = [p for p in self.problems if p.line not in self.outputs]
         for name in self.pictures():
             if (self.folder / "images" / name).is_file():
                 (self.root / "docs" / "images").mkdir(exist_ok=True)
                 shutil.copy(self.folder / "images" / name, self.root / "docs" / "images" / name)
+        mended = {*self.outputs, *self.pictures().values()}
+        self.problems = [p for p in self.problems if p.line not in mended]
 
 
 def indented(text: str) -> str:

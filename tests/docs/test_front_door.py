@@ -1,5 +1,5 @@
-"""Commands of README.md and CONTRIBUTING.md that build and test everything: here only that make knows what they need, since a
-test cannot run all tests. test_long.py goes through the door."""
+"""Commands of README.md, CONTRIBUTING.md and docs/first-steps.md that build and test everything: here only that make knows what
+they need, since a test cannot run all tests. test_long.py goes through the door."""
 import re
 import subprocess
 import unittest

@@ -57,6 +57,8 @@ class Site:
             return target
         file = os.path.normpath(os.path.join(os.path.dirname(origin), path))
         to = self.places.get(file) or (file.removeprefix("docs/") if file.startswith(("docs/reference/", "docs/images/")) else None)
+        if to is None and (ROOT / file).is_dir():  # part of a folder that has a page
+            to = next((self.places[str(folder)] for folder in Path(file).parents if str(folder) in self.places), None)
         if to is None and (ROOT / file).is_file():
             to = f"files/{file}"  # a copy of the file, under the name that it has here
             (self.source / to).parent.mkdir(parents=True, exist_ok=True)

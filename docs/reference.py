@@ -2,6 +2,7 @@
 import json
 import re
 import subprocess
+import textwrap
 from pathlib import Path
 
 SHOWN = 4  # stages up to which the coefficients of a method fit on a page
@@ -22,6 +23,12 @@ def plain(text: str) -> str:
     """Text without meaning to Markdown; names of commands and keys in code."""
     text = re.sub(r"([\\`*_<>\[\]$|~])", r"\\\1", text)
     return re.sub(r"\((apsis [a-z-]+(?: [a-z]+)?)\)", r"(`\1`)", text)
+
+
+def prose(text: str) -> str:
+    """Paragraphs, and lines that are indented as they are."""
+    parts = re.split(r"((?:^  .*\n?)+)", text, flags=re.M)
+    return "".join(f"\n```text\n{textwrap.dedent(part).rstrip()}\n```\n" if part.startswith("  ") else plain(part) for part in parts)
 
 
 def table(columns: list[str], rows: list[list[str]]) -> str:
@@ -113,7 +120,7 @@ def cases(program: Program) -> str:
     for c in all_cases:
         file = program("show", c["name"])
         comment = re.match(r"(?:#.*\n)*", file)[0]
-        text += (f"## {c['name']}\n\n{plain(re.sub(r'^# ?', '', comment, flags=re.M))}\n"
+        text += (f"## {c['name']}\n\n{prose(re.sub(r'^# ?', '', comment, flags=re.M))}\n"
                  f"```toml\n{file.removeprefix(comment).strip()}\n```\n\n")
     return text
 
@@ -158,9 +165,7 @@ def commands(program: Program) -> str:
             ["argument", "meaning", "default"],
             [[f"`{o['usage']}`", plain(o["description"]) + (" (required)" if o["required"] else ""),
               f"`{o['default']}`" if o["default"] else ""] for o in c["options"] if o["usage"] != "--help"])
-        more = re.sub(r"(?:^  \S.*\n?)+", lambda m: f"```text\n{m[0]}\n```\n", c["more"], flags=re.M)
-        text += "".join(part if part.startswith("```") else plain(part) for part in re.split(r"(```text\n.*?```\n)", more, flags=re.S))
-        text += "\n\n" if more else ""
+        text += prose(c["more"]) + "\n\n"
     return text
 
 

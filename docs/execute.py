@@ -26,6 +26,7 @@ from blocks import Block, Problem, check_rules, is_excerpt, is_same_output, read
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("README.md", "CONTRIBUTING.md", "src/apsis/*/README.md", "docs/**/*.md")
 LIMIT = 120  # seconds of a block
+REPORTS = ("studies/report.py", "bench/report.py")  # draw pictures from results that took longer than a page may
 
 # Runs the files named on its standard input in one namespace, with the file named after each for the output, and answers
 # with "ok" or the traceback.
@@ -103,7 +104,7 @@ class Page:
         self.text = path.read_text(encoding="utf-8")
         self.problems, self.outputs, self.session, self.printed = [], {}, None, None
 
-    def run(self) -> "Page":
+    def run(self):
         start = time.monotonic()
         try:
             self.blocks = read_blocks(self.text)
@@ -113,14 +114,12 @@ class Page:
                 self.folder.mkdir(parents=True)
                 for block in self.blocks:
                     self.treat(block)
-                self.check_pictures()
         except Problem as problem:  # what comes after depends on it
             self.problems.append(problem)
         finally:
             if self.session:
                 self.session.communicate()
         self.seconds = time.monotonic() - start
-        return self
 
     def treat(self, block: Block):
         if "elsewhere" in block.marks:
@@ -212,11 +211,13 @@ class Page:
             told = out.read_text(encoding="utf-8", errors="replace")[-1500:] + error[-1500:]
             raise Problem(block.line, f"the block fails (exit code {process.returncode}, not {wanted[0]})\n{indented(told)}")
 
-    def check_pictures(self):
-        """A picture that the blocks draw is kept in docs/images, where GitHub finds it."""
+    def check_pictures(self, reports: list[str]):
+        """A picture is kept in docs/images, where GitHub finds it, and drawn by a block of some page or by a report."""
         for name, line in self.pictures().items():
-            if (self.folder / "images" / name).is_file() and not (self.root / "docs" / "images" / name).is_file():
+            if not (self.root / "docs" / "images" / name).is_file():
                 self.problems.append(Problem(line, f"docs/images has no {name} (GitHub would show nothing) docs/execute.py --update"))
+            elif not any(self.folder.parent.glob(f"*/images/{name}")) and not any(re.fullmatch(one, name) for one in reports):
+                self.problems.append(Problem(line, f"nothing draws {name} (no block into images/, no report) draw it on this page"))
 
     def pictures(self) -> dict[str, int]:
         return {name: number for number, line in enumerate(self.text.splitlines(), 1)
@@ -241,12 +242,26 @@ def indented(text: str) -> str:
     return "".join(f"    {line}\n" for line in text.strip().splitlines())
 
 
+def reported_pictures(root: Path) -> list[str]:
+    """Patterns of the pictures that `make figures` and the reports draw, {…} of formatted names for anything."""
+    texts = [(root / report).read_text(encoding="utf-8") for report in REPORTS if (root / report).exists()]
+    names = [name for text in texts for name in re.findall(r"[\w-]+(?:\{[^}]*\}[\w-]*)?\.png", text)]
+    if (root / "Makefile").exists():
+        recipe = re.search(r"^figures:.*\n((?:\t.*\n)+)", (root / "Makefile").read_text(encoding="utf-8"), re.M)
+        names += [f"{name}.png" for name in re.findall(r"--compare ([\w-]+)", recipe[1] if recipe else "")]
+    return [re.sub(r"\{[^}]*\}", r"[\\w-]+", name) for name in names]
+
+
 def run_pages(paths: list[Path], root: Path, tools: Tools, jobs: int) -> list[Page]:
     pages = [Page(path, root, tools) for path in paths]
     if any(re.search(r"^\s*```cpp", page.text, re.M) for page in pages) and not tools.commands:
         tools.prepare_compiler()
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        return list(pool.map(Page.run, pages))
+        list(pool.map(Page.run, pages))
+    reports = reported_pictures(root)
+    for page in pages:
+        page.check_pictures(reports)
+    return pages
 
 
 def main(arguments=None) -> int:

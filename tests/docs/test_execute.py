@@ -165,6 +165,18 @@ class Outputs(Pages):
     def test_an_output_needs_a_block_before_it(self):
         self.assert_refused(4, "no block before", block("text", "one", "output"))
 
+    def test_a_picture_is_drawn_by_somebody(self):
+        (self.root / "docs" / "images").mkdir(parents=True)
+        for name in ("a.png", "work-b.png", "c.png"):
+            (self.root / "docs" / "images" / name).touch()
+        self.assert_refused(3, "nothing draws a.png", "![a](images/a.png)")
+        self.assert_refused(3, "docs/images has no d.png", "![d](images/d.png)", block("sh", "mkdir images; touch images/d.png"))
+        self.assert_accepted("![a](images/a.png)", block("sh", "mkdir images; touch images/a.png"))
+        (self.root / "studies").mkdir()
+        (self.root / "studies" / "report.py").write_text('figure.savefig(images / f"work-{name}.png")', encoding="utf-8")
+        (self.root / "Makefile").write_text("figures:\n\tapsis plot --compare c --out results\n", encoding="utf-8")
+        self.assert_accepted("![b](images/work-b.png)\n![c](images/c.png)")
+
     def test_update_writes_what_was_printed_and_the_pictures(self):
         page = self.run_page("![one](images/one.png)", block("sh", "mkdir images; echo p > images/one.png; printf '1\\n2\\n'"),
                              "- item\n" + textwrap.indent(block("text", "one", "output"), "  "))

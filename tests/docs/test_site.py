@@ -80,7 +80,8 @@ class Site(unittest.TestCase):
     def test_names_of_the_program_are_in_the_reference(self):
         for what in ("methods", "models", "cases", "keys", "schemes", "claims"):
             text = (self.html / "reference" / f"{what}.html").read_text(encoding="utf-8")
-            names = subprocess.run([BUILD / "app" / "apsis", "list", what, "--names"], text=True, capture_output=True).stdout.split()
+            listed = subprocess.run([BUILD / "app" / "apsis", "list", what, "--names"], text=True, capture_output=True)
+            names = listed.stdout.split()
             self.assertGreater(len(names), 2)
             for name in names:
                 self.assertIn(name, text)

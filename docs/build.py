@@ -114,8 +114,8 @@ def add_interfaces(site: Site, headers: dict[str, Header]):
             text += headers[name].directives(name)
         site.add(f"api/{room}.md", text, f"src/apsis/{room}/README.md")
         listed += f"- [{room}]({room}.md): {about.split(chr(10), 1)[1].split('. ')[0].strip().rstrip('.')}.\n"
-    site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a row of rooms, each a library that is linked only to those before "
-             f"it. `find_package(apsis)` brings all as `apsis::apsis`.\n\n{listed}\n```{{toctree}}\n:hidden:\n\n"
+    site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a row of rooms, each a library that is linked only to those "
+             f"before it. `find_package(apsis)` brings all as `apsis::apsis`.\n\n{listed}\n```{{toctree}}\n:hidden:\n\n"
              + "\n".join(rooms()) + "\n```\n")
     site.add("python-api.md", "# Python interface\n\n```{eval-rst}\n.. automodule:: apsis\n   :members:\n   :undoc-members:\n"
              "```\n")
@@ -138,8 +138,8 @@ def main() -> int:
         print(problem, file=sys.stderr)
     shutil.rmtree(work / "html", ignore_errors=True)
     environment = {"APSIS_BUILD": str(build), "APSIS_DOCS": str(work), "PYTHONDONTWRITEBYTECODE": "1"}
-    sphinx = subprocess.run(["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-c", ROOT / "docs",
-                             "-d", work / "doctrees", site.source, work / "html"], env=os.environ | environment)
+    sphinx = subprocess.run(["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-d",
+                             work / "doctrees", "-c", ROOT / "docs", site.source, work / "html"], env=os.environ | environment)
     if site.problems or doxygen.returncode or sphinx.returncode:
         return 1
     print(f"the site is {work / 'html' / 'index.html'}")

@@ -113,8 +113,8 @@ def models(program: Program) -> str:
 
 def cases(program: Program) -> str:
     all_cases = program.list("cases")
-    text = ("# Cases\n\nThe cases that are built in, from `apsis list cases`. `apsis run NAME` runs one, and `key=value` after the "
-            "name changes a [key](keys.md).\n\n")
+    text = ("# Cases\n\nThe cases that are built in, from `apsis list cases`. `apsis run NAME` runs one, and `key=value` after "
+            "the name changes a [key](keys.md).\n\n")
     text += table(["case", "what", "model", "method"],
                   [[f"[{c['name']}](#{c['name'].replace('/', '')})", plain(c["description"]),
                     f"[{c['model']}](models.md#{c['model']})", f"[{c['method']}](methods.md#{c['method']})"] for c in all_cases])
@@ -147,8 +147,8 @@ def keys(program: Program) -> str:
 
 
 def schemes(program: Program) -> str:
-    return ("# Schemes in space\n\nReconstructions of values at cell edges, for `space.reconstruction`; what is done with them is "
-            "told in [space](../space.md).\n\n" + table(
+    return ("# Schemes in space\n\nReconstructions of values at cell edges, for `space.reconstruction`; what is done with them "
+            "is told in [space](../space.md).\n\n" + table(
                 ["name", "order", "ghost cells", "what", "source"],
                 [[f"`{s['name']}`", s["order"], s["ghost_width"], plain(s["description"]), plain(s["source"])]
                  for s in program.list("schemes")]))

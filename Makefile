@@ -9,7 +9,7 @@ export CTEST_PARALLEL_LEVEL ?= $(CORES)
 FORMATTED = $(shell find src app tests bench examples python -name '*.[ch]pp' 2>/dev/null)
 
 .DEFAULT_GOAL := help
-.PHONY: help run reproduce study program figures test test-all test-slow clang asan bench packages format format-check tidy clean
+.PHONY: help run reproduce study program figures test test-all test-slow clang asan bench packages format format-check tidy docs docs-links clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' Makefile
@@ -80,6 +80,16 @@ format: ## clang-format over all sources
 
 format-check:
 	clang-format-19 --dry-run --Werror $(FORMATTED)
+
+docs: ## packages, program, Python package, every block of the pages run, and the site: build/docs/html/index.html
+	@scripts/install-packages.sh docs
+	cmake --preset release -DAPSIS_TESTS=OFF -DAPSIS_BENCH=OFF -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) -DAPSIS_PCH=ON >/dev/null
+	cmake --build build/release
+	$(PYTHON) docs/execute.py
+	$(PYTHON) docs/build.py
+
+docs-links: docs ## and every address outside that the site names is asked for (needs a network)
+	$(PYTHON) docs/links.py
 
 clean: ## remove what was built and computed
 	rm -rf build results

@@ -96,6 +96,11 @@ def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
         elif not block.runs and not block.marks.keys() - {"exit"}:
             found.append(Problem(block.line, f"nothing checks this block (language '{block.language}') put one of "
                                  f"{', '.join(f'<!-- {mark} -->' for mark in sorted(MARKS))} before it"))
+        for mark, kind in (("output", float), ("exit", int)):
+            if block.marks.get(mark) and not is_number(block.marks[mark], kind):
+                found.append(Problem(block.line, f"<!-- {mark}: {block.marks[mark]} --> (that is no number) give one, or none"))
+        if "exit" in block.marks and not (block.runs and block.language in ("sh", "cpp")):
+            found.append(Problem(block.line, "an exit code belongs to a program (```sh or ```cpp that is run here) take it away"))
         if "file" in block.marks and not is_used(block, blocks):
             found.append(Problem(block.line, f"{block.marks['file']} is written and not used (no other block names it) run or "
                                  "compile it in an ```sh block"))
@@ -104,6 +109,13 @@ def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
         if number not in inside and line.startswith("    ") and COMMAND.match(line):
             found.append(Problem(number, f"'{line.strip()}' is indented text (nothing runs it) write an ```sh block"))
     return found
+
+
+def is_number(text: str, kind: type) -> bool:
+    try:
+        return kind(text) >= 0
+    except ValueError:
+        return False
 
 
 def is_used(block: Block, blocks: list[Block]) -> bool:

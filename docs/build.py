@@ -22,6 +22,7 @@ KATEX = Path("/usr/share/javascript/katex")
 PLACES = {"README.md": "overview.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
           "bench/README.md": "bench.md", "methods": "reference/methods.md", "cases": "reference/cases.md"}
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
+ENTRY = re.compile(r"\[([^\]]+)\]\(([^)\s]+\.md)\)")
 
 
 def rooms() -> list[str]:
@@ -55,7 +56,11 @@ class Site:
         if re.match(r"[a-z]+:", target) or not path:
             return target
         file = os.path.normpath(os.path.join(os.path.dirname(origin), path))
-        to = self.places.get(file) or (file.removeprefix("docs/") if file.startswith(("docs/reference/", "docs/images/")) else None)
+        to = self.places.get(file)
+        if file.startswith(("docs/reference/", "docs/images/")):
+            to = file.removeprefix("docs/")
+        if to is None and (ROOT / file).is_dir():  # part of a folder that has a page
+            to = next((self.places[str(folder)] for folder in Path(file).parents if str(folder) in self.places), None)
         if to is None and (ROOT / file).is_file():
             to = f"files/{file}"  # a copy of the file, under the name that it has here
             (self.source / to).parent.mkdir(parents=True, exist_ok=True)
@@ -69,7 +74,8 @@ class Site:
 def assemble(site: Site, program: Path, work: Path):
     """All pages; doxygen has been run."""
     shutil.copytree(ROOT / "docs" / "_static", site.source / "_static")
-    shutil.copytree(KATEX, site.source / "_static" / "katex", ignore=shutil.ignore_patterns("*.mjs", "contrib", "*.ttf", "*.woff"))
+    unused = shutil.ignore_patterns("*.mjs", "contrib", "*.ttf", "*.woff")
+    shutil.copytree(KATEX, site.source / "_static" / "katex", ignore=unused)
     shutil.copytree(ROOT / "docs" / "images", site.source / "images")
     for picture in work.glob("run/*/images/*.png"):
         shutil.copy(picture, site.source / "images" / picture.name)
@@ -81,15 +87,16 @@ def assemble(site: Site, program: Path, work: Path):
         if file.endswith(".md") and not place.startswith("api/") and place != "index.md":
             site.add(place, (ROOT / file).read_text(encoding="utf-8"), file)
     add_interfaces(site, read_headers(work / "doxygen" / "xml"))
-    site.add("index.md", with_contents((ROOT / "docs" / "index.md").read_text(encoding="utf-8"), site, generated), "docs/index.md")
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    site.add("index.md", with_contents(index, site, generated), "docs/index.md")
 
 
 def with_contents(text: str, site: Site, generated: dict[str, list[str]]) -> str:
     """The front page, a table of contents for each of its sections: the pages that its list names, then the generated ones."""
     contents = {}
     for section in text.split("\n## ")[1:]:
-        links = [site.link(target, "index.md", "docs/index.md") for _, target, _ in LINK.findall(section)]
-        contents[section.splitlines()[0]] = [link for link in links if link.endswith(".md")]
+        contents[section.splitlines()[0]] = [f"{title} <{site.link(target, 'index.md', 'docs/index.md')}>"
+                                             for title, target in ENTRY.findall(section)]
     for title, pages in generated.items():
         contents[title] = contents.get(title, []) + pages
     return text + "".join(f"\n```{{toctree}}\n:caption: {title}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
@@ -103,12 +110,15 @@ def add_interfaces(site: Site, headers: dict[str, Header]):
         about = (ROOT / "src" / "apsis" / room / "README.md").read_text(encoding="utf-8")
         text = about.replace("\n", "\n\n", 1)
         for name in sorted(name for name in headers if name.startswith(f"apsis/{room}/")):
-            text += f"\n## {name.removeprefix(f'apsis/{room}/')}\n\n```cpp\n#include <{name}>\n```\n\n{headers[name].directives(name)}"
+            text += f"\n## {name.removeprefix(f'apsis/{room}/')}\n\n```cpp\n#include <{name}>\n```\n\n"
+            text += headers[name].directives(name)
         site.add(f"api/{room}.md", text, f"src/apsis/{room}/README.md")
         listed += f"- [{room}]({room}.md): {about.split(chr(10), 1)[1].split('. ')[0].strip().rstrip('.')}.\n"
-    site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a row of rooms, each a library that is linked only to those before it. "
-             f"`find_package(apsis)` brings all as `apsis::apsis`.\n\n{listed}\n```{{toctree}}\n:hidden:\n\n" + "\n".join(rooms()) + "\n```\n")
-    site.add("python-api.md", "# Python interface\n\n```{eval-rst}\n.. automodule:: apsis\n   :members:\n   :inherited-members: Exception\n```\n")
+    site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a row of rooms, each a library that is linked only to those "
+             f"before it. `find_package(apsis)` brings all as `apsis::apsis`.\n\n{listed}\n```{{toctree}}\n:hidden:\n\n"
+             + "\n".join(rooms()) + "\n```\n")
+    site.add("python-api.md", "# Python interface\n\n```{eval-rst}\n.. automodule:: apsis\n   :members:\n   :undoc-members:\n"
+             "```\n")
 
 
 def main() -> int:
@@ -117,6 +127,7 @@ def main() -> int:
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
     given = parser.parse_args()
     build, work = given.build.resolve(), given.work.resolve()
+    shutil.rmtree(work / "doxygen", ignore_errors=True)
     (work / "doxygen").mkdir(parents=True, exist_ok=True)
     doxygen = subprocess.run(["doxygen", "-"], cwd=ROOT, text=True, input=(
         (ROOT / "docs" / "Doxyfile").read_text(encoding="utf-8") + f"\nOUTPUT_DIRECTORY = {work / 'doxygen'}\n"
@@ -126,9 +137,9 @@ def main() -> int:
     for problem in dict.fromkeys(site.problems):
         print(problem, file=sys.stderr)
     shutil.rmtree(work / "html", ignore_errors=True)
-    sphinx = subprocess.run(
-        ["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-c", ROOT / "docs", "-d", work / "doctrees",
-         site.source, work / "html"], env=os.environ | {"APSIS_BUILD": str(build), "APSIS_DOCS": str(work), "PYTHONDONTWRITEBYTECODE": "1"})
+    environment = {"APSIS_BUILD": str(build), "APSIS_DOCS": str(work), "PYTHONDONTWRITEBYTECODE": "1"}
+    sphinx = subprocess.run(["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-d",
+                             work / "doctrees", "-c", ROOT / "docs", site.source, work / "html"], env=os.environ | environment)
     if site.problems or doxygen.returncode or sphinx.returncode:
         return 1
     print(f"the site is {work / 'html' / 'index.html'}")

@@ -25,6 +25,7 @@ html_js_files = ["katex/katex.min.js", "site.js"]
 html_copy_source = False
 html_show_sphinx = False
 highlight_language = "text"
+smartquotes = False  # --out is two hyphens
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
@@ -36,14 +37,15 @@ breathe_default_members = ("members",)
 breathe_show_include = False
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "signature"
+autodoc_type_aliases = {name: name for name in ("Array", "ArrayLike", "Case", "Coefficient", "Progress", "Tableau")}
 
 # Names of others, whose documentation is elsewhere.
 index = ElementTree.parse(WORK / "doxygen" / "xml" / "index.xml").getroot()
 nitpick_ignore = [("cpp:identifier", part) for entry in index.iterfind("compound[@kind='namespace']")
                   for part in (entry.findtext("name"), entry.findtext("name").rpartition("::")[2])]
 nitpick_ignore_regex = [
-    (r"py:.*", r"(numpy|collections|pathlib|typing)\..*|Array|ArrayLike|NDArray|Path|Tableau|Case|Progress|.*Fraction|apsis\._core\..*"),
+    (r"py:.*", r"(numpy|collections|pathlib|typing|apsis\._core)\..*|Path|.*Fraction|.*ForwardRef.*|"
+     + "|".join(autodoc_type_aliases)),
     (r"cpp:identifier", r"(std|boost|nlohmann|Eigen|hwy|fmt)(::.*)?|.*@\d+"),  # @: without a name
 ]
 
@@ -67,7 +69,14 @@ def newest_id(declaration, compute=ASTDeclaration.get_newest_id):
     return declaration.newest_id
 
 
+def show_as_written(app, what, name, item, options, lines):
+    """Indented lines of a docstring are formulas or code, and `names` are code."""
+    text = re.sub(r"(?<!`)`([^`]+)`(?!`)", r"``\1``", "\n".join(lines))
+    lines[:] = re.sub(r"(?<!::)\n\n(?=    )(?<!\n    )", r"\n\n::\n\n", text).splitlines()
+
+
 def setup(app):
+    app.connect("autodoc-process-docstring", show_as_written)
     ASTDeclaration.get_newest_id = newest_id
     app.add_html_math_renderer("katex", (render_inline, None), (render_block, None))
 

@@ -26,9 +26,10 @@ from blocks import Block, Problem, check_rules, is_excerpt, is_same_output, read
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("README.md", "CONTRIBUTING.md", "src/apsis/*/README.md", "docs/**/*.md")
 LIMIT = 120  # seconds of a block
+REPORTS = ("studies/report.py", "bench/report.py")  # draw pictures from results that took longer than a page may
 
-# Runs the files named on its standard input in one namespace, with the file named after each for the output, and answers
-# with "ok" or the traceback.
+# Runs the blocks that come on its standard input in one namespace, each with its output into a file, and answers with "ok" or the
+# traceback.
 SESSION = """
 import json, os, sys, traceback
 requests, answers, names = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w"), {"__name__": "__main__"}
@@ -103,7 +104,7 @@ class Page:
         self.text = path.read_text(encoding="utf-8")
         self.problems, self.outputs, self.session, self.printed = [], {}, None, None
 
-    def run(self) -> "Page":
+    def run(self):
         start = time.monotonic()
         try:
             self.blocks = read_blocks(self.text)
@@ -113,21 +114,19 @@ class Page:
                 self.folder.mkdir(parents=True)
                 for block in self.blocks:
                     self.treat(block)
-                self.check_pictures()
         except Problem as problem:  # what comes after depends on it
             self.problems.append(problem)
         finally:
             if self.session:
                 self.session.communicate()
         self.seconds = time.monotonic() - start
-        return self
 
     def treat(self, block: Block):
         if "elsewhere" in block.marks:
             test = self.root / block.marks["elsewhere"]
             if not test.is_file() or self.name not in test.read_text(encoding="utf-8"):
-                raise Problem(block.line, f"{block.marks['elsewhere']} does not run this block (no such file, or it does not name "
-                              f"{self.name}) name a test that does")
+                raise Problem(block.line, f"{block.marks['elsewhere']} does not run this block (no such file, or it does not "
+                              f"name {self.name}) name a test that does")
         elif "file" in block.marks:
             self.write(block)
         elif "from" in block.marks:
@@ -155,7 +154,7 @@ class Page:
         name = block.marks["from"]
         file = next((f / name for f in (self.folder, self.root) if (f / name).is_file()), None)
         if file is None:
-            raise Problem(block.line, f"there is no {name} (neither in the repository nor in the folder of the page) mend the path")
+            raise Problem(block.line, f"there is no {name} (in the repository or in the folder of the page) mend the path")
         if not is_excerpt(block.text, file.read_text(encoding="utf-8")):
             self.problems.append(Problem(block.line, f"the block is not in {name} (it may have changed) copy it again"))
 
@@ -166,8 +165,8 @@ class Page:
         if not is_same_output(block.text, self.printed, tolerance):
             lines = difflib.unified_diff(block.text.splitlines(), self.printed.splitlines(), "page", "printed", lineterm="", n=1)
             self.outputs[block.line] = self.printed
-            self.problems.append(Problem(block.line, "the output is another one (the program or the page has changed) look at it, "
-                                         "then docs/execute.py --update\n" + indented("\n".join(list(lines)[:40]))))
+            self.problems.append(Problem(block.line, "the output is another one (the program or the page has changed) look at "
+                                         "it, then docs/execute.py --update\n" + indented("\n".join(list(lines)[:40]))))
 
     def run_shell(self, block: Block, out: Path):
         self.execute(block, ["bash", "-euo", "pipefail", "-c", block.text], out)
@@ -176,7 +175,6 @@ class Page:
         program = self.folder / f".block-{block.line}"
         source = program.with_suffix(".cpp")
         source.write_text(block.text, encoding="utf-8")
-        # The linker names libraries of the consumer's build by paths that are absolute or the system's.
         self.execute(block, self.tools.compile(source, program), out, codes=(0,))
         self.execute(block, [str(program)], out)
 
@@ -200,8 +198,8 @@ class Page:
         wanted = codes or (int(block.marks.get("exit", 0)),)
         messages = subprocess.STDOUT if "exit" in block.marks else subprocess.PIPE
         with open(out, "wb") as file:
-            process = subprocess.Popen(command, cwd=self.folder, env=self.tools.environment, stdin=subprocess.DEVNULL, stdout=file,
-                                       stderr=messages, start_new_session=True)
+            process = subprocess.Popen(command, cwd=self.folder, env=self.tools.environment, stdin=subprocess.DEVNULL,
+                                       stdout=file, stderr=messages, start_new_session=True)
             try:
                 error = (process.communicate(timeout=LIMIT)[1] or b"").decode(errors="replace")
             except subprocess.TimeoutExpired:
@@ -212,11 +210,13 @@ class Page:
             told = out.read_text(encoding="utf-8", errors="replace")[-1500:] + error[-1500:]
             raise Problem(block.line, f"the block fails (exit code {process.returncode}, not {wanted[0]})\n{indented(told)}")
 
-    def check_pictures(self):
-        """A picture that the blocks draw is kept in docs/images, where GitHub finds it."""
+    def check_pictures(self, reports: list[str]):
+        """A picture is kept in docs/images, where GitHub finds it, and drawn by a block of some page or by a report."""
         for name, line in self.pictures().items():
-            if (self.folder / "images" / name).is_file() and not (self.root / "docs" / "images" / name).is_file():
-                self.problems.append(Problem(line, f"docs/images has no {name} (GitHub would show nothing) docs/execute.py --update"))
+            if not (self.root / "docs" / "images" / name).is_file():
+                self.problems.append(Problem(line, f"docs/images has no {name} (nothing is shown) docs/execute.py --update"))
+            elif not any(self.folder.parent.glob(f"*/images/{name}")) and not any(re.fullmatch(one, name) for one in reports):
+                self.problems.append(Problem(line, f"nothing draws {name} (no block into images/, no report) draw it here"))
 
     def pictures(self) -> dict[str, int]:
         return {name: number for number, line in enumerate(self.text.splitlines(), 1)
@@ -229,15 +229,26 @@ class Page:
             lines[block.line:block.last] = [block.indent + line for line in self.outputs[block.line].rstrip().splitlines()]
         if self.outputs:
             self.path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-            self.problems = [p for p in self.problems if p.line not in self.outputs]
         for name in self.pictures():
             if (self.folder / "images" / name).is_file():
                 (self.root / "docs" / "images").mkdir(exist_ok=True)
                 shutil.copy(self.folder / "images" / name, self.root / "docs" / "images" / name)
+        mended = {*self.outputs, *self.pictures().values()}
+        self.problems = [p for p in self.problems if p.line not in mended]
 
 
 def indented(text: str) -> str:
     return "".join(f"    {line}\n" for line in text.strip().splitlines())
+
+
+def reported_pictures(root: Path) -> list[str]:
+    """Patterns of the pictures that `make figures` and the reports draw, {…} of formatted names for anything."""
+    texts = [(root / report).read_text(encoding="utf-8") for report in REPORTS if (root / report).exists()]
+    names = [name for text in texts for name in re.findall(r"[\w-]+(?:\{[^}]*\}[\w-]*)?\.png", text)]
+    if (root / "Makefile").exists():
+        recipe = re.search(r"^figures:.*\n((?:\t.*\n)+)", (root / "Makefile").read_text(encoding="utf-8"), re.M)
+        names += [f"{name}.png" for name in re.findall(r"--compare ([\w-]+)", recipe[1] if recipe else "")]
+    return [re.sub(r"\{[^}]*\}", r"[\\w-]+", name) for name in names]
 
 
 def run_pages(paths: list[Path], root: Path, tools: Tools, jobs: int) -> list[Page]:
@@ -245,7 +256,11 @@ def run_pages(paths: list[Path], root: Path, tools: Tools, jobs: int) -> list[Pa
     if any(re.search(r"^\s*```cpp", page.text, re.M) for page in pages) and not tools.commands:
         tools.prepare_compiler()
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        return list(pool.map(Page.run, pages))
+        list(pool.map(Page.run, pages))
+    reports = reported_pictures(root)
+    for page in pages:
+        page.check_pictures(reports)
+    return pages
 
 
 def main(arguments=None) -> int:

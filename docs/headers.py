@@ -41,7 +41,8 @@ def read_headers(xml: Path) -> dict[str, Header]:
             continue
         place = compound.find("location")
         inner |= {part.get("refid"): part for part in compound.findall("innerclass")}
-        text = concept(compound) if kind == "concept" else f"```{{doxygen{kind}}} {compound.findtext('compoundname')}\n:members:\n```\n"
+        text = f"```{{doxygen{kind}}} {compound.findtext('compoundname')}\n:members:\n```\n"
+        text = concept(compound) if kind == "concept" else text
         headers.setdefault(place.get("file"), Header()).types.append((int(place.get("line")), (name, text)))
     for header in headers.values():  # types inside types are shown with these
         header.types = [(line, text) for line, (name, text) in header.types if name not in inner]
@@ -70,9 +71,10 @@ def write_groups(headers: dict[str, Header], index: ElementTree.ElementTree, xml
 
 def concept(compound: ElementTree.Element) -> str:
     """breathe has no directive for concepts."""
-    parameters = ", ".join("".join(p.find("type").itertext()) + (f" {p.findtext('declname')}" if p.find("declname") is not None else "")
-                           for p in compound.find("templateparamlist"))
-    about = ["".join(part.itertext()).strip() for tag in ("briefdescription", "detaileddescription") for part in compound.find(tag)]
+    parameters = ", ".join(" ".join("".join(part.itertext()) for part in parameter if part.tag in ("type", "declname"))
+                           for parameter in compound.find("templateparamlist"))
+    about = ["".join(part.itertext()).strip() for tag in ("briefdescription", "detaileddescription")
+             for part in compound.find(tag)]
     code = "".join(compound.find("initializer").itertext()).strip().replace("apsis::", "")
     return (f"````{{cpp:concept}} template<{parameters}> {compound.findtext('compoundname')}\n\n" + "\n\n".join(about)
             + f"\n\n```cpp\n{code}\n```\n````\n")

@@ -2,6 +2,7 @@
 import json
 import re
 import subprocess
+import textwrap
 from pathlib import Path
 
 SHOWN = 4  # stages up to which the coefficients of a method fit on a page
@@ -24,6 +25,13 @@ def plain(text: str) -> str:
     return re.sub(r"\((apsis [a-z-]+(?: [a-z]+)?)\)", r"(`\1`)", text)
 
 
+def prose(text: str) -> str:
+    """Paragraphs, and lines that are indented as they are."""
+    parts = re.split(r"((?:^  .*\n?)+)", text, flags=re.M)
+    return "".join(f"\n```text\n{textwrap.dedent(part).rstrip()}\n```\n" if part.startswith("  ") else plain(part)
+                   for part in parts)
+
+
 def table(columns: list[str], rows: list[list[str]]) -> str:
     lines = [columns, ["---"] * len(columns), *rows]
     return "".join("| " + " | ".join(str(cell) for cell in line) + " |\n" for line in lines) + "\n"
@@ -39,7 +47,7 @@ def number(x: float | None) -> str:
 
 
 def coefficient(m: dict) -> str:
-    return "any step" if m["unconditional"] else number(m["ssp_coefficient"]) if m["ssp_coefficient"] else "0"
+    return "any step" if m["unconditional"] and m["kind"] == "implicit" else number(m["ssp_coefficient"])
 
 
 def limit(m: dict) -> str:
@@ -48,18 +56,18 @@ def limit(m: dict) -> str:
 
 def methods(program: Program) -> str:
     all_methods = program.list("methods")
-    text = ("# Methods\n\nAll methods of the catalogue, as `apsis list methods` certifies them. *r* is the SSP coefficient: a step "
-            "keeps what forward Euler keeps for Δt ≤ r Δt_FE, whatever ε is. n_F counts evaluations of the transport in a step. What "
-            "the columns mean is told in [methods](../methods.md) and [the study](../study.md).\n\n")
+    text = ("# Methods\n\nAll methods of the catalogue, as `apsis list methods` certifies them. *r* is the SSP coefficient: a "
+            "step keeps what forward Euler keeps for Δt ≤ r Δt_FE, whatever ε is. n_F counts evaluations of the transport in a "
+            "step. What the columns mean is told in [methods](../methods.md) and [the study](../study.md).\n\n")
     for kind, title in (("imex", "With transport and collisions"), ("implicit", "Collisions alone"), ("explicit", "Explicit")):
         chosen = [m for m in all_methods if m["kind"] == kind]
         text += f"**{title}**\n\n" + table(
             ["method", "order", "stages", "n_F", "r", "error constant", "recommended for"],
             [[f"[{m['name']}](#{m['name']})", m["order"], m["stages"], m["explicit_evaluations"], coefficient(m),
               number(m["error_constant"]), plain(m["purpose"])] for m in chosen])
-    text += "## Families\n\nAny number of stages S of the range gives a method, which is certified when it is asked for.\n\n" + table(
-        ["family", "S", "what"], [[f"`{f['name']}`", f"{f['lowest']} … {f['highest']}", plain(f["description"])]
-                                  for f in program.list("families")])
+    text += "## Families\n\nAny number of stages S of the range gives a method, which is certified when it is asked for.\n\n"
+    text += table(["family", "S", "what"], [[f"`{f['name']}`", f"{f['lowest']} … {f['highest']}", plain(f["description"])]
+                                            for f in program.list("families")])
     return text + "".join(method(program, m) for m in sorted(all_methods, key=lambda m: m["name"]))
 
 
@@ -91,7 +99,7 @@ def models(program: Program) -> str:
     for m in program.list("models"):
         text += f"## {m['name']}\n\n`{m['description']}`\n\n" + facts({
             "source": plain(m["source"]),
-            "tables of a case": ", ".join(f"`[{t}]`" for t in ("space", "velocity") if m[t]) or "neither `[space]` nor `[velocity]`",
+            "tables of a case": ", ".join(f"`[{t}]`" for t in ("model", "space", "velocity", "time", "output") if m.get(t, True)),
             "takes `model.epsilon`": "yes" if m["epsilon"] else "no",
             "initial data": ", ".join(f"`{name}`" for name in m["initial"])})
         rows = [[f"`{p['name']}`", f"number, {p['lowest']:g} to {p['highest']:g}", f"`{p['default']:g}`", plain(p["doc"])]
@@ -105,23 +113,24 @@ def models(program: Program) -> str:
 
 def cases(program: Program) -> str:
     all_cases = program.list("cases")
-    text = ("# Cases\n\nThe cases that are built in, from `apsis list cases`. `apsis run NAME` runs one, and `key=value` after the name "
-            "changes a [key](keys.md).\n\n")
+    text = ("# Cases\n\nThe cases that are built in, from `apsis list cases`. `apsis run NAME` runs one, and `key=value` after "
+            "the name changes a [key](keys.md).\n\n")
     text += table(["case", "what", "model", "method"],
-                  [[f"[{c['name']}](#{c['name'].replace('/', '')})", plain(c["description"]), f"[{c['model']}](models.md#{c['model']})",
-                    f"[{c['method']}](methods.md#{c['method']})"] for c in all_cases])
+                  [[f"[{c['name']}](#{c['name'].replace('/', '')})", plain(c["description"]),
+                    f"[{c['model']}](models.md#{c['model']})", f"[{c['method']}](methods.md#{c['method']})"] for c in all_cases])
     for c in all_cases:
         file = program("show", c["name"])
         comment = re.match(r"(?:#.*\n)*", file)[0]
-        text += (f"## {c['name']}\n\n{plain(re.sub(r'^# ?', '', comment, flags=re.M))}\n"
+        text += (f"## {c['name']}\n\n{prose(re.sub(r'^# ?', '', comment, flags=re.M))}\n"
                  f"```toml\n{file.removeprefix(comment).strip()}\n```\n\n")
     return text
 
 
 def keys(program: Program) -> str:
     all_keys, models_of = program.list("keys"), {m["name"] for m in program.list("models")}
-    text = ("# Keys of a case\n\nA case is a TOML file with these keys, `apsis list keys`. A key that is not listed, or that the model of "
-            "the case does not use, is an error. On the command line `space.cells=80` sets one; there a number may be a fraction.\n\n")
+    text = ("# Keys of a case\n\nA case is a TOML file with these keys, `apsis list keys`. A key that is not listed, or that the "
+            "model of the case does not use, is an error. On the command line `space.cells=80` sets one; there a number may be a "
+            "fraction.\n\n")
     section = None
     for k in all_keys:
         if k["name"].rpartition(".")[0] != section:
@@ -129,7 +138,8 @@ def keys(program: Program) -> str:
             text += f"## [{section}]\n\n" if section else "## The case\n\n"
         choices = [] if k["name"] in ("time.method", "model.initial") else k["choices"]
         default = "" if k["default"] in (None, '""') else f"default `{k['default']}`"
-        about = [k["type"], k["range"], "" if k["unit"] == "dimensionless" else k["unit"], "required" if k["required"] else default]
+        about = [k["type"], k["range"], "" if k["unit"] == "dimensionless" else k["unit"],
+                 "required" if k["required"] else default]
         text += f"### `{k['name']}`\n\n*{', '.join(a for a in about if a)}*\n\n{plain(k['description'])}\n\n" + facts({
             "one of": ", ".join(f"`{c}`" for c in choices),
             "for the models": "" if set(k["models"]) == models_of else ", ".join(f"[{m}](models.md#{m})" for m in k["models"])})
@@ -137,15 +147,16 @@ def keys(program: Program) -> str:
 
 
 def schemes(program: Program) -> str:
-    return ("# Schemes in space\n\nReconstructions of values at cell edges, for `space.reconstruction`; what is done with them is told "
-            "in [space](../space.md).\n\n" + table(
+    return ("# Schemes in space\n\nReconstructions of values at cell edges, for `space.reconstruction`; what is done with them "
+            "is told in [space](../space.md).\n\n" + table(
                 ["name", "order", "ghost cells", "what", "source"],
                 [[f"`{s['name']}`", s["order"], s["ghost_width"], plain(s["description"]), plain(s["source"])]
                  for s in program.list("schemes")]))
 
 
 def claims(program: Program) -> str:
-    return ("# Claims\n\nWhat the paper behind the methods states, and how `apsis reproduce` checks it; [verdicts](../claims.md).\n\n"
+    return ("# Claims\n\nWhat the paper behind the methods states, and how `apsis reproduce` checks it; "
+            "[verdicts](../claims.md).\n\n"
             + table(["", "statement", "section of the paper", "how it is checked"],
                     [[c["name"], plain(c["description"]), plain(c["section"]), plain(c["how"])] for c in program.list("claims")]))
 
@@ -158,9 +169,7 @@ def commands(program: Program) -> str:
             ["argument", "meaning", "default"],
             [[f"`{o['usage']}`", plain(o["description"]) + (" (required)" if o["required"] else ""),
               f"`{o['default']}`" if o["default"] else ""] for o in c["options"] if o["usage"] != "--help"])
-        more = re.sub(r"(?:^  \S.*\n?)+", lambda m: f"```text\n{m[0]}\n```\n", c["more"], flags=re.M)
-        text += "".join(part if part.startswith("```") else plain(part) for part in re.split(r"(```text\n.*?```\n)", more, flags=re.S))
-        text += "\n\n" if more else ""
+        text += prose(c["more"]) + "\n\n"
     return text
 
 

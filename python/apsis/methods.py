@@ -39,34 +39,42 @@ class Method:
 
     @cached_property
     def P(self) -> Array:
+        """Weights of the stages."""
         return self._core.P
 
     @cached_property
     def W(self) -> Array:
+        """Weights of the forward Euler steps from the stages."""
         return self._core.W
 
     @cached_property
     def D(self) -> Array:
+        """Factors of Q."""
         return self._core.D
 
     @cached_property
     def ddot(self) -> Array:
+        """Factors of Q̇."""
         return self._core.ddot
 
     @property
     def r(self) -> float:
+        """Steps of forward Euler in W have the length Δt/r."""
         return self._core.r
 
     @cached_property
     def A_hat(self) -> Array:
+        """Butcher matrix of T."""
         return self._core.A_hat
 
     @cached_property
     def A(self) -> Array:
+        """Butcher matrix of Q."""
         return self._core.A
 
     @cached_property
     def A_dot(self) -> Array:
+        """Butcher matrix of Q̇."""
         return self._core.A_dot
 
     @cached_property

@@ -77,33 +77,50 @@ double number(const mp_real& x) {
 }
 
 void bind_certificate(py::module_& m) {
-  py::class_<certificate>(m, "Certificate")
-      .def_readonly("name", &certificate::name)
-      .def_property_readonly("kind", [](const certificate& c) { return to_string(c.kind); })
-      .def_readonly("order", &certificate::order)
-      .def_readonly("conditions", &certificate::conditions)
-      .def_property_readonly("order_residual", [](const certificate& c) { return number(c.order_residual); })
-      .def_property_readonly("error_constant", [](const certificate& c) { return number(c.error_constant); })
-      .def_readonly("unconditional", &certificate::unconditional)
-      .def_property_readonly("ssp_coefficient",
-                             [](const certificate& c) -> std::optional<double> {
-                               if (!c.bounded) return std::nullopt;
-                               return number(c.ssp_coefficient);
-                             })
-      .def_property_readonly("explicit_radius",
-                             [](const certificate& c) { return number(c.explicit_radius); })
-      .def_readonly("limiting_entry", &certificate::limiting_entry)
-      .def_readonly("type", &certificate::type)
-      .def_readonly("gsa", &certificate::gsa)
-      .def_readonly("ap", &certificate::ap)
-      .def_readonly("ap_data", &certificate::ap_data)
-      .def_readonly("explicit_evaluations", &certificate::explicit_evaluations)
-      .def_readonly("implicit_solves", &certificate::implicit_solves)
-      .def_property_readonly("angle", [](const certificate& c) { return c.stability.angle; })
-      .def_property_readonly("l_stable", [](const certificate& c) { return c.stability.l_stable; })
-      .def_property_readonly("keeps", &certificate::keeps)
-      .def_readonly("claims_hold", &certificate::claims_hold)
-      .def_readonly("failures", &certificate::failures);
+  py::class_<certificate>(m, "Certificate", "What can be said of a method from its coefficients alone.")
+      .def_readonly("name", &certificate::name, "Of the method.")
+      .def_property_readonly(
+          "kind", [](const certificate& c) { return to_string(c.kind); },
+          "imex, implicit (of Q alone) or explicit.")
+      .def_readonly("order", &certificate::order, "Order of accuracy, from the order conditions.")
+      .def_readonly("conditions", &certificate::conditions, "How many order conditions that took.")
+      .def_property_readonly(
+          "order_residual", [](const certificate& c) { return number(c.order_residual); },
+          "The largest residual among them.")
+      .def_property_readonly(
+          "error_constant", [](const certificate& c) { return number(c.error_constant); },
+          "2-norm of the residuals of the next order.")
+      .def_readonly("unconditional", &certificate::unconditional, "SSP without a bound from Q.")
+      .def_property_readonly(
+          "ssp_coefficient",
+          [](const certificate& c) -> std::optional<double> {
+            if (!c.bounded) return std::nullopt;
+            return number(c.ssp_coefficient);
+          },
+          "r: steps up to r dt_FE keep what forward Euler keeps, whatever epsilon is; None where any step "
+          "does.")
+      .def_property_readonly(
+          "explicit_radius", [](const certificate& c) { return number(c.explicit_radius); },
+          "That of the explicit part by itself.")
+      .def_readonly("limiting_entry", &certificate::limiting_entry,
+                    "Which entry of the coefficients limits r.")
+      .def_readonly("type", &certificate::type, "A, CK, ARS or explicit.")
+      .def_readonly("gsa", &certificate::gsa, "Globally stiffly accurate: the last stage is the result.")
+      .def_readonly("ap", &certificate::ap, "Asymptotic preserving from any data.")
+      .def_readonly("ap_data", &certificate::ap_data, "From which data it is asymptotic preserving.")
+      .def_readonly("explicit_evaluations", &certificate::explicit_evaluations,
+                    "Evaluations of the transport in a step.")
+      .def_readonly("implicit_solves", &certificate::implicit_solves, "Implicit solves in a step.")
+      .def_property_readonly(
+          "angle", [](const certificate& c) { return c.stability.angle; },
+          "Of A(alpha)-stability of the implicit part, in degrees.")
+      .def_property_readonly(
+          "l_stable", [](const certificate& c) { return c.stability.l_stable; },
+          "Whether the implicit part is L-stable.")
+      .def_property_readonly("keeps", &certificate::keeps,
+                             "Which terms of size epsilon are exact: none, slow or all.")
+      .def_readonly("claims_hold", &certificate::claims_hold, "Whether all that the file claims is so.")
+      .def_readonly("failures", &certificate::failures, "What is not.");
 }
 
 }  // namespace

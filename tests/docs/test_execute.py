@@ -67,6 +67,8 @@ class Shell(Pages):
         self.assert_accepted(block("sh", "apsis show nonsense", "exit: 2"),
                              block("text", "error: nothing is called 'nonsense' …", "output"))
         self.assert_refused(4, "not 2", block("sh", "true", "exit: 2"))
+        self.assert_refused(4, "no number", block("sh", "true", "exit: two"))
+        self.assert_refused(4, "belongs to a program", block("python", "1 / 0", "exit: 1"))
 
     def test_a_block_that_does_not_end_is_ended(self):
         limit, execute.LIMIT = execute.LIMIT, 0.5
@@ -162,14 +164,29 @@ class Outputs(Pages):
         self.assert_refused(8, "another one", block("sh", "echo x=1.001"), block("text", "x=1", "output"))
         self.assert_accepted(block("sh", "echo x=1.001"), block("text", "x=1", "output: 1e-2"))
 
+    def test_a_tolerance_is_a_number(self):
+        self.assert_refused(8, "no number", block("sh", "echo 1"), block("text", "1", "output: some"))
+
     def test_an_output_needs_a_block_before_it(self):
         self.assert_refused(4, "no block before", block("text", "one", "output"))
+
+    def test_a_picture_is_drawn_by_somebody(self):
+        (self.root / "docs" / "images").mkdir(parents=True)
+        for name in ("a.png", "work-b.png", "c.png"):
+            (self.root / "docs" / "images" / name).touch()
+        self.assert_refused(3, "nothing draws a.png", "![a](images/a.png)")
+        self.assert_refused(3, "docs/images has no d.png", "![d](images/d.png)", block("sh", "mkdir images; touch images/d.png"))
+        self.assert_accepted("![a](images/a.png)", block("sh", "mkdir images; touch images/a.png"))
+        (self.root / "studies").mkdir()
+        (self.root / "studies" / "report.py").write_text('figure.savefig(images / f"work-{name}.png")', encoding="utf-8")
+        (self.root / "Makefile").write_text("figures:\n\tapsis plot --compare c --out results\n", encoding="utf-8")
+        self.assert_accepted("![b](images/work-b.png)\n![c](images/c.png)")
 
     def test_update_writes_what_was_printed_and_the_pictures(self):
         page = self.run_page("![one](images/one.png)", block("sh", "mkdir images; echo p > images/one.png; printf '1\\n2\\n'"),
                              "- item\n" + textwrap.indent(block("text", "one", "output"), "  "))
         self.assertEqual(len(page.problems), 2, page.problems)
-        self.assertIn("GitHub would show nothing", str(page.problems[-1]))
+        self.assertIn("nothing is shown", str(page.problems[-1]))
         page.update()
         self.assertIn("```text\n  1\n  2\n  ```", page.path.read_text(encoding="utf-8"))
         again = execute.run_pages([page.path], self.root, self.tools, 1)[0]
@@ -220,7 +237,8 @@ class Comparison(unittest.TestCase):
         for shown, printed, same in (
                 ("a b", "a   b  \n\n", True), ("a\nb", "a b", False), ("a", "a\nb", False), ("1e-8", "1.0E-08", True),
                 ("-1", "1", False), ("md-imex-6-3", "md-imex-6-2", False), ("u1 = 2", "u2 = 2", False), ("nan", "nan", True),
-                ("1", "x", False), ("0", "1e-17", False), ("…", "anything\nat all", True), ("…", "", True), ("a … c", "a b c", True),
+                ("1", "x", False), ("0", "1e-17", False), ("…", "anything\nat all", True), ("…", "", True),
+                ("a … c", "a b c", True),
                 ("a …", "a", True), ("a … c", "a b", False), ("a\n…\nz", "a\nz", True), ("… 2.0 s", "took 2 s", True),
                 ("… b … d", "a b c d", True), ("… b … d", "a d b", False), ("a … a", "a", False), ("… a b …", "a a b c", True)):
             self.assertEqual(blocks.is_same_output(shown, printed, 1e-6), same, (shown, printed))

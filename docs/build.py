@@ -18,6 +18,7 @@ from reference import write_reference
 
 ROOT = Path(__file__).resolve().parents[1]
 KATEX = Path("/usr/share/javascript/katex")
+NORMALIZE = Path("/usr/share/javascript/normalize.css/normalize.css")
 # Pages that lie elsewhere in the repository, and folders that have a page.
 PLACES = {"README.md": "overview.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
           "bench/README.md": "bench.md", "methods": "reference/methods.md", "cases": "reference/cases.md"}
@@ -121,6 +122,18 @@ def add_interfaces(site: Site, headers: dict[str, Header]):
              "```\n")
 
 
+def mend_theme(static: Path):
+    """Debian's furo is as its sources are: its script is a module, which browsers load from servers only, and its style sheet
+    asks for one at a place of the machine."""
+    scripts, sheet = static / "scripts", static / "styles" / "furo.css"
+    script = (scripts / "furo.js").read_text(encoding="utf-8")
+    needed = (scripts / "gumshoe-patched.js").read_text(encoding="utf-8")
+    (scripts / "furo.js").write_text(script.replace('import Gumshoe from "./gumshoe-patched.js";', needed), encoding="utf-8")
+    shutil.copy(NORMALIZE, sheet.parent)
+    style = sheet.read_text(encoding="utf-8")
+    sheet.write_text(style.replace(f"/javascript/{NORMALIZE.parent.name}/{NORMALIZE.name}", NORMALIZE.name), encoding="utf-8")
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, default=ROOT / "build" / "release")
@@ -140,6 +153,7 @@ def main() -> int:
     environment = {"APSIS_BUILD": str(build), "APSIS_DOCS": str(work), "PYTHONDONTWRITEBYTECODE": "1"}
     sphinx = subprocess.run(["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-d",
                              work / "doctrees", "-c", ROOT / "docs", site.source, work / "html"], env=os.environ | environment)
+    mend_theme(work / "html" / "_static")
     if site.problems or doxygen.returncode or sphinx.returncode:
         return 1
     print(f"the site is {work / 'html' / 'index.html'}")

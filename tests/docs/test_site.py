@@ -9,6 +9,9 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "support"))
+from browser import Browser  # noqa: E402
+
 BUILD = Path(os.environ.get("APSIS_BUILD", ROOT / "build" / "release"))
 WORK = Path(os.environ.get("APSIS_DOCS", ROOT / "build" / "docs"))
 LOADING = {("script", "src"), ("img", "src"), ("iframe", "src"), ("source", "src"), ("object", "data")}
@@ -62,10 +65,23 @@ class Site(unittest.TestCase):
         for style in self.html.rglob("*.css"):
             text = style.read_text(encoding="utf-8")
             for link in re.findall(r"url\(\s*[\"']?([^\"')]+)", text) + re.findall(r"@import\s+[\"']([^\"']+)", text):
-                self.assertFalse(is_elsewhere(link), f"{style.name}: {link}")
+                self.assertFalse(is_elsewhere(link) or link.startswith("/"), f"{style.name}: {link}")
         for script in self.html.rglob("*.js"):
             text = script.read_text(encoding="utf-8")
             self.assertIsNone(re.search(r"(?:fetch|import|importScripts)\(\s*[\"'](?:https?:)?//", text), script.name)
+
+    def test_a_browser_shows_it_at_any_width_without_a_word(self):
+        browser = Browser()
+        self.addCleanup(browser.quit)
+        inside = self.html.as_uri() + "/"
+        for name in ("index", "first-steps", "tutorials/own-pde", "methods", "study", "reference/methods", "api/integrate", "python-api"):
+            for width in (400, 1600):
+                with self.subTest(page=name, width=width):
+                    seen = browser.show(self.html / f"{name}.html", width)
+                    self.assertLessEqual(seen["content"], width)
+                    self.assertEqual(seen["broken"], 0)
+                    self.assertEqual(browser.console(), [])
+                    self.assertEqual([x for x in browser.requests() if not x.startswith((inside, "data:"))], [])
 
     def test_every_page_is_in_the_contents_and_every_header_in_the_interface(self):
         index = self.pages[self.html / "index.html"].links

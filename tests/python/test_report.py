@@ -2,6 +2,8 @@
 import base64
 import json
 import re
+import sys
+from pathlib import Path
 
 import apsis
 import pytest
@@ -10,6 +12,9 @@ from apsis.report import make_report
 from apsis.report.claims import markdown
 from apsis.plot.style import PictureError
 from test_plot import curve, panel, picture
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from browser import Browser  # noqa: E402
 
 SMALL = ("space.cells=12", "velocity.points=48", "time.end=0.01")
 
@@ -133,38 +138,9 @@ def test_what_is_no_result_is_named_and_nothing_is_left(tmp_path, capsys):
 
 @pytest.fixture(scope="module")
 def chromium():
-    """A headless Chromium that records its console and every request."""
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-
-    options = webdriver.ChromeOptions()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run"):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-    yield driver
-    driver.quit()
-
-
-def requests_of(driver):
-    events = (json.loads(entry["message"])["message"] for entry in driver.get_log("performance"))
-    return [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
-
-
-def show(driver, page, width):
-    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                           {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600})
-    driver.get_log("browser"), driver.get_log("performance")
-    driver.get(page.as_uri())
-
-
-READABLE = """
-const broken = [...document.images].filter(i => !(i.complete && i.naturalWidth > 0)).length;
-const drawn = [...document.images].map(i => i.getBoundingClientRect().width / i.naturalWidth);
-const sizes = [...document.querySelectorAll('p, td, th, figcaption, h1, h2, pre')].map(e => parseFloat(getComputedStyle(e).fontSize));
-const paragraph = document.querySelector('p').getBoundingClientRect().width;
-return [innerWidth, document.documentElement.scrollWidth, broken, Math.min(...drawn), Math.min(...sizes), paragraph];
-"""
+    browser = Browser()
+    yield browser
+    browser.quit()
 
 
 @pytest.mark.parametrize("width", [400, 1600])
@@ -180,25 +156,23 @@ def test_a_browser_shows_it_readably_and_asks_for_nothing(chromium, run, tmp_pat
         page = make_report(tmp_path)
     else:
         long_words = claim(statement="w" * 300, tables=[{"title": "t", "columns": ["c"] * 20, "rows": [["number"] * 20]}],
-                           pictures=[picture(panel(curves=[curve("a", [1, 2], [1, 4])]))])
+                           pictures=[picture(*3 * [panel(curves=[curve("a", [1, 2], [1, 4])])])])
         page_of_claims(tmp_path, long_words)
         page = tmp_path / "report.html"
-    show(chromium, page, width)
-    window, content, broken, drawn, smallest, paragraph = chromium.execute_script(READABLE)
-    assert window == width
-    assert content <= width  # no sideways scrolling of the page; wide tables and pictures scroll in themselves
-    assert broken == 0
-    assert drawn * 10 * 4 / 3 >= 7.5  # pixels of the letters in pictures, which have 10 points
-    assert smallest >= 12 and paragraph <= 62 * 16  # pixels: small print, and lines that an eye can follow
-    assert chromium.get_log("browser") == []
-    assert [url for url in requests_of(chromium) if not url.startswith(("data:", page.as_uri()))] == []
+    seen = chromium.show(page, width)
+    assert seen["window"] == width
+    assert seen["content"] <= width  # no sideways scrolling of the page; wide tables and pictures scroll in themselves
+    assert seen["broken"] == 0
+    assert seen["drawn"] * 10 * 4 / 3 >= 7.5  # pixels of the letters in pictures, which have 10 points
+    assert seen["letters"] >= 12 and seen["paragraph"] <= 62 * 16  # pixels: small print, and lines that an eye can follow
+    assert chromium.console() == []
+    assert [url for url in chromium.requests() if not url.startswith(("data:", page.as_uri()))] == []
 
 
 def test_the_browser_test_sees_what_it_looks_for(chromium, tmp_path):
     page = tmp_path / "bad.html"
     page.write_text('<meta charset="utf-8"><p>x</p><img src="gone.png"><div style="width: 5000px">w</div><script>undefined.x</script>')
-    show(chromium, page, 400)
-    _, content, broken, *_ = chromium.execute_script(READABLE)
-    assert content > 400 and broken == 1
-    assert any("gone.png" in url for url in requests_of(chromium))
-    assert chromium.get_log("browser") != []
+    seen = chromium.show(page, 400)
+    assert seen["content"] > 400 and seen["broken"] == 1
+    assert any("gone.png" in url for url in chromium.requests())
+    assert chromium.console() != []

@@ -24,8 +24,7 @@ td.number { font-variant-numeric: tabular-nums; white-space: nowrap; }
 figure { margin: 1rem 0; overflow-x: auto; } figure img { max-width: 100%; height: auto; } figcaption { font-size: .9rem; color: #333; max-width: 50rem; }
 pre { background: #f6f6f6; padding: .6rem; overflow-x: auto; font-size: .85rem; }
 .small { color: #555; font-size: .85rem; } a { color: #00508a; }
-@media (max-width: 48rem) { table { font-size: .8rem; } th, td { padding-right: .4rem; }
-  figure img.wide { max-width: none; width: 48rem; } }
+@media (max-width: 48rem) { table { font-size: .8rem; } th, td { padding-right: .4rem; } }
 @media print { body { max-width: none; font-size: 11px; } h2, figure, tr { break-inside: avoid; } a { color: inherit; text-decoration: none; } }
 """
 
@@ -73,9 +72,8 @@ def embedded(figure: Any, name: str, title: str, caption: str, folder: Path) -> 
     figure.savefig(stream, format="svg", metadata=UNDATED[".svg"])
     data = base64.b64encode(stream.getvalue()).decode("ascii")
     save(figure, folder / f"{name}.png")
-    # Panels side by side would be too small on a narrow screen: such a picture scrolls instead.
-    wide = ' class="wide"' if width > 7.0 else ""
-    return (f'<figure><img{wide} alt="{text(title)}" src="data:image/svg+xml;base64,{data}">'
+    # Letters of 10 points keep 7.7 pixels on a narrow screen, where a wide picture scrolls.
+    return (f'<figure><img style="min-width: {0.58 * 96 * width:.0f}px" alt="{text(title)}" src="data:image/svg+xml;base64,{data}">'
             f'<figcaption><b>{text(title)}.</b> {text(caption)}</figcaption></figure>\n')
 
 

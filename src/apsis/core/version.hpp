@@ -1,5 +1,6 @@
 #pragma once
 
+/// Stiff relaxation and kinetic equations u_t = T(u) + Q(u)/ε by SSP multi-derivative IMEX Runge–Kutta methods.
 namespace apsis {
 
 /// Version of the library and the program, "1.2.3".

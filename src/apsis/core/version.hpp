@@ -1,6 +1,7 @@
 #pragma once
 
-/// Stiff relaxation and kinetic equations u_t = T(u) + Q(u)/ε by SSP multi-derivative IMEX Runge–Kutta methods.
+/// Stiff relaxation and kinetic equations u_t = T(u) + Q(u)/ε by SSP multi-derivative IMEX Runge–Kutta
+/// methods.
 namespace apsis {
 
 /// Version of the library and the program, "1.2.3".

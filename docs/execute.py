@@ -122,6 +122,8 @@ class Page:
         self.seconds = time.monotonic() - start
 
     def treat(self, block: Block):
+        if "from" in block.marks:
+            self.compare_excerpt(block)
         if "elsewhere" in block.marks:
             test = self.root / block.marks["elsewhere"]
             if not test.is_file() or self.name not in test.read_text(encoding="utf-8"):
@@ -129,8 +131,6 @@ class Page:
                               f"name {self.name}) name a test that does")
         elif "file" in block.marks:
             self.write(block)
-        elif "from" in block.marks:
-            self.compare_excerpt(block)
         elif "output" in block.marks:
             self.compare_output(block)
         elif block.runs:

@@ -127,6 +127,11 @@ class Excerpts(Pages):
         super().setUp()
         (self.root / "file.cpp").write_text(self.FILE, encoding="utf-8")
 
+    def test_an_excerpt_that_is_also_written_is_still_compared(self):
+        used = block("sh", "grep -q 'y = 2' own.cpp")
+        self.assert_accepted(block("cpp", self.FILE.strip(), "from: file.cpp", "file: own.cpp"), used)
+        self.assert_refused(5, "not in file.cpp", block("cpp", "int y = 2; // mine", "from: file.cpp", "file: own.cpp"), used)
+
     def test_lines_of_a_file_at_any_indentation(self):
         self.assert_accepted(block("cpp", "int x = 1;\nint y = 2;", "from: file.cpp"))
 

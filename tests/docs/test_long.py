@@ -37,6 +37,11 @@ class Long(unittest.TestCase):
         shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns("build", "results", ".git", "__pycache__"))
         subprocess.run(["make", "-C", source, "run"], check=True, stdout=subprocess.DEVNULL)
         self.assertTrue((source / "results" / "bgk-mixed.png").exists())
+        # What the front page says next: the library can be installed from what is there.
+        prefix = self.work / "prefix"
+        subprocess.run(["cmake", "--install", source / "build" / "release", "--prefix", prefix], check=True, stdout=subprocess.DEVNULL)
+        self.assertTrue((prefix / "bin" / "apsis").exists())
+        self.assertEqual(len(list(prefix.rglob("apsisConfig.cmake"))), 1)
 
 
 if __name__ == "__main__":

@@ -104,6 +104,14 @@ def test_a_comparison_draws_the_finest_as_a_line_and_averages_it_onto_the_others
     assert line.startswith(f"few against many: rho {distance:.2e}, ")
 
 
+def test_runs_with_equally_many_cells_are_lines_and_are_compared_with_the_last(tmp_path):
+    one, two = (run(tmp_path / name, "paper/broadwell", f"model.epsilon={name}") for name in ("1e-2", "1"))
+    runs = [(name, read_result(tmp_path / name)) for name in ("1e-2", "1")]
+    assert [line.get_linestyle() for line in comparison_figure(runs).axes[0].lines] == ["-", "--"]
+    distance = np.abs(one.fields["rho"][-1] - two.fields["rho"][-1]).max()
+    assert differences(runs)[0].startswith(f"1e-2 against 1: rho {distance:.2e}, ")
+
+
 def test_a_comparison_of_different_models_is_refused(tmp_path):
     run(tmp_path / "a", "paper/ode")
     run(tmp_path / "b", "paper/broadwell")

@@ -17,7 +17,7 @@ DESCRIPTION = """Draws what apsis computed, as WHAT/pictures/*.png:
   picture.json                 the pictures in it
   method, FILE.toml            NAME-tableau and NAME-stability, in the present folder
 
-  --compare draws runs of one model into one picture, and prints how far they are from the one with most cells."""
+  --compare draws runs of one model into one picture, and prints how far they are from the one with most cells, the last of several."""
 
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:

@@ -164,17 +164,22 @@ def title_of(result: RunResult) -> str:
 
 
 def comparison_figure(runs: Sequence[tuple[str, RunResult]]) -> Any:
-    """A panel for each field that all runs have: the run with most cells as a line, the others with markers."""
+    """A panel for each field that all runs have: the run with most cells as a line, the others with markers; runs with equally many
+    as lines."""
     names = [name for name in runs[0][1].fields if all(name in run.fields and run.has_space for _, run in runs)]
     if not names:
         raise PictureError("nothing to compare (the runs share no field over x) give runs of one model")
     finest = finest_of(runs)
+    equal = len({len(run.arrays["x"]) for _, run in runs}) == 1
     figure, axes = panels(len(names))
     for panel, name in zip(axes, names):
         others = 0
+        style: dict[str, Any]
         for k, (label, run) in enumerate(runs):
-            if k == finest:
-                style: dict[str, Any] = {"color": BLACK, "linewidth": 1.2, "zorder": 1}
+            if equal:
+                style = {"color": COLOURS[k % len(COLOURS)], "linestyle": ("-", "--", "-.", ":")[k % 4], "linewidth": 1.3}
+            elif k == finest:
+                style = {"color": BLACK, "linewidth": 1.2, "zorder": 1}
             else:
                 style = {"color": COLOURS[others % len(COLOURS)], "marker": ((6, 2, 0), *MARKERS)[others % len(MARKERS)],
                          "linestyle": "none", "fillstyle": "none", "markersize": 6}
@@ -191,7 +196,8 @@ def finest_of(runs: Sequence[tuple[str, RunResult]]) -> int:
 
 
 def differences(runs: Sequence[tuple[str, RunResult]]) -> list[str]:
-    """Largest differences of every run to the one with most cells, whose values are averaged onto the coarser cells."""
+    """Largest differences of every run to the one with most cells, the last of several, whose values are averaged onto the coarser
+    cells."""
     finest = finest_of(runs)
     label_of_finest, fine = runs[finest]
     lines = []

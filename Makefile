@@ -59,10 +59,10 @@ asan: ## tests under the address and undefined-behaviour sanitizers
 	cmake --build build/asan
 	ctest --preset asan -LE slow
 
-tidy: ## clang-tidy over the library and the program
-	cmake --preset clang >/dev/null
+tidy: ## clang-tidy over the library, the program and the Python package
+	cmake --preset clang -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) >/dev/null
 	cmake --build build/clang --target app/apsis
-	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app)/.*'
+	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app|python)/.*'
 
 bench: ## speed, measured: every table of docs/speed.md, in results/bench/speed.json (half an hour, on an idle machine)
 	@scripts/install-packages.sh test

@@ -2,6 +2,9 @@
 
 #include "arrays.hpp"
 
+#include <exception>
+#include <utility>
+
 namespace apsis::python {
 namespace {
 
@@ -23,7 +26,7 @@ void raise(const char* name, const error& problem, const failure_site* site = nu
 void bind_errors(py::module_&) {
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
+      if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const numerical_error& problem) {
       raise("NumericalError", problem, &problem.site());
     } catch (const input_error& problem) {

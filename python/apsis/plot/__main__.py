@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from . import methods, pictures, results
-from .style import FORMATS, PictureError, save
+from .style import FORMATS, PictureError, exit_code_of, save
 
 DESCRIPTION = """Draws what apsis computed, as WHAT/pictures/*.png:
 
@@ -85,20 +85,19 @@ def compare(what: list[str]) -> Any:
     return results.comparison_figure(runs)
 
 
+def draw_all(options: argparse.Namespace) -> None:
+    if options.compare:
+        print(save(compare(options.what), (options.out or Path()) / f"{options.compare}.{options.format}"))
+        return
+    for what in options.what:
+        folder, figures = drawn(what)
+        for name, figure in figures:
+            print(save(figure, (options.out or folder) / f"{name}.{options.format}"))
+
+
 def main(arguments: list[str] | None = None) -> int:
     options = parse(arguments)
-    try:
-        if options.compare:
-            print(save(compare(options.what), (options.out or Path()) / f"{options.compare}.{options.format}"))
-            return 0
-        for what in options.what:
-            folder, figures = drawn(what)
-            for name, figure in figures:
-                print(save(figure, (options.out or folder) / f"{name}.{options.format}"))
-    except PictureError as problem:
-        print(f"error: {problem}", file=sys.stderr)
-        return problem.exit_code
-    return 0
+    return exit_code_of(lambda: draw_all(options))
 
 
 if __name__ == "__main__":

@@ -100,7 +100,8 @@ def draw_explicit(axes: Any, method: Description, stiff: bool) -> None:
 def tableau_figure(method: Description) -> Any:
     """Butcher form as maps of coefficients (dimensionless), zeros left empty; row sums on the left, u^{n+1} the last row."""
     A_hat, A, A_dot = matrices(method)
-    named = [("Â of T and of Q", A)] if np.array_equal(A_hat, A) else [("Â of T", A_hat), ("A of Q", A), ("Ȧ of Q̇", A_dot)]
+    named = [(r"$\hat A$ of $T$ and of $Q$", A)] if np.array_equal(A_hat, A) else [
+        (r"$\hat A$ of $T$", A_hat), (r"$A$ of $Q$", A), (r"$\dot A$ of $\dot Q$", A_dot)]
     parts = [(name, m) for name, m in named if m.any()]
     stages = len(parts[0][1])
     size = 1.2 + 0.42 * stages if stages <= 10 else 5.4

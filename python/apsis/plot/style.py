@@ -1,7 +1,8 @@
 """One style for all pictures: colours, markers, fonts, and how a picture is written."""
 from __future__ import annotations
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -12,14 +13,15 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
 
+__all__ = ["BLACK", "BLUE", "COLOURS", "FORMATS", "GREEN", "GREY", "MARKERS", "ORANGE", "PURPLE", "PictureError", "SKY", "UNDATED",
+           "VERMILLION", "exit_code_of", "palette", "plt", "save", "whole_file"]
+
 # Okabe and Ito: distinct for colour-blind readers, and in lightness for print.
 BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
 SKY, GREY = "#56B4E9", "#7F7F7F"
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY)
 # Markers differ too, so that curves are told apart without colour.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "h")
-__all__ = ["BLACK", "BLUE", "COLOURS", "FORMATS", "GREEN", "GREY", "MARKERS", "ORANGE", "PURPLE", "PictureError", "SKY", "UNDATED",
-           "VERMILLION", "palette", "plt", "save", "whole_file"]
 FORMATS = ("png", "svg", "pdf")
 UNDATED = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
 
@@ -33,6 +35,16 @@ class PictureError(Exception):
     def __init__(self, message: str, exit_code: int = 4) -> None:
         super().__init__(message)
         self.exit_code = exit_code
+
+
+def exit_code_of(command: Callable[[], None]) -> int:
+    """0, or that of what cannot be drawn, whose message goes to standard error."""
+    try:
+        command()
+    except PictureError as problem:
+        print(f"error: {problem}", file=sys.stderr)
+        return problem.exit_code
+    return 0
 
 
 def palette(count: int) -> list[Any]:

@@ -2,12 +2,25 @@
 #include "mixed_step.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace apsis::bench {
 
-mixed_step::mixed_step(const std::string& formulation, const std::string& method, int cells)
-    : setup_(load_case("paper/bgk-mixed", {"space.formulation=" + formulation, "time.method=" + method,
-                                           "space.cells=" + std::to_string(cells)})),
+namespace {
+
+case_config mixed_case(const std::string& formulation, const std::string& method, int cells,
+                       std::vector<std::string> overrides) {
+  overrides.insert(overrides.begin(), {"space.formulation=" + formulation, "time.method=" + method,
+                                       "space.cells=" + std::to_string(cells)});
+  return load_case("paper/bgk-mixed", overrides);
+}
+
+}  // namespace
+
+mixed_step::mixed_step(const std::string& formulation, const std::string& method, int cells,
+                       std::vector<std::string> overrides)
+    : setup_(mixed_case(formulation, method, cells, std::move(overrides))),
       problem_(setup_.make_problem()),
       stepper_(setup_.integrator(), *problem_),
       u_(setup_.initial_state()),
@@ -31,6 +44,14 @@ work mixed_step::count_work() {
 double mixed_step::point_stages() const {
   return static_cast<double>(u_.cells()) * u_.components() *
          static_cast<double>(setup_.integrator().stages());
+}
+
+double mixed_step::subnormal_share() const {
+  double count = 0.0;
+  for (int cell = 0; cell < u_.cells(); ++cell)
+    for (int k = 0; k < u_.components(); ++k)
+      if (std::fpclassify(u_.row(cell)[k]) == FP_SUBNORMAL) ++count;
+  return count / (static_cast<double>(u_.cells()) * u_.components());
 }
 
 int mixed_step::passes() const {

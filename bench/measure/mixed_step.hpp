@@ -13,13 +13,17 @@ namespace apsis::bench {
 /// Steps of the paper's mixed-regime problem (data V, 150 velocities) without any looking at them.
 class mixed_step {
  public:
-  mixed_step(const std::string& formulation, const std::string& method, int cells);
+  /// `overrides` are further keys of the case, "key=value".
+  mixed_step(const std::string& formulation, const std::string& method, int cells,
+             std::vector<std::string> overrides = {});
 
   void take(int steps) {
     for (int k = 0; k < steps; ++k) stepper_.step(0.0, dt_, u_);
   }
   /// Operations and bytes of one step, counted while one is done.
   work count_work();
+  /// Fraction of the values that are subnormal numbers.
+  double subnormal_share() const;
   /// Point·stages of a step: N · N_v · s.
   double point_stages() const;
   /// Numbers of one field, padding included.

@@ -38,7 +38,11 @@ void scatter(std::span<const relaxation::strong_rows> points, const double* u, i
     for (const auto& p : points) change = fma(N(p.strength), N::load(p.e + k) - N::load(p.u + k), change);
     const N here = N::load(u + k);
     for (const auto& to : targets) {
-      const N add = fma(N(to.alpha), here, N(to.beta) * change);
+      // An increment below the margin is dropped: its rounding error, half of 4.9e-324, may exceed what it
+      // leaves of a subnormal number, which would become negative.
+      const N increment = N(to.beta) * change;
+      const N kept = select(absolute(increment) < N(limiter::absolute_margin), N(0.0), increment);
+      const N add = fma(N(to.alpha), here, kept);
       (to.fresh ? add : N::load(to.acc + k) + add).store(to.acc + k);
     }
   });
@@ -68,8 +72,9 @@ HWY_INLINE gauss_points<N> quartic_values(N before, N c, N after, N l, N r) {
     const N lowest_inner = fma(N(-0.1), edges, c) - absolute(odd_inner);
     const N lowest =
         minimum(minimum(minimum(l, r), minimum(values.g0, values.g1)), minimum(values.g2, lowest_inner));
-    if (N::any(lowest < N(limiter::floor) * c)) {
-      const N theta = limiter::scaling(c, lowest);
+    const N bound = limiter::lower_bound(c);
+    if (N::any(lowest < bound)) {
+      const N theta = limiter::scaling(c, lowest, bound);
       values = {fma(theta, g0, c), fma(theta, g1, c), fma(theta, g2, c)};
     }
   }

@@ -51,7 +51,7 @@ class semidiscrete_problem {
   double forward_euler_step(double, const field& u) const {
     const double of_transport = transport_.forward_euler_step();
     if (!explicit_collision_) return of_transport;
-    return 1.0 / (1.0 / of_transport + 1.0 / collision_->forward_euler_step(u));
+    return 1.0 / (1.0 / of_transport + 1.0 / (rounding_allowance * collision_->forward_euler_step(u)));
   }
   /// Smallest ε/C > 0; +infinity where none is known, or ε = 0 everywhere.
   double relaxation_time(double, const field& u) const { return collision_->relaxation_time(u); }

@@ -56,9 +56,7 @@ transport::transport(const model& equation, const grid& mesh, stencil how)
 double transport::forward_euler_step() const {
   double rate = 0.0;  // 1/0 is the infinity of a model without space
   for (const auto& line : speeds_) rate += *std::max_element(line.per_cell.begin(), line.per_cell.end());
-  // The rounding of α u + β T(u), a few units in the last place, must not cross what is exact at the limit.
-  constexpr double safe = 1.0 - 1e-14;
-  return safe * (how_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) / rate;
+  return rounding_allowance * (how_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) / rate;
 }
 
 bool transport::scatter(const field& u, targets_view targets, const cells_job& then) const {

@@ -9,6 +9,10 @@
 
 namespace apsis {
 
+/// Factor of every forward Euler step, slightly below 1: at the exact limit the rounding of α u + β T(u), a
+/// few units in the last place, could make a value negative.
+inline constexpr double rounding_allowance = 1.0 - 1e-14;
+
 /// T(u) = −Σ_k ∂_xk(v_k u) + S(u) with upwind fluxes of reconstructed edge values. For constant speeds the
 /// operator is the same for cell averages (finite volume) and point values (finite difference).
 class transport {

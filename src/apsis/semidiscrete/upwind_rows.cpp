@@ -21,10 +21,13 @@ HWY_INLINE N outflow(const Walk& way, const cells& run, int j) {
 
 template <class Walk, class N = typename Walk::number>
 HWY_INLINE void accumulate(const Walk& way, const cells& run, std::span<const row_target> targets, int j, N u,
-                           N change) {
-  if (run.source != nullptr) change = change + way.load(run.source, run.pitch, j);
+                           N speed, N difference) {
   for (const auto& to : targets) {
-    const N add = fma(N(to.alpha), u, N(to.beta) * change);
+    // β|v|/Δx first: (|v|/Δx)(in − out) would round a second time among subnormal numbers, where 2.5 units
+    // count as much as 3, and u − (in − out) could become negative (docs/space.md, "Rounding").
+    N change = (N(to.beta) * speed) * difference;
+    if (run.source != nullptr) change = fma(N(to.beta), way.load(run.source, run.pitch, j), change);
+    const N add = fma(N(to.alpha), u, change);
     way.store(to.fresh ? add : way.load(to.acc, to.pitch, j) + add, to.acc, to.pitch, j);
   }
 }
@@ -34,7 +37,7 @@ HWY_INLINE void add_along(const Walk& way, N speed, const cells& run, std::span<
   N in = outflow(way, run, -1);
   for (int j = 0; j < run.count; ++j) {
     const N out = outflow(way, run, j);
-    accumulate(way, run, targets, j, way.load(run.u, j), speed * (in - out));
+    accumulate(way, run, targets, j, way.load(run.u, j), speed, in - out);
     in = out;
   }
 }
@@ -59,8 +62,8 @@ template <class Walk, class N = typename Walk::number>
 HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j, N upstream, N correction_in) {
   limited_cell<N> cell{way.load(run.u, j), outflow(way, run, j), N(0.0), N(1.0), false};
   cell.correction = cell.edge - cell.u;
-  const limiter::bearing<N> of(upstream, cell.u, correction_in, cell.correction);
-  cell.harms = of.too_much();
+  const limiter::harm_bound<N> of(upstream, cell.u, correction_in, cell.correction);
+  cell.harms = of.exceeded();
   if (cell.harms) cell.fraction = of.fraction();
   return cell;
 }
@@ -83,7 +86,7 @@ HWY_INLINE void add_limited_along(const Walk& way, N speed, const cells& run,
   for (int j = 0; j < run.count; ++j) {
     const auto after = next_cell(way, run, j + 1, here.u, here.correction);
     const N out = limited_flux(here, after);
-    accumulate(way, run, targets, j, here.u, speed * (in - out));
+    accumulate(way, run, targets, j, here.u, speed, in - out);
     here = after;
     in = out;
   }

@@ -62,8 +62,8 @@ void add_limited(const cells& run, std::span<const row_target> targets);
 
 /// Operations of add, or of add_limited, that T takes for one number (core/counted.hpp).
 double operations(bool limited);
-/// Operations for one number that each target takes besides.
-inline constexpr double operations_of_target = 3.0;
+/// Additional operations per number and target.
+inline constexpr double operations_of_target = 4.0;
 
 /// One row, for targets that need u alone: β = 0 everywhere.
 void add_weights(const double* u, int width, std::span<const row_target> targets);

@@ -12,8 +12,9 @@ void limit_edges(const double* c, int width, double* left, double* right) {
     using N = pack<decltype(lanes)>;
     const N average = N::load(c + k), l = N::load(left + k), r = N::load(right + k);
     const N lowest = smaller(smaller(l, r), limiter::interior(average, l, r));
-    if (!N::any(lowest < limiter::floor * average)) return;
-    const N theta = limiter::scaling(average, lowest);
+    const N bound = limiter::lower_bound(average);
+    if (!N::any(lowest < bound)) return;
+    const N theta = limiter::scaling(average, lowest, bound);
     const auto limited = theta < N(1.0);
     select(limited, fma(theta, l - average, average), l).store(left + k);
     select(limited, fma(theta, r - average, average), r).store(right + k);

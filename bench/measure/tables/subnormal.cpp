@@ -1,0 +1,84 @@
+// What subnormal numbers cost in the tails of a cold gas, and what flushing them to zero would save.
+#include "../clock.hpp"
+#include "../mixed_step.hpp"
+#include "../table.hpp"
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+namespace apsis::bench {
+namespace {
+
+#if defined(__SSE2__)
+
+/// While it exists, subnormal results (FTZ) and operands (DAZ) of this thread are zero.
+class flush_to_zero {
+ public:
+  flush_to_zero() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
+  ~flush_to_zero() { _mm_setcsr(before_); }
+  flush_to_zero(const flush_to_zero&) = delete;
+  flush_to_zero& operator=(const flush_to_zero&) = delete;
+
+ private:
+  unsigned before_;
+};
+
+struct outcome {
+  double share, gain;  ///< subnormal values of the field, time as it is over time with flushing
+};
+
+/// Both start from the state in which the tails have filled with subnormal numbers.
+outcome compare(const std::string& formulation, int max, const settings& how) {
+  const std::vector<std::string> grid = {fmt::format("velocity.max={}", max),
+                                         fmt::format("velocity.points={}", 10 * max)};
+  mixed_step plain(formulation, "md-imex-3-2", 40, grid), flushed(formulation, "md-imex-3-2", 40, grid);
+  const int warm_up = how.quick ? 2 : 100, turns = how.quick ? 1 : 5 * how.repeats;
+  plain.take(warm_up);
+  flushed.take(warm_up);
+  const int steps = plain.steps_in(how.quick ? 0.002 : 0.02);
+  const auto seconds = in_turns({[&] { plain.take(steps); },
+                                 [&] {
+                                   const flush_to_zero now;
+                                   flushed.take(steps);
+                                 }},
+                                turns);
+  return {plain.subnormal_share(), median_ratio(seconds, 0, 1)};
+}
+
+table measure(const settings& how) {
+  table result;
+  result.title = "Subnormal numbers";
+  result.note =
+      "Share of the values of f that are subnormal after some steps of the mixed-regime problem (40 cells, "
+      "spacing 0.2, md-imex-3-2, one thread), and the time of a step relative to one with flush-to-zero, "
+      "medians over the turns.";
+  result.columns = {"v_max", "finite volumes: subnormal", "time", "finite differences: subnormal", "time"};
+  for (const int max : {15, 60, 120}) {
+    const auto fv = compare("finite-volume", max, how), fd = compare("finite-difference", max, how);
+    result.rows.push_back({max, fmt::format("{:.1f} %", 100.0 * fv.share), fmt::format("{:.2f}", fv.gain),
+                           fmt::format("{:.1f} %", 100.0 * fd.share), fmt::format("{:.2f}", fd.gain)});
+  }
+  return result;
+}
+
+#else
+
+table measure(const settings&) {
+  table result;
+  result.title = "Subnormal numbers";
+  result.note = "Measured on x86 only, whose control register can flush them to zero.";
+  return result;
+}
+
+#endif
+
+const registered here({"subnormal", "what flushing subnormal numbers to zero would save", measure});
+
+}  // namespace
+}  // namespace apsis::bench

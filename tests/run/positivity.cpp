@@ -1,0 +1,71 @@
+// Nonnegativity on velocity grids that are much wider than the gas: in the tails f passes through the
+// smallest normal number 2.2e-308 and the subnormal ones below it, where rounding errors are absolute.
+#include "cases.hpp"
+
+#include <apsis/method/method.hpp>
+
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include <gtest/gtest.h>
+#include <support/catalogue.hpp>
+
+namespace {
+
+using apsis::formulation;
+
+/// A method with SSP coefficient r > 0 takes steps of r Δt_FE.
+bool is_convex(const apsis::method& m) {
+  const auto claimed = m.claims.ssp_coefficient.value_or("0");
+  return m.kind != apsis::method_kind::implicit_only && claimed != "0";
+}
+
+apsis::case_config wide(const std::string& method, formulation how, double max, int points) {
+  auto c = mixed("mixed-v", method, how);
+  c.space.cells = 20;
+  c.velocity = {max, points, "auto"};
+  c.time.cfl.reset();
+  c.time.safety = 1.0;
+  return c;
+}
+
+/// Number of subnormal values of a state.
+long subnormal_values(const std::vector<double>& state) {
+  return std::count_if(state.begin(), state.end(),
+                       [](double f) { return std::fpclassify(f) == FP_SUBNORMAL; });
+}
+
+class wide_grids : public testing::TestWithParam<std::tuple<formulation, double>> {};
+
+}  // namespace
+
+TEST_P(wide_grids, keep_f_nonnegative_with_every_method_at_the_longest_step) {
+  const auto [how, max] = GetParam();
+  long subnormal = 0, runs = 0;
+  for (const auto& method : methods_where(is_convex)) {
+    // Spacing 1.8 or finer: the coldest gas has the thermal speed 0.91.
+    auto c = wide(method, how, max, max < 100.0 ? 300 : 1112);
+    apsis::simulation run(c);
+    ASSERT_TRUE(run.promises().positivity) << method;
+    for (int step = 0; step < 40 && !run.finished(); ++step) {
+      run.advance();
+      subnormal += subnormal_values(run.state());
+    }
+    EXPECT_EQ(run.summary().negative_values, 0) << method;
+    EXPECT_LE(run.summary().conservation_defect, 1e-12) << method;
+    ++runs;
+  }
+  EXPECT_GE(runs, 20);
+  EXPECT_GT(subnormal, 0) << "no value was subnormal: the test shows nothing";
+}
+
+INSTANTIATE_TEST_SUITE_P(widths, wide_grids,
+                         testing::Combine(testing::Values(formulation::finite_volume,
+                                                          formulation::finite_difference),
+                                          testing::Values(52.0, 60.0, 66.0, 1000.0)),
+                         [](const auto& parameters) {
+                           const auto how = std::get<0>(parameters.param);
+                           return std::string(how == formulation::finite_volume ? "averages_" : "points_") +
+                                  std::to_string(static_cast<int>(std::get<1>(parameters.param)));
+                         });

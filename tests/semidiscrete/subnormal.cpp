@@ -1,0 +1,133 @@
+// Nonnegativity where rounding is absolute: values that are small multiples of the smallest number 4.9e-324.
+#include "bgk_case.hpp"
+
+#include <apsis/core/random_source.hpp>
+#include <apsis/semidiscrete/relaxation_rows.hpp>
+#include <apsis/space/limiter.hpp>
+#include <apsis/space/quartic.hpp>
+
+#include <support/instruction_sets.hpp>
+
+namespace {
+
+using apsis::field;
+using apsis::grid;
+using apsis::limiter_kind;
+
+constexpr double unit = std::numeric_limits<double>::denorm_min();
+
+/// Zero, a few units, a power of two between 1 unit and 1e-285, or a number of ordinary size.
+double tiny_value(apsis::random_source& random) {
+  const double kind = random.uniform(0.0, 1.0);
+  if (kind < 0.2) return 0.0;
+  if (kind < 0.6) return unit * std::floor(random.uniform(1.0, 60.0));
+  if (kind < 0.95)
+    return std::ldexp(random.uniform(1.0, 2.0), static_cast<int>(random.uniform(-1074.0, -947.0)));
+  return random.uniform(0.5, 2.0);
+}
+
+field tiny_rows(int cells, int components, apsis::random_source& random) {
+  field u(cells, components);
+  for (int i = 0; i < cells; ++i)
+    for (int k = 0; k < components; ++k) u.row(i)[k] = tiny_value(random);
+  return u;
+}
+
+/// α u + β T(u) with β as long as nonnegativity allows; α as small as the weights of methods get, or 1.
+field longest_step(const apsis::transport& t, const field& u, double alpha, bool fresh) {
+  field result(u.cells(), u.components());
+  const apsis::target<field, double> to{&result, alpha, alpha * t.forward_euler_step(), fresh};
+  t.scatter(u, {&to, 1});
+  return result;
+}
+
+double smallest_unknown(const field& u) {
+  double lowest = u.row(0)[0];
+  for (int i = 0; i < u.cells(); ++i)
+    for (int k = 0; k < u.components(); ++k) lowest = std::min(lowest, u.row(i)[k]);
+  return lowest;
+}
+
+void expect_nonnegative_steps(const std::string& name, limiter_kind kind, int rounds) {
+  apsis::random_source random(11);
+  for (int round = 0; round < rounds; ++round) {
+    const int cells = 11 + round % 7;
+    // |v|/Δx from 1e-8 to 1e8: a product with it rounds where it is small, and is exact where it is large.
+    const grid mesh = grid::line(cells, 0.0, std::pow(10.0, random.uniform(-8.0, 8.0)));
+    const auto m = small_bgk(10);
+    const apsis::transport t(*m, mesh, scheme(name, kind));
+    const field u = tiny_rows(cells, m->components(), random);
+    const double alpha = round % 3 == 0 ? 1.0 : std::pow(10.0, random.uniform(-8.0, 0.0));
+    ASSERT_GE(smallest_unknown(longest_step(t, u, alpha, round % 2 == 0)), 0.0)
+        << name << ", round " << round << ", alpha " << alpha;
+  }
+}
+
+}  // namespace
+
+TEST(subnormal, the_longest_step_keeps_every_value_nonnegative_in_every_instruction_set) {
+  for_each_instruction_set([] {
+    for (const auto* const name : {"weno5-z", "weno5-js"})
+      for (const auto kind : {limiter_kind::edges, limiter_kind::fluxes})
+        expect_nonnegative_steps(name, kind, 400);
+    expect_nonnegative_steps("upwind1", limiter_kind::none, 400);
+  });
+}
+
+TEST(subnormal, a_step_beyond_the_bound_is_negative) {
+  // One cell of ordinary size in a vacuum: limited fluxes leave it nothing at the bound.
+  const grid mesh = grid::line(20, 0.0, 1.0);
+  const auto m = small_bgk(10);
+  field u(20, m->components());
+  for (int k = 0; k < m->components(); ++k) u.row(9)[k] = 1.0;
+  const apsis::transport t(*m, mesh, scheme("upwind1", limiter_kind::none));
+  field result(20, m->components());
+  const apsis::target<field, double> to{&result, 1.0, 1.001 * t.forward_euler_step(), true};
+  t.scatter(u, {&to, 1});
+  EXPECT_LT(smallest_unknown(result), 0.0);
+}
+
+TEST(subnormal, limited_values_at_gauss_points_are_nonnegative_and_keep_their_mean) {
+  for_each_instruction_set([] {
+    apsis::random_source random(5);
+    constexpr int width = 8;
+    std::vector<double> points(3 * width);
+    for (int round = 0; round < 4000; ++round) {
+      const field u = tiny_rows(5, width, random);
+      apsis::relaxation::gauss_values({u.row(0), u.row(1), u.row(2), u.row(3), u.row(4)}, true, width,
+                                      points.data());
+      for (int k = 0; k < width; ++k) {
+        const double c = u.row(1)[k];
+        double mean = 0.0;
+        for (int p = 0; p < 3; ++p) {
+          const double value = points[static_cast<std::size_t>(p * width + k)];
+          ASSERT_GE(value, 0.0) << round << " " << k;
+          mean += apsis::gauss3::weight[static_cast<std::size_t>(p)] * value;
+        }
+        // Values of up to 20 c with a relative rounding error each; three products and the values themselves
+        // round to multiples of the unit.
+        ASSERT_NEAR(mean, c, 1e-14 * c + 4.0 * unit);
+      }
+    }
+  });
+}
+
+TEST(subnormal, an_explicit_relaxation_takes_no_more_than_there_is) {
+  for_each_instruction_set([] {
+    apsis::random_source random(3);
+    constexpr int width = 8;
+    for (int round = 0; round < 4000; ++round) {
+      const field u = tiny_rows(2, width, random);
+      const double alpha = random.uniform(0.01, 1.0), of_transport = random.uniform(0.0, 1.0);
+      field acc(1, width);
+      // What a step of transport leaves at its limit, then the relaxation with the rest of the bound.
+      for (int k = 0; k < width; ++k) acc.row(0)[k] = alpha * (1.0 - of_transport) * u.row(0)[k];
+      const double strength = std::pow(10.0, random.uniform(-3.0, 9.0));
+      const double beta = apsis::rounding_allowance * alpha * (1.0 - of_transport) / strength;
+      const std::vector<apsis::upwind::row_target> to = {{acc.row(0), width, 0.0, beta, false}};
+      const apsis::relaxation::strong_rows point{strength, u.row(0), u.row(1)};
+      apsis::relaxation::scatter({&point, 1}, u.row(0), width, to);
+      for (int k = 0; k < width; ++k) ASSERT_GE(acc.row(0)[k], 0.0) << round << " " << k;
+    }
+  });
+}

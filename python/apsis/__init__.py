@@ -6,11 +6,10 @@
 
 All quantities are dimensionless.
 """
-from ._core import Certificate
 from ._core import model_names as models
 from ._core import version as _version
 from .errors import ClaimError, Error, FileError, InputError, NumericalError
-from .methods import Method, OrderCondition, method, methods, order_conditions, read_method
+from .methods import Certificate, Method, OrderCondition, method, methods, order_conditions, read_method
 from .problems import RelaxationProblem, Solution, integrate
 from .runs import Case, Result, cases, run
 

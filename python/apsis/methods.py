@@ -4,19 +4,74 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from html import escape
 from pathlib import Path
-from typing import Sequence, Union
+from typing import Callable, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._core import Certificate
 from .errors import FileError
 
 Array = NDArray[np.float64]
 Coefficient = Union[int, float, str, Fraction]
 Tableau = Sequence[Sequence[Coefficient]]
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What the coefficients of a method imply, derived in 60 digits.
+
+    name of the method; kind "imex", "implicit only" or "explicit"; order of accuracy; conditions, the number of order conditions up to it, and
+    order_residual, the largest of their residuals; error_constant, the 2-norm of the residuals of the next order;
+    unconditional, SSP without a bound from Q; ssp_coefficient r, steps up to r Δt_FE keep what forward Euler keeps at any ε, None where any
+    step does; explicit_radius, that of the explicit part alone; limiting_entry, the coefficient that limits r; type "A", "ARS", "CK",
+    "explicit" or "none"; gsa, globally stiffly accurate: the last stage is the result; ap, asymptotic preserving from any data, and ap_data,
+    from which; explicit_evaluations of T and implicit_solves in a step; angle in degrees of A(α)-stability of the implicit part, and
+    whether it is l_stable; keeps, the terms of size ε that are right for ε ≪ Δt: "none", "slow" or "all"; claims_hold, and the
+    failures where the claims of the file do not."""
+
+    name: str
+    kind: str
+    order: int
+    conditions: int
+    order_residual: float
+    error_constant: float
+    unconditional: bool
+    ssp_coefficient: float | None
+    explicit_radius: float
+    limiting_entry: str
+    type: str
+    gsa: bool
+    ap: bool
+    ap_data: str
+    explicit_evaluations: int
+    implicit_solves: int
+    angle: float
+    l_stable: bool
+    keeps: str
+    claims_hold: bool
+    failures: list[str]
+
+    def _summary(self) -> dict[str, str]:
+        ssp = "any step" if self.ssp_coefficient is None else f"{self.ssp_coefficient:.6g}"
+        return {"method": self.name, "kind": self.kind, "order": str(self.order), "SSP coefficient": ssp,
+                "type": self.type, "limit ε → 0": f"from {self.ap_data}",
+                "work per step": f"{self.explicit_evaluations} evaluations of T, {self.implicit_solves} implicit solves",
+                "claims": "hold" if self.claims_hold else "; ".join(self.failures)}
+
+    def __repr__(self) -> str:
+        ssp = "any step" if self.ssp_coefficient is None else f"{self.ssp_coefficient:.6g}"
+        return f"<apsis.Certificate of {self.name}: order {self.order}, SSP coefficient {ssp}, type {self.type}>"
+
+    def _repr_html_(self) -> str:
+        return html_table(self._summary())
+
+
+def html_table(rows: dict[str, str]) -> str:
+    """Two columns for a notebook, escaped."""
+    return "<table>" + "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in rows.items()) + "</table>"
 
 
 class Method:
@@ -35,7 +90,21 @@ class Method:
         self.stages = core.stages
 
     def __repr__(self) -> str:
-        return f"apsis.method({self.name!r})"
+        return f"<apsis.Method {self.name}: {self.title}>"
+
+    def _repr_html_(self) -> str:
+        return html_table({"name": self.name, "title": self.title, "kind": self.kind, "stages": str(self.stages),
+                           "purpose": self.purpose, "citation": self.citation})
+
+    def __eq__(self, other: object) -> bool:
+        """The same name, coefficients and claims: the same file."""
+        return isinstance(other, Method) and self._core._toml == other._core._toml
+
+    def __hash__(self) -> int:
+        return hash(self._core._toml)
+
+    def __reduce__(self) -> tuple[Callable[[str, str], Method], tuple[str, str]]:
+        return _from_text, (self._core._toml, self.name)
 
     @cached_property
     def P(self) -> Array:
@@ -87,7 +156,11 @@ class Method:
     @cached_property
     def certificate(self) -> Certificate:
         """Order, SSP coefficient, stability and limits, derived from the coefficients in 60 digits."""
-        return self._core._certify()
+        return Certificate(**self._core._certify())
+
+
+def _from_text(text: str, file: str) -> Method:
+    return Method(_core.parse_method(text, file))
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .arguments import number, real_array
+from .errors import InputError
+from .methods import Method, html_table, method as find_method
 
 Array = NDArray[np.float64]
 
@@ -17,7 +20,7 @@ class RelaxationProblem:
     """u' = T(t, u) + C(ω)(E(ω) − u)/ε with conserved moments ω = ℛu, ℛE(ω) = ω.
 
     Stages are convex combinations of u and E in closed form, nonnegative where both are; ε = 0 is the limit scheme. The
-    functions get arrays of the shape of u0 that are valid during the call and must not be changed:
+    functions get arrays of the shape of u0, which are read-only copies and may be kept:
 
         transport(t, u)           T, of the shape of u
         moments(u)                ω, anything
@@ -36,7 +39,7 @@ class RelaxationProblem:
     admissible: Callable[[Array], bool] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
     """States u[k] at the times t[k], how many steps they took, and how many were rejected for their error."""
 
@@ -45,18 +48,46 @@ class Solution:
     steps: int
     rejected: int
 
+    def __repr__(self) -> str:
+        return (f"<apsis.Solution: {len(self.t)} states of shape {self.u.shape[1:]} from t = {self.t[0]:g} to {self.t[-1]:g}, "
+                f"{self.steps} steps, {self.rejected} rejected>")
 
-def integrate(problem: RelaxationProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str = "md-imex-6-3", *,
+    def _repr_html_(self) -> str:
+        return html_table({"times": f"{len(self.t)}, from {self.t[0]:g} to {self.t[-1]:g}", "shape of a state": str(self.u.shape[1:]),
+                           "steps": str(self.steps), "rejected steps": str(self.rejected)})
+
+    def __eq__(self, other: object) -> bool:
+        """The same numbers, bit for bit, NaN included."""
+        return (isinstance(other, Solution) and (self.steps, self.rejected) == (other.steps, other.rejected)
+                and np.array_equal(self.t, other.t, equal_nan=True) and np.array_equal(self.u, other.u, equal_nan=True))
+
+
+def integrate(problem: RelaxationProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str | Method = "md-imex-6-3", *,
               dt: float | None = None, safety: float = 1.0, startup: str = "none", tolerance: float | None = None) -> Solution:
     """Integrates from t[0], where u is u0, and returns the states at all times of t.
 
-    Steps have the length dt, shortened until it divides each interval, or safety · r · Δt_FE. startup = "graded" resolves the
-    initial layer of data out of equilibrium. With a tolerance steps are shorter where the estimated error of one, the largest
-    difference to the embedded solution of the method, would be above it. Raises InputError, NumericalError with step and t, and what the functions raise."""
+    `method` is a name, a file or a Method. Steps have the length dt, shortened until it divides each interval, or
+    safety · r · Δt_FE, 0 < safety. startup = "graded" resolves the initial layer of data out of equilibrium. With a tolerance steps are
+    shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it.
+    Raises InputError, NumericalError with step and t, and what the functions raise."""
+    if not isinstance(problem, RelaxationProblem):
+        raise InputError(f"problem is a {type(problem).__name__} (an equation is needed); give an apsis.RelaxationProblem")
     if startup not in ("none", "graded"):
-        from .errors import InputError
-        raise InputError(f"there is no start-up '{startup}' valid: none, graded")
+        raise InputError(f"there is no start-up {startup!r}; give \"none\" or \"graded\"")
+    for name in ("transport", "moments", "equilibrium", "rate", "forward_euler_step", "admissible"):
+        function = getattr(problem, name)
+        if not callable(function) and not (function is None and name in ("forward_euler_step", "admissible")):
+            raise InputError(f"{name} of the problem is a {type(function).__name__} (it must be callable); give a function")
+    integrator = method if isinstance(method, Method) else find_method(_name(method))
     times, states, steps, rejected = _core.integrate(
-        problem.transport, problem.moments, problem.equilibrium, problem.rate, problem.forward_euler_step,
-        problem.admissible, problem.epsilon, u0, [float(x) for x in t], method, dt, safety, startup == "graded", tolerance)
+        problem.transport, problem.moments, problem.equilibrium, problem.rate, problem.forward_euler_step, problem.admissible,
+        number("epsilon", problem.epsilon), real_array("u0", u0), real_array("t", t).ravel().tolist(), integrator._core,
+        None if dt is None else number("dt", dt), number("safety", safety, positive=True), startup == "graded",
+        None if tolerance is None else number("tolerance", tolerance))
     return Solution(times, states, steps, rejected)
+
+
+def _name(method: object) -> str:
+    if not isinstance(method, str):
+        raise InputError(f"method is a {type(method).__name__} (it must be a name, a file or an apsis.Method); see apsis.methods()")
+    return method

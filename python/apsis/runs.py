@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Callable, Union
 
@@ -11,19 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .arguments import number, whole_number
+from .errors import InputError
+from .methods import html_table
 
 Array = NDArray[np.float64]
 Case = Union[str, Path, Mapping[str, Any]]
 Progress = Callable[[int, int, float, float], Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Result:
     """What a run computed. Arrays are not copied.
 
     f[cell, component] is the state at the end, x the cell centres, v the speeds of the components, epsilon the Knudsen number at
     the centres (empty where the model has none). fields[name][k, cell] are the macroscopic fields at the times t[k], the last
-    of which is the end. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
+    of which is the end, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
     the run ended."""
 
     state: str
@@ -35,6 +38,37 @@ class Result:
     fields: dict[str, Array]
     history: dict[str, Array]
     summary: dict[str, Any]
+    labels: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def title(self) -> str:
+        """That of the case."""
+        return str(self.summary.get("case", {}).get("title", ""))
+
+    def _size(self) -> str:
+        cells, components = self.f.shape
+        return f"{cells} cells, {components} components" if len(self.x) else f"{components} components"
+
+    def __repr__(self) -> str:
+        return f"<apsis.Result {self.title!r}: {self.state} at t = {self.summary['t']:g}, {self.summary['steps']} steps, {self._size()}>"
+
+    def _repr_html_(self) -> str:
+        about = self.summary
+        return html_table({"title": self.title, "state": self.state, "t": f"{about['t']:g}", "steps": str(about["steps"]),
+                           "method": str(about["method"]), "state of": self._size(), "smallest value": f"{about['min_value']:g}",
+                           "conservation defect": f"{about['conservation_defect']:.2g} (relative)",
+                           "fields": ", ".join(self.fields)})
+
+    def __eq__(self, other: object) -> bool:
+        """The same results, bit for bit, NaN included: everything but wall times."""
+        if not isinstance(other, Result):
+            return False
+        def same(a: Mapping[str, Array], b: Mapping[str, Array]) -> bool:
+            return a.keys() == b.keys() and all(np.array_equal(a[name], b[name], equal_nan=True) for name in a)
+        arrays = ("f", "x", "v", "epsilon", "t")
+        return (self.state == other.state and self.summary.get("case") == other.summary.get("case")
+                and same({name: getattr(self, name) for name in arrays}, {name: getattr(other, name) for name in arrays})
+                and same(self.fields, other.fields) and same(self.history, other.history))
 
 
 def cases() -> list[str]:
@@ -49,9 +83,16 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     overrides are "key=value" ("space.cells=80"). `out` is a folder for the results, `restart` a checkpoint to go on from, `wall`
     a limit in seconds. progress(step, steps, t, smallest) is called now and then; False ends the run, with a checkpoint in
     `out`. Other threads of Python run meanwhile. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
+    if not isinstance(case, (str, Path, Mapping)):
+        raise InputError(f"case is a {type(case).__name__} (it must be a name, a file or a mapping); see apsis.cases()")
+    for one in overrides:
+        if not isinstance(one, str):
+            raise InputError(f"override {one!r} is a {type(one).__name__} (it must be text); write \"key=value\"")
+    if progress is not None and not callable(progress):
+        raise InputError(f"progress is a {type(progress).__name__} (it must be callable); give a function")
     text = to_toml(case) if isinstance(case, Mapping) else None
-    got = _core.run(text, "case" if text is not None else str(case), list(overrides), _path(out), _path(restart), wall, threads,
-                    progress)
+    got = _core.run(text, "case" if text is not None else str(case), list(overrides), _path(out), _path(restart),
+                    None if wall is None else number("wall", wall, positive=True), whole_number("threads", threads), progress)
     return Result(summary=json.loads(got.pop("json")), **got)
 
 

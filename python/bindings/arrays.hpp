@@ -36,11 +36,13 @@ inline py::array_t<double> to_array(const matrix<double>& m) {
                   {static_cast<py::ssize_t>(m.rows()), static_cast<py::ssize_t>(m.cols())});
 }
 
-/// The numbers of somebody else, to look at during a call.
-inline py::array_t<double> view(const double* data, const std::vector<py::ssize_t>& shape) {
-  py::array_t<double> seen(shape, data, py::capsule(data, [](void*) {}));
-  seen.attr("flags").attr("writeable") = false;
-  return seen;
+/// A copy that cannot be written to. A function may keep what it is given, and the state of an integration
+/// moves on.
+inline py::array_t<double> to_fixed_array(const std::vector<double>& numbers,
+                                          const std::vector<py::ssize_t>& shape) {
+  py::array_t<double> copy(shape, numbers.data());
+  copy.attr("setflags")(py::arg("write") = false);
+  return copy;
 }
 
 void bind_errors(py::module_& m);

@@ -1,4 +1,5 @@
 #include "arrays.hpp"
+#include "callback.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/error_control.hpp>
@@ -17,24 +18,15 @@ namespace {
 
 using state = std::vector<double>;
 
-/// What a function of the user returned, as numbers of the state.
-void take(const py::object& returned, const char* function, const state& like, state& out) {
-  const auto numbers = array::ensure(returned);
-  if (!numbers) {
-    PyErr_Clear();
-    throw input_error(std::string(function) + " returned no numbers; return an array of the shape of u");
-  }
-  if (static_cast<std::size_t>(numbers.size()) != like.size())
-    throw input_error(std::string(function) + " returned " + std::to_string(numbers.size()) +
-                      " numbers (u has " + std::to_string(like.size()) +
-                      "); return an array of the shape of u");
-  std::copy_n(numbers.data(), out.size(), out.data());
-}
-
 struct functions {
-  py::function transport, moments, equilibrium, rate;
-  std::optional<py::function> forward_euler_step, admissible;
+  callback transport, moments, equilibrium, rate;
+  std::optional<callback> forward_euler_step, admissible;
 };
+
+std::optional<callback> optional_callback(const std::optional<py::function>& function, const char* name) {
+  if (!function) return std::nullopt;
+  return callback(*function, name);
+}
 
 /// How long steps are: dt or safety · r · Δt_FE, and shorter where the estimated error asks for it.
 struct step_choice {
@@ -62,29 +54,29 @@ double largest_difference(const state& a, const state& b) {
 
 /// States at the times t[0] < t[1] < …, beginning with u0 itself.
 result integrate_python(const functions& of, double epsilon, const array& u0, const std::vector<double>& t,
-                        const std::string& name, const step_choice& choice) {
+                        const method& m, const step_choice& choice) {
   const std::vector<py::ssize_t> shape(u0.shape(), u0.shape() + u0.ndim());
   state u(u0.data(), u0.data() + u0.size());
   if (u.empty()) throw input_error("u0 has no numbers; give an initial state");
   if (t.size() < 2) throw input_error("there is no interval; give at least two times, t = (t0, t1)");
-  const auto look = [&shape](const state& v) { return view(v.data(), shape); };
+  const auto look = [&shape](const state& v) { return to_fixed_array(v, shape); };
   auto problem = make_relaxation_problem<state>(
       [&](double time, const state& v, state& out) {
-        take(of.transport(time, look(v)), "transport", v, out);
+        of.transport.numbers(of.transport(time, look(v)), shape, out);
       },
-      [&](const state& v) { return py::object(of.moments(look(v))); },
-      [&](const py::object& omega, state& out) { take(of.equilibrium(omega), "equilibrium", out, out); },
-      [&](const py::object& omega) { return of.rate(omega).cast<double>(); }, epsilon);
+      [&](const state& v) { return of.moments.something(of.moments(look(v))); },
+      [&](const py::object& omega, state& out) { of.equilibrium.numbers(of.equilibrium(omega), shape, out); },
+      [&](const py::object& omega) { return of.rate.number(of.rate(omega)); }, epsilon);
   if (of.forward_euler_step)
-    problem.with_forward_euler_step(
-        [&](double time, const state& v) { return (*of.forward_euler_step)(time, look(v)).cast<double>(); });
+    problem.with_forward_euler_step([&](double time, const state& v) {
+      return of.forward_euler_step->number((*of.forward_euler_step)(time, look(v)));
+    });
   if (of.admissible)
-    problem.with_admissible([&](const state& v) { return (*of.admissible)(look(v)).cast<bool>(); });
+    problem.with_admissible([&](const state& v) { return of.admissible->truth((*of.admissible)(look(v))); });
   if (!choice.dt && !of.forward_euler_step)
     throw input_error("nothing says how long a step is; give dt, or forward_euler_step of the problem");
-  const method& m = find_method(name);
   if (choice.tolerance && !m.embedded)
-    throw input_error("method '" + name +
+    throw input_error("method '" + m.name +
                       "' has no embedded solution to estimate errors with; give dt alone, or another method");
   stepper march(m, problem, choice.tolerance ? solutions::result_and_embedded : solutions::result);
   const auto rule = choice.dt ? step_rule<double>::fixed(*choice.dt) : step_rule<double>::ssp(choice.safety);
@@ -112,17 +104,19 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
 }  // namespace
 
 void bind_integrate(py::module_& m) {
-  m.def("integrate",
-        [](const py::function& transport, const py::function& moments, const py::function& equilibrium,
-           const py::function& rate, const std::optional<py::function>& forward_euler_step,
-           const std::optional<py::function>& admissible, double epsilon, const array& u0,
-           const std::vector<double>& t, const std::string& method, std::optional<double> dt, double safety,
-           bool graded, std::optional<double> tolerance) {
-          auto [times, states, steps, rejected] =
-              integrate_python({transport, moments, equilibrium, rate, forward_euler_step, admissible},
-                               epsilon, u0, t, method, {dt, safety, graded, tolerance});
-          return py::make_tuple(times, states, steps, rejected);
-        });
+  m.def("integrate", [](const py::function& transport, const py::function& moments,
+                        const py::function& equilibrium, const py::function& rate,
+                        const std::optional<py::function>& forward_euler_step,
+                        const std::optional<py::function>& admissible, double epsilon, const array& u0,
+                        const std::vector<double>& t, const apsis::method& method, std::optional<double> dt,
+                        double safety, bool graded, std::optional<double> tolerance) {
+    auto [times, states, steps, rejected] = integrate_python(
+        {callback(transport, "transport"), callback(moments, "moments"), callback(equilibrium, "equilibrium"),
+         callback(rate, "rate"), optional_callback(forward_euler_step, "forward_euler_step"),
+         optional_callback(admissible, "admissible")},
+        epsilon, u0, t, method, {dt, safety, graded, tolerance});
+    return py::make_tuple(times, states, steps, rejected);
+  });
 }
 
 }  // namespace apsis::python

@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/coefficient.hpp>
+#include <apsis/method/export.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/order_conditions.hpp>
 
@@ -76,57 +77,37 @@ double number(const mp_real& x) {
   return static_cast<double>(x);
 }
 
-void bind_certificate(py::module_& m) {
-  py::class_<certificate>(m, "Certificate", "What can be said of a method from its coefficients alone.")
-      .def_readonly("name", &certificate::name, "Of the method.")
-      .def_property_readonly(
-          "kind", [](const certificate& c) { return to_string(c.kind); },
-          "imex, implicit (of Q alone) or explicit.")
-      .def_readonly("order", &certificate::order, "Order of accuracy, from the order conditions.")
-      .def_readonly("conditions", &certificate::conditions, "How many order conditions that took.")
-      .def_property_readonly(
-          "order_residual", [](const certificate& c) { return number(c.order_residual); },
-          "The largest residual among them.")
-      .def_property_readonly(
-          "error_constant", [](const certificate& c) { return number(c.error_constant); },
-          "2-norm of the residuals of the next order.")
-      .def_readonly("unconditional", &certificate::unconditional, "SSP without a bound from Q.")
-      .def_property_readonly(
-          "ssp_coefficient",
-          [](const certificate& c) -> std::optional<double> {
-            if (!c.bounded) return std::nullopt;
-            return number(c.ssp_coefficient);
-          },
-          "r: steps up to r dt_FE keep what forward Euler keeps, whatever epsilon is; None where any step "
-          "does.")
-      .def_property_readonly(
-          "explicit_radius", [](const certificate& c) { return number(c.explicit_radius); },
-          "That of the explicit part by itself.")
-      .def_readonly("limiting_entry", &certificate::limiting_entry,
-                    "Which entry of the coefficients limits r.")
-      .def_readonly("type", &certificate::type, "A, CK, ARS or explicit.")
-      .def_readonly("gsa", &certificate::gsa, "Globally stiffly accurate: the last stage is the result.")
-      .def_readonly("ap", &certificate::ap, "Asymptotic preserving from any data.")
-      .def_readonly("ap_data", &certificate::ap_data, "From which data it is asymptotic preserving.")
-      .def_readonly("explicit_evaluations", &certificate::explicit_evaluations,
-                    "Evaluations of the transport in a step.")
-      .def_readonly("implicit_solves", &certificate::implicit_solves, "Implicit solves in a step.")
-      .def_property_readonly(
-          "angle", [](const certificate& c) { return c.stability.angle; },
-          "Of A(alpha)-stability of the implicit part, in degrees.")
-      .def_property_readonly(
-          "l_stable", [](const certificate& c) { return c.stability.l_stable; },
-          "Whether the implicit part is L-stable.")
-      .def_property_readonly("keeps", &certificate::keeps,
-                             "Which terms of size epsilon are exact: none, slow or all.")
-      .def_readonly("claims_hold", &certificate::claims_hold, "Whether all that the file claims is so.")
-      .def_readonly("failures", &certificate::failures, "What is not.");
+/// The fields of apsis.Certificate.
+py::dict certificate_of(const method& m) {
+  const certificate c = certify(m);
+  py::dict all;
+  all["name"] = c.name;
+  all["kind"] = to_string(c.kind);
+  all["order"] = c.order;
+  all["conditions"] = c.conditions;
+  all["order_residual"] = number(c.order_residual);
+  all["error_constant"] = number(c.error_constant);
+  all["unconditional"] = c.unconditional;
+  all["ssp_coefficient"] = c.bounded ? std::optional(number(c.ssp_coefficient)) : std::nullopt;
+  all["explicit_radius"] = number(c.explicit_radius);
+  all["limiting_entry"] = c.limiting_entry;
+  all["type"] = c.type;
+  all["gsa"] = c.gsa;
+  all["ap"] = c.ap;
+  all["ap_data"] = c.ap_data;
+  all["explicit_evaluations"] = c.explicit_evaluations;
+  all["implicit_solves"] = c.implicit_solves;
+  all["angle"] = c.stability.angle;
+  all["l_stable"] = c.stability.l_stable;
+  all["keeps"] = c.keeps();
+  all["claims_hold"] = c.claims_hold;
+  all["failures"] = c.failures;
+  return all;
 }
 
 }  // namespace
 
 void bind_methods(py::module_& m) {
-  bind_certificate(m);
   py::class_<method>(m, "Method")
       .def_readonly("name", &method::name)
       .def_readonly("title", &method::title)
@@ -148,7 +129,8 @@ void bind_methods(py::module_& m) {
       .def_property_readonly(
           "A_dot", [](const method& self) { return to_array(to_butcher(self.coefficients<double>()).A_dot); })
       .def_property_readonly("_exact", exact_of)
-      .def("_certify", [](const method& self) { return certify(self); });
+      .def_property_readonly("_toml", [](const method& self) { return to_toml(self); })
+      .def("_certify", certificate_of);
   m.def("find_method", [](const std::string& name) { return find_method(name); });
   m.def("parse_method",
         [](const std::string& text, const std::string& file) { return parse_method(text, file); });

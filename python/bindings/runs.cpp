@@ -81,6 +81,9 @@ py::dict result_of(const run_session& session, run_end end) {
   std::vector<double> times;
   for (const auto& one : fields.snapshots) times.push_back(one.t);
   out["t"] = to_array(std::move(times));
+  py::dict labels;
+  for (std::size_t k = 0; k < fields.names.size(); ++k) labels[py::str(fields.names[k])] = fields.labels[k];
+  out["labels"] = labels;
   out["fields"] = fields_of(fields, static_cast<std::size_t>(run.cells()));
   return out;
 }

@@ -1,4 +1,9 @@
 """Problems of one's own with functions on arrays."""
+import gc
+import pickle
+import signal
+from fractions import Fraction
+
 import apsis
 import numpy as np
 import pytest
@@ -81,8 +86,25 @@ def test_exceptions_of_the_functions_come_out():
 
 
 @pytest.mark.parametrize("change, arguments, message", [
-    (dict(transport=lambda t, u: [1.0]), {}, "transport returned 1 numbers"),
-    (dict(transport=lambda t, u: "abc"), {}, "no numbers"),
+    (dict(transport=lambda t, u: [1.0]), {}, r"transport returned an array of shape \(1,\).*shape of u, \(2,\)"),
+    (dict(transport=lambda t, u: np.zeros((2, 1))), {}, r"transport returned an array of shape \(2, 1\)"),
+    (dict(transport=lambda t, u: "abc"), {}, "transport returned a value of type str"),
+    (dict(transport=lambda t, u: None), {}, "transport returned None"),
+    (dict(transport=lambda t, u: [None, 1.0]), {}, "transport returned a value of type list"),
+    (dict(transport=lambda t, u: [[1.0], 2.0]), {}, "transport returned a value of type list"),
+    (dict(equilibrium=lambda w: np.array([1.0, 2.0j])), {}, "equilibrium returned an array of shape .* type complex128"),
+    (dict(moments=lambda u: None), {}, "moments returned None"),
+    (dict(rate=lambda w: np.ones(2)), {}, r"rate returned an array of shape \(2,\).*one real number"),
+    (dict(rate=lambda w: None), {}, "rate returned None"), (dict(rate=lambda w: "x"), {}, "rate returned a value of type str"),
+    (dict(admissible=lambda u: u > 0), {}, "admissible returned an array .*True or False"),
+    (dict(admissible=lambda u: None), {}, "admissible returned None"),
+    (dict(forward_euler_step=lambda t, u: [1]), dict(dt=None), "forward_euler_step returned a value of type list"),
+    (dict(rate=3.0), {}, "rate of the problem is a float"), (dict(epsilon="small"), {}, "epsilon is 'small'"),
+    ({}, dict(u0=[1.0, None]), "u0 is no array of real numbers"), ({}, dict(u0=[1.0, 1.0j]), "u0 is an array of type complex128"),
+    ({}, dict(t=("a", "b")), "t is an array of type"), ({}, dict(t=(0.0, np.nan)), "not finite|t1|interval"),
+    ({}, dict(dt="0.1"), "dt is '0.1'"), ({}, dict(dt=np.nan), "dt is not a positive number"), ({}, dict(method=3), "method is a int"),
+    ({}, dict(dt=None, safety=-1), "safety = -1 is not a positive number"), ({}, dict(safety=np.nan), "safety = nan is not a positive number"),
+    ({}, dict(tolerance=True), "tolerance is True"),
     (dict(epsilon=-1.0), {}, "epsilon is negative"), ({}, dict(dt=None), "nothing says how long a step is"),
     ({}, dict(dt=-1.0), "dt is not a positive number"), ({}, dict(method="none"), "none"),
     ({}, dict(startup="soft"), "there is no start-up"), ({}, dict(tolerance=0.0), "tolerance is not a positive number"),
@@ -92,7 +114,127 @@ def test_bad_arguments_have_a_message(change, arguments, message):
     for name, value in change.items():
         setattr(problem, name, value)
     with pytest.raises(apsis.InputError, match=message):
-        apsis.integrate(problem, [2.0, 0.0], (0, 1), **({"dt": 0.1} | arguments))
+        apsis.integrate(problem, **({"u0": [2.0, 0.0], "t": (0, 1), "dt": 0.1} | arguments))
+
+
+def test_numbers_of_other_classes_and_layouts_are_the_same():
+    plain = apsis.integrate(ode(0.5), [2.0, 0.0], (0, 1), dt=0.25)
+    odd = ode(Fraction(1, 2))
+    odd.transport = lambda t, u: np.array([[u[1]], [0.0]], order="F")[:, 0]  # a view with a stride
+    odd.equilibrium = lambda w: (w, np.float64(np.sin(w)))
+    odd.rate = lambda w: np.array([1.0 + w * w])[0]
+    assert apsis.integrate(odd, np.array([2, 0], dtype=object), np.array([0, 1]), dt=np.float64(0.25)) == plain
+    exact = ode(0.5)
+    exact.equilibrium = lambda w: [Fraction(1, 3), 1]
+    assert apsis.integrate(exact, [2.0, 0.0], (0, 1), dt=0.25).u.shape == (2, 2)
+    one = apsis.RelaxationProblem(lambda t, u: -u[0], lambda u: u, lambda w: w, lambda w: 0.0, 1.0)
+    assert apsis.integrate(one, [1.0], (0, 1), "ssprk-3-3", dt=0.5).u.shape == (2, 1)
+
+
+def test_arrays_given_to_functions_may_be_kept():
+    kept = {"transport": [], "moments": [], "admissible": []}
+    seen = {name: [] for name in kept}
+    def note(name, u):
+        kept[name].append(u)
+        seen[name].append(u.tolist())
+    problem = ode(1e-2)
+    inner = problem.transport
+    problem.transport = lambda t, u: (note("transport", u), inner(t, u))[1]
+    problem.moments = lambda u: (note("moments", u), u[0])[1]
+    problem.admissible = lambda u: (note("admissible", u), True)[1]
+    apsis.integrate(problem, [2.0, 0.0], (0, 1), dt=1 / 64)
+    gc.collect()
+    junk = [np.full(2, -7.0) for _ in range(1000)]  # takes memory that was given back
+    assert len(junk) == 1000
+    for name, arrays in kept.items():
+        assert len(arrays) > 100
+        assert [a.tolist() for a in arrays] == seen[name], name
+
+
+def test_a_view_of_u_may_be_the_moments():
+    # The moments outlive the call, and u moves on.
+    u0 = np.ones((2, 50)) + np.arange(50)
+    problem = apsis.RelaxationProblem(lambda t, u: np.zeros((2, 50)), lambda u: u[0], lambda w: np.stack([w, 2 * w]), lambda w: 1.0, 0.0)
+    end = apsis.integrate(problem, u0, (0, 1), dt=0.5).u[-1]
+    # A stage is a sum of convex weights times the same number: one rounding.
+    np.testing.assert_allclose(end, [u0[0], 2 * u0[0]], rtol=4e-16)
+
+
+class Mine(Exception):
+    """An exception of the user."""
+
+
+class Fails:
+    """A value whose conversion raises."""
+
+    def __init__(self, what):
+        self.what = what
+
+    def __array__(self, *_, **__):
+        raise self.what
+
+    def __float__(self):
+        raise self.what
+
+    def __bool__(self):
+        raise self.what
+
+
+@pytest.mark.parametrize("what", [Mine("no"), KeyboardInterrupt(), SystemExit(3), MemoryError()])
+@pytest.mark.parametrize("function", ["transport", "equilibrium", "rate", "admissible", "forward_euler_step"])
+@pytest.mark.parametrize("inside", ["function", "conversion"])
+def test_exceptions_leave_as_they_are(function, inside, what):
+    def fail(*_):
+        if inside == "function":
+            raise what
+        return Fails(what)
+    problem = ode(1.0, forward_euler_step=lambda t, u: 0.1)
+    setattr(problem, function, fail)
+    with pytest.raises(type(what)) as caught:
+        apsis.integrate(problem, [2.0, 0.0], (0, 1))
+    assert caught.value is what
+
+
+def test_an_exception_of_a_conversion_is_the_cause_of_the_message():
+    problem = ode(1.0)
+    problem.transport = lambda t, u: Fails(ValueError("mine"))
+    with pytest.raises(apsis.InputError, match="transport returned a value of type Fails") as caught:
+        apsis.integrate(problem, [2.0, 0.0], (0, 1), dt=0.1)
+    assert repr(caught.value.__cause__) == "ValueError('mine')"
+
+
+@pytest.mark.parametrize("where", ["transport", "conversion", "moments", "rate", "admissible"])
+def test_control_c_is_a_keyboard_interrupt_wherever_it_arrives(where):
+    # The signal comes in Python code of a call, and Python handles it there or at the next step.
+    class Interrupting:
+        def __array__(self, *_, **__):
+            signal.raise_signal(signal.SIGINT)
+            return np.zeros(2)
+    def interrupted(value):
+        signal.raise_signal(signal.SIGINT)
+        return value
+    problem = ode(1.0, admissible=lambda u: True)
+    if where == "conversion":
+        problem.transport = lambda t, u: Interrupting()
+    else:
+        before = getattr(problem, where)
+        setattr(problem, where, lambda *arguments: interrupted(before(*arguments)))
+    with pytest.raises(KeyboardInterrupt):
+        apsis.integrate(problem, [2.0, 0.0], (0, 1), dt=0.01)
+
+
+def test_a_method_may_be_an_object_or_a_file(tmp_path):
+    by_name = apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), "md-imex-3-2", dt=0.25)
+    assert apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), apsis.method("md-imex-3-2"), dt=0.25) == by_name
+    assert apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), "md-imex-6-3", dt=0.25) != by_name
+
+
+def test_a_solution_is_equal_to_its_copy_and_says_what_it_is():
+    one = apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 0.5, 1), dt=0.25)
+    again = pickle.loads(pickle.dumps(one))
+    assert again == one and again is not one
+    assert repr(one) == "<apsis.Solution: 3 states of shape (2,) from t = 0 to 1, 4 steps, 0 rejected>"
+    assert "<td>4</td>" in one._repr_html_()
 
 
 def test_a_failure_says_where():

@@ -1,4 +1,6 @@
 """Methods, certificates and tableaux as Python objects."""
+import pickle
+import re
 from fractions import Fraction
 
 import apsis
@@ -80,3 +82,29 @@ def test_a_file_that_claims_too_much_is_refused_and_can_be_looked_at(tmp_path):
     assert c.order == 1 and not c.claims_hold and c.failures
     with pytest.raises(apsis.FileError):
         apsis.read_method(tmp_path / "none.toml")
+
+
+def test_methods_and_certificates_are_values(tmp_path):
+    one, again = apsis.method("md-imex-6-3"), apsis.method("md-imex-6-3")
+    assert one == again and hash(one) == hash(again) and one != apsis.method("md-imex-3-2") and one != "md-imex-6-3"
+    for value in (one, apsis.method("ars-222"), apsis.method("md-imex-chain-7-2"), one.certificate):
+        copy = pickle.loads(pickle.dumps(value))
+        assert copy == value and repr(copy) == repr(value)
+    assert np.array_equal(pickle.loads(pickle.dumps(one)).W, one.W)
+    # A file of one's own survives without the file, and without being what it claims.
+    file = tmp_path / "mine.toml"
+    file.write_text('name = "mine-1"\ntitle = "backward Euler"\nkind = "implicit"\ncitation = "none"\n'
+                    '[claims]\norder = 2\n[shu_osher]\nP = [[]]\nd = ["1"]\nddot = ["0"]\n', encoding="utf-8")
+    mine = apsis.read_method(file)
+    file.unlink()
+    assert pickle.loads(pickle.dumps(mine)) == mine
+
+
+def test_representations_are_short_and_escaped():
+    m = apsis.method("md-imex-6-3")
+    assert repr(m).startswith("<apsis.Method md-imex-6-3: ") and "\n" not in repr(m)
+    assert repr(m.certificate) == "<apsis.Certificate of md-imex-6-3: order 3, SSP coefficient 0.904402, type A>"
+    assert "any step" in repr(apsis.method("imdrk-5-4").certificate)
+    assert "<td>0.904402</td>" in m.certificate._repr_html_()
+    # No text of a file becomes markup.
+    assert set(re.findall(r"<(/?\w+)", m._repr_html_())) <= {f"{end}{tag}" for end in ("", "/") for tag in ("table", "tr", "th", "td")}

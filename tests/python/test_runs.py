@@ -1,6 +1,7 @@
 """Runs of cases from Python."""
 import json
 import os
+import pickle
 import re
 import signal
 import threading
@@ -99,3 +100,26 @@ def test_the_readme_runs(capsys):
 
 def test_results_do_not_depend_on_threads():
     assert np.array_equal(apsis.run("paper/bgk-mixed", *SMALL).f, apsis.run("paper/bgk-mixed", *SMALL, threads=2).f)
+
+
+def test_results_are_values_with_short_representations():
+    one, again = apsis.run("paper/bgk-mixed", *SMALL), apsis.run("paper/bgk-mixed", *SMALL)
+    assert one == again and one != apsis.run("paper/bgk-mixed", *SMALL, "model.epsilon=1") and one != 1
+    assert pickle.loads(pickle.dumps(one)) == one
+    assert one.labels["rho"] == "density (dimensionless)"
+    text = repr(one)
+    assert text.startswith("<apsis.Result 'BGK, mixed regime") and "complete at t = 0.005" in text and len(text) < 200
+    assert "<th>steps</th>" in one._repr_html_()
+    ode = apsis.run("paper/ode", "time.end=0.5")  # its entropy is NaN in every row, and still equal to itself
+    assert ode == apsis.run("paper/ode", "time.end=0.5") and "2 components" in repr(ode)
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (dict(case=3), "case is a int"), (dict(threads=1.5), "threads is 1.5"), (dict(threads=True), "threads is True"),
+    (dict(threads=10**12), "out of range"), (dict(wall=-1), "wall = -1 is not a positive number"),
+    (dict(wall=float("nan")), "wall = nan"), (dict(wall="1"), "wall is '1'"), (dict(progress=1), "progress is a int")])
+def test_bad_arguments_of_a_run_have_a_message(arguments, message):
+    with pytest.raises(apsis.InputError, match=message):
+        apsis.run(**({"case": "paper/ode"} | arguments))
+    with pytest.raises(apsis.InputError, match="override 3 is a int"):
+        apsis.run("paper/ode", 3)

@@ -1,0 +1,45 @@
+"""Checks of arguments, so that a wrong one has a message that names it."""
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import InputError
+
+
+def number(name: str, value: Any, positive: bool = False) -> float:
+    """`value` as a float. Raises InputError unless it is a real number, and finite and above 0 if it must be positive."""
+    if isinstance(value, (str, bytes, bool, np.bool_)) or value is None:
+        raise InputError(f"{name} is {value!r} (a real number is needed); give one")
+    try:
+        found = float(value)
+    except (TypeError, ValueError) as problem:
+        raise InputError(f"{name} is a value of type {type(value).__name__} (a real number is needed); give one") from problem
+    if positive and not (found > 0.0 and math.isfinite(found)):
+        raise InputError(f"{name} = {found:g} is not a positive number; give {name} > 0")
+    return found
+
+
+def whole_number(name: str, value: Any) -> int:
+    """`value` as an int. Raises InputError unless it is a whole number."""
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
+        raise InputError(f"{name} is {value!r} (a whole number is needed); give one")
+    if abs(int(value)) > 2**31 - 1:
+        raise InputError(f"{name} = {value} is out of range; give a smaller number")
+    return int(value)
+
+
+def real_array(name: str, value: Any) -> NDArray[np.float64]:
+    """`value` as an array of floats. Raises InputError where it has text, None or complex numbers, or rows of different length."""
+    try:
+        found = np.asarray(value)
+        if found.dtype.kind == "O":
+            found = np.array([float(x) for x in found.ravel()]).reshape(found.shape)
+    except (TypeError, ValueError) as problem:
+        raise InputError(f"{name} is no array of real numbers ({problem}); give real numbers") from problem
+    if found.dtype.kind not in "biuf":
+        raise InputError(f"{name} is an array of type {found.dtype} (real numbers are needed); give real numbers")
+    return np.ascontiguousarray(found, dtype=np.float64).reshape(found.shape)

@@ -22,6 +22,8 @@ class velocity_grid {
   double spacing() const { return spacing_; }     ///< Δv
   double weight() const { return weight_; }       ///< Δv^d
   const aligned_vector<double>& line() const { return line_; }  ///< the points of one direction
+  /// ½v² of the points of one direction.
+  const aligned_vector<double>& line_half_square() const { return line_half_square_; }
   /// Component k of the velocity of every grid point.
   const aligned_vector<double>& component(int k) const { return components_[static_cast<std::size_t>(k)]; }
   /// ½|v|² of every grid point.
@@ -30,7 +32,7 @@ class velocity_grid {
  private:
   int dimensions_, points_, size_ = 1;
   double max_, spacing_, weight_;
-  aligned_vector<double> line_, half_square_;
+  aligned_vector<double> line_, line_half_square_, half_square_;
   std::vector<aligned_vector<double>> components_;
 };
 

@@ -54,8 +54,9 @@ def test_progress_is_told_and_can_end_the_run(tmp_path):
 
 
 def test_other_threads_run_meanwhile_and_control_c_ends_a_run():
-    ticks = []
+    ticks, started = [], threading.Event()
     def interrupt():
+        started.wait()
         for _ in range(20):
             time.sleep(0.01)
             ticks.append(1)
@@ -63,7 +64,7 @@ def test_other_threads_run_meanwhile_and_control_c_ends_a_run():
     thread = threading.Thread(target=interrupt)
     thread.start()
     with pytest.raises(KeyboardInterrupt):
-        apsis.run("paper/bgk-mixed", "time.end=5000.0")
+        apsis.run("paper/bgk-mixed", "time.end=5000.0", progress=lambda *_: started.set())
     thread.join()
     assert len(ticks) == 20
 

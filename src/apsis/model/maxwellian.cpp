@@ -19,6 +19,14 @@ velocity_grid::velocity_grid(int dimensions, int points, double max)
     throw input_error(fmt::format("{} velocity dimensions (1, 2 or 3 exist)", dimensions));
   if (points < 4)
     throw input_error(fmt::format("{} velocity points (too few for three moments); give at least 4", points));
+  const double velocities = std::pow(points, dimensions);
+  if (velocities > most_velocities)
+    throw input_error(fmt::format(
+        "velocity.points = {} are {:.4g} velocities in {} dimension{} (more than {} cannot be numbered); "
+        "give at "
+        "most {}",
+        points, velocities, dimensions, dimensions == 1 ? "" : "s", most_velocities,
+        static_cast<int>(std::floor(std::pow(most_velocities, 1.0 / dimensions) * (1.0 + 1e-12)))));
   if (!(max > 0.0) || !std::isfinite(max))
     throw input_error("velocity.max is not positive and finite; give max > 0");
   const auto n = static_cast<std::size_t>(points);

@@ -12,7 +12,10 @@ namespace apsis {
 /// Midpoint velocity grid on [−max, max]^d, d = 1, 2, 3, the first direction slowest.
 class velocity_grid {
  public:
-  /// Throws input_error unless 1 ≤ d ≤ 3, points ≥ 4 and max > 0.
+  /// Most velocities of a grid. Kernels count in ints, and a few more must be an int too.
+  static constexpr int most_velocities = 1 << 30;
+
+  /// Throws input_error unless 1 ≤ d ≤ 3, points ≥ 4, points^d ≤ most_velocities and max > 0.
   velocity_grid(int dimensions, int points, double max);
 
   int dimensions() const { return dimensions_; }  ///< d

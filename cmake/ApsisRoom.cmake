@@ -36,7 +36,7 @@ target_compile_options(apsis_kernel_options INTERFACE
   # Sanitizers keep clang from vectorising some loops; that is no reason to fail there.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)
 
-# Headers that most files read, for seconds each (see APSIS_PCH). Rooms with kernels or OpenMP have other flags and go
+# Headers that most files read, for seconds each (see APSIS_PCH). Rooms with kernels have other flags and go
 # without.
 if(APSIS_PCH)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/precompiled.cpp CONTENT "")
@@ -65,7 +65,7 @@ function(apsis_room name)
                         $<$<BOOL:${ROOM_KERNELS}>:$<BUILD_INTERFACE:apsis_kernel_options>>)
   if(NOT ROOM_KERNELS)
     target_compile_options(apsis_${name} PRIVATE ${APSIS_PLAIN})
-    if(APSIS_PCH AND NOT OpenMP::OpenMP_CXX IN_LIST ROOM_PRIVATE)
+    if(APSIS_PCH)
       target_precompile_headers(apsis_${name} REUSE_FROM apsis_precompiled)
     endif()
   endif()

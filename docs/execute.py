@@ -25,7 +25,7 @@ from blocks import Block, Problem, check_rules, is_excerpt, is_same_output, read
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("README.md", "CONTRIBUTING.md", "src/apsis/*/README.md", "docs/**/*.md")
-LIMIT = 120  # seconds of a block
+LIMIT = 900  # seconds of a block: some on an idle machine, many times as many on a busy one
 REPORTS = ("studies/report.py", "bench/report.py")  # draw pictures from results that took longer than a page may
 
 # Runs the blocks that come on its standard input in one namespace, each with its output into a file, and answers with "ok" or the

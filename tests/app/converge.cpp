@@ -1,10 +1,8 @@
 // The command converge from outside.
 #include "program.hpp"
 
-#include <chrono>
 #include <csignal>
 #include <sstream>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -120,7 +118,7 @@ TEST(converge, an_interrupt_leaves_the_runs_that_are_done) {
                        "1", "--vary", "space.cells=24", "--vary",
                        "model.epsilon=1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25",
                        "--reference", "time", "--out", "o"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  ASSERT_TRUE(run.wait_until([&] { return run.said().find("50 runs") != std::string::npos; }));
   run.send(SIGINT);
   const outcome stopped = run.wait();
   ASSERT_EQ(stopped.code, 130) << stopped.err;

@@ -1,9 +1,7 @@
 // The command design from outside.
 #include "program.hpp"
 
-#include <chrono>
 #include <csignal>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,10 +61,7 @@ TEST(design, leaves_the_best_so_far_when_interrupted) {
   process running(folder, design({"--order", "3", "--stages", "6", "--evaluations", "3", "--starts",
                                   "1000000", "--time", "500"}));
   const auto file = folder.path() / "found.toml";
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);
-  while (!fs::exists(file) && std::chrono::steady_clock::now() < deadline)
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  ASSERT_TRUE(fs::exists(file));
+  ASSERT_TRUE(running.wait_until([&] { return fs::exists(file); }));
   running.send(SIGINT);
   const outcome result = running.wait();
   EXPECT_EQ(result.code, 130);

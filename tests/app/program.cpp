@@ -60,6 +60,22 @@ void process::send(int signal) const {
   kill(id_, signal);
 }
 
+bool process::wait_until(const std::function<bool()>& seen) const {
+  const auto ended = [this] {
+    siginfo_t info{};
+    return waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid != 0;
+  };
+  while (!seen()) {
+    if (ended()) return seen();
+    usleep(2000);  // between two looks; nothing depends on its length
+  }
+  return true;
+}
+
+std::string process::said() const {
+  return read(capture_ / "err");
+}
+
 outcome process::wait() {
   int status = 0;
   waitpid(id_, &status, 0);

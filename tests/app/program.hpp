@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ class process {
  public:
   process(const work_folder& folder, const std::vector<std::string>& arguments);
   void send(int signal) const;
+  /// Waits until seen() or the end of the program, however long that takes; what seen() says then.
+  bool wait_until(const std::function<bool()>& seen) const;
+  /// Standard error so far.
+  std::string said() const;
   outcome wait();
 
  private:

@@ -3,7 +3,7 @@
 
 #include <apsis/core/errors.hpp>
 
-#include <chrono>
+#include <ctime>
 #include <optional>
 #include <random>
 
@@ -171,13 +171,13 @@ TEST(method_files, ten_megabytes_of_anything_are_refused_at_once) {
   std::string garbage(10'000'000, ' ');
   for (char& c : garbage) c = static_cast<char>(draw() % 256);
   std::string brackets = "x = " + std::string(900'000, '[');
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // processor time: that of other programs is not in it
   EXPECT_TRUE(complaint(garbage));
   EXPECT_TRUE(complaint(std::string(10'000'000, '\n')));
   EXPECT_TRUE(complaint(brackets));
   EXPECT_TRUE(complaint(std::string(1'000'000, '\0')));
-  // Milliseconds in truth; a busy machine has room.
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+  // Some milliseconds; a sanitizer takes more.
+  EXPECT_LT(std::clock() - start, 3 * CLOCKS_PER_SEC);
 }
 
 TEST(method_files, that_are_not_there_or_no_files_are_refused) {

@@ -55,8 +55,9 @@ def test_progress_is_told_and_can_end_the_run(tmp_path):
 
 
 def test_other_threads_run_meanwhile_and_control_c_ends_a_run():
-    ticks = []
+    ticks, started = [], threading.Event()
     def interrupt():
+        started.wait()
         for _ in range(20):
             time.sleep(0.01)
             ticks.append(1)
@@ -64,7 +65,7 @@ def test_other_threads_run_meanwhile_and_control_c_ends_a_run():
     thread = threading.Thread(target=interrupt)
     thread.start()
     with pytest.raises(KeyboardInterrupt):
-        apsis.run("paper/bgk-mixed", "time.end=5000.0")
+        apsis.run("paper/bgk-mixed", "time.end=5000.0", progress=lambda *_: started.set())
     thread.join()
     assert len(ticks) == 20
 
@@ -123,3 +124,21 @@ def test_bad_arguments_of_a_run_have_a_message(arguments, message):
         apsis.run(**({"case": "paper/ode"} | arguments))
     with pytest.raises(apsis.InputError, match="override 3 is a int"):
         apsis.run("paper/ode", 3)
+
+
+def test_threads_outside_of_their_range_are_refused():
+    for n in (-1, 257, 1000000):
+        with pytest.raises(apsis.InputError, match=f"{n} threads cannot be used"):
+            apsis.run("paper/bgk-mixed", *SMALL, threads=n)
+
+
+def test_a_forked_child_has_threads_of_its_own():
+    f = apsis.run("paper/bgk-mixed", *SMALL, threads=2).f
+    child = os.fork()
+    if child == 0:
+        status = 1
+        try:
+            status = 0 if np.array_equal(apsis.run("paper/bgk-mixed", *SMALL, threads=2).f, f) else 2
+        finally:
+            os._exit(status)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0

@@ -1,104 +1,99 @@
 #include <apsis/core/parallel.hpp>
 
-#include <algorithm>
-#include <array>
-#include <atomic>
-#include <cstddef>
-#include <exception>
-#include <limits>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+#include <apsis/core/processors.hpp>
+#include <apsis/core/thread_team.hpp>
 
-#include <omp.h>
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace apsis {
 namespace {
-int thread_count = 1;
+
+std::atomic<int> thread_count = 1;
+
+/// The team of the calling thread, made when it is needed. That of a parent process stays its own.
+thread_team& team_of(int size) {
+  thread_local std::unique_ptr<thread_team> team;
+  if (team && team->left_behind()) static_cast<void>(team.release());
+  if (!team || team->size() != size) team = std::make_unique<thread_team>(size);
+  return *team;
 }
 
+/// All numbers on this thread, which is then number 0.
+void run_alone(int n, numbered_job job) {
+  auto& here = place_of_this_thread();
+  struct restore {
+    place_in_region& here;
+    place_in_region before;
+    ~restore() { here = before; }
+  } const after{here, here};
+  here = {true, 0};
+  for (int k = 0; k < n; ++k) job(k);
+}
+
+}  // namespace
+
 void set_threads(int n) {
-  thread_count = n > 0 ? n : omp_get_num_procs();
+  if (n < 0 || n > most_threads)
+    throw input_error(
+        fmt::format("{} threads cannot be used (1 to {} are possible, and 0 stands for all {} "
+                    "processors that this process may use); give a number in this range",
+                    n, most_threads, available_processors()));
+  thread_count = n > 0 ? n : std::min(available_processors(), most_threads);
+}
+
+int requested_threads() {
+  const char* const text = std::getenv("OMP_NUM_THREADS");
+  if (text == nullptr || *text == '\0') return 0;
+  // A list has a number for each level of nested regions; the first is that of the outermost.
+  const char* const end = text + std::strcspn(text, ",");
+  int n = 0;
+  const auto [stop, problem] = std::from_chars(text, end, n);
+  if (problem == std::errc::result_out_of_range && *text != '-') return most_threads;
+  if (problem == std::errc() && stop == end && n > 0) return std::min(n, most_threads);
+  log::warning(fmt::format(
+      "OMP_NUM_THREADS = '{}' is ignored (it is not a positive number); give one, or unset it", text));
+  return 0;
+}
+
+int default_threads() {
+  const int requested = requested_threads();
+  return requested > 0 ? requested : std::min(available_processors(), most_threads);
 }
 
 int threads() {
   return thread_count;
 }
 
-namespace {
+int threads_here() {
+  return place_of_this_thread().inside ? 1 : threads();
+}
 
-/// The exception of the smallest k, to be thrown when all threads have stopped.
-class first_failure {
- public:
-  template <class Body>
-  void guard(int k, const Body& body) {
-    try {
-      body(k);
-    } catch (...) {
-#pragma omp critical(apsis_parallel_failure)
-      if (k < failed_at_) {
-        failed_at_ = k;
-        failure_ = std::current_exception();
-      }
-      any_ = true;
-    }
-  }
-  bool any() const { return any_; }
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  std::exception_ptr failure_;
-  int failed_at_ = std::numeric_limits<int>::max();
-  std::atomic<bool> any_ = false;
-};
-
-}  // namespace
-
-namespace {
-
-/// Numbers that are left of the part of one thread; on a cache line of its own.
-struct alignas(64) remaining {
-  std::atomic<int> next;
-  int end;
-};
-constexpr int most_threads = 256;
-
-}  // namespace
+int thread_number() {
+  return place_of_this_thread().number;
+}
 
 void run_parallel_for(int n, numbered_job body) {
-  const int team = std::min({thread_count, n, most_threads});
-  if (team <= 1 || omp_in_parallel() != 0) {
-    for (int k = 0; k < n; ++k) body(k);
-    return;
-  }
-  // Every thread does its own part first, whose memory is near to it, and then helps the others: cores may be
-  // of different speed, or do something else for a while. The last number of a part is left to its own
-  // thread, which is about to come to it, or else short parts would wander between the caches.
-  std::array<remaining, most_threads> parts;
-  for (int p = 0; p < team; ++p) {
-    const auto first = [&](int part) { return static_cast<int>(static_cast<long>(n) * part / team); };
-    parts[static_cast<std::size_t>(p)].next = first(p);
-    parts[static_cast<std::size_t>(p)].end = first(p + 1);
-  }
-  first_failure failure;
-#pragma omp parallel num_threads(team)
-  {
-    const int own = omp_get_thread_num(), present = omp_get_num_threads();
-    for (int p = 0; p < team; ++p) {
-      const int whose = (own + p) % team;
-      auto& part = parts[static_cast<std::size_t>(whose)];
-      const int end = p > 0 && whose < present ? part.end - 1 : part.end;
-      while (part.next.load(std::memory_order_relaxed) < end) {
-        const int k = part.next++;
-        if (k < part.end) failure.guard(k, body);
-      }
-    }
-  }
-  failure.rethrow();
+  const int team = threads_here(), together = std::min(team, n);
+  if (together <= 1) return run_alone(n, body);
+  thread_team& all = team_of(team);
+  if (all.rests()) return run_alone(n, body);
+  all.run(n, together, body, thread_team::split::parts);
 }
 
 part_blocks::part_blocks(int n, int longest, int parts) : n_(n), parts_(std::max(1, parts)) {
-  const int length = (n_ + parts_ - 1) / parts_;
-  whole_ = std::max(1, (length + longest - 1) / longest);
+  const int length = n_ / parts_ + (n_ % parts_ != 0 ? 1 : 0);
+  whole_ = std::max(1, length / longest + (length % longest != 0 ? 1 : 0));
   // To begin a block costs something, so that small ones are not cut.
   const int last = length / whole_;
   pieces_ = parts_ == 1 || last < 32 ? 1 : last < 64 ? 2 : 4;
@@ -109,17 +104,16 @@ int part_blocks::begin(int block) const {
   static constexpr int eighths[] = {0, 4, 6, 7};
   const int part = block / per_part(), i = block % per_part();
   if (part == parts_) return n_;
-  const int whole = std::min(i, whole_ - 1), at = 8 * whole + eighths[i - whole];
+  const int whole = std::min(i, whole_ - 1);
+  const long at = 8L * whole + eighths[i - whole];
   const auto first = [this](int p) { return static_cast<int>(static_cast<long>(n_) * p / parts_); };
-  return first(part) + static_cast<int>(static_cast<long>(first(part + 1) - first(part)) * at / (8 * whole_));
+  return first(part) + static_cast<int>((first(part + 1) - first(part)) * at / (8L * whole_));
 }
 
 void run_parallel_tasks(int n, numbered_job body) {
-  first_failure failure;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(std::max(1, std::min(thread_count, n)))
-  for (int k = 0; k < n; ++k)
-    if (!failure.any()) failure.guard(k, body);
-  failure.rethrow();
+  const int team = threads_here(), together = std::min(team, n);
+  if (together <= 1) return run_alone(n, body);
+  team_of(team).run(n, together, body, thread_team::split::one_by_one);
 }
 
 }  // namespace apsis

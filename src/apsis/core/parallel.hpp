@@ -1,11 +1,49 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 namespace apsis {
 
-/// Threads that loops over cells may use; 0 asks for all cores.
+/// Most threads that can be set.
+inline constexpr int most_threads = 256;
+
+/// Sets the number of threads that loops over cells use; 0 stands for all processors that this process may
+/// use. Throws input_error unless 0 ≤ n ≤ most_threads.
 void set_threads(int n);
+/// What OMP_NUM_THREADS asks for, at most most_threads; without it all processors that this process may use.
+/// A value that is no positive number counts as none, after a warning.
+int default_threads();
+/// What OMP_NUM_THREADS asks for, as in default_threads(); 0 without it.
+int requested_threads();
 /// The number that was set, 1 at the beginning.
 int threads();
+/// The number that a loop begun here uses: 1 inside of another one.
+int threads_here();
+/// Which of them the calling thread is: 0 … threads_here() − 1 of the loop that runs, 0 outside of loops.
+int thread_number();
+
+/// Scratch space for every thread of a loop. It is made ready for all of them before the loop, so that which
+/// of them come, and when, does not decide how much memory is taken.
+template <class T>
+class per_thread {
+ public:
+  /// Calls make_ready(scratch) for each thread that a loop begun here uses.
+  template <class Function>
+  void prepare(const Function& make_ready) {
+    const auto count = static_cast<std::size_t>(threads_here());
+    if (slots_.size() < count) slots_.resize(count);
+    for (std::size_t p = 0; p < count; ++p) make_ready(slots_[p].value);
+  }
+  /// That of the calling thread.
+  T& here() { return slots_[static_cast<std::size_t>(thread_number())].value; }
+
+ private:
+  struct alignas(64) slot {
+    T value;
+  };
+  std::vector<slot> slots_;
+};
 
 /// A call of what was written as a lambda, without the allocation that std::function may need.
 struct numbered_job {
@@ -19,9 +57,9 @@ struct numbered_job {
   }
   void operator()(int k) const { call(body, k); }  ///< one call
 };
-/// parallel_for, compiled once.
+/// Compiled part of parallel_for.
 void run_parallel_for(int n, numbered_job job);
-/// parallel_tasks, compiled once.
+/// Compiled part of parallel_tasks.
 void run_parallel_tasks(int n, numbered_job job);
 
 /// Runs body(k) for k = 0 … n−1, in any order, on all threads; neighbouring k on the same one. Each k writes

@@ -19,12 +19,21 @@ velocity_grid::velocity_grid(int dimensions, int points, double max)
     throw input_error(fmt::format("{} velocity dimensions (1, 2 or 3 exist)", dimensions));
   if (points < 4)
     throw input_error(fmt::format("{} velocity points (too few for three moments); give at least 4", points));
+  const double velocities = std::pow(points, dimensions);
+  if (velocities > most_velocities)
+    throw input_error(fmt::format(
+        "velocity.points = {} are {:.4g} velocities in {} dimension{} (more than {} cannot be numbered); "
+        "give at "
+        "most {}",
+        points, velocities, dimensions, dimensions == 1 ? "" : "s", most_velocities,
+        static_cast<int>(std::floor(std::pow(most_velocities, 1.0 / dimensions) * (1.0 + 1e-12)))));
   if (!(max > 0.0) || !std::isfinite(max))
     throw input_error("velocity.max is not positive and finite; give max > 0");
   const auto n = static_cast<std::size_t>(points);
   for (std::size_t i = 0; i < n; ++i) {
     // Symmetric by construction: v_{N−1−i} = −v_i exactly, so that even data keep u = 0 to round-off.
     line_.push_back(0.5 * spacing_ * (2.0 * static_cast<double>(i) + 1.0 - points));
+    line_half_square_.push_back(0.5 * line_.back() * line_.back());
   }
   for (int k = 0; k < dimensions; ++k) size_ *= points;
   weight_ = std::pow(spacing_, dimensions);
@@ -70,23 +79,60 @@ void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t 
   for (int r = 0; r < rows; ++r) kinetic_moments(grid, f + r * pitch, omega + r * (grid.dimensions() + 2));
 }
 
-void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) {
-  const int n = grid.size();
-  const int d = grid.dimensions();
-  const double* half_square = grid.half_square().data();
-  if (d == 1) return moments_on_line(grid, f, 0, 1, omega);
-  for (int k = 0; k < d + 2; ++k) {
-    const double* phi = k == 0 ? nullptr : (k <= d ? grid.component(k - 1).data() : half_square);
-    double sum = 0.0;
-    if (phi == nullptr) {
-#pragma omp simd reduction(+ : sum)
-      for (int j = 0; j < n; ++j) sum += f[j];
-    } else {
-#pragma omp simd reduction(+ : sum)
-      for (int j = 0; j < n; ++j) sum += phi[j] * f[j];
-    }
-    omega[k] = grid.weight() * sum;
+namespace {
+
+/// Sums over some lines of the last direction, without the factor Δv^d.
+struct line_sums {
+  double mass = 0.0, energy = 0.0;
+  std::array<double, 3> momentum{};
+
+  void add(const line_sums& other) {
+    mass += other.mass;
+    energy += other.energy;
+    for (std::size_t k = 0; k < 3; ++k) momentum[k] += other.momentum[k];
   }
+};
+
+/// Adds halves of halves: of a Gaussian, most terms lie far out, and added one by one to a sum that is
+/// already large they would all be rounded away, which is a loss of the same sign in every cell and step.
+line_sums sum_over_lines(const velocity_grid& grid, const double* f, int first, int lines) {
+  constexpr int few = 16;
+  line_sums sum;
+  if (lines > few) {
+    const int half = lines / 2;
+    sum = sum_over_lines(grid, f, first, half);
+    sum.add(sum_over_lines(grid, f, first + half, lines - half));
+    return sum;
+  }
+  const std::ptrdiff_t n = grid.points(), from = n * first;
+  std::array<velocity_rows::sums, few> rows;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  velocity_rows::moments(f + from, n, lines, grid.line().data(), grid.line_half_square().data(),
+                         grid.points(), rows.data());
+  const auto outer = static_cast<std::size_t>(grid.dimensions()) - 1;
+  for (int i = 0; i < lines; ++i) {
+    const auto& row = rows[static_cast<std::size_t>(i)];
+    double half_square = 0.0;
+    for (std::size_t k = 0; k < outer; ++k) {
+      const double v = grid.component(static_cast<int>(k))[static_cast<std::size_t>(from + i * n)];
+      sum.momentum[k] += v * row.mass;
+      half_square += 0.5 * v * v;
+    }
+    sum.mass += row.mass;
+    sum.momentum[outer] += row.momentum;
+    sum.energy += row.energy + half_square * row.mass;
+  }
+  return sum;
+}
+
+}  // namespace
+
+void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) {
+  const int d = grid.dimensions();
+  if (d == 1) return moments_on_line(grid, f, 0, 1, omega);
+  const line_sums sum = sum_over_lines(grid, f, 0, grid.size() / grid.points());
+  omega[0] = grid.weight() * sum.mass;
+  for (int k = 0; k < d; ++k) omega[1 + k] = grid.weight() * sum.momentum[static_cast<std::size_t>(k)];
+  omega[1 + d] = grid.weight() * sum.energy;
 }
 
 namespace {

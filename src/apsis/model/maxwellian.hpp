@@ -12,7 +12,10 @@ namespace apsis {
 /// Midpoint velocity grid on [−max, max]^d, d = 1, 2, 3, the first direction slowest.
 class velocity_grid {
  public:
-  /// Throws input_error unless 1 ≤ d ≤ 3, points ≥ 4 and max > 0.
+  /// Most velocities of a grid. Kernels count in ints, and a few more must be an int too.
+  static constexpr int most_velocities = 1 << 30;
+
+  /// Throws input_error unless 1 ≤ d ≤ 3, points ≥ 4, points^d ≤ most_velocities and max > 0.
   velocity_grid(int dimensions, int points, double max);
 
   int dimensions() const { return dimensions_; }  ///< d
@@ -22,6 +25,8 @@ class velocity_grid {
   double spacing() const { return spacing_; }     ///< Δv
   double weight() const { return weight_; }       ///< Δv^d
   const aligned_vector<double>& line() const { return line_; }  ///< the points of one direction
+  /// ½v² of the points of one direction.
+  const aligned_vector<double>& line_half_square() const { return line_half_square_; }
   /// Component k of the velocity of every grid point.
   const aligned_vector<double>& component(int k) const { return components_[static_cast<std::size_t>(k)]; }
   /// ½|v|² of every grid point.
@@ -30,7 +35,7 @@ class velocity_grid {
  private:
   int dimensions_, points_, size_ = 1;
   double max_, spacing_, weight_;
-  aligned_vector<double> line_, half_square_;
+  aligned_vector<double> line_, line_half_square_, half_square_;
   std::vector<aligned_vector<double>> components_;
 };
 

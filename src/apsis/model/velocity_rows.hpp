@@ -19,6 +19,8 @@ struct sums {
       momentum,  ///< Σ v f
       energy;    ///< Σ ½v² f
 };
+/// Numbers of a row that are added in one chain per lane; longer rows are halved until they are as short.
+inline constexpr int longest_chain = 256;
 /// Those of some rows of n numbers, which lie `pitch` apart; v and half_square are v and ½v² of the points.
 /// Sums of a row do not depend on the others.
 void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square,

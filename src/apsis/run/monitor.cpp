@@ -11,6 +11,25 @@
 
 namespace apsis {
 
+namespace {
+
+/// A sum that keeps what its additions round away (Neumaier 1974): good to a rounding or two, however many
+/// cells there are.
+class compensated_sum {
+ public:
+  void add(double x) {
+    const double sum = sum_ + x;
+    lost_ += std::abs(sum_) >= std::abs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
+    sum_ = sum;
+  }
+  double value() const { return sum_ + lost_; }
+
+ private:
+  double sum_ = 0.0, lost_ = 0.0;
+};
+
+}  // namespace
+
 monitor::totals monitor::sum(const field& u) const {
   const std::size_t count = equation_.invariants().size();
   const auto cells = static_cast<std::size_t>(u.cells());
@@ -33,6 +52,8 @@ monitor::totals monitor::sum(const field& u) const {
 
   totals t{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0), 0.0,
            std::numeric_limits<double>::infinity(), 0};
+  std::vector<compensated_sum> invariants(count), sizes(count);
+  compensated_sum entropy;
   for (std::size_t c = 0; c < cells; ++c) {
     if (std::isnan(lowest[c]))
       throw numerical_error(
@@ -40,13 +61,18 @@ monitor::totals monitor::sum(const field& u) const {
           {-1, std::numeric_limits<double>::quiet_NaN(), static_cast<long>(c), lowest[c]});
     t.lowest = std::min(t.lowest, lowest[c]);
     t.negative += negative[c];
-    t.entropy += volume_ * entropies[c];
+    entropy.add(entropies[c]);
     equation_.invariant_scales(densities.data() + c * count, scales.data());
     for (std::size_t k = 0; k < count; ++k) {
-      t.invariants[k] += volume_ * densities[c * count + k];
-      t.scales[k] += volume_ * scales[k];
+      invariants[k].add(densities[c * count + k]);
+      sizes[k].add(scales[k]);
     }
   }
+  for (std::size_t k = 0; k < count; ++k) {
+    t.invariants[k] = volume_ * invariants[k].value();
+    t.scales[k] = volume_ * sizes[k].value();
+  }
+  t.entropy = volume_ * entropy.value();
   if (!equation_.has_entropy() || t.negative > 0) t.entropy = std::numeric_limits<double>::quiet_NaN();
   return t;
 }

@@ -4,6 +4,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/run/monitor.hpp>
+#include <apsis/run/rounding.hpp>
 #include <apsis/run/setup.hpp>
 
 #include <algorithm>
@@ -58,6 +59,7 @@ struct simulation::impl {
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
         watch(*setup.equation, setup.cell_volume()),
+        rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
         state(setup.initial_state()),
         march(0.0, config.time.end, setup.given_dt()) {
     if (march.adjusted())
@@ -124,20 +126,32 @@ struct simulation::impl {
       broken(
           fmt::format("{} values are negative (the configuration entails positivity)", last.negative_values),
           last.min_value);
-    // Rounding of one step, times the number of steps.
-    const double rounding = 1e-12 + 1e-15 * static_cast<double>(last.step);
+    const double allowed = rounding.after(last.step);
     for (std::size_t k = 0; promises.conservation && k < last.conservation_defect.size(); ++k)
-      if (!(last.conservation_defect[k] <= rounding))
-        broken(
-            fmt::format(
-                "{} is not conserved to rounding{}", setup.equation->invariants()[k],
-                config.velocity.points > 0 && config.velocity.equilibrium == "formula"
-                    ? " (a Maxwellian by formula on a coarse velocity grid does that); use "
-                      "velocity.equilibrium = \"auto\""
-                    : " (the step is unstable, or values of very different size cancel); use a smaller step"),
-            last.conservation_defect[k]);
+      if (!(last.conservation_defect[k] <= allowed))
+        broken(fmt::format("{} is not conserved to rounding {}", setup.equation->invariants()[k],
+                           reason_of_defect(allowed)),
+               last.conservation_defect[k]);
     if (promises.entropy && last.entropy_change > 1e-13 * (1.0 + std::abs(last.entropy)))
       broken("the entropy increased (first-order upwind within r dt_FE entails decay)", last.entropy_change);
+  }
+
+  /// Why a conserved quantity changes by more than rounding explains, and what to do.
+  std::string reason_of_defect(double allowed) const {
+    if (config.velocity.points > 0 && config.velocity.equilibrium == "formula")
+      return "(a Maxwellian by formula on a coarse velocity grid does that); use "
+             "velocity.equilibrium = \"auto\"";
+    if (setup.equation->positive() && last.negative_values > 0)
+      return fmt::format(
+          "(large values of both signs cancel: {} are negative, as happens beyond the step that "
+          "strong stability allows); use space.limiter = \"positivity\" and time.safety = 1",
+          last.negative_values);
+    return fmt::format(
+        "({} steps of {} explain {:.2g}: some equilibrium has other moments than the state); "
+        "{}",
+        last.step, setup.integrator().name, allowed,
+        config.velocity.points > 0 ? "use velocity.equilibrium = \"discrete\", or more velocity.points"
+                                   : "check the moments of the equilibrium of the model");
   }
 
   case_config config;
@@ -145,6 +159,7 @@ struct simulation::impl {
   std::unique_ptr<semidiscrete_problem> problem;
   stepper<semidiscrete_problem> integrator;
   monitor watch;
+  rounding_bound rounding;
   field state;
   time_marcher<double> march;
   std::optional<step_controller<double>> control;

@@ -33,6 +33,8 @@ class collision {
 /// A collision of which every cell can be solved without its neighbours.
 class cellwise_collision : public collision {
  public:
+  /// Makes scratch space ready for all threads of a loop whose body calls solve_cells().
+  virtual void prepare(const field& u) = 0;
   /// solve() for cells begin … end−1, on this thread.
   virtual void solve_cells(double a, double b, field& u, int begin, int end) = 0;
 };

@@ -27,7 +27,8 @@ class cell_average_collision final : public collision {
       const auto pitch = static_cast<std::ptrdiff_t>(u.stride());
       const profile::section timed(kernel::relaxation, static_cast<double>(cells) * u.stride(),
                                    {relaxation::operations_of_average, sizeof(double)});
-      local.find_weights(a, b, epsilon_.data() + begin * gauss3::points, cells * gauss3::points);
+      local.find_weights(a, b, epsilon_.data() + static_cast<std::ptrdiff_t>(begin) * gauss3::points,
+                         cells * gauss3::points);
       for (int i = 0; i < cells; ++i) {
         relaxation::weighted_rows rows[gauss3::points];
         for (int q = 0; q < gauss3::points; ++q) {
@@ -43,8 +44,9 @@ class cell_average_collision final : public collision {
   }
 
   void scatter(const field& u, std::span<const target<field, double>> targets) override {
+    rows_.prepare([&](auto& rows) { rows.reserve(targets.size()); });
     for_blocks(u, [&](int begin, int cells, const double* points, const local_relaxation& local) {
-      thread_local std::vector<upwind::row_target> rows;
+      auto& rows = rows_.here();
       for (int i = 0; i < cells; ++i) {
         relaxation::strong_rows at[gauss3::points];
         for (int q = 0; q < gauss3::points; ++q) {
@@ -89,13 +91,15 @@ class cell_average_collision final : public collision {
   template <class Body>
   void for_blocks(const field& u, Body body) {
     const int at_once = std::max(1, points_at_once(u.stride()) / gauss3::points);
-    parallel_blocks(u.cells(), collision_block_length(u.stride()), [&](int begin, int end) {
-      thread_local pencil_block block;
-      thread_local aligned_vector<double> points;
-      thread_local local_relaxation local;
-      local.attach(equation_, at_once * gauss3::points);
-      points.resize(static_cast<std::size_t>(at_once * gauss3::points) *
-                    static_cast<std::size_t>(u.stride()));
+    const int longest = collision_block_length(u.stride());
+    scratch_.prepare([&](auto& own) {
+      own.block.reserve(how_, std::min(longest, u.cells()), 0, u.stride());
+      own.local.attach(equation_, at_once * gauss3::points);
+      own.points.resize(static_cast<std::size_t>(at_once * gauss3::points) *
+                        static_cast<std::size_t>(u.stride()));
+    });
+    parallel_blocks(u.cells(), longest, [&](int begin, int end) {
+      auto& [block, points, local] = scratch_.here();
       {
         const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(),
                                      {how_.scheme->operations(true), sizeof(double)});
@@ -114,7 +118,8 @@ class cell_average_collision final : public collision {
     const bool limited = how_.positivity != limiter_kind::none;
     const profile::section timed(kernel::points, static_cast<double>(cells) * stride,
                                  {relaxation::operations_of_points(limited), 0.0});
-    for (int i = begin; i < begin + cells; ++i, points += gauss3::points * stride)
+    for (int i = begin; i < begin + cells;
+         ++i, points += static_cast<std::ptrdiff_t>(gauss3::points) * stride)
       relaxation::gauss_values(
           {block.row(i - 1), block.row(i), block.row(i + 1), block.left_edge(i), block.right_edge(i)},
           limited, stride, points);
@@ -125,6 +130,13 @@ class cell_average_collision final : public collision {
   stencil how_;
   std::vector<double> epsilon_;
   field result_;
+  struct scratch {
+    pencil_block block;
+    aligned_vector<double> points;
+    local_relaxation local;
+  };
+  per_thread<scratch> scratch_;
+  per_thread<std::vector<upwind::row_target>> rows_;
 };
 
 }  // namespace

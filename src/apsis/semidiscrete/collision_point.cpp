@@ -18,9 +18,12 @@ class pointwise_collision final : public cellwise_collision {
       : equation_(equation), epsilon_(std::move(epsilon)) {}
 
   void solve(double a, double b, field& u) override {
+    prepare(u);
     parallel_blocks(u.cells(), points_at_once(u.stride()),
                     [&](int begin, int end) { relax(a, b, u, begin, end - begin, 2.0 * sizeof(double)); });
   }
+
+  void prepare(const field& u) override { prepare_points(u.stride()); }
 
   void solve_cells(double a, double b, field& u, int begin, int end) override {
     const int length = points_at_once(u.stride());
@@ -30,9 +33,11 @@ class pointwise_collision final : public cellwise_collision {
   }
 
   void scatter(const field& u, std::span<const target<field, double>> targets) override {
+    prepare(u);
+    rows_.prepare([&](auto& rows) { rows.reserve(targets.size()); });
     parallel_blocks(u.cells(), points_at_once(u.stride()), [&](int begin, int end) {
       const auto& local = equilibria_of(u, begin, end - begin);
-      thread_local std::vector<upwind::row_target> rows;
+      auto& rows = rows_.here();
       for (int cell = begin; cell < end; ++cell) {
         upwind::rows_of(targets, cell, rows);
         const relaxation::strong_rows point{local.strength(cell - begin, epsilon_at(cell), cell), u.row(cell),
@@ -63,7 +68,11 @@ class pointwise_collision final : public cellwise_collision {
  private:
   double epsilon_at(int cell) const { return epsilon_[static_cast<std::size_t>(cell)]; }
 
-  void relax(double a, double b, field& u, int begin, int cells, double bytes) const {
+  void prepare_points(int stride) {
+    local_.prepare([&](auto& local) { local.attach(equation_, points_at_once(stride)); });
+  }
+
+  void relax(double a, double b, field& u, int begin, int cells, double bytes) {
     auto& local = equilibria_of(u, begin, cells);
     const profile::section timed(kernel::relaxation, static_cast<double>(cells) * u.stride(),
                                  {relaxation::operations_of_combine, bytes});
@@ -75,15 +84,16 @@ class pointwise_collision final : public cellwise_collision {
   }
 
   /// In scratch space of this thread, until the next call.
-  local_relaxation& equilibria_of(const field& u, int begin, int cells) const {
-    thread_local local_relaxation local;
-    local.attach(equation_, points_at_once(u.stride()));
+  local_relaxation& equilibria_of(const field& u, int begin, int cells) {
+    auto& local = local_.here();
     local.find_equilibria(u.row(begin), u.stride(), cells, begin);
     return local;
   }
 
   const relaxation_model& equation_;
   std::vector<double> epsilon_;
+  per_thread<local_relaxation> local_;
+  per_thread<std::vector<upwind::row_target>> rows_;
 };
 
 }  // namespace

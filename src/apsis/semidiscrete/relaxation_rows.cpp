@@ -90,7 +90,7 @@ HWY_INLINE void quartics(relaxation::quartic_rows cell, int width, double* point
                                 N::load(cell.left + k), N::load(cell.right + k));
     g0.store(points + k);
     g1.store(points + width + k);
-    g2.store(points + 2 * width + k);
+    g2.store(points + 2 * static_cast<std::ptrdiff_t>(width) + k);
   });
 }
 

@@ -39,6 +39,7 @@ class semidiscrete_problem {
     const auto collide_cells = [&](int begin, int end) {
       cellwise_->solve_cells(due.a, due.b, *due.u, begin, end);
     };
+    if (cellwise_) cellwise_->prepare(*due.u);
     const bool done = transport_.scatter(u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
     if (!done) collision_->solve(due.a, due.b, *due.u);
   }

@@ -4,6 +4,15 @@
 
 namespace apsis {
 
+void pencil_block::reserve(const stencil& how, int cells, int halo, int stride) {
+  const auto count = static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo);
+  rows.reserve(count + 2 * static_cast<std::size_t>(how.scheme->ghost_width()));
+  const std::size_t needed = count * static_cast<std::size_t>(stride);
+  if (left.size() >= needed) return;
+  left.resize(needed);
+  right.resize(needed);
+}
+
 void pencil_block::load(const field& u, const grid& mesh, const stencil& how, int direction, int pencil,
                         int begin, int end, int halo) {
   const int ghosts = how.scheme->ghost_width();
@@ -12,11 +21,7 @@ void pencil_block::load(const field& u, const grid& mesh, const stencil& how, in
   first_edge = begin - halo;
   first_row = first_edge - ghosts;
   pencil_rows(u, mesh, direction, pencil, how.boundary, first_row, end + halo + ghosts, rows);
-  const auto needed = static_cast<std::size_t>(count) * static_cast<std::size_t>(width);
-  if (left.size() < needed) {
-    left.resize(needed);
-    right.resize(needed);
-  }
+  reserve(how, end - begin, halo, width);
   how.scheme->edges(rows.data() + ghosts, count, width, left.data(), right.data());
 }
 

@@ -45,6 +45,9 @@ struct stencil {
 /// A few consecutive cells of one pencil with their edge values, small enough to stay in the cache. Reused
 /// from block to block: no allocation once it has grown.
 struct pencil_block {
+  /// Makes room for load() with so many cells.
+  void reserve(const stencil& how, int cells, int halo, int stride);
+
   /// Cells begin−halo … end−1+halo of a pencil get edge values. Rows reach the ghost cells of the scheme.
   void load(const field& u, const grid& mesh, const stencil& how, int direction, int pencil, int begin,
             int end, int halo);

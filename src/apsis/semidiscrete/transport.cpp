@@ -27,6 +27,9 @@ int cells_of_a_row(int stride) {
 constexpr int most_columns = 32;
 /// And what is worth a sweep of its own, in columns and in cells.
 constexpr int least_columns = 16, least_cells = 16;
+/// Numbers that a kernel takes as one row at most, and tasks of a loop: their sums with a few others are
+/// ints.
+constexpr int longest_row = 1 << 30, most_tasks = 1 << 30;
 
 /// Bytes of accumulators for each number: written, and read before unless they are fresh.
 work traffic(targets_view targets) {
@@ -35,10 +38,174 @@ work traffic(targets_view targets) {
   return each;
 }
 
+/// First component of column 0 … columns of a row, columns being cut at whole vectors.
+int first_component(int width, int columns, int column) {
+  if (column == columns) return width;
+  return static_cast<int>(static_cast<long>(width / packet_length) * column / columns) * packet_length;
+}
+
 }  // namespace
 
+/// T along one direction for some components of some cells of a pencil.
+class transport::block_sweep {
+ public:
+  struct place {
+    int direction, pencil, begin, end;  ///< cells of the pencil
+    int first, last;                    ///< components
+  };
+
+  /// Makes room for `cells` cells of at most `width` components.
+  void reserve(const transport& from, int cells, int width, std::size_t targets) {
+    find_reach(from);
+    const auto rows = static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_ + reach_);
+    rows_.reserve(rows);
+    joined_.reserve(rows);
+    targets_.reserve(targets);
+    make_room(from, cells, width);
+  }
+
+  void run(const transport& from, const field& u, const place& at, targets_view targets) {
+    prepare(from, u, at);
+    const double numbers = static_cast<double>(at.end - at.begin) * width_;
+    {
+      const profile::section timed(kernel::edges, numbers,
+                                   {from.how_.scheme->operations(both_edges()), sizeof(double)});
+      for (int i = at.begin - halo_; i < at.end + halo_;) {
+        const run_of_cells run = run_from(i, at.end + halo_ - i);
+        make_edges(i, run);
+        i += run.cells * run.joined;
+      }
+    }
+    const profile::section timed(kernel::fluxes, numbers, work_of(targets));
+    for (int i = at.begin; i < at.end;) {
+      const run_of_cells run = run_from(i, at.end - i);
+      add(i, run, at, targets);
+      i += run.cells * run.joined;
+    }
+  }
+
+ private:
+  /// Either one cell after another, or cells that are one row in memory and so are their neighbours: a single
+  /// "cell" for the kernels.
+  struct run_of_cells {
+    int cells, joined;
+  };
+
+  bool both_edges() const { return from_->how_.positivity == limiter_kind::edges; }
+
+  work work_of(targets_view targets) const {
+    work each = traffic(targets);
+    each.operations = upwind::operations(from_->how_.positivity == limiter_kind::fluxes) +
+                      upwind::operations_of_target * static_cast<double>(targets.size());
+    return each;
+  }
+
+  void prepare(const transport& from, const field& u, const place& at) {
+    from_ = &from;
+    line_ = &from.speeds_[static_cast<std::size_t>(at.direction)];
+    width_ = at.last - at.first;
+    first_component_ = at.first;
+    whole_rows_ = width_ == u.stride();
+    find_reach(from);
+    first_edge_ = at.begin - halo_;
+    const int beyond = halo_ + reach_;
+    first_row_ = at.begin - beyond;
+    pencil_rows(u, from.mesh_, at.direction, at.pencil, from.how_.boundary, first_row_, at.end + beyond,
+                rows_);
+    joined_.assign(rows_.size(), 1);
+    if (cells_of_a_row(u.stride()) > 1)
+      for (std::size_t j = rows_.size() - 1; j-- > 0;)
+        if (rows_[j] + width_ == rows_[j + 1]) joined_[j] = joined_[j + 1] + 1;
+    for (auto& row : rows_) row += at.first;
+    make_room(from, at.end - at.begin, width_);
+  }
+
+  void find_reach(const transport& from) {
+    halo_ = from.how_.positivity == limiter_kind::fluxes ? 2 : 1;
+    reach_ = std::max(from.how_.scheme->ghost_width(), halo_);  // as far as edges and limiter look
+  }
+
+  /// Where neighbours are joined, a row of edges ends beyond its last cell.
+  void make_room(const transport& from, int cells, int width) {
+    const auto numbers = (static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_)) *
+                         static_cast<std::size_t>(width);
+    for (auto* edges : {&left_, &right_})
+      if (edges->size() < numbers) edges->resize(numbers);
+    if (from.equation_.has_source() && source_.size() < numbers) source_.resize(numbers);
+  }
+
+  const double* const* row(int i) const { return rows_.data() + (i - first_row_); }
+  std::size_t offset(int i) const {
+    return static_cast<std::size_t>(i - first_edge_) * static_cast<std::size_t>(width_);
+  }
+
+  run_of_cells run_from(int i, int most) const {
+    const int long_enough = cells_of_a_row(width_);
+    if (!whole_rows_ || long_enough == 1) return {most, 1};
+    const int together = joined_[static_cast<std::size_t>(i - reach_ - first_row_)] - 2 * reach_;
+    return {1, std::max(1, std::min({long_enough, most, together}))};
+  }
+
+  void make_edges(int i, const run_of_cells& run) {
+    const auto& scheme = *from_->how_.scheme;
+    const int width = run.joined * width_;
+    double *left = left_.data() + offset(i), *right = right_.data() + offset(i);
+    if (!both_edges())
+      return scheme.outflow_edges(row(i), run.cells, width, line_->forward.data() + first_component_, right);
+    scheme.edges(row(i), run.cells, width, left, right);
+    for (int j = 0; j < run.cells; ++j)
+      limiter::apply(*row(i + j), width, left + static_cast<std::ptrdiff_t>(j) * width,
+                     right + static_cast<std::ptrdiff_t>(j) * width);
+  }
+
+  const double* source(int i, const run_of_cells& run) {
+    for (int j = i; j < i + run.cells * run.joined; ++j)
+      from_->equation_.source(*row(j), source_.data() + offset(j));
+    return source_.data() + offset(i);
+  }
+
+  void add(int i, const run_of_cells& run, const place& at, targets_view targets) {
+    const bool first = at.direction == 0;
+    const auto& mesh = from_->mesh_;
+    const int apart = mesh.stride(at.direction), cell = mesh.first_cell(at.direction, at.pencil) + i * apart;
+    upwind::rows_of(targets, cell, targets_, {at.first, apart, first});
+    const double* right = right_.data() + offset(i);
+    const upwind::cells some{row(i),
+                             both_edges() ? left_.data() + offset(i) : right,
+                             right,
+                             width_,
+                             run.cells,
+                             run.joined * width_,
+                             line_->forward.data() + at.first,
+                             line_->per_cell.data() + at.first,
+                             first && from_->equation_.has_source() ? source(i, run) : nullptr};
+    if (from_->how_.positivity == limiter_kind::fluxes) {
+      upwind::add_limited(some, targets_);
+    } else {
+      upwind::add(some, targets_);
+    }
+  }
+
+  const transport* from_ = nullptr;
+  const line_speeds* line_ = nullptr;
+  std::vector<const double*> rows_;
+  std::vector<int> joined_;
+  std::vector<upwind::row_target> targets_;
+  aligned_vector<double> left_, right_, source_;
+  int width_ = 0, first_component_ = 0, halo_ = 0, reach_ = 0, first_row_ = 0, first_edge_ = 0;
+  bool whole_rows_ = false;
+};
+
+struct transport::scratch {
+  per_thread<block_sweep> sweeps;
+  per_thread<std::vector<upwind::row_target>> rows;
+};
+
+transport::~transport() = default;
+transport::transport(transport&&) noexcept = default;
+
 transport::transport(const model& equation, const grid& mesh, stencil how)
-    : equation_(equation), mesh_(mesh), how_(std::move(how)) {
+    : equation_(equation), mesh_(mesh), how_(std::move(how)), scratch_(std::make_unique<scratch>()) {
   if (equation.space_dimensions() == 0) return;
   const field layout(1, equation.components());
   for (int direction = 0; direction < mesh.dimensions(); ++direction) {
@@ -89,8 +256,11 @@ void transport::scatter_source(const field& u, targets_view targets) const {
 }
 
 void transport::scatter_weights(const field& u, targets_view targets, const cells_job& then) const {
-  parallel_blocks(u.cells(), block_length(u.stride()), [&](int begin, int end) {
-    thread_local std::vector<upwind::row_target> rows;
+  scratch_->rows.prepare([&](auto& rows) { rows.reserve(targets.size()); });
+  // As many cells as make a row whose length is an int.
+  const int longest = std::min(block_length(u.stride()), std::max(1, longest_row / std::max(u.stride(), 1)));
+  parallel_blocks(u.cells(), longest, [&](int begin, int end) {
+    auto& rows = scratch_->rows.here();
     const int cells = end - begin;
     upwind::rows_of(targets, begin, rows);
     {
@@ -104,138 +274,6 @@ void transport::scatter_weights(const field& u, targets_view targets, const cell
   });
 }
 
-/// T along one direction for some components of some cells of a pencil.
-class transport::block_sweep {
- public:
-  struct place {
-    int direction, pencil, begin, end;  ///< cells of the pencil
-    int first, last;                    ///< components
-  };
-
-  void run(const transport& from, const field& u, const place& at, targets_view targets) {
-    prepare(from, u, at);
-    const double numbers = static_cast<double>(at.end - at.begin) * width_;
-    {
-      const profile::section timed(kernel::edges, numbers,
-                                   {from.how_.scheme->operations(both_edges()), sizeof(double)});
-      for (int i = at.begin - halo_; i < at.end + halo_;) {
-        const run_of_cells run = run_from(i, at.end + halo_ - i);
-        make_edges(i, run);
-        i += run.cells * run.joined;
-      }
-    }
-    const profile::section timed(kernel::fluxes, numbers, work_of(targets));
-    for (int i = at.begin; i < at.end;) {
-      const run_of_cells run = run_from(i, at.end - i);
-      add(i, run, at, targets);
-      i += run.cells * run.joined;
-    }
-  }
-
- private:
-  /// Either one cell after another, or cells that are one row in memory and so are their neighbours: a single
-  /// "cell" for the kernels.
-  struct run_of_cells {
-    int cells, joined;
-  };
-
-  bool both_edges() const { return from_->how_.positivity == limiter_kind::edges; }
-
-  work work_of(targets_view targets) const {
-    work each = traffic(targets);
-    each.operations = upwind::operations(from_->how_.positivity == limiter_kind::fluxes) +
-                      upwind::operations_of_target * static_cast<double>(targets.size());
-    return each;
-  }
-
-  void prepare(const transport& from, const field& u, const place& at) {
-    from_ = &from;
-    line_ = &from.speeds_[static_cast<std::size_t>(at.direction)];
-    width_ = at.last - at.first;
-    first_component_ = at.first;
-    whole_rows_ = width_ == u.stride();
-    const auto limiting = from.how_.positivity;
-    halo_ = limiting == limiter_kind::fluxes ? 2 : 1;
-    reach_ = std::max(from.how_.scheme->ghost_width(), halo_);  // as far as edges and limiter look
-    first_edge_ = at.begin - halo_;
-    const int beyond = halo_ + reach_;
-    first_row_ = at.begin - beyond;
-    pencil_rows(u, from.mesh_, at.direction, at.pencil, from.how_.boundary, first_row_, at.end + beyond,
-                rows_);
-    joined_.assign(rows_.size(), 1);
-    if (cells_of_a_row(u.stride()) > 1)
-      for (std::size_t j = rows_.size() - 1; j-- > 0;)
-        if (rows_[j] + width_ == rows_[j + 1]) joined_[j] = joined_[j + 1] + 1;
-    for (auto& row : rows_) row += at.first;
-    // Where neighbours are joined, a row of edges ends beyond its last cell.
-    const auto numbers =
-        static_cast<std::size_t>(at.end - at.begin + 2 * halo_) * static_cast<std::size_t>(width_);
-    for (auto* edges : {&left_, &right_})
-      if (edges->size() < numbers) edges->resize(numbers);
-    if (from.equation_.has_source() && source_.size() < numbers) source_.resize(numbers);
-  }
-
-  const double* const* row(int i) const { return rows_.data() + (i - first_row_); }
-  std::size_t offset(int i) const {
-    return static_cast<std::size_t>(i - first_edge_) * static_cast<std::size_t>(width_);
-  }
-
-  run_of_cells run_from(int i, int most) const {
-    const int long_enough = cells_of_a_row(width_);
-    if (!whole_rows_ || long_enough == 1) return {most, 1};
-    const int together = joined_[static_cast<std::size_t>(i - reach_ - first_row_)] - 2 * reach_;
-    return {1, std::max(1, std::min({long_enough, most, together}))};
-  }
-
-  void make_edges(int i, const run_of_cells& run) {
-    const auto& scheme = *from_->how_.scheme;
-    const int width = run.joined * width_;
-    double *left = left_.data() + offset(i), *right = right_.data() + offset(i);
-    if (!both_edges())
-      return scheme.outflow_edges(row(i), run.cells, width, line_->forward.data() + first_component_, right);
-    scheme.edges(row(i), run.cells, width, left, right);
-    for (int j = 0; j < run.cells; ++j)
-      limiter::apply(*row(i + j), width, left + j * width, right + j * width);
-  }
-
-  const double* source(int i, const run_of_cells& run) {
-    for (int j = i; j < i + run.cells * run.joined; ++j)
-      from_->equation_.source(*row(j), source_.data() + offset(j));
-    return source_.data() + offset(i);
-  }
-
-  void add(int i, const run_of_cells& run, const place& at, targets_view targets) {
-    const bool first = at.direction == 0;
-    const auto& mesh = from_->mesh_;
-    const int apart = mesh.stride(at.direction), cell = mesh.first_cell(at.direction, at.pencil) + i * apart;
-    upwind::rows_of(targets, cell, targets_, {at.first, apart, first});
-    const double* right = right_.data() + offset(i);
-    const upwind::cells some{row(i),
-                             both_edges() ? left_.data() + offset(i) : right,
-                             right,
-                             width_,
-                             run.cells,
-                             run.joined * width_,
-                             line_->forward.data() + at.first,
-                             line_->per_cell.data() + at.first,
-                             first && from_->equation_.has_source() ? source(i, run) : nullptr};
-    if (from_->how_.positivity == limiter_kind::fluxes) {
-      upwind::add_limited(some, targets_);
-    } else {
-      upwind::add(some, targets_);
-    }
-  }
-
-  const transport* from_ = nullptr;
-  const line_speeds* line_ = nullptr;
-  std::vector<const double*> rows_;
-  std::vector<int> joined_;
-  std::vector<upwind::row_target> targets_;
-  aligned_vector<double> left_, right_, source_;
-  int width_ = 0, first_component_ = 0, halo_ = 0, reach_ = 0, first_row_ = 0, first_edge_ = 0;
-  bool whole_rows_ = false;
-};
-
 bool transport::scatter_direction(const field& u, targets_view targets, int direction,
                                   const cells_job& then) const {
   const int n = mesh_.cells(direction), pencils = mesh_.pencils(direction), width = u.stride();
@@ -243,19 +281,22 @@ bool transport::scatter_direction(const field& u, targets_view targets, int dire
   const bool whole_cells = equation_.has_source();
   int columns = whole_cells ? 1 : (width + most_columns - 1) / most_columns;
   // Parts of one pencil for all threads, or pencils, or parts of rows.
-  const bool by_cells = pencils == 1 && n >= least_cells * threads();
+  const bool by_cells = pencils == 1 && n / least_cells >= threads();
   const part_blocks blocks(n, sweep_block_length(std::min(width, most_columns)), by_cells ? threads() : 1);
   // So many parts that threads of different speed end at about the same time.
   const int enough = threads() == 1 ? 1 : 4 * threads();
-  if (!whole_cells && !by_cells && pencils * blocks.count() * columns < enough)
+  const long pieces = static_cast<long>(pencils) * blocks.count();
+  if (!whole_cells && !by_cells && pieces * columns < enough)
     columns = std::max(columns, width / least_columns);
-  const auto component = [&](int column) {
-    // Cut at whole vectors.
-    return column == columns ? width : width / packet_length * column / columns * packet_length;
-  };
+  if (!by_cells) columns = static_cast<int>(std::clamp<long>(most_tasks / pieces, 1, columns));
+  const auto component = [&](int column) { return first_component(width, columns, column); };
+  const int longest = std::min(n, sweep_block_length(std::min(width, most_columns)));
+  const int widest = (width / packet_length / columns + 1) * packet_length;
+  scratch_->sweeps.prepare([&](auto& sweep) {
+    sweep.reserve(*this, longest, std::min(width, widest + width % packet_length), targets.size());
+  });
   const auto sweep = [&](int pencil, int block, int column) {
-    thread_local block_sweep here;
-    here.run(
+    scratch_->sweeps.here().run(
         *this, u,
         {direction, pencil, blocks.begin(block), blocks.end(block), component(column), component(column + 1)},
         targets);
@@ -267,7 +308,7 @@ bool transport::scatter_direction(const field& u, targets_view targets, int dire
     });
     return static_cast<bool>(then);
   }
-  parallel_for(pencils * blocks.count() * columns, [&](int task) {
+  parallel_for(static_cast<int>(pieces) * columns, [&](int task) {
     sweep(task / columns / blocks.count(), task / columns % blocks.count(), task % columns);
   });
   return false;

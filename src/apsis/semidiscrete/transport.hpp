@@ -4,6 +4,7 @@
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/sweep.hpp>
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,8 @@ class transport {
  public:
   /// Both references must outlive this. Without space `how` is not used.
   transport(const model& equation, const grid& mesh, stencil how);
+  ~transport();
+  transport(transport&&) noexcept;  ///< leaves the source empty
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(u). One evaluation of T, none if every β is 0.
   /// With the positivity limiter and β max|v|/Δx ≤ α/12 no result is negative, in floating point.
@@ -46,7 +49,9 @@ class transport {
     aligned_vector<double> forward;   ///< 1 where v > 0, else 0
   };
   class block_sweep;
+  struct scratch;
   std::vector<line_speeds> speeds_;
+  std::unique_ptr<scratch> scratch_;  ///< of this operator's loops: one loop at a time
 };
 
 }  // namespace apsis

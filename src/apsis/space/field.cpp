@@ -4,8 +4,18 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
+#include <new>
 
 namespace apsis {
+
+std::size_t field::numbers(int cells, int stride) {
+  const auto rows = static_cast<std::size_t>(cells), width = static_cast<std::size_t>(stride);
+  constexpr std::size_t most =
+      static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()) / sizeof(double);
+  if (width > 0 && rows > most / width) throw std::bad_alloc();
+  return rows * width;
+}
 
 void field::fill_rows(const double* values) {
   // In the parts of all other loops over cells: memory is near to the core that writes it first.

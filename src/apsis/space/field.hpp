@@ -13,12 +13,9 @@ namespace apsis {
 class field {
  public:
   field() = default;
-  /// All numbers are 0. Throws std::bad_alloc.
+  /// All numbers are 0. Throws std::bad_alloc, also where there are more numbers than addresses.
   field(int cells, int components)
-      : cells_(cells),
-        components_(components),
-        stride_(padded(components)),
-        data_(static_cast<std::size_t>(cells) * static_cast<std::size_t>(stride_)) {
+      : cells_(cells), components_(components), stride_(padded(components)), data_(numbers(cells, stride_)) {
     fill_rows(nullptr);
   }
   /// Padding included, row by row on the thread that works on it.
@@ -60,6 +57,8 @@ class field {
   }
 
  private:
+  static std::size_t numbers(int cells, int stride);
+
   /// From `values`, or zeros where that is null. Each thread writes the rows that it works on later, so that
   /// their memory lies near to it (a page belongs to whom touches it first).
   void fill_rows(const double* values);

@@ -21,6 +21,14 @@ grid::grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower
     lower_[at(k)] = lower[at(k)];
     spacing_[at(k)] = length / cells[at(k)];
   }
+  check_size();
+}
+
+void grid::check_size() const {
+  const double cells = 1.0 * cells_[0] * cells_[1] * cells_[2];
+  if (cells > most_cells)
+    throw input_error(
+        fmt::format("{:.4g} cells (more than {} cannot be numbered); give fewer", cells, most_cells));
 }
 
 double grid::cell_volume() const {

@@ -11,7 +11,11 @@ namespace apsis {
 /// cell. Dimensionless lengths.
 class grid {
  public:
-  /// Throws input_error unless every used direction has ≥ 1 cells and a domain of positive, finite length.
+  /// Most cells of a mesh: with those beyond its ends their numbers are ints.
+  static constexpr int most_cells = 1 << 30;
+
+  /// Throws input_error unless every used direction has ≥ 1 cells and a domain of positive, finite length,
+  /// and all together have at most most_cells.
   grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower, std::array<double, 3> upper);
   /// The interval [a, b].
   static grid line(int cells, double a, double b) { return grid(1, {cells, 1, 1}, {a, 0, 0}, {b, 1, 1}); }
@@ -32,6 +36,7 @@ class grid {
   int first_cell(int direction, int pencil) const;
 
  private:
+  void check_size() const;
   static std::size_t at(int direction) { return static_cast<std::size_t>(direction); }
 
   int dimensions_;

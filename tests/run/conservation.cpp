@@ -1,0 +1,118 @@
+// What rounding may do to conserved quantities, and what is more than rounding.
+#include "cases.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/run/rounding.hpp>
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+using apsis::formulation;
+
+namespace {
+
+apsis::case_config in_dimensions(int dimensions, int points, double v_max) {
+  auto c = mixed("mixed-v", "md-imex-6-3", formulation::finite_volume);
+  c.model.parameters["velocity_dimensions"] = dimensions;
+  c.velocity = {v_max, points, "auto"};
+  c.space.cells = 10;
+  return c;
+}
+
+/// The message of the run whose state is multiplied by 1 + defect after each step; "" if no step notices.
+std::string message_of(const apsis::case_config& c, double defect, int steps) {
+  apsis::simulation run(c);
+  try {
+    for (int step = 0; step < steps; ++step) {
+      run.advance();
+      auto saved = run.save();
+      for (double& value : saved.state) value *= 1.0 + defect;
+      run.restore(saved);
+    }
+  } catch (const apsis::numerical_error& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(conservation, in_three_velocity_dimensions_has_no_drift) {
+  auto c = in_dimensions(3, 24, 10.0);
+  c.model.epsilon = "0";  // every stage of every cell replaces f by its Maxwellian
+  apsis::simulation run(c);
+  constexpr int steps = 8;
+  for (int step = 0; step < steps; ++step) run.advance();
+  // Mass: a rounding for each of 6 stages a step, 5e-15. Tails that a naive sum rounds away make it 8e-14.
+  EXPECT_LE(run.last().conservation_defect[0], 5e-15);
+}
+
+TEST(conservation, four_times_the_stages_may_round_four_times_as_much) {
+  auto c = small("md-imex-chain-64-2", formulation::finite_volume);
+  c.model.epsilon = "0";
+  c.time.end = 1.0;
+  apsis::simulation run(c);
+  for (int step = 0; step < 40; ++step) run.advance();  // throws if conservation is broken
+  const auto model = apsis::make_model(c);
+  const auto per_step = [&](const char* method) {
+    return apsis::rounding_of(apsis::find_method(method).coefficients<double>(), *model).per_step;
+  };
+  EXPECT_NEAR(per_step("md-imex-chain-64-2") / per_step("md-imex-chain-16-2"), 4.0, 0.2);
+}
+
+TEST(conservation, a_factor_of_1e_13_is_found_at_the_next_step) {
+  for (const auto how : {formulation::finite_volume, formulation::finite_difference}) {
+    const auto c = small("md-imex-6-3", how);
+    EXPECT_EQ(message_of(c, 0.0, 10), "");
+    for (const double defect : {1e-13, -1e-13, 1e-11}) {
+      const std::string message = message_of(c, defect, 2);
+      EXPECT_NE(message.find("broken promise: mass is not conserved to rounding (2 steps of md-imex-6-3"),
+                std::string::npos)
+          << defect << " " << message;
+      EXPECT_NE(message.find("use velocity.equilibrium = \"discrete\""), std::string::npos) << message;
+      EXPECT_EQ(message.find("smaller step"), std::string::npos) << message;
+    }
+  }
+}
+
+TEST(conservation, a_defect_of_each_step_is_found_however_long_the_run) {
+  // Ten times the rounding of a step: below any bound that a single step could be held to.
+  const auto c = small("md-imex-6-3", formulation::finite_difference);
+  const double rounding =
+      apsis::rounding_of(apsis::find_method("md-imex-6-3").coefficients<double>(), *apsis::make_model(c))
+          .per_step;
+  EXPECT_LT(rounding, 1e-14);
+  EXPECT_NE(message_of(c, 10.0 * rounding, 20), "");
+}
+
+TEST(conservation, slow_holds_on_the_grids_where_a_fixed_bound_did_not) {
+  struct run_of {
+    int dimensions, points;
+    double v_max;
+    const char *method, *epsilon;
+    int steps;
+  };
+  for (const run_of& r :
+       {run_of{3, 32, 10.0, "md-imex-6-3", "mixed", 130}, run_of{3, 24, 10.0, "md-imex-6-3", "mixed", 260},
+        run_of{2, 150, 15.0, "md-imex-6-3", "mixed", 400},
+        run_of{1, 150, 15.0, "md-imex-chain-64-2", "mixed", 200},
+        run_of{1, 150, 15.0, "md-imex-chain-64-2", "0", 200}}) {
+    auto c = in_dimensions(r.dimensions, r.points, r.v_max);
+    if (r.epsilon != std::string("mixed")) c.model.epsilon = r.epsilon;
+    c.space.cells = 20;
+    c.time.method = r.method;
+    c.time.end = 1.0;
+    apsis::simulation run(c);
+    for (int step = 0; step < r.steps; ++step) run.advance();
+    const auto& defects = run.last().conservation_defect;
+    const double worst = *std::max_element(defects.begin(), defects.end());
+    // Two roundings for each stage, in the worst case all of the same sign.
+    const auto stages = static_cast<double>(apsis::find_method(r.method).stages());
+    EXPECT_LT(worst, 2.3e-16 * stages * r.steps)
+        << r.dimensions << " " << r.points << " " << r.method << " " << r.epsilon;
+  }
+}

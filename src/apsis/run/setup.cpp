@@ -183,7 +183,7 @@ std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
   } else {
     const auto& relaxation = dynamic_cast<const relaxation_model&>(*equation);
     if (pointwise()) {
-      q = make_pointwise_collision(relaxation, epsilon_at_centres());
+      q = make_pointwise_collision(relaxation, epsilon_at_centres(), keeps_sign());
     } else {
       std::vector<double> points;
       for (const double centre : centres())

@@ -93,7 +93,7 @@ class cell_average_collision final : public collision {
       thread_local pencil_block block;
       thread_local aligned_vector<double> points;
       thread_local local_relaxation local;
-      local.attach(equation_, at_once * gauss3::points);
+      local.attach(equation_, at_once * gauss3::points, how_.positivity != limiter_kind::none);
       points.resize(static_cast<std::size_t>(at_once * gauss3::points) *
                     static_cast<std::size_t>(u.stride()));
       {

@@ -14,8 +14,8 @@ namespace {
 
 class pointwise_collision final : public cellwise_collision {
  public:
-  pointwise_collision(const relaxation_model& equation, std::vector<double> epsilon)
-      : equation_(equation), epsilon_(std::move(epsilon)) {}
+  pointwise_collision(const relaxation_model& equation, std::vector<double> epsilon, bool limited)
+      : equation_(equation), epsilon_(std::move(epsilon)), limited_(limited) {}
 
   void solve(double a, double b, field& u) override {
     parallel_blocks(u.cells(), points_at_once(u.stride()),
@@ -77,20 +77,21 @@ class pointwise_collision final : public cellwise_collision {
   /// In scratch space of this thread, until the next call.
   local_relaxation& equilibria_of(const field& u, int begin, int cells) const {
     thread_local local_relaxation local;
-    local.attach(equation_, points_at_once(u.stride()));
+    local.attach(equation_, points_at_once(u.stride()), limited_);
     local.find_equilibria(u.row(begin), u.stride(), cells, begin);
     return local;
   }
 
   const relaxation_model& equation_;
   std::vector<double> epsilon_;
+  bool limited_;
 };
 
 }  // namespace
 
 std::unique_ptr<collision> make_pointwise_collision(const relaxation_model& equation,
-                                                    std::vector<double> epsilon) {
-  return std::make_unique<pointwise_collision>(equation, std::move(epsilon));
+                                                    std::vector<double> epsilon, bool limited) {
+  return std::make_unique<pointwise_collision>(equation, std::move(epsilon), limited);
 }
 
 }  // namespace apsis

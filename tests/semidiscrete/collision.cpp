@@ -139,6 +139,32 @@ TEST(collision, a_state_without_temperature_is_a_numerical_failure_with_its_cell
   }
 }
 
+TEST(collision, advises_the_limiter_only_where_it_is_off) {
+  const auto m = small_bgk();
+  const grid mesh = grid::line(8, 0.0, 2.0);
+  field u = smooth(*m, mesh, false);
+  for (int cell = 0; cell < 8; ++cell)
+    for (int k = 0; k < m->components(); ++k) u.row(cell)[k] *= -1.0;
+  const auto said = [&](apsis::collision& q) -> std::string {
+    field v = u;
+    try {
+      q.solve(1.0, 0.0, v);
+    } catch (const apsis::numerical_error& failure) {
+      return failure.problem();
+    }
+    return "nothing";
+  };
+  const std::string off = "is not positive); use the positivity limiter or a smaller step";
+  const std::string on = "is not positive); use steps within r dt_FE";
+  const std::vector<double> ones(24, 1.0);
+  EXPECT_NE(said(*apsis::make_pointwise_collision(*m, ones)).find(off), std::string::npos);
+  EXPECT_NE(said(*apsis::make_pointwise_collision(*m, ones, true)).find(on), std::string::npos);
+  for (const auto kind : {limiter_kind::none, limiter_kind::edges}) {
+    const auto q = apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", kind), ones);
+    EXPECT_NE(said(*q).find(kind == limiter_kind::none ? off : on), std::string::npos) << said(*q);
+  }
+}
+
 TEST(collision, explicit_evaluation_agrees_with_the_implicit_one_for_small_steps) {
   const auto m = small_bgk();
   const grid mesh = grid::line(10, 0.0, 2.0);

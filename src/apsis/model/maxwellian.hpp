@@ -89,15 +89,21 @@ int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, 
 
 /// Sufficient for its midpoint-rule moments to be those of `state` to round-off: Poisson's sum formula bounds
 /// their relative error by about 100 exp(−2π²T/Δv²), and what lies beyond the grid is of the size exp(−(v_max
-/// − |u|)²/(2T)).
+/// − |u|)²/(2T)). False for nearly empty space, where the formula would lose values below 1e-300.
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state);
 /// The same in one velocity dimension.
 bool formula_has_exact_moments(const velocity_grid& grid, const line_state& state);
 
-/// exp(α + β·v + γ|v|²) whose midpoint-rule moments are those of `state` to round-off, on any grid
-/// (Mieussens, M3AS 10, 2000). Newton's method on the convex dual, damped. False if the grid has no such
-/// function (too coarse for √T, or u near its edge).
+/// The minimiser of Σ m log m among all m ≥ 0 with the midpoint-rule moments ω, to round-off: the discrete
+/// Maxwellian exp(α + β·v + γ|v|²) (Mieussens, M3AS 10, 2000), and where ω lies on the boundary of what m ≥ 0
+/// can have, its limit, which is 0 at some points (docs/space.md). Exists for the moments of every f ≥ 0, a
+/// row of zeros included; ω may miss the boundary by the rounding of sums. False for other ω, for which
+/// why_unrealizable() has the reason.
+bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m);
+/// The same for the moments of a state.
 bool discrete_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
+/// For messages, why no row f ≥ 0 has the moments ω: "temperature -0.3 is not positive"; "" where one has.
+std::string why_unrealizable(const velocity_grid& grid, const double* omega);
 
 /// Largest defect of the moments of m against `omega`, the moments of `state`; relative to ρ, to ρ(√T +
 /// |u_k|) for each momentum, and to 𝓔.

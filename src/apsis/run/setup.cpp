@@ -183,7 +183,7 @@ std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
   } else {
     const auto& relaxation = dynamic_cast<const relaxation_model&>(*equation);
     if (pointwise()) {
-      q = make_pointwise_collision(relaxation, epsilon_at_centres());
+      q = make_pointwise_collision(relaxation, epsilon_at_centres(), keeps_sign());
     } else {
       std::vector<double> points;
       for (const double centre : centres())
@@ -260,17 +260,44 @@ double run_setup::cfl_length() const {
   return mesh_.spacing(0) / fastest;
 }
 
-void run_setup::decide_promises(run_promises& promises, double dt, double limit, bool nonnegative) const {
+double run_setup::equilibrium_defect(const field& u) const {
+  const auto* relaxation = dynamic_cast<const relaxation_model*>(equation.get());
+  if (relaxation == nullptr || equation->invariants().empty()) return 0.0;
+  const std::size_t count = equation->invariants().size();
+  std::vector<double> omega(static_cast<std::size_t>(relaxation->moment_count()));
+  std::vector<double> e(static_cast<std::size_t>(u.components()));
+  std::vector<double> before(count), after(count), scales(count), missed(count), all(count);
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    relaxation->moments(u.row(cell), omega.data());
+    if (!relaxation->equilibrium(omega.data(), e.data())) continue;  // the first step has a message
+    equation->invariant_densities(u.row(cell), before.data());
+    equation->invariant_densities(e.data(), after.data());
+    equation->invariant_scales(before.data(), scales.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      missed[k] += std::abs(after[k] - before[k]);
+      all[k] += scales[k];
+    }
+  }
+  double worst = 0.0;
+  for (std::size_t k = 0; k < count; ++k)
+    if (all[k] > 0.0) worst = std::max(worst, missed[k] / all[k]);
+  return worst;
+}
+
+void run_setup::decide_promises(run_promises& promises, double dt, double limit, bool nonnegative,
+                                bool exact_equilibrium) const {
   const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
   // Through open ends mass and entropy come and go.
   const bool closed = !has_space() || how_.boundary == boundary_kind::periodic;
   // An explicit Q/epsilon beyond the step that it allows carries its rounding times dt/epsilon into the
   // invariants.
   const bool explicit_collision = schedule(method_->coefficients<double>()).collision_evaluations() > 0;
-  promises.conservation = closed && !equation->invariants().empty() && (within || !explicit_collision);
-  promises.positivity = equation->positive() && nonnegative && within &&
-                        (how_.positivity != limiter_kind::none || first_order() || !has_space());
-  promises.entropy = equation->has_entropy() && nonnegative && closed && within && first_order();
+  promises.conservation =
+      closed && exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
+  promises.positivity = equation->positive() && nonnegative && within && keeps_sign();
+  // An equilibrium with other moments is not the least entropy among the states with those of the data.
+  promises.entropy =
+      equation->has_entropy() && nonnegative && closed && within && first_order() && exact_equilibrium;
 }
 
 }  // namespace apsis

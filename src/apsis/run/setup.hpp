@@ -55,11 +55,18 @@ class run_setup {
   /// Whether the first step is cut into steps that resolve the initial layer (time.startup).
   bool has_graded_start() const { return config_.time.startup == "graded"; }
 
-  /// What a run with steps of dt ≤ r Δt_FE = `limit` promises; `nonnegative`: the initial state is.
-  void decide_promises(run_promises& promises, double dt, double limit, bool nonnegative) const;
+  /// Largest defect of an invariant, Σ|ℛE(ℛu) − ℛu| over all cells relative to its scale; 0 for models that
+  /// do not relax to an equilibrium.
+  double equilibrium_defect(const field& u) const;
+  /// What a run with steps of dt ≤ r Δt_FE = `limit` promises; `nonnegative`: the initial state is;
+  /// `exact_equilibrium`: E has the moments of u up to rounding.
+  void decide_promises(run_promises& promises, double dt, double limit, bool nonnegative,
+                       bool exact_equilibrium) const;
 
  private:
   bool first_order() const { return how_.scheme && how_.scheme->order() == 1; }
+  /// Whether steps within r Δt_FE keep nonnegative data so.
+  bool keeps_sign() const { return how_.positivity != limiter_kind::none || first_order() || !has_space(); }
   /// Collision on the averages themselves: point values, or first order, where the quartic would be too much.
   bool pointwise() const;
   const initial_data& data() const;

@@ -41,9 +41,9 @@ class cellwise_collision : public collision {
 
 /// Point values: the stage solve of every point is closed form,
 ///   v = (u + μ E(ω))/(1 + μ), ω = ℛu, μ = aC/ε + |b|(C/ε)²   (paper, proof of Proposition AP).
-/// `epsilon` per cell.
+/// `epsilon` per cell. `limited`: the transport keeps nonnegative data so, which is for messages only.
 std::unique_ptr<collision> make_pointwise_collision(const relaxation_model& equation,
-                                                    std::vector<double> epsilon);
+                                                    std::vector<double> epsilon, bool limited = false);
 
 /// Cell averages in one space dimension: the same at the three Gauss–Legendre points of every cell, on the
 /// quartic through the reconstructed edges and the neighbouring averages, with ω from the (limited) values at

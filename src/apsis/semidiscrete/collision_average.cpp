@@ -94,7 +94,7 @@ class cell_average_collision final : public collision {
     const int longest = collision_block_length(u.stride());
     scratch_.prepare([&](auto& own) {
       own.block.reserve(how_, std::min(longest, u.cells()), 0, u.stride());
-      own.local.attach(equation_, at_once * gauss3::points);
+      own.local.attach(equation_, at_once * gauss3::points, how_.positivity != limiter_kind::none);
       own.points.resize(static_cast<std::size_t>(at_once * gauss3::points) *
                         static_cast<std::size_t>(u.stride()));
     });

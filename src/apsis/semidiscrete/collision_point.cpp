@@ -14,8 +14,8 @@ namespace {
 
 class pointwise_collision final : public cellwise_collision {
  public:
-  pointwise_collision(const relaxation_model& equation, std::vector<double> epsilon)
-      : equation_(equation), epsilon_(std::move(epsilon)) {}
+  pointwise_collision(const relaxation_model& equation, std::vector<double> epsilon, bool limited)
+      : equation_(equation), epsilon_(std::move(epsilon)), limited_(limited) {}
 
   void solve(double a, double b, field& u) override {
     prepare(u);
@@ -69,7 +69,7 @@ class pointwise_collision final : public cellwise_collision {
   double epsilon_at(int cell) const { return epsilon_[static_cast<std::size_t>(cell)]; }
 
   void prepare_points(int stride) {
-    local_.prepare([&](auto& local) { local.attach(equation_, points_at_once(stride)); });
+    local_.prepare([&](auto& local) { local.attach(equation_, points_at_once(stride), limited_); });
   }
 
   void relax(double a, double b, field& u, int begin, int cells, double bytes) {
@@ -94,13 +94,14 @@ class pointwise_collision final : public cellwise_collision {
   std::vector<double> epsilon_;
   per_thread<local_relaxation> local_;
   per_thread<std::vector<upwind::row_target>> rows_;
+  bool limited_;
 };
 
 }  // namespace
 
 std::unique_ptr<collision> make_pointwise_collision(const relaxation_model& equation,
-                                                    std::vector<double> epsilon) {
-  return std::make_unique<pointwise_collision>(equation, std::move(epsilon));
+                                                    std::vector<double> epsilon, bool limited) {
+  return std::make_unique<pointwise_collision>(equation, std::move(epsilon), limited);
 }
 
 }  // namespace apsis

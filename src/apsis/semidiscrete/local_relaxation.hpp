@@ -18,9 +18,11 @@ namespace apsis {
 /// each other, and the processor works on those of several points at once.
 class local_relaxation {
  public:
-  /// For at most `points` points at once.
-  void attach(const relaxation_model& equation, int points) {
+  /// For at most `points` points at once. `limited`: nonnegative data stay so in steps within r Δt_FE, which
+  /// is for the message only.
+  void attach(const relaxation_model& equation, int points, bool limited = false) {
     equation_ = &equation;
+    limited_ = limited;
     moments_ = equation.moment_count();
     stride_ = field::padded(equation.components());
     const auto n = static_cast<std::size_t>(points);
@@ -40,9 +42,9 @@ class local_relaxation {
     equation_->moments_of_rows(u, pitch, points, omega(0));
     const int p = equation_->equilibria(omega(0), points, equilibrium_row(0), stride_);
     if (p < points)
-      throw numerical_error("no local equilibrium (" + equation_->why_inadmissible(omega(p)) +
-                                "); use the positivity limiter or a smaller step",
-                            {-1, site_unknown, first_cell + p / per_cell, *omega(p)});
+      throw numerical_error(
+          "no local equilibrium (" + equation_->why_inadmissible(omega(p)) + "); " + advice(),
+          {-1, site_unknown, first_cell + p / per_cell, *omega(p)});
   }
 
   /// The row that find_equilibria() left for point p, padded with zeros like the rows of a field.
@@ -90,11 +92,20 @@ class local_relaxation {
  private:
   static constexpr double site_unknown = std::numeric_limits<double>::quiet_NaN();
 
+  /// Moments of nonnegative rows have an equilibrium.
+  const char* advice() const {
+    if (!equation_->positive()) return "use a smaller step";
+    return limited_ ? "use steps within r dt_FE (time.safety = 1, and a method with r > 0), which keep all "
+                      "values nonnegative"
+                    : "use the positivity limiter or a smaller step";
+  }
+
   double* omega(int p) { return omega_.data() + p * moments_; }
   const double* omega(int p) const { return omega_.data() + p * moments_; }
   double* equilibrium_row(int p) { return equilibria_.data() + p * stride_; }
 
   const relaxation_model* equation_ = nullptr;
+  bool limited_ = false;
   std::ptrdiff_t moments_ = 0, stride_ = 0;
   aligned_vector<double> omega_, equilibria_, rates_, stay_, relax_;
 };

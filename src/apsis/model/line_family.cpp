@@ -1,0 +1,119 @@
+#include <apsis/model/line_family.hpp>
+
+#include <apsis/model/line_sums.hpp>
+#include <apsis/model/vector_math.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace apsis {
+
+void line_family::attach(int n, int nearest_point, double offset, face at) {
+  if (n != n_) {
+    n_ = n;
+    padded_ = (n + packet_length - 1) / packet_length * packet_length;
+    for (auto* line : {&x_, &c_, &weights_}) line->assign(static_cast<std::size_t>(padded_), 0.0);
+  }
+  const bool nearest = at == face::nearest;
+  // The neighbour on the side of the mean; any where the mean is a grid point.
+  const int other = nearest_point + ((offset > 0.0 || nearest_point == 0) ? 1 : -1);
+  nearest_ = nearest_point;
+  left_ = nearest ? std::min(nearest_point, other) : 0;
+  right_ = nearest ? std::max(nearest_point, other) : n - 1;
+  mean_ = (nearest_point - left_) + offset;
+  from_right_ = (right_ - nearest_point) - offset;
+  fixed_ = offset == 0.0 && (nearest_point == 0 || nearest_point == n - 1);
+  double *x = x_.data(), *c = c_.data();
+  sign_ = nearest ? 1.0 : -1.0;
+  const double sign = sign_;
+#pragma omp simd
+  for (int j = 0; j < n; ++j) {
+    x[j] = (j - nearest_point) - offset;
+    c[j] = sign * static_cast<double>(j - left_) * static_cast<double>(j - right_);
+  }
+}
+
+double line_family::largest_exponent(double beta, double tau) const {
+  const auto exponent = [&](int j) {
+    return beta * x_[static_cast<std::size_t>(j)] - tau * c_[static_cast<std::size_t>(j)];
+  };
+  double largest = std::max(exponent(0), exponent(n_ - 1));
+  if (tau * sign_ > 0.0) {  // concave: largest at a neighbour of the vertex
+    const double vertex = 0.5 * (left_ + right_ + beta / (tau * sign_));
+    const int j = vertex > 0.0 ? static_cast<int>(std::min(vertex, n_ - 2.0)) : 0;  // 0 for NaN
+    largest = std::max({largest, exponent(j), exponent(j + 1)});
+  }
+  return largest;
+}
+
+line_family::sums line_family::evaluate(double beta, double tau) {
+  if (fixed_) {
+    sums s;
+    s.mass = take_limit();
+    return s;
+  }
+  // The point nearest to the mean has the largest weight or nearly so, but for parameters far off.
+  constexpr double large = 1e90;  // the product of three directions is finite
+  if (sign_ > 0.0) {
+    const sums s = sums_of(beta, tau, beta * x_[static_cast<std::size_t>(nearest_)]);
+    if (s.mass < large) return s;
+  }
+  return sums_of(beta, tau, largest_exponent(beta, tau));
+}
+
+line_family::sums line_family::sums_of(double beta, double tau, double shift) {
+  const auto of = line_sums::weigh(x_.data(), c_.data(), n_, beta, tau, shift, weights_.data());
+  return {of.mass, of.above, of.below, of.energy / of.mass};
+}
+
+line_family::slopes line_family::differentiate(const sums& s) const {
+  if (fixed_) return {};
+  const auto of = line_sums::multiply(x_.data(), c_.data(), weights_.data(), n_);
+  const double per_above = 1.0 / s.above, per_below = 1.0 / s.below, per_mass = 1.0 / s.mass;
+  slopes by;
+  by.imbalance_by_beta = of.above_x * per_above - of.below_x * per_below;
+  by.imbalance_by_tau = of.below_c * per_below - of.above_c * per_above;
+  by.energy_by_beta = (of.above_c - of.below_c) * per_mass - s.energy * ((s.above - s.below) * per_mass);
+  by.energy_by_tau = s.energy * s.energy - of.cc * per_mass;
+  return by;
+}
+
+line_family::sums line_family::solve(double tau, double& beta) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double lowest = -infinity, highest = infinity, stride = 1.0;
+  newton_end end;
+  sums s = evaluate(beta, tau);
+  if (fixed_) return s;
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    const double h = s.imbalance();  // ±∞ where all weights of one side underflow
+    const bool slow = !(std::abs(h) < 0.5 * end.previous());
+    if (end.reached(std::abs(h))) break;
+    (h < 0.0 ? lowest : highest) = beta;
+    const bool enclosed = std::isfinite(lowest) && std::isfinite(highest);
+    double next = beta - h / differentiate(s).imbalance_by_beta;
+    if (next == beta) break;
+    if (!(next > lowest && next < highest) || (slow && enclosed)) {
+      if (end.close()) break;
+      if (enclosed) {
+        next = 0.5 * (lowest + highest);
+      } else {
+        next = beta + (h < 0.0 ? stride : -stride);
+        stride *= 2.0;
+      }
+    }
+    if (next == lowest || next == highest) break;  // adjacent numbers
+    beta = next;
+    s = evaluate(beta, tau);
+  }
+  return s;
+}
+
+double line_family::take_limit() {
+  std::fill(weights_.begin(), weights_.end(), 0.0);
+  weights_[static_cast<std::size_t>(left_)] = from_right_ / (right_ - left_);
+  weights_[static_cast<std::size_t>(right_)] = mean_ / (right_ - left_);
+  return 1.0;
+}
+
+}  // namespace apsis

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <apsis/core/aligned.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace apsis {
+
+/// When Newton's method for an equation between logarithms of sums is done.
+class newton_end {
+ public:
+  /// To be called with |residual| before every step.
+  bool reached(double residual) {
+    close_ = previous_ < quadratic && residual < quadratic;
+    const bool at_rounding = close_ && (residual < rounding || !(residual < 0.5 * previous_));
+    previous_ = residual;
+    return residual <= enough || at_rounding;
+  }
+  /// The last two residuals were so small that the sign and size of the present one may be rounding.
+  bool close() const { return close_; }
+  double previous() const { return previous_; }
+
+ private:
+  /// Of a sum of a few terms.
+  static constexpr double enough = 4.0 * std::numeric_limits<double>::epsilon();
+  /// Of a sum over a line and of the exponents in it; what is larger is tried again.
+  static constexpr double rounding = 1e-14;
+  static constexpr double quadratic = 1e-8;
+  double previous_ = std::numeric_limits<double>::infinity();
+  bool close_ = false;
+};
+
+/// The weights w_j = exp(β x_j − τ C_j) on one direction of a velocity grid, where x_j is the distance from
+/// the prescribed mean in units of Δv, and C_j ≥ 0 a parabola with zeros at two grid points: at the
+/// neighbours of the mean (`nearest`), or at the ends of the grid (`farthest`). Every discrete Maxwellian is
+/// a product of these; τ → ∞ leaves the two points, the limit on the boundary of the realisable moments. Sums
+/// of C_j and of one-sided x_j have terms of one sign and therefore no cancellation, however close the
+/// boundary is.
+class line_family {
+ public:
+  enum class face { nearest, farthest };
+
+  /// Sums over all points.
+  struct sums {
+    double mass = 0.0,  ///< Σ w
+        above = 0.0,    ///< Σ w max(x, 0)
+        below = 0.0,    ///< Σ w max(−x, 0)
+        energy = 0.0;   ///< Σ w C / Σ w
+
+    /// log(above/below): 0 where the mean is the prescribed one.
+    double imbalance() const { return log_of_ratio(above, below); }
+  };
+  /// Derivatives of imbalance() and of the energy. The first is at least 1.
+  struct slopes {
+    double imbalance_by_beta = 0.0, imbalance_by_tau = 0.0, energy_by_beta = 0.0, energy_by_tau = 0.0;
+  };
+  /// log(x/y), to the rounding of a quotient also where it is near 0.
+  static double log_of_ratio(double x, double y) {
+    const double more = (x - y) / y;
+    return std::abs(more) < 1e-6 ? more * (1.0 - 0.5 * more) : std::log(x / y);
+  }
+
+  /// n ≥ 4 points; the mean is `offset` ∈ [−½, ½] beyond its nearest point, and not beyond the ends.
+  void attach(int n, int nearest_point, double offset, face at);
+  /// Whether the mean is an end of the grid: all mass is there, whatever β and τ are.
+  bool fixed() const { return fixed_; }
+
+  /// The sums at (β, τ); the weights are scaled so that they and their products are finite, and 0 below
+  /// 1e−300.
+  sums evaluate(double beta, double tau);
+  /// The slopes where evaluate() was called last, with the sums `s`.
+  slopes differentiate(const sums& s) const;
+  /// The β at which the mean is the prescribed one, near the `beta` that comes in, for given τ; and the sums
+  /// there.
+  sums solve(double tau, double& beta);
+  /// The limit τ → ∞, with the prescribed mean.
+  double take_limit();
+  /// Those of the last call.
+  const double* weights() const { return weights_.data(); }
+
+ private:
+  sums sums_of(double beta, double tau, double shift);
+  double largest_exponent(double beta, double tau) const;
+
+  int n_ = 0, padded_ = 0, left_ = 0, right_ = 0;  // zeros of C
+  int nearest_ = 0;
+  double mean_ = 0.0, from_right_ = 0.0;  // from left_, and to right_
+  double sign_ = 1.0;                     // of the curvature of C
+  bool fixed_ = false;
+  aligned_vector<double> x_, c_, weights_;
+};
+
+}  // namespace apsis

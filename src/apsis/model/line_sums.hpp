@@ -1,0 +1,31 @@
+#pragma once
+
+namespace apsis {
+
+/// The loops of line_family over the points of one direction, for the instruction set of this processor. All
+/// arrays are aligned like aligned_vector and padded to whole packets (model/vector_math.hpp).
+namespace line_sums {
+
+/// Weights and what decides whether they are the right ones.
+struct values {
+  double mass = 0.0,  ///< Σ w
+      above = 0.0,    ///< Σ w max(x, 0)
+      below = 0.0,    ///< Σ w max(−x, 0)
+      energy = 0.0;   ///< Σ w c
+};
+/// w ← exp(βx − τc − shift) at n points, 0 below 1e−300 and at most e^691; padding becomes 0.
+values weigh(const double* x, const double* c, int n, double beta, double tau, double shift, double* w);
+
+/// What the derivatives of `values` in β and τ consist of.
+struct products {
+  double above_x = 0.0,  ///< Σ w max(x, 0) x
+      above_c = 0.0,     ///< Σ w max(x, 0) c
+      below_x = 0.0,     ///< Σ w max(−x, 0) x
+      below_c = 0.0,     ///< Σ w max(−x, 0) c
+      cc = 0.0;          ///< Σ w c²
+};
+/// For the weights that weigh() left.
+products multiply(const double* x, const double* c, const double* w, int n);
+
+}  // namespace line_sums
+}  // namespace apsis

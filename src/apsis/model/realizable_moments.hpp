@@ -1,0 +1,30 @@
+#pragma once
+
+#include <apsis/model/maxwellian.hpp>
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+namespace apsis {
+
+/// Moments ω of rows f ≥ 0 per mass, in units of Δv, by their distance from the boundary of what such rows
+/// can have. With z = u/Δv the mean of |v|²/Δv² is at least Σ_k ℓ(z_k), ℓ being z² interpolated linearly
+/// between neighbouring grid points, and at most d h², h = (N − 1)/2 the ends of a direction (docs/space.md).
+struct realizable_moments {
+  double rho = 0.0;                ///< mass; 0 is a vacuum, without the rest
+  std::array<int, 3> nearest{};    ///< index of the grid point nearest to z_k
+  std::array<double, 3> offset{};  ///< z_k less that point, in [−½, ½]
+  std::array<double, 3> z{};       ///< u_k/Δv, in [−h, h]
+  double square = 0.0;             ///< mean of |v|²/Δv²
+  double above_least = 0.0;        ///< square − Σ_k ℓ(z_k) ≥ 0; 0 on the lower boundary
+  double below_greatest = 0.0;     ///< d h² − square ≥ 0; 0 on the upper boundary
+};
+
+/// Projects what lies outside by no more than the rounding of sums over the grid onto the boundary. Nothing
+/// for ω that no row f ≥ 0 has, or that is not finite. Where ρ is so small that moments are subnormal numbers
+/// or nearly so, their rounding has no bound relative to ρ, and every finite ω is projected.
+std::optional<realizable_moments> find_realizable(const velocity_grid& grid, const double* omega);
+
+}  // namespace apsis

@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "drawing.hpp"
 #include "interrupt.hpp"
+#include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
@@ -27,7 +28,7 @@ struct options {
   std::string case_name, norm = "l2", quantity;
   std::vector<std::string> overrides, vary;
   std::optional<std::string> reference, out;
-  int threads = 0;
+  std::optional<int> threads;
   bool json = false;
 };
 
@@ -94,7 +95,7 @@ bool run_all_of(convergence& study) {
 
 int converge(const options& given) {
   watch_for_interrupts();
-  set_threads(given.threads);
+  set_threads(given.threads.value_or(default_threads()));
   convergence study(study_of(given));
   std::optional<result_folder> folder;
   if (given.out) folder.emplace(*given.out);
@@ -156,11 +157,7 @@ void add_converge(CLI::App& program, action& chosen) {
       "--out", given->out,
       "folder for converge.csv, converge.json, and the plot as picture.json and converge.png");
   command->add_flag("--json", given->json, "print a JSON array with one object per run, and nothing else");
-  command
-      ->add_option("--threads", given->threads,
-                   "runs at the same time, 0 for all cores; results do not depend on it")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+  add_threads(*command, given->threads, "runs at the same time", "all processors");
   command->callback([given, &chosen] { chosen = [given] { return converge(*given); }; });
 }
 

@@ -3,6 +3,7 @@
 #include "interrupt.hpp"
 #include "method_report.hpp"
 #include "method_writer.hpp"
+#include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
@@ -33,7 +34,8 @@ using clock = std::chrono::steady_clock;
 
 struct options {
   std::optional<int> order, stages;
-  int evaluations = 0, starts = 1000, threads = 0;
+  int evaluations = 0, starts = 1000;
+  std::optional<int> threads;
   bool implicit = false, json = false;
   std::string objective = "r", regime = "none", from, out, embedded, cost = "one-solve";
   double seconds = 60.0, sparsify = 0.0;
@@ -179,7 +181,7 @@ int design(const options& given) {
   design_task task = task_of(given);
   method_writer file(given.out);
   watch_for_interrupts();
-  set_threads(given.threads);
+  set_threads(given.threads.value_or(default_threads()));
   const auto begin = clock::now();
   const auto elapsed = [&begin] { return std::chrono::duration<double>(clock::now() - begin).count(); };
   const auto stop = [&] { return interrupted() || elapsed() > given.seconds; };
@@ -266,7 +268,7 @@ void add_design(CLI::App& program, action& chosen) {
   command->add_option("--time", given->seconds, "the search ends after this many seconds")
       ->capture_default_str();
   command->add_option("--seed", given->seed, "of the random starts")->capture_default_str();
-  command->add_option("--threads", given->threads, "threads; 0 for all cores");
+  add_threads(*command, given->threads, "threads to use", "all processors");
   command->add_option("--out", given->out, "method file to write (FILE.toml)")->required();
   command->add_flag("--json", given->json, "print one JSON object");
   CLI::Option* embedded = command->add_option(

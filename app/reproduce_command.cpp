@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "drawing.hpp"
 #include "interrupt.hpp"
+#include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
@@ -31,7 +32,7 @@ constexpr const char* document_name = "reproduce.json";
 struct options {
   std::vector<std::string> claims;
   std::string out = "results/reproduce";
-  int threads = 0;
+  std::optional<int> threads;
   bool json = false, resume = false;
 };
 
@@ -139,7 +140,7 @@ class reproduction {
 
 int reproduce(const options& given) {
   watch_for_interrupts();
-  set_threads(given.threads);
+  set_threads(given.threads.value_or(default_threads()));
   reproduction all(given);
   const bool complete = all.run();
   const json document = all.document();
@@ -180,11 +181,7 @@ void add_reproduce(CLI::App& program, action& chosen) {
       ->capture_default_str();
   command->add_flag("--resume", given->resume,
                     "keep the claims that an earlier run in the same folder has shown");
-  command
-      ->add_option("--threads", given->threads,
-                   "threads to use, 0 for all cores; results do not depend on it")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+  add_threads(*command, given->threads, "threads to use", "all processors");
   command->add_flag("--json", given->json, "print reproduce.json on standard output, and nothing else");
   command->callback([given, &chosen] { chosen = [given] { return reproduce(*given); }; });
 }

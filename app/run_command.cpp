@@ -2,6 +2,7 @@
 #include "interrupt.hpp"
 #include "run_profile.hpp"
 #include "run_report.hpp"
+#include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/parallel.hpp>
@@ -25,15 +26,15 @@ struct run_options {
   std::string case_name;
   std::vector<std::string> overrides;
   session_options session;
-  int threads = 1;
+  std::optional<int> threads;
   bool json = false, profile = false;
 };
 
 int run(run_options options) {
   // First of all: an interrupt that comes before the first step is then no different from a later one.
   watch_for_interrupts();
-  set_threads(options.threads);
   case_config config = load_case(options.case_name, options.overrides);
+  set_threads(options.threads.value_or(threads_for(config)));
   progress bar(config.time.end);
   options.session.stop = interrupted;
   options.session.watch = [&bar](const simulation& now) {
@@ -71,10 +72,8 @@ void add_run(CLI::App& program, action& chosen) {
                       "keys of the case that take another value (apsis show case)");
   command->add_option("--out", options->session.out, "folder for the results; without it nothing is written");
   command->add_flag("--json", options->json, "print one JSON object on standard output, and nothing else");
-  command
-      ->add_option("--threads", options->threads,
-                   "threads to use, 0 for all cores; results do not depend on it")
-      ->check(CLI::Range(0, 1024));
+  add_threads(*command, options->threads, "threads to use",
+              "all processors for a large case and 1 for a small one");
   command->add_flag("--profile", options->profile,
                     "tell how long each kernel took, and how near it came to the ceilings of this machine");
   command->add_option("--restart", options->session.restart, "go on from a checkpoint.h5 of the same case");

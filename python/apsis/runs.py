@@ -43,12 +43,13 @@ def cases() -> list[str]:
 
 
 def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str | Path | None = None,
-        wall: float | None = None, threads: int = 1, progress: Progress | None = None) -> Result:
+        wall: float | None = None, threads: int | None = None, progress: Progress | None = None) -> Result:
     """Runs a case: the name of a built-in one, a file, or a mapping such as {"model": {"name": "bgk"}, …}.
 
     overrides are "key=value" ("space.cells=80"). `out` is a folder for the results, `restart` a checkpoint to go on from, `wall`
     a limit in seconds. progress(step, steps, t, smallest) is called now and then; False ends the run, with a checkpoint in
-    `out`. Other threads of Python run meanwhile. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
+    `out`. `threads`: 0 stands for all processors; without it OMP_NUM_THREADS, or all for a large case and 1 for a small one.
+    Other threads of Python run meanwhile. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
     text = to_toml(case) if isinstance(case, Mapping) else None
     got = _core.run(text, "case" if text is not None else str(case), list(overrides), _path(out), _path(restart), wall, threads,
                     progress)

@@ -87,9 +87,10 @@ py::dict result_of(const run_session& session, run_end end) {
 
 py::dict run_case(const std::optional<std::string>& text, const std::string& name,
                   const std::vector<std::string>& overrides, const std::optional<std::string>& out,
-                  const std::optional<std::string>& restart, std::optional<double> wall, int threads,
-                  const progress_function& progress) {
-  set_threads(threads);
+                  const std::optional<std::string>& restart, std::optional<double> wall,
+                  std::optional<int> threads, const progress_function& progress) {
+  case_config config = text ? parse_case(*text, name, overrides) : load_case(name, overrides);
+  set_threads(threads.value_or(threads_for(config)));
   attendant asks(progress);
   session_options how;
   how.out = out;
@@ -101,8 +102,7 @@ py::dict run_case(const std::optional<std::string>& text, const std::string& nam
   run_end end{};
   {
     const py::gil_scoped_release others;
-    session = std::make_unique<run_session>(
-        text ? parse_case(*text, name, overrides) : load_case(name, overrides), how);
+    session = std::make_unique<run_session>(std::move(config), how);
     end = session->run();
   }
   return result_of(*session, end);

@@ -212,6 +212,15 @@ TEST(results, two_runs_and_any_number_of_threads_give_the_same_bits) {
   expect_same_results(folder.path() / "a", folder.path() / "c");
 }
 
+TEST(results, a_run_says_how_many_threads_it_uses) {
+  const work_folder folder;
+  const auto said = [&](const std::vector<std::string>& more) {
+    return run_apsis(folder, with(small, with({"time.end=0.001"}, more))).err;
+  };
+  EXPECT_THAT(said({"--threads", "1"}), HasSubstr(" on 1 thread; "));
+  EXPECT_THAT(said({"--threads", "2"}), HasSubstr(" on 2 threads; "));
+}
+
 TEST(results, only_chosen_fields_are_written) {
   const work_folder folder;
   ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.001", "output.fields=[\"T\"]", "--out", "o"})).code,

@@ -100,3 +100,21 @@ def test_the_readme_runs(capsys):
 
 def test_results_do_not_depend_on_threads():
     assert np.array_equal(apsis.run("paper/bgk-mixed", *SMALL).f, apsis.run("paper/bgk-mixed", *SMALL, threads=2).f)
+
+
+def test_threads_outside_of_their_range_are_refused():
+    for n in (-1, 257, 1000000):
+        with pytest.raises(apsis.InputError, match=f"{n} threads cannot be used"):
+            apsis.run("paper/bgk-mixed", *SMALL, threads=n)
+
+
+def test_a_forked_child_has_threads_of_its_own():
+    f = apsis.run("paper/bgk-mixed", *SMALL, threads=2).f
+    child = os.fork()
+    if child == 0:
+        status = 1
+        try:
+            status = 0 if np.array_equal(apsis.run("paper/bgk-mixed", *SMALL, threads=2).f, f) else 2
+        finally:
+            os._exit(status)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0

@@ -1,12 +1,17 @@
 #include <apsis/core/parallel.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/core/processors.hpp>
 #include <apsis/core/thread_team.hpp>
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -45,6 +50,25 @@ void set_threads(int n) {
                     "processors that this process may use); give a number in this range",
                     n, most_threads, available_processors()));
   thread_count = n > 0 ? n : std::min(available_processors(), most_threads);
+}
+
+int requested_threads() {
+  const char* const text = std::getenv("OMP_NUM_THREADS");
+  if (text == nullptr || *text == '\0') return 0;
+  // A list has a number for each level of nested regions; the first is that of the outermost.
+  const char* const end = text + std::strcspn(text, ",");
+  int n = 0;
+  const auto [stop, problem] = std::from_chars(text, end, n);
+  if (problem == std::errc::result_out_of_range && *text != '-') return most_threads;
+  if (problem == std::errc() && stop == end && n > 0) return std::min(n, most_threads);
+  log::warning(fmt::format(
+      "OMP_NUM_THREADS = '{}' is ignored (it is not a positive number); give one, or unset it", text));
+  return 0;
+}
+
+int default_threads() {
+  const int requested = requested_threads();
+  return requested > 0 ? requested : std::min(available_processors(), most_threads);
 }
 
 int threads() {

@@ -11,6 +11,11 @@ inline constexpr int most_threads = 256;
 /// Sets the number of threads that loops over cells use; 0 stands for all processors that this process may
 /// use. Throws input_error unless 0 ≤ n ≤ most_threads.
 void set_threads(int n);
+/// What OMP_NUM_THREADS asks for, at most most_threads; without it all processors that this process may use.
+/// A value that is no positive number counts as none, after a warning.
+int default_threads();
+/// What OMP_NUM_THREADS asks for, as in default_threads(); 0 without it.
+int requested_threads();
 /// The number that was set, 1 at the beginning.
 int threads();
 /// The number that a loop begun here uses: 1 inside of another one.

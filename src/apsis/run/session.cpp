@@ -3,8 +3,10 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/core/parallel.hpp>
 #include <apsis/output/case_json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -57,6 +59,15 @@ void check_same_case(const case_config& mine, const std::string& saved_text, con
 
 }  // namespace
 
+int threads_for(const case_config& config) {
+  if (const int requested = requested_threads(); requested > 0) return requested;
+  constexpr double large = 32768.0;
+  const auto dimensions = config.model.parameters.find("velocity_dimensions");
+  const double velocities = std::pow(std::max(config.velocity.points, 1),
+                                     dimensions == config.model.parameters.end() ? 1.0 : dimensions->second);
+  return velocities * config.space.cells < large ? 1 : default_threads();
+}
+
 run_session::run_session(case_config configured, session_options options)
     : options_(std::move(options)), simulation_(std::move(configured)) {
   if (options_.restart)
@@ -76,8 +87,9 @@ run_session::run_session(case_config configured, session_options options)
     log::warning(
         "no snapshots of f are written (output.distribution = \"snapshots\" needs output.every and a folder) "
         "give both");
-  log::info(fmt::format("{}: about {} steps of {}; {}", config.source, simulation_.steps_total(),
-                        config.time.method, simulation_.promises().text()));
+  log::info(fmt::format("{}: about {} steps of {} on {} thread{}; {}", config.source,
+                        simulation_.steps_total(), config.time.method, threads(), threads() == 1 ? "" : "s",
+                        simulation_.promises().text()));
 }
 
 void run_session::resume(const std::string& path) {

@@ -11,6 +11,10 @@
 
 namespace apsis {
 
+/// Threads for a case whose user gives no number: what OMP_NUM_THREADS asks for; without it all processors
+/// for 32768 unknowns and more, and 1 for fewer, which gain little by it.
+int threads_for(const case_config& config);
+
 /// What goes on around a run.
 struct session_options {
   std::optional<std::string> out;      ///< folder of the results; without it nothing is written

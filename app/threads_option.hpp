@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace apsis::app {
+
+/// Adds --threads with its range. `what` begins the help ("threads to use"), `otherwise` says how many there
+/// are where the option and the environment give no number.
+void add_threads(CLI::App& command, std::optional<int>& threads, const std::string& what,
+                 const std::string& otherwise);
+
+}  // namespace apsis::app

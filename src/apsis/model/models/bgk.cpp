@@ -149,9 +149,9 @@ class bgk_model final : public relaxation_model {
           "velocity.points",
           fmt::format(
               "velocity.points = {} is too few for the data (the spacing {:.3g} is more than {:g} times the "
-              "thermal speed sqrt(T) = {:.3g}); give at least {}",
+              "thermal speed sqrt(T) = {:.3g}); give at least {:.0f}",
               grid_.points(), grid_.spacing(), widest, width,
-              static_cast<int>(std::ceil(2.0 * grid_.max() / (widest * width))))};
+              std::ceil(2.0 * grid_.max() / (widest * width)))};
     return {};
   }
 

@@ -1,6 +1,7 @@
 #include <apsis/space/reconstruction_registry.hpp>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace apsis {
 namespace {
@@ -13,13 +14,14 @@ class upwind1 final : public reconstruction {
   int order() const override { return 1; }
   void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
     for (int i = 0; i < count; ++i) {
-      std::copy_n(rows[i], width, left + i * width);
-      std::copy_n(rows[i], width, right + i * width);
+      std::copy_n(rows[i], width, left + static_cast<std::ptrdiff_t>(i) * width);
+      std::copy_n(rows[i], width, right + static_cast<std::ptrdiff_t>(i) * width);
     }
   }
   void outflow_edges(const double* const* rows, int count, int width, const double*,
                      double* edge) const override {
-    for (int i = 0; i < count; ++i) std::copy_n(rows[i], width, edge + i * width);
+    for (int i = 0; i < count; ++i)
+      std::copy_n(rows[i], width, edge + static_cast<std::ptrdiff_t>(i) * width);
   }
   double operations(bool) const override { return 0.0; }
 };

@@ -178,7 +178,7 @@ int design(const options& given) {
     return design_embedded({given.embedded, given.order, given.cost, given.out, given.json});
   design_task task = task_of(given);
   method_writer file(given.out);
-  watch_for_interrupts();
+  watch_for_interrupts("the iteration under way; the best method so far stays in its file");
   set_threads(given.threads);
   const auto begin = clock::now();
   const auto elapsed = [&begin] { return std::chrono::duration<double>(clock::now() - begin).count(); };

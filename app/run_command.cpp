@@ -31,7 +31,7 @@ struct run_options {
 
 int run(run_options options) {
   // First of all: an interrupt that comes before the first step is then no different from a later one.
-  watch_for_interrupts();
+  watch_for_interrupts("the step under way, and for a checkpoint where there is a folder (--out)");
   set_threads(options.threads);
   case_config config = load_case(options.case_name, options.overrides);
   progress bar(config.time.end);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -58,6 +59,19 @@ process::process(const work_folder& folder, const std::vector<std::string>& argu
 
 void process::send(int signal) const {
   kill(id_, signal);
+}
+
+bool process::wait_for(const std::string& text) const {
+  const timespec pause = {0, 2'000'000};  // between two looks; nothing depends on its length
+  for (;;) {
+    siginfo_t state = {};
+    const bool ended = waitid(P_PID, static_cast<id_t>(id_), &state, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+                       state.si_pid == id_;
+    // In this order: what was written before the end is seen.
+    if (read(capture_ / "err").find(text) != std::string::npos) return true;
+    if (ended) return false;
+    nanosleep(&pause, nullptr);
+  }
 }
 
 outcome process::wait() {

@@ -34,6 +34,8 @@ class process {
  public:
   process(const work_folder& folder, const std::vector<std::string>& arguments);
   void send(int signal) const;
+  /// Waits until standard error has the text; false if the program ends without it.
+  bool wait_for(const std::string& text) const;
   outcome wait();
 
  private:

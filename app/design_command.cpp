@@ -48,16 +48,20 @@ Value choice(const std::string& option, const std::string& given,
   if (found != values.end()) return found->second;
   std::vector<std::string> names;
   for (const auto& [name, unused] : values) names.push_back(name);
-  throw input_error(
-      fmt::format("command line: unknown {} '{}' {}", option, given.substr(0, 60), suggest(given, names)));
+  throw input_error(fmt::format("command line: unknown {} '{}' (there is no such choice); {}", option,
+                                given.substr(0, 60), suggest(given, names)));
 }
 
 void require(bool good, const std::string& option, const std::string& value, const std::string& range) {
-  if (!good) throw input_error(fmt::format("command line: {} {} is out of range ({})", option, value, range));
+  if (!good)
+    throw input_error(
+        fmt::format("command line: {} {} is out of range ({}); change it", option, value, range));
 }
 
 int needed(const std::optional<int>& value, const std::string& option) {
-  if (!value) throw input_error(fmt::format("command line: {} is required (apsis design)", option));
+  if (!value)
+    throw input_error(
+        fmt::format("command line: {} is missing (apsis design needs it); see: apsis design --help", option));
   return *value;
 }
 
@@ -100,10 +104,10 @@ design_task task_of(const options& given) {
   if (!given.from.empty()) {
     const method& m = find_method(given.from);
     if (m.kind != task.kind || m.is_tableau() || m.ends_with_update())
-      throw input_error(fmt::format(
-          "command line: --from '{}' is no method of the kind that is looked for ({} of the paper's "
-          "class is needed)",
-          given.from, to_string(task.kind)));
+      throw input_error(
+          fmt::format("command line: --from '{}' cannot be improved (it is not {} of the paper's class); "
+                      "name another method",
+                      given.from, to_string(task.kind)));
     require(m.stages() >= task.stages, "--stages", std::to_string(stages),
             fmt::format("'{}' has {}: as many, or fewer", given.from, m.stages()));
     task.from = m.coefficients<double>();
@@ -118,7 +122,7 @@ design_task task_of(const options& given) {
   }
   if (given.evaluations > 0 || given.regime != "none")
     throw input_error(
-        "command line: --evaluations and --regime are of no meaning with --implicit (there is no transport) "
+        "command line: --evaluations and --regime are of no meaning with --implicit (there is no transport); "
         "leave them out");
   // Without transport there is no r.
   task.objective = design_objective::smallest_error;
@@ -161,7 +165,7 @@ bool take_stages_out(design_task& task, method_writer& file, const std::function
     if (stop()) return false;
     if (!smaller)
       throw numerical_error(
-          fmt::format("no stage of {} can be left out (least sum of weights {:.2g}) try another "
+          fmt::format("no stage of {} can be left out (least sum of weights {:.2g}); try another "
                       "method to begin with, a larger box or a smaller --ssp",
                       stages, least));
     task.from = std::move(smaller);
@@ -185,8 +189,9 @@ int design(const options& given) {
   const auto stop = [&] { return interrupted() || elapsed() > given.seconds; };
   if (!take_stages_out(task, file, stop)) {
     if (interrupted()) return static_cast<int>(exit_code::interrupted);
-    throw numerical_error(fmt::format("a method of {} stages is left after {:.0f} s give more --time",
-                                      task.from->stages(), elapsed()));
+    throw numerical_error(
+        fmt::format("a method of {} stages is left (the time of {:.0f} s is over); give more --time",
+                    task.from->stages(), elapsed()));
   }
   task_progress bar;
   design_search how;
@@ -204,7 +209,7 @@ int design(const options& given) {
     if (given.json) print(result.dump(2) + "\n");
     if (interrupted()) return static_cast<int>(exit_code::interrupted);
     throw numerical_error(
-        fmt::format("no method found ({} in {:.0f} s, seed {}) try more starts, stages or a larger box",
+        fmt::format("no method found ({} in {:.0f} s, seed {}); try more starts, stages or a larger box",
                     state_of(found), elapsed(), task.seed));
   }
   if (interrupted()) {
@@ -226,8 +231,9 @@ int design(const options& given) {
                       check_text(polished)));
   }
   if (!result["method"]["claims_hold"].get<bool>())
-    throw claim_error(fmt::format("the method in '{}' does not hold what was asked for ({}) try another seed",
-                                  file.path(), first_failure(polished)));
+    throw claim_error(
+        fmt::format("the method in '{}' does not hold what was asked for ({}); try another seed", file.path(),
+                    first_failure(polished)));
   return 0;
 }
 
@@ -266,7 +272,7 @@ void add_design(CLI::App& program, action& chosen) {
   command->add_option("--time", given->seconds, "the search ends after this many seconds")
       ->capture_default_str();
   command->add_option("--seed", given->seed, "of the random starts")->capture_default_str();
-  command->add_option("--threads", given->threads, "threads; 0 for all cores");
+  command->add_option("--threads", given->threads, "threads; 0 for all cores")->check(CLI::Range(0, 1024));
   command->add_option("--out", given->out, "method file to write (FILE.toml)")->required();
   command->add_flag("--json", given->json, "print one JSON object");
   CLI::Option* embedded = command->add_option(

@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "option_values.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
@@ -73,6 +74,7 @@ int run_program(int argc, char** argv) {
   add_report(program, chosen);
   add_info(program, chosen);
   add_manual(program, chosen);
+  check_option_values(program);
   const std::vector<std::string> names = command_names(program);
   if (argc < 2) throw input_error("command line: no command (one of them is needed); " + suggest("", names));
   const std::string first = argv[1];

@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "option_values.hpp"
 #include "run_profile.hpp"
 #include "run_report.hpp"
 
@@ -81,7 +82,7 @@ void add_run(CLI::App& program, action& chosen) {
   command
       ->add_option("--wall", options->session.wall,
                    "stop after this many seconds with a checkpoint, as if interrupted (exit code 130)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "method_report.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -25,7 +26,7 @@ method read_method(const std::string& path) {
   if (in) in.read(text.data(), static_cast<std::streamsize>(longest));
   if (in.bad() || (!in && in.gcount() == 0 && !in.eof()))
     throw io_error(
-        fmt::format("cannot read '{}' (it is a folder or not readable) give a readable method file", path));
+        fmt::format("cannot read '{}' (it is a folder or not readable); give a readable method file", path));
   text.resize(static_cast<std::size_t>(in.gcount()));
   return parse_method(text, path);
 }
@@ -69,23 +70,24 @@ int report(const method& m, const options& given) {
   print(given.json ? result.dump(2) + "\n" : check_text(m) + (given.observe ? observed_text(observed) : ""));
   if (!result["claims_hold"].get<bool>())
     throw claim_error(
-        fmt::format("the claims of '{}' do not hold ({}) correct the coefficients or the claims", m.name,
+        fmt::format("the claims of '{}' do not hold ({}); correct the coefficients or the claims", m.name,
                     first_failure(m)));
   for (const auto& one : observed)
     if (!one.keeps_promise())
       throw claim_error(
-          fmt::format("the SSP coefficient {:.6g} of '{}' does not hold ({}: {} is lost at {:.6g} dt_FE) "
+          fmt::format("the SSP coefficient {:.6g} of '{}' does not hold ({}: {} is lost at {:.6g} dt_FE); "
                       "this is a bug of the certificate, or of the problem",
                       one.promised, m.name, one.problem, one.property, one.limit.lost));
   return 0;
 }
 
 int check(const options& given) {
+  end_on_interrupts();
   const std::string& what = given.what;
   if (is_method_name(what)) return report(find_method(what), given);
   std::error_code ignored;
   if (!std::filesystem::exists(what, ignored))
-    throw input_error(fmt::format("no method '{}' (neither in the catalogue nor a file) {}",
+    throw input_error(fmt::format("no method '{}' (neither in the catalogue nor a file); {}",
                                   what.substr(0, 60), suggest(what, method_names())));
   return report(read_method(what), given);
 }

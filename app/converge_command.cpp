@@ -70,12 +70,13 @@ void write_results(result_folder& folder, const options& given, const convergenc
   if (drawable) folder.prepare_text("picture.json", json_text(to_json(plot)) + "\n");
   folder.prepare_text(result_folder::manifest, json_text(manifest(given, table)) + "\n");
   folder.commit();
-  if (!drawable) return;
+  if (!drawable || interrupted()) return;
   try {
     draw("plot", {folder.path().string(), "--out", folder.path().string()});
   } catch (const io_error& problem) {
     // The numbers are there, and the picture can be drawn from picture.json at any time.
     log::warning(problem.what());
+  } catch (const interruption&) {
   }
 }
 
@@ -94,7 +95,7 @@ bool run_all_of(convergence& study) {
 }
 
 int converge(const options& given) {
-  watch_for_interrupts();
+  watch_for_interrupts("the step under way of every run; finished runs are kept");
   set_threads(given.threads.value_or(default_threads()));
   convergence study(study_of(given));
   std::optional<result_folder> folder;
@@ -105,13 +106,16 @@ int converge(const options& given) {
   const convergence_table table = study.table();
   if (folder) write_results(*folder, given, table);
   print(given.json ? json_text(to_json(table)) + "\n" : to_text(table));
-  if (!finished) {
-    log::warning("interrupted; what was computed is shown");
+  if (!finished || interrupted()) {
+    const auto all = static_cast<std::size_t>(table.runs);
+    log::warning(fmt::format("interrupted ({} of {} runs are finished); {}", study.finished_runs(), all,
+                             folder ? fmt::format("apsis plot {} draws them", folder->path().string())
+                                    : std::string("the table has their rows")));
     return static_cast<int>(exit_code::interrupted);
   }
   if (const long failed = table.failures(); failed > 0)
     throw numerical_error(
-        fmt::format("{} run(s) have no error (they or their references failed, the others are good) see the "
+        fmt::format("{} run(s) have no error (they or their references failed, the others are good); see the "
                     "messages in the table",
                     failed));
   return 0;

@@ -50,16 +50,20 @@ Value choice(const std::string& option, const std::string& given,
   if (found != values.end()) return found->second;
   std::vector<std::string> names;
   for (const auto& [name, unused] : values) names.push_back(name);
-  throw input_error(
-      fmt::format("command line: unknown {} '{}' {}", option, given.substr(0, 60), suggest(given, names)));
+  throw input_error(fmt::format("command line: unknown {} '{}' (there is no such choice); {}", option,
+                                given.substr(0, 60), suggest(given, names)));
 }
 
 void require(bool good, const std::string& option, const std::string& value, const std::string& range) {
-  if (!good) throw input_error(fmt::format("command line: {} {} is out of range ({})", option, value, range));
+  if (!good)
+    throw input_error(
+        fmt::format("command line: {} {} is out of range ({}); change it", option, value, range));
 }
 
 int needed(const std::optional<int>& value, const std::string& option) {
-  if (!value) throw input_error(fmt::format("command line: {} is required (apsis design)", option));
+  if (!value)
+    throw input_error(
+        fmt::format("command line: {} is missing (apsis design needs it); see: apsis design --help", option));
   return *value;
 }
 
@@ -102,10 +106,10 @@ design_task task_of(const options& given) {
   if (!given.from.empty()) {
     const method& m = find_method(given.from);
     if (m.kind != task.kind || m.is_tableau() || m.ends_with_update())
-      throw input_error(fmt::format(
-          "command line: --from '{}' is no method of the kind that is looked for ({} of the paper's "
-          "class is needed)",
-          given.from, to_string(task.kind)));
+      throw input_error(
+          fmt::format("command line: --from '{}' cannot be improved (it is not {} of the paper's class); "
+                      "name another method",
+                      given.from, to_string(task.kind)));
     require(m.stages() >= task.stages, "--stages", std::to_string(stages),
             fmt::format("'{}' has {}: as many, or fewer", given.from, m.stages()));
     task.from = m.coefficients<double>();
@@ -120,7 +124,7 @@ design_task task_of(const options& given) {
   }
   if (given.evaluations > 0 || given.regime != "none")
     throw input_error(
-        "command line: --evaluations and --regime are of no meaning with --implicit (there is no transport) "
+        "command line: --evaluations and --regime are of no meaning with --implicit (there is no transport); "
         "leave them out");
   // Without transport there is no r.
   task.objective = design_objective::smallest_error;
@@ -163,7 +167,7 @@ bool take_stages_out(design_task& task, method_writer& file, const std::function
     if (stop()) return false;
     if (!smaller)
       throw numerical_error(
-          fmt::format("no stage of {} can be left out (least sum of weights {:.2g}) try another "
+          fmt::format("no stage of {} can be left out (least sum of weights {:.2g}); try another "
                       "method to begin with, a larger box or a smaller --ssp",
                       stages, least));
     task.from = std::move(smaller);
@@ -180,15 +184,16 @@ int design(const options& given) {
     return design_embedded({given.embedded, given.order, given.cost, given.out, given.json});
   design_task task = task_of(given);
   method_writer file(given.out);
-  watch_for_interrupts();
+  watch_for_interrupts("the iteration under way; the best method so far stays in its file");
   set_threads(given.threads.value_or(default_threads()));
   const auto begin = clock::now();
   const auto elapsed = [&begin] { return std::chrono::duration<double>(clock::now() - begin).count(); };
   const auto stop = [&] { return interrupted() || elapsed() > given.seconds; };
   if (!take_stages_out(task, file, stop)) {
     if (interrupted()) return static_cast<int>(exit_code::interrupted);
-    throw numerical_error(fmt::format("a method of {} stages is left after {:.0f} s give more --time",
-                                      task.from->stages(), elapsed()));
+    throw numerical_error(
+        fmt::format("a method of {} stages is left (the time of {:.0f} s is over); give more --time",
+                    task.from->stages(), elapsed()));
   }
   task_progress bar;
   design_search how;
@@ -206,7 +211,7 @@ int design(const options& given) {
     if (given.json) print(result.dump(2) + "\n");
     if (interrupted()) return static_cast<int>(exit_code::interrupted);
     throw numerical_error(
-        fmt::format("no method found ({} in {:.0f} s, seed {}) try more starts, stages or a larger box",
+        fmt::format("no method found ({} in {:.0f} s, seed {}); try more starts, stages or a larger box",
                     state_of(found), elapsed(), task.seed));
   }
   if (interrupted()) {
@@ -228,8 +233,9 @@ int design(const options& given) {
                       check_text(polished)));
   }
   if (!result["method"]["claims_hold"].get<bool>())
-    throw claim_error(fmt::format("the method in '{}' does not hold what was asked for ({}) try another seed",
-                                  file.path(), first_failure(polished)));
+    throw claim_error(
+        fmt::format("the method in '{}' does not hold what was asked for ({}); try another seed", file.path(),
+                    first_failure(polished)));
   return 0;
 }
 

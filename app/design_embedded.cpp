@@ -18,12 +18,12 @@ embedded_task task_of(const embedded_options& given, const method& m) {
   embedded_task task;
   if (given.order && (*given.order < 1 || *given.order >= m.claims.order))
     throw input_error(
-        fmt::format("command line: --order {} is out of range (from 1 to {}: below that of '{}')",
+        fmt::format("command line: --order {} is out of range (from 1 to {}: below that of '{}'); change it",
                     *given.order, m.claims.order - 1, m.name));
   task.order = given.order.value_or(0);
   if (given.cost != "nothing" && given.cost != "one-solve")
-    throw input_error(fmt::format("command line: unknown --cost '{}' {}", given.cost.substr(0, 60),
-                                  suggest(given.cost, {"nothing", "one-solve"})));
+    throw input_error(fmt::format("command line: unknown --cost '{}' (there is no such cost); {}",
+                                  given.cost.substr(0, 60), suggest(given.cost, {"nothing", "one-solve"})));
   task.cost = given.cost == "nothing" ? embedded_cost::nothing : embedded_cost::one_solve;
   return task;
 }
@@ -46,7 +46,7 @@ int design_embedded(const embedded_options& given) {
     std::vector<std::string> tried;
     for (const auto& attempt : search.attempts) tried.push_back(text_of(attempt, task.useful));
     throw numerical_error(fmt::format(
-        "'{}' has no embedded solution with the cost {} ({}) {}", m.name, given.cost, fmt::join(tried, "; "),
+        "'{}' has no embedded solution with the cost {} ({}); {}", m.name, given.cost, fmt::join(tried, "; "),
         task.cost == embedded_cost::nothing ? "try --cost one-solve" : "try a lower --order"));
   }
   m.embedded = search.found;
@@ -62,7 +62,7 @@ int design_embedded(const embedded_options& given) {
   print(given.json ? report.dump(2) + "\n"
                    : fmt::format("written to '{}'\n\n{}", file.path(), check_text(m)));
   if (!report["claims_hold"].get<bool>())
-    throw claim_error(fmt::format("the method in '{}' does not hold what was asked for ({}) report this",
+    throw claim_error(fmt::format("the method in '{}' does not hold what was asked for ({}); report this",
                                   file.path(), first_failure(m)));
   return 0;
 }

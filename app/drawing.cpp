@@ -1,8 +1,11 @@
 #include "drawing.hpp"
+#include "interrupt.hpp"
 
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/errors.hpp>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 
@@ -21,7 +24,22 @@ namespace fs = std::filesystem;
 /// What is dropped of what a program prints.
 enum class dropped { nothing, output, everything };
 
-/// Exit status of a program; −1 if it cannot run.
+/// Status of a child process at its end, with which interrupts end it.
+int status_of(pid_t child) {
+  {
+    const forwarded_interrupts forwarding(child);
+    // The child stays known (WNOWAIT) while a handler may send it a signal.
+    siginfo_t end = {};
+    while (waitid(P_PID, static_cast<id_t>(child), &end, WEXITED | WNOWAIT) < 0)
+      if (errno != EINTR) break;
+  }
+  int status = -1;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) break;
+  return status;
+}
+
+/// Exit status of a program; −1 if it cannot run. Throws interruption, after its end, where a signal came.
 int execute(const std::vector<std::string>& words, dropped drop) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
@@ -33,13 +51,18 @@ int execute(const std::vector<std::string>& words, dropped drop) {
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   if (drop == dropped::everything)
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  // A process group of its own: Ctrl-C in a terminal reaches the program alone, which passes it on.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
   pid_t child = 0;
-  const int failed = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), environ);
+  const int failed = posix_spawnp(&child, arguments[0], &files, &attributes, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
   if (failed != 0) return -1;
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) return -1;
+  const int status = status_of(child);
+  if (interrupted()) throw interruption();
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
@@ -50,7 +73,7 @@ std::string find_python() {
     if (execute({candidate, "-c", "import matplotlib, numpy, h5py"}, dropped::everything) == 0)
       return candidate;
   throw io_error(
-      fmt::format("pictures cannot be drawn (no Python with matplotlib and h5py among: {}) install "
+      fmt::format("pictures cannot be drawn (no Python with matplotlib and h5py among: {}); install "
                   "python3-matplotlib and python3-h5py, or name a Python in APSIS_PYTHON",
                   fmt::join(candidates, ", ")));
 }
@@ -58,7 +81,7 @@ std::string find_python() {
 fs::path new_folder() {
   std::string pattern = (fs::temp_directory_path() / "apsis-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr)
-    throw io_error(fmt::format("cannot make a folder in '{}' (it is full or not writable) set TMPDIR",
+    throw io_error(fmt::format("cannot make a folder in '{}' (it is full or not writable); set TMPDIR",
                                fs::temp_directory_path().string()));
   return pattern;
 }
@@ -85,7 +108,7 @@ std::string drawing::add(const std::string& name, const std::string& text) const
   std::ofstream out(path, std::ios::binary);
   out << text;
   out.close();
-  if (!out) throw io_error(fmt::format("cannot write '{}' (no space left) set TMPDIR", path.string()));
+  if (!out) throw io_error(fmt::format("cannot write '{}' (no space left); set TMPDIR", path.string()));
   return path.string();
 }
 
@@ -102,7 +125,7 @@ void draw(const std::string& module, const std::vector<std::string>& arguments) 
   const int status = drawing().run(module, arguments, true);
   if (status != 0)
     throw io_error(
-        fmt::format("drawing failed (exit status {} of apsis.{}) see the message above; the data are saved",
+        fmt::format("drawing failed (exit status {} of apsis.{}); see the message above; the data are saved",
                     status, module));
 }
 

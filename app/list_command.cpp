@@ -159,7 +159,7 @@ struct options {
 int list(const options& given) {
   const std::string& what = given.what;
   if (lists().count(what) == 0)
-    throw input_error(fmt::format("command line: cannot list '{}' (there is no such list) {}", what,
+    throw input_error(fmt::format("command line: cannot list '{}' (there is no such list); {}", what,
                                   suggest(what, list_names())));
   if (given.names) {
     print(names_text(what));

@@ -1,4 +1,6 @@
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "option_values.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
@@ -17,7 +19,7 @@ namespace apsis::app {
 void print(const std::string& text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (!written || std::fflush(stdout) != 0)
-    throw io_error("standard output cannot be written (closed or full) check where it goes");
+    throw io_error("standard output cannot be written (closed or full); check where it goes");
 }
 
 namespace {
@@ -47,7 +49,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   if (dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr && dash != std::string::npos)
     advice = suggest(message.substr(dash + 1, message.find_first_of(" =", dash + 1) - dash - 1),
                      option_names(place));
-  throw input_error(fmt::format("command line: {} ({}) {}", message, name, advice));
+  throw input_error(fmt::format("command line: {} ({}); {}", message, name, advice));
 }
 
 int run_program(int argc, char** argv) {
@@ -72,11 +74,12 @@ int run_program(int argc, char** argv) {
   add_report(program, chosen);
   add_info(program, chosen);
   add_manual(program, chosen);
+  check_option_values(program);
   const std::vector<std::string> names = command_names(program);
-  if (argc < 2) throw input_error("command line: no command (one of them is needed) " + suggest("", names));
+  if (argc < 2) throw input_error("command line: no command (one of them is needed); " + suggest("", names));
   const std::string first = argv[1];
   if (first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end())
-    throw input_error(fmt::format("command line: unknown command '{}' (apsis has no such command) {}",
+    throw input_error(fmt::format("command line: unknown command '{}' (apsis has no such command); {}",
                                   first.substr(0, 60), suggest(first, names)));
   try {
     program.parse(argc, argv);
@@ -99,13 +102,16 @@ int main(int argc, char** argv) {
   using namespace apsis;
   try {
     return app::run_program(argc, argv);
+  } catch (const app::interruption&) {
+    return static_cast<int>(exit_code::interrupted);
   } catch (const error& problem) {
     return app::fail(problem.code(), problem.what());
   } catch (const std::bad_alloc&) {
-    return app::fail(exit_code::numerical,
-                     "not enough memory (the state and its stages do not fit) use fewer cells or velocities");
+    return app::fail(
+        exit_code::numerical,
+        "not enough memory (the state and its stages do not fit); use fewer cells or velocities");
   } catch (const std::exception& problem) {
     return app::fail(exit_code::internal,
-                     fmt::format("internal error: {} (a bug in apsis) please report it", problem.what()));
+                     fmt::format("internal error: {} (a bug in apsis); please report it", problem.what()));
   }
 }

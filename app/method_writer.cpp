@@ -12,7 +12,10 @@ namespace apsis::app {
 method_writer::method_writer(const std::string& path)
     : path_(path), folder_(path_.has_parent_path() ? path_.parent_path() : std::filesystem::path(".")) {
   if (!path_.has_filename() || path_.extension() != ".toml")
-    throw input_error(fmt::format("command line: --out '{}' is not a method file (.toml)", path));
+    throw input_error(
+        fmt::format("command line: --out '{}' is not a method file (its name does not end in .toml); write "
+                    "for example my-method.toml",
+                    path));
 }
 
 void method_writer::write(const method& m) {
@@ -20,7 +23,7 @@ void method_writer::write(const method& m) {
     std::ofstream out(temporary, std::ios::binary);
     out << to_toml(m);
     out.close();
-    if (!out) throw io_error(fmt::format("cannot write '{}' (no space left) free some space", temporary));
+    if (!out) throw io_error(fmt::format("cannot write '{}' (no space left); free some space", temporary));
   });
 }
 

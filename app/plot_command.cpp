@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "drawing.hpp"
+#include "interrupt.hpp"
 #include "method_report.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -27,6 +28,7 @@ std::string described(const drawing& pictures, std::size_t place, const method& 
 }
 
 int plot(const options& given) {
+  watch_for_interrupts("the pictures to end");
   const drawing pictures;
   std::vector<std::string> arguments;
   for (std::size_t k = 0; k < given.what.size(); ++k) {
@@ -38,14 +40,14 @@ int plot(const options& given) {
     else if (is_method_name(what))
       arguments.push_back(described(pictures, k, find_method(what)));
     else
-      throw input_error(fmt::format("cannot draw '{}' (no folder, file or method of this name) {}",
+      throw input_error(fmt::format("cannot draw '{}' (no folder, file or method of this name); {}",
                                     what.substr(0, 60), suggest(what, method_names())));
   }
   arguments.insert(arguments.end(), {"--format", given.format});
   if (!given.out.empty()) arguments.insert(arguments.end(), {"--out", given.out});
   if (!given.compare.empty()) arguments.insert(arguments.end(), {"--compare", given.compare});
   const int status = pictures.run("plot", arguments, false);
-  if (status < 0) throw io_error("drawing failed (Python ended without a status) try again");
+  if (status < 0) throw io_error("drawing failed (Python ended without a status); try again");
   return status;
 }
 

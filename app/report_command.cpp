@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "drawing.hpp"
+#include "interrupt.hpp"
 
 #include <apsis/core/errors.hpp>
 
@@ -15,8 +16,9 @@ void add_report(CLI::App& program, action& chosen) {
       ->required();
   command->callback([folders, &chosen] {
     chosen = [folders] {
+      watch_for_interrupts("the report to end");
       const int status = drawing().run("report", *folders, false);
-      if (status < 0) throw io_error("the report failed (Python ended without a status) try again");
+      if (status < 0) throw io_error("the report failed (Python ended without a status); try again");
       return status;
     };
   });

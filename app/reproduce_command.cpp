@@ -108,7 +108,7 @@ class reproduction {
       out.close();
       if (!out)
         throw io_error(
-            fmt::format("cannot write '{}' (no permission or no space left) free some space", path));
+            fmt::format("cannot write '{}' (no permission or no space left); free some space", path));
     });
   }
 
@@ -119,7 +119,7 @@ class reproduction {
     const json earlier = json::parse(in, nullptr, false);
     if (!earlier.is_object() || earlier.value("version", "") != version() || !earlier.contains("claims"))
       throw input_error(
-          fmt::format("'{}' cannot be resumed (its {} is of another version or damaged) leave out --resume",
+          fmt::format("'{}' cannot be resumed (its {} is of another version or damaged); leave out --resume",
                       options_.out, document_name));
     for (const auto& claim : earlier["claims"])
       for (const claim_entry* wanted : chosen_)
@@ -139,14 +139,14 @@ class reproduction {
 };
 
 int reproduce(const options& given) {
-  watch_for_interrupts();
+  watch_for_interrupts("the step or the run under way; finished claims are kept");
   set_threads(given.threads.value_or(default_threads()));
   reproduction all(given);
   const bool complete = all.run();
   const json document = all.document();
   if (given.json) print(json_text(document) + "\n");
   if (!complete) {
-    log::warning(fmt::format("interrupted; {} claims are in '{}', go on with --resume",
+    log::warning(fmt::format("interrupted ({} claims are in '{}'); --resume continues",
                              document["claims"].size(), given.out));
     return static_cast<int>(exit_code::interrupted);
   }
@@ -156,6 +156,10 @@ int reproduce(const options& given) {
     draw("report", {given.out});
   } catch (const io_error& problem) {
     drawing_problem = problem.what();
+  } catch (const interruption&) {
+    log::warning(
+        fmt::format("interrupted (all claims are checked); apsis report {} makes the page", given.out));
+    return static_cast<int>(exit_code::interrupted);
   }
   if (!given.json)
     print(fmt::format("{} of {} claims hold; see {}/{}\n", document["claims"].size() - failed.size(),
@@ -163,7 +167,7 @@ int reproduce(const options& given) {
                       drawing_problem.empty() ? "report.html" : document_name));
   if (!failed.empty()) {
     if (!drawing_problem.empty()) log::warning(drawing_problem);
-    throw claim_error(fmt::format("{} claim(s) of the paper do not hold here: {} see the findings in '{}'",
+    throw claim_error(fmt::format("{} claim(s) of the paper do not hold here ({}); see the findings in '{}'",
                                   failed.size(), fmt::join(failed, ", "), given.out));
   }
   if (!drawing_problem.empty()) throw io_error(drawing_problem);

@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "option_values.hpp"
 #include "run_profile.hpp"
 #include "run_report.hpp"
 #include "threads_option.hpp"
@@ -32,7 +33,7 @@ struct run_options {
 
 int run(run_options options) {
   // First of all: an interrupt that comes before the first step is then no different from a later one.
-  watch_for_interrupts();
+  watch_for_interrupts("the step under way, and for a checkpoint where there is a folder (--out)");
   case_config config = load_case(options.case_name, options.overrides);
   set_threads(options.threads.value_or(threads_for(config)));
   progress bar(config.time.end);
@@ -80,7 +81,7 @@ void add_run(CLI::App& program, action& chosen) {
   command
       ->add_option("--wall", options->session.wall,
                    "stop after this many seconds with a checkpoint, as if interrupted (exit code 130)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

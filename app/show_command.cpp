@@ -27,7 +27,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 void only_text(const options& given) {
   if (!given.format.empty() && given.format != "text")
-    throw input_error(fmt::format("command line: --format {} is for methods ('{}' is a text) leave it out",
+    throw input_error(fmt::format("command line: --format {} is for methods ('{}' is a text); leave it out",
                                   given.format, given.what));
 }
 
@@ -48,7 +48,7 @@ int show(const options& given) {
     std::vector<std::string> all = methods;
     all.insert(all.end(), cases.begin(), cases.end());
     all.emplace_back("case");
-    throw input_error(fmt::format("nothing is called '{}' (no method, built-in case or method file) {}",
+    throw input_error(fmt::format("nothing is called '{}' (no method, built-in case or method file); {}",
                                   given.what.substr(0, 60), suggest(given.what, all)));
   }
   return 0;

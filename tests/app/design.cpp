@@ -78,19 +78,19 @@ TEST(design, refuses_what_cannot_be_asked_for) {
     EXPECT_THAT(result.err, HasSubstr(message));
     EXPECT_THAT(folder.listing(), IsEmpty());
   };
-  refused({"--stages", "3"}, "--order is required");
-  refused({"--order", "2"}, "--stages is required");
+  refused({"--stages", "3"}, "--order is missing");
+  refused({"--order", "2"}, "--stages is missing");
   refused({"--order", "0", "--stages", "3"}, "--order 0 is out of range (from 1 to 6)");
   refused({"--order", "2", "--stages", "99"}, "--stages 99 is out of range (from 1 to 32)");
   refused({"--order", "2", "--stages", "1"}, "an IMEX method needs 2");
   refused({"--order", "2", "--stages", "3", "--evaluations", "3"}, "--evaluations 3 is out of range");
   refused({"--order", "2", "--stages", "3", "--box", "-1"}, "--box -1 is out of range");
-  refused({"--order", "2", "--stages", "3", "--box", "nan"}, "--box nan is out of range");
+  refused({"--order", "2", "--stages", "3", "--box", "nan"}, "--box cannot be 'nan'");
   refused({"--order", "2", "--stages", "3", "--margin", "5"}, "--margin 5 is out of range");
   refused({"--order", "2", "--stages", "3", "--ssp", "0"}, "--ssp 0 is out of range");
   refused({"--order", "2", "--stages", "3", "--angle", "91"},
           "--angle 91 is out of range (from 0 to 90 degrees)");
-  refused({"--order", "2", "--stages", "3", "--angle", "nan"}, "--angle nan is out of range");
+  refused({"--order", "2", "--stages", "3", "--angle", "nan"}, "--angle cannot be 'nan'");
   refused({"--order", "2", "--stages", "3", "--pole", "-1"},
           "--pole -1 is out of range (from 0 to 1/sqrt(margin) = 31.62)");
   refused({"--order", "2", "--stages", "3", "--pole", "32"}, "--pole 32 is out of range");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -74,6 +75,10 @@ bool process::wait_until(const std::function<bool()>& seen) const {
 
 std::string process::said() const {
   return read(capture_ / "err");
+}
+
+bool process::wait_for(const std::string& text) const {
+  return wait_until([&] { return said().find(text) != std::string::npos; });
 }
 
 outcome process::wait() {

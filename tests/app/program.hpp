@@ -39,6 +39,8 @@ class process {
   bool wait_until(const std::function<bool()>& seen) const;
   /// Standard error so far.
   std::string said() const;
+  /// Waits until standard error has the text; false if the program ends without it.
+  bool wait_for(const std::string& text) const;
   outcome wait();
 
  private:

@@ -65,8 +65,9 @@ TEST_P(bad_cases, is_refused_at_its_place) {
   EXPECT_THAT(message,
               StartsWith("c.toml:" + GetParam().place + (GetParam().place.back() == ':' ? "" : ": ")));
   EXPECT_THAT(message, HasSubstr(GetParam().says));
-  // problem (why) suggestion: something follows the last parenthesis.
+  // problem (reason); suggestion: something follows the last parenthesis.
   EXPECT_LT(message.rfind(')') + 2, message.size()) << message;
+  EXPECT_THAT(message, HasSubstr("); "));
 }
 
 const std::vector<bad_case> all = {
@@ -82,7 +83,8 @@ const std::vector<bad_case> all = {
     {"missing_end", "end = 0.5\n", "", "12:1", "key 'time.end' is missing"},
     {"missing_step", "cfl = 0.04\n", "", "12:1", "no step size is given"},
     {"text_for_integer", "cells = 40", "cells = \"40\"", "6:1", "an integer is needed"},
-    {"float_for_integer", "cells = 40", "cells = 40.0", "6:1", "an integer is needed"},
+    {"float_for_integer", "cells = 40", "cells = 40.5", "6:1",
+     "(an integer is needed); write for example 41"},
     {"text_for_number", "max = 15.0", "max = \"15\"", "10:1", "a number is needed"},
     {"number_for_text", "limiter = \"positivity\"", "limiter = 1", "8:1", "a text is needed"},
     {"boolean", "limiter = \"positivity\"", "limiter = true", "8:1", "is a boolean"},
@@ -173,7 +175,7 @@ TEST(bad_case, a_text_of_a_model_is_one_of_its_names_or_a_formula) {
   EXPECT_EQ(with("\"-u^2/4\""), "accepted");
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"\"burger\"",
-       "3:1: 'model.flux' is the text 'burger' (it is neither a name nor a formula in u) did you mean "
+       "3:1: 'model.flux' is the text 'burger' (it is neither a name nor a formula in u); did you mean "
        "'burgers'?"},
       {"\"buckley-levrett\"", "did you mean 'buckley-leverett'?"},
       {"\"\"", "expression is empty"},
@@ -183,7 +185,7 @@ TEST(bad_case, a_text_of_a_model_is_one_of_its_names_or_a_formula) {
       {"\"u = 2\"", "an assignment"},
       {"\"u, 2\"", "a comma outside a function"},
       {"\"u\\u0000\"", "the byte 0x00"},
-      {"3", "3:1: 'model.flux' is the integer 3 (a text is needed) put it in quotes"},
+      {"3", "3:1: 'model.flux' is the integer 3 (a text is needed); put it in quotes"},
       {"[\"burgers\"]", "a text is needed"},
       {"true", "a text is needed"},
       {"\"" + std::string(1001, '1') + "\"", "1001 characters"},
@@ -201,7 +203,7 @@ struct bad_override {
 
 TEST(bad_case, overrides_report_themselves_as_their_place) {
   const std::vector<bad_override> overrides = {
-      {"space.cells=ten", "not valid TOML"},
+      {"space.cells=ten", "'ten' is not a value of TOML"},
       {"space.cells=-1", "at least 1"},
       {"space.cels=10", "did you mean 'space.cells'?"},
       {"cells", "not of the form key=value"},
@@ -209,18 +211,33 @@ TEST(bad_case, overrides_report_themselves_as_their_place) {
       {"", "not of the form key=value"},
       {"time.method=", "there is no such name"},
       {"time.method=md-imex-3-3", "did you mean 'md-imex-3-2'?"},
-      {"time.method=\"md", "not valid TOML"},
+      {"time.method=\"md", "not a value of TOML"},
       {"time.end=nan", "must be finite"},
       {"time.end=1\ntime.dt=3", "more than one line"},
-      {"title=\xff", "not valid TOML"},
+      {"title=\xff", "not a value of TOML"},
       {"model.epsilon=1+z", "unknown name 'z'"},
       {"model.epsilon=-1", "must be finite and not negative"},
       {"space={cells=3}", "it is a table"},
       {"time.end=1/0", "must be finite"},
-      {"time.end=1/", "not valid TOML"},
-      {"time.end=1/2/3", "not valid TOML"},
-      {"space.cells=80/2", "'space.cells' is the fraction 80/2 (an integer is needed)"},
-      {std::string("title=") + std::string(5000, 'a'), "longer than"}};
+      {"time.end=1/", "not a value of TOML"},
+      {"time.end=1/2/3", "not a value of TOML"},
+      {"space.cells=81/2", "'space.cells' is the fraction 81/2 (an integer is needed); write for example 41"},
+      {"space.cells=1.5", "'space.cells' is the number 1.5 (an integer is needed); write for example 2"},
+      {"space.cells=0.2", "(an integer is needed); write for example 1"},
+      {"space.cells=1e300", "at most 10000000"},
+      {"space.cells=nan", "must be finite"},
+      {"space.cells=-inf", "must be finite"},
+      {"space.cells=\"40\"", "is the text '40' (an integer is needed)"},
+      {"space.cells=[40]", "is a list of 1 (an integer is needed)"},
+      {"space.cells=true", "is a boolean (an integer is needed)"},
+      {"space.cells=", "the value is empty (nothing stands behind '='); write for example 100"},
+      {"space.cells=40 # fine", "the value is followed by '#'"},
+      {"velocity.points=1e2.5", "not a value of TOML"},
+      {"space.domain=0,2", "write for example [0.0, 2.0]"},
+      {"output.fields=rho", "write for example [\"rho\", \"u\"]"},
+      {" =3", "not of the form key=value"},
+      {"model.epsilon=foo + x", "unknown name 'foo' at character 1); valid: x"},
+      {std::string("title=") + std::string(5000, 'a'), "the value has 5000 bytes (at most 4096 are read)"}};
   for (const auto& given : overrides) {
     const std::string message = error_of(good, {given.text});
     EXPECT_THAT(message, StartsWith("override '")) << given.text;
@@ -273,4 +290,17 @@ TEST(bad_case, a_misspelt_key_on_the_command_line_is_told_whatever_its_value_is)
 TEST(bad_case, a_number_of_dimensions_is_whole) {
   EXPECT_EQ(error_of(good, {"model.velocity_dimensions=2"}), "accepted");
   EXPECT_THAT(error_of(good, {"model.velocity_dimensions=1.7"}), HasSubstr("it must be an integer"));
+}
+
+TEST(bad_case, integers_may_be_written_as_any_whole_number) {
+  for (const std::string value : {"1e1", "40.0", "80/2", "+40", "4_0", " 40 ", "4e1"})
+    for (const std::string key :
+         {"space.cells", "velocity.points", "output.stride", "output.checkpoint_every"})
+      EXPECT_EQ(error_of(good, {key + "=" + value}), "accepted") << key << value;
+  EXPECT_EQ(apsis::parse_case(good, "c.toml", {"space.cells=1e1"}).space.cells, 10);
+  EXPECT_EQ(apsis::parse_case(good, "c.toml", {" space.cells = 1.2e2 "}).space.cells, 120);
+}
+
+TEST(bad_case, a_step_rule_with_spaces_replaces_that_of_the_file_too) {
+  EXPECT_EQ(error_of(good, {"time.dt = 0.1"}), "accepted");
 }

@@ -57,7 +57,7 @@ class resolver {
     std::vector<std::string> names = {"model", "space", "velocity", "time", "output"};
     for (const auto& [name, place] : text_.tables)
       if (std::find(names.begin(), names.end(), name) == names.end())
-        throw input_error(place, fmt::format("unknown table [{}] (a case has no such table) {}", shown(name),
+        throw input_error(place, fmt::format("unknown table [{}] (a case has no such table); {}", shown(name),
                                              suggest(name, names)));
     for (const auto& name : names)
       if (const raw_value* raw = find(name))
@@ -85,9 +85,9 @@ class resolver {
       if (std::find(valid.begin(), valid.end(), path) != valid.end()) continue;
       for (const case_key& key : case_schema())
         if (key.path == path)
-          throw input_error(raw.place, fmt::format("key '{}' is not used (model '{}' {}) remove it", path,
+          throw input_error(raw.place, fmt::format("key '{}' is not used (model '{}' {}); remove it", path,
                                                    model_->name, unused_because(key.scope)));
-      throw input_error(raw.place, fmt::format("unknown key '{}' (no such key for model '{}') {}",
+      throw input_error(raw.place, fmt::format("unknown key '{}' (no such key for model '{}'); {}",
                                                shown(path), model_->name, suggest_path(path, valid)));
     }
   }
@@ -121,7 +121,7 @@ class resolver {
     if (raw == nullptr) {
       if (key.required)
         throw input_error(table_place(key.path),
-                          fmt::format("key '{}' is missing ({}) add it, for example: {}", key.path,
+                          fmt::format("key '{}' is missing ({}); add it, for example: {}", key.path,
                                       model_ == nullptr ? "every case needs it"
                                                         : fmt::format("model '{}' needs it", model_->name),
                                       example(key)));
@@ -179,13 +179,13 @@ class resolver {
     }
     if (given.empty())
       throw input_error(table_place("time.dt"),
-                        fmt::format("no step size is given (one of {} is needed) add for example {}",
+                        fmt::format("no step size is given (one of {} is needed); add for example {}",
                                     fmt::format("{}", fmt::join(valid, ", ")),
                                     valid.size() > 1 ? "safety = 0.5" : "dt = 0.01"));
     if (given.size() > 1)
       throw input_error(
           find(given[1])->place,
-          fmt::format("'{}' conflicts with '{}' (exactly one of {} sets the step) remove all but one",
+          fmt::format("'{}' conflicts with '{}' (exactly one of {} sets the step); remove all but one",
                       given[1], given[0], fmt::join(valid, ", ")));
     if (config_.time.dt && config_.time.end > 0.0 && *config_.time.dt > config_.time.end * (1.0 + 1e-12))
       refuse(*find("time.dt"), "time.dt", fmt::format("it is longer than time.end = {}", config_.time.end),
@@ -222,7 +222,7 @@ class resolver {
     if (!formula.is_constant() && !model_->has_space)
       throw input_error(
           place,
-          fmt::format("'model.epsilon' depends on x (model '{}' has no space) give a number", model_->name));
+          fmt::format("'model.epsilon' depends on x (model '{}' has no space); give a number", model_->name));
     const auto [left, right] = config_.space.domain;
     const int points = model_->has_space ? std::min(2 * config_.space.cells, 1000) : 0;
     for (int k = 0; k <= points; ++k)
@@ -237,7 +237,7 @@ class resolver {
       if (std::find(names.begin(), names.end(), name) == names.end())
         throw input_error(
             find("output.fields")->place,
-            fmt::format("unknown field '{}' in 'output.fields' (model '{}' has no such field) {}",
+            fmt::format("unknown field '{}' in 'output.fields' (model '{}' has no such field); {}",
                         shown(name), model_->name, suggest(name, names)));
   }
 
@@ -247,42 +247,55 @@ class resolver {
   const model_entry* model_ = nullptr;
 };
 
-/// Whether a value on the command line needs no quotes. That of a key that does not exist needs none: it is
-/// the key that is wrong.
-bool takes_text(const std::string& path) {
+/// How the value of a key may be written on the command line. That of a key that does not exist needs no
+/// quotes: it is the key that is wrong.
+override_form form_of(const std::string& path) {
   for (const case_key& key : case_schema())
-    if (key.path == path) return key.type == key_type::text || key.type == key_type::formula;
+    if (key.path == path)
+      return {key.type == key_type::text || key.type == key_type::formula, type_advice(key.type)};
   // No model has a number of the same name as a text of another.
   for (const model_entry* entry : model_entries())
     for (const model_parameter& p : entry->parameters)
-      if ("model." + p.name == path) return false;
-  return true;
+      if ("model." + p.name == path)
+        return {false, type_advice(p.integer ? key_type::integer : key_type::number)};
+  return {true, type_advice(key_type::text)};
+}
+
+/// Without spaces around it: "space.cells = 80" is one argument of a shell if it is quoted.
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
 void apply_overrides(case_text& text, const std::vector<std::string>& overrides) {
-  // A step rule on the command line takes the place of the one in the file.
-  const auto sets_step = [](const std::string& item) {
-    return std::any_of(step_keys().begin(), step_keys().end(),
-                       [&](const std::string& key) { return item.rfind(key + "=", 0) == 0; });
+  struct key_and_value {
+    std::string path, value;
+    source_place place;
   };
-  if (std::any_of(overrides.begin(), overrides.end(), sets_step))
-    for (const auto& key : step_keys()) text.values.erase(key);
+  std::vector<key_and_value> all;
   for (const auto& item : overrides) {
     const source_place place{fmt::format("override '{}'", shown(item)), 0, 0};
     const auto equals = item.find('=');
-    if (equals == std::string::npos || equals == 0)
+    const std::string path = trimmed(item.substr(0, equals));
+    if (equals == std::string::npos || path.empty())
       throw input_error(
-          place, "not of the form key=value (an override sets one key) write for example space.cells=80");
-    const std::string path = item.substr(0, equals);
-    apply_override(text, path, item.substr(equals + 1), takes_text(path), place);
+          place, "not of the form key=value (an override sets one key); write for example space.cells=80");
+    all.push_back({path, trimmed(item.substr(equals + 1)), place});
   }
+  // A step rule on the command line takes the place of the one in the file.
+  const auto sets_step = [](const key_and_value& item) {
+    return std::find(step_keys().begin(), step_keys().end(), item.path) != step_keys().end();
+  };
+  if (std::any_of(all.begin(), all.end(), sets_step))
+    for (const auto& key : step_keys()) text.values.erase(key);
+  for (const auto& [path, value, place] : all) apply_override(text, path, value, form_of(path), place);
 }
 
 std::string read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in || std::filesystem::is_directory(path))
     throw io_error(
-        fmt::format("cannot read '{}' (it is a folder or not readable) give a readable case file", path));
+        fmt::format("cannot read '{}' (it is a folder or not readable); give a readable case file", path));
   std::string text(longest_case_file + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
@@ -303,8 +316,8 @@ std::string read_case(const std::string& name_or_path) {
     if (built_in.name == name_or_path) return std::string(built_in.text);
   std::error_code ignored;
   if (!std::filesystem::exists(name_or_path, ignored))
-    throw input_error(fmt::format("no case '{}' (neither a file nor a built-in case) {}", shown(name_or_path),
-                                  suggest(name_or_path, case_names())));
+    throw input_error(fmt::format("no case '{}' (neither a file nor a built-in case); {}",
+                                  shown(name_or_path), suggest(name_or_path, case_names())));
   return read_file(name_or_path);
 }
 
@@ -317,7 +330,7 @@ std::unique_ptr<model> make_model(const case_config& config) {
   if (entry == nullptr) {
     std::vector<std::string> names;
     for (const model_entry* known : model_entries()) names.push_back(known->name);
-    throw input_error(fmt::format("unknown model '{}' (there is no such name) {}", shown(config.model.name),
+    throw input_error(fmt::format("unknown model '{}' (there is no such name); {}", shown(config.model.name),
                                   suggest(config.model.name, names)));
   }
   model_config parts = default_config(*entry);

@@ -28,13 +28,13 @@ void check_size(std::string_view text, const std::string& file) {
   if (text.size() > longest_case_file)
     throw input_error(
         place_at(text, longest_case_file, file),
-        "the file is larger than 1 MB (a case has a few dozen lines) is it the file you meant?");
+        "the file is larger than 1 MB (a case has a few dozen lines); is it the file you meant?");
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     if (end - begin > longest_case_line)
       throw input_error(
           place_at(text, begin + longest_case_line, file),
-          fmt::format("the line is longer than {} bytes (a case has short lines) is it the file you meant?",
+          fmt::format("the line is longer than {} bytes (a case has short lines); is it the file you meant?",
                       longest_case_line));
     begin = end + 1;
   }
@@ -92,7 +92,7 @@ std::optional<double> fraction(const std::string& value) {
 }
 
 std::string syntax_message(std::string_view description) {
-  return fmt::format("not valid TOML ({}) correct the syntax here", shown(description, 200));
+  return fmt::format("not valid TOML ({}); correct the syntax here", shown(description, 200));
 }
 
 }  // namespace
@@ -134,24 +134,33 @@ case_text read_case_text(std::string_view text, const std::string& file) {
   return out;
 }
 
-void apply_override(case_text& target, const std::string& path, const std::string& value, bool is_text,
-                    const source_place& place) {
+void apply_override(case_text& target, const std::string& path, const std::string& value,
+                    const override_form& form, const source_place& place) {
   if (value.find_first_of("\r\n") != std::string::npos)
-    throw input_error(place, "the value has more than one line (one value is needed) give one line");
-  if (const auto number = fraction(value); number && !is_text) {
+    throw input_error(place, "the value has more than one line (one value is needed); give one line");
+  if (value.size() > longest_case_line)
+    throw input_error(place, fmt::format("the value has {} bytes (at most {} are read); shorten it",
+                                         value.size(), longest_case_line));
+  if (const auto number = fraction(value); number && !form.is_text) {
     target.values[path] = {*number, fmt::format("the fraction {}", value), place, place};
     return;
   }
-  const bool bare = is_text && value.find_first_of("\"'") != 0;
+  const bool bare = form.is_text && value.find_first_of("\"'") != 0;
   const std::string line = "value = " + (bare ? in_quotes(value) : value);
-  check_size(line, place.file);
   try {
     const toml::table root = toml::parse(line);
+    // TOML would take what follows for a comment.
+    if (!bare && value.find_first_of("#\"'") != std::string::npos &&
+        value[value.find_first_of("#\"'")] == '#')
+      throw input_error(place, "the value is followed by '#' (comments are for files); remove the comment");
     raw_value raw = convert(*root.get("value"), place);
     raw.value_place = place;
     target.values[path] = std::move(raw);
   } catch (const toml::parse_error& e) {
-    throw input_error(place, syntax_message(e.description()));
+    throw input_error(place, value.empty() ? fmt::format("the value is empty (nothing stands behind '='); {}",
+                                                         form.suggestion)
+                                           : fmt::format("'{}' is not a value of TOML ({}); {}", shown(value),
+                                                         shown(e.description(), 200), form.suggestion));
   }
 }
 

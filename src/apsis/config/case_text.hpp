@@ -33,10 +33,17 @@ constexpr std::size_t longest_case_line = 4096;       ///< bytes; bounds the dep
 /// Reads TOML into flat keys. Throws input_error with line and column: too large, not TOML.
 case_text read_case_text(std::string_view text, const std::string& file);
 
+/// What an override may look like: whether the key takes text, and the suggestion where its value is not
+/// TOML.
+struct override_form {
+  bool is_text = false;                                      ///< text may stand without quotes
+  std::string suggestion = "write a number, or \"a text\"";  ///< "write for example [0.0, 2.0]"
+};
+
 /// Sets one key from "dotted.key=value"; the value is TOML, text may stand without quotes, and a number may
-/// be a fraction like 1/128. `is_text` says whether the key takes text. Throws input_error.
-void apply_override(case_text& target, const std::string& path, const std::string& value, bool is_text,
-                    const source_place& place);
+/// be a fraction like 1/128. Throws input_error.
+void apply_override(case_text& target, const std::string& path, const std::string& value,
+                    const override_form& form, const source_place& place);
 
 /// A user's text for a message: at most `longest` bytes, control characters as '?'.
 std::string shown(std::string_view text, std::size_t longest = 60);

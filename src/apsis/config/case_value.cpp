@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 namespace apsis {
-namespace {
 
 std::string type_advice(key_type type) {
   switch (type) {
@@ -30,11 +29,9 @@ std::string type_advice(key_type type) {
   return "";
 }
 
-}  // namespace
-
 void refuse(const raw_value& raw, const std::string& path, const std::string& why,
             const std::string& advice) {
-  throw input_error(raw.place, fmt::format("'{}' is {} ({}) {}", path, raw.what, why, advice));
+  throw input_error(raw.place, fmt::format("'{}' is {} ({}); {}", path, raw.what, why, advice));
 }
 
 double finite_number(const raw_value& raw, const std::string& path, const std::string& needed) {
@@ -55,6 +52,22 @@ void check_range(const case_key& key, const raw_value& raw, double x) {
   const bool low = key.lowest_excluded ? x > key.lowest : x >= key.lowest;
   if (!low || x > key.highest)
     refuse(raw, key.path, "it must be " + range_text(key), "change it to a value in this range");
+}
+
+long integer(const case_key& key, const raw_value& raw) {
+  if (const auto* whole = std::get_if<long>(&raw.value)) {
+    check_range(key, raw, static_cast<double>(*whole));
+    return *whole;
+  }
+  if (!std::holds_alternative<double>(raw.value))
+    refuse(raw, key.path, type_text(key_type::integer) + " is needed", type_advice(key_type::integer));
+  // "1e3", "40.0" and "80/2" are integers too.
+  const double x = finite_number(raw, key.path, type_text(key_type::integer));
+  if (x != std::floor(x))
+    refuse(raw, key.path, type_text(key_type::integer) + " is needed",
+           fmt::format("write for example {}", std::clamp(std::round(x), key.lowest, key.highest)));
+  check_range(key, raw, x);
+  return static_cast<long>(x);  // ranges of integers are far below 2^53
 }
 
 double number(const case_key& key, const raw_value& raw, const std::string& path) {
@@ -126,18 +139,14 @@ std::string to_text(const model_text& text, const raw_value& raw) {
 }
 
 case_value to_value(const case_key& key, const raw_value& raw, const case_config& so_far) {
-  const auto type_error = [&]() {
-    refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
-  };
   switch (key.type) {
     case key_type::integer:
-      if (!std::holds_alternative<long>(raw.value)) type_error();
-      check_range(key, raw, static_cast<double>(std::get<long>(raw.value)));
-      return std::get<long>(raw.value);
+      return integer(key, raw);
     case key_type::number:
       return number(key, raw, key.path);
     case key_type::text:
-      if (!std::holds_alternative<std::string>(raw.value)) type_error();
+      if (!std::holds_alternative<std::string>(raw.value))
+        refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
       check_choice(key, raw, so_far);
       return std::get<std::string>(raw.value);
     case key_type::formula:

@@ -16,6 +16,9 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
 /// within the formula.
 std::string to_text(const model_text& text, const raw_value& raw);
 
+/// What a value of the type looks like, for the suggestion of a message: "write for example 100".
+std::string type_advice(key_type type);
+
 /// A finite number. `needed` says what the key takes ("a number"). Throws input_error.
 double finite_number(const raw_value& raw, const std::string& path, const std::string& needed);
 

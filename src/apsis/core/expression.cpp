@@ -73,28 +73,38 @@ std::size_t find_assignment(const std::string& text) {
   return std::string::npos;
 }
 
+/// At most 60 characters, from around the one that matters.
+std::string excerpt(const std::string& text, std::size_t at) {
+  constexpr std::size_t longest = 60;
+  if (text.size() <= longest) return text;
+  const std::size_t begin = at < longest / 2 ? 0 : std::min(at - longest / 2, text.size() - longest);
+  return (begin > 0 ? "..." : "") + text.substr(begin, longest) +
+         (begin + longest < text.size() ? "..." : "");
+}
+
 [[noreturn]] void fail(const std::string& text, const source_place& place, std::size_t at,
                        const std::string& why, const std::string& advice) {
-  throw input_error(shifted(place, at), fmt::format("expression '{}' cannot be used ({} at character {}) {}",
-                                                    text, why, at + 1, advice));
+  throw input_error(shifted(place, at), fmt::format("expression '{}' cannot be used ({} at character {}); {}",
+                                                    excerpt(text, at), why, at + 1, advice));
 }
 
 void check_characters(const std::string& text, const source_place& place, const std::string& variable) {
   if (text.find_first_not_of(" \t") == std::string::npos)
     throw input_error(
         place,
-        fmt::format("expression is empty (a number or a formula in {} is needed) write for example 1e-3",
+        fmt::format("expression is empty (a number or a formula in {} is needed); write for example 1e-3",
                     variable));
   if (text.size() > expression::longest)
-    throw input_error(place, fmt::format("expression has {} characters (at most {} are read) shorten it",
+    throw input_error(place, fmt::format("expression has {} characters (at most {} are read); shorten it",
                                          text.size(), expression::longest));
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
     if ((c < 32 && c != '\t') || c > 126)
       throw input_error(
           shifted(place, i),
-          fmt::format("expression has the byte 0x{:02x} at character {} (formulas are plain ASCII) remove it",
-                      c, i + 1));
+          fmt::format(
+              "expression has the byte 0x{:02x} at character {} (formulas are plain ASCII); remove it", c,
+              i + 1));
     if (c == '"') fail(text, place, i, "a quotation mark", "formulas have no strings");
   }
   const std::size_t assignment = find_assignment(text);
@@ -104,7 +114,7 @@ void check_characters(const std::string& text, const source_place& place, const 
 std::string explain(const mu::ParserError& e) {
   switch (e.GetCode()) {
     case mu::ecUNASSIGNABLE_TOKEN:
-      return fmt::format("unknown name '{}'", e.GetToken());
+      return fmt::format("unknown name '{:.60}'", e.GetToken());
     case mu::ecUNEXPECTED_EOF:
       return "it ends too early";
     case mu::ecMISSING_PARENS:
@@ -235,8 +245,8 @@ double expression::evaluate(double x) const {
     throw input_error(
         impl_->place,
         fmt::format(
-            "expression '{}' is {} at {} = {:.10g} (it must be finite{}) change the formula or the domain",
-            impl_->text, result, impl_->kind.variable, x,
+            "expression '{}' is {} at {} = {:.10g} (it must be finite{}); change the formula or the domain",
+            excerpt(impl_->text, 0), result, impl_->kind.variable, x,
             impl_->kind.nonnegative ? " and not negative" : ""));
   return result;
 }

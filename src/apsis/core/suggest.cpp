@@ -1,6 +1,9 @@
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
+#include <cctype>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,16 +27,37 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return d[n][m];
 }
 
+std::string in_lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Both without the table, folder or dashes that they share: "time.foo" is no closer to "time.dt" than "foo"
+/// to "dt".
+std::pair<std::string, std::string> without_common_prefix(const std::string& a, const std::string& b) {
+  std::size_t common = 0;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()) && a[k] == b[k]; ++k)
+    if (a[k] == '.' || a[k] == '/' || (a[k] == '-' && common == k)) common = k + 1;
+  return {a.substr(common), b.substr(common)};
+}
+
+/// At most every third letter of the longer word is wrong, or two neighbours are swapped.
+bool is_near(const std::string& a, const std::string& b, std::size_t d) {
+  if (3 * d <= std::max(a.size(), b.size())) return true;
+  return d == 1 && a.size() > 1 && std::is_permutation(a.begin(), a.end(), b.begin(), b.end());
+}
+
 }  // namespace
 
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
   // Longer words cannot be a typing error of anything we know, and the table would grow with them.
   if (word.size() > 64) return "";
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   for (const auto& candidate : candidates) {
-    const std::size_t d = distance(word, candidate);
-    if (d < best_distance) {
+    const auto [mine, other] = without_common_prefix(in_lower_case(word), in_lower_case(candidate));
+    const std::size_t d = distance(mine, other);
+    if (d < best_distance && is_near(mine, other, d)) {
       best_distance = d;
       best = candidate;
     }

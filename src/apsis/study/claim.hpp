@@ -48,7 +48,8 @@ struct claim_result {
 struct study_control {
   /// A fraction of the present study in [0, 1], and what is being done; may be empty.
   std::function<void(double, const std::string&)> progress;
-  /// Asked between runs; true ends the study with study_interrupted. May be empty.
+  /// Asked between runs, and between the steps of a run; true ends the study with study_interrupted. May be
+  /// empty.
   std::function<bool()> stop;
 
   /// Calls `progress` if there is one.

@@ -108,15 +108,24 @@ void convergence::run(const study_control& control) {
     by_work.progress = [&](double part, const std::string& what) {
       control.progress(total > 0.0 && std::isfinite(total) ? done.load() / total : part, what);
     };
+  study_control stop_only;
+  stop_only.stop = control.stop;
   run_all(by_work, fmt::format("{} runs", order.size()), static_cast<int>(order.size()), [&](int job) {
     const std::size_t k = order[static_cast<std::size_t>(job)];
     try {
-      all.results[k] = compute(all.plan.runs[k]);
+      all.results[k] = compute(all.plan.runs[k], stop_only);
     } catch (const numerical_error& failure) {
       all.failures[k] = failure.what();
     }
     done.fetch_add(work[k]);
   });
+}
+
+long convergence::finished_runs() const {
+  long count = 0;
+  for (std::size_t k = 0; k < impl_->plan.runs.size(); ++k)
+    if (impl_->results[k] || !impl_->failures[k].empty()) ++count;
+  return count;
 }
 
 convergence_table convergence::table() const {

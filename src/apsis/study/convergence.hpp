@@ -78,8 +78,12 @@ class convergence {
 
   /// Computes what is missing, on all threads (see set_threads), the longest runs first; what comes out does
   /// not depend on their number. A run that fails numerically is noted in its row, and the study goes on.
-  /// Throws study_interrupted when asked to stop, after the runs under way.
+  /// Throws study_interrupted when asked to stop, after the steps under way: runs that are finished are kept,
+  /// those under way are dropped.
   void run(const study_control& control = {});
+
+  /// Runs that were computed, or failed, references included.
+  long finished_runs() const;
 
   /// The rows of the runs that are done so far.
   convergence_table table() const;

@@ -1,0 +1,115 @@
+// Files that are not what a command needs: one message and one exit code for every command that reads a file.
+#include "program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+using namespace app_test;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int input = 2, output = 4;
+
+/// A command line; "FILE" stands for the file in question. Codes where it is missing, a folder, or no text.
+struct reader {
+  std::vector<std::string> arguments;
+  int missing, folder, garbage;
+};
+
+const std::vector<reader> readers = {
+    {{"run", "FILE"}, input, output, input},
+    {{"converge", "FILE", "--vary", "time.dt=0.1,0.05"}, input, output, input},
+    {{"check", "FILE"}, input, output, input},
+    {{"show", "FILE"}, input, input, input},
+    {{"plot", "FILE"}, input, output, input},
+    {{"report", "FILE"}, output, output, output},
+    {{"design", "--order", "2", "--stages", "3", "--out", "d.toml", "--from", "FILE"}, input, input, input},
+    {{"design", "--out", "d.toml", "--embedded", "FILE"}, input, input, input},
+    {{"run", "paper/ode", "--restart", "FILE"}, output, output, output},
+    {{"run", "paper/ode", "time.method=FILE"}, input, input, input},
+};
+
+void expect_failure(const work_folder& folder, const reader& r, const std::string& file, int code) {
+  auto arguments = r.arguments;
+  for (auto& argument : arguments)
+    if (const auto at = argument.find("FILE"); at != std::string::npos) argument.replace(at, 4, file);
+  SCOPED_TRACE(arguments.front() + " " + arguments.back());
+  const auto before = folder.listing();
+  const outcome result = run_apsis(folder, arguments);
+  // Without Python nothing is drawn, and that is said first.
+  if (result.err.find("pictures cannot be drawn") != std::string::npos) return;
+  EXPECT_EQ(result.code, code) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("error: "));
+  EXPECT_EQ(result.err.find("error: "), result.err.rfind("error: ")) << result.err;
+  EXPECT_THAT(result.err, HasSubstr(file));
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_EQ(folder.listing(), before);
+}
+
+const std::string bom = "\xef\xbb\xbf";
+
+std::string with_windows_line_ends(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '\n' ? "\r\n" : std::string(1, c);
+  return out;
+}
+
+std::string with_tabs(const std::string& text) {
+  std::string out = "\t";
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    out += text[k];
+    if (text[k] == '\n' && k + 1 < text.size()) out += '\t';
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST(exit_codes, of_files_that_are_missing_folders_or_no_text) {
+  const work_folder folder;
+  fs::create_directory(folder.path() / "folder.toml");
+  std::string bytes;
+  for (int k = 0; k < 4096; ++k) bytes += static_cast<char>((k * 197 + 128) % 256);
+  folder.file("binary.toml", bytes);
+  for (const auto& r : readers) {
+    expect_failure(folder, r, "missing.toml", r.missing);
+    expect_failure(folder, r, "folder.toml", r.folder);
+    expect_failure(folder, r, "binary.toml", r.garbage);
+  }
+}
+
+TEST(exit_codes, of_files_that_cannot_be_read) {
+  if (geteuid() == 0) GTEST_SKIP() << "root reads every file";
+  const work_folder folder;
+  folder.file("closed.toml", "[model]\n");
+  fs::permissions(folder.path() / "closed.toml", fs::perms::none);
+  EXPECT_EQ(run_apsis(folder, {"run", "closed.toml"}).code, output);
+  EXPECT_EQ(run_apsis(folder, {"check", "closed.toml"}).code, output);
+}
+
+TEST(exit_codes, files_may_have_a_byte_order_mark_windows_line_ends_and_tabs) {
+  const work_folder folder;
+  const std::string text = run_apsis(folder, {"show", "paper/decay"}).out;
+  const std::string method = run_apsis(folder, {"show", "imdrk-1-2", "--format", "toml"}).out;
+  const auto run = [&folder](const std::string& name) {
+    const outcome result = run_apsis(folder, {"run", name});
+    EXPECT_EQ(result.code, 0) << name << result.err;
+    return result.out.substr(0, result.out.find("wall time"));
+  };
+  const std::string plain = run(folder.file("plain.toml", text));
+  EXPECT_EQ(run(folder.file("bom.toml", bom + text)), plain);
+  EXPECT_EQ(run(folder.file("crlf.toml", with_windows_line_ends(text))), plain);
+  EXPECT_EQ(run(folder.file("tabs.toml", with_tabs(text))), plain);
+  for (const std::string& form : {bom + method, with_windows_line_ends(method), with_tabs(method)})
+    EXPECT_EQ(run_apsis(folder, {"check", folder.file("m.toml", form)}).code, 0);
+  // Places count a tab as one character and a line end as one.
+  const outcome wrong = run_apsis(
+      folder, {"run", folder.file("w.toml", with_windows_line_ends("title = \"t\"\n\tcels = 3\n"))});
+  EXPECT_EQ(wrong.code, input);
+  EXPECT_THAT(wrong.err, HasSubstr("w.toml:"));
+}

@@ -1,0 +1,97 @@
+// Signals: what a command does within a step of the first one. No test depends on time: a signal is sent when
+// a line was printed or a file was opened, into work that never ends by itself.
+#include "program.hpp"
+
+#include <csignal>
+#include <cstdlib>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
+#include <unistd.h>
+
+using namespace app_test;
+using nlohmann::json;
+using testing::HasSubstr;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A variable of the environment for as long as this lives.
+class variable {
+ public:
+  variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before, had_ = true;
+    setenv(name, value.c_str(), 1);
+  }
+  ~variable() { had_ ? setenv(name_, before_.c_str(), 1) : unsetenv(name_); }
+  variable(const variable&) = delete;
+  variable& operator=(const variable&) = delete;
+
+ private:
+  const char* name_;
+  std::string before_;
+  bool had_ = false;
+};
+
+class every_signal : public testing::TestWithParam<int> {};
+
+TEST_P(every_signal, ends_converge_within_a_step_and_says_what_is_awaited) {
+  const work_folder folder;
+  // Ten thousand million steps, for hours.
+  process run(folder,
+              {"converge", "paper/ode", "--vary", "time.dt=1e-10,1e-11", "--threads", "1", "--out", "o"});
+  ASSERT_TRUE(run.wait_for("3 runs; "));
+  run.send(GetParam());
+  const outcome stopped = run.wait();
+  EXPECT_EQ(stopped.code, 130) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("interrupted: waiting for the step under way of every run"));
+  EXPECT_THAT(stopped.err, HasSubstr("interrupted (0 of 3 runs are finished); apsis plot o draws them"));
+  EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["state"], "interrupted");
+  EXPECT_TRUE(json::parse(read(folder.path() / "o/converge.json")).empty());
+}
+
+TEST_P(every_signal, ends_check) {
+  const work_folder folder;
+  const std::string pipe = (folder.path() / "m.toml").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  process run(folder, {"check", "m.toml", "--observe"});
+  const int writer = open(pipe.c_str(), O_WRONLY);  // waits until the command has opened it
+  ASSERT_GE(writer, 0);
+  run.send(GetParam());
+  const outcome stopped = run.wait();
+  close(writer);
+  EXPECT_EQ(stopped.code, 130) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("interrupted"));
+}
+
+TEST_P(every_signal, ends_the_drawing_of_plot_and_report_and_leaves_nothing_behind) {
+  const work_folder folder, temporary;
+  // In place of Python: good at the test for its modules, then without end.
+  folder.file("python",
+              "#!/bin/sh\ncase \"$1\" in -c) exit 0;; esac\necho $$ > child; echo drawing >&2\n"
+              "exec tail -f /dev/null\n");
+  fs::permissions(folder.path() / "python", fs::perms::owner_all);
+  const variable python("APSIS_PYTHON", (folder.path() / "python").string());
+  const variable place("TMPDIR", temporary.path().string());
+  for (const char* command : {"plot", "report"}) {
+    process run(folder, {command, "imdrk-1-2"});
+    ASSERT_TRUE(run.wait_for("drawing"));
+    run.send(GetParam());
+    const outcome stopped = run.wait();
+    EXPECT_EQ(stopped.code, 130) << command << stopped.err;
+    EXPECT_THAT(stopped.err, HasSubstr("interrupted: waiting for the "));
+    EXPECT_EQ(kill(std::stoi(read(folder.path() / "child")), 0), -1) << "the child lives on";
+    for (const auto& entry : fs::directory_iterator(temporary.path()))
+      EXPECT_NE(entry.path().filename().string().rfind("apsis-", 0), 0U) << entry.path();
+  }
+}
+
+}  // namespace
+
+INSTANTIATE_TEST_SUITE_P(signals, every_signal, testing::Values(SIGINT, SIGTERM, SIGHUP), [](const auto& s) {
+  return s.param == SIGINT ? "SIGINT" : s.param == SIGTERM ? "SIGTERM" : "SIGHUP";
+});

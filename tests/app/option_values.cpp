@@ -1,0 +1,131 @@
+// Values of options and arguments: every one of every command, from the command definitions themselves.
+#include "program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+using namespace app_test;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+namespace {
+
+/// An option ("--wall", "FLOAT") or an argument ("CASE", "") of a command.
+struct taker {
+  std::string command, name, type;
+};
+
+std::vector<taker> all_takers() {
+  const work_folder folder;
+  const json manual = json::parse(run_apsis(folder, {"manual", "--format", "json"}).out);
+  std::vector<taker> all;
+  for (const auto& command : manual["commands"])
+    for (const auto& option : command["options"]) {
+      const std::string usage = option["usage"];
+      const auto space = usage.find(' ');
+      if (usage.front() != '-')
+        all.push_back({command["name"], usage, ""});
+      else if (space != std::string::npos)
+        all.push_back(
+            {command["name"], usage.substr(0, space), usage.substr(space + 1, usage.find(':') - space - 1)});
+    }
+  return all;
+}
+
+std::vector<std::string> bad_values(const taker& t) {
+  std::vector<std::string> values = {""};
+  if (t.type.empty()) return values;
+  values.insert(values.end(), {"--json", "-x"});
+  if (t.type == "TEXT") return values;
+  values.insert(values.end(), {"nan", "-nan", "inf", "-inf", "1e400", "-1e400", "ten", "1 2", "0x10", "1,5"});
+  if (t.type != "FLOAT") values.insert(values.end(), {"1.5", "99999999999999999999", "1e-3"});
+  if (t.type == "UINT") values.emplace_back("-1");
+  return values;
+}
+
+void expect_refusal(const work_folder& folder, const std::vector<std::string>& arguments,
+                    const std::string& says) {
+  const auto before = folder.listing();
+  const outcome result = run_apsis(folder, arguments);
+  EXPECT_EQ(result.code, 2) << result.err;
+  EXPECT_THAT(result.err, HasSubstr(says));
+  EXPECT_EQ(result.err.find("error: "), result.err.rfind("error: "));
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_EQ(folder.listing(), before);
+}
+
+}  // namespace
+
+TEST(option_values, the_definitions_name_options_of_every_type) {
+  int options = 0, arguments = 0, numbers = 0, integers = 0;
+  for (const taker& t : all_takers()) {
+    (t.type.empty() ? arguments : options) += 1;
+    numbers += t.type == "FLOAT" ? 1 : 0;
+    integers += t.type == "INT" || t.type == "UINT" ? 1 : 0;
+  }
+  // Of today; fewer means that the test no longer reads the definitions as they are written.
+  EXPECT_GE(options, 30);
+  EXPECT_GE(arguments, 9);
+  EXPECT_GE(numbers, 8);
+  EXPECT_GE(integers, 9);
+}
+
+TEST(option_values, that_cannot_be_meant_are_refused_by_the_name_of_the_option) {
+  const work_folder folder;
+  const std::vector<taker> takers = all_takers();
+  for (const taker& t : takers)
+    for (const std::string& value : bad_values(t)) {
+      SCOPED_TRACE(t.command + " " + t.name + " '" + value + "'");
+      std::vector<std::string> arguments = {t.command};
+      // An argument is the n-th of its command: the ones before it get a word.
+      if (t.type.empty())
+        for (const taker& other : takers) {
+          if (other.command != t.command || !other.type.empty()) continue;
+          if (other.name == t.name) break;
+          arguments.emplace_back("word");
+        }
+      else
+        arguments.push_back(t.name);
+      arguments.push_back(value);
+      expect_refusal(folder, arguments, t.name + " cannot be '" + value + "'");
+    }
+}
+
+TEST(option_values, beyond_their_range_are_refused_by_the_name_of_the_option) {
+  const work_folder folder;
+  const std::vector<std::string> design = {"design", "--order", "2", "--stages", "3", "--out", "d.toml"};
+  const std::vector<std::pair<std::string, std::vector<std::string>>> ranges = {
+      {"--box", {"0", "-1", "1001"}}, {"--margin", {"-1", "1e9"}}, {"--ssp", {"0", "-1", "1e9"}},
+      {"--angle", {"-1", "91"}},      {"--pole", {"-1", "1e9"}},   {"--buffers", {"0", "-1"}},
+      {"--sparsify", {"-0.1", "1"}},  {"--starts", {"0", "-1"}},   {"--time", {"0", "-1"}},
+      {"--evaluations", {"-1", "3"}}, {"--threads", {"-1"}},       {"--starts", {"3000000000"}},
+      {"--buffers", {"3000000000"}},  {"--objective", {"speed"}},  {"--regime", {"fast"}},
+  };
+  for (const auto& [option, values] : ranges)
+    for (const auto& value : values) {
+      SCOPED_TRACE(option + " " + value);
+      auto arguments = design;
+      arguments.insert(arguments.end(), {option, value});
+      expect_refusal(folder, arguments, option);
+    }
+  for (const char* value : {"0", "-1", "-1e-300"})
+    expect_refusal(folder, {"run", "paper/ode", "--wall", value}, "--wall: a number above 0 is needed");
+  for (const char* command : {"run", "converge", "reproduce"})
+    expect_refusal(folder, {command, "--threads", "-1"}, "--threads");
+}
+
+TEST(option_values, whole_numbers_may_be_written_as_any_number) {
+  const work_folder folder;
+  EXPECT_EQ(run_apsis(folder, {"run", "paper/ode", "--threads", "1e0"}).code, 0);
+  EXPECT_EQ(run_apsis(folder, {"run", "paper/ode", "--threads", "+01"}).code, 0);
+  // Decimal, not octal: 010 is ten.
+  expect_refusal(folder, {"design", "--stages", "3", "--out", "d.toml", "--order", "010"}, "--order 10");
+}
+
+TEST(option_values, paths_that_begin_with_a_dash_are_written_with_their_folder) {
+  const work_folder folder;
+  EXPECT_EQ(run_apsis(folder, {"run", "paper/ode", "--out", "./--json"}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "--json" / "manifest.json"));
+}

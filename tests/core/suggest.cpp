@@ -1,0 +1,106 @@
+// Suggestions for misspelt words: every small slip finds its word, and nothing far is offered.
+#include <apsis/core/suggest.hpp>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+using apsis::nearest;
+using apsis::suggest;
+
+namespace {
+
+const std::vector<std::string> functions = {"x",     "pi",   "e",    "sin",  "cos",  "tan", "asin",
+                                            "acos",  "atan", "sinh", "cosh", "tanh", "exp", "log",
+                                            "log10", "sqrt", "abs",  "min",  "max"};
+const std::vector<std::string> keys = {"time.dt",     "time.end",       "time.method",  "time.tolerance",
+                                       "space.cells", "space.boundary", "velocity.max", "velocity.points"};
+
+/// Damerau–Levenshtein distance by recursion over the first letters, as it is defined.
+std::size_t distance(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty()) return a.size() + b.size();
+  if (a.front() == b.front()) return distance(a.substr(1), b.substr(1));
+  std::size_t best =
+      1 + std::min({distance(a.substr(1), b), distance(a, b.substr(1)), distance(a.substr(1), b.substr(1))});
+  if (a.size() > 1 && b.size() > 1 && a[0] == b[1] && a[1] == b[0])
+    best = std::min(best, 1 + distance(a.substr(2), b.substr(2)));
+  return best;
+}
+
+std::vector<std::string> slips_of(const std::string& word, std::size_t from) {
+  std::vector<std::string> all;
+  for (std::size_t k = from; k < word.size(); ++k) {
+    all.push_back(word.substr(0, k) + word.substr(k + 1));
+    all.push_back(word.substr(0, k) + "q" + word.substr(k));
+    all.push_back(word.substr(0, k) + "q" + word.substr(k + 1));
+    if (k + 1 < word.size()) {
+      all.push_back(word);
+      std::swap(all.back()[k], all.back()[k + 1]);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST(suggest, offers_nothing_that_is_far) {
+  EXPECT_EQ(nearest("foo", functions), "");
+  EXPECT_EQ(nearest("y", functions), "");
+  EXPECT_EQ(nearest("zz", functions), "");
+  EXPECT_EQ(nearest("time.foo", keys), "");
+  EXPECT_EQ(nearest("time.ab", keys), "");
+  EXPECT_EQ(nearest("paper/foo", {"paper/ode", "paper/decay"}), "");
+  EXPECT_EQ(nearest("--ab", {"--box", "--out"}), "");
+  EXPECT_EQ(nearest("", functions), "");
+  EXPECT_EQ(nearest(std::string(65, 'x'), {std::string(65, 'x')}), "");
+  EXPECT_EQ(suggest("foo", {"cos", "sin"}), "valid: cos, sin");
+}
+
+TEST(suggest, one_slip_in_three_or_more_letters_finds_the_word_or_one_as_near) {
+  for (const auto& word : functions) {
+    if (word.size() < 3) continue;
+    for (const auto& slip : slips_of(word, 0)) {
+      const std::string found = nearest(slip, functions);
+      ASSERT_FALSE(found.empty()) << slip;
+      EXPECT_LE(distance(slip, found), 1U) << slip << " " << found;
+    }
+  }
+  for (const auto& key : keys) {
+    if (key.size() - key.find('.') < 4) continue;
+    for (const auto& slip : slips_of(key, key.find('.') + 1))
+      EXPECT_LE(distance(slip, nearest(slip, keys)), 1U) << slip;
+  }
+}
+
+TEST(suggest, swaps_and_case_are_forgiven_in_short_words) {
+  EXPECT_EQ(nearest("time.td", keys), "time.dt");
+  EXPECT_EQ(nearest("ip", functions), "pi");
+  EXPECT_EQ(nearest("X", functions), "x");
+  EXPECT_EQ(nearest("COS", functions), "cos");
+  EXPECT_EQ(nearest("Time.DT", keys), "time.dt");
+}
+
+TEST(suggest, of_random_words_never_differ_in_more_than_a_third) {
+  std::mt19937 random(3);
+  int offered = 0;
+  for (int k = 0; k < 4000; ++k) {
+    std::string word(1 + random() % 6, ' ');
+    for (char& c : word) c = "acosinqtexph"[random() % 12];
+    const std::string found = nearest(word, functions);
+    if (found.empty()) continue;
+    ++offered;
+    const std::size_t d = distance(word, found);
+    const bool swapped = d == 1 && std::is_permutation(word.begin(), word.end(), found.begin(), found.end());
+    EXPECT_TRUE(3 * d <= std::max(word.size(), found.size()) || swapped) << word << " " << found;
+    for (const auto& other : functions) {
+      const std::size_t to_other = distance(word, other);
+      if (3 * to_other <= std::max(word.size(), other.size())) {
+        EXPECT_LE(d, to_other) << word << " " << other;
+      }
+    }
+  }
+  EXPECT_GT(offered, 100);
+}

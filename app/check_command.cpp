@@ -3,13 +3,14 @@
 #include "method_report.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/method/method_file.hpp>
 #include <apsis/study/observed_limits.hpp>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include <fmt/format.h>
@@ -18,17 +19,12 @@
 namespace apsis::app {
 namespace {
 
-// Parsed but not certified: a method whose claims fail is to be reported on, not refused.
+// Parsed but not certified: a method whose claims fail is reported on, not refused. A changed copy of a
+// catalogue file keeps its name while it is worked on; a run refuses it.
 method read_method(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  constexpr std::size_t longest = 1'000'001;
-  std::string text(longest, '\0');
-  if (in) in.read(text.data(), static_cast<std::streamsize>(longest));
-  if (in.bad() || (!in && in.gcount() == 0 && !in.eof()))
-    throw io_error(
-        fmt::format("cannot read '{}' (it is a folder or not readable); give a readable method file", path));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return parse_method(text, path);
+  method m = parse_method(read_method_text(path), path);
+  if (const auto problem = taken_name(m); !problem.empty()) log::warning(path + ": " + problem);
+  return m;
 }
 
 struct options {

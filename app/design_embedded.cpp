@@ -57,6 +57,7 @@ int design_embedded(const embedded_options& given) {
       m.name, given.cost == "nothing" ? " --cost nothing" : "", m.embedded->order,
       m.claims.intermediate ? "that keep the terms of size epsilon of the last stage, " : "", task.parts,
       m.embedded->order + 1);
+  m.name = file.name();
   file.write(m);
   const auto report = check_json(m);
   print(given.json ? report.dump(2) + "\n"

@@ -124,7 +124,8 @@ std::string embedded_cost_text(const json& e) {
 }
 
 std::string embedded_term_text(const json& e) {
-  return fmt::format("where epsilon << dt, last stage {:.4g} times the exact one", e["last"].get<double>());
+  return fmt::format("where epsilon << dt, its deviation from equilibrium is {:.4g} times the exact one",
+                     e["last"].get<double>());
 }
 
 /// null where the method has stages that the analysis does not cover, or the term is infinite.
@@ -150,16 +151,26 @@ json regime_json(const certificate& c) {
           {"band", {{"error", c.band.error}, {"at", c.band.at}}}};
 }
 
+/// The three terms of size ε in parts of the exact ones, so that 1 is right.
 std::string regime_text(const certificate& c) {
   if (!c.regime.applies) return "not covered (a stage is neither relaxed nor u^n)";
-  return fmt::format("flux {:.4g}, last stage {:.4g}, layer {:.4g} times the exact ones",
-                     c.regime.flux.convert_to<double>(), c.regime.last.convert_to<double>(),
-                     c.regime.layer.convert_to<double>());
+  return fmt::format(
+      "viscosity {:.4g} (N2), deviation from equilibrium {:.4g} (N1), initial layer {:.4g} (N3)",
+      c.regime.flux.convert_to<double>(), c.regime.last.convert_to<double>(),
+      c.regime.layer.convert_to<double>());
 }
 
+/// What these terms mean for the error as dt is refined.
 std::string verdict_text(const certificate& c) {
-  return fmt::format("flux and last stage (N1, N2) {}, layer (N3) {}; for BGK the flux is the viscosity",
-                     c.keeps_slow_terms ? "yes" : "no", c.keeps_layer ? "yes" : "no");
+  const std::string parts = "in parts of the exact terms of size epsilon, so 1 is right: ";
+  if (!c.keeps_slow_terms) return parts + "the error stalls at a multiple of epsilon";
+  return parts + (c.keeps_layer ? "no error of size epsilon is left"
+                                : "no error of size epsilon is left if the data start near equilibrium");
+}
+
+/// α with two decimals, rounded down: no more than was proved.
+std::string angle_text(double angle) {
+  return fmt::format("A({:.2f} degrees)", std::floor(angle * 100.0 + 1e-6) / 100.0);
 }
 
 /// r/n_F: what a transport evaluation is worth where positivity limits the step; null without such a limit.
@@ -270,9 +281,10 @@ std::string check_text(const method& m) {
   line("asymptotic preserving", c.ap_data.empty() ? "none" : c.ap_data);
   if (m.kind == method_kind::imex) {
     line("where epsilon << dt", regime_text(c));
-    if (c.regime.applies) line("keeps O(epsilon) terms", verdict_text(c));
+    if (c.regime.applies) line("", verdict_text(c));
     line("where epsilon ~ dt",
-         fmt::format("error of the flux up to {:.2g} dt, at epsilon/C = dt/{:.2g}", c.band.error, c.band.at));
+         fmt::format("error of the viscous flux up to {:.2g} dt, largest at epsilon/C = dt/{:.2g}",
+                     c.band.error, c.band.at));
   }
   line("cost of a step", fmt::format("{} transport evaluations, {} implicit solves, {} buffers",
                                      c.explicit_evaluations, c.implicit_solves, steps.buffers()));
@@ -283,10 +295,9 @@ std::string check_text(const method& m) {
     if (!e["last"].is_null()) line("", embedded_term_text(e));
   }
   if (m.kind != method_kind::explicit_only)
-    line("implicit part",
-         fmt::format("{}, |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
-                     c.stability.l_stable ? "L-stable" : fmt::format("A({:.4g} degrees)", c.stability.angle),
-                     c.stability.largest_on_negative_axis, c.stability.at_infinity));
+    line("implicit part", fmt::format("{}, |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
+                                      c.stability.l_stable ? "L-stable" : angle_text(c.stability.angle),
+                                      c.stability.largest_on_negative_axis, c.stability.at_infinity));
   const auto paragraph = [&line](std::string name, const std::string& text) {
     if (text.empty()) return;
     for (const auto& one : lines_of(text)) line(std::exchange(name, ""), one);

@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/method/export.hpp>
+#include <apsis/method/method_text.hpp>
 
 #include <fstream>
 
@@ -9,14 +10,37 @@
 
 namespace apsis::app {
 
-method_writer::method_writer(const std::string& path)
-    : path_(path), folder_(path_.has_parent_path() ? path_.parent_path() : std::filesystem::path(".")) {
-  if (!path_.has_filename() || path_.extension() != ".toml")
+namespace {
+
+/// The folder of a method file that may be written. It is not made: a path that is mistyped would leave
+/// folders.
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  if (!path.has_filename() || path.extension() != ".toml")
+    throw input_error(fmt::format(
+        "command line: --out '{}' is not a method file (it does not end in .toml); give FILE.toml",
+        path.string()));
+  const std::string name = path.stem().string();
+  if (const auto problem = method_name_problem(name); !problem.empty())
     throw input_error(
-        fmt::format("command line: --out '{}' is not a method file (its name does not end in .toml); write "
-                    "for example my-method.toml",
-                    path));
+        fmt::format("command line: --out '{}' would name the method '{}': {}", path.string(), name, problem));
+  if (is_method_name(name))
+    throw input_error(fmt::format(
+        "command line: --out '{}' would name the method '{}' (the catalogue has one of this name, or a "
+        "family reserves it); choose another file name",
+        path.string(), name));
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw input_error(
+        fmt::format("command line: no folder '{}' for --out '{}' (it is not made for you); create it "
+                    "first or correct the path",
+                    folder.string(), path.string()));
+  return folder;
 }
+
+}  // namespace
+
+method_writer::method_writer(const std::string& path) : path_(path), folder_(folder_of(path_)) {}
 
 void method_writer::write(const method& m) {
   folder_.publish(path_.filename().string(), [&m](const std::string& temporary) {

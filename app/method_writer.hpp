@@ -11,7 +11,8 @@ namespace apsis::app {
 /// The method file that a command leaves, with the best method so far at any time.
 class method_writer {
  public:
-  /// Throws input_error unless the path ends in .toml.
+  /// Throws input_error unless the path ends in .toml, its stem can be the name of a new method, and its
+  /// folder exists.
   explicit method_writer(const std::string& path);
 
   std::string name() const { return path_.stem().string(); }

@@ -1,5 +1,6 @@
 """Pages of reference from the program itself: methods, models, cases, keys, schemes, claims, commands."""
 import json
+import math
 import re
 import subprocess
 import textwrap
@@ -46,6 +47,11 @@ def number(x: float | None) -> str:
     return "–" if x is None else f"{x:.4g}"
 
 
+def rounded_down(degrees: float) -> str:
+    """An angle with two decimals, no larger than what was proved."""
+    return f"{math.floor(degrees * 100 + 1e-6) / 100:g}"
+
+
 def coefficient(m: dict) -> str:
     return "any step" if m["unconditional"] and m["kind"] == "implicit" else number(m["ssp_coefficient"])
 
@@ -83,7 +89,7 @@ def method(program: Program, m: dict) -> str:
         "asymptotic preserving": limit(m) if m["kind"] == "imex" else "",
         "cost of a step": f"{m['explicit_evaluations']} evaluations of T, {m['implicit_solves']} implicit solves, "
                           f"{m['buffers']} states in memory",
-        "stability of the implicit part": stability and f"A({number(stability['angle_degrees'])}°)"
+        "stability of the implicit part": stability and f"A({rounded_down(stability['angle_degrees'])}°)"
                                           + (", L-stable" if stability["l_stable"] else ""),
         "embedded solution": m["embedded"] and f"of order {m['embedded']['order']}",
         "recommended for": plain(m["purpose"]), "source": plain(document["citation"]), "origin": plain(document["origin"]),

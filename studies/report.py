@@ -8,6 +8,7 @@ DOCS/images/study-*.png; and writes the tables between the marks <!-- NAME --> a
 """
 import argparse
 import json
+import math
 import re
 import subprocess
 import sys
@@ -127,7 +128,7 @@ def design_tables(data):
                 lines.append(f"| `{run['args']}` | {run['stages']} | {run['evaluations'] or '—'} | "
                              f"{format(run['r'], '.4f') if has_r else 'any'} | "
                              f"{format(run['r'] / run['evaluations'], '.4f') if has_r else '—'} | {run['error']:.3g} | "
-                             f"{format(run['band'], '.2g') if run.get('band') else '—'} | {run['angle']:.1f}° | "
+                             f"{format(run['band'], '.2g') if run.get('band') else '—'} | {math.floor(run['angle'] * 10 + 1e-6) / 10:.1f}° | "
                              f"{run['start']} | {starts} | {run['seconds']:.0f} |")
             else:
                 residual = f"nearest residual {run['nearest_residual']:.1e}" if run["nearest_residual"] else run["reason"]

@@ -32,6 +32,13 @@ void PrintTo(const bad_input& b, std::ostream* out) {
 
 class bad_inputs : public testing::TestWithParam<bad_input> {};
 
+/// "a.a.a", n parts.
+std::string many_dots(int n) {
+  std::string key = "a";
+  for (int i = 1; i < n; ++i) key += ".a";
+  return key;
+}
+
 void write_files(const work_folder& folder) {
   folder.file("good.toml", good_case);
   folder.file("file", "x");
@@ -47,6 +54,17 @@ void write_files(const work_folder& folder) {
   wrong.replace(wrong.find("-1/2"), 4, "-1/3");
   folder.file("wrong_claim.toml", wrong);
   folder.file("truncated_method.toml", good_method.substr(0, 90));
+  const auto named = [](const std::string& name) {
+    std::string text = good_method;
+    const auto begin = text.find("name = \"") + 8;
+    return text.replace(begin, text.find('"', begin) - begin, name);
+  };
+  folder.file("escape.toml", named("../escape"));
+  folder.file("unnamed.toml", named(""));
+  folder.file("taken.toml", named("md-imex-3-2"));
+  folder.file("dots.toml", many_dots(50000) + " = 1\n" + good_method);
+  // A megabyte of comment: cut there, the rest would be a method whose last lines are missing.
+  folder.file("long.toml", good_method + "#" + std::string(1'100'000, 'x') + "\n");
   folder.file("not_hdf5.h5", "this is no HDF5 file");
 }
 
@@ -137,6 +155,19 @@ const std::vector<bad_input> all = {
     {"truncated_method", {"check", "truncated_method.toml"}, 2, "truncated_method.toml:"},
     {"garbage_method", {"check", "garbage.toml"}, 2, "garbage.toml"},
     {"empty_method", {"check", "empty.toml"}, 2, "empty.toml"},
+    {"method_named_by_a_path", {"check", "escape.toml"}, 2, "the name cannot be used"},
+    {"method_without_name", {"check", "unnamed.toml"}, 2, "unnamed.toml:1:8: the name is empty"},
+    {"run_with_a_taken_name",
+     {"run", "paper/ode", "time.method=taken.toml"},
+     2,
+     "the name 'md-imex-3-2' is that of another method"},
+    {"method_with_many_dots", {"check", "dots.toml"}, 2, "dots.toml:1:16: the key has more than 8 parts"},
+    {"case_with_many_dots", {"run", "dots.toml"}, 2, "dots.toml:1:4097: the line is longer than 4096 bytes"},
+    {"value_of_many_parts",
+     {"run", "good.toml", "time.end={" + many_dots(50000) + "=1}"},
+     2,
+     "the line is longer than 4096 bytes"},
+    {"method_of_many_bytes", {"check", "long.toml"}, 2, "the file is larger than 1048576 bytes"},
     {"folder_as_method", {"check", "."}, 4, "cannot read"},
 };
 

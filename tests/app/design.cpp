@@ -106,6 +106,27 @@ TEST(design, refuses_what_cannot_be_asked_for) {
   EXPECT_THAT(folder.listing(), IsEmpty());
 }
 
+TEST(design, makes_no_folder_and_no_method_that_could_not_be_read_again) {
+  const work_folder folder;
+  const auto refused = [&](const std::string& out, const std::string& message) {
+    for (const std::vector<std::string>& what :
+         {std::vector<std::string>{"--order", "2", "--stages", "3"}, {"--embedded", "md-imex-chain-7-2"}}) {
+      std::vector<std::string> arguments = {"design", "--out", out};
+      arguments.insert(arguments.end(), what.begin(), what.end());
+      const outcome result = run_apsis(folder, arguments);
+      EXPECT_EQ(result.code, 2) << out;
+      EXPECT_THAT(result.err, HasSubstr(message)) << out;
+    }
+  };
+  refused("some/missing/folder/x.toml",
+          "no folder 'some/missing/folder' for --out 'some/missing/folder/x.toml'");
+  refused("some/missing/folder/x", "is not a method file (it does not end in .toml)");
+  refused("two words.toml", "would name the method 'two words'");
+  refused("md-imex-3-2.toml", "would name the method 'md-imex-3-2'");
+  refused("md-imex-chain-99-2.toml", "family reserves it");
+  EXPECT_THAT(folder.listing(), IsEmpty());
+}
+
 TEST(design, writes_a_method_again_with_its_embedded_solution) {
   const work_folder folder;
   const outcome result =

@@ -2,8 +2,10 @@
 #include "tableaux.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/method/export.hpp>
 
 #include <ctime>
+#include <fstream>
 #include <optional>
 #include <random>
 
@@ -68,6 +70,13 @@ std::string long_text(std::size_t n) {
   return std::string(n, '7');
 }
 
+/// "a.a.a", n parts.
+std::string dotted(int n) {
+  std::string key = "a";
+  for (int i = 1; i < n; ++i) key += ".a";
+  return key;
+}
+
 std::string many_rows(int n) {
   std::string rows = "P = [";
   for (int i = 0; i < n; ++i) rows += "[],";
@@ -112,6 +121,25 @@ INSTANTIATE_TEST_SUITE_P(
         bad_file{"too_long_number", "r = \"1\"", "r = \"" + long_text(100000) + "\"", "10:5",
                  "no coefficient"},
         bad_file{"too_long_name", "name = \"x\"", "name = \"" + long_text(100000) + "\"", "1:8", "too long"},
+        bad_file{"empty_name", "name = \"x\"", "name = \"\"", "1:8", "the name is empty"},
+        bad_file{"name_leaves_the_folder", "name = \"x\"", "name = \"../escape\"", "1:8", "cannot be used"},
+        bad_file{"name_is_a_path", "name = \"x\"", "name = \"a/b\"", "1:8", "cannot be used"},
+        bad_file{"name_is_hidden", "name = \"x\"", "name = \".x\"", "1:8", "cannot be used"},
+        bad_file{"name_is_an_option", "name = \"x\"", "name = \"-x\"", "1:8", "cannot be used"},
+        bad_file{"name_has_two_lines", "name = \"x\"", "name = \"x\\ny\"", "1:8", "cannot be used"},
+        bad_file{"name_is_of_61_letters", "name = \"x\"", "name = \"" + std::string(61, 'x') + "\"", "1:8",
+                 "too long"},
+        bad_file{"name_is_a_file", "name = \"x\"", "name = \"x.toml\"", "1:8", "ends in '.toml'"},
+        bad_file{"key_of_fifty_thousand_parts", "title =", dotted(50000) + " = 1\ntitle =", "2:16",
+                 "the key has more than 8 parts"},
+        bad_file{"table_of_fifty_thousand_parts", "[claims]", "[" + dotted(50000) + "]\n[claims]", "6:17",
+                 "the key has more than 8 parts"},
+        bad_file{"key_with_spaces_and_quotes", "title =", "a . \"b.c\" .c.d.e.f.g.h.i = 1\ntitle =", "2:23",
+                 "the key has more than 8 parts"},
+        bad_file{"inline_table_of_many_parts", "title =", "x = {" + dotted(9) + " = 1}\ntitle =", "2:21",
+                 "the key has more than 8 parts"},
+        bad_file{"lists_of_lists_of_lists", "title =", "x = " + std::string(9, '[') + "\ntitle =", "2:13",
+                 "nested deeper than 8"},
         bad_file{"origin_is_a_list", "citation = \"c\"", "citation = \"c\"\norigin = [\"a\"]", "4:10",
                  "text in quotes"},
         bad_file{"too_long_origin", "citation = \"c\"",
@@ -178,6 +206,61 @@ TEST(method_files, ten_megabytes_of_anything_are_refused_at_once) {
   EXPECT_TRUE(complaint(std::string(1'000'000, '\0')));
   // Some milliseconds; a sanitizer takes more.
   EXPECT_LT(std::clock() - start, 3 * CLOCKS_PER_SEC);
+}
+
+TEST(method_files, dots_in_texts_comments_and_numbers_divide_no_key) {
+  const std::string dots(60, '.');
+  std::string text =
+      "# " + dots + "\norigin = \"\"\"a\n" + dots + "\\\"\"\"\"\npurpose = '" + dots + "'\n" + good;
+  EXPECT_EQ(parse_method(text, "m.toml").purpose, dots);
+  text.replace(text.find("[claims]"), 8, "[ claims ] # [[[[[[[[[[");
+  EXPECT_EQ(parse_method(text, "m.toml").claims.order, 2);
+}
+
+/// A file in the folder of the test.
+std::string write_file(const std::string& name, const std::string& text) {
+  const std::string path = ::testing::TempDir() + name;
+  std::ofstream(path, std::ios::binary) << text;
+  return path;
+}
+
+TEST(method_files, larger_than_a_mebibyte_are_refused_and_not_cut) {
+  // What is behind the limit would be a comment, or another key; the message gives the place of the limit.
+  const std::string comment = "# " + std::string(1 << 20, 'c') + "\n";
+  const auto path = write_file("large.toml", good + comment);
+  try {
+    load_method_file(path);
+    FAIL() << "accepted";
+  } catch (const input_error& refused) {
+    EXPECT_THAT(refused.what(), ::testing::StartsWith(path + ":15:"));
+    EXPECT_THAT(refused.what(), ::testing::HasSubstr("larger than 1048576 bytes"));
+  }
+  EXPECT_THROW(find_method(path), input_error);
+}
+
+TEST(method_files, may_repeat_a_catalogue_method_but_not_its_name_alone) {
+  std::string text = to_toml(find_method("md-imex-3-2"));
+  text.replace(text.find("1/2"), 3, "0.5");  // the same number
+  EXPECT_EQ(load_method_file(write_file("same.toml", text)).name, "md-imex-3-2");
+  const std::string other = to_toml(find_method("md-imex-5-2"));
+  const auto named = [&other](const std::string& name) {
+    std::string file = other;
+    const std::string first = "name = \"md-imex-5-2\"";
+    file.replace(file.find(first), first.size(), "name = \"" + name + "\"");
+    return write_file("named.toml", file);
+  };
+  const auto refused_as = [](const std::string& path) -> std::string {
+    try {
+      load_method_file(path);
+    } catch (const input_error& refused) {
+      return refused.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refused_as(named("my-method")), "accepted");
+  EXPECT_THAT(refused_as(named("md-imex-3-2")), ::testing::HasSubstr("is that of another method"));
+  EXPECT_THAT(refused_as(named("md-imex-chain-5-2")), ::testing::HasSubstr("is that of another method"));
+  EXPECT_THAT(refused_as(named("md-imex-chain-99-2")), ::testing::HasSubstr("is reserved"));
 }
 
 TEST(method_files, that_are_not_there_or_no_files_are_refused) {

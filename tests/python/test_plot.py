@@ -223,6 +223,16 @@ def test_equal_results_make_equal_files(tmp_path, form):
         assert (tmp_path / "a" / f"{name}.{form}").read_bytes() == (tmp_path / "b" / f"{name}.{form}").read_bytes()
 
 
+def test_a_picture_named_by_a_path_is_refused(tmp_path, capsys):
+    for name in ("../escape", "/tmp/escape", ".hidden"):
+        file = tmp_path / "picture.json"
+        file.write_text(json.dumps({"name": name, "A_hat": [[0]], "A": [[1]], "A_dot": [[0]]}), encoding="utf-8")
+        folder = tmp_path / "pictures"
+        assert command.main([str(file), "--out", str(folder)]) == 4
+        assert f"names a picture '{name}" in capsys.readouterr().err
+        assert sorted(p.name for p in tmp_path.iterdir()) == ["picture.json"]
+
+
 def test_what_cannot_be_drawn_is_named(tmp_path, monkeypatch, capsys):
     run(tmp_path / "run", "paper/ode")
     (tmp_path / "empty").mkdir()

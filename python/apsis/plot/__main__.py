@@ -92,6 +92,8 @@ def draw_all(options: argparse.Namespace) -> None:
     for what in options.what:
         folder, figures = drawn(what)
         for name, figure in figures:
+            if Path(name).name != name or name.startswith("."):  # a name from a file that apsis did not write
+                raise PictureError(f"'{what}' names a picture '{name}' (it must be a file name without folder); correct the name")
             print(save(figure, (options.out or folder) / f"{name}.{options.format}"))
 
 

@@ -53,7 +53,7 @@ bool is_acceptable(const design_task& task, const design_candidate& candidate) {
   exact.D = copy(m.D);
   exact.ddot.assign(m.ddot.begin(), m.ddot.end());
   exact.r = m.r;
-  return analyse_stability(to_butcher(exact)).angle >= task.demands.least_angle;
+  return analyse_stability(exact).angle >= task.demands.least_angle;
 }
 
 namespace {

@@ -22,6 +22,32 @@ struct entry {
   certificate certified;
 };
 
+/// Whether both have the same kind and coefficients, however written; an embedded solution may be new.
+bool is_same(const method& a, const method& b) {
+  const auto x = a.coefficients<mp_real>(), y = b.coefficients<mp_real>();
+  const auto equal = [](const matrix<mp_real>& one, const matrix<mp_real>& other) {
+    if (one.rows() != other.rows()) return false;
+    for (std::size_t i = 0; i < one.rows(); ++i)
+      for (std::size_t j = 0; j <= i; ++j)
+        if (one(i, j) != other(i, j)) return false;
+    return true;
+  };
+  return a.kind == b.kind && equal(x.P, y.P) && equal(x.W, y.W) && equal(x.D, y.D) && x.ddot == y.ddot &&
+         x.r == y.r;
+}
+
+method parse_catalogue_method(std::string_view name) {
+  for (const auto& file : embedded::methods())
+    if (file.name == name) return parse_method(file.text, "methods/" + std::string(file.name) + ".toml");
+  return make_member(*find_family(name), name);
+}
+
+/// Throws input_error if a file gives a method the name of another one.
+void require_own_name(const method& m, const std::string& path) {
+  if (const auto problem = taken_name(m); !problem.empty())
+    throw input_error(source_place{path, 0, 0}, problem);
+}
+
 /// From the file of the catalogue, by its family, or from a file of the user.
 method make_method(std::string_view name) {
   if (is_method_file(name)) return parse_method(read_method_text(std::string(name)), std::string(name));
@@ -44,6 +70,7 @@ const entry& find_entry(std::string_view name) {
   auto made = std::make_unique<entry>();
   made->parsed = make_method(name);
   made->certified = certify(made->parsed);
+  if (is_method_file(name) && made->certified.claims_hold) require_own_name(made->parsed, std::string(name));
   return *known.emplace(std::string(name), std::move(made)).first->second;
 }
 
@@ -80,6 +107,21 @@ bool is_method_name(std::string_view name) {
   return find_family(name) != nullptr;
 }
 
+std::string taken_name(const method& m) {
+  if (!is_method_name(m.name)) return "";
+  const family_entry* family = find_family(m.name);
+  const bool is_member = family != nullptr && missing_member(*family, m.name).empty();
+  if (family != nullptr && !is_member)
+    return fmt::format("the name '{}' is reserved (it has the pattern {} of a family); choose another name",
+                       m.name, family->pattern);
+  if (is_same(m, parse_catalogue_method(m.name))) return "";
+  return fmt::format(
+      "the name '{}' is that of another method (the catalogue has it with other coefficients, and results "
+      "are "
+      "filed under the name); choose another name",
+      m.name);
+}
+
 bool is_method_file(std::string_view name) {
   return name.ends_with(".toml");
 }
@@ -87,6 +129,7 @@ bool is_method_file(std::string_view name) {
 method load_method_file(const std::string& path) {
   method m = parse_method(read_method_text(path), path);
   require_claims(certify(m));
+  require_own_name(m, path);
   return m;
 }
 

@@ -172,7 +172,7 @@ void check_structure_claims(const method& m, certificate& c) {
         fmt::format("claims.type = {} but the method is of type {}", *m.claims.type, c.type));
   if (m.claims.l_stable && *m.claims.l_stable != c.stability.l_stable)
     c.failures.push_back(fmt::format(
-        "claims.l_stable = {} but the implicit part is A({:.4g} degrees)-stable with |R(-infinity)| = {:.3g}",
+        "claims.l_stable = {} but the implicit part is A({:.4f} degrees)-stable with |R(-infinity)| = {:.3g}",
         *m.claims.l_stable, c.stability.angle, c.stability.at_infinity));
 }
 
@@ -290,11 +290,10 @@ certificate certify(const method& m) {
   find_order(b, tolerance, c);
   find_ssp(b, tolerance, c);
   find_structure(m, form, b, c);
-  if (m.kind != method_kind::explicit_only)
-    c.stability = analyse_stability(to_butcher(m.coefficients<long double>()));
+  if (m.kind != method_kind::explicit_only) c.stability = analyse_stability(m.coefficients<long double>());
   if (m.kind == method_kind::imex) {
     find_intermediate_regime(form, tolerance, c);
-    c.band = find_intermediate_band(to_butcher(m.coefficients<double>()));
+    c.band = find_intermediate_band(to_butcher(m.coefficients<long double>()));
   }
   check_order_claim(m, c);
   check_ssp_claim(m, tolerance, c);

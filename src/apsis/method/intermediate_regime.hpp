@@ -1,7 +1,9 @@
 #pragma once
 
+#include <apsis/method/golden_section.hpp>
 #include <apsis/method/tableau.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -172,15 +174,30 @@ struct intermediate_band {
       at = 0.0;        ///< z of the maximum
 };
 
-/// Over 10⁻³ ≤ z ≤ 10⁵, forty values to a decade.
+/// Over 10⁻³ ≤ z ≤ 10⁵: of forty values to a decade each that is not below its neighbours, refined.
 template <class Real>
 intermediate_band find_intermediate_band(const butcher_form<Real>& b) {
+  constexpr int per_decade = 40, first = -3 * per_decade, last = 5 * per_decade;
+  const auto z_of = [](double k) { return std::pow(10.0, k / per_decade); };
+  const auto error = [&](double k) {
+    const double z = z_of(k);
+    return std::abs(static_cast<double>(at_finite_rate(b, Real(z)).flux - Real(1))) / z;
+  };
+  std::vector<double> errors;
+  for (int k = first; k <= last; ++k) {
+    errors.push_back(error(k));
+    if (std::isnan(errors.back())) return {errors.back(), z_of(k)};
+  }
   intermediate_band band;
-  for (int k = -120; k <= 200; ++k) {
-    const double z = std::pow(10.0, k / 40.0);
-    const double error = std::abs(static_cast<double>(at_finite_rate(b, Real(z)).flux) - 1.0) / z;
-    if (std::isnan(error)) return {error, z};
-    if (error > band.error) band = {error, z};
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    const bool rises = k == 0 || errors[k] >= errors[k - 1];
+    const bool falls = k + 1 == errors.size() || errors[k] >= errors[k + 1];
+    if (!rises || !falls) continue;
+    const double place = first + static_cast<double>(k);
+    const auto peak =
+        golden_section(error, std::max<double>(place - 1, first), std::min<double>(place + 1, last), 40);
+    if (errors[k] > band.error) band = {errors[k], z_of(place)};
+    if (peak.value > band.error) band = {peak.value, z_of(peak.at)};
   }
   return band;
 }

@@ -5,11 +5,10 @@
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/exact_form.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/method/method_text.hpp>
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <sstream>
 #include <string>
 
 #include <fmt/format.h>
@@ -19,7 +18,6 @@ namespace apsis {
 namespace {
 
 constexpr std::size_t most_stages = 64;
-constexpr std::size_t longest_file = 1 << 20;
 constexpr std::size_t longest_text = 500;
 
 source_place place_of(const toml::node& node, const std::string& file) {
@@ -324,10 +322,7 @@ void read_butcher(const toml::table& table, const std::string& file, method& m) 
 }  // namespace
 
 method parse_method(std::string_view text, const std::string& file) {
-  if (text.size() > longest_file)
-    throw input_error(
-        source_place{file, 1, 1},
-        fmt::format("not a method file ({} bytes; a method file has at most {})", text.size(), longest_file));
+  check_method_text(text, file);
   toml::table root;
   try {
     root = toml::parse(text, file);
@@ -341,6 +336,7 @@ method parse_method(std::string_view text, const std::string& file) {
                     {"name", "title", "citation", "origin", "purpose", "kind", "claims", "shu_osher",
                      "butcher", "embedded"});
   m.name = top.text("name");
+  if (const auto problem = method_name_problem(m.name); !problem.empty()) top.fail("name", problem);
   m.title = top.text("title");
   m.citation = top.text("citation");
   if (top.has("origin")) m.origin = top.text("origin");
@@ -361,16 +357,6 @@ method parse_method(std::string_view text, const std::string& file) {
                       "[embedded] is a row of the Shu-Osher form; give the method as [shu_osher]");
   read_embedded(need_table(root, "embedded", file), file, m);
   return m;
-}
-
-std::string read_method_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in)
-    throw input_error("cannot read the method file '" + path + "' (it does not exist or is not readable)");
-  std::string text(longest_file + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
 }
 
 }  // namespace apsis

@@ -1,5 +1,9 @@
 #include <apsis/method/stability.hpp>
 
+#include <apsis/method/golden_section.hpp>
+#include <apsis/method/stable_ray.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -30,59 +34,190 @@ std::complex<long double> stability_function(const butcher_form<long double>& b,
 
 namespace {
 
+using complex = std::complex<long double>;
+
+complex times(complex a, complex b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+/// R(z) from the entries of the Shu–Osher form that are not zero; of a family with s stages these are O(s),
+/// of its Butcher form O(s²).
+class sparse_function {
+ public:
+  explicit sparse_function(const shu_osher_form<long double>& m) {
+    const auto initial = initial_weights(m);
+    for (std::size_t i = 0; i < m.stages(); ++i) {
+      row r{initial[i], m.D(i, i), m.ddot[i], {}, {}};
+      for (std::size_t j = 0; j < i; ++j) {
+        if (m.P(i, j) + m.W(i, j) != 0) r.mixed.push_back({j, m.P(i, j) + m.W(i, j)});
+        if (m.D(i, j) != 0) r.coupled.push_back({j, m.D(i, j)});
+      }
+      rows_.push_back(std::move(r));
+    }
+  }
+
+  complex operator()(complex z) const {
+    const complex z2 = times(z, z);
+    stages_.clear();
+    for (const row& r : rows_) {
+      complex stage = r.initial, coupled = 0;
+      for (const auto& [j, weight] : r.mixed) stage += weight * stages_[j];
+      for (const auto& [j, weight] : r.coupled) coupled += weight * stages_[j];
+      if (!r.coupled.empty()) stage += times(z, coupled);
+      if (r.d != 0 || r.ddot != 0) {
+        const complex below = 1.0L - r.d * z - r.ddot * z2;
+        stage = times(stage, std::conj(below)) / std::norm(below);
+      }
+      stages_.push_back(stage);
+    }
+    return stages_.back();
+  }
+
+ private:
+  struct entry {
+    std::size_t column;
+    long double weight;
+  };
+  struct row {
+    long double initial, d, ddot;
+    std::vector<entry> mixed, coupled;
+  };
+  std::vector<row> rows_;
+  mutable std::vector<complex> stages_;
+};
+
 constexpr int samples = 480;
 
-/// Radii from 1e-4 to 1e8, evenly in the logarithm.
-long double radius(int k) {
-  return std::pow(10.0L, -4.0L + 12.0L * static_cast<long double>(k) / samples);
+/// Radii from 1e-4 to 1e8, evenly in the logarithm, k not necessarily whole.
+long double radius(long double k) {
+  return std::pow(10.0L, -4.0L + 12.0L * k / samples);
+}
+
+/// Largest value of f(radius(k)): the largest sample and the maxima next to all samples that are not below
+/// both neighbours, by golden section.
+template <class Function>
+long double maximum_over_radii(const Function& f) {
+  std::vector<long double> values;
+  for (int k = 0; k <= samples; ++k) values.push_back(f(radius(static_cast<long double>(k))));
+  long double largest = *std::max_element(values.begin(), values.end());
+  for (std::size_t k = 1; k + 1 < values.size(); ++k) {
+    if (!(values[k] >= values[k - 1] && values[k] >= values[k + 1])) continue;
+    constexpr int steps = 40;  // 0.618⁴⁰ = 4·10⁻⁹ of the bracket, and maxima are flat
+    const auto place = static_cast<long double>(k);
+    largest = std::max(
+        largest,
+        golden_section([&](long double x) { return f(radius(x)); }, place - 1, place + 1, steps).value);
+  }
+  return largest;
+}
+
+complex direction(long double degrees) {
+  const long double radians = degrees * std::numbers::pi_v<long double> / 180.0L;
+  return {-std::cos(radians), -std::sin(radians)};
 }
 
 /// Rounding, and the flat start |R| = 1 + O(z^{p+1}) near 0.
 constexpr long double stable = 1.0L + 1e-10L;
 
-/// Whether |R| ≤ 1 on the ray at `degrees` from the negative axis.
-bool is_stable_ray(const butcher_form<long double>& b, long double degrees) {
-  const long double radians = degrees * std::numbers::pi_v<long double> / 180.0L;
-  const std::complex<long double> direction(-std::cos(radians), -std::sin(radians));
-  for (int k = 0; k <= samples; ++k)
-    if (!(std::abs(stability_function(b, radius(k) * direction)) <= stable)) return false;
-  return true;
+/// Whether |R| ≤ 1 wherever one looks on the ray at `degrees` from the negative axis.
+bool seems_stable(const sparse_function& R, long double degrees) {
+  const auto u = direction(degrees);
+  const auto size = [&](long double r) {
+    const long double value = std::sqrt(std::norm(R(r * u)));
+    return std::isnan(value) ? std::numeric_limits<long double>::infinity() : value;
+  };
+  return maximum_over_radii(size) <= stable;
 }
 
-/// The boundary between stable and unstable rays, by steps of 5 degrees and bisection: inside a sector
-/// without poles |R| is largest on its boundary, so that one ray speaks for the sector.
-double sector(const butcher_form<long double>& b) {
-  constexpr long double stride = 5;
+/// Angle between the negative axis and the nearest pole 1 − zd − z²ḋ = 0 of a stage in Re z < 0, in degrees;
+/// 90 without one, as it is for d ≥ 0 ≥ ḋ.
+long double angle_of_poles(const shu_osher_form<long double>& m) {
+  long double angle = 90;
+  const auto pole = [&angle](std::complex<long double> z) {
+    if (z.real() >= 0) return;
+    angle = std::min(angle, std::abs(std::arg(-z)) * 180.0L / std::numbers::pi_v<long double>);
+  };
+  for (std::size_t i = 0; i < m.stages(); ++i) {
+    const long double d = m.D(i, i), ddot = m.ddot[i];
+    if (d >= 0 && ddot <= 0) continue;
+    if (ddot == 0) {
+      pole(1 / d);
+      continue;
+    }
+    const auto root = std::sqrt(std::complex<long double>(d * d + 4 * ddot));
+    pole((-d + root) / (2 * ddot));
+    pole((-d - root) / (2 * ddot));
+  }
+  return angle;
+}
+
+/// The angle, found by steps of 5 degrees and bisection, then rounded down until it is proved. Inside a
+/// sector without poles |R| is largest on its boundary, so that one ray speaks for the sector.
+double sector(const shu_osher_form<long double>& m, const sparse_function& R) {
+  constexpr long double stride = 5, unit = 1e-4L;
+  const long double most = angle_of_poles(m);
   long double inside = 0, outside = stride;
-  while (outside <= 90 && is_stable_ray(b, outside)) {
+  while (outside <= 90 && seems_stable(R, outside)) {
     inside = outside;
     outside += stride;
   }
-  if (outside > 90) return 90.0;
-  for (int k = 0; k < 14; ++k) {
+  if (outside > 90 && most == 90 && is_stable_imaginary_axis(m)) return 90.0;
+  outside = std::min(outside, 90.0L);
+  while (outside - inside > unit / 8) {
     const long double middle = (inside + outside) / 2;
-    (is_stable_ray(b, middle) ? inside : outside) = middle;
+    (seems_stable(R, middle) ? inside : outside) = middle;
   }
-  return static_cast<double>(inside);
+  const auto units = static_cast<long>(std::floor(std::min(inside, most) / unit));
+  for (long less = 0; less < units; less = 2 * less + 1) {
+    const auto angle = static_cast<double>(static_cast<long double>(units - less) * unit);
+    if (angle < most && is_stable_ray(m, angle)) return angle;
+  }
+  return 0.0;
+}
+
+/// The implicit part alone: an update that repeats an earlier stage as far as Q goes, as b = e_s·A does in
+/// methods whose b̂ is another row, is that stage.
+shu_osher_form<long double> implicit_part(const shu_osher_form<long double>& m) {
+  const auto b = to_butcher(m);
+  const std::size_t last = m.stages() - 1;
+  const auto repeats = [&](std::size_t i) {
+    constexpr long double rounding = 1e-17L;
+    for (std::size_t j = 0; j <= last; ++j)
+      if (std::abs(b.A(i, j) - b.A(last, j)) > rounding ||
+          std::abs(b.A_dot(i, j) - b.A_dot(last, j)) > rounding)
+        return false;
+    return true;
+  };
+  std::size_t stages = 1;
+  while (stages <= last && !repeats(stages - 1)) ++stages;
+  const auto corner = [stages](const matrix<long double>& whole) {
+    matrix<long double> part(stages, stages);
+    for (std::size_t i = 0; i < stages; ++i)
+      for (std::size_t j = 0; j < stages; ++j) part(i, j) = whole(i, j);
+    return part;
+  };
+  shu_osher_form<long double> part{corner(m.P), corner(m.W), corner(m.D), m.ddot, m.r};
+  part.ddot.resize(stages);
+  return part;
 }
 
 }  // namespace
 
-implicit_stability analyse_stability(const butcher_form<long double>& b) {
+implicit_stability analyse_stability(const shu_osher_form<long double>& method) {
+  const auto m = implicit_part(method);
   implicit_stability s;
-  long double largest = 0, smallest = 1;
-  for (int k = 0; k <= samples; ++k) {
-    const long double value = stability_function(b, -radius(k)).real();
-    largest = std::max(largest, std::abs(value));
-    smallest = std::min(smallest, value);
-  }
-  s.largest_on_negative_axis = static_cast<double>(largest);
+  const sparse_function R(m);
+  const auto on_axis = [&R](long double r) { return R(-r).real(); };
+  const long double smallest = -maximum_over_radii([&](long double r) { return -on_axis(r); });
+  // sup |R(x)| is at least that for x → 0.
+  s.largest_on_negative_axis = static_cast<double>(
+      std::max(1.0L, maximum_over_radii([&](long double r) { return std::abs(on_axis(r)); })));
   s.smallest_on_negative_axis = static_cast<double>(smallest);
-  s.at_infinity = static_cast<double>(std::abs(stability_function(b, -1e12L)));
-  for (std::size_t i = 0; i < b.stages(); ++i)
-    if (b.A(i, i) == 0 && b.A_dot(i, i) < 0)
-      s.imaginary_poles.push_back(static_cast<double>(1 / std::sqrt(-b.A_dot(i, i))));
-  s.angle = largest <= stable ? sector(b) : 0.0;
+  s.at_infinity = static_cast<double>(std::abs(on_axis(1e12L)));
+  for (std::size_t i = 0; i < m.stages(); ++i)
+    if (m.D(i, i) == 0 && m.ddot[i] < 0)
+      s.imaginary_poles.push_back(static_cast<double>(1 / std::sqrt(-m.ddot[i])));
+  s.angle = s.largest_on_negative_axis <= static_cast<double>(stable) ? sector(m, R) : 0.0;
   constexpr double vanishing = 1e-9;  // R ~ 1/z at z = −1e12
   s.l_stable = s.angle == 90.0 && s.at_infinity <= vanishing;
   return s;

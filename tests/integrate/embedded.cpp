@@ -230,26 +230,26 @@ TEST(step_control, makes_the_error_as_small_as_is_asked) {
   const auto coarse = solve_to("md-imex-8-3-accurate", 1e-5L, 1e-2L, 1),
              fine = solve_to("md-imex-8-3-accurate", 1e-8L, 1e-2L, 1);
   // Of a method of order p with an estimate of order q + 1, errors per step below tol, the error at the end
-  // is about tol^{(p+1)/(q+1)} times the number of steps: a thousand times smaller tolerance, about 1e-4 of
-  // it.
+  // is about tol^{(p+1)/(q+1)} times the number of steps, tol^{p/(q+1)}: for p = 3 and q = 2 as small as the
+  // tolerance, and a tenth of that is let go for the resolution of ε/C, which ends between the two.
   EXPECT_LT(fine.error, 1e-2 * coarse.error);
   EXPECT_LT(fine.error, 1e-6);
   // Steps go with tol^{-1/(q+1)} = 10.
   EXPECT_GT(fine.steps, 4 * coarse.steps);
   EXPECT_LT(fine.steps, 25 * coarse.steps);
-  EXPECT_GE(coarse.rejected, 1);  // the first one, of length 1
+  EXPECT_LT(coarse.rejected, coarse.steps / 4);  // the first step is no guess of a far too long one
   EXPECT_LT(fine.rejected, fine.steps / 4);
 }
 
-TEST(step_control, has_no_plateau_with_a_method_that_has_none) {
-  // ε = 1e-4 is far above the tolerance. A ũ that lost the term of size ε forces steps as short as ε for
-  // ever; one that keeps it leaves them behind with the layer.
-  const real tol = 3e-6L, epsilon = 1e-4L;
-  const auto kept = solve_to("md-imex-8-3", tol, epsilon, 1),
-             in_the_limit = solve_to("md-imex-8-3", tol, 1e-12L, 1);
-  EXPECT_LT(kept.error, 1e-4);
-  EXPECT_LT(kept.steps, 4 * in_the_limit.steps);
-  EXPECT_GT(solve_to("md-imex-3-2", tol, epsilon, 1).steps, 20 * kept.steps);
+TEST(step_control, does_not_resolve_a_relaxation_that_the_tolerance_does_not_ask_for) {
+  // ε = 1e-4 is far above the tolerance, and left behind with the layer by methods with and without plateau.
+  // With ‖u^{n+1} − ũ‖ as it is, md-imex-3-2 takes 9400 steps here.
+  const real tol = 3e-6L;
+  for (const char* name : {"md-imex-8-3", "md-imex-3-2"}) {
+    const long steps = solve_to(name, tol, 1e-4L, 1).steps;
+    EXPECT_LT(steps, 6 * solve_to(name, tol, 1e-12L, 1).steps) << name << " " << steps;
+  }
+  EXPECT_LT(solve_to("md-imex-8-3", tol, 1e-4L, 1).error, 1e-4);
 }
 
 TEST(step_control, never_takes_longer_steps_than_the_rule_allows) {

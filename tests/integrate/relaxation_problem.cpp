@@ -5,12 +5,14 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/integrate/autodiff.hpp>
+#include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -289,3 +291,82 @@ TEST(accumulate, evaluates_once_and_only_if_a_target_wants_it) {
 }
 
 }  // namespace
+
+namespace {
+
+/// u' = (u[1], 0) + (E(w) − u)/1, w = `moments`(u).
+auto two_numbers(double kept_share) {
+  return apsis::relaxation_problem(
+      [](double, const std::vector<double>& u, std::vector<double>& T) { T = {u[1], 0.0}; },
+      [](const std::vector<double>& u) { return u[0]; },
+      [kept_share](double w, std::vector<double>& E) { E = {kept_share * w, 0.5 * w}; },
+      [](double) { return 1.0; }, 1.0);
+}
+
+/// What a step of the method says.
+template <class Problem>
+std::string complaint_of_step(Problem problem, const std::string& method) {
+  apsis::stepper march(apsis::find_method(method), problem);
+  std::vector<double> u{2.0, 1.0};
+  try {
+    march.step(0.0, 0.1, u);
+  } catch (const apsis::input_error& refused) {
+    EXPECT_EQ(u, (std::vector<double>{2.0, 1.0}));
+    return refused.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(relaxation_problem, refuses_an_equilibrium_with_other_moments) {
+  EXPECT_EQ(complaint_of_step(two_numbers(1.0), "md-imex-3-2"), "");
+  EXPECT_EQ(complaint_of_step(two_numbers(1.0 + 1e-12), "md-imex-3-2"), "");
+  EXPECT_EQ(
+      complaint_of_step(two_numbers(1.001), "md-imex-3-2"),
+      "the equilibrium does not have the moments that it is given (R E(w) differs from w by 0.001 of the "
+      "largest); correct equilibrium or moments");
+  // Moments that are a range are compared one by one.
+  const apsis::relaxation_problem ranged(
+      [](double, const std::vector<double>&, std::vector<double>& T) { T = {0.0, 0.0}; },
+      [](const std::vector<double>& u) { return std::array{u[0] + u[1], u[0] - u[1]}; },
+      [](const std::array<double, 2>& w, std::vector<double>& E) { E = {w[0] / 2, w[0] / 2}; },
+      [](const std::array<double, 2>&) { return 1.0; }, 1.0);
+  EXPECT_NE(complaint_of_step(ranged, "md-imex-3-2").find("differs from w by 0.33 of"), std::string::npos);
+}
+
+TEST(method_without_transport, is_refused_where_the_problem_has_transport) {
+  EXPECT_EQ(complaint_of_step(two_numbers(1.0), "imdrk-2-3"),
+            "method 'imdrk-2-3' cannot integrate this problem (it is implicit only and the problem has "
+            "transport); choose an IMEX or explicit method");
+  const auto collision = [](const auto& u, auto& out) {
+    out[0] = -u[0];
+    out[1] = u[0];
+  };
+  apsis::newton_problem moving([](double, const std::vector<double>& u, std::vector<double>& T) { T = u; },
+                               collision);
+  EXPECT_NE(complaint_of_step(moving, "imdrk-2-3").find("is implicit only"), std::string::npos);
+  apsis::newton_problem still(apsis::no_transport{}, collision);
+  EXPECT_EQ(complaint_of_step(still, "imdrk-2-3"), "");
+}
+
+TEST(rule_of_ssp_steps, needs_a_method_with_an_ssp_coefficient) {
+  auto problem = two_numbers(1.0);
+  problem.with_forward_euler_step([](double, const std::vector<double>&) { return 0.1; });
+  const auto run = [&](const std::string& method, apsis::step_rule<double> rule) {
+    apsis::stepper march(apsis::find_method(method), problem);
+    std::vector<double> u{2.0, 1.0};
+    return apsis::integrate(march, u, 0.0, 1.0, rule).steps;
+  };
+  EXPECT_EQ(run("md-imex-3-2", apsis::step_rule<double>::ssp()), 10);
+  EXPECT_EQ(run("ars-443", apsis::step_rule<double>::fixed(0.1)), 10);
+  try {
+    run("ars-443", apsis::step_rule<double>::ssp());
+    FAIL() << "steps of r dt_FE with r = 0";
+  } catch (const apsis::input_error& refused) {
+    EXPECT_STREQ(
+        refused.what(),
+        "method 'ars-443' has no step length in units of the forward Euler step (its SSP coefficient is "
+        "0); give dt, or choose a method with an SSP coefficient");
+  }
+}

@@ -180,9 +180,12 @@ std::vector<case_key> make_schema() {
        [](c& o, const v& x) { o.time.startup = text_of(x); }, [](const c& o) { return v(o.time.startup); }},
       {"time.tolerance", number, key_scope::always, false, none, 0, unlimited, true, nullptr,
        "Steps are chosen so that the estimated error of each, the 2-norm of the difference to the method's "
-       "embedded solution relative to that of the state, stays below this; dt, cfl or safety then says how "
-       "long "
-       "they may be. For methods with an embedded solution (apsis list methods).",
+       "embedded solution relative to that of the state, stays below this; errors off equilibrium, which "
+       "relax, "
+       "count less in steps shorter than the tolerance asks for (docs/methods.md). dt, cfl or safety then "
+       "says "
+       "how long steps may be; startup = graded starts in the initial layer. For methods with an embedded "
+       "solution (apsis list methods).",
        [](c& o, const v& x) { o.time.tolerance = number_of(x); },
        [](const c& o) { return optional_number(o.time.tolerance); }},
       {"output.every", number, key_scope::always, false, none, 0, unlimited, false, nullptr,

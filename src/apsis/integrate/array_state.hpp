@@ -56,6 +56,15 @@ void accumulate(std::span<const target<State, state_real<State>>> targets, const
   }
 }
 
+/// Whether every number is 0; NaN is not.
+template <class Row>
+bool is_zero(const Row& row) {
+  using size_type = decltype(row.size());
+  for (size_type i = 0; i < row.size(); ++i)
+    if (!(row[i] == state_real<Row>(0))) return false;
+  return true;
+}
+
 /// What require_finite throws; apart from it, so that the check itself is a few instructions.
 template <class Row>
 [[noreturn, gnu::noinline, gnu::cold]] void throw_not_finite(const Row& row, const char* what) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/integrate/error_estimate.hpp>
 #include <apsis/integrate/integrate.hpp>
 
 #include <algorithm>
@@ -36,8 +37,14 @@ class step_controller {
       throw input_error("the tolerance is not a positive number; give one above 0");
   }
 
+  /// What errors are compared with.
+  error_target<Real> target() const { return {tolerance_, order_}; }
   /// The length that the next step should have at most; +infinity at first.
   Real proposed() const { return now_.proposed; }
+  /// A first step of this length; without effect once there has been one.
+  void start_with(Real dt) {
+    if (!(now_.proposed < std::numeric_limits<Real>::infinity())) now_.proposed = dt;
+  }
   long rejected() const { return now_.rejected; }  ///< number of steps that were not good
 
   /// Whether a step of length dt with this estimated error is good; what is proposed changes.
@@ -70,13 +77,14 @@ class step_controller {
 };
 
 /// One step that the controller accepts, of length `limit` at most: u ← u^{n+1}, and its length is returned.
-/// distance(u^{n+1}, ũ) is the estimated error, in the norm of the caller. A step that ends with a
+/// distance(u, v) is a norm of u − v, the caller's; the error is `estimate` of it. A step that ends with a
 /// numerical_error is rejected like one whose error is infinite; the error is thrown once steps are too small
 /// to advance time, and u is then u^n.
 template <problem P, class Distance>
 typename P::real step_within_tolerance(stepper<P>& method_stepper,
                                        const time_marcher<typename P::real>& march,
-                                       step_controller<typename P::real>& control, typename P::real limit,
+                                       step_controller<typename P::real>& control,
+                                       error_estimate<P>& estimate, typename P::real limit,
                                        typename P::state& u, const Distance& distance) {
   using real = typename P::real;
   std::optional<numerical_error> failure;
@@ -90,7 +98,9 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
     }
     try {
       const auto tried = method_stepper.attempt(march.t(), dt, u);
-      if (!control.accepts(dt, distance(tried.result, tried.embedded))) continue;
+      const real error =
+          estimate(method_stepper.target_problem(), march.t(), dt, u, tried, control.target(), distance);
+      if (!control.accepts(dt, error)) continue;
     } catch (const numerical_error& why) {
       failure = why;
       control.accepts(dt, std::numeric_limits<real>::infinity());
@@ -101,8 +111,22 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
   }
 }
 
+/// Sets the first step of a controller that has none: first_step(), and with startup::graded at most ε/(4C),
+/// so that the initial layer is resolved as far as the tolerance asks. `longest`: of any step. Throws
+/// input_error for a graded start of a problem without relaxation_time.
+template <problem P, class Distance>
+void start_control(P& p, typename P::real t, const typename P::state& u, typename P::real longest,
+                   startup how, step_controller<typename P::real>& control, const Distance& distance) {
+  using real = typename P::real;
+  if (control.proposed() < std::numeric_limits<real>::infinity()) return;
+  real dt = first_step(p, t, u, longest, control.target(), distance);
+  if (how == startup::graded) dt = std::min(dt, real(initial_layer(p, t, u) / 4));
+  control.start_with(dt);
+}
+
 /// integrate() with steps as long as `control` finds good; the rule says how long they may be at most, a
-/// given dt too. The stepper computes solutions::result_and_embedded.
+/// given dt too, and step_rule::unlimited() leaves it to the tolerance. The first step is that of
+/// start_control() where the controller has none. The stepper computes solutions::result_and_embedded.
 template <problem P, class Distance, class Observer = no_observer>
 integration_result<typename P::real> integrate_to_tolerance(stepper<P>& method_stepper, typename P::state& u,
                                                             typename P::real t0, typename P::real t1,
@@ -111,10 +135,17 @@ integration_result<typename P::real> integrate_to_tolerance(stepper<P>& method_s
                                                             const Distance& distance,
                                                             Observer&& observer = {}) {
   using real = typename P::real;
-  const auto take = [&](const time_marcher<real>& march, real limit, typename P::state& state) {
-    return step_within_tolerance(method_stepper, march, control, limit, state, distance);
+  error_estimate<P> estimate;
+  const time_marcher<real> march(t0, t1);
+  if (!march.done()) {
+    const real limit = rule_limit(method_stepper, rule, t0, u);
+    start_control(method_stepper.target_problem(), t0, u, std::min(limit, t1 - t0), rule.start, control,
+                  distance);
+  }
+  const auto take = [&](const time_marcher<real>& now, real limit, typename P::state& state) {
+    return step_within_tolerance(method_stepper, now, control, estimate, limit, state, distance);
   };
-  return integrate_with(take, method_stepper, time_marcher<real>(t0, t1), u, rule, observer);
+  return integrate_with(take, method_stepper, march, u, rule.with(startup::none), observer);
 }
 
 }  // namespace apsis

@@ -23,8 +23,10 @@ struct step_rule {
 
   /// Steps of length dt.
   static step_rule fixed(Real dt) { return {dt, Real(1), startup::none}; }
-  /// Steps of safety · r · Δt_FE.
+  /// Steps of safety · r · Δt_FE. For methods with an SSP coefficient (stepper::ssp_coefficient()).
   static step_rule ssp(Real safety = Real(1)) { return {std::nullopt, safety, startup::none}; }
+  /// Steps of any length, for integrate_to_tolerance().
+  static step_rule unlimited() { return fixed(std::numeric_limits<Real>::infinity()); }
   /// The same with another start.
   step_rule with(startup how) const { return {dt, safety, how}; }
 };
@@ -200,6 +202,28 @@ struct no_observer {
   void operator()(Args&&...) const {}
 };
 
+/// What the rule allows a step from u at t. Throws input_error if the rule is ssp() and the method has no SSP
+/// coefficient.
+template <problem P>
+typename P::real rule_limit(stepper<P>& method_stepper, const step_rule<typename P::real>& rule,
+                            typename P::real t, const typename P::state& u) {
+  if (rule.dt) return *rule.dt;
+  return rule.safety * method_stepper.require_ssp_coefficient() *
+         method_stepper.target_problem().forward_euler_step(t, u);
+}
+
+/// Width ε/C of the initial layer of u. Throws input_error if the problem has no relaxation_time.
+template <problem P>
+typename P::real initial_layer(P& p, typename P::real t, const typename P::state& u) {
+  if constexpr (problem_with_relaxation_time<P>) {
+    return p.relaxation_time(t, u);
+  } else {
+    throw input_error(
+        "a graded start needs the width of the initial layer (the problem has no relaxation_time(t, u)); "
+        "offer it, or start without");
+  }
+}
+
 /// Integrates u along `march`; take(march, limit, u) takes one step within what the rule allows and returns
 /// its length, without moving the marcher.
 template <problem P, class Take, class Observer>
@@ -217,21 +241,10 @@ integration_result<typename P::real> integrate_with(const Take& take, stepper<P>
       return true;
     }
   };
-  const auto limit = [&]() -> real {
-    if (rule.dt) return *rule.dt;
-    return rule.safety * method_stepper.r() *
-           method_stepper.target_problem().forward_euler_step(march.t(), u);
-  };
+  const auto limit = [&]() -> real { return rule_limit(method_stepper, rule, march.t(), u); };
   bool wanted = report(real(0));
-  if (wanted && rule.start == startup::graded && !march.done()) {
-    if constexpr (problem_with_relaxation_time<P>) {
-      march.start_up(limit(), method_stepper.target_problem().relaxation_time(march.t(), u));
-    } else {
-      throw input_error(
-          "a graded start needs the width of the initial layer (the problem has no relaxation_time(t, u)); "
-          "offer it, or start without");
-    }
-  }
+  if (wanted && rule.start == startup::graded && !march.done())
+    march.start_up(limit(), initial_layer(method_stepper.target_problem(), march.t(), u));
   while (wanted && !march.done()) {
     try {
       const real dt = take(march, limit(), u);

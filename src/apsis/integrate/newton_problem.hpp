@@ -84,6 +84,17 @@ class newton_problem {
     unload(v_, u);
   }
 
+  /// As `problem_with_transport_check` demands it; evaluates F.
+  bool has_transport(real t, const State& u) {
+    if constexpr (std::is_same_v<F, no_transport>) {
+      return false;
+    } else {
+      work_ = u;
+      f_(t, u, work_);
+      return !is_zero(work_);
+    }
+  }
+
   /// Δt_FE of F; +infinity unless it was given.
   real forward_euler_step(real t, const State& u) const {
     return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();

@@ -47,6 +47,14 @@ concept problem_with_explicit_collision =
       p.scatter_collision(x, u, targets);
     };
 
+/// A problem that says whether it has transport, so that methods without T are refused:
+///   has_transport(t, u)   T(t, u) ≠ 0
+template <class P>
+concept problem_with_transport_check =
+    problem<P> && requires(P p, const typename P::state& u, typename P::real x) {
+      { p.has_transport(x, u) } -> std::convertible_to<bool>;
+    };
+
 /// A stage solve that is due as soon as a scatter is done: the arguments of collide, u among the targets.
 template <class State, class Real>
 struct due_collision {

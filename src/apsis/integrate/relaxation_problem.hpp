@@ -5,9 +5,16 @@
 #include <apsis/integrate/array_state.hpp>
 #include <apsis/integrate/problem.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstdio>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <span>
+#include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,6 +24,9 @@ namespace apsis {
 /// simplest way in. Every stage v = u + a Q(v) + b Q̇(v) is a convex combination of u and E, in closed form,
 /// because Q̇ = −(C/ε) Q and ω does not change:  v = (u + μE)/(1 + μ), μ = a C/ε + |b| (C/ε)². It is
 /// nonnegative wherever u and E are, in floating point too, and for ε = 0 it is E.
+///
+/// The first two stage solves check ℛE(ω) = ω, to 1e-8 of the largest moment, where ω is a number or a range
+/// of numbers: an E that does not keep the moments ends the step with an input_error.
 ///
 /// All quantities are dimensionless. The functions, with N = u.size():
 ///   transport(t, u, out)   out ← T(t, u), N numbers; `out` comes with N numbers of any content
@@ -97,6 +107,17 @@ class relaxation_problem {
     return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();
   }
 
+  /// As `problem_with_transport_check` demands it; evaluates T.
+  bool has_transport(real t, const State& u) {
+    if constexpr (std::is_same_v<Transport, no_transport>) {
+      return false;
+    } else {
+      give_size_of(u);
+      transport_(t, u, work_);
+      return !is_zero(work_);
+    }
+  }
+
   /// ε/C; +infinity where nothing relaxes, and for ε = 0, where there is no layer to be resolved.
   real relaxation_time(real, const State& u) const {
     const real rate = checked_rate(moments_(u));
@@ -127,7 +148,43 @@ class relaxation_problem {
     const real rate = checked_rate(omega);
     give_size_of(u);
     equilibrium_(omega, work_);
+    if (unchecked_ > 0) {
+      --unchecked_;
+      check_moments(omega, moments_(work_));
+    }
     return rate;
+  }
+
+  /// Whether ω is a number, a range of numbers, or anything else, which is not checked.
+  template <class Omega>
+  static void check_moments(const Omega& omega, const Omega& kept) {
+    if constexpr (std::is_convertible_v<Omega, real>) {
+      require_kept(std::abs(static_cast<real>(kept) - static_cast<real>(omega)),
+                   std::abs(static_cast<real>(omega)));
+    } else if constexpr (requires {
+                           { *std::begin(omega) } -> std::convertible_to<real>;
+                           std::end(omega);
+                         }) {
+      real defect(0), largest(0);
+      auto other = std::begin(kept);
+      for (const auto& one : omega) {
+        if (other == std::end(kept)) break;
+        defect = std::max(defect, std::abs(real(*other) - real(one)));
+        largest = std::max(largest, std::abs(real(one)));
+        ++other;
+      }
+      require_kept(defect, largest);
+    }
+  }
+
+  /// Rounding of sums over N numbers stays far below 1e-8; a wrong formula for E does not.
+  static void require_kept(real defect, real largest) {
+    if (defect <= real(1e-8) * largest || !(largest > real(0))) return;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g", static_cast<double>(defect / largest));
+    throw input_error(
+        "the equilibrium does not have the moments that it is given (R E(w) differs from w by " +
+        std::string(text) + " of the largest); correct equilibrium or moments");
   }
 
   Transport transport_;
@@ -138,6 +195,7 @@ class relaxation_problem {
   std::function<real(real, const State&)> forward_euler_;
   std::function<bool(const State&)> admissible_;
   State work_{};
+  int unchecked_ = 2;  ///< evaluations of E that are still checked
 };
 
 /// @cond

@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/integrate/schedule.hpp>
+#include <apsis/method/convexity.hpp>
 #include <apsis/method/method.hpp>
 
 #include <algorithm>
@@ -23,7 +24,8 @@ class stepper {
   using state = typename P::state;  ///< what u is
   using real = typename P::real;    ///< type of times and coefficients
 
-  /// The method is copied, the problem is not and must outlive the stepper.
+  /// The method is copied, the problem is not and must outlive the stepper. A step of a method that is
+  /// implicit only throws input_error if the problem says that T(t, u) ≠ 0 (problem_with_transport_check).
   /// Throws input_error if the method evaluates Q explicitly and the problem cannot, or if it has no embedded
   /// solution and one is asked for.
   stepper(const method& m, P& p, solutions which = solutions::result)
@@ -36,9 +38,12 @@ class stepper {
   stepper(shu_osher_form<real> coefficients, method_kind kind, P& p, const std::string& name = "method",
           solutions which = solutions::result)
       : problem_(p),
+        name_(name),
+        kind_(kind),
         m_(std::move(coefficients)),
         plan_(m_, which == solutions::result_and_embedded),
-        initial_(initial_weights(m_)) {
+        initial_(initial_weights(m_)),
+        convex_(is_convex(m_, kind, m_.stages() - (which == solutions::result_and_embedded ? 1 : 0))) {
     const auto butcher = to_butcher(m_);
     // Time is a component of u with derivative 1, integrated by T where there is one (then Q̇ has no ∂_t
     // part).
@@ -82,6 +87,15 @@ class stepper {
   /// r of the Shu–Osher form: Δt ≤ r Δt_FE keeps what forward Euler steps of T keep. Where no form is convex
   /// (the certificate says SSP coefficient 0) it is 1 and promises nothing.
   real r() const { return m_.r; }
+  /// The same. Throws input_error where no form is convex, so that there is no such step length.
+  real require_ssp_coefficient() const {
+    if (!convex_)
+      throw input_error(
+          "method '" + name_ +
+          "' has no step length in units of the forward Euler step (its SSP coefficient is 0); give "
+          "dt, or choose a method with an SSP coefficient");
+    return m_.r;
+  }
   const schedule& plan() const { return plan_; }  ///< of a step
   P& target_problem() { return problem_; }        ///< that of the constructor
 
@@ -98,7 +112,19 @@ class stepper {
     bool due;  ///< the next instruction is the collision of a target, and the problem can do both at once
   };
 
+  /// A method that is implicit only leaves T out.
+  void require_no_transport(real t, const state& u) {
+    if constexpr (problem_with_transport_check<P>) {
+      if (kind_ == method_kind::implicit_only && problem_.has_transport(t, u))
+        throw input_error(
+            "method '" + name_ +
+            "' cannot integrate this problem (it is implicit only and the problem has transport); "
+            "choose an IMEX or explicit method");
+    }
+  }
+
   void carry_out(real t, real dt, state& u) {
+    require_no_transport(t, u);
     while (static_cast<int>(buffers_.size()) + 1 < plan_.buffers()) buffers_.push_back(u);
     if (prepared_.empty() || dt != prepared_dt_ || &u != prepared_u_ || buffers_.data() != prepared_buffers_)
       prepare(dt, u);
@@ -191,9 +217,12 @@ class stepper {
   }
 
   P& problem_;
+  std::string name_;
+  method_kind kind_;
   shu_osher_form<real> m_;
   schedule plan_;
   std::vector<real> initial_, abscissae_;
+  bool convex_;
   std::vector<prepared> prepared_;
   std::vector<target<state, real>> targets_;
   real prepared_dt_ = real(0);

@@ -4,6 +4,7 @@
 #include <apsis/core/expression.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/integrate/schedule.hpp>
+#include <apsis/method/convexity.hpp>
 #include <apsis/semidiscrete/newton_collision.hpp>
 #include <apsis/space/quartic.hpp>
 #include <apsis/space/reconstruction_registry.hpp>
@@ -29,20 +30,6 @@ grid make_mesh(const case_config& config, bool has_space) {
   const auto place = config.places.find(key);
   if (place == config.places.end()) throw input_error(message);
   throw input_error(place->second, message);
-}
-
-/// Whether the Shu–Osher form is a convex combination of forward Euler steps of T (and Q, for explicit
-/// methods) and implicit steps of Q: the hypothesis of the paper's theorems.
-bool is_convex(const shu_osher_form<double>& m, method_kind kind) {
-  const auto initial = initial_weights(m);
-  for (std::size_t i = 0; i < m.stages(); ++i) {
-    if (initial[i] < 0.0 || m.D(i, i) < 0.0 || m.ddot[i] > 0.0) return false;
-    for (std::size_t j = 0; j < i; ++j) {
-      if (m.P(i, j) < 0.0 || m.W(i, j) < 0.0) return false;
-      if (kind != method_kind::explicit_only && m.D(i, j) != 0.0) return false;
-    }
-  }
-  return true;
 }
 
 /// Smallest and largest value of every macroscopic field.
@@ -96,7 +83,7 @@ void run_setup::check_method() {
                        "transport); choose an IMEX or explicit method",
                        method_->name, config_.model.name));
   const auto form = method_->coefficients<double>();
-  ssp_coefficient_ = is_convex(form, method_->kind) ? form.r : 0.0;
+  ssp_coefficient_ = is_convex(form, method_->kind, form.stages()) ? form.r : 0.0;
   if (config_.time.safety && ssp_coefficient_ == 0.0)
     refuse(config_, "time.safety",
            fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give time.dt "
@@ -123,9 +110,14 @@ void run_setup::check_startup() const {
 
 void run_setup::check_tolerance() const {
   if (!has_tolerance()) return;
-  if (has_graded_start())
+  // The estimate is a difference of two numbers of double precision, relative to them.
+  constexpr double finest = 64.0 * std::numeric_limits<double>::epsilon();
+  if (*config_.time.tolerance < finest)
     refuse(config_, "time.tolerance",
-           "time.tolerance and time.startup = \"graded\" both choose the first steps; remove one of them");
+           fmt::format(
+               "time.tolerance = {:g} cannot be kept (the rounding of an estimate is of this size); give "
+               "at least {:.2g}",
+               *config_.time.tolerance, finest));
   try {
     require_embedded_row(*method_);
   } catch (const input_error& missing) {

@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/integrate/error_control.hpp>
+#include <apsis/integrate/tolerance_forecast.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/setup.hpp>
@@ -49,6 +50,20 @@ double relative_distance(const field& u, const field& v) {
     }
   return difference == 0.0 ? 0.0 : std::sqrt(difference / size);
 }
+/// Why the error will be above the tolerance, and what helps.
+std::string below_plateau(const method& used, double tolerance, const tolerance_forecast<double>& expected,
+                          double relaxation) {
+  const bool kept = used.claims.intermediate == "all";
+  return fmt::format(
+      "time.tolerance = {:g} is below what method '{}' keeps in steps of about {:.1g} (its terms of size "
+      "epsilon "
+      "leave a relative error of up to about {:.1g}); {}give time.dt below {:.1g} to resolve the relaxation, "
+      "or a "
+      "larger tolerance",
+      tolerance, used.name, expected.dt, expected.error,
+      kept ? "" : "choose a method with the right terms, as md-imex-8-3-mixed is, ",
+      0.1 * std::min(relaxation, expected.dt));
+}
 }  // namespace
 
 struct simulation::impl {
@@ -72,9 +87,43 @@ struct simulation::impl {
     totals.negative_values = first.negative_values;
     totals.phase_points = static_cast<long>(state.cells()) * state.components();
     if (march.done()) return;
+    warn_of_explicit_collision();
+    // With the longest step that the rule allows, not the first one.
     setup.decide_promises(promises, next_dt(), forward_euler_limit(), first.negative_values == 0,
                           has_exact_equilibrium());
-    if (setup.has_graded_start()) march.start_up(limit(), problem->relaxation_time(march.t(), state));
+    start_steps();
+  }
+
+  void start_steps() {
+    const startup how = setup.has_graded_start() ? startup::graded : startup::none;
+    if (control) {
+      const double longest = std::min(limit(), config.time.end);
+      warn_of_tolerance(longest);
+      start_control(*problem, march.t(), state, longest, how, *control, relative_distance);
+    } else if (how == startup::graded) {
+      march.start_up(limit(), problem->relaxation_time(march.t(), state));
+    }
+  }
+
+  void warn_of_tolerance(double longest) {
+    const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().coefficients<double>()));
+    expected = forecast_tolerance(integrator, march.t(), state, config.time.end, longest, control->target(),
+                                  bounds, relative_distance);
+    if (expected->error > *config.time.tolerance)
+      log::warning(below_plateau(setup.integrator(), *config.time.tolerance, *expected,
+                                 problem->relaxation_time(march.t(), state)));
+  }
+
+  void warn_of_explicit_collision() {
+    if (setup.integrator().kind != method_kind::explicit_only) return;
+    const double relaxation = problem->relaxation_time(march.t(), state);
+    const double steps = config.time.end / std::min(relaxation, next_dt());
+    if (steps > 1e8)
+      log::warning(fmt::format(
+          "method '{}' is explicit and stable in steps of about epsilon/C = {:.1g} only, about {:.1g} of "
+          "them to "
+          "time.end = {:g} (the collision is stiff); choose an IMEX method, as md-imex-8-3-mixed is",
+          setup.integrator().name, relaxation, steps, config.time.end));
   }
 
   /// Whether collisions conserve to rounding: E(ω) has the moments ω. A Maxwellian by formula may not.
@@ -107,7 +156,8 @@ struct simulation::impl {
 
   /// u ← u^{n+1}; returns Δt.
   double step() {
-    if (control) return step_within_tolerance(integrator, march, *control, limit(), state, relative_distance);
+    if (control)
+      return step_within_tolerance(integrator, march, *control, estimate, limit(), state, relative_distance);
     const double dt = next_dt();
     integrator.step(march.t(), dt, state);
     return dt;
@@ -179,6 +229,8 @@ struct simulation::impl {
   field state;
   time_marcher<double> march;
   std::optional<step_controller<double>> control;
+  error_estimate<semidiscrete_problem> estimate;
+  std::optional<tolerance_forecast<double>> expected;
   run_promises promises;
   step_record first, last;
   run_summary totals;
@@ -218,7 +270,12 @@ long simulation::step() const {
 }
 long simulation::steps_total() const {
   if (finished()) return step();
+  // The first step to a tolerance resolves the layer; those that follow are as long as was forecast.
+  if (step() == 0 && impl_->expected) return impl_->march.steps_left(impl_->expected->dt);
   return step() + impl_->march.steps_left(impl_->march.starting() ? impl_->limit() : dt());
+}
+double simulation::expected_plateau() const {
+  return impl_->expected ? impl_->expected->error : 0.0;
 }
 bool simulation::finished() const {
   return impl_->march.done();

@@ -93,6 +93,9 @@ class simulation {
   long step() const;                            ///< steps done
   long steps_total() const;                     ///< estimate from the present dt
   bool finished() const;                        ///< t() is time.end
+  /// Forecast of the relative error that the terms of size ε leave in a run to time.tolerance; above the
+  /// tolerance a warning says so. 0 where the steps resolve the relaxation, or without tolerance.
+  double expected_plateau() const;
 
   /// One step. Throws numerical_error with step, time, cell and value. If a stage failed, the state is that
   /// of the last good step; if a promise was broken, it is the state that broke it, and last() describes it.

@@ -18,6 +18,7 @@ class semidiscrete_problem {
   /// Both references must outlive the problem.
   semidiscrete_problem(const model& equation, const grid& mesh, stencil how, std::unique_ptr<collision> q)
       : transport_(equation, mesh, std::move(how)),
+        has_transport_(equation.space_dimensions() > 0 || equation.has_source()),
         collision_(std::move(q)),
         cellwise_(dynamic_cast<cellwise_collision*>(collision_.get())) {}
 
@@ -54,11 +55,14 @@ class semidiscrete_problem {
     if (!explicit_collision_) return of_transport;
     return 1.0 / (1.0 / of_transport + 1.0 / (rounding_allowance * collision_->forward_euler_step(u)));
   }
+  /// The model has a mesh or a source.
+  bool has_transport(double, const field&) const { return has_transport_; }
   /// Smallest ε/C > 0; +infinity where none is known, or ε = 0 everywhere.
   double relaxation_time(double, const field& u) const { return collision_->relaxation_time(u); }
 
  private:
   transport transport_;
+  bool has_transport_;
   std::unique_ptr<collision> collision_;
   cellwise_collision* cellwise_;  ///< the same, if it needs no neighbours; else null
   bool explicit_collision_ = false;

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <apsis/integrate/error_control.hpp>
+#include <apsis/method/plateau.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace apsis {
+
+/// What to expect of a run to a tolerance, from data that are brought to equilibrium first.
+template <class Real>
+struct tolerance_forecast {
+  Real dt;     ///< length of the steps that the tolerance allows there
+  Real error;  ///< of the terms of size ε at the end, in the unit of the tolerance; 0 where nothing relaxes,
+               ///< or dt resolves every ε/C well
+};
+
+namespace forecast {
+
+/// The step of a fresh controller from u that neither grows nor is rejected; at most `longest`.
+template <problem P, class Distance>
+typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, typename P::state& u,
+                              typename P::real longest, const error_target<typename P::real>& target,
+                              const Distance& distance) {
+  using real = typename P::real;
+  P& p = method_stepper.target_problem();
+  error_estimate<P> estimate;
+  step_controller<real> control(target.tolerance, target.order);
+  start_control(p, t, u, longest, startup::none, control, distance);
+  real dt(0);
+  for (int k = 0; k < 30; ++k) {  // a factor of 5 each: from 1e-20 to 1
+    dt = std::min(longest, control.proposed());
+    const bool rejected_before = control.rejected() > 0;
+    real error = std::numeric_limits<real>::infinity();
+    try {
+      error = estimate(p, t, dt, u, method_stepper.attempt(t, dt, u), target, distance);
+    } catch (const numerical_error&) {
+    }
+    const bool good = control.accepts(dt, error);
+    if (good && (rejected_before || dt >= longest || control.proposed() <= dt * real(1.3))) break;
+  }
+  return dt;
+}
+
+/// Size of the terms of size ε: D (z/(1+z))³ and D z³/(1+z)⁴, where D is the deviation from equilibrium
+/// that transport keeps up and z = CΔt/ε, each cell with its own.
+template <class Real>
+struct deviations {
+  Real plateau, band;
+  Real change;  ///< of u in the step
+};
+
+/// Of a step dt of implicit–explicit Euler from the equilibrium `u`, whose solve is repeated: u + dt T(u) is
+/// off equilibrium by zD, and each solve divides that by 1 + z.
+template <problem P, class Distance>
+deviations<typename P::real> find_deviations(P& p, typename P::real t, const typename P::state& u,
+                                             typename P::real dt, const Distance& distance) {
+  using real = typename P::real;
+  using state = typename P::state;
+  const auto add = [&](const state& from, real alpha, real beta, state& to, bool fresh) {
+    const target<state, real> sum{&to, alpha, beta, fresh};
+    p.scatter(t, from, {&sum, 1});
+  };
+  state now = u, plateau = u, band = u, zero = u;
+  add(u, real(1), dt, now, true);
+  add(u, real(0), real(0), zero, true);
+  const real of_plateau[] = {1, -2, 1, 0}, of_band[] = {0, 1, -2, 1};
+  for (int k = 0; k < 4; ++k) {
+    p.collide(t + dt, dt, real(0), now);
+    add(now, of_plateau[k], real(0), plateau, k == 0);
+    add(now, of_band[k], real(0), band, k == 0);
+  }
+  // distance(u, u − x) for norms that are relative to their first argument.
+  const real size = distance(u, zero);
+  const real change = distance(now, u) / distance(now, zero);
+  add(u, real(1), real(0), plateau, false);
+  add(u, real(1), real(0), band, false);
+  return {distance(u, plateau), distance(u, band), size > real(0) ? change : real(0)};
+}
+
+}  // namespace forecast
+
+/// Of a run of length `interval` from u with steps of `longest` at most. `bounds` are those of the method.
+/// The error is what plateau_bounds leave of the deviation from equilibrium, once in u and once for what it
+/// does to the moments in a time in which they change by their own size, or the interval if that is shorter.
+template <problem P, class Distance>
+tolerance_forecast<typename P::real> forecast_tolerance(stepper<P>& method_stepper, typename P::real t,
+                                                        const typename P::state& u, typename P::real interval,
+                                                        typename P::real longest,
+                                                        const error_target<typename P::real>& target,
+                                                        const plateau_bounds& bounds,
+                                                        const Distance& distance) {
+  using real = typename P::real;
+  P& p = method_stepper.target_problem();
+  auto from = u;
+  tolerance_forecast<real> found{longest, real(0)};
+  real relaxation = std::numeric_limits<real>::infinity();
+  if constexpr (problem_with_relaxation_time<P>) relaxation = p.relaxation_time(t, u);
+  const bool relaxes = relaxation < std::numeric_limits<real>::infinity();
+  try {
+    if (relaxes) p.collide(t, real(1e100), real(0), from);
+    const auto equilibrium = from;
+    if (relaxes) {  // and on to the manifold on which the solution is after its layer
+      const auto& tried = method_stepper.attempt(t, longest * real(1e-5), from);
+      from = tried.result;
+    }
+    found.dt = forecast::settled_step(method_stepper, t, from, longest, target, distance);
+    // Steps far below the relaxation time keep the terms of size ε by their order.
+    if (!relaxes || found.dt < relaxation / 32) return found;
+    const auto [plateau, band, change] = forecast::find_deviations(p, t, equilibrium, found.dt, distance);
+    const real moved = std::min(real(1), change * std::max(real(1), interval / found.dt));
+    found.error = (real(bounds.last) + moved * real(bounds.flux)) * plateau +
+                  (real(bounds.last_band) + moved * real(bounds.flux_band)) * band;
+  } catch (const numerical_error&) {
+    // The run will say what is wrong with the data.
+  }
+  return found;
+}
+
+}  // namespace apsis

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <apsis/method/intermediate_regime.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace apsis {
+
+/// Bounds of |last(z) − 1| and |flux(z) − 1| (at_finite_rate) for z = CΔt/ε ≥ 1:
+///   |last(z) − 1| ≤ last (z/(1+z))³ + last_band z³/(1+z)⁴,    flux likewise.
+/// The first term is the plateau of a method, the second what is left where ε ~ Δt (docs/plateaus.md).
+struct plateau_bounds {
+  double last = 0.0, last_band = 0.0, flux = 0.0, flux_band = 0.0;
+};
+
+/// Over 1 ≤ z ≤ 10⁵, twenty values to a decade; the first terms are the values at 10⁵. +infinity where the
+/// stages have no solution.
+template <class Real>
+plateau_bounds find_plateau_bounds(const butcher_form<Real>& b) {
+  const auto defects = [&b](double z) {
+    const auto at = at_finite_rate(b, Real(z));
+    return finite_rate<double>{std::abs(static_cast<double>(at.flux) - 1.0),
+                               std::abs(static_cast<double>(at.last) - 1.0)};
+  };
+  const auto limit = defects(1e5);
+  plateau_bounds bounds{limit.last, 0.0, limit.flux, 0.0};
+  for (int k = 0; k <= 100; ++k) {
+    const double z = std::pow(10.0, k / 20.0), share = std::pow(z / (1.0 + z), 3);
+    const auto here = defects(z);
+    const auto rest = [&](double defect, double plateau) {
+      return std::max(defect / share - plateau, 0.0) * (1.0 + z);
+    };
+    bounds.last_band = std::max(bounds.last_band, rest(here.last, limit.last));
+    bounds.flux_band = std::max(bounds.flux_band, rest(here.flux, limit.flux));
+  }
+  return bounds;
+}
+
+}  // namespace apsis

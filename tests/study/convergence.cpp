@@ -234,8 +234,10 @@ TEST(convergence, a_stopped_study_shows_what_it_has_and_goes_on) {
   convergence whole(study), stopped(study);
   whole.run();
   study_control control;
-  std::atomic<int> asked = 0;
-  control.stop = [&asked] { return ++asked > 3; };
+  // Reports come at the start and after each run.
+  std::atomic<int> reports = 0;
+  control.progress = [&reports](double, const std::string&) { ++reports; };
+  control.stop = [&reports] { return reports > 3; };
   EXPECT_THROW(stopped.run(control), study_interrupted);
   const auto part = stopped.table();
   EXPECT_FALSE(part.complete);

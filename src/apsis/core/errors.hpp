@@ -27,7 +27,7 @@ struct source_place {
 /// "file:line:column: " as far as it is known, "" if nothing is.
 std::string to_string(const source_place& place);
 
-/// Base of all errors that Apsis throws on purpose. Message grammar: problem (why) suggestion.
+/// Base of all errors that Apsis throws on purpose. Message grammar: problem (reason); suggestion.
 class error : public std::runtime_error {
  public:
   /// `message` is what().

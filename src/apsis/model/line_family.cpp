@@ -91,7 +91,9 @@ line_family::sums line_family::solve(double tau, double& beta) {
     if (end.reached(std::abs(h))) break;
     (h < 0.0 ? lowest : highest) = beta;
     const bool enclosed = std::isfinite(lowest) && std::isfinite(highest);
-    double next = beta - h / differentiate(s).imbalance_by_beta;
+    // Infinite where all weights of one side are nearly subnormal: nothing is known but the sign.
+    const double slope = differentiate(s).imbalance_by_beta;
+    double next = std::isfinite(slope) ? beta - h / slope : std::numeric_limits<double>::quiet_NaN();
     if (next == beta) break;
     if (!(next > lowest && next < highest) || (slow && enclosed)) {
       if (end.close()) break;

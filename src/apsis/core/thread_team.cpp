@@ -204,7 +204,7 @@ thread_team::thread_team(int size)
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-void thread_team::account::add(const region_times& at, int own, int n) {
+void waiting_account::add(const times& at, int own, int n) {
   using seconds = std::chrono::duration<double>;
   // Debts below the limit are the price of waking workers up; a rest of 12 debts makes the loss one in 13 at
   // most.

@@ -4,6 +4,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/autodiff.hpp>
+#include <apsis/integrate/error_control.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -261,3 +262,46 @@ TEST(newton_problem, limit_of_iterations_is_an_error) {
 }
 
 }  // namespace
+
+namespace {
+
+/// Steps of imdrk-9-5 to a relative tolerance of 1e-6 (against 1e-6 absolutely).
+template <class G>
+apsis::integration_result<double> solve_stiff(const G& g, std::vector<double>& u, double end,
+                                              long& rejected) {
+  apsis::newton_problem problem(apsis::no_transport{}, g);
+  const apsis::method& m = apsis::find_method("imdrk-9-5");
+  apsis::stepper march(m, problem, apsis::solutions::result_and_embedded);
+  apsis::step_controller<double> control(1e-6, m.embedded->order);
+  const auto distance = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double largest = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+      largest = std::max(largest, std::abs(a[k] - b[k]) / (std::abs(a[k]) + 1e-6));
+    return largest;
+  };
+  const auto done = apsis::integrate_to_tolerance(march, u, 0.0, end, apsis::step_rule<double>::unlimited(),
+                                                  control, distance);
+  rejected = control.rejected();
+  return done;
+}
+
+}  // namespace
+
+TEST(newton_problem, follows_a_slow_manifold_in_steps_far_beyond_the_relaxation_time) {
+  // Van der Pol's equation in Liénard's time, ε = 1e-6: a full Newton step leaves the manifold by a residual
+  // of (Δt/ε)² times its square. With backtracking on the residual alone Newton's method crept along it,
+  // failed after 200 iterations, and it took 6300 steps.
+  std::vector<double> u{2.0, -0.66};
+  long rejected = 0;
+  const auto done = solve_stiff(
+      [](const auto& v, auto& out) {
+        out[0] = v[1];
+        out[1] = ((1 - v[0] * v[0]) * v[1] - v[0]) / 1e-6;
+      },
+      u, 2.0, rejected);
+  EXPECT_LT(done.steps, 2000);
+  EXPECT_LT(rejected, done.steps / 8);
+  // Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.10: y(2) for y(0) = (2, −0.66).
+  EXPECT_NEAR(u[0], 0.1706167732170483e1, 1e-5);
+  EXPECT_NEAR(u[1], -0.8928097010247975, 1e-5);
+}

@@ -44,7 +44,9 @@ struct newton_report {
 };
 
 /// Solves R(v) = 0 from the v given, to round-off: Newton's method with exact derivatives and backtracking
-/// on the maximum norm of R, until neither improves any further. Instantiated for double and long double.
+/// on the maximum norm of R, until neither improves any further. With LU a step is also taken where it makes
+/// the next one, with the same R', shorter (the natural monotonicity test: Deuflhard, Newton Methods for
+/// Nonlinear Problems, section 3.3). Instantiated for double and long double.
 ///
 /// Throws numerical_error if R(v) is not finite at the start, if R'(v) is singular to working precision
 /// (smallest singular value, relative to the terms of R' before they cancel, below about 1e-14 in double:

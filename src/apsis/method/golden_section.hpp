@@ -5,7 +5,8 @@ namespace apsis {
 /// A place and the value there.
 template <class Real>
 struct extremum {
-  Real at{}, value{};
+  Real at{},    ///< argument
+      value{};  ///< of the function there
 };
 
 /// The maximum of f between low and high where f has only one there, else some local maximum; the best of all

@@ -213,13 +213,14 @@ implicit_stability analyse_stability(const shu_osher_form<long double>& method) 
   s.largest_on_negative_axis = static_cast<double>(
       std::max(1.0L, maximum_over_radii([&](long double r) { return std::abs(on_axis(r)); })));
   s.smallest_on_negative_axis = static_cast<double>(smallest);
-  s.at_infinity = static_cast<double>(std::abs(on_axis(1e12L)));
+  constexpr long double far = 1e12L, vanishing = 1e-9L;  // R ~ 1/z or less there, if it tends to 0
+  const long double limit = std::abs(on_axis(far));
+  s.at_infinity = limit <= vanishing ? 0.0 : static_cast<double>(limit);
   for (std::size_t i = 0; i < m.stages(); ++i)
     if (m.D(i, i) == 0 && m.ddot[i] < 0)
       s.imaginary_poles.push_back(static_cast<double>(1 / std::sqrt(-m.ddot[i])));
   s.angle = s.largest_on_negative_axis <= static_cast<double>(stable) ? sector(m, R) : 0.0;
-  constexpr double vanishing = 1e-9;  // R ~ 1/z at z = −1e12
-  s.l_stable = s.angle == 90.0 && s.at_infinity <= vanishing;
+  s.l_stable = s.angle == 90.0 && s.at_infinity == 0.0;
   return s;
 }
 

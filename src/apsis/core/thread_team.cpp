@@ -204,7 +204,7 @@ thread_team::thread_team(int size)
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-void thread_team::account::add(const region_times& at, int own, int n) {
+void waiting_account::add(const times& at, int own, int n) {
   using seconds = std::chrono::duration<double>;
   // Debts below the limit are the price of waking workers up; a rest of 12 debts makes the loss one in 13 at
   // most.
@@ -213,7 +213,8 @@ void thread_team::account::add(const region_times& at, int own, int n) {
   const double alone = seconds(at.worked - at.called).count() * n / own;
   debt_ = std::max(debt_ + seconds(at.ended - at.begun).count() - alone, -limit);
   if (debt_ <= limit) return;
-  rest_until_ = at.ended + std::chrono::duration_cast<clock::duration>(seconds(rest_per_debt * debt_));
+  rest_until_ = at.ended + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                               seconds(rest_per_debt * debt_));
   debt_ = 0.0;
 }
 

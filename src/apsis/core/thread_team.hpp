@@ -15,6 +15,32 @@ struct place_in_region {
 /// That of the calling thread.
 place_in_region& place_of_this_thread();
 
+/// What regions cost, against an estimate of what the caller alone would have needed, and when it had better
+/// work alone for a while: a worker that the machine stopped while it held a number is waited for.
+class waiting_account {
+ public:
+  /// Times of a region.
+  struct times {
+    std::chrono::steady_clock::time_point begun,  ///< before workers were called
+        called,                                   ///< before the caller's own work
+        worked,                                   ///< after it
+        ended;                                    ///< when all had finished
+  };
+
+  /// Notes a region of which the caller did `own` of n numbers.
+  void add(const times& at, int own, int n);
+  /// Whether the debts of before are still to be worked off.
+  bool rests(std::chrono::steady_clock::time_point now) const { return now < rest_until_; }
+  /// The same without a look at the clock where there was never a debt.
+  bool rests() const {
+    return rest_until_ != std::chrono::steady_clock::time_point() && rests(std::chrono::steady_clock::now());
+  }
+
+ private:
+  double debt_ = 0.0;  ///< in seconds; below 0 a credit
+  std::chrono::steady_clock::time_point rest_until_{};
+};
+
 /// The threads of one caller: itself and workers that wait for it between parallel regions. A worker that the
 /// machine does not run is not waited for: the caller does its work, and at the end of a region waits only
 /// for those that hold a part of it.
@@ -37,8 +63,7 @@ class thread_team {
   /// Whether this process was forked since: the workers are then the parent's.
   bool left_behind() const;
 
-  /// Whether the workers have lately cost more time than they saved, so that the caller had better work alone
-  /// for a while: a worker that the machine stopped while it held a number is waited for.
+  /// Whether the workers have lately cost more time than they saved.
   bool rests() const { return account_.rests(); }
 
   /// Runs the job for all numbers with at most `threads` threads; throws the exception of the smallest one
@@ -46,29 +71,13 @@ class thread_team {
   void run(int n, int threads, numbered_job job, split how);
 
  private:
-  using clock = std::chrono::steady_clock;
-  struct region_times {
-    clock::time_point begun, called, worked, ended;
-  };
-  /// What regions cost against an estimate of what the caller alone would have needed.
-  class account {
-   public:
-    bool rests() const { return rest_until_ != clock::time_point() && clock::now() < rest_until_; }
-    /// The caller did `own` of n numbers.
-    void add(const region_times& at, int own, int n);
-
-   private:
-    double debt_ = 0.0;  ///< in seconds; below 0 a credit
-    clock::time_point rest_until_{};
-  };
-
   struct shared;
   static void serve(const std::shared_ptr<shared>& with, int number);
 
   int size_, workers_ = 0;
   long forks_;
   std::shared_ptr<shared> shared_;
-  account account_;
+  waiting_account account_;
 };
 
 }  // namespace apsis

@@ -148,7 +148,7 @@ TEST(thread_team, a_forked_child_has_threads_of_its_own) {
 TEST(waiting_account, rests_for_twelve_times_what_waiting_has_cost) {
   using account = apsis::waiting_account;
   using std::chrono::microseconds;
-  const account::clock::time_point start(microseconds(1'000'000));
+  const std::chrono::steady_clock::time_point start(microseconds(1'000'000));
   const auto region = [&](long work, long wait) {
     return account::times{start, start, start + microseconds(work), start + microseconds(work + wait)};
   };

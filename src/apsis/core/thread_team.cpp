@@ -213,7 +213,8 @@ void waiting_account::add(const times& at, int own, int n) {
   const double alone = seconds(at.worked - at.called).count() * n / own;
   debt_ = std::max(debt_ + seconds(at.ended - at.begun).count() - alone, -limit);
   if (debt_ <= limit) return;
-  rest_until_ = at.ended + std::chrono::duration_cast<clock::duration>(seconds(rest_per_debt * debt_));
+  rest_until_ = at.ended + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                               seconds(rest_per_debt * debt_));
   debt_ = 0.0;
 }
 

@@ -19,25 +19,26 @@ place_in_region& place_of_this_thread();
 /// work alone for a while: a worker that the machine stopped while it held a number is waited for.
 class waiting_account {
  public:
-  using clock = std::chrono::steady_clock;  ///< of all times here
   /// Times of a region.
   struct times {
-    clock::time_point begun,  ///< before workers were called
-        called,               ///< before the caller's own work
-        worked,               ///< after it
-        ended;                ///< when all had finished
+    std::chrono::steady_clock::time_point begun,  ///< before workers were called
+        called,                                   ///< before the caller's own work
+        worked,                                   ///< after it
+        ended;                                    ///< when all had finished
   };
 
   /// Notes a region of which the caller did `own` of n numbers.
   void add(const times& at, int own, int n);
   /// Whether the debts of before are still to be worked off.
-  bool rests(clock::time_point now) const { return now < rest_until_; }
+  bool rests(std::chrono::steady_clock::time_point now) const { return now < rest_until_; }
   /// The same without a look at the clock where there was never a debt.
-  bool rests() const { return rest_until_ != clock::time_point() && rests(clock::now()); }
+  bool rests() const {
+    return rest_until_ != std::chrono::steady_clock::time_point() && rests(std::chrono::steady_clock::now());
+  }
 
  private:
   double debt_ = 0.0;  ///< in seconds; below 0 a credit
-  clock::time_point rest_until_{};
+  std::chrono::steady_clock::time_point rest_until_{};
 };
 
 /// The threads of one caller: itself and workers that wait for it between parallel regions. A worker that the

@@ -7,12 +7,15 @@
 #include <apsis/core/version.hpp>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <new>
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace apsis::app {
 
@@ -90,8 +93,16 @@ int run_program(int argc, char** argv) {
   return chosen();
 }
 
+/// Descriptors 0 to 2 that the caller closed are opened again: the next file, one of results perhaps, would
+/// get their number and with it every message. Writing to them fails, as to a closed one.
+void occupy_standard_descriptors() {
+  for (const int id : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(id, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
+}
+
 int fail(exit_code code, const std::string& message) {
-  fmt::print(stderr, "error: {}\n", message);
+  // Where standard error cannot be written, the exit code says all that can be said.
+  std::fputs(fmt::format("error: {}\n", message).c_str(), stderr);
   return static_cast<int>(code);
 }
 
@@ -100,6 +111,9 @@ int fail(exit_code code, const std::string& message) {
 
 int main(int argc, char** argv) {
   using namespace apsis;
+  app::occupy_standard_descriptors();
+  // A file that grows beyond its limit (ulimit -f) is an output error and no reason to die.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return app::run_program(argc, argv);
   } catch (const app::interruption&) {

@@ -10,6 +10,7 @@
 #include <apsis/core/profile.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/output/progress.hpp>
+#include <apsis/output/provenance.hpp>
 #include <apsis/run/session.hpp>
 
 #include <memory>
@@ -37,6 +38,7 @@ int run(run_options options) {
   case_config config = load_case(options.case_name, options.overrides);
   set_threads(options.threads.value_or(threads_for(config)));
   progress bar(config.time.end);
+  options.session.command = command_line();
   options.session.stop = interrupted;
   options.session.watch = [&bar](const simulation& now) {
     if (bar.due()) bar.update(now.step(), now.steps_total(), now.t(), now.last().min_value);

@@ -287,7 +287,7 @@ TEST(results, fifty_kills_at_random_moments_lose_nothing) {
   for (const auto& name : names_in(folder.path() / "o")) EXPECT_NE(name.front(), '.') << name;
 }
 
-INSTANTIATE_TEST_SUITE_P(signals, interruption, testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(signals, interruption, testing::Values(SIGINT, SIGTERM, SIGHUP));
 
 TEST(results, a_start_up_goes_on_from_a_checkpoint_bit_for_bit_and_says_what_it_cost) {
   const work_folder folder;

@@ -4,6 +4,8 @@ import os
 import pickle
 import re
 import signal
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -142,3 +144,19 @@ def test_a_forked_child_has_threads_of_its_own():
         finally:
             os._exit(status)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+def test_a_full_disk_is_an_error_and_no_crash(tmp_path):
+    """In a process of its own: HDF5 used to crash when the interpreter ended."""
+    script = (
+        "import resource, apsis\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))\n"
+        "try:\n"
+        f"    apsis.run('paper/bgk-mixed', *{SMALL!r}, out={str(tmp_path / 'o')!r})\n"
+        "except apsis.FileError as error:\n"
+        "    print(error)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "File too large" in done.stdout
+    assert not (tmp_path / "o").exists()

@@ -214,3 +214,19 @@ TEST(a_checkpoint, of_another_kind_or_another_version_is_refused_with_the_reason
   seal(path, "checkpoint", "0.0.7");
   EXPECT_THAT(refusal(path), HasSubstr(std::string("written by version 0.0.7, this is ") + version()));
 }
+
+TEST(a_checkpoint, knows_the_commit_of_the_program_and_another_one_is_only_warned_of) {
+  const test_folder folder;
+  const std::string path = some_checkpoint(folder);
+  checkpoint saved = read_checkpoint(path);
+  EXPECT_EQ(saved.commit, commit());
+  saved.commit = std::string(40, 'a');
+  write_checkpoint(folder / "other.h5", saved);
+  const auto c = parse_case(small_case(*find_model("ode"), "md-imex-3-2", ""), "case");
+  testing::internal::CaptureStderr();
+  const auto continued = run(c, folder / "again", 1000, folder / "other.h5");
+  const std::string said = testing::internal::GetCapturedStderr();
+  expect_same(run(c, folder / "whole", 1000), continued, "other commit");
+  const bool known = std::string(commit()) != "unknown";
+  EXPECT_EQ(said.find("was written by commit " + std::string(40, 'a')) != std::string::npos, known) << said;
+}

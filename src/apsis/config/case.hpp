@@ -64,6 +64,7 @@ struct case_config {
     std::string precision = "double";  ///< of these: "double" | "single"
     int checkpoint_every = 0;          ///< steps; 0: not by steps
     double checkpoint_minutes = 10.0;  ///< 0: not by time
+    int history_rows = 100000;         ///< most rows of the history
   } output;
 };
 

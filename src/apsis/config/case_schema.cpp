@@ -218,6 +218,12 @@ std::vector<case_key> make_schema() {
        "Minutes of the clock between checkpoints; 0 writes none by time.",
        [](c& o, const v& x) { o.output.checkpoint_minutes = number_of(x); },
        [](const c& o) { return v(o.output.checkpoint_minutes); }},
+      {"output.history_rows", integer, key_scope::always, false, "rows", 100, 10'000'000, false, nullptr,
+       "Most rows of the history. A run of more steps keeps every 2nd, 4th, 8th, … step, the last one, and "
+       "the "
+       "steps at which a column is smallest or largest.",
+       [](c& o, const v& x) { o.output.history_rows = integer_of(x); },
+       [](const c& o) { return v(long{o.output.history_rows}); }},
   };
 }
 

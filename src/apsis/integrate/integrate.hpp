@@ -31,10 +31,23 @@ struct step_rule {
   step_rule with(startup how) const { return {dt, safety, how}; }
 };
 
+/// The largest whole k ≥ 0 with k · every ≤ t, where the product is the rounded one: a time that was set to
+/// k · every counts as reached. 0 where t < every.
+template <class Real>
+long multiples_until(Real t, Real every) {
+  using std::floor;
+  if (!(t >= every)) return 0;
+  auto k = static_cast<long>(floor(t / every));
+  while (Real(k + 1) * every <= t) ++k;
+  while (Real(k) * every > t) --k;
+  return k;
+}
+
 /// Time from t0 to t1 in steps. With a given dt times are t0 + n dt (no accumulation of rounding); a dt that
 /// does not divide t1 − t0 (to 1e-12) is reduced until it does, see adjusted(). Without one, the last step is
-/// shortened to meet t1. An interval of length zero has no steps. A start-up puts times between the first two
-/// and changes no other, unless the rule shortens steps on the way.
+/// shortened to meet t1, and steps are shortened to meet the times of stop_every(). An interval of length
+/// zero has no steps. A start-up puts times between the first two and changes no other, unless the rule
+/// shortens steps on the way.
 template <class Real>
 class time_marcher {
  public:
@@ -69,8 +82,25 @@ class time_marcher {
     count_ = static_cast<long>(divides ? nearest : ceil(ratio));
     if (count_ > 0) {
       adjusted_ = !divides;
-      fixed_ = length / Real(count_);
+      // A dt that divides up to rounding is kept, so that steps do not depend on where the interval ends.
+      if (abs(nearest * *dt - length) > Real(4) * std::numeric_limits<Real>::epsilon() * length)
+        fixed_ = length / Real(count_);
     }
+  }
+
+  /// Some step ends at every time k · every in the interval, to the last digit (k = 1, 2, …; 0 ends the
+  /// wish). A given dt must divide `every` to 1e-12: input_error otherwise. The last two steps before such a
+  /// time are of equal length where one alone would be a sliver.
+  void stop_every(Real every) {
+    using std::abs, std::round;
+    if (!(every >= Real(0))) throw input_error("times to stop at are negative or NaN; give an interval ≥ 0");
+    if (fixed_ && count_ > 0 && every > Real(0)) {
+      const Real ratio = every / *fixed_;
+      if (ratio < Real(0.5) || abs(ratio - round(ratio)) > Real(1e-12) * ratio)
+        throw input_error(
+            "dt does not divide the interval between the times to stop at; give one that does, or no dt");
+    }
+    every_ = every;
   }
 
   /// Cuts the first step, whose length the rule `proposed`, into steps that double from relaxation_time/4 on;
@@ -111,7 +141,11 @@ class time_marcher {
       throw input_error(
           "nothing limits the time step (the transport sets no forward Euler step, or the method is "
           "unconditionally stable); give dt");
-    const Real rest = t1_ - t_;
+    const Real stop = next_stop(), rest = t1_ - t_;
+    if (stop > Real(0) && stop - t_ < Real(2) * proposed) {
+      if (stop - t_ > proposed + rounding(stop)) return (stop - t_) / Real(2);
+      return stop - t_ < proposed ? stop - t_ : proposed;
+    }
     if (rest < proposed) return rest;
     if (!(t_ + proposed > t_))
       throw numerical_error(
@@ -121,8 +155,50 @@ class time_marcher {
     return proposed;
   }
 
+  /// Whether the next step would be another one, in its length or its end, if t1 were later: a run that may
+  /// be continued to a later t1 is saved before it.
+  bool shaped_by_end(Real proposed) const {
+    if (done()) return false;
+    time_marcher longer = *this, here = *this;
+    if (fixed_) {
+      // t0 + n dt may differ from t1 by rounding.
+      if (whole_steps() + 1 < count_ || starting()) return false;
+      longer.count_ = count_ + 1;
+    }
+    // Late enough for no step to meet it.
+    longer.t1_ = t1_ + Real(4) * (proposed + (t1_ - t_) + every_);
+    const Real dt = next(proposed);
+    if (longer.next(proposed) != dt) return true;
+    longer.advance(dt);
+    here.advance(dt);
+    return here.t_ != longer.t_;
+  }
+
   /// A step of the length dt that next() gave has been taken.
   void advance(Real dt) {
+    const Real stop = next_stop();
+    move(dt);
+    meet(stop);
+  }
+
+  /// Goes to where an earlier run stopped.
+  void resume(const progress& saved) {
+    n_ = saved.step;
+    t_ = saved.t;
+    anchor_ = saved.anchor;
+    anchor_dt_ = saved.anchor_dt;
+    since_anchor_ = saved.since_anchor;
+    startup_steps_ = saved.startup_steps;
+    startup_done_ = saved.startup_done;
+    startup_length_ = saved.startup_length;
+  }
+  /// For a checkpoint.
+  progress save() const {
+    return {n_, since_anchor_, t_, anchor_, anchor_dt_, startup_steps_, startup_done_, startup_length_};
+  }
+
+ private:
+  void move(Real dt) {
     ++n_;
     if (starting() && (fixed_ || dt == startup_step())) {
       ++startup_done_;
@@ -147,28 +223,27 @@ class time_marcher {
     ++since_anchor_;
     t_ = anchor_ + Real(since_anchor_) * anchor_dt_;
     // What rounding of t leaves is not a step.
+    if (t_ >= t1_ || t1_ - t_ <= rounding(t1_)) t_ = t1_;
+  }
+  /// t is set to the time that a step was to end at.
+  void meet(Real stop) {
     using std::abs;
-    if (t_ >= t1_ || t1_ - t_ <= Real(8) * std::numeric_limits<Real>::epsilon() * (abs(t1_) + abs(t0_)))
-      t_ = t1_;
+    if (!(stop > Real(0)) || t_ == t1_) return;
+    if (fixed_ ? abs(stop - t_) <= Real(2e-12) * stop && abs(stop - t_) < *fixed_ / Real(4)
+               : t_ >= stop || stop - t_ <= rounding(stop))
+      t_ = stop;
+  }
+  Real rounding(Real t) const {
+    using std::abs;
+    return Real(8) * std::numeric_limits<Real>::epsilon() * (abs(t) + abs(t0_));
+  }
+  /// The next time to stop at before t1; 0 if there is none.
+  Real next_stop() const {
+    if (!(every_ > Real(0))) return Real(0);
+    const Real stop = Real(multiples_until(t_, every_) + 1) * every_;
+    return stop < t1_ - rounding(t1_) ? stop : Real(0);
   }
 
-  /// Goes to where an earlier run stopped.
-  void resume(const progress& saved) {
-    n_ = saved.step;
-    t_ = saved.t;
-    anchor_ = saved.anchor;
-    anchor_dt_ = saved.anchor_dt;
-    since_anchor_ = saved.since_anchor;
-    startup_steps_ = saved.startup_steps;
-    startup_done_ = saved.startup_done;
-    startup_length_ = saved.startup_length;
-  }
-  /// For a checkpoint.
-  progress save() const {
-    return {n_, since_anchor_, t_, anchor_, anchor_dt_, startup_steps_, startup_done_, startup_length_};
-  }
-
- private:
   Real startup_step() const { return graded_step(startup_length_, startup_steps_ - 1, startup_done_); }
   /// Steps of full length that are done; the start-up is one of them.
   long whole_steps() const {
@@ -181,6 +256,7 @@ class time_marcher {
   long since_anchor_ = 0;
   long startup_steps_ = 0, startup_done_ = 0;
   Real startup_length_ = Real(0);
+  Real every_ = Real(0);
   std::optional<Real> fixed_;
   long n_ = 0, count_ = 0;
   bool adjusted_ = false;

@@ -66,6 +66,7 @@ void write_checkpoint(const std::string& path, const checkpoint& c) {
   hdf5_file file = hdf5_file::create(path, seal_length);
   for (const auto& [name, value] : c.numbers) file.write_attribute(name, value);
   file.write("case", c.case_text);
+  file.write("commit", c.commit);
   file.write("state", c.state, {c.cells, c.components}, "unknowns");
   file.write("history/columns", joined(c.history.columns));
   write_rows(file, "history/rows", c.history.rows, c.history.columns.size());
@@ -89,6 +90,7 @@ checkpoint read_checkpoint(const std::string& path) {
   checkpoint c;
   for (const auto& [name, value] : file.attributes()) c.numbers[name] = value;
   c.case_text = file.read_text("case");
+  c.commit = file.read_text("commit");
   const auto extents = file.extents("state");
   if (extents.size() != 2) damaged(path, "'state' has a wrong shape");
   c.cells = extents[0];

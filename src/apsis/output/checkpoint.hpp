@@ -13,6 +13,7 @@ namespace apsis {
 /// Everything that a run needs to go on as if it had never stopped, bit for bit, its results so far included.
 struct checkpoint {
   std::string case_text;                  ///< the resolved case as TOML
+  std::string commit;                     ///< commit() of the program that wrote it
   std::uint64_t cells = 0,                ///< rows of the state
       components = 0;                     ///< unknowns of a cell
   std::vector<double> state;              ///< [cells][components]

@@ -1,6 +1,9 @@
 #include <apsis/output/hdf5_file.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/output/recording_driver.hpp>
+
+#include <system_error>
 
 #include <fmt/format.h>
 #include <hdf5.h>
@@ -72,7 +75,7 @@ bool make_groups(hid_t file, const std::string& name) {
 hdf5_file::hdf5_file(std::string path, std::int64_t id) : path_(std::move(path)), id_(id) {}
 
 hdf5_file::hdf5_file(hdf5_file&& other) noexcept
-    : path_(std::move(other.path_)), id_(std::exchange(other.id_, -1)) {}
+    : path_(std::move(other.path_)), id_(std::exchange(other.id_, -1)), error_(std::move(other.error_)) {}
 
 hdf5_file::~hdf5_file() {
   if (id_ >= 0) H5Fclose(id_);
@@ -82,15 +85,21 @@ void hdf5_file::fail(const std::string& what) const {
   throw io_error(fmt::format("'{}': {}", path_, what));
 }
 
+void hdf5_file::fail_to_write(const std::string& what) const {
+  fail(fmt::format("{} ({}); free some space or choose another folder", what,
+                   *error_ != 0 ? std::generic_category().message(*error_) : "HDF5 says no more"));
+}
+
 hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes) {
   silence();
   const handle creation = creation_properties(H5P_FILE_CREATE);
   H5Pset_userblock(creation, free_bytes);
   // Version 1.8 and later can have attributes of more than 64 KiB, such as a long case.
-  const handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  hdf5_file file(path, -1);
+  const handle access(make_recording_access(file.error_.get()), H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
-  hdf5_file file(path, H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access));
-  if (file.id_ < 0) file.fail("cannot be created (no permission or no space?) choose another folder");
+  file.id_ = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access);
+  if (file.id_ < 0) file.fail_to_write("cannot be created");
   return file;
 }
 
@@ -105,7 +114,7 @@ hdf5_file hdf5_file::open(const std::string& path) {
 void hdf5_file::close() {
   const hid_t id = std::exchange(id_, -1);
   const bool flushed = H5Fflush(id, H5F_SCOPE_LOCAL) >= 0;
-  if (H5Fclose(id) < 0 || !flushed) fail("cannot be written to its end (disk full?) free some space");
+  if (H5Fclose(id) < 0 || !flushed || *error_ != 0) fail_to_write("cannot be written to its end");
 }
 
 void hdf5_file::write(const std::string& name, const std::vector<double>& values, const shape& extents,
@@ -121,7 +130,7 @@ void hdf5_file::write(const std::string& name, const std::vector<double>& values
                        H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0 &&
                        write_text_attribute(data, "units", "dimensionless") &&
                        (long_name.empty() || write_text_attribute(data, "long_name", long_name));
-  if (!written) fail(fmt::format("'{}' cannot be written (disk full?) free some space", name));
+  if (!written || *error_ != 0) fail_to_write(fmt::format("'{}' cannot be written", name));
 }
 
 void hdf5_file::write(const std::string& name, const std::string& text) {
@@ -131,8 +140,9 @@ void hdf5_file::write(const std::string& name, const std::string& text) {
   const handle properties = creation_properties(H5P_DATASET_CREATE);
   const handle data(H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
                     H5Dclose);
-  if (!with_groups || !data.good() || H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0)
-    fail(fmt::format("'{}' cannot be written (disk full?) free some space", name));
+  if (!with_groups || !data.good() || H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0 ||
+      *error_ != 0)
+    fail_to_write(fmt::format("'{}' cannot be written", name));
 }
 
 void hdf5_file::write_attribute(const std::string& name, double value) {
@@ -140,12 +150,12 @@ void hdf5_file::write_attribute(const std::string& name, double value) {
   const handle attribute(H5Acreate2(id_, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose);
   if (!attribute.good() || H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) < 0)
-    fail(fmt::format("attribute '{}' cannot be written (disk full?) free some space", name));
+    fail_to_write(fmt::format("attribute '{}' cannot be written", name));
 }
 
 void hdf5_file::write_attribute(const std::string& name, const std::string& value) {
   if (!write_text_attribute(id_, name, value))
-    fail(fmt::format("attribute '{}' cannot be written (disk full?) free some space", name));
+    fail_to_write(fmt::format("attribute '{}' cannot be written", name));
 }
 
 bool hdf5_file::has(const std::string& name) const {

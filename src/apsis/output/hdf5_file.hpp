@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,9 +62,11 @@ class hdf5_file {
  private:
   hdf5_file(std::string path, std::int64_t id);
   [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void fail_to_write(const std::string& what) const;
 
   std::string path_;
   std::int64_t id_;
+  std::unique_ptr<int> error_ = std::make_unique<int>(0);  ///< errno of the first write that failed
 };
 
 }  // namespace apsis

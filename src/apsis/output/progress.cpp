@@ -11,6 +11,12 @@ namespace apsis {
 
 namespace {
 
+/// A terminal that was closed takes nothing; that must not end a run.
+void say(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 /// "[=====>    ]  42 %"
 std::string bar(double part) {
   constexpr int width = 24;
@@ -53,8 +59,7 @@ void progress::update(long step, long steps_total, double t, double min_value) {
   if (first_t_ < 0.0) first_t_ = t;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double left = t > first_t_ ? elapsed * (end_ - t) / (t - first_t_) : HUGE_VAL;
-  fmt::print(stderr, "\r\033[K{}", progress_line(t / end_, step, steps_total, t, min_value, left));
-  std::fflush(stderr);
+  say(fmt::format("\r\033[K{}", progress_line(t / end_, step, steps_total, t, min_value, left)));
   last_ = now;
   drawn_ = true;
 }
@@ -69,19 +74,18 @@ void task_progress::update(double fraction, const std::string& what) {
   const auto now = clock::now();
   if (!visible_ || (drawn_ && now - last_ < std::chrono::milliseconds(100))) return;
   const double part = std::clamp(fraction, 0.0, 1.0);
-  fmt::print(stderr, "\r\033[K{}  {:.60}", bar(part), what);
-  std::fflush(stderr);
+  say(fmt::format("\r\033[K{}  {:.60}", bar(part), what));
   last_ = now;
   drawn_ = true;
 }
 
 void task_progress::finish() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) say(fmt::format("\r\033[K"));
   drawn_ = false;
 }
 
 void progress::finish() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) say(fmt::format("\r\033[K"));
   drawn_ = false;
 }
 

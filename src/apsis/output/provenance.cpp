@@ -4,6 +4,7 @@
 #include <apsis/core/parallel.hpp>
 #include <apsis/core/version.hpp>
 
+#include <array>
 #include <chrono>
 #include <fstream>
 #include <string>
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace apsis {
 namespace {
@@ -55,6 +57,18 @@ nlohmann::ordered_json machine_info() {
   return {{"processor", processor()},
           {"cores", static_cast<int>(std::thread::hardware_concurrency())},
           {"threads", threads()}};
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0' ? name.data() : "unknown";
+}
+
+std::vector<std::string> command_line() {
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> arguments;
+  for (std::string one; std::getline(in, one, '\0');) arguments.push_back(one);
+  return arguments;
 }
 
 std::string time_stamp() {

@@ -60,6 +60,7 @@ result_folder::result_folder(fs::path path) : path_(std::move(path)) {
   }
   const fs::path probe = temporary("probe");
   try {
+    lock_.emplace(path_);
     write_text(probe.string(), "apsis\n");
   } catch (const io_error&) {
     discard();
@@ -76,8 +77,12 @@ void result_folder::discard() noexcept {
   std::error_code ignored;
   for (const auto& name : prepared_) fs::remove(temporary(name), ignored);
   prepared_.clear();
-  if (keep_) return;
+  if (keep_) {
+    lock_.reset();
+    return;
+  }
   for (const auto& series : series_) fs::remove_all(temporary(series), ignored);
+  lock_.reset();
   // Removes a folder only while it is empty.
   for (const auto& folder : std::views::reverse(made_)) fs::remove(folder, ignored);
 }

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <apsis/output/folder_lock.hpp>
+
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace apsis {
 
-/// The folder of a run's results. Files are prepared under temporary names inside it and take their names
-/// together in commit(); until then results of an earlier run stay as they are, and whatever was made is
-/// removed again if commit() is never reached. Everything throws io_error.
+/// The folder of a run's results, locked against other runs (folder_lock). Files are prepared under temporary
+/// names inside it and take their names together in commit(); until then results of an earlier run stay as
+/// they are, and whatever was made is removed again if commit() is never reached. Everything throws io_error.
 class result_folder {
  public:
   /// Makes the folder (and those above it) and proves that a file can be written into it.
@@ -54,6 +57,7 @@ class result_folder {
   void discard() noexcept;
 
   std::filesystem::path path_;
+  std::optional<folder_lock> lock_;
   std::vector<std::filesystem::path> made_;  ///< folders that did not exist before, outermost first
   std::vector<std::string> prepared_, series_;
   bool keep_ = false;

@@ -62,9 +62,12 @@ json to_json(const simulation& run, const run_records& records) {
   return out;
 }
 
-json manifest(const simulation& run, run_end end, const std::string& message) {
-  json out = {{"apsis", version()}, {"state", to_string(end)}};
-  if (!message.empty()) out["message"] = message;
+json manifest(const simulation& run, const session_record& session) {
+  json out = {{"apsis", version()}, {"commit", commit()}, {"state", to_string(session.end)}};
+  if (!session.message.empty()) out["message"] = session.message;
+  if (!session.command.empty()) out["command"] = session.command;
+  if (session.restart) out["restart"] = *session.restart;
+  out["started"] = session.started;
   out["written"] = time_stamp();
   out["case"] = apsis::to_json(run.config());
   out["method"] = run.config().time.method;
@@ -74,6 +77,7 @@ json manifest(const simulation& run, run_end end, const std::string& message) {
   out["result"] = numbers(run);
   out["build"] = build_info();
   out["machine"] = machine_info();
+  out["machine"]["host"] = host_name();
   return out;
 }
 

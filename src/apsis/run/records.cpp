@@ -2,6 +2,7 @@
 
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/core/version.hpp>
 
 #include <algorithm>
 
@@ -47,29 +48,45 @@ long count(const checkpoint& c, const std::string& name) {
   return static_cast<long>(x);
 }
 
+std::vector<std::string> history_columns(const simulation& run) {
+  std::vector<std::string> columns = {"step", "t", "dt", "min_value", "negative_values"};
+  for (const auto& invariant : run.invariants()) columns.push_back("conservation_" + invariant);
+  columns.emplace_back("entropy");
+  columns.emplace_back("entropy_change");
+  return columns;
+}
+
+std::size_t most_rows(const simulation& run) {
+  return static_cast<std::size_t>(run.config().output.history_rows);
+}
+
+long stride_of(const checkpoint& c) {
+  const long stride = count(c, "history_stride");
+  if (stride < 1)
+    throw io_error(
+        "the checkpoint has a wrong number 'history_stride' (damaged file); give another checkpoint");
+  return stride;
+}
+
 }  // namespace
 
-run_records::run_records(const simulation& run) {
-  name_columns(run);
+run_records::run_records(const simulation& run) : history_(history_columns(run), most_rows(run)) {
+  name_fields(run);
   add_step(run.initial_record());
   if (run.config().output.every > 0.0) add_snapshot(run);
 }
 
-run_records::run_records(const simulation& run, const checkpoint& from) {
-  name_columns(run);
-  if (from.history.columns != history_.columns)
+run_records::run_records(const simulation& run, const checkpoint& from)
+    : history_(from.history, stride_of(from), most_rows(run)) {
+  name_fields(run);
+  if (from.history.columns != history_columns(run))
     throw io_error(
         "the history of the checkpoint has other columns (written by another version?) run the case again");
-  history_ = from.history;
   // The choice of fields may have changed; then earlier snapshots cannot be continued.
   if (from.fields.names == fields_.names) fields_.snapshots = from.fields.snapshots;
 }
 
-void run_records::name_columns(const simulation& run) {
-  history_.columns = {"step", "t", "dt", "min_value", "negative_values"};
-  for (const auto& invariant : run.invariants()) history_.columns.push_back("conservation_" + invariant);
-  history_.columns.emplace_back("entropy");
-  history_.columns.emplace_back("entropy_change");
+void run_records::name_fields(const simulation& run) {
   const field_table all = run.fields();
   const auto& wanted = run.config().output.fields;
   for (std::size_t k = 0; k < all.names.size(); ++k) {
@@ -81,7 +98,7 @@ void run_records::name_columns(const simulation& run) {
 }
 
 void run_records::add_step(const step_record& record) {
-  history_.rows.push_back(to_row(record));
+  history_.add(to_row(record));
 }
 
 void run_records::add_snapshot(const simulation& run) {
@@ -95,12 +112,13 @@ void run_records::add_snapshot(const simulation& run) {
 }
 
 checkpoint make_checkpoint(const simulation& run, const run_records& records) {
-  const saved_run saved = run.save();
+  saved_run saved = run.save();
   checkpoint c;
   c.case_text = to_toml(run.config());
+  c.commit = commit();
   c.cells = static_cast<std::uint64_t>(run.cells());
   c.components = static_cast<std::uint64_t>(run.components());
-  c.state = saved.state;
+  c.state = std::move(saved.state);
   c.numbers = {{"step", static_cast<double>(saved.step)},
                {"since_anchor", static_cast<double>(saved.since_anchor)},
                {"t", saved.t},
@@ -114,7 +132,8 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records) {
                {"min_value", saved.so_far.min_value},
                {"negative_values", static_cast<double>(saved.so_far.negative_values)},
                {"conservation_defect", saved.so_far.conservation_defect},
-               {"max_entropy_increase", saved.so_far.max_entropy_increase}};
+               {"max_entropy_increase", saved.so_far.max_entropy_increase},
+               {"history_stride", static_cast<double>(records.history_stride())}};
   if (run.config().time.tolerance) {
     c.numbers["proposed_dt"] = saved.proposed_dt;
     c.numbers["previous_error"] = saved.previous_error;

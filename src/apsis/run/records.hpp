@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/output/checkpoint.hpp>
+#include <apsis/output/history.hpp>
 #include <apsis/output/solution.hpp>
 #include <apsis/run/simulation.hpp>
 
@@ -21,15 +22,18 @@ class run_records {
   void add_snapshot(const simulation& run);
 
   /// Columns step, t, dt, min_value, negative_values, conservation_NAME of every invariant, entropy,
-  /// entropy_change; a row for the initial state and every step.
-  const table& history() const { return history_; }
+  /// entropy_change; a row for the initial state and every step, at most output.history_rows of them (see
+  /// apsis::history).
+  const table& history() const { return history_.rows(); }
+  /// Steps from one regular row of the history to the next.
+  long history_stride() const { return history_.stride(); }
   /// The snapshots so far.
   const field_series& fields() const { return fields_; }
 
  private:
-  void name_columns(const simulation& run);
+  void name_fields(const simulation& run);
 
-  table history_;
+  class history history_;
   field_series fields_;
 };
 

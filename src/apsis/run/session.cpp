@@ -4,7 +4,9 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/parallel.hpp>
+#include <apsis/core/version.hpp>
 #include <apsis/output/case_json.hpp>
+#include <apsis/run/memory_need.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +35,29 @@ std::vector<distribution_file> distribution_files(const result_folder& folder) {
                      extents.at(0), extents.at(1), file.has("x") && file.has("v"), file.stored("f")});
   }
   return files;
+}
+
+constexpr long many_steps = 100'000'000;
+
+/// The same case, unless the state, its checkpoint and solution.h5 do not fit into memory together.
+case_config with_room_for_results(case_config config, const session_options& options) {
+  if (options.out) check_memory(config, run_setup(config), 2);
+  return config;
+}
+
+std::string duration(double seconds) {
+  if (seconds < 7200.0) return fmt::format("{:.0f} minutes", seconds / 60.0);
+  if (seconds < 172800.0) return fmt::format("{:.0f} hours", seconds / 3600.0);
+  return fmt::format("{:.3g} days", seconds / 86400.0);
+}
+
+void warn_of_another_commit(const checkpoint& saved, const std::string& path) {
+  const std::string here = commit();
+  if (saved.commit == here || saved.commit == "unknown" || here == "unknown") return;
+  log::warning(fmt::format(
+      "'{}' was written by commit {} of version {} (this is {}; the results may differ in their last "
+      "digits); run the case again from its beginning where that matters",
+      path, saved.commit, version(), here));
 }
 
 // What may differ between a run and its continuation: nothing that enters a step.
@@ -69,14 +94,15 @@ int threads_for(const case_config& config) {
 }
 
 run_session::run_session(case_config configured, session_options options)
-    : options_(std::move(options)), simulation_(std::move(configured)) {
+    : options_(std::move(options)), simulation_(with_room_for_results(std::move(configured), options_)) {
+  // First of all: a checkpoint in a folder that another run writes into would be read in vain.
+  if (options_.out) folder_ = std::make_unique<result_folder>(*options_.out);
   if (options_.restart)
     resume(*options_.restart);
   else
     records_ = std::make_unique<run_records>(simulation_);
   const case_config& config = simulation_.config();
-  if (config.output.every > 0.0) snapshots_ = static_cast<long>(simulation_.t() / config.output.every + 1e-9);
-  if (options_.out) folder_ = std::make_unique<result_folder>(*options_.out);
+  snapshots_ = simulation_.snapshot_times_passed();
   if (folder_ && options_.restart)
     resume_snapshots(*options_.restart);
   else if (simulation_.step() == 0 && config.output.every > 0.0)
@@ -87,13 +113,16 @@ run_session::run_session(case_config configured, session_options options)
     log::warning(
         "no snapshots of f are written (output.distribution = \"snapshots\" needs output.every and a folder) "
         "give both");
-  log::info(fmt::format("{}: about {} steps of {} on {} thread{}; {}", config.source,
-                        simulation_.steps_total(), config.time.method, threads(), threads() == 1 ? "" : "s",
+  const long steps = simulation_.steps_total();
+  log::info(fmt::format("{}: about {} steps of {} on {} thread{}; {}", config.source, steps,
+                        config.time.method, threads(), threads() == 1 ? "" : "s",
                         simulation_.promises().text()));
+  if (steps - simulation_.step() >= many_steps) warn_at_step_ = simulation_.step() + 1000;
 }
 
 void run_session::resume(const std::string& path) {
   const checkpoint saved = read_checkpoint(path);
+  warn_of_another_commit(saved, path);
   check_same_case(simulation_.config(), saved.case_text, path);
   if (saved.cells != static_cast<std::uint64_t>(simulation_.cells()) ||
       saved.components != static_cast<std::uint64_t>(simulation_.components()))
@@ -165,21 +194,30 @@ void run_session::loop() {
       end_ = run_end::wall_time;
       return;
     }
+    if (folder_ && !before_end_ && simulation_.next_step_depends_on_end())
+      before_end_ = make_checkpoint(simulation_, *records_);
     simulation_.advance();
     after_step();
   }
 }
 
+void run_session::warn_of_many_steps() {
+  const double left = static_cast<double>(simulation_.steps_total() - simulation_.step());
+  const run_summary done = simulation_.summary();
+  const double seconds = done.wall_s / static_cast<double>(done.steps);
+  log::warning(fmt::format(
+      "about {:.2g} steps are left (the next one is {:.3g} long, time.end = {:g}): {} at {:.2g} s a "
+      "step; choose longer steps, or end the run with --wall",
+      left, simulation_.dt(), simulation_.config().time.end, duration(left * seconds), seconds));
+}
+
 void run_session::after_step() {
-  const case_config& config = simulation_.config();
   const step_record& last = simulation_.last();
   records_->add_step(last);
-  if (config.output.every > 0.0) {
-    // A step may pass several snapshot times; the state is then kept once.
-    const auto passed = static_cast<long>(std::floor(last.t / config.output.every + 1e-9));
-    if (passed > snapshots_) take_snapshot();
-    snapshots_ = passed;
-  }
+  const long passed = simulation_.snapshot_times_passed();
+  if (passed > snapshots_) take_snapshot();
+  snapshots_ = passed;
+  if (last.step == warn_at_step_) warn_of_many_steps();
   if (checkpoint_is_due()) publish_checkpoint();
   if (options_.watch) options_.watch(simulation_);
 }
@@ -199,21 +237,25 @@ void run_session::publish_checkpoint() {
   last_checkpoint_ = clock::now();
 }
 
+void run_session::write_checkpoint_of_end(const std::string& path) {
+  // Without the snapshot of the present moment: the run that goes on from here would not have taken it.
+  if (end_ == run_end::complete && before_end_)
+    write_checkpoint(path, *before_end_);
+  else
+    write_checkpoint(path, make_checkpoint(simulation_, *records_));
+}
+
 void run_session::write_results(result_folder& folder, run_end end, const std::string& message) {
-  const std::string about = json_text(manifest(simulation_, end, message)) + "\n";
+  const std::string about =
+      json_text(manifest(simulation_, {end, message, started_, options_.command, options_.restart})) + "\n";
   solution final_state = make_solution(simulation_, *shown_);
   final_state.manifest = about;
   folder.prepare_text("history.csv", to_csv(shown_->history(), {"step", "negative_values"}));
   folder.prepare_text("fields.csv", to_csv(to_table(shown_->fields())));
   folder.prepare("solution.h5", [&](const std::string& path) { write_solution(path, final_state); });
   folder.prepare_text("solution.xdmf", solution_xdmf(final_state, distribution_files(folder)));
-  const bool stopped = end == run_end::interrupted || end == run_end::wall_time;
-  if (stopped || (end == run_end::complete && simulation_.config().output.checkpoint_every > 0)) {
-    // Without the snapshot of the present moment: the run that goes on from here would not have taken it.
-    folder.prepare("checkpoint.h5", [&](const std::string& path) {
-      write_checkpoint(path, make_checkpoint(simulation_, *records_));
-    });
-  }
+  if (end != run_end::failed)
+    folder.prepare("checkpoint.h5", [this](const std::string& path) { write_checkpoint_of_end(path); });
   folder.prepare_text(result_folder::manifest, about);
   folder.commit();
 }

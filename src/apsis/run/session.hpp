@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/run/manifest.hpp>
 
@@ -8,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace apsis {
 
@@ -20,6 +22,7 @@ struct session_options {
   std::optional<std::string> out;      ///< folder of the results; without it nothing is written
   std::optional<std::string> restart;  ///< checkpoint of the same case to go on from
   std::optional<double> wall;          ///< seconds after which to stop as if interrupted
+  std::vector<std::string> command;    ///< command line, for the manifest; empty where there is none
   std::function<bool()> stop;          ///< asked before every step: whether to stop with a checkpoint
   /// Called after every step, and once before the first.
   std::function<void(const simulation&)> watch;
@@ -48,6 +51,8 @@ class run_session {
   void after_step();
   bool checkpoint_is_due() const;
   void publish_checkpoint();
+  void write_checkpoint_of_end(const std::string& path);
+  void warn_of_many_steps();
   void take_snapshot();
   void write_distribution_snapshot();
   void resume_snapshots(const std::string& checkpoint);
@@ -57,9 +62,13 @@ class run_session {
 
   session_options options_;
   clock::time_point start_ = clock::now(), last_checkpoint_ = start_;
+  std::string started_ = time_stamp();
   simulation simulation_;
   std::unique_ptr<run_records> records_, shown_;
   std::unique_ptr<result_folder> folder_;
+  /// The run before the first step that time.end shaped: what a run to a later end goes on from.
+  std::optional<checkpoint> before_end_;
+  long warn_at_step_ = -1;  ///< after how many steps to say how long all will take
   run_end end_ = run_end::complete;
   long snapshots_ = 0;  ///< multiples of output.every that are behind
 };

@@ -4,6 +4,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/tolerance_forecast.hpp>
+#include <apsis/run/memory_need.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/setup.hpp>
@@ -64,23 +65,48 @@ std::string below_plateau(const method& used, double tolerance, const tolerance_
       kept ? "" : "choose a method with the right terms, as md-imex-8-3-mixed is, ",
       0.1 * std::min(relaxation, expected.dt));
 }
+
+/// The setup of a case whose state and buffers fit into memory.
+run_setup setup_that_fits(const case_config& config) {
+  run_setup setup(config);
+  check_memory(config, setup, 0);
+  return setup;
+}
+
+/// The times of a case. A given dt that does not divide output.every is a longest step, as with time.cfl.
+time_marcher<double> times_of(const case_config& config, std::optional<double> dt) {
+  const double every = config.output.every;
+  time_marcher<double> march(0.0, config.time.end, dt);
+  try {
+    march.stop_every(every);
+    if (march.adjusted())
+      log::warning(
+          fmt::format("time.dt = {:.17g} does not divide time.end = {:g}; dt = {:.17g} is used instead", *dt,
+                      config.time.end, *march.fixed_dt()));
+  } catch (const input_error&) {
+    log::warning(
+        fmt::format("time.dt = {:.17g} does not divide output.every = {:g} (steps are shortened to end at "
+                    "every snapshot); "
+                    "give one that does for steps of equal length",
+                    *dt, every));
+    march = time_marcher<double>(0.0, config.time.end);
+    march.stop_every(every);
+  }
+  return march;
+}
 }  // namespace
 
 struct simulation::impl {
   explicit impl(case_config configured)
       : config(std::move(configured)),
-        setup(config),
+        setup(setup_that_fits(config)),
         problem(setup.make_problem()),
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
         watch(*setup.equation, setup.cell_volume()),
         rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
         state(setup.initial_state()),
-        march(0.0, config.time.end, setup.given_dt()) {
-    if (march.adjusted())
-      log::warning(
-          fmt::format("time.dt = {:.17g} does not divide time.end = {:g}; dt = {:.17g} is used instead",
-                      *config.time.dt, config.time.end, *march.fixed_dt()));
+        march(times_of(config, setup.given_dt())) {
     if (setup.has_tolerance()) control.emplace(*config.time.tolerance, setup.integrator().embedded->order);
     first = last = watch.start(state);
     totals.min_value = first.min_value;
@@ -88,8 +114,9 @@ struct simulation::impl {
     totals.phase_points = static_cast<long>(state.cells()) * state.components();
     if (march.done()) return;
     warn_of_explicit_collision();
-    // With the longest step that the rule allows, not the first one.
-    setup.decide_promises(promises, next_dt(), forward_euler_limit(), first.negative_values == 0,
+    static_cast<void>(next_dt());  // throws where nothing limits the step
+    // The first step may be shorter than those that follow.
+    setup.decide_promises(promises, limit(), forward_euler_limit(), first.negative_values == 0,
                           has_exact_equilibrium());
     start_steps();
   }
@@ -149,10 +176,11 @@ struct simulation::impl {
   double limit() {
     if (config.time.cfl) return *config.time.cfl * setup.cfl_length();
     if (config.time.safety) return *config.time.safety * forward_euler_limit();
-    return control ? *config.time.dt : *march.fixed_dt();
+    return march.fixed_dt().value_or(*config.time.dt);
   }
 
-  double next_dt() { return march.next(control ? std::min(limit(), control->proposed()) : limit()); }
+  double proposed() { return control ? std::min(limit(), control->proposed()) : limit(); }
+  double next_dt() { return march.next(proposed()); }
 
   /// u ← u^{n+1}; returns Δt.
   double step() {
@@ -272,7 +300,17 @@ long simulation::steps_total() const {
   if (finished()) return step();
   // The first step to a tolerance resolves the layer; those that follow are as long as was forecast.
   if (step() == 0 && impl_->expected) return impl_->march.steps_left(impl_->expected->dt);
-  return step() + impl_->march.steps_left(impl_->march.starting() ? impl_->limit() : dt());
+  return step() + impl_->march.steps_left(impl_->march.starting() ? impl_->limit() : impl_->proposed());
+}
+long simulation::snapshot_times_passed() const {
+  const double every = config().output.every;
+  return every > 0.0 ? multiples_until(t(), every) : 0;
+}
+bool simulation::next_step_depends_on_end() const {
+  // Far from the end the question is not worth a forward Euler step: no rule makes steps 32 times longer.
+  const bool far = step() > 0 && !impl_->march.starting() && config().time.end - t() > 64.0 * last().dt;
+  if (far || finished()) return false;
+  return impl_->march.shaped_by_end(impl_->proposed());
 }
 double simulation::expected_plateau() const {
   return impl_->expected ? impl_->expected->error : 0.0;
@@ -392,8 +430,10 @@ void simulation::restore(const saved_run& saved) {
   for (int cell = 0; cell < cells(); ++cell)
     std::copy_n(saved.state.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
                 impl_->state.row(cell));
-  impl_->march.resume({saved.step, saved.since_anchor, saved.t, saved.anchor, saved.anchor_dt,
-                       saved.startup_steps, saved.startup_done, saved.startup_length});
+  // Before the first step there is nothing but what the case says.
+  if (saved.step > 0)
+    impl_->march.resume({saved.step, saved.since_anchor, saved.t, saved.anchor, saved.anchor_dt,
+                         saved.startup_steps, saved.startup_done, saved.startup_length});
   if (impl_->control)
     impl_->control->resume(
         {saved.proposed_dt, saved.previous_error, saved.step_holds, saved.so_far.rejected_steps});

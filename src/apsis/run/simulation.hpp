@@ -96,6 +96,11 @@ class simulation {
   /// Forecast of the relative error that the terms of size ε leave in a run to time.tolerance; above the
   /// tolerance a warning says so. 0 where the steps resolve the relaxation, or without tolerance.
   double expected_plateau() const;
+  /// Number of snapshot times k · output.every, k ≥ 1, up to t(); steps end at each of them exactly.
+  long snapshot_times_passed() const;
+  /// Whether the next step would be another one if time.end were later: a run that may be continued to a
+  /// later end is saved before that step.
+  bool next_step_depends_on_end() const;
 
   /// One step. Throws numerical_error with step, time, cell and value. If a stage failed, the state is that
   /// of the last good step; if a promise was broken, it is the state that broke it, and last() describes it.

@@ -1,0 +1,86 @@
+#include <apsis/output/folder_lock.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+#include <apsis/output/provenance.hpp>
+
+#include <cerrno>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace apsis {
+namespace {
+
+std::string reason(int code) {
+  return std::generic_category().message(code);
+}
+
+/// What the holder wrote: "process 123 on host since …".
+std::string holder(const std::filesystem::path& lock) {
+  std::string line;
+  std::ifstream in(lock);
+  return std::getline(in, line) ? line : "another process";
+}
+
+/// Whether `path` still names the open file: its last holder may have removed it in between.
+bool names(const std::filesystem::path& path, int file) {
+  struct stat there = {}, here = {};
+  return stat(path.c_str(), &there) == 0 && fstat(file, &here) == 0 && there.st_ino == here.st_ino &&
+         there.st_dev == here.st_dev;
+}
+
+}  // namespace
+
+folder_lock::folder_lock(std::filesystem::path folder) : path_(std::move(folder)) {
+  path_ /= ".lock";
+  try {
+    take();
+  } catch (...) {
+    if (file_ >= 0) close(file_);
+    throw;
+  }
+}
+
+void folder_lock::take() {
+  while (true) {
+    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (file_ < 0)
+      throw io_error(
+          fmt::format("cannot write '{}' ({}); choose another folder with --out or free some space",
+                      path_.string(), reason(errno)));
+    if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+      const int why = errno;
+      if (why == EWOULDBLOCK)
+        throw io_error(fmt::format(
+            "the folder '{}' is in use ({}); wait for that run to end or choose another folder with "
+            "--out",
+            path_.parent_path().string(), holder(path_)));
+      log::warning(fmt::format("'{}' cannot be locked ({}); do not start a second run into this folder",
+                               path_.parent_path().string(), reason(why)));
+      return;
+    }
+    if (names(path_, file_)) break;
+    close(file_);
+  }
+  const std::string me = fmt::format("process {} on {} since {}\n", getpid(), host_name(), time_stamp());
+  if (ftruncate(file_, 0) != 0 || pwrite(file_, me.data(), me.size(), 0) != static_cast<ssize_t>(me.size())) {
+    const int why = errno;
+    unlink(path_.c_str());
+    throw io_error(fmt::format("cannot write '{}' ({}); choose another folder with --out or free some space",
+                               path_.string(), reason(why)));
+  }
+}
+
+folder_lock::~folder_lock() {
+  if (names(path_, file_)) unlink(path_.c_str());
+  close(file_);
+}
+
+}  // namespace apsis

@@ -1,0 +1,226 @@
+// What could cost a user their results: full disks, closed terminals, two runs in one folder, more memory or
+// more steps than there are.
+#include "program.hpp"
+
+#include <apsis/core/version.hpp>
+#include <apsis/output/hdf5_file.hpp>
+
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+#include <sstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+using namespace app_test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A line of sh in the folder, with $APSIS for the program and what it prints in files.
+outcome shell(const work_folder& folder, const std::string& line) {
+  folder.file("line.sh", "APSIS='" + std::string(APSIS_PROGRAM) + "'\ncd '" + folder.path().string() +
+                             "' || exit 99\n{ " + line + "\n} > out.txt 2> err.txt\n");
+  const int status = std::system(("sh '" + (folder.path() / "line.sh").string() + "'").c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), read(folder.path() / "out.txt"),
+          read(folder.path() / "err.txt")};
+}
+
+const std::string gas = "paper/bgk-mixed space.cells=20 velocity.points=100";
+const std::vector<std::string> endless = {"run", "paper/bgk-mixed", "space.cells=20", "velocity.points=100",
+                                          "time.end=5000.0"};
+
+std::vector<std::string> into(std::vector<std::string> arguments, const std::string& folder) {
+  arguments.insert(arguments.end(), {"--out", folder});
+  return arguments;
+}
+
+/// Waits for something that will happen.
+template <class Condition>
+void await(const Condition& happened) {
+  while (!happened()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+/// Ends the process with 41 and the message of the error.
+[[noreturn]] void write_beyond_a_limit(const std::string& path) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, 4096};
+  setrlimit(RLIMIT_FSIZE, &small);
+  try {
+    auto file = apsis::hdf5_file::create(path);
+    const std::vector<double> values(100000, 1.0);
+    for (int k = 0; k < 20; ++k) file.write("group/data" + std::to_string(k), values, {100000});
+    file.close();
+  } catch (const std::exception& why) {
+    std::fputs(why.what(), stderr);
+    std::exit(41);
+  }
+  std::exit(0);
+}
+
+}  // namespace
+
+TEST(a_full_disk, is_an_output_error_in_every_file_and_leaves_the_earlier_results_alone) {
+  const work_folder folder;
+  ASSERT_EQ(shell(folder, "$APSIS run " + gas + " time.end=0.002 --out o").code, 0);
+  // A limit of the size of files acts as a full disk. In units of 512 bytes: from one that stops the first
+  // file to one that stops the last HDF5 file only.
+  for (const int blocks : {1, 8, 20, 36}) {
+    const outcome full = shell(
+        folder, "ulimit -f " + std::to_string(blocks) + "; $APSIS run " + gas + " time.end=0.01 --out o");
+    EXPECT_EQ(full.code, 4) << blocks << full.err;
+    EXPECT_THAT(read(folder.path() / "err.txt"),
+                testing::AnyOf(HasSubstr("File too large"), HasSubstr("no space left")))
+        << blocks;
+    for (const std::string name : {"manifest.json", "solution.h5", "history.csv"})
+      EXPECT_TRUE(fs::exists(folder.path() / "o" / name)) << blocks << name;
+    for (const auto& entry : fs::directory_iterator(folder.path() / "o"))
+      EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
+  }
+}
+
+TEST(a_full_disk, ends_an_hdf5_file_without_a_crash_at_the_end_of_the_process) {
+  const work_folder folder;
+  const std::string path = (folder.path() / "x.h5").string();
+  // In a process of its own: HDF5 used to crash when the process ended.
+  EXPECT_EXIT(write_beyond_a_limit(path), testing::ExitedWithCode(41), "File too large");
+}
+
+TEST(unwritable_messages, do_not_change_how_the_program_ends) {
+  const work_folder folder;
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  EXPECT_EQ(shell(folder, "$APSIS run nonsense 2> /dev/full").code, 2);
+  EXPECT_EQ(shell(folder, "$APSIS run paper/ode --out o 2> /dev/full").code, 0);
+  EXPECT_EQ(shell(folder, "$APSIS run nonsense 2>&-").code, 2);
+  EXPECT_EQ(shell(folder, "$APSIS list models > /dev/full").code, 4);
+  EXPECT_EQ(shell(folder, "$APSIS list models >&-").code, 4);
+  EXPECT_EQ(shell(folder, "$APSIS run paper/ode > /dev/full 2> /dev/full").code, 4);
+}
+
+TEST(unwritable_messages, do_not_end_up_in_results) {
+  const work_folder folder;
+  // Without descriptors 1 and 2 the first files of the run would take their numbers.
+  EXPECT_EQ(shell(folder, "$APSIS run paper/ode --out o >&- 2>&-").code, 4);
+  for (const std::string name : {"manifest.json", "history.csv", "fields.csv", "solution.xdmf"})
+    EXPECT_THAT(read(folder.path() / "o" / name), Not(HasSubstr("info: "))) << name;
+  EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["state"], "complete");
+}
+
+TEST(a_result_folder, belongs_to_one_run_at_a_time) {
+  const work_folder folder;
+  process first(folder, into(endless, "o"));
+  await([&] { return read(folder.path() / "o/.lock").find('\n') != std::string::npos; });
+  for (const std::string what :
+       {"run paper/ode --out o", "run paper/ode --out ./o/",
+        "converge paper/ode --vary time.dt=1/8,1/16 --reference md-imex-6-3@1/64 --out o"}) {
+    const outcome second = shell(folder, "$APSIS " + what);
+    EXPECT_EQ(second.code, 4) << what << second.err;
+    EXPECT_THAT(second.err, AllOf(HasSubstr("is in use (process "), HasSubstr("wait for that run to end")))
+        << what;
+  }
+  // A kill releases the folder, whatever it leaves behind.
+  first.send(SIGKILL);
+  EXPECT_EQ(first.wait().code, 1000 + SIGKILL);
+  EXPECT_TRUE(fs::exists(folder.path() / "o/.lock"));
+  EXPECT_EQ(shell(folder, "$APSIS run paper/ode --out o").code, 0);
+  EXPECT_FALSE(fs::exists(folder.path() / "o/.lock"));
+}
+
+TEST(a_result_folder, has_the_files_of_one_run_whoever_came_first) {
+  const work_folder folder;
+  for (int round = 0; round < 5; ++round) {
+    const std::string name = "o" + std::to_string(round);
+    std::vector<std::unique_ptr<process>> runs;
+    for (int k = 0; k < 6; ++k)
+      runs.push_back(std::make_unique<process>(
+          folder, std::vector<std::string>{"run", "paper/ode", "time.dt=1/" + std::to_string(64 + k), "--out",
+                                           name}));
+    int finished = 0;
+    for (auto& run : runs) {
+      const outcome result = run->wait();
+      EXPECT_TRUE(result.code == 0 || result.code == 4) << result.code << result.err;
+      if (result.code == 0) ++finished;
+    }
+    EXPECT_GE(finished, 1);
+    const fs::path o = folder.path() / name;
+    const std::string manifest = read(o / "manifest.json");
+    const auto solution = apsis::hdf5_file::open((o / "solution.h5").string());
+    EXPECT_EQ(solution.read_text_attribute("manifest"), manifest);
+    std::istringstream history(read(o / "history.csv"));
+    long lines = 0;
+    for (std::string line; std::getline(history, line);) ++lines;
+    EXPECT_EQ(lines, 2 + json::parse(manifest)["result"]["steps"].get<long>());
+  }
+}
+
+TEST(a_hangup, is_ignored_under_nohup) {
+  const work_folder folder;
+  // Hangups from the moment that the program runs to its end.
+  const outcome result =
+      shell(folder, "trap '' HUP; $APSIS run " + gas +
+                        " time.end=0.05 --out o & p=$!; while kill -HUP $p 2> /dev/null; do :; "
+                        "done; wait $p");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["state"], "complete");
+}
+
+TEST(a_case, that_does_not_fit_into_memory_is_refused_with_numbers_before_anything_is_allocated) {
+  const work_folder folder;
+  // 50000 snapshots of three fields on 10^7 cells are 12 TB.
+  const outcome result =
+      shell(folder, "$APSIS run paper/bgk-mixed space.cells=10000000 output.every=1e-5 --out o");
+  EXPECT_EQ(result.code, 2) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("needs at least"), HasSubstr("GB are left"),
+                                HasSubstr("10000000 cells x 150 unknowns"), HasSubstr("use fewer cells")));
+  EXPECT_FALSE(fs::exists(folder.path() / "o"));
+}
+
+TEST(a_run, of_very_many_steps_is_announced_as_such_and_its_history_stays_small) {
+  const work_folder folder;
+  const outcome result =
+      shell(folder, "$APSIS run paper/ode time.dt=1e-12 output.history_rows=1000 --wall 0.5 --out o");
+  EXPECT_EQ(result.code, 130) << result.err;
+  const json manifest = json::parse(read(folder.path() / "o/manifest.json"));
+  std::istringstream history(read(folder.path() / "o/history.csv"));
+  std::string last;
+  long lines = 0;
+  for (std::string line; std::getline(history, line); ++lines) last = line;
+  EXPECT_LE(lines, 1001);
+  EXPECT_EQ(std::stol(last), manifest["result"]["steps"].get<long>());
+  // The estimate comes after a thousand steps, which a machine may not reach in half a second.
+  if (manifest["result"]["steps"].get<long>() >= 1000) {
+    EXPECT_THAT(result.err, AllOf(HasSubstr("about 1e+12 steps are left"), HasSubstr(" s a step")));
+  }
+}
+
+TEST(a_manifest, says_with_what_and_where_a_run_was_made) {
+  const work_folder folder;
+  ASSERT_EQ(shell(folder, "$APSIS run paper/ode time.dt=1/16 --out o").code, 0);
+  const json m = json::parse(read(folder.path() / "o/manifest.json"));
+  EXPECT_THAT(m["commit"].get<std::string>(), testing::MatchesRegex("unknown|[0-9a-f]{40}(-dirty)?"));
+  EXPECT_EQ(m["commit"], apsis::commit());
+  const auto command = m["command"].get<std::vector<std::string>>();
+  EXPECT_EQ(std::vector<std::string>(command.begin() + 1, command.end()),
+            (std::vector<std::string>{"run", "paper/ode", "time.dt=1/16", "--out", "o"}));
+  char host[256] = {};
+  ASSERT_EQ(gethostname(host, sizeof host - 1), 0);
+  EXPECT_EQ(m["machine"]["host"], host);
+  for (const std::string key : {"started", "written"})
+    EXPECT_THAT(m[key].get<std::string>(), testing::MatchesRegex("[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9:]{8}Z"));
+  EXPECT_LE(m["started"].get<std::string>(), m["written"].get<std::string>());
+  EXPECT_FALSE(m.contains("restart"));
+  ASSERT_EQ(
+      shell(folder, "$APSIS run paper/ode time.dt=1/16 time.end=2 --restart o/checkpoint.h5 --out p").code,
+      0);
+  EXPECT_EQ(json::parse(read(folder.path() / "p/manifest.json"))["restart"], "o/checkpoint.h5");
+}

@@ -68,7 +68,8 @@ def integrate(problem: RelaxationProblem, u0: ArrayLike, t: Sequence[float] | Ar
 
     `method` is a name, a file or a Method. Steps have the length dt, shortened until it divides each interval, or
     safety · r · Δt_FE, 0 < safety. startup = "graded" resolves the initial layer of data out of equilibrium. With a tolerance steps are
-    shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it.
+    shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it; then
+    neither dt nor forward_euler_step is needed.
     Raises InputError, NumericalError with step and t, and what the functions raise."""
     if not isinstance(problem, RelaxationProblem):
         raise InputError(f"problem is a {type(problem).__name__} (an equation is needed); give an apsis.RelaxationProblem")

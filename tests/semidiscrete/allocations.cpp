@@ -2,6 +2,7 @@
 #include "bgk_case.hpp"
 
 #include <apsis/core/parallel.hpp>
+#include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/stepper.hpp>
 
 #include <atomic>
@@ -107,4 +108,34 @@ TEST(allocations, a_step_takes_the_buffers_of_its_schedule_once_and_then_nothing
     }
   }
   apsis::set_threads(1);
+}
+
+TEST(allocations, a_step_within_a_tolerance_takes_nothing_after_the_first_ones) {
+  constexpr int cells = 40;
+  const auto m = small_bgk();
+  const apsis::grid mesh = apsis::grid::line(cells, 0.0, 2.0);
+  for (const auto what : {unknowns::points, unknowns::averages}) {
+    auto problem = problem_of(*m, mesh, what);
+    apsis::stepper stepper(apsis::find_method("md-imex-8-3-mixed"), problem,
+                           apsis::solutions::result_and_embedded);
+    apsis::field u = sample(mesh, m->components(), false, [](double x, int k) {
+      return (1.5 + std::sin(3.0 * x)) * std::exp(-0.1 * (k - 20.0) * (k - 20.0));
+    });
+    const auto distance = [](const apsis::field& a, const apsis::field& b) {
+      double sum = 0.0;
+      for (int k = 0; k < a.components(); ++k) sum += std::abs(a.row(0)[k] - b.row(0)[k]);
+      return sum;
+    };
+    apsis::step_controller<double> control(1e-3, 1);
+    apsis::error_estimate<apsis::semidiscrete_problem> estimate;
+    apsis::time_marcher<double> march(0.0, 1.0);
+    control.start_with(1e-4);
+    const auto step = [&] {
+      march.advance(apsis::step_within_tolerance(stepper, march, control, estimate, 1e-3, u, distance));
+    };
+    for (int k = 0; k < 3; ++k) step();
+    const long before = allocations;
+    for (int k = 0; k < 5; ++k) step();
+    EXPECT_EQ(allocations - before, 0);
+  }
 }

@@ -192,6 +192,43 @@ def test_curves_of_one_colour_share_it_and_references_are_black():
     assert lines[2].get_color() == "#000000"
 
 
+def study(*panels, caption="The l2 norm of the difference in rho to the next finer run."):
+    return picture(*panels) | {"name": "converge", "caption": caption}
+
+
+def test_a_study_names_what_it_measured_and_has_one_range():
+    one, other = panel(curves=[curve("a", [1, 0.1], [1, 1e-2])]), panel(curves=[curve("a", [1, 0.1], [1e-5, 1e-7])])
+    left, right = draw(study(one, other)).axes
+    assert left.get_ylim() == right.get_ylim() and left.get_ylim()[0] < 1e-7 and left.get_ylim()[1] > 1
+    for axes in (left, right):
+        assert axes.get_ylabel().replace("\n", " ") == "l2 norm of the difference in rho to the next finer run (dimensionless)"
+    # Other pictures keep the labels and ranges of their panels.
+    left, right = draw(picture(one, other)).axes
+    assert left.get_ylim() != right.get_ylim() and left.get_ylabel() == "error"
+
+
+@pytest.mark.parametrize("slopes", [[2], [2, 3], [-2]])
+def test_a_legend_lies_on_no_slope_triangle_label_or_curve(slopes):
+    many = [curve(f"time.method = method-{k}", [1, 0.1, 0.01], [10.0**-k, 10.0**(-k - 2), 10.0**(-k - 4)]) for k in range(8)]
+    figure = draw(study(panel(curves=many, slopes=slopes)))
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    legend = axes.get_legend().get_window_extent()
+    # Everything that is drawn lies inside of the axes, whose labels hang below.
+    assert not legend.overlaps(axes.get_window_extent()) and not legend.overlaps(axes.xaxis.label.get_window_extent())
+    assert legend.y0 >= 0 and legend.x0 >= 0 and legend.x1 <= figure.bbox.width
+
+
+def test_a_cut_of_v_is_said_in_the_picture(tmp_path):
+    run(tmp_path, "paper/bgk-mixed", *SMALL_BGK)
+    result = read_result(tmp_path)
+    axes = distribution_figure(result).axes[0]
+    low, high = axes.get_ylim()
+    v = result.arrays["v"]
+    assert low > v.min() and high < v.max()
+    assert axes.get_title().startswith(f"v from {low:.4g} to {high:.4g} of a grid from {v.min():.4g} to {v.max():.4g}")
+
+
 def test_maps_are_drawn_with_holes():
     data = panel(maps=[{"label": "slope", "x": [1, 10], "y": [1, 10, 100], "value": [[1, 2], [None, 3], [2, 2]],
                         "lowest": 0, "highest": 3}])

@@ -5,6 +5,7 @@ stands for "no number". A document may hold one picture, or several in a list "p
 """
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping
 from typing import Any
 
@@ -104,6 +105,39 @@ def draw_map(figure: Any, axes: Any, panel: Document) -> None:
                           color="white" if number < middle else "black")
 
 
+def share_y_range(panels: list[Any]) -> None:
+    """Gives all panels that have curves the range that holds the curves of each, so that heights can be compared."""
+    drawn = [axes for axes in panels if axes.lines and any(len(line.get_xdata()) for line in axes.lines)]
+    limits = np.array([axes.get_ylim() for axes in drawn])
+    for axes in drawn:
+        axes.set_ylim(limits.min(), limits.max())
+
+
+def measure_of(picture: Document) -> str:
+    """The label of what a study measured, from the caption "The l2 norm of the difference to …." of its picture: a difference to
+    the next finer run is not an error."""
+    measure = str(picture["caption"]).removeprefix("The ").removesuffix(".")
+    return textwrap.fill(f"{measure} (dimensionless)", 44)
+
+
+def finish(axes: Any, panel: Document, y_label: str) -> None:
+    """Slope triangles, ticks, labels and legend of a panel whose curves are drawn."""
+    with_slopes = panel["log_x"] and panel["log_y"] and not panel["maps"]
+    if with_slopes:
+        draw_slopes(axes, panel["slopes"])
+    if panel["log_x"]:
+        label_ticks(axes.xaxis, axes.get_xlim())
+    if panel["log_y"]:
+        label_ticks(axes.yaxis, axes.get_ylim())
+    axes.set_xlabel(panel["x_label"])
+    axes.set_ylabel(y_label)
+    axes.set_title(panel["title"], fontsize=10)
+    if any(curve["label"] for curve in panel["curves"]):
+        # Triangles and curves leave no corner that is empty in every study: beside them the legend stands below the panel.
+        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2)} if with_slopes and panel["slopes"] else {}
+        axes.legend(fontsize=7, ncols=2 if len(panel["curves"]) > 6 else 1, handlelength=3, **below)
+
+
 def draw(picture: Document) -> Any:
     """The picture as a matplotlib figure."""
     panels = picture["panels"]
@@ -118,17 +152,11 @@ def draw(picture: Document) -> Any:
         if panel["maps"]:
             draw_map(figure, axes, panel)
         draw_curves(axes, panel)
-        if panel["log_x"] and panel["log_y"] and not panel["maps"]:
-            draw_slopes(axes, panel["slopes"])
-        if panel["log_x"]:
-            label_ticks(axes.xaxis, axes.get_xlim())
-        if panel["log_y"]:
-            label_ticks(axes.yaxis, axes.get_ylim())
-        axes.set_xlabel(panel["x_label"])
-        axes.set_ylabel(panel["y_label"])
-        axes.set_title(panel["title"], fontsize=10)
-        if any(curve["label"] for curve in panel["curves"]):
-            axes.legend(fontsize=7, ncols=2 if len(panel["curves"]) > 6 else 1, handlelength=3)
+    study = picture["name"] == "converge"
+    if study:
+        share_y_range(list(grid.flat[:len(panels)]))
+    for axes, panel in zip(grid.flat, panels):
+        finish(axes, panel, measure_of(picture) if study else panel["y_label"])
     figure.suptitle(picture["title"], fontsize=11)
     return figure
 

@@ -234,6 +234,9 @@ def distribution_figure(result: RunResult) -> Any:
     seen = v[(marginal > 1e-3 * marginal.max()).any(axis=1)]
     if len(seen) > 1:
         panel.set_ylim(seen.min(), seen.max())
+        if len(seen) < len(v):
+            panel.set_title(f"v from {seen.min():.4g} to {seen.max():.4g} of a grid from {v.min():.4g} to {v.max():.4g}; "
+                            f"{label} is below a thousandth of its maximum beyond", fontsize=7)
     panel.set_ylabel("v (dimensionless)")
     if with_epsilon:
         axes[1][0].semilogy(x, result.arrays["epsilon"], color=BLACK)

@@ -1,6 +1,7 @@
 """Apsis: stiff relaxation and kinetic equations u_t = T(u) + Q(u)/ε by SSP multi-derivative IMEX Runge–Kutta methods.
 
     apsis.run("paper/bgk-mixed").fields["rho"]           a kinetic problem from a case
+    apsis.open("results/layer").plot()                   a stored run
     apsis.method("md-imex-6-3").certificate.order        methods and what can be said of them
     apsis.integrate(problem, u0, t, method=…, dt=…)      a problem of your own
 
@@ -12,9 +13,10 @@ from .errors import ClaimError, Error, FileError, InputError, NumericalError
 from .methods import Certificate, Method, OrderCondition, method, methods, order_conditions, read_method
 from .problems import RelaxationProblem, Solution, integrate
 from .runs import Case, Result, cases, run
+from .stored import open
 
 __version__: str = _version()
 
 __all__ = ["Case", "Certificate", "ClaimError", "Error", "FileError", "InputError", "Method", "NumericalError",
            "OrderCondition", "RelaxationProblem", "Result", "Solution", "cases", "integrate", "method", "methods", "models",
-           "order_conditions", "read_method", "run"]
+           "open", "order_conditions", "read_method", "run"]

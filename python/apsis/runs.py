@@ -59,6 +59,18 @@ class Result:
                            "conservation defect": f"{about['conservation_defect']:.2g} (relative)",
                            "fields": ", ".join(self.fields)})
 
+    def plot(self, kind: str = "fields") -> Any:
+        """A Matplotlib figure: "fields" over x or t, "distribution" f(x, v), or "history". Raises InputError where there is nothing to draw."""
+        from .plot.results import RunResult, figures  # needs Matplotlib, which runs do not
+        arrays = {name: value for name, value in (("f", self.f), ("x", self.x), ("v", self.v), ("epsilon", self.epsilon)) if value.size}
+        last = {name: values[-1] for name, values in self.fields.items()}
+        stored = RunResult(Path("run"), {"case": self.summary.get("case", {})}, last, {**self.fields, "t": self.t}, arrays, self.history,
+                           self.labels, "")
+        made = figures(stored)
+        if kind not in made:
+            raise InputError(f"there is no picture '{kind}' of this result; valid: {', '.join(made) or 'none'}")
+        return made[kind]
+
     def __eq__(self, other: object) -> bool:
         """The same results, bit for bit, NaN included: everything but wall times."""
         if not isinstance(other, Result):
@@ -93,7 +105,8 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
         raise InputError(f"progress is a {type(progress).__name__} (it must be callable); give a function")
     text = to_toml(case) if isinstance(case, Mapping) else None
     got = _core.run(text, "case" if text is not None else str(case), list(overrides), _path(out), _path(restart),
-                    None if wall is None else number("wall", wall, positive=True), None if threads is None else whole_number("threads", threads), progress)
+                    None if wall is None else number("wall", wall, positive=True),
+                    None if threads is None else whole_number("threads", threads), progress)
     return Result(summary=json.loads(got.pop("json")), **got)
 
 

@@ -23,6 +23,27 @@ struct functions {
   std::optional<callback> forward_euler_step, admissible;
 };
 
+/// ω as the user's `moments` returned it. Where it is an array of numbers it is also a range of them, so that
+/// ℛE = ω is checked; of anything else the range is empty.
+class moments_value {
+ public:
+  explicit moments_value(py::object value) : value_(std::move(value)) {}
+  const py::object& get() const { return value_; }
+  const double* begin() const {
+    // Classes of the user may run code of their own when they are converted.
+    const bool plain = py::isinstance<py::array>(value_) || py::isinstance<py::float_>(value_) ||
+                       py::isinstance<py::int_>(value_) || py::isinstance<py::list>(value_) ||
+                       py::isinstance<py::tuple>(value_);
+    if (!numbers_) numbers_ = plain ? array::ensure(value_) : array();
+    return *numbers_ ? numbers_->data() : nullptr;
+  }
+  const double* end() const { return begin() + (*numbers_ ? numbers_->size() : 0); }
+
+ private:
+  py::object value_;
+  mutable std::optional<array> numbers_;
+};
+
 std::optional<callback> optional_callback(const std::optional<py::function>& function, const char* name) {
   if (!function) return std::nullopt;
   return callback(*function, name);
@@ -64,9 +85,11 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
       [&](double time, const state& v, state& out) {
         of.transport.numbers(of.transport(time, look(v)), shape, out);
       },
-      [&](const state& v) { return of.moments.something(of.moments(look(v))); },
-      [&](const py::object& omega, state& out) { of.equilibrium.numbers(of.equilibrium(omega), shape, out); },
-      [&](const py::object& omega) { return of.rate.number(of.rate(omega)); }, epsilon);
+      [&](const state& v) { return moments_value(of.moments.something(of.moments(look(v)))); },
+      [&](const moments_value& omega, state& out) {
+        of.equilibrium.numbers(of.equilibrium(omega.get()), shape, out);
+      },
+      [&](const moments_value& omega) { return of.rate.number(of.rate(omega.get())); }, epsilon);
   if (of.forward_euler_step)
     problem.with_forward_euler_step([&](double time, const state& v) {
       return of.forward_euler_step->number((*of.forward_euler_step)(time, look(v)));

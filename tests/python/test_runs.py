@@ -160,3 +160,34 @@ def test_a_full_disk_is_an_error_and_no_crash(tmp_path):
     assert done.returncode == 0, done.stderr
     assert "File too large" in done.stdout
     assert not (tmp_path / "o").exists()
+
+
+@pytest.mark.parametrize("case, more", [
+    ("paper/bgk-mixed", SMALL), ("paper/bgk-mixed", [*SMALL, "output.every=0.002"]), ("paper/ode", ["time.dt=1/128", "time.end=1/8"])])
+def test_a_stored_run_is_the_computed_one(tmp_path, case, more):
+    computed = apsis.run(case, *more, out=tmp_path / "o")
+    stored = apsis.open(tmp_path / "o")
+    for name in ("f", "x", "epsilon", "state", "labels"):
+        assert np.array_equal(getattr(stored, name), getattr(computed, name)), name
+    assert list(stored.fields) == list(computed.fields) and stored.summary["steps"] == computed.summary["steps"]
+    for name, values in stored.fields.items():
+        assert np.array_equal(values, computed.fields[name][-len(stored.t):])
+    for name, values in stored.history.items():
+        assert np.array_equal(values, computed.history[name], equal_nan=True)
+
+
+def test_a_folder_that_is_no_run_is_a_file_error(tmp_path):
+    with pytest.raises(apsis.FileError, match="manifest.json"):
+        apsis.open(tmp_path)
+
+
+def test_results_are_drawn():
+    from apsis.plot.style import plt
+    result = apsis.run("paper/bgk-mixed", *SMALL, "output.every=0.002")
+    axes = result.plot().axes
+    assert len(axes) == len(result.fields)
+    assert np.array_equal(axes[0].lines[-1].get_ydata(), next(iter(result.fields.values()))[-1])
+    assert result.plot("history") is not None and result.plot("distribution") is not None
+    with pytest.raises(apsis.InputError, match="no picture 'none'.*fields, distribution, history"):
+        result.plot("none")
+    plt.close("all")

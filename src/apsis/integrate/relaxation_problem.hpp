@@ -150,17 +150,19 @@ class relaxation_problem {
     equilibrium_(omega, work_);
     if (unchecked_ > 0) {
       --unchecked_;
-      check_moments(omega, moments_(work_));
+      real size(0);
+      for (const auto& one : work_) size += std::abs(real(one));
+      check_moments(omega, moments_(work_), size);
     }
     return rate;
   }
 
   /// Whether ω is a number, a range of numbers, or anything else, which is not checked.
   template <class Omega>
-  static void check_moments(const Omega& omega, const Omega& kept) {
+  static void check_moments(const Omega& omega, const Omega& kept, real size) {
     if constexpr (std::is_convertible_v<Omega, real>) {
       require_kept(std::abs(static_cast<real>(kept) - static_cast<real>(omega)),
-                   std::abs(static_cast<real>(omega)));
+                   std::abs(static_cast<real>(omega)), size);
     } else if constexpr (requires {
                            { *std::begin(omega) } -> std::convertible_to<real>;
                            std::end(omega);
@@ -173,13 +175,14 @@ class relaxation_problem {
         largest = std::max(largest, std::abs(real(one)));
         ++other;
       }
-      require_kept(defect, largest);
+      require_kept(defect, largest, size);
     }
   }
 
-  /// Rounding of sums over N numbers stays far below 1e-8; a wrong formula for E does not.
-  static void require_kept(real defect, real largest) {
-    if (defect <= real(1e-8) * largest || !(largest > real(0))) return;
+  /// Rounding of sums over N numbers stays far below 1e-8 of ω, or, where ω cancels, 1e-12 of `size` = Σ|E|;
+  /// a wrong formula for E does not.
+  static void require_kept(real defect, real largest, real size) {
+    if (defect <= real(1e-8) * largest || defect <= real(1e-12) * size || !(largest > real(0))) return;
     char text[32];
     std::snprintf(text, sizeof text, "%.2g", static_cast<double>(defect / largest));
     throw input_error(

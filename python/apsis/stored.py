@@ -1,0 +1,33 @@
+"""Results from the folders that runs leave."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from .errors import FileError
+from .runs import Result
+
+
+def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
+    """The Result of a stored run: `run(…, out=folder)` or `apsis run --out folder`.
+
+    Without snapshots t and fields have the end alone, and without a stored distribution f has no numbers. f is what the file
+    holds: every output.stride-th cell in output.precision. Raises FileError if the folder is not that of a run."""
+    from .plot.results import read_result  # needs h5py and Matplotlib, which runs do not
+    from .plot.style import PictureError
+    try:
+        stored = read_result(folder)
+    except PictureError as problem:
+        raise FileError(str(problem)) from problem
+    manifest, empty = stored.manifest, np.zeros(0)
+    result = manifest.get("result", {})
+    if len(stored.t) > 0:
+        t, fields = stored.t, {name: stored.snapshots[name] for name in stored.fields}
+    else:
+        t, fields = np.array([stored.history["t"][-1]]), {name: values[None, :] for name, values in stored.fields.items()}
+    summary = {"case": manifest.get("case", {}), "method": manifest.get("method", ""), **result}
+    arrays = stored.arrays
+    return Result(state=str(manifest.get("state", "")), f=arrays.get("f", np.zeros((0, 0))), x=arrays.get("x", empty),
+                  v=arrays.get("v", empty), epsilon=arrays.get("epsilon", empty), t=t, fields=fields, history=stored.history,
+                  summary=summary, labels=stored.labels)

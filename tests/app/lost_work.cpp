@@ -165,11 +165,18 @@ TEST(a_result_folder, has_the_files_of_one_run_whoever_came_first) {
 
 TEST(a_hangup, is_ignored_under_nohup) {
   const work_folder folder;
-  // Hangups from the moment that the program runs to its end.
-  const outcome result =
-      shell(folder, "trap '' HUP; $APSIS run " + gas +
-                        " time.end=0.05 --out o & p=$!; while kill -HUP $p 2> /dev/null; do :; "
-                        "done; wait $p");
+  process run(
+      folder,
+      {"run", "paper/bgk-mixed", "space.cells=20", "velocity.points=100", "time.end=0.05", "--out", "o"},
+      process::hangups::ignored);
+  // Not before the program runs: between fork and exec a hangup still kills.
+  await(
+      [&] { return fs::exists(folder.path() / "o/.lock") || fs::exists(folder.path() / "o/manifest.json"); });
+  await([&] {
+    run.send(SIGHUP);
+    return fs::exists(folder.path() / "o/manifest.json");
+  });
+  const outcome result = run.wait();
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["state"], "complete");
 }

@@ -43,10 +43,11 @@ std::vector<std::string> work_folder::listing() const {
   return all;
 }
 
-process::process(const work_folder& folder, const std::vector<std::string>& arguments)
+process::process(const work_folder& folder, const std::vector<std::string>& arguments, hangups hangup)
     : capture_(fresh_folder("apsis-capture")), id_(fork()) {
   if (id_ != 0) return;
-  std::signal(SIGHUP, SIG_DFL);  // whoever runs the tests may ignore it
+  std::signal(SIGHUP,
+              hangup == hangups::ignored ? SIG_IGN : SIG_DFL);  // the caller of the tests may ignore it
   const int out = open((capture_ / "out").c_str(), O_CREAT | O_WRONLY, 0600);
   const int err = open((capture_ / "err").c_str(), O_CREAT | O_WRONLY, 0600);
   dup2(out, STDOUT_FILENO);

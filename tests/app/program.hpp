@@ -33,7 +33,10 @@ class work_folder {
 /// The program, started in `folder`, with its output in files beside it.
 class process {
  public:
-  process(const work_folder& folder, const std::vector<std::string>& arguments);
+  enum class hangups { received, ignored };
+  /// With `ignored` as under nohup.
+  process(const work_folder& folder, const std::vector<std::string>& arguments,
+          hangups hangup = hangups::received);
   void send(int signal) const;
   /// Waits until seen() or the end of the program, however long that takes; what seen() says then.
   bool wait_until(const std::function<bool()>& seen) const;

@@ -445,7 +445,8 @@ TEST(results, a_full_output_device_is_an_output_error) {
 TEST(results, a_run_to_a_tolerance_goes_on_from_a_checkpoint_bit_for_bit_and_says_what_it_rejected) {
   const work_folder folder;
   const auto run = with(small, {"time.method=md-imex-8-3", "time.tolerance=1e-5", "time.end=0.4"});
-  ASSERT_EQ(run_apsis(folder, with(run, {"--wall", "0.2", "--out", "stopped"})).code, 130);
+  // Half of the way, whatever the machine does; its checkpoint is one of a run to a longer end.
+  ASSERT_EQ(run_apsis(folder, with(run, {"time.end=0.2", "--out", "stopped"})).code, 0);
   const outcome resumed =
       run_apsis(folder, with(run, {"--restart", "stopped/checkpoint.h5", "--out", "resumed"}));
   ASSERT_EQ(resumed.code, 0) << resumed.err;

@@ -140,11 +140,15 @@ def main() -> int:
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
     given = parser.parse_args()
     build, work = given.build.resolve(), given.work.resolve()
+    xml = work / "doxygen" / "xml"
+    known = {file.name for file in xml.glob("*")}
     shutil.rmtree(work / "doxygen", ignore_errors=True)
     (work / "doxygen").mkdir(parents=True, exist_ok=True)
     doxygen = subprocess.run(["doxygen", "-"], cwd=ROOT, text=True, input=(
         (ROOT / "docs" / "Doxyfile").read_text(encoding="utf-8") + f"\nOUTPUT_DIRECTORY = {work / 'doxygen'}\n"
         + os.environ.get("APSIS_DOXYGEN", "")))
+    if known - {file.name for file in xml.glob("*")}:  # breathe stops at a page whose type was renamed or removed
+        shutil.rmtree(work / "doctrees", ignore_errors=True)
     site = Site(work / "source")
     assemble(site, build / "app" / "apsis", work)
     for problem in dict.fromkeys(site.problems):
@@ -153,7 +157,8 @@ def main() -> int:
     environment = {"APSIS_BUILD": str(build), "APSIS_DOCS": str(work), "PYTHONDONTWRITEBYTECODE": "1"}
     sphinx = subprocess.run(["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-d",
                              work / "doctrees", "-c", ROOT / "docs", site.source, work / "html"], env=os.environ | environment)
-    mend_theme(work / "html" / "_static")
+    if (work / "html" / "_static").is_dir():
+        mend_theme(work / "html" / "_static")
     if site.problems or doxygen.returncode or sphinx.returncode:
         return 1
     print(f"the site is {work / 'html' / 'index.html'}")

@@ -30,4 +30,4 @@ def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
     arrays = stored.arrays
     return Result(state=str(manifest.get("state", "")), f=arrays.get("f", np.zeros((0, 0))), x=arrays.get("x", empty),
                   v=arrays.get("v", empty), epsilon=arrays.get("epsilon", empty), t=t, fields=fields, history=stored.history,
-                  summary=summary, labels=stored.labels)
+                  summary=summary, labels={name: stored.labels[name] for name in fields if name in stored.labels})

@@ -20,6 +20,12 @@ namespace {
 /// How far a run is: step, steps in all (estimated), t, smallest value. False ends it.
 using progress_function = std::optional<py::function>;
 
+/// False of Python or of NumPy; anything else, None too, lets a run go on.
+bool is_false(const py::object& answer) {
+  const auto type = std::string(py::str(py::type::of(answer).attr("__name__")));
+  return (type == "bool" || type == "bool_") && !answer.cast<bool>();
+}
+
 /// Asks Python now and then whether to go on: a signal, or the user's function.
 class attendant {
  public:
@@ -33,7 +39,7 @@ class attendant {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (!progress_) return;
     const py::object answer = (*progress_)(run.step(), run.steps_total(), run.t(), run.last().min_value);
-    stopped_ = stopped_ || (py::isinstance<py::bool_>(answer) && !answer.cast<bool>());
+    stopped_ = stopped_ || is_false(answer);
   }
   bool stopped() const { return stopped_; }
 

@@ -166,7 +166,7 @@ const std::vector<bad_input> all = {
     {"value_of_many_parts",
      {"run", "good.toml", "time.end={" + many_dots(50000) + "=1}"},
      2,
-     "the line is longer than 4096 bytes"},
+     "at most 4096 are read"},
     {"method_of_many_bytes", {"check", "long.toml"}, 2, "the file is larger than 1048576 bytes"},
     {"folder_as_method", {"check", "."}, 4, "cannot read"},
 };

@@ -28,10 +28,10 @@ const std::vector<reader> readers = {
     {{"show", "FILE"}, input, input, input},
     {{"plot", "FILE"}, input, output, input},
     {{"report", "FILE"}, output, output, output},
-    {{"design", "--order", "2", "--stages", "3", "--out", "d.toml", "--from", "FILE"}, input, input, input},
-    {{"design", "--out", "d.toml", "--embedded", "FILE"}, input, input, input},
+    {{"design", "--order", "2", "--stages", "3", "--out", "d.toml", "--from", "FILE"}, input, output, input},
+    {{"design", "--out", "d.toml", "--embedded", "FILE"}, input, output, input},
     {{"run", "paper/ode", "--restart", "FILE"}, output, output, output},
-    {{"run", "paper/ode", "time.method=FILE"}, input, input, input},
+    {{"run", "paper/ode", "time.method=FILE"}, input, output, input},
 };
 
 void expect_failure(const work_folder& folder, const reader& r, const std::string& file, int code) {

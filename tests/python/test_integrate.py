@@ -125,7 +125,7 @@ def test_numbers_of_other_classes_and_layouts_are_the_same():
     odd.rate = lambda w: np.array([1.0 + w * w])[0]
     assert apsis.integrate(odd, np.array([2, 0], dtype=object), np.array([0, 1]), dt=np.float64(0.25)) == plain
     exact = ode(0.5)
-    exact.equilibrium = lambda w: [Fraction(1, 3), 1]
+    exact.equilibrium = lambda w: [Fraction(float(w)), 1]
     assert apsis.integrate(exact, [2.0, 0.0], (0, 1), dt=0.25).u.shape == (2, 2)
     one = apsis.RelaxationProblem(lambda t, u: -u[0], lambda u: u, lambda w: w, lambda w: 0.0, 1.0)
     assert apsis.integrate(one, [1.0], (0, 1), "ssprk-3-3", dt=0.5).u.shape == (2, 1)

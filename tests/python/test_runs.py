@@ -47,7 +47,7 @@ def test_progress_is_told_and_can_end_the_run(tmp_path):
     calls = []
     def watch(step, steps, t, smallest):
         calls.append((step, steps, t, smallest))
-        return len(calls) < 3
+        return np.bool_(len(calls) < 3)
     r = apsis.run("paper/bgk-mixed", "time.end=50.0", out=tmp_path / "o", progress=watch)
     assert r.state == "interrupted" and len(calls) == 3 and calls[-1][0] > 0
     t = float(r.t[-1])

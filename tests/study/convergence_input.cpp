@@ -153,7 +153,7 @@ const std::vector<bad_study> all = {
     {"key_varied_and_set", ode, {"time.dt=1/4"}, {"time.dt=1/4,1/8"}, "", "", "both varied and set"},
     {"unknown_key", ode, {}, {"time.td=1/4,1/8"}, "", "", "did you mean 'time.dt'?"},
     {"key_of_another_model", ode, {}, {"space.cells=10,20"}, "", "", "has no space"},
-    {"wrong_type", bgk, {}, {"space.cells=ten"}, "", "", "not valid TOML"},
+    {"wrong_type", bgk, {}, {"space.cells=ten"}, "", "", "not a value of TOML"},
     {"control_characters", ode, {}, {"time.\x1b[2Jdt=1"}, "", "", "?"},
     {"two_step_rules", bgk, {}, {"time.dt=1e-3", "time.cfl=0.5"}, "", "", "conflicts"},
     {"useless_key", ode, {}, {"output.every=1,2"}, "", "", "cannot be varied"},

@@ -114,9 +114,9 @@ def share_y_range(panels: list[Any]) -> None:
 
 
 def measure_of(picture: Document) -> str:
-    """The label of what a study measured, from the caption "The l2 norm of the difference to …." of its picture: a difference to
+    """The label of what a study measured, from the first sentence of its caption, "The l2 norm of the difference to ….": a difference to
     the next finer run is not an error."""
-    measure = str(picture["caption"]).removeprefix("The ").removesuffix(".")
+    measure = str(picture["caption"]).partition(". ")[0].removeprefix("The ").removesuffix(".")
     return textwrap.fill(f"{measure} (dimensionless)", 44)
 
 

@@ -254,8 +254,8 @@ def history_figure(result: RunResult) -> Any:
         return None
     defects = [name for name in history if name.startswith("conservation")]
     with_entropy = "entropy" in history and bool(np.isfinite(history["entropy"]).any())
-    # The last step is cut to the end of the run and is no change.
-    steps = history["dt"][1:-1]
+    # The last two steps share what is left to the end of the run, which is no change.
+    steps = history["dt"][1:-2]
     changing = len(steps) > 1 and float(np.ptp(steps)) > 1e-9 * float(steps.max())
     figure, axes = panels(1 + bool(defects) + with_entropy + changing, height=3.4)
     following = iter(axes)

@@ -111,15 +111,15 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
   }
 }
 
-/// Sets the first step of a controller that has none: first_step(), and with startup::graded at most ε/(4C),
-/// so that the initial layer is resolved as far as the tolerance asks. `longest`: of any step. Throws
+/// Sets the first step of a controller that has none: first_step_length(), and with startup::graded at most
+/// ε/(4C), so that the initial layer is resolved as far as the tolerance asks. `longest`: of any step. Throws
 /// input_error for a graded start of a problem without relaxation_time.
 template <problem P, class Distance>
 void start_control(P& p, typename P::real t, const typename P::state& u, typename P::real longest,
                    startup how, step_controller<typename P::real>& control, const Distance& distance) {
   using real = typename P::real;
   if (control.proposed() < std::numeric_limits<real>::infinity()) return;
-  real dt = first_step(p, t, u, longest, control.target(), distance);
+  real dt = first_step_length(p, t, u, longest, control.target(), distance);
   if (how == startup::graded) dt = std::min(dt, real(initial_layer(p, t, u) / 4));
   control.start_with(dt);
 }

@@ -36,7 +36,7 @@ class error_estimate {
   /// Of the step from `start` at t of length dt. distance(u, v) is a norm of u − v, which may be relative to
   /// u. Buffers are allocated at the first call. Throws what the stage solve of the problem throws.
   template <class Distance>
-  real operator()(P& p, real t, real dt, const state& start, const typename stepper<P>::attempted& tried,
+  real operator()(P& p, real t, real dt, const state& start, const attempted_step<state>& tried,
                   const error_target<real>& target, const Distance& distance) {
     if constexpr (problem_with_relaxation_time<P>) {
       if (!relaxes_) relaxes_ = p.relaxation_time(t, start) < std::numeric_limits<real>::infinity();
@@ -47,7 +47,7 @@ class error_estimate {
 
  private:
   template <class Distance>
-  real weighed(P& p, real t, real dt, const state& start, const typename stepper<P>::attempted& tried,
+  real weighed(P& p, real t, real dt, const state& start, const attempted_step<state>& tried,
                const error_target<real>& target, const Distance& distance) {
     while (buffers_.size() < 3) buffers_.push_back(start);
     state &sum = buffers_[0], &of_result = buffers_[1], &of_embedded = buffers_[2];
@@ -92,8 +92,9 @@ class error_estimate {
 /// problems without relaxation_time the rate is that of T + Q, or of T where Q cannot be evaluated. At most
 /// `longest`, which it is where nothing changes. Dimensionless.
 template <problem P, class Distance>
-typename P::real first_step(P& p, typename P::real t, const typename P::state& u, typename P::real longest,
-                            const error_target<typename P::real>& wanted, const Distance& distance) {
+typename P::real first_step_length(P& p, typename P::real t, const typename P::state& u,
+                                   typename P::real longest, const error_target<typename P::real>& wanted,
+                                   const Distance& distance) {
   using real = typename P::real;
   using state = typename P::state;
   using std::pow;

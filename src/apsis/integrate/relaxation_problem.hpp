@@ -151,7 +151,8 @@ class relaxation_problem {
     if (unchecked_ > 0) {
       --unchecked_;
       real size(0);
-      for (const auto& one : work_) size += std::abs(real(one));
+      using size_type = decltype(work_.size());
+      for (size_type i = 0; i < work_.size(); ++i) size += std::abs(real(work_[i]));
       check_moments(omega, moments_(work_), size);
     }
     return rate;

@@ -16,6 +16,13 @@ namespace apsis {
 /// What a stepper computes in a step: u^{n+1}, or the embedded solution of the method besides.
 enum class solutions { result, result_and_embedded };
 
+/// Both solutions of a step; valid until the next step, attempt or accept of the stepper that made it.
+template <class State>
+struct attempted_step {
+  const State &result,  ///< u^{n+1}
+      &embedded;        ///< ũ
+};
+
 /// One step of any method on any problem: carries out the method's schedule. The method is data; nothing here
 /// knows its name. Buffers are allocated at the first step as copies of the state.
 template <problem P>
@@ -67,14 +74,9 @@ class stepper {
     accept(u);
   }
 
-  /// Both solutions of a step; valid until the next step, attempt or accept.
-  struct attempted {
-    const state &result,  ///< u^{n+1}
-        &embedded;        ///< ũ
-  };
   /// u^{n+1} and the embedded solution of a step from u = u^n, which stays as it is: accept(u) takes the
   /// step, the next attempt forgets it. Only with solutions::result_and_embedded.
-  attempted attempt(real t, real dt, state& u) {
+  attempted_step<state> attempt(real t, real dt, state& u) {
     carry_out(t, dt, u);
     return {buffer(plan_.result_buffer(), u), buffer(plan_.embedded_buffer(), u)};
   }

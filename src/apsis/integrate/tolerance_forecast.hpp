@@ -47,8 +47,9 @@ typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, ty
 /// that transport keeps up and z = CΔt/ε, each cell with its own.
 template <class Real>
 struct deviations {
-  Real plateau, band;
-  Real change;  ///< of u in the step
+  Real plateau,  ///< D (z/(1+z))³, relative to u
+      band;      ///< D z³/(1+z)⁴, relative to u
+  Real change;   ///< of u in the step
 };
 
 /// Of a step dt of implicit–explicit Euler from the equilibrium `u`, whose solve is repeated: u + dt T(u) is

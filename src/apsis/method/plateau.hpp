@@ -11,7 +11,10 @@ namespace apsis {
 ///   |last(z) − 1| ≤ last (z/(1+z))³ + last_band z³/(1+z)⁴,    flux likewise.
 /// The first term is the plateau of a method, the second what is left where ε ~ Δt (docs/plateaus.md).
 struct plateau_bounds {
-  double last = 0.0, last_band = 0.0, flux = 0.0, flux_band = 0.0;
+  double last = 0.0,    ///< of the deviation from equilibrium in u^{n+1}, where ε ≪ Δt
+      last_band = 0.0,  ///< where ε ~ Δt
+      flux = 0.0,       ///< of the deviation that transport sees, where ε ≪ Δt
+      flux_band = 0.0;  ///< where ε ~ Δt
 };
 
 /// Over 1 ≤ z ≤ 10⁵, twenty values to a decade; the first terms are the values at 10⁵. +infinity where the

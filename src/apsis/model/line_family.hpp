@@ -19,6 +19,7 @@ class newton_end {
   }
   /// The last two residuals were so small that the sign and size of the present one may be rounding.
   bool close() const { return close_; }
+  /// The last residual.
   double previous() const { return previous_; }
 
  private:
@@ -39,7 +40,11 @@ class newton_end {
 /// boundary is.
 class line_family {
  public:
-  enum class face { nearest, farthest };
+  /// Which two grid points have C_j = 0.
+  enum class face {
+    nearest,  ///< the neighbours of the mean
+    farthest  ///< the ends of the grid
+  };
 
   /// Sums over all points.
   struct sums {
@@ -53,7 +58,10 @@ class line_family {
   };
   /// Derivatives of imbalance() and of the energy. The first is at least 1.
   struct slopes {
-    double imbalance_by_beta = 0.0, imbalance_by_tau = 0.0, energy_by_beta = 0.0, energy_by_tau = 0.0;
+    double imbalance_by_beta = 0.0,  ///< ∂ imbalance/∂β
+        imbalance_by_tau = 0.0,      ///< ∂ imbalance/∂τ
+        energy_by_beta = 0.0,        ///< ∂ energy/∂β
+        energy_by_tau = 0.0;         ///< ∂ energy/∂τ
   };
   /// log(x/y), to the rounding of a quotient also where it is near 0.
   static double log_of_ratio(double x, double y) {

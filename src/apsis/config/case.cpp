@@ -293,11 +293,12 @@ void apply_overrides(case_text& text, const std::vector<std::string>& overrides)
 
 std::string read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path))
+  std::string text(longest_case_file + 1, '\0');
+  if (in) in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  // A file may open and fail later; what came until then is not the case.
+  if (in.bad() || !in.is_open() || std::filesystem::is_directory(path))
     throw io_error(
         fmt::format("cannot read '{}' (it is a folder or not readable); give a readable case file", path));
-  std::string text(longest_case_file + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   return text;
 }

@@ -14,9 +14,9 @@ struct rounding_bound {
   double after(long steps) const { return at_start + per_step * static_cast<double>(steps); }
 };
 
-/// The bound for steps of a method. With u = 2⁻⁵³ and L the longest chain of additions in a moment ℛu, stage i
-/// carries e_i = Σ_j |α_ij| e_j + u (2 + √m_i + c_i (4 + √L)) Σ_j |α_ij|, where α_ij are its m_i weights and
-/// c_i is the number of collisions that it solves or evaluates; per_step is e of the last stage.
+/// The bound for steps of a method. With u = 2⁻⁵³ and L the longest chain of additions in a moment ℛu, stage
+/// i carries e_i = Σ_j |α_ij| e_j + u (2 + √m_i + c_i (4 + √L)) Σ_j |α_ij|, where α_ij are its m_i weights
+/// and c_i is the number of collisions that it solves or evaluates; per_step is e of the last stage.
 rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equation);
 
 }  // namespace apsis

@@ -23,6 +23,8 @@ class run_setup {
 
   std::unique_ptr<model> equation;  ///< model.name with its parameters and velocity grid
 
+  /// The case.
+  const case_config& config() const { return config_; }
   /// time.method, of the catalogue or from a file.
   const method& integrator() const { return *method_; }
   /// r of Δt ≤ r Δt_FE; 0 if the method has none.

@@ -6,8 +6,10 @@
 #include <apsis/integrate/tolerance_forecast.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/monitor.hpp>
+#include <apsis/run/promises.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/setup.hpp>
+#include <apsis/run/step_plan.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -17,19 +19,7 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 namespace apsis {
-
-std::string run_promises::text() const {
-  std::vector<std::string> kept;
-  if (positivity) kept.emplace_back("positivity");
-  if (conservation) kept.emplace_back("conservation");
-  if (entropy) kept.emplace_back("entropy decay");
-  return kept.empty() ? "nothing is promised for this configuration; everything is reported"
-                      : fmt::format("promised at every step: {}", fmt::join(kept, ", "));
-}
 
 namespace {
 
@@ -51,20 +41,6 @@ double relative_distance(const field& u, const field& v) {
     }
   return difference == 0.0 ? 0.0 : std::sqrt(difference / size);
 }
-/// Why the error will be above the tolerance, and what helps.
-std::string below_plateau(const method& used, double tolerance, const tolerance_forecast<double>& expected,
-                          double relaxation) {
-  const bool kept = used.claims.intermediate == "all";
-  return fmt::format(
-      "time.tolerance = {:g} is below what method '{}' keeps in steps of about {:.1g} (its terms of size "
-      "epsilon "
-      "leave a relative error of up to about {:.1g}); {}give time.dt below {:.1g} to resolve the relaxation, "
-      "or a "
-      "larger tolerance",
-      tolerance, used.name, expected.dt, expected.error,
-      kept ? "" : "choose a method with the right terms, as md-imex-8-3-mixed is, ",
-      0.1 * std::min(relaxation, expected.dt));
-}
 
 /// The setup of a case whose state and buffers fit into memory.
 run_setup setup_that_fits(const case_config& config) {
@@ -73,27 +49,6 @@ run_setup setup_that_fits(const case_config& config) {
   return setup;
 }
 
-/// The times of a case. A given dt that does not divide output.every is a longest step, as with time.cfl.
-time_marcher<double> times_of(const case_config& config, std::optional<double> dt) {
-  const double every = config.output.every;
-  time_marcher<double> march(0.0, config.time.end, dt);
-  try {
-    march.stop_every(every);
-    if (march.adjusted())
-      log::warning(
-          fmt::format("time.dt = {:.17g} does not divide time.end = {:g}; dt = {:.17g} is used instead", *dt,
-                      config.time.end, *march.fixed_dt()));
-  } catch (const input_error&) {
-    log::warning(
-        fmt::format("time.dt = {:.17g} does not divide output.every = {:g} (steps are shortened to end at "
-                    "every snapshot); "
-                    "give one that does for steps of equal length",
-                    *dt, every));
-    march = time_marcher<double>(0.0, config.time.end);
-    march.stop_every(every);
-  }
-  return march;
-}
 }  // namespace
 
 struct simulation::impl {
@@ -106,18 +61,17 @@ struct simulation::impl {
         watch(*setup.equation, setup.cell_volume()),
         rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
         state(setup.initial_state()),
-        march(times_of(config, setup.given_dt())) {
+        march(times_of(setup)) {
     if (setup.has_tolerance()) control.emplace(*config.time.tolerance, setup.integrator().embedded->order);
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
     totals.phase_points = static_cast<long>(state.cells()) * state.components();
     if (march.done()) return;
-    warn_of_explicit_collision();
-    static_cast<void>(next_dt());  // throws where nothing limits the step
+    warn_of_stiff_collision(setup, problem->relaxation_time(march.t(), state), next_dt());
     // The first step may be shorter than those that follow.
     setup.decide_promises(promises, limit(), forward_euler_limit(), first.negative_values == 0,
-                          has_exact_equilibrium());
+                          conserves_to_rounding(setup, state, rounding));
     start_steps();
   }
 
@@ -136,36 +90,7 @@ struct simulation::impl {
     const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().coefficients<double>()));
     expected = forecast_tolerance(integrator, march.t(), state, config.time.end, longest, control->target(),
                                   bounds, relative_distance);
-    if (expected->error > *config.time.tolerance)
-      log::warning(below_plateau(setup.integrator(), *config.time.tolerance, *expected,
-                                 problem->relaxation_time(march.t(), state)));
-  }
-
-  void warn_of_explicit_collision() {
-    if (setup.integrator().kind != method_kind::explicit_only) return;
-    const double relaxation = problem->relaxation_time(march.t(), state);
-    const double steps = config.time.end / std::min(relaxation, next_dt());
-    if (steps > 1e8)
-      log::warning(fmt::format(
-          "method '{}' is explicit and stable in steps of about epsilon/C = {:.1g} only, about {:.1g} of "
-          "them to "
-          "time.end = {:g} (the collision is stiff); choose an IMEX method, as md-imex-8-3-mixed is",
-          setup.integrator().name, relaxation, steps, config.time.end));
-  }
-
-  /// Whether collisions conserve to rounding: E(ω) has the moments ω. A Maxwellian by formula may not.
-  bool has_exact_equilibrium() const {
-    const double defect = setup.equilibrium_defect(state);
-    if (defect <= rounding.at_start) return true;  // what two sums over the components may differ by
-    log::warning(fmt::format(
-        "collisions do not conserve to rounding (the moments of the equilibrium miss those of the initial "
-        "data by {:.2g}, so that conservation and entropy decay are not promised){}",
-        defect, takes_formula() ? "; use velocity.equilibrium = \"auto\"" : ""));
-    return false;
-  }
-
-  bool takes_formula() const {
-    return config.velocity.points > 0 && config.velocity.equilibrium == "formula";
+    warn_of_plateau(setup, *expected, problem->relaxation_time(march.t(), state));
   }
 
   double forward_euler_limit() {
@@ -207,45 +132,6 @@ struct simulation::impl {
       totals.conservation_defect = std::max(totals.conservation_defect, defect);
     if (!std::isnan(last.entropy_change))
       totals.max_entropy_increase = std::max(totals.max_entropy_increase, last.entropy_change);
-  }
-
-  void keep_promises() const {
-    const failure_site here{last.step, last.t, -1, std::numeric_limits<double>::quiet_NaN()};
-    const auto broken = [&here](const std::string& what, double value) {
-      failure_site site = here;
-      site.value = value;
-      throw numerical_error("broken promise: " + what, site);
-    };
-    if (promises.positivity && last.negative_values > 0)
-      broken(
-          fmt::format("{} values are negative (the configuration entails positivity)", last.negative_values),
-          last.min_value);
-    const double allowed = rounding.after(last.step);
-    for (std::size_t k = 0; promises.conservation && k < last.conservation_defect.size(); ++k)
-      if (!(last.conservation_defect[k] <= allowed))
-        broken(fmt::format("{} is not conserved to rounding {}", setup.equation->invariants()[k],
-                           reason_of_defect(allowed)),
-               last.conservation_defect[k]);
-    if (promises.entropy && last.entropy_change > 1e-13 * (1.0 + std::abs(last.entropy)))
-      broken("the entropy increased (first-order upwind within r dt_FE entails decay)", last.entropy_change);
-  }
-
-  /// Why a conserved quantity changes by more than rounding explains, and what to do.
-  std::string reason_of_defect(double allowed) const {
-    if (takes_formula())
-      return "(the velocity grid became too coarse for the Maxwellian by formula); use "
-             "velocity.equilibrium = \"auto\"";
-    if (setup.equation->positive() && last.negative_values > 0)
-      return fmt::format(
-          "(large values of both signs cancel: {} are negative, as happens beyond the step that "
-          "strong stability allows); use space.limiter = \"positivity\" and time.safety = 1",
-          last.negative_values);
-    return fmt::format(
-        "({} steps of {} explain {:.2g}: some equilibrium has other moments than the state); "
-        "{}",
-        last.step, setup.integrator().name, allowed,
-        config.velocity.points > 0 ? "use velocity.equilibrium = \"discrete\", or more velocity.points"
-                                   : "check the moments of the equilibrium of the model");
   }
 
   case_config config;
@@ -330,7 +216,7 @@ const step_record& simulation::advance() {
   }
   run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.totals.cpu_s += thread_seconds() - cpu;
-  run.keep_promises();
+  check_promises(run.promises, run.last, run.setup, run.rounding);
   return run.last;
 }
 

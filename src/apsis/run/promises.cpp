@@ -1,0 +1,81 @@
+#include <apsis/run/promises.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+
+std::string run_promises::text() const {
+  std::vector<std::string> kept;
+  if (positivity) kept.emplace_back("positivity");
+  if (conservation) kept.emplace_back("conservation");
+  if (entropy) kept.emplace_back("entropy decay");
+  return kept.empty() ? "nothing is promised for this configuration; everything is reported"
+                      : fmt::format("promised at every step: {}", fmt::join(kept, ", "));
+}
+
+namespace {
+
+bool takes_formula(const run_setup& setup) {
+  const auto& velocity = setup.config().velocity;
+  return velocity.points > 0 && velocity.equilibrium == "formula";
+}
+
+[[noreturn]] void broken(const std::string& promise, const step_record& last, double value) {
+  throw numerical_error("broken promise: " + promise, {last.step, last.t, -1, value});
+}
+
+/// Why a conserved quantity changes by more than rounding explains, and what to do.
+std::string reason_of_defect(const step_record& last, const run_setup& setup, double allowed) {
+  if (takes_formula(setup))
+    return "(the velocity grid became too coarse for the Maxwellian by formula); use "
+           "velocity.equilibrium = \"auto\"";
+  if (setup.equation->positive() && last.negative_values > 0)
+    return fmt::format(
+        "(large values of both signs cancel: {} are negative, as happens beyond the step that strong "
+        "stability allows); use space.limiter = \"positivity\" and time.safety = 1",
+        last.negative_values);
+  return fmt::format("({} steps of {} explain {:.2g}: some equilibrium has other moments than the state); {}",
+                     last.step, setup.integrator().name, allowed,
+                     setup.config().velocity.points > 0
+                         ? "use velocity.equilibrium = \"discrete\", or more velocity.points"
+                         : "check the moments of the equilibrium of the model");
+}
+
+}  // namespace
+
+bool conserves_to_rounding(const run_setup& setup, const field& initial, const rounding_bound& rounding) {
+  const double defect = setup.equilibrium_defect(initial);
+  if (defect <= rounding.at_start) return true;  // what two sums over the components may differ by
+  log::warning(fmt::format(
+      "collisions do not conserve to rounding (the moments of the equilibrium miss those of the initial data "
+      "by {:.2g}, so that conservation and entropy decay are not promised){}",
+      defect, takes_formula(setup) ? "; use velocity.equilibrium = \"auto\"" : ""));
+  return false;
+}
+
+void check_promises(const run_promises& promises, const step_record& last, const run_setup& setup,
+                    const rounding_bound& rounding) {
+  if (promises.positivity && last.negative_values > 0)
+    broken(fmt::format("{} values are negative (the configuration entails positivity)", last.negative_values),
+           last, last.min_value);
+  const double allowed = rounding.after(last.step);
+  for (std::size_t k = 0; promises.conservation && k < last.conservation_defect.size(); ++k)
+    if (!(last.conservation_defect[k] <= allowed))
+      broken(fmt::format("{} is not conserved to rounding {}", setup.equation->invariants()[k],
+                         reason_of_defect(last, setup, allowed)),
+             last, last.conservation_defect[k]);
+  if (promises.entropy && last.entropy_change > 1e-13 * (1.0 + std::abs(last.entropy)))
+    broken("the entropy increased (first-order upwind within r dt_FE entails decay)", last,
+           last.entropy_change);
+}
+
+}  // namespace apsis

@@ -1,0 +1,58 @@
+#include <apsis/run/step_plan.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace apsis {
+
+time_marcher<double> times_of(const run_setup& setup) {
+  const case_config& config = setup.config();
+  const auto dt = setup.given_dt();
+  const double every = config.output.every;
+  time_marcher<double> march(0.0, config.time.end, dt);
+  try {
+    march.stop_every(every);
+    if (march.adjusted())
+      log::warning(
+          fmt::format("time.dt = {:.17g} does not divide time.end = {:g}; dt = {:.17g} is used instead", *dt,
+                      config.time.end, *march.fixed_dt()));
+  } catch (const input_error&) {
+    log::warning(
+        fmt::format("time.dt = {:.17g} does not divide output.every = {:g} (steps are shortened to end at "
+                    "every snapshot); "
+                    "give one that does for steps of equal length",
+                    *dt, every));
+    march = time_marcher<double>(0.0, config.time.end);
+    march.stop_every(every);
+  }
+  return march;
+}
+
+void warn_of_stiff_collision(const run_setup& setup, double relaxation, double dt) {
+  if (setup.integrator().kind != method_kind::explicit_only) return;
+  const double end = setup.config().time.end, steps = end / std::min(relaxation, dt);
+  if (steps > 1e8)
+    log::warning(fmt::format(
+        "method '{}' is explicit and stable in steps of about epsilon/C = {:.1g} only, about {:.1g} of them "
+        "to time.end = {:g} (the collision is stiff); choose an IMEX method such as md-imex-8-3-mixed",
+        setup.integrator().name, relaxation, steps, end));
+}
+
+void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation) {
+  const double tolerance = *setup.config().time.tolerance;
+  if (!(expected.error > tolerance)) return;
+  const bool right_terms = setup.integrator().claims.intermediate == "all";
+  log::warning(fmt::format(
+      "time.tolerance = {:g} is below what method '{}' keeps in steps of about {:.1g} (its terms of size "
+      "epsilon leave a relative error of up to about {:.1g}); {}give time.dt below {:.1g} to resolve the "
+      "relaxation, or a larger tolerance",
+      tolerance, setup.integrator().name, expected.dt, expected.error,
+      right_terms ? "" : "choose a method with the right terms, such as md-imex-8-3-mixed, ",
+      0.1 * std::min(relaxation, expected.dt)));
+}
+
+}  // namespace apsis

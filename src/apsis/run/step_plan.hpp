@@ -1,0 +1,20 @@
+#pragma once
+
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/integrate/tolerance_forecast.hpp>
+#include <apsis/run/setup.hpp>
+
+namespace apsis {
+
+/// From 0 to time.end with stops at every output.every. A time.dt that does not divide time.end is reduced,
+/// one that does not divide output.every is the longest step, as with time.cfl; a warning says so.
+time_marcher<double> times_of(const run_setup& setup);
+
+/// Warns of an explicit method with a stiff collision, which needs more than 10⁸ steps of about ε/C =
+/// `relaxation`; `dt` is the first step.
+void warn_of_stiff_collision(const run_setup& setup, double relaxation, double dt);
+
+/// Warns where the forecast error is above time.tolerance, and says what helps.
+void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation);
+
+}  // namespace apsis

@@ -153,7 +153,7 @@ TEST(tolerance, below_the_plateau_of_a_method_is_told_at_the_start) {
   };
   const std::string warning = warning_of("md-imex-6-3", "1e-5");
   EXPECT_THAT(warning, HasSubstr("time.tolerance = 1e-05 is below what method 'md-imex-6-3' keeps"));
-  EXPECT_THAT(warning, HasSubstr("choose a method with the right terms, as md-imex-8-3-mixed is, "));
+  EXPECT_THAT(warning, HasSubstr("choose a method with the right terms, such as md-imex-8-3-mixed, "));
   EXPECT_EQ(warning_of("md-imex-8-3-mixed", "1e-3"), "");
 }
 

@@ -434,14 +434,6 @@ TEST(results, check_observes_the_limits_of_a_method_that_is_not_in_the_catalogue
   EXPECT_THAT(run_apsis(folder, {"check", "dirk-2-2", "--observe"}).out, HasSubstr("u' = -10 u^2"));
 }
 
-TEST(results, a_full_output_device_is_an_output_error) {
-  const work_folder folder;
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
-  folder.file("go.sh", std::string("exec \"") + APSIS_PROGRAM + "\" list models > /dev/full");
-  const int status = std::system(("sh " + (folder.path() / "go.sh").string() + " 2>/dev/null").c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 4);
-}
-
 TEST(results, a_run_to_a_tolerance_goes_on_from_a_checkpoint_bit_for_bit_and_says_what_it_rejected) {
   const work_folder folder;
   const auto run = with(small, {"time.method=md-imex-8-3", "time.tolerance=1e-5", "time.end=0.4"});

@@ -1,5 +1,7 @@
 // A run that was stopped and goes on is the same run, for everything in the registries; a checkpoint that is
 // not whole is refused.
+#include "same_results.hpp"
+
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/version.hpp>
@@ -35,12 +37,6 @@ std::string small_case(const model_entry& model, const std::string& method, cons
   return text + "[output]\nevery = 0.011\n";
 }
 
-struct outcome {
-  std::vector<double> state;
-  table history;
-  field_series fields;
-};
-
 /// Runs until `steps` steps are done in all, or to the end; its checkpoint is then in the folder.
 outcome run(const case_config& c, const std::string& folder, long steps,
             std::optional<std::string> restart = {}) {
@@ -53,23 +49,6 @@ outcome run(const case_config& c, const std::string& folder, long steps,
   run_session session(c, how);
   session.run();
   return {session.computed().state(), session.records().history(), session.records().fields()};
-}
-
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
-
-void expect_same(const outcome& a, const outcome& b, const std::string& what) {
-  EXPECT_TRUE(same_bits(a.state, b.state)) << what;
-  ASSERT_EQ(a.history.rows.size(), b.history.rows.size()) << what;
-  for (std::size_t k = 0; k < a.history.rows.size(); ++k)
-    EXPECT_TRUE(same_bits(a.history.rows[k], b.history.rows[k])) << what << ", step " << k;
-  ASSERT_EQ(a.fields.snapshots.size(), b.fields.snapshots.size()) << what;
-  for (std::size_t k = 0; k < a.fields.snapshots.size(); ++k) {
-    EXPECT_EQ(a.fields.snapshots[k].t, b.fields.snapshots[k].t) << what;
-    for (std::size_t n = 0; n < a.fields.names.size(); ++n)
-      EXPECT_TRUE(same_bits(a.fields.snapshots[k].values[n], b.fields.snapshots[k].values[n])) << what;
-  }
 }
 
 std::string bytes_of(const std::string& path) {

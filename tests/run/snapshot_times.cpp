@@ -1,5 +1,7 @@
 // Snapshots are of the times that were asked for, to the last digit, with every rule for the step; and a
 // finished run that goes on to a later end is the run that went there without a halt.
+#include "same_results.hpp"
+
 #include <apsis/config/case.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/run/session.hpp>
@@ -41,12 +43,6 @@ const std::string rules[] = {"cfl = 0.07",
                              "dt = 0.05\ntolerance = 1e-5",
                              "cfl = 0.5\nstartup = \"graded\""};
 
-struct outcome {
-  std::vector<double> state;
-  table history;
-  field_series fields;
-};
-
 outcome run(const case_config& c, const std::string& folder, std::optional<std::string> restart = {}) {
   session_options how;
   how.out = folder;
@@ -54,23 +50,6 @@ outcome run(const case_config& c, const std::string& folder, std::optional<std::
   run_session session(c, how);
   session.run();
   return {session.computed().state(), session.records().history(), session.records().fields()};
-}
-
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
-
-void expect_same(const outcome& a, const outcome& b, const std::string& what) {
-  EXPECT_TRUE(same_bits(a.state, b.state)) << what;
-  ASSERT_EQ(a.history.rows.size(), b.history.rows.size()) << what;
-  for (std::size_t k = 0; k < a.history.rows.size(); ++k)
-    EXPECT_TRUE(same_bits(a.history.rows[k], b.history.rows[k])) << what << ", row " << k;
-  ASSERT_EQ(a.fields.snapshots.size(), b.fields.snapshots.size()) << what;
-  for (std::size_t k = 0; k < a.fields.snapshots.size(); ++k) {
-    EXPECT_EQ(a.fields.snapshots[k].t, b.fields.snapshots[k].t) << what;
-    for (std::size_t n = 0; n < a.fields.names.size(); ++n)
-      EXPECT_TRUE(same_bits(a.fields.snapshots[k].values[n], b.fields.snapshots[k].values[n])) << what;
-  }
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include <apsis/config/case_text.hpp>
 
+#include <apsis/core/text_place.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <optional>
@@ -13,14 +15,6 @@ namespace {
 
 source_place place_of(const toml::source_region& source, const std::string& file) {
   return {file, static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
-}
-
-source_place place_at(std::string_view text, std::size_t byte, const std::string& file) {
-  const std::string_view before = text.substr(0, byte);
-  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-  const auto start = before.rfind('\n');
-  const std::size_t column = byte - (start == std::string_view::npos ? 0 : start + 1) + 1;
-  return {file, static_cast<int>(line), static_cast<int>(column)};
 }
 
 // Both limits stop a file that is no case at all before a parser sees it.

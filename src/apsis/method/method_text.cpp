@@ -1,6 +1,7 @@
 #include <apsis/method/method_text.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/text_place.hpp>
 #include <apsis/method/method_file.hpp>
 
 #include <algorithm>
@@ -16,14 +17,6 @@ namespace {
 constexpr std::size_t longest_file = 1 << 20;  ///< bytes; the largest method of 64 stages has a fifth of it
 constexpr std::size_t most_key_parts = 8;      ///< a method file has keys of one part
 constexpr std::size_t most_nested = 8;         ///< and lists of lists
-
-source_place place_at(std::string_view text, std::size_t byte, const std::string& file) {
-  const std::string_view before = text.substr(0, byte);
-  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-  const auto start = before.rfind('\n');
-  const std::size_t column = byte - (start == std::string_view::npos ? 0 : start + 1) + 1;
-  return {file, static_cast<int>(line), static_cast<int>(column)};
-}
 
 /// The byte behind the text in quotes that begins at `begin`; of one that does not end, the end of its line.
 std::size_t behind_quotes(std::string_view text, std::size_t begin) {

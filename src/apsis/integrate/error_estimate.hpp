@@ -124,7 +124,7 @@ typename P::real first_step_length(P& p, typename P::real t, const typename P::s
     const real rate = std::max(of_layer, distance(before, after) / size / tau) / part;
     return rate * longest > real(1) ? real(1) / rate : longest;
   } catch (const numerical_error&) {
-    return longest;  // u itself may be at fault, which the step will tell
+    return longest;  // invalid u: the step itself reports it
   }
 }
 

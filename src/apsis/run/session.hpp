@@ -66,7 +66,7 @@ class run_session {
   simulation simulation_;
   std::unique_ptr<run_records> records_, shown_;
   std::unique_ptr<result_folder> folder_;
-  /// The run before the first step that time.end shaped: what a run to a later end goes on from.
+  /// State before the first step whose length depends on time.end; a continuation to a later end starts here.
   std::optional<checkpoint> before_end_;
   long warn_at_step_ = -1;  ///< after how many steps to say how long all will take
   run_end end_ = run_end::complete;

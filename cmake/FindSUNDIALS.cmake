@@ -1,0 +1,21 @@
+# The libraries of SUNDIALS that are asked for as components, each as SUNDIALS::component. The configuration files
+# of SUNDIALS itself ask for the OpenMP of every compiler, which a build without OpenMP has no use for.
+find_path(SUNDIALS_INCLUDE_DIR sundials/sundials_types.h)
+set(sundials_libraries)
+foreach(component ${SUNDIALS_FIND_COMPONENTS})
+  find_library(SUNDIALS_${component}_LIBRARY sundials_${component})
+  mark_as_advanced(SUNDIALS_${component}_LIBRARY)
+  list(APPEND sundials_libraries SUNDIALS_${component}_LIBRARY)
+endforeach()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(SUNDIALS REQUIRED_VARS SUNDIALS_INCLUDE_DIR ${sundials_libraries})
+if(SUNDIALS_FOUND)
+  foreach(component ${SUNDIALS_FIND_COMPONENTS})
+    if(NOT TARGET SUNDIALS::${component})
+      add_library(SUNDIALS::${component} UNKNOWN IMPORTED)
+      set_target_properties(SUNDIALS::${component} PROPERTIES
+        IMPORTED_LOCATION ${SUNDIALS_${component}_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${SUNDIALS_INCLUDE_DIR})
+    endif()
+  endforeach()
+endif()
+mark_as_advanced(SUNDIALS_INCLUDE_DIR)

@@ -209,6 +209,7 @@ const step_record& simulation::advance() {
   const auto start = std::chrono::steady_clock::now();
   const double cpu = thread_seconds();
   impl& run = *impl_;
+  const step_record before = run.last;
   try {
     run.record_step(run.step());
   } catch (const numerical_error& failure) {
@@ -216,7 +217,7 @@ const step_record& simulation::advance() {
   }
   run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.totals.cpu_s += thread_seconds() - cpu;
-  check_promises(run.promises, run.last, run.setup, run.rounding);
+  check_promises(run.promises, before, run.last, run.setup, run.rounding);
   return run.last;
 }
 

@@ -11,6 +11,7 @@
 using namespace apsis;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using json = nlohmann::ordered_json;
 
 namespace {
@@ -80,6 +81,20 @@ TEST(convergence_report, text_has_a_block_for_every_combination) {
   EXPECT_THAT(text, HasSubstr("ODE model, accuracy test\nl2 norm of the difference to the next finer run\n"));
   EXPECT_THAT(text, HasSubstr("\nmodel.epsilon = 1/100, time.method = md-imex-3-2\n"));
   EXPECT_THAT(text, HasSubstr("1/48"));
+}
+
+TEST(convergence_report, a_difference_to_the_next_finer_run_is_not_called_an_error) {
+  const auto of = [](const std::string& reference) {
+    return converge({.case_name = "paper/ode",
+                     .vary = {parse_vary("time.dt=1/8,1/16")},
+                     .reference = parse_reference(reference)});
+  };
+  const auto next = of("next"), known = of("md-imex-6-3@1/256");
+  EXPECT_THAT(to_text(next), HasSubstr("  difference "));
+  EXPECT_THAT(to_text(next), Not(HasSubstr("error")));
+  EXPECT_EQ(to_picture(next).panels.at(0).y_label, "difference (dimensionless)");
+  EXPECT_THAT(to_text(known), HasSubstr("  error "));
+  EXPECT_EQ(to_picture(known).panels.at(0).y_label, "error (dimensionless)");
 }
 
 TEST(convergence_report, picture_has_a_curve_for_every_block_and_the_orders_as_slopes) {

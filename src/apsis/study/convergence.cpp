@@ -136,6 +136,7 @@ convergence_table convergence::table() const {
   table.refined = plan.refined;
   table.h_name = plan.h_name;
   table.measure = plan.measure;
+  table.measured = plan.measured;
   table.runs = static_cast<long>(plan.runs.size());
   for (const auto& planned : plan.blocks) {
     convergence_block block{planned.values, planned.title, {}};

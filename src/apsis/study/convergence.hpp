@@ -49,7 +49,8 @@ struct convergence_table {
   std::vector<std::string> keys;  ///< varied keys in the order of the study
   int refined = -1;     ///< index into `keys`; −1 where nothing is refined (then there are no rates)
   std::string h_name;   ///< "Δx", "Δt", "Δv" or the name of the refined key
-  std::string measure;  ///< "l2 norm of the difference to the next finer run"
+  std::string measure;   ///< "l2 norm of the difference to the next finer run"
+  std::string measured;  ///< "error", or "difference" where the next finer run is the reference
   std::vector<convergence_block> blocks;  ///< those that have rows
   long runs = 0;                          ///< different runs that were needed, references included
   bool complete = true;                   ///< every run was computed, or failed

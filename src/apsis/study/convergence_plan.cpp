@@ -202,6 +202,7 @@ class planner {
     if (how_ == kind::space_time && !has_space)
       throw input_error(
           fmt::format("reference 'space+time' needs a mesh (model '{}' has no space) choose time", model));
+    plan_.measured = how_ == kind::next ? "difference" : "error";
     plan_.measure = fmt::format("{} norm of the difference{} to {}", to_string(study_.norm),
                                 study_.quantity.empty() ? "" : " of " + study_.quantity, reference_name());
   }

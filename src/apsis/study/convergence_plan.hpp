@@ -25,7 +25,8 @@ struct convergence_plan {
 
   std::string title,              ///< of the case
       h_name,                     ///< "Δx", "Δt", "Δv" or the name of the refined key
-      measure;                    ///< "l2 norm of the difference to the next finer run"
+      measure,                    ///< "l2 norm of the difference to the next finer run"
+      measured;                   ///< "error", or "difference" where the next finer run is the reference
   std::vector<std::string> keys;  ///< varied keys in the order of the study
   int refined = -1;               ///< index into `keys`; −1 where nothing is refined
   bool refined_in_time = false;   ///< then h is the step that was taken

@@ -105,7 +105,7 @@ int panel_key(const convergence_table& table) {
 /// Curves of the blocks that have `value` for the key of the panels (all blocks where there is none).
 panel panel_of(const convergence_table& table, int key, const std::string& value) {
   const auto keys = outer_keys(table);
-  panel axes{"", table.h_name + " (dimensionless)", "error (dimensionless)", true, true, {}, {}, {}};
+  panel axes{"", table.h_name + " (dimensionless)", table.measured + " (dimensionless)", true, true, {}, {}, {}};
   if (key >= 0) axes.title = label_part(keys[static_cast<std::size_t>(key)], value);
   std::set<int> orders;
   for (const auto& block : table.blocks) {
@@ -136,7 +136,7 @@ std::string to_text(const convergence_table& table) {
     for (const auto& row : block.rows) width = std::max(width, row_name(table, row).size());
   for (const auto& block : table.blocks) {
     out += fmt::format("\n{}{}", block.title, block.title.empty() ? "" : "\n");
-    out += fmt::format("  {:>{}}  {:>10}  {:>6}  {:>9}  {:>10}  {:>8}  {:>10}\n", head, width, "error",
+    out += fmt::format("  {:>{}}  {:>10}  {:>6}  {:>9}  {:>10}  {:>8}  {:>10}\n", head, width, table.measured,
                        "rate", "steps", "dt", "cpu_s", "min_value");
     for (const auto& row : block.rows) {
       out += fmt::format("  {:>{}}  {:>10}  {:>6}  {:>9}  {:>10}  {:>8}  {:>10}\n", row_name(table, row),

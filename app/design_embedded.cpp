@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "design_embedded.hpp"
+#include "interrupt.hpp"
 #include "method_report.hpp"
 #include "method_writer.hpp"
 
@@ -38,6 +39,7 @@ std::string text_of(const embedded_attempt& tried, double useful) {
 }  // namespace
 
 int design_embedded(const embedded_options& given) {
+  end_on_interrupts();
   method m = find_method(given.method);
   const embedded_task task = task_of(given, m);
   method_writer file(given.out);

@@ -54,18 +54,23 @@ TEST_P(every_signal, ends_converge_within_a_step_and_says_what_is_awaited) {
   EXPECT_TRUE(json::parse(read(folder.path() / "o/converge.json")).empty());
 }
 
-TEST_P(every_signal, ends_check) {
-  const work_folder folder;
-  const std::string pipe = (folder.path() / "m.toml").string();
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  process run(folder, {"check", "m.toml", "--observe"});
-  const int writer = open(pipe.c_str(), O_WRONLY);  // waits until the command has opened it
-  ASSERT_GE(writer, 0);
-  run.send(GetParam());
-  const outcome stopped = run.wait();
-  close(writer);
-  EXPECT_EQ(stopped.code, 130) << stopped.err;
-  EXPECT_THAT(stopped.err, HasSubstr("interrupted"));
+TEST_P(every_signal, ends_commands_that_have_nothing_to_keep) {
+  using words = std::vector<std::string>;
+  for (const words& command :
+       {words{"check", "m.toml", "--observe"}, words{"design", "--embedded", "m.toml", "--out", "o.toml"}}) {
+    const work_folder folder;
+    const std::string pipe = (folder.path() / "m.toml").string();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    process run(folder, command);
+    const int writer = open(pipe.c_str(), O_WRONLY);  // waits until the command has opened it
+    ASSERT_GE(writer, 0);
+    run.send(GetParam());
+    const outcome stopped = run.wait();
+    close(writer);
+    EXPECT_EQ(stopped.code, 130) << command[0] << stopped.err;
+    EXPECT_THAT(stopped.err, HasSubstr("interrupted"));
+    EXPECT_FALSE(fs::exists(folder.path() / "o.toml"));
+  }
 }
 
 TEST_P(every_signal, ends_the_drawing_of_plot_and_report_and_leaves_nothing_behind) {

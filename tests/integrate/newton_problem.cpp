@@ -305,3 +305,25 @@ TEST(newton_problem, follows_a_slow_manifold_in_steps_far_beyond_the_relaxation_
   EXPECT_NEAR(u[0], 0.1706167732170483e1, 1e-5);
   EXPECT_NEAR(u[1], -0.8928097010247975, 1e-5);
 }
+
+TEST(newton_problem, slow_reaches_the_end_of_robertson_s_problem) {
+  // Steps grow over sixteen decades; the residuals of the last stages are rounding of numbers near 1e5. A
+  // Newton method that wants them below its tolerance in absolute terms never ends.
+  std::vector<double> u{1.0, 0.0, 0.0};
+  long rejected = 0;
+  const auto done = solve_stiff(
+      [](const auto& v, auto& out) {
+        const auto first = -0.04 * v[0] + 1e4 * v[1] * v[2], third = 3e7 * v[1] * v[1];
+        out[0] = first;
+        out[1] = -1.0 * first - third;
+        out[2] = third;
+      },
+      u, 1e11, rejected);
+  EXPECT_EQ(done.t, 1e11);
+  // Mazzia & Magherini, Test Set for Initial Value Problem Solvers (2008), problem ROBER. The tolerance is
+  // 1e-6 in absolute terms, far above u[0] and u[1] themselves.
+  EXPECT_NEAR(u[0], 0.2083340149701255e-7, 1e-5);
+  EXPECT_NEAR(u[1], 0.8333360770334713e-13, 1e-10);
+  EXPECT_NEAR(u[2], 0.9999999791665050, 1e-5);
+  EXPECT_NEAR(u[0] + u[1] + u[2], 1.0, 1e-12);
+}

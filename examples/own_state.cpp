@@ -33,7 +33,7 @@ class relaxation_system {
     return f;
   }
 
-  void scatter(double, const field& f, std::span<const apsis::target<field, double>> targets) const {
+  void add_transport(double, const field& f, std::span<const apsis::target<field, double>> targets) const {
     const std::size_t n = f.u.size();
     for (const auto& to : targets) {
       for (std::size_t i = 0; i < n; ++i) {
@@ -47,7 +47,7 @@ class relaxation_system {
     }
   }
 
-  void collide(double, double a, double b, field& f) const {
+  void solve_collision(double, double a, double b, field& f) const {
     const auto weights = apsis::relax_weights(a, b, 1.0, epsilon_);
     for (std::size_t i = 0; i < f.u.size(); ++i)
       f.v[i] = weights.stay * f.v[i] + weights.relax * (f.u[i] * f.u[i] / 2);

@@ -40,7 +40,7 @@ class mixed_step {
   std::unique_ptr<semidiscrete_problem> problem_;
   stepper<semidiscrete_problem> stepper_;
   field u_;
-  bool collides_in_passing_;  ///< point values: as soon as they are complete, in the pass that makes them
+  bool solves_in_passing_;  ///< point values: as soon as they are complete, in the pass that makes them
   double dt_;
 };
 

@@ -39,18 +39,18 @@ int recoverable(const Body& body) {
 
 int transport_side(realtype t, N_Vector y, N_Vector out, void* data) {
   const std::array<goal, 1> to = {{{&field_of(out), 0.0, 1.0, true}}};
-  return recoverable([&] { of(data).problem.scatter(t, field_of(y), to); });
+  return recoverable([&] { of(data).problem.add_transport(t, field_of(y), to); });
 }
 
 int collision_side(realtype t, N_Vector y, N_Vector out, void* data) {
   const std::array<goal, 1> to = {{{&field_of(out), 0.0, 1.0, true}}};
-  return recoverable([&] { of(data).problem.scatter_collision(t, field_of(y), to); });
+  return recoverable([&] { of(data).problem.add_collision(t, field_of(y), to); });
 }
 
 int both_sides(realtype t, N_Vector y, N_Vector out, void* data) {
   const std::array<goal, 1> add = {{{&field_of(out), 0.0, 1.0, false}}};
   if (transport_side(t, y, out, data) != 0) return 1;
-  return recoverable([&] { of(data).problem.scatter_collision(t, field_of(y), add); });
+  return recoverable([&] { of(data).problem.add_collision(t, field_of(y), add); });
 }
 
 int prepare_inverse(realtype, N_Vector y, N_Vector, booleantype still_good, booleantype* renewed, realtype,

@@ -141,14 +141,13 @@ class linear {
   using state = std::vector<double>;
   using real = double;
   double transport = 0.0, collision = 0.0;
-  void scatter(double, const state& u, std::span<const apsis::target<state, double>> targets) const {
+  void add_transport(double, const state& u, std::span<const apsis::target<state, double>> targets) const {
     for (const auto& to : targets) (*to.acc)[0] = to.combine((*to.acc)[0], u[0], transport * u[0]);
   }
-  void collide(double, double a, double b, state& u) const {
+  void solve_collision(double, double a, double b, state& u) const {
     u[0] /= 1.0 - a * collision - b * collision * collision;
   }
-  void scatter_collision(double, const state& u,
-                         std::span<const apsis::target<state, double>> targets) const {
+  void add_collision(double, const state& u, std::span<const apsis::target<state, double>> targets) const {
     for (const auto& to : targets) (*to.acc)[0] = to.combine((*to.acc)[0], u[0], collision * u[0]);
   }
   double forward_euler_step(double, const state&) const { return 1.0; }

@@ -34,12 +34,12 @@ struct exact_problem {
   std::function<real(const real&)> equilibrium, rate;
   real epsilon;
 
-  void scatter(const real&, const state& u, std::span<const apsis::target<state, real>> targets) const {
+  void add_transport(const real&, const state& u, std::span<const apsis::target<state, real>> targets) const {
     const state T = transport(u);
     for (const auto& to : targets)
       for (std::size_t k = 0; k < 2; ++k) (*to.acc)[k] = to.combine((*to.acc)[k], u[k], T[k]);
   }
-  void collide(const real&, const real& a, const real& b, state& u) const {
+  void solve_collision(const real&, const real& a, const real& b, state& u) const {
     if (a == 0 && b == 0) return;
     const real E = equilibrium(u[0]);
     if (epsilon == 0) {

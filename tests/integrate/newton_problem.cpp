@@ -81,7 +81,7 @@ TEST(newton_problem, solves_the_cubic_of_square_decay_to_round_off_for_any_step)
     const double b = one_in(3) ? 0.0 : -dt * dt * uniform(0.05, 2);
     apsis::newton_problem problem{no_transport{}, square_decay};
     row state{u};
-    problem.collide(0, a, b, state);
+    problem.solve_collision(0, a, b, state);
     const long double v = state[0];
     RC_ASSERT(v > 0 && v <= u);
     // Every term is positive, so the sum is relatively well conditioned in v.
@@ -93,7 +93,7 @@ TEST(newton_problem, works_in_long_double_to_its_own_round_off) {
   auto problem = apsis::make_newton_problem<std::vector<long double>>(no_transport{}, square_decay);
   for (const long double dt : {1e-4L, 1.0L, 1e8L}) {
     std::vector<long double> state{10};
-    problem.collide(0, dt, -dt * dt / 2, state);
+    problem.solve_collision(0, dt, -dt * dt / 2, state);
     const long double v = state[0];
     EXPECT_LT(std::abs(v + 10 * dt * v * v + 100 * dt * dt * v * v * v - 10), 1e-17L) << dt;
   }
@@ -102,10 +102,10 @@ TEST(newton_problem, works_in_long_double_to_its_own_round_off) {
 TEST(newton_problem, zero_and_nothing_implicit_are_exact) {
   apsis::newton_problem problem{no_transport{}, square_decay};
   row u{0};
-  problem.collide(0, 1.0, -1.0, u);
+  problem.solve_collision(0, 1.0, -1.0, u);
   EXPECT_EQ(u, row{0});
   u = {3};
-  problem.collide(0, 0.0, 0.0, u);
+  problem.solve_collision(0, 0.0, 0.0, u);
   EXPECT_EQ(u, row{3});
 }
 
@@ -114,7 +114,7 @@ TEST(newton_problem, solves_where_squares_underflow) {
   for (const auto solver : {linear_solver::dense, linear_solver::krylov}) {
     apsis::newton_problem problem(no_transport{}, decay, newton_options{solver});
     row u{1e-200};
-    problem.collide(0, 1e9, 0.0, u);
+    problem.solve_collision(0, 1e9, 0.0, u);
     EXPECT_NEAR(u[0] / (1e-200 / (1 + 1e9)), 1, 1e-14);
   }
 }
@@ -137,8 +137,8 @@ TEST(newton_problem, krylov_and_dense_agree) {
     auto with = [](linear_solver solver) {
       return apsis::newton_problem(no_transport{}, reaction_diffusion, newton_options{solver});
     };
-    with(linear_solver::dense).collide(0, 3.0, -4.0, dense);
-    with(linear_solver::krylov).collide(0, 3.0, -4.0, krylov);
+    with(linear_solver::dense).solve_collision(0, 3.0, -4.0, dense);
+    with(linear_solver::krylov).solve_collision(0, 3.0, -4.0, krylov);
     // Both are solved to round-off; the condition of this stage is below 100.
     for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(dense[i], krylov[i], 1e-13) << n << " " << i;
   }
@@ -148,9 +148,9 @@ TEST(newton_problem, automatic_choice_is_krylov_beyond_the_dense_limit) {
   newton_options tiny;
   tiny.dense_limit = 10;
   row u(11, 1.0), v = u;
-  apsis::newton_problem(no_transport{}, reaction_diffusion, tiny).collide(0, 1.0, 0.0, u);
+  apsis::newton_problem(no_transport{}, reaction_diffusion, tiny).solve_collision(0, 1.0, 0.0, u);
   apsis::newton_problem(no_transport{}, reaction_diffusion, newton_options{linear_solver::krylov})
-      .collide(0, 1.0, 0.0, v);
+      .solve_collision(0, 1.0, 0.0, v);
   EXPECT_EQ(u, v);
 }
 
@@ -162,26 +162,26 @@ TEST(newton_problem, errata_4_singular_stage_of_a_rotation_is_detected_and_named
   };
   for (const auto solver : {linear_solver::dense, linear_solver::krylov}) {
     apsis::newton_problem problem(no_transport{}, rotation, newton_options{solver});
-    const auto collide = [&](double b) {
+    const auto solve = [&](double b) {
       row u{1, 2};
-      problem.collide(0, 0.0, b, u);
+      problem.solve_collision(0, 0.0, b, u);
       return u;
     };
     // I − b G'² = (1 − |b| w²) I: with ḋ = −1 this is Δt λ = ±i.
-    EXPECT_THAT(message_of([&] { collide(-(1 + 1e-15) / (w * w)); }), HasSubstr("singular"));
+    EXPECT_THAT(message_of([&] { solve(-(1 + 1e-15) / (w * w)); }), HasSubstr("singular"));
     // A millionth beside it the stage is regular, and amplifies by 1e6.
-    const row near = collide(-(1 + 1e-6) / (w * w));
+    const row near = solve(-(1 + 1e-6) / (w * w));
     EXPECT_NEAR(near[0], -1e6, 1e-3);
     EXPECT_NEAR(near[1], -2e6, 2e-3);
     // With the first derivative in it the stage is regular: v = b G'² v cancels and a G v = −u is left.
     row u{1, 2};
-    problem.collide(0, 0.5, -1 / (w * w), u);
+    problem.solve_collision(0, 0.5, -1 / (w * w), u);
     EXPECT_NEAR(u[0], 2 / (0.5 * w), 1e-14);
     EXPECT_NEAR(u[1], -1 / (0.5 * w), 1e-14);
   }
   apsis::newton_problem problem(no_transport{}, rotation, newton_options{linear_solver::dense});
   row u{1, 2};
-  EXPECT_THAT(message_of([&] { problem.collide(0, 0.0, -1 / (w * w), u); }), HasSubstr("d > 0"));
+  EXPECT_THAT(message_of([&] { problem.solve_collision(0, 0.0, -1 / (w * w), u); }), HasSubstr("d > 0"));
   EXPECT_EQ(u, (row{1, 2}));
 }
 
@@ -194,7 +194,7 @@ TEST(newton_problem, stiffness_and_units_are_not_taken_for_singularity) {
     };
     apsis::newton_problem problem(no_transport{}, g);
     row v{1, 0};
-    problem.collide(0, 1.0, 0.0, v);
+    problem.solve_collision(0, 1.0, 0.0, v);
     RC_ASSERT(std::abs(v[0] - 0.5) <= 1e-15);
     RC_ASSERT(std::abs(v[1] - unit * 0.5 * k / (1 + k)) <= 1e-14 * unit);
   });
@@ -211,7 +211,7 @@ TEST(newton_problem, iterates_never_leave_the_admissible_set) {
   apsis::newton_problem problem{no_transport{}, g};
   problem.with_admissible([](std::span<const double> v) { return v[0] > 0; });
   row u{1e-4};
-  problem.collide(0, 10.0, 0.0, u);
+  problem.solve_collision(0, 10.0, 0.0, u);
   EXPECT_GT(smallest, 0);
   // w = √v solves w² + 10 w = 1e-4.
   const double w = 2e-4 / (10 + std::sqrt(100 + 4e-4));
@@ -221,13 +221,13 @@ TEST(newton_problem, iterates_never_leave_the_admissible_set) {
 TEST(newton_problem, no_admissible_root_is_an_error_that_leaves_the_state) {
   apsis::newton_problem problem{no_transport{}, square_decay};
   row u{-5};  // 10 v² + v + 5 = 0 has no real root at all
-  EXPECT_THAT(message_of([&] { problem.collide(0, 1.0, 0.0, u); }), HasSubstr("no admissible root"));
+  EXPECT_THAT(message_of([&] { problem.solve_collision(0, 1.0, 0.0, u); }), HasSubstr("no admissible root"));
   EXPECT_EQ(u, row{-5});
   problem.with_admissible([](std::span<const double> v) { return v[0] >= 0; });
   u = {-1e-3};  // 10 v² + v + 1e-3 = 0 has two negative ones
-  EXPECT_THAT(message_of([&] { problem.collide(0, 1.0, 0.0, u); }), HasSubstr("no admissible root"));
+  EXPECT_THAT(message_of([&] { problem.solve_collision(0, 1.0, 0.0, u); }), HasSubstr("no admissible root"));
   EXPECT_EQ(u, row{-1e-3});
-  EXPECT_THAT(message_of([&] { problem.collide(0, 0.0, 0.0, u); }), HasSubstr("not admissible"));
+  EXPECT_THAT(message_of([&] { problem.solve_collision(0, 0.0, 0.0, u); }), HasSubstr("not admissible"));
 }
 
 TEST(newton_problem, explicit_part_outside_the_admissible_set_is_no_error_if_the_root_is_inside) {
@@ -235,7 +235,7 @@ TEST(newton_problem, explicit_part_outside_the_admissible_set_is_no_error_if_the
   apsis::newton_problem problem{no_transport{}, g};
   problem.with_admissible([](std::span<const double> v) { return v[0] >= 0; });
   row u{-0.5};
-  problem.collide(0, 1.0, 0.0, u);
+  problem.solve_collision(0, 1.0, 0.0, u);
   EXPECT_NEAR(u[0], 0.25, 1e-16);
 }
 
@@ -247,10 +247,10 @@ TEST(newton_problem, not_a_number_is_reported_with_its_component) {
   };
   apsis::newton_problem problem{no_transport{}, g};
   row u{1, -1};
-  EXPECT_THAT(message_of([&] { problem.collide(0, 1.0, 0.0, u); }), HasSubstr("component 1"));
+  EXPECT_THAT(message_of([&] { problem.solve_collision(0, 1.0, 0.0, u); }), HasSubstr("component 1"));
   u = {std::nan(""), 1};
-  EXPECT_THAT(message_of([&] { problem.collide(0, 1.0, 0.0, u); }), HasSubstr("component 0"));
-  EXPECT_THAT(message_of([&] { problem.collide(0, 0.0, 0.0, u); }), HasSubstr("component 0"));
+  EXPECT_THAT(message_of([&] { problem.solve_collision(0, 1.0, 0.0, u); }), HasSubstr("component 0"));
+  EXPECT_THAT(message_of([&] { problem.solve_collision(0, 0.0, 0.0, u); }), HasSubstr("component 0"));
 }
 
 TEST(newton_problem, limit_of_iterations_is_an_error) {
@@ -258,7 +258,7 @@ TEST(newton_problem, limit_of_iterations_is_an_error) {
   few.max_iterations = 3;
   apsis::newton_problem problem{no_transport{}, square_decay, few};
   row u{10};
-  EXPECT_THAT(message_of([&] { problem.collide(0, 1e8, -1e16, u); }), HasSubstr("3 iterations"));
+  EXPECT_THAT(message_of([&] { problem.solve_collision(0, 1e8, -1e16, u); }), HasSubstr("3 iterations"));
 }
 
 }  // namespace

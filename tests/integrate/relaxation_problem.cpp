@@ -94,7 +94,7 @@ TEST(claims, C14_broadwell_is_a_relaxation_with_rate_rho) {
     RC_PRE(f[0] + f[1] + f[2] > 0);
     row q(3), expected(3);
     const apsis::target<row, double> to{&q, 0.0, 1.0, true};
-    problem.scatter_collision(0, f, {&to, 1});
+    problem.add_collision(0, f, {&to, 1});
     broadwell_collision(f, expected);
     const double rho = f[0] + 2 * f[1] + f[2];
     // C(E − f) cancels terms of size ρ².
@@ -103,10 +103,10 @@ TEST(claims, C14_broadwell_is_a_relaxation_with_rate_rho) {
     RC_ASSERT(std::abs(q[0] + 2 * q[1] + q[2]) <= tolerance);
     RC_ASSERT(std::abs(q[0] - q[2]) <= tolerance);
     row e = f;
-    problem.collide(0, 1.0, 0.0, e);  // any state will do as long as it is nonnegative
+    problem.solve_collision(0, 1.0, 0.0, e);  // any state will do as long as it is nonnegative
     auto limit = broadwell(0.0);
-    limit.collide(0, 1.0, 0.0, e);
-    problem.scatter_collision(0, e, {&to, 1});
+    limit.solve_collision(0, 1.0, 0.0, e);
+    problem.add_collision(0, e, {&to, 1});
     for (std::size_t k = 0; k < 3; ++k) RC_ASSERT(std::abs(q[k]) <= tolerance);
   });
 }
@@ -192,7 +192,7 @@ TEST(claims, C15_backward_euler_is_positive_for_every_step_also_from_zeros) {
     const double lambda = magnitude(-12, 12);
     const row f = nonnegative(3);
     row v = f;
-    broadwell(1.0).collide(0, lambda, 0.0, v);
+    broadwell(1.0).solve_collision(0, lambda, 0.0, v);
     const double rho = f[0] + 2 * f[1] + f[2];
     for (const double x : v) RC_ASSERT(x >= 0.0);
     // v is what it should be: v − f = λ Q(v) in extended precision, up to roundings of terms of size ρ and
@@ -211,7 +211,7 @@ TEST(claims, C15_stages_with_two_derivatives_are_positive_too) {
   check_property("any a ≥ 0, b ≤ 0, ε ≥ 0", [] {
     row v = nonnegative(3);
     const double epsilon = one_in(5) ? 0.0 : magnitude(-300, 3);
-    broadwell(epsilon).collide(0, magnitude(-12, 12), -magnitude(-12, 12), v);
+    broadwell(epsilon).solve_collision(0, magnitude(-12, 12), -magnitude(-12, 12), v);
     for (const double x : v) RC_ASSERT(x >= 0.0 && std::isfinite(x));
   });
 }
@@ -223,8 +223,8 @@ TEST(relaxation_problem, closed_form_equals_newton_on_the_same_equation) {
     const double b = one_in(3) ? 0.0 : -magnitude(-8, 0);
     const row u{uniform(-3, 3), uniform(-3, 3)};
     row closed = u, solved = u;
-    ode_model::as_relaxation(epsilon).collide(0, a, b, closed);
-    ode_model::as_newton(epsilon).collide(0, a, b, solved);
+    ode_model::as_relaxation(epsilon).solve_collision(0, a, b, closed);
+    ode_model::as_newton(epsilon).solve_collision(0, a, b, solved);
     // Newton sees terms of size up to 1e4 × the result cancel at the last iterate, relative to the stiff one.
     for (std::size_t k = 0; k < 2; ++k) RC_ASSERT(std::abs(closed[k] - solved[k]) <= 1e-13);
   });
@@ -233,9 +233,9 @@ TEST(relaxation_problem, closed_form_equals_newton_on_the_same_equation) {
 TEST(relaxation_problem, epsilon_zero_is_the_equilibrium_exactly_and_nothing_where_nothing_is_implicit) {
   auto problem = ode_model::as_relaxation(0.0);
   row u{2, 0.1};
-  problem.collide(0, 0.0, 0.0, u);
+  problem.solve_collision(0, 0.0, 0.0, u);
   EXPECT_EQ(u, (row{2, 0.1}));
-  problem.collide(0, 0.0, -1e-3, u);
+  problem.solve_collision(0, 0.0, -1e-3, u);
   EXPECT_EQ(u, (row{2, std::sin(2.0)}));
 }
 
@@ -244,22 +244,22 @@ TEST(relaxation_problem, explicit_collision_is_refused_at_epsilon_zero) {
   const row u{2, 0};
   row acc(2);
   const apsis::target<row, double> to{&acc, 0.0, 1.0, true}, weight_only{&acc, 1.0, 0.0, true};
-  EXPECT_THROW(problem.scatter_collision(0, u, {&to, 1}), apsis::input_error);
-  problem.scatter_collision(0, u, {&weight_only, 1});
+  EXPECT_THROW(problem.add_collision(0, u, {&to, 1}), apsis::input_error);
+  problem.add_collision(0, u, {&weight_only, 1});
   EXPECT_EQ(acc, u);
 }
 
 TEST(relaxation_problem, says_what_is_wrong_with_a_state) {
   auto problem = ode_model::as_relaxation(1.0);
   row bad{2, std::nan("")};
-  EXPECT_THROW(problem.collide(0, 1.0, 0.0, bad), apsis::numerical_error);
+  EXPECT_THROW(problem.solve_collision(0, 1.0, 0.0, bad), apsis::numerical_error);
   bad = {infinity, 0};
-  EXPECT_THROW(problem.collide(0, 0.0, 0.0, bad), apsis::numerical_error);
+  EXPECT_THROW(problem.solve_collision(0, 0.0, 0.0, bad), apsis::numerical_error);
   row f{-1, 0, 0};  // ρ < 0, so the rate is negative
-  EXPECT_THROW(broadwell(1.0).collide(0, 1.0, 0.0, f), apsis::numerical_error);
+  EXPECT_THROW(broadwell(1.0).solve_collision(0, 1.0, 0.0, f), apsis::numerical_error);
   problem.with_admissible([](const row& u) { return u[0] > 3; });
   row u{2, 0};
-  EXPECT_THROW(problem.collide(0, 1.0, 0.0, u), apsis::numerical_error);
+  EXPECT_THROW(problem.solve_collision(0, 1.0, 0.0, u), apsis::numerical_error);
   for (const double epsilon : {-1.0, infinity, std::nan("")})
     EXPECT_THROW(ode_model::as_relaxation(epsilon), apsis::input_error) << epsilon;
 }

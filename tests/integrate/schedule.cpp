@@ -24,18 +24,18 @@ class counted {
   int transports = 0, collisions = 0, solves = 0;
   int fail_at_solve = -1;
 
-  void scatter(double, const state& u, std::span<const apsis::target<state, double>> targets) {
+  void add_transport(double, const state& u, std::span<const apsis::target<state, double>> targets) {
     bool moves = false;
     for (const auto& to : targets) moves = moves || to.beta != 0.0;
     transports += moves ? 1 : 0;
     for (const auto& to : targets)
       (*to.acc)[0] = to.combine((*to.acc)[0], u[0], moves ? transport * u[0] : 0.0);
   }
-  void collide(double, double a, double b, state& u) {
+  void solve_collision(double, double a, double b, state& u) {
     if (solves++ == fail_at_solve) throw apsis::numerical_error("on demand");
     u[0] /= 1.0 - a * collision - b * collision * collision;
   }
-  void scatter_collision(double, const state& u, std::span<const apsis::target<state, double>> targets) {
+  void add_collision(double, const state& u, std::span<const apsis::target<state, double>> targets) {
     ++collisions;
     for (const auto& to : targets) (*to.acc)[0] = to.combine((*to.acc)[0], u[0], collision * u[0]);
   }
@@ -72,7 +72,7 @@ TEST(schedule, methods_of_the_paper_need_three_and_six_buffers) {
 }
 
 TEST(schedule, explicit_methods_need_one_buffer_more_than_in_place_and_keep_u_n) {
-  // Ketcheson (2008) counts two registers for (4,3) and (10,4), with T(u) added to u in place. A scatter
+  // Ketcheson (2008) counts two registers for (4,3) and (10,4), with T(u) added to u in place. add_transport
   // reads u while it writes elsewhere, and u^n is kept, where (4,3) needs it anyway, for a step that fails.
   for (const auto& [name, buffers] : {std::pair{"ssprk-2-2", 3}, std::pair{"ssprk-3-3", 3},
                                       std::pair{"ssprk-4-3", 3}, std::pair{"ssprk-10-4", 4}})
@@ -146,10 +146,10 @@ class two_verbs {
  public:
   using state = double;
   using real = double;
-  void scatter(double, const double& u, std::span<const apsis::target<double, double>> targets) {
+  void add_transport(double, const double& u, std::span<const apsis::target<double, double>> targets) {
     for (const auto& to : targets) *to.acc = to.combine(*to.acc, u, 0.0);
   }
-  void collide(double, double, double, double&) {}
+  void solve_collision(double, double, double, double&) {}
   double forward_euler_step(double, double) const { return 1.0; }
 };
 

@@ -76,7 +76,7 @@ apsis::field sample(const apsis::grid& mesh, int components, bool averages, Func
 inline apsis::field transport_of(const apsis::transport& t, const apsis::field& u) {
   apsis::field result(u.cells(), u.components());
   const apsis::target<apsis::field, double> to{&result, 0.0, 1.0, true};
-  t.scatter(u, {&to, 1});
+  t.add_transport(u, {&to, 1});
   return result;
 }
 

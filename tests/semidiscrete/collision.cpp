@@ -178,7 +178,7 @@ TEST(collision, explicit_evaluation_agrees_with_the_implicit_one_for_small_steps
     const double dt = 1e-7;
     q->solve(dt, 0.0, implicit);
     const apsis::target<field, double> to{&change, 0.0, 1.0, true};
-    q->scatter(u, {&to, 1});
+    q->add_collision(u, {&to, 1});
     for (int i = 0; i < 10; ++i)
       for (int k = 0; k < m->components(); ++k)  // first order in dt, and rounding of u over dt
         EXPECT_NEAR((implicit.row(i)[k] - u.row(i)[k]) / dt, change.row(i)[k], 2e-6);

@@ -102,8 +102,8 @@ void expect_plain_transport(const apsis::relaxation_model& m, const std::string&
   const field u = adversarial(cells, m.components(), static_cast<std::uint64_t>(cells));
   field first(cells, m.components()), second = u;
   const double dt = t.forward_euler_step();
-  t.scatter(u, std::vector<apsis::target<field, double>>{{&first, 0.7, 0.6 * dt, true},
-                                                         {&second, 0.25, 0.2 * dt, false}});
+  t.add_transport(u, std::vector<apsis::target<field, double>>{{&first, 0.7, 0.6 * dt, true},
+                                                               {&second, 0.25, 0.2 * dt, false}});
   for (int k = 0; k < m.components(); ++k) {
     const plain_transport plain(u, k, m.speeds(0)[static_cast<std::size_t>(k)], mesh.spacing(0), how);
     for (int i = 0; i < cells; ++i) {
@@ -193,7 +193,7 @@ TEST(kernels, convex_combinations_of_rows_in_every_instruction_set) {
 
 namespace {
 
-/// A collision of points that is done in one pass with the scatter that completes them, and afterwards.
+/// A collision of points that is done in one pass with the transport that completes them, and afterwards.
 void expect_same_in_one_pass(int cells, int threads) {
   const auto m = small_bgk();
   const grid mesh = grid::line(cells, 0.0, 1.0);
@@ -210,15 +210,15 @@ void expect_same_in_one_pass(int cells, int threads) {
   const double dt = problem.forward_euler_step(0.0, u);
   field together(cells, m->components()), other = together, apart = together, other_apart = together;
   apsis::set_threads(threads);
-  problem.scatter_and_collide(0.0, u,
-                              std::vector<apsis::target<field, double>>{{&together, 0.9, 0.5 * dt, true},
-                                                                        {&other, 0.3, 0.2 * dt, true}},
-                              {0.0, 0.4 * dt, -0.1 * dt * dt, &together});
+  problem.add_transport_and_solve(0.0, u,
+                                  std::vector<apsis::target<field, double>>{{&together, 0.9, 0.5 * dt, true},
+                                                                            {&other, 0.3, 0.2 * dt, true}},
+                                  {0.0, 0.4 * dt, -0.1 * dt * dt, &together});
   apsis::set_threads(1);
-  problem.scatter(0.0, u,
-                  std::vector<apsis::target<field, double>>{{&apart, 0.9, 0.5 * dt, true},
-                                                            {&other_apart, 0.3, 0.2 * dt, true}});
-  problem.collide(0.0, 0.4 * dt, -0.1 * dt * dt, apart);
+  problem.add_transport(0.0, u,
+                        std::vector<apsis::target<field, double>>{{&apart, 0.9, 0.5 * dt, true},
+                                                                  {&other_apart, 0.3, 0.2 * dt, true}});
+  problem.solve_collision(0.0, 0.4 * dt, -0.1 * dt * dt, apart);
   for (int i = 0; i < cells; ++i)
     for (int k = 0; k < m->components(); ++k) {
       ASSERT_EQ(together.row(i)[k], apart.row(i)[k])
@@ -229,7 +229,7 @@ void expect_same_in_one_pass(int cells, int threads) {
 
 }  // namespace
 
-TEST(kernels, collisions_in_the_pass_of_the_scatter_give_the_same_bits) {
+TEST(kernels, collisions_in_the_pass_of_transport_give_the_same_bits) {
   for (const int cells : {7, 64, 65, 300})
     for (const int threads : {1, 2, 3}) expect_same_in_one_pass(cells, threads);
 }

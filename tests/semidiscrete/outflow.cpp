@@ -36,7 +36,7 @@ TEST(outflow, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
       const field u = random_rows(mesh, 3);
       field result(mesh.size(), 3);
       const apsis::target<field, double> to{&result, 1.0, t.forward_euler_step(), true};
-      t.scatter(u, {&to, 1});
+      t.add_transport(u, {&to, 1});
       RC_ASSERT(smallest(result) >= 0.0);
     });
   }
@@ -83,7 +83,7 @@ TEST(outflow, a_pulse_leaves_and_nothing_comes_back) {
     for (double now = 0.0; now < 2.0; now += dt) {
       field next(60, 3);
       const apsis::target<field, double> to{&next, 1.0, dt, true};
-      t.scatter(u, {&to, 1});
+      t.add_transport(u, {&to, 1});
       u = next;
       const double mass = total(*m, u, 0);
       EXPECT_LE(mass, inside * (1.0 + 1e-13)) << "mass comes in";

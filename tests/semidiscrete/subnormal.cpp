@@ -37,7 +37,7 @@ field tiny_rows(int cells, int components, apsis::random_source& random) {
 field longest_step(const apsis::transport& t, const field& u, double alpha, bool fresh) {
   field result(u.cells(), u.components());
   const apsis::target<field, double> to{&result, alpha, alpha * t.forward_euler_step(), fresh};
-  t.scatter(u, {&to, 1});
+  t.add_transport(u, {&to, 1});
   return result;
 }
 
@@ -83,7 +83,7 @@ TEST(subnormal, a_step_beyond_the_bound_is_negative) {
   const apsis::transport t(*m, mesh, scheme("upwind1", limiter_kind::none));
   field result(20, m->components());
   const apsis::target<field, double> to{&result, 1.0, 1.001 * t.forward_euler_step(), true};
-  t.scatter(u, {&to, 1});
+  t.add_transport(u, {&to, 1});
   EXPECT_LT(smallest_unknown(result), 0.0);
 }
 
@@ -126,7 +126,7 @@ TEST(subnormal, an_explicit_relaxation_takes_no_more_than_there_is) {
       const double beta = apsis::rounding_allowance * alpha * (1.0 - of_transport) / strength;
       const std::vector<apsis::upwind::row_target> to = {{acc.row(0), width, 0.0, beta, false}};
       const apsis::relaxation::strong_rows point{strength, u.row(0), u.row(1)};
-      apsis::relaxation::scatter({&point, 1}, u.row(0), width, to);
+      apsis::relaxation::add_collision({&point, 1}, u.row(0), width, to);
       for (int k = 0; k < width; ++k) ASSERT_GE(acc.row(0)[k], 0.0) << round << " " << k;
     }
   });

@@ -88,7 +88,7 @@ TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
       const double w = *rc::gen::inRange(1, 1001) * 1e-3;
       field result(mesh.size(), 8);
       const apsis::target<field, double> to{&result, w, w * dt, true};
-      t.scatter(u, {&to, 1});
+      t.add_transport(u, {&to, 1});
       RC_ASSERT(smallest(result) >= 0.0);
     });
   }
@@ -104,7 +104,7 @@ TEST(transport, above_dt_fe_positivity_breaks) {
   for (int k = 0; k < 8; ++k) u.row(5)[k] = 1.0;
   field result(12, 8);
   const apsis::target<field, double> to{&result, 1.0, 1.0001 * upwind.forward_euler_step(), true};
-  upwind.scatter(u, {&to, 1});
+  upwind.add_transport(u, {&to, 1});
   EXPECT_LT(smallest(result), 0.0);
 }
 

@@ -57,8 +57,8 @@ class error_estimate {
     if (!(w > real(0))) return distance(tried.result, tried.embedded);  // u = 0
     of_result = tried.result;
     of_embedded = tried.embedded;
-    p.collide(t + dt, dt * (real(1) + real(1) / w), real(0), of_result);
-    p.collide(t + dt, dt * (real(1) + real(1) / w), real(0), of_embedded);
+    p.solve_collision(t + dt, dt * (real(1) + real(1) / w), real(0), of_result);
+    p.solve_collision(t + dt, dt * (real(1) + real(1) / w), real(0), of_embedded);
     // u^{n+1} less the weighed error.
     const real share = real(1) / (real(1) + w);
     add(p, t, tried.result, share, sum, true);
@@ -80,7 +80,7 @@ class error_estimate {
 
   static void add(P& p, real t, const state& u, real alpha, state& sum, bool fresh) {
     const target<state, real> to{&sum, alpha, real(0), fresh};
-    p.scatter(t, u, {&to, 1});
+    p.add_transport(t, u, {&to, 1});
   }
 
   std::vector<state> buffers_;
@@ -100,7 +100,7 @@ typename P::real first_step_length(P& p, typename P::real t, const typename P::s
   using std::pow;
   const auto add = [&](const state& from, real alpha, real beta, state& sum) {
     const target<state, real> to{&sum, alpha, beta, true};
-    p.scatter(t, from, {&to, 1});
+    p.add_transport(t, from, {&to, 1});
   };
   real layer = std::numeric_limits<real>::infinity();
   if constexpr (problem_with_relaxation_time<P>) layer = p.relaxation_time(t, u);
@@ -113,14 +113,14 @@ typename P::real first_step_length(P& p, typename P::real t, const typename P::s
     add(u, real(0), real(0), after);
     const real size = distance(u, after),
                part = pow(wanted.tolerance / size, real(1) / real(wanted.order + 1));
-    if (relaxes) p.collide(t, projection, real(0), before);
+    if (relaxes) p.solve_collision(t, projection, real(0), before);
     const real of_layer = distance(u, before) / size / layer;
     add(before, real(1), tau, after);
     if constexpr (problem_with_explicit_collision<P> && !problem_with_relaxation_time<P>) {
       const target<state, real> by_collision{&after, real(0), tau, false};
-      p.scatter_collision(t, before, {&by_collision, 1});
+      p.add_collision(t, before, {&by_collision, 1});
     }
-    if (relaxes) p.collide(t + tau, projection, real(0), after);
+    if (relaxes) p.solve_collision(t + tau, projection, real(0), after);
     const real rate = std::max(of_layer, distance(before, after) / size / tau) / part;
     return rate * longest > real(1) ? real(1) / rate : longest;
   } catch (const numerical_error&) {

@@ -47,7 +47,7 @@ long extrapolate(P& p, typename P::state& u, typename P::real t0, typename P::re
   const auto high = weights(1, how.order), low = weights(1, how.order - 1);
   const auto add = [&](real t, const state& from, std::initializer_list<goal> to) {
     const std::vector<goal> targets(to);
-    p.scatter(t, from, std::span<const goal>(targets));
+    p.add_transport(t, from, std::span<const goal>(targets));
   };
 
   // The increments v − u are combined, not the values: they are small, and so is what rounding makes of them.
@@ -59,7 +59,7 @@ long extrapolate(P& p, typename P::state& u, typename P::real t0, typename P::re
       for (int k = 0; k < n; ++k) {
         const real now = t + real(k) * h;
         add(now, v, {{&next, real(1), h, true}});
-        p.collide(now + h, h, real(0), next);
+        p.solve_collision(now + h, h, real(0), next);
         std::swap(v, next);
       }
       add(t, u, {{&v, real(-1), real(0), false}});

@@ -47,7 +47,7 @@ class newton_problem {
   }
 
   /// As `problem` demands it, with T = F.
-  void scatter(real t, const State& u, std::span<const target<State, real>> targets) {
+  void add_transport(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       work_ = u;
       f_(t, u, work_);
@@ -56,7 +56,7 @@ class newton_problem {
   }
 
   /// As `problem_with_explicit_collision` demands it, with Q = G.
-  void scatter_collision(real, const State& u, std::span<const target<State, real>> targets) {
+  void add_collision(real, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       load(u);
       equation_.field.value(v_, equation_.g);
@@ -67,7 +67,7 @@ class newton_problem {
   }
 
   /// u ← v. Throws numerical_error as guarded_newton does; u is then unchanged.
-  void collide(real, real a, real b, State& u) {
+  void solve_collision(real, real a, real b, State& u) {
     load(u);
     if (a == real(0) && b == real(0)) {
       require_finite(u, "a stage");

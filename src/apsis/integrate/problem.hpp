@@ -5,7 +5,7 @@
 
 namespace apsis {
 
-/// One accumulator of a scatter: acc ← (fresh ? 0 : acc) + α u + β T(t, u).
+/// One accumulator of add_transport: acc ← (fresh ? 0 : acc) + α u + β T(t, u).
 /// A target may be u itself only if no target of the same call has β ≠ 0.
 template <class State, class Real>
 struct target {
@@ -21,30 +21,30 @@ struct target {
   }
 };
 
-/// What the integrator needs to know of u' = T(t, u) + Q(u). Two verbs make a scheme; ε, the mesh and the
-/// model stay on the other side. `State` needs to be copyable and swappable, no arithmetic.
+/// What the integrator needs to know about u' = T(t, u) + Q(u). Two verbs make a scheme; ε, the mesh and the
+/// model stay hidden behind them. `State` must be copyable and swappable; no arithmetic is required.
 ///
-///   scatter(t, u, targets)     for each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u); T is evaluated
-///                              once, and not at all if every β is 0
-///   collide(t, a, b, u)        in place: u ← v with v = u + a Q(v) + b Q̇(v), a ≥ 0, b ≤ 0
-///   forward_euler_step(t, u)   Δt_FE of T for the property to be kept; +infinity if T sets no limit
+///   add_transport(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u); T is
+///                                  evaluated once, and not at all if every β is 0
+///   solve_collision(t, a, b, u)    in place: u ← v with v = u + a Q(v) + b Q̇(v), a ≥ 0, b ≤ 0
+///   forward_euler_step(t, u)       Δt_FE of T for the property to be kept; +infinity if T sets no limit
 template <class P>
 concept problem = requires(P p, const typename P::state& u, typename P::state& v, typename P::real x,
                            std::span<const target<typename P::state, typename P::real>> targets) {
   requires std::copyable<typename P::state>;
   requires std::swappable<typename P::state>;
-  p.scatter(x, u, targets);
-  p.collide(x, x, x, v);
+  p.add_transport(x, u, targets);
+  p.solve_collision(x, x, x, v);
   { p.forward_euler_step(x, u) } -> std::convertible_to<typename P::real>;
 };
 
 /// A problem that can also evaluate Q, for methods with a stage where Q enters explicitly:
-///   scatter_collision(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)
+///   add_collision(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)
 template <class P>
 concept problem_with_explicit_collision =
     problem<P> && requires(P p, const typename P::state& u, typename P::real x,
                            std::span<const target<typename P::state, typename P::real>> targets) {
-      p.scatter_collision(x, u, targets);
+      p.add_collision(x, u, targets);
     };
 
 /// A problem that says whether it has transport, so that methods without T are refused:
@@ -55,7 +55,8 @@ concept problem_with_transport_check =
       { p.has_transport(x, u) } -> std::convertible_to<bool>;
     };
 
-/// A stage solve that is due as soon as a scatter is done: the arguments of collide, u among the targets.
+/// A stage solve to be done as soon as add_transport has completed its target u: the arguments of
+/// solve_collision.
 template <class State, class Real>
 struct due_collision {
   Real t,    ///< time of the stage
@@ -65,14 +66,14 @@ struct due_collision {
 };
 
 /// A problem that can do both in one pass over memory:
-///   scatter_and_collide(t, u, targets, due)   scatter(t, u, targets), then collide(due.t, due.a, due.b,
-///   *due.u), to the same numbers
+///   add_transport_and_solve(t, u, targets, due)   add_transport(t, u, targets), then
+///       solve_collision(due.t, due.a, due.b, *due.u), with bitwise equal results
 template <class P>
 concept problem_with_fused_stages =
     problem<P> && requires(P p, const typename P::state& u, typename P::real x,
                            std::span<const target<typename P::state, typename P::real>> targets,
                            due_collision<typename P::state, typename P::real> due) {
-      p.scatter_and_collide(x, u, targets, due);
+      p.add_transport_and_solve(x, u, targets, due);
     };
 
 /// A problem that knows how wide its initial layer is, for a graded start:

@@ -65,7 +65,7 @@ class relaxation_problem {
   }
 
   /// As `problem` demands it.
-  void scatter(real t, const State& u, std::span<const target<State, real>> targets) {
+  void add_transport(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       give_size_of(u);
       transport_(t, u, work_);
@@ -74,7 +74,7 @@ class relaxation_problem {
   }
 
   /// u ← v. Throws numerical_error if u or v is not finite or not admissible, or the rate is not one.
-  void collide(real, real a, real b, State& u) {
+  void solve_collision(real, real a, real b, State& u) {
     if (a != real(0) || b != real(0)) {
       const auto weights = relax_weights(a, b, relaxation(u), epsilon_);
       using size_type = decltype(u.size());
@@ -89,7 +89,7 @@ class relaxation_problem {
 
   /// As `problem_with_explicit_collision` demands it. Throws input_error for ε = 0, where Q is not defined
   /// off equilibrium.
-  void scatter_collision(real, const State& u, std::span<const target<State, real>> targets) {
+  void add_collision(real, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       if (epsilon_ == real(0))
         throw input_error(

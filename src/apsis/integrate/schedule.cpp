@@ -85,7 +85,7 @@ class schedule::builder {
       if (!waits || carries_transport(k, j) || carries_collision(k, j) || needed_by(last, j, k)) continue;
       const bool dies = !needed_after(j, k);
       buffer_[index(k)] = dies ? buffer_[index(j)] : acquire();
-      emit(action::scatter, j, {{k, buffer_[index(k)], {term::weight}, true}});
+      emit(action::add_transport, j, {{k, buffer_[index(k)], {term::weight}, true}});
       done(k, j) = 1;
       if (dies) buffer_[index(j)] = -1;
       fresh = false;
@@ -94,7 +94,7 @@ class schedule::builder {
     if (fresh) buffer_[index(k)] = acquire();
     for (int j = 0; j < known_; ++j) {
       if (!weighs(k, j) || done(k, j) || buffer_[index(j)] < 0) continue;
-      emit(action::scatter, j, {{k, buffer_[index(k)], {term::weight}, fresh}});
+      emit(action::add_transport, j, {{k, buffer_[index(k)], {term::weight}, fresh}});
       done(k, j) = 1;
       fresh = false;
       if (j > 0 && !needed_after(j, -1)) drop(j);
@@ -123,9 +123,9 @@ class schedule::builder {
         open(m);
         before.push_back({m, buffer_[index(m)], {term::minus_explicit}, take_fresh(m)});
       }
-      if (!before.empty()) emit(action::scatter, k, std::move(before));
+      if (!before.empty()) emit(action::add_transport, k, std::move(before));
     }
-    emit(action::collide, k, {});
+    emit(action::solve_collision, k, {});
     ++out_.solves_;
   }
 
@@ -150,9 +150,9 @@ class schedule::builder {
       done(m, k) = 1;
       transport = transport || carries_transport(m, k);
     }
-    if (!to.empty()) emit(action::scatter, k, std::move(to));
+    if (!to.empty()) emit(action::add_transport, k, std::move(to));
     if (!collisions.empty()) {
-      emit(action::scatter_collision, k, std::move(collisions));
+      emit(action::add_collision, k, std::move(collisions));
       ++out_.collisions_;
     }
     if (transport) ++out_.transports_;

@@ -31,7 +31,7 @@ class schedule {
     bool fresh;               ///< first contribution to k
   };
   /// Functions of a problem; see `problem` and `problem_with_explicit_collision`.
-  enum class action { scatter, scatter_collision, collide };
+  enum class action { add_transport, add_collision, solve_collision };
   /// One call of such a function, for stage j.
   struct instruction {
     action what;                   ///< the function

@@ -64,7 +64,7 @@ class stepper {
       if (plan_.collision_evaluations() > 0)
         throw input_error("method '" + name +
                           "' evaluates Q explicitly (some stage uses Q of a stage without "
-                          "implicit part) and the problem has no scatter_collision; choose an IMEX method");
+                          "implicit part) and the problem has no add_collision; choose an IMEX method");
     }
   }
 
@@ -110,7 +110,7 @@ class stepper {
     state* source;
     real delay;              ///< of the stage: its time is t + delay
     real a, b;               ///< of a collision
-    std::size_t begin, end;  ///< of a scatter: its targets among targets_
+    std::size_t begin, end;  ///< range of its targets in targets_
     bool due;  ///< the next instruction is the collision of a target, and the problem can do both at once
   };
 
@@ -134,8 +134,8 @@ class stepper {
       const prepared& now = prepared_[i];
       if constexpr (problem_with_fused_stages<P>) {
         if (now.due) {
-          problem_.scatter_and_collide(t + now.delay, *now.source, targets_of(now),
-                                       collision_of(prepared_[i + 1], t));
+          problem_.add_transport_and_solve(t + now.delay, *now.source, targets_of(now),
+                                           collision_of(prepared_[i + 1], t));
           ++i;
           continue;
         }
@@ -147,12 +147,12 @@ class stepper {
   state& buffer(int b, state& u) { return b == 0 ? u : buffers_[static_cast<std::size_t>(b) - 1]; }
 
   void execute(const prepared& now, real t) {
-    if (now.what == action::collide) {
-      problem_.collide(t + now.delay, now.a, now.b, *now.source);
-    } else if (now.what == action::scatter) {
-      problem_.scatter(t + now.delay, *now.source, targets_of(now));
+    if (now.what == action::solve_collision) {
+      problem_.solve_collision(t + now.delay, now.a, now.b, *now.source);
+    } else if (now.what == action::add_transport) {
+      problem_.add_transport(t + now.delay, *now.source, targets_of(now));
     } else if constexpr (problem_with_explicit_collision<P>) {
-      problem_.scatter_collision(t + now.delay, *now.source, targets_of(now));
+      problem_.add_collision(t + now.delay, *now.source, targets_of(now));
     }
   }
 
@@ -172,7 +172,7 @@ class stepper {
       const auto j = static_cast<std::size_t>(from.stage) - 1;
       prepared now{from.what, &buffer(from.buffer, u), real(0), real(0), real(0), targets_.size(), 0, false};
       if (from.stage > 0) now.delay = abscissae_[j] * dt;
-      if (from.what == action::collide) {
+      if (from.what == action::solve_collision) {
         now.a = dt * m_.D(j, j);
         now.b = dt * dt * m_.ddot[j];
       }
@@ -186,9 +186,9 @@ class stepper {
     prepared_buffers_ = buffers_.data();
   }
 
-  /// The collision `next` is that of a target of the scatter `now`.
+  /// Whether the stage solve `next` is that of a target of `now`.
   bool completes(const prepared& now, const prepared& next) const {
-    if (now.what != action::scatter || next.what != action::collide) return false;
+    if (now.what != action::add_transport || next.what != action::solve_collision) return false;
     const auto to = targets_of(now);
     return std::any_of(to.begin(), to.end(), [&](const auto& one) { return one.acc == next.source; });
   }

@@ -61,14 +61,14 @@ deviations<typename P::real> find_deviations(P& p, typename P::real t, const typ
   using state = typename P::state;
   const auto add = [&](const state& from, real alpha, real beta, state& to, bool fresh) {
     const target<state, real> sum{&to, alpha, beta, fresh};
-    p.scatter(t, from, {&sum, 1});
+    p.add_transport(t, from, {&sum, 1});
   };
   state now = u, plateau = u, band = u, zero = u;
   add(u, real(1), dt, now, true);
   add(u, real(0), real(0), zero, true);
   const real of_plateau[] = {1, -2, 1, 0}, of_band[] = {0, 1, -2, 1};
   for (int k = 0; k < 4; ++k) {
-    p.collide(t + dt, dt, real(0), now);
+    p.solve_collision(t + dt, dt, real(0), now);
     add(now, of_plateau[k], real(0), plateau, k == 0);
     add(now, of_band[k], real(0), band, k == 0);
   }
@@ -100,7 +100,7 @@ tolerance_forecast<typename P::real> forecast_tolerance(stepper<P>& method_stepp
   if constexpr (problem_with_relaxation_time<P>) relaxation = p.relaxation_time(t, u);
   const bool relaxes = relaxation < std::numeric_limits<real>::infinity();
   try {
-    if (relaxes) p.collide(t, real(1e100), real(0), from);
+    if (relaxes) p.solve_collision(t, real(1e100), real(0), from);
     const auto equilibrium = from;
     if (relaxes) {  // and on to the manifold on which the solution is after its layer
       const auto& tried = method_stepper.attempt(t, longest * real(1e-5), from);

@@ -20,7 +20,7 @@ class collision {
   virtual void solve(double a, double b, field& u) = 0;
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε. Throws numerical_error where ε = 0.
-  virtual void scatter(const field& u, std::span<const target<field, double>> targets) = 0;
+  virtual void add_collision(const field& u, std::span<const target<field, double>> targets) = 0;
 
   /// Largest Δt for which u + Δt Q(u)/ε keeps what the collision keeps (for a relaxation: min ε/C).
   virtual double forward_euler_step(const field& u) const = 0;

@@ -43,7 +43,7 @@ class cell_average_collision final : public collision {
     std::swap(u, result_);  // neighbours need the old averages, so the new ones are made beside them
   }
 
-  void scatter(const field& u, std::span<const target<field, double>> targets) override {
+  void add_collision(const field& u, std::span<const target<field, double>> targets) override {
     rows_.prepare([&](auto& rows) { rows.reserve(targets.size()); });
     for_blocks(u, [&](int begin, int cells, const double* points, const local_relaxation& local) {
       auto& rows = rows_.here();
@@ -56,7 +56,7 @@ class cell_average_collision final : public collision {
                    points + static_cast<std::ptrdiff_t>(p) * u.stride(), local.equilibrium(p)};
         }
         upwind::rows_of(targets, begin + i, rows);
-        relaxation::scatter(at, u.row(begin + i), u.stride(), rows);
+        relaxation::add_collision(at, u.row(begin + i), u.stride(), rows);
       }
     });
   }

@@ -32,7 +32,7 @@ class pointwise_collision final : public cellwise_collision {
       relax(a, b, u, first, std::min(end - first, length), 0.0);
   }
 
-  void scatter(const field& u, std::span<const target<field, double>> targets) override {
+  void add_collision(const field& u, std::span<const target<field, double>> targets) override {
     prepare(u);
     rows_.prepare([&](auto& rows) { rows.reserve(targets.size()); });
     parallel_blocks(u.cells(), points_at_once(u.stride()), [&](int begin, int end) {
@@ -42,7 +42,7 @@ class pointwise_collision final : public cellwise_collision {
         upwind::rows_of(targets, cell, rows);
         const relaxation::strong_rows point{local.strength(cell - begin, epsilon_at(cell), cell), u.row(cell),
                                             local.equilibrium(cell - begin)};
-        relaxation::scatter({&point, 1}, u.row(cell), u.stride(), rows);
+        relaxation::add_collision({&point, 1}, u.row(cell), u.stride(), rows);
       }
     });
   }

@@ -59,17 +59,17 @@ class newton_collision final : public collision {
   void solve(double a, double b, field& u) override {
     for (int cell = 0; cell < u.cells(); ++cell) {
       load(u, cell);
-      local_.collide(0.0, a, b, row_);
+      local_.solve_collision(0.0, a, b, row_);
       std::copy(row_.begin(), row_.end(), u.row(cell));
     }
   }
 
-  void scatter(const field& u, std::span<const target<field, double>> targets) override {
+  void add_collision(const field& u, std::span<const target<field, double>> targets) override {
     for (int cell = 0; cell < u.cells(); ++cell) {
       load(u, cell);
       change_.resize(row_.size());
       const target<std::vector<double>, double> to{&change_, 0.0, 1.0, true};
-      local_.scatter_collision(0.0, row_, {&to, 1});
+      local_.add_collision(0.0, row_, {&to, 1});
       for (const auto& wanted : targets) {
         double* acc = wanted.acc->row(cell);
         for (std::size_t k = 0; k < row_.size(); ++k) acc[k] = wanted.combine(acc[k], row_[k], change_[k]);

@@ -30,8 +30,8 @@ void average(const relaxation::weighted_rows of_points[3], int width, double* av
   });
 }
 
-void scatter(std::span<const relaxation::strong_rows> points, const double* u, int width,
-             std::span<const upwind::row_target> targets) {
+void add_collision(std::span<const relaxation::strong_rows> points, const double* u, int width,
+                   std::span<const upwind::row_target> targets) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     N change(0.0);
@@ -121,7 +121,7 @@ namespace apsis {
 namespace {
 HWY_EXPORT(combine);
 HWY_EXPORT(average);
-HWY_EXPORT(scatter);
+HWY_EXPORT(add_collision);
 HWY_EXPORT(gauss_values);
 }  // namespace
 
@@ -135,9 +135,9 @@ void average(const weighted_rows points[3], int width, double* average) {
   HWY_DYNAMIC_DISPATCH(average)(points, width, average);
 }
 
-void scatter(std::span<const strong_rows> points, const double* u, int width,
-             std::span<const upwind::row_target> targets) {
-  HWY_DYNAMIC_DISPATCH(scatter)(points, u, width, targets);
+void add_collision(std::span<const strong_rows> points, const double* u, int width,
+                   std::span<const upwind::row_target> targets) {
+  HWY_DYNAMIC_DISPATCH(add_collision)(points, u, width, targets);
 }
 
 double operations_of_points(bool limited) {

@@ -32,8 +32,8 @@ struct strong_rows {
 
 /// Q/ε = Σ_p strength_p (e_p − u_p), and acc ← (fresh ? 0 : acc) + α u + β Q/ε for every target, with the row
 /// u of the cell.
-void scatter(std::span<const strong_rows> points, const double* u, int width,
-             std::span<const upwind::row_target> targets);
+void add_collision(std::span<const strong_rows> points, const double* u, int width,
+                   std::span<const upwind::row_target> targets);
 
 /// Averages of cells i−1, i, i+1 and the edge values of cell i.
 struct quartic_rows {

@@ -27,27 +27,28 @@ class semidiscrete_problem {
   void treat_collision_explicitly() { explicit_collision_ = true; }
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target; T does not depend on time.
-  void scatter(double, const field& u, std::span<const target<field, double>> targets) {
-    transport_.scatter(u, targets);
+  void add_transport(double, const field& u, std::span<const target<field, double>> targets) {
+    transport_.add_transport(u, targets);
   }
   /// u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε². Throws numerical_error where there is no equilibrium, or
   /// Newton's method finds no solution.
-  void collide(double, double a, double b, field& u) { collision_->solve(a, b, u); }
-  /// scatter(), then collide() as `due` says, to the same numbers; where possible, cells are solved while
-  /// they are in the cache.
-  void scatter_and_collide(double, const field& u, std::span<const target<field, double>> targets,
-                           due_collision<field, double> due) {
+  void solve_collision(double, double a, double b, field& u) { collision_->solve(a, b, u); }
+  /// add_transport(), then solve_collision() as `due` says, to the same numbers; where possible, cells are
+  /// solved while they are in the cache.
+  void add_transport_and_solve(double, const field& u, std::span<const target<field, double>> targets,
+                               due_collision<field, double> due) {
     const auto collide_cells = [&](int begin, int end) {
       cellwise_->solve_cells(due.a, due.b, *due.u, begin, end);
     };
     if (cellwise_) cellwise_->prepare(*due.u);
-    const bool done = transport_.scatter(u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
+    const bool done =
+        transport_.add_transport(u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
     if (!done) collision_->solve(due.a, due.b, *due.u);
   }
   /// acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε for every target. Throws numerical_error where ε = 0
   /// or there is no equilibrium.
-  void scatter_collision(double, const field& u, std::span<const target<field, double>> targets) {
-    collision_->scatter(u, targets);
+  void add_collision(double, const field& u, std::span<const target<field, double>> targets) {
+    collision_->add_collision(u, targets);
   }
   /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it.
   double forward_euler_step(double, const field& u) const {

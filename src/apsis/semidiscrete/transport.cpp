@@ -226,24 +226,24 @@ double transport::forward_euler_step() const {
   return rounding_allowance * (how_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) / rate;
 }
 
-bool transport::scatter(const field& u, targets_view targets, const cells_job& then) const {
+bool transport::add_transport(const field& u, targets_view targets, const cells_job& then) const {
   const bool moves =
       std::any_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta != 0.0; });
   if (!moves) {
-    scatter_weights(u, targets, then);
+    add_weighted(u, targets, then);
     return static_cast<bool>(then);
   }
   if (equation_.space_dimensions() == 0) {
-    scatter_source(u, targets);
+    add_source(u, targets);
     return false;
   }
   for (int direction = 0; direction + 1 < mesh_.dimensions(); ++direction)
-    scatter_direction(u, targets, direction, {});
+    add_direction(u, targets, direction, {});
   // Cells are complete pencil by pencil only where one direction is all there is.
-  return scatter_direction(u, targets, mesh_.dimensions() - 1, mesh_.dimensions() == 1 ? then : cells_job());
+  return add_direction(u, targets, mesh_.dimensions() - 1, mesh_.dimensions() == 1 ? then : cells_job());
 }
 
-void transport::scatter_source(const field& u, targets_view targets) const {
+void transport::add_source(const field& u, targets_view targets) const {
   std::vector<double> t(static_cast<std::size_t>(u.stride()), 0.0);
   for (int cell = 0; cell < u.cells(); ++cell) {
     if (equation_.has_source()) equation_.source(u.row(cell), t.data());
@@ -255,7 +255,7 @@ void transport::scatter_source(const field& u, targets_view targets) const {
   }
 }
 
-void transport::scatter_weights(const field& u, targets_view targets, const cells_job& then) const {
+void transport::add_weighted(const field& u, targets_view targets, const cells_job& then) const {
   scratch_->rows.prepare([&](auto& rows) { rows.reserve(targets.size()); });
   // As many cells as make a row whose length is an int.
   const int longest = std::min(block_length(u.stride()), std::max(1, longest_row / std::max(u.stride(), 1)));
@@ -274,8 +274,8 @@ void transport::scatter_weights(const field& u, targets_view targets, const cell
   });
 }
 
-bool transport::scatter_direction(const field& u, targets_view targets, int direction,
-                                  const cells_job& then) const {
+bool transport::add_direction(const field& u, targets_view targets, int direction,
+                              const cells_job& then) const {
   const int n = mesh_.cells(direction), pencils = mesh_.pencils(direction), width = u.stride();
   // A source is a function of all components of a cell.
   const bool whole_cells = equation_.has_source();

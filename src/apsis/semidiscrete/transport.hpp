@@ -27,19 +27,19 @@ class transport {
   /// With the positivity limiter and β max|v|/Δx ≤ α/12 no result is negative, in floating point.
   /// `then` is called with cells of all targets that are complete, while they are in the cache, and the
   /// result says so; on a mesh, or with a number of threads, where that is of no use, it is not called.
-  bool scatter(const field& u, std::span<const target<field, double>> targets,
-               const cells_job& then = {}) const;
+  bool add_transport(const field& u, std::span<const target<field, double>> targets,
+                     const cells_job& then = {}) const;
 
   /// Δt_FE = κ / Σ_k (max|v_k|/Δx_k): κ = 1/12 with the positivity limiter (Zhang & Shu 2010), else 1, which
   /// for first-order upwind keeps positivity, total variation and entropy. +infinity without space.
   double forward_euler_step() const;
 
  private:
-  void scatter_source(const field& u, std::span<const target<field, double>> targets) const;
-  void scatter_weights(const field& u, std::span<const target<field, double>> targets,
-                       const cells_job& then) const;
-  bool scatter_direction(const field& u, std::span<const target<field, double>> targets, int direction,
-                         const cells_job& then) const;
+  void add_source(const field& u, std::span<const target<field, double>> targets) const;
+  void add_weighted(const field& u, std::span<const target<field, double>> targets,
+                    const cells_job& then) const;
+  bool add_direction(const field& u, std::span<const target<field, double>> targets, int direction,
+                     const cells_job& then) const;
 
   const model& equation_;
   const grid& mesh_;

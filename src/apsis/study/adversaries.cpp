@@ -43,7 +43,7 @@ int staged_problem::number_of(double clock) {
   return seen_.emplace(clock, static_cast<int>(seen_.size())).first->second;
 }
 
-void staged_problem::scatter(double, const state& u, std::span<const target<state, double>> targets) {
+void staged_problem::add_transport(double, const state& u, std::span<const target<state, double>> targets) {
   accumulate<state>(targets, u, [&]() -> const state& {
     const std::size_t n = u.size() - 1;
     work_.resize(u.size());
@@ -54,7 +54,7 @@ void staged_problem::scatter(double, const state& u, std::span<const target<stat
   });
 }
 
-void staged_problem::collide(double, double a, double b, state& u) {
+void staged_problem::solve_collision(double, double a, double b, state& u) {
   if (std::isinf(epsilon_)) return;
   const std::size_t n = u.size() - 1;
   work_.resize(u.size());
@@ -63,8 +63,7 @@ void staged_problem::collide(double, double a, double b, state& u) {
   for (std::size_t i = 0; i < n; ++i) u[i] = weights.stay * u[i] + weights.relax * work_[i];
 }
 
-void staged_problem::scatter_collision(double, const state& u,
-                                       std::span<const target<state, double>> targets) {
+void staged_problem::add_collision(double, const state& u, std::span<const target<state, double>> targets) {
   accumulate<state>(targets, u, [&]() -> const state& {
     const std::size_t n = u.size() - 1;
     work_.assign(u.size(), 0.0);

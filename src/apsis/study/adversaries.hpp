@@ -22,7 +22,7 @@ class ring_advection {
   using real = double;                ///< of time and coefficients
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target.
-  void scatter(double, const state& u, std::span<const target<state, double>> targets) {
+  void add_transport(double, const state& u, std::span<const target<state, double>> targets) {
     accumulate<state>(targets, u, [&]() -> const state& {
       work_.resize(u.size());
       for (std::size_t i = 0; i < u.size(); ++i) work_[i] = u[(i + u.size() - 1) % u.size()] - u[i];
@@ -30,9 +30,9 @@ class ring_advection {
     });
   }
   /// u stays: Q = 0.
-  void collide(double, double, double, state&) {}
+  void solve_collision(double, double, double, state&) {}
   /// acc ← (fresh ? 0 : acc) + α u for every target.
-  void scatter_collision(double, const state& u, std::span<const target<state, double>> targets) {
+  void add_collision(double, const state& u, std::span<const target<state, double>> targets) {
     accumulate<state>(targets, u, [&]() -> const state& {
       work_.assign(u.size(), 0.0);
       return work_;
@@ -68,11 +68,11 @@ class staged_problem {
   staged_problem(motion move, equilibrium relax, double epsilon);
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target.
-  void scatter(double t, const state& u, std::span<const target<state, double>> targets);
+  void add_transport(double t, const state& u, std::span<const target<state, double>> targets);
   /// u ← v with v = u + a Q(v) + b Q̇(v), in closed form.
-  void collide(double t, double a, double b, state& u);
+  void solve_collision(double t, double a, double b, state& u);
   /// acc ← (fresh ? 0 : acc) + α u + β Q(u) for every target.
-  void scatter_collision(double t, const state& u, std::span<const target<state, double>> targets);
+  void add_collision(double t, const state& u, std::span<const target<state, double>> targets);
   /// Δt_FE = 1.
   double forward_euler_step(double, const state&) const { return 1.0; }
 

@@ -41,7 +41,7 @@ case_config small_case(const std::string& model, const std::string& method, doub
 std::vector<field> hostile_data(case_problem& problem, int random, double vacuum, bool zeros) {
   const field start = problem.setup.initial_state();
   field equilibrium = start;
-  problem.equations->collide(0.0, std::numeric_limits<double>::max(), 0.0, equilibrium);
+  problem.equations->solve_collision(0.0, std::numeric_limits<double>::max(), 0.0, equilibrium);
   std::vector<field> data{start, equilibrium};
   random_source source(7);
   for (int k = 0; k < random; ++k) {

@@ -17,8 +17,8 @@ constexpr auto square = [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0
 /// The problem with every stage looked at as it is solved.
 struct watched_decay : newton_problem<no_transport, decltype(square)> {
   watched_decay() : newton_problem(no_transport{}, square) {}
-  void collide(double t, double a, double b, std::vector<double>& u) {
-    newton_problem::collide(t, a, b, u);
+  void solve_collision(double t, double a, double b, std::vector<double>& u) {
+    newton_problem::solve_collision(t, a, b, u);
     lowest_stage = minimum(lowest_stage, u[0]);
   }
   double lowest_stage = std::numeric_limits<double>::infinity();

@@ -56,32 +56,32 @@ class watched_problem {
  public:
   using state = typename P::state;  ///< state of the problem
   using real = typename P::real;    ///< number type of the problem
-  /// Accumulators of a scatter.
+  /// Accumulators of add_transport().
   using targets_type = std::span<const target<state, real>>;
 
   /// `inner` must outlive this.
   watched_problem(P& inner, std::function<void(const state&)> look) : inner_(inner), look_(std::move(look)) {}
 
   /// As the problem does it; u is looked at where T(u) is wanted.
-  void scatter(real t, const state& u, targets_type targets) {
+  void add_transport(real t, const state& u, targets_type targets) {
     // Where only multiples of u are asked for, it may be the explicit part of a stage.
     for (const auto& to : targets)
       if (to.beta != real(0)) {
         look_(u);
         break;
       }
-    inner_.scatter(t, u, targets);
+    inner_.add_transport(t, u, targets);
   }
   /// As the problem does it; the solution is looked at.
-  void collide(real t, real a, real b, state& u) {
-    inner_.collide(t, a, b, u);
+  void solve_collision(real t, real a, real b, state& u) {
+    inner_.solve_collision(t, a, b, u);
     look_(u);
   }
   /// As the problem does it.
-  void scatter_collision(real t, const state& u, targets_type targets)
+  void add_collision(real t, const state& u, targets_type targets)
     requires problem_with_explicit_collision<P>
   {
-    inner_.scatter_collision(t, u, targets);
+    inner_.add_collision(t, u, targets);
   }
   /// Δt_FE of the problem.
   real forward_euler_step(real t, const state& u) const { return inner_.forward_euler_step(t, u); }
@@ -145,7 +145,7 @@ step_limit largest_forward_euler_step(P& equation, std::span<const typename P::s
   return search_step(data.size(), unit, how, [&](std::size_t k, double dt) {
     state after = data[k];
     const target<state, real> to{&after, real(1), real(dt), true};
-    equation.scatter(real(0), data[k], std::span(&to, 1));
+    equation.add_transport(real(0), data[k], std::span(&to, 1));
     return property.excess(data[k], after);
   });
 }

@@ -64,7 +64,7 @@ double time_study::end() const {
 
 field time_study::start(start_data data) const {
   field u = impl_->setup.initial_state();
-  if (data == start_data::equilibrium) impl_->limit->collide(0.0, 1.0, 0.0, u);
+  if (data == start_data::equilibrium) impl_->limit->solve_collision(0.0, 1.0, 0.0, u);
   return u;
 }
 
@@ -114,7 +114,7 @@ std::vector<double> time_study::moments(const field& u) const {
 
 std::vector<double> time_study::deviation(const field& u) const {
   field e = u;
-  impl_->limit->collide(0.0, 1.0, 0.0, e);
+  impl_->limit->solve_collision(0.0, 1.0, 0.0, e);
   std::vector<double> d;
   for (int cell = 0; cell < u.cells(); ++cell)
     for (int k = 0; k < u.components(); ++k) d.push_back(e.row(cell)[k] - u.row(cell)[k]);

@@ -12,10 +12,10 @@
 struct growth_and_decay {
   using state = double;
   using real = double;
-  void scatter(real, const state& u, std::span<const apsis::target<state, real>> targets) {
+  void add_transport(real, const state& u, std::span<const apsis::target<state, real>> targets) {
     for (const auto& target : targets) *target.acc = target.combine(*target.acc, u, u);
   }
-  void collide(real, real a, real b, state& u) { u /= 1 + 3 * a - 9 * b; }
+  void solve_collision(real, real a, real b, state& u) { u /= 1 + 3 * a - 9 * b; }
   real forward_euler_step(real, const state&) { return std::numeric_limits<real>::infinity(); }
 };
 

@@ -52,7 +52,7 @@ void collide_randomly(const broadwell& b, random_source& random, moment_form_def
   field u(1, 3), change(1, 3);
   std::copy(f.begin(), f.end(), u.row(0));
   const target<field, double> to{&change, 0.0, 1.0, true};
-  q->scatter(u, {&to, 1});
+  q->add_collision(u, {&to, 1});
   const auto w = moments_of(f.data()), rate = moments_of(change.row(0));
   // Everything is measured against the size of the terms, ρ²/ε.
   const double size = w.rho * w.rho / epsilon;
@@ -79,7 +79,7 @@ void transport_randomly(const broadwell& b, const std::string& scheme, random_so
   for (int i = 0; i < cells; ++i)
     for (std::size_t k = 0; k < 3; ++k) u.row(i)[k] = start[k] + slope[k] * mesh.centre(i, 0);
   const target<field, double> to{&change, 0.0, 1.0, true};
-  t.scatter(u, {&to, 1});
+  t.add_transport(u, {&to, 1});
   const auto rate = moments_of(change.row(cells / 2)), x = moments_of(slope.data());
   const double size = moments_of(u.row(cells - 1)).rho;
   worst.transport = maximum({worst.transport, std::abs(rate.rho + x.m) / size, std::abs(rate.m + x.z) / size,

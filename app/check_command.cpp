@@ -7,7 +7,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
-#include <apsis/study/observed_limits.hpp>
+#include <apsis/verify/observed_limits.hpp>
 
 #include <cmath>
 #include <filesystem>

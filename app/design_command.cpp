@@ -7,13 +7,13 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
-#include <apsis/core/parallel.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/design/draw.hpp>
 #include <apsis/design/fewer_stages.hpp>
 #include <apsis/design/finish.hpp>
 #include <apsis/design/search.hpp>
 #include <apsis/design/sparsify.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/output/progress.hpp>
 

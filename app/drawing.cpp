@@ -16,6 +16,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+namespace apsis::embedded {
+/// Every module of python/apsis (generated); the program draws with them.
+std::vector<embedded_text> scripts();
+}  // namespace apsis::embedded
+
 namespace apsis::app {
 namespace {
 

@@ -1,7 +1,7 @@
 #include "commands.hpp"
 
-#include <apsis/core/parallel.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/output/provenance.hpp>
 
 #include <memory>

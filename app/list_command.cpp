@@ -8,8 +8,7 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/model/model_registry.hpp>
-#include <apsis/space/reconstruction_registry.hpp>
-#include <apsis/study/claim_registry.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <map>
 #include <memory>
@@ -17,6 +16,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+#include <paper/claim_registry.hpp>
 
 namespace apsis::app {
 namespace {

@@ -5,14 +5,12 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
-#include <apsis/core/parallel.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/output/progress.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
-#include <apsis/study/claim_registry.hpp>
-#include <apsis/study/reproduce.hpp>
 
 #include <chrono>
 #include <fstream>
@@ -21,6 +19,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+#include <paper/claim_registry.hpp>
+#include <paper/reproduce.hpp>
 
 namespace apsis::app {
 namespace {

@@ -6,8 +6,8 @@
 #include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/parallel.hpp>
-#include <apsis/core/profile.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/output/progress.hpp>
 #include <apsis/output/provenance.hpp>

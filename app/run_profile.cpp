@@ -1,8 +1,8 @@
 #include "run_profile.hpp"
 
-#include <apsis/core/ceilings.hpp>
-#include <apsis/core/instruction_set.hpp>
-#include <apsis/core/parallel.hpp>
+#include <apsis/exec/ceilings.hpp>
+#include <apsis/exec/instruction_set.hpp>
+#include <apsis/exec/parallel.hpp>
 
 #include <algorithm>
 

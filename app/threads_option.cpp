@@ -1,6 +1,6 @@
 #include "threads_option.hpp"
 
-#include <apsis/core/parallel.hpp>
+#include <apsis/exec/parallel.hpp>
 
 #include <fmt/format.h>
 

@@ -28,14 +28,10 @@ std::vector<embedded_text> ${symbol}() {
   set(${out_var} ${out} PARENT_SCOPE)
 endfunction()
 
-# apsis_registry(room what out [folder]): every file x.cpp of <room>/<folder>/ (or <room>/<what>s/) defines
-# `<what>_entry <what>_x`; the generated registry is the one place that knows them all.
-function(apsis_registry room what out_var)
-  set(folder ${what}s)
-  if(ARGC GREATER 3)
-    set(folder ${ARGV3})
-  endif()
-  file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/${folder}/*.cpp)
+# apsis_registry(what header folder out): every file x.cpp of the folder defines `<what>_entry <what>_x`; the
+# generated registry, which defines `<what>_entries()` of the header, is the one place that knows them all.
+function(apsis_registry what header folder out_var)
+  file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
   list(SORT files)
   set(declarations "")
   set(entries "")
@@ -46,8 +42,8 @@ function(apsis_registry room what out_var)
   endforeach()
   set(out ${CMAKE_CURRENT_BINARY_DIR}/generated/${what}_registry.cpp)
   file(CONFIGURE OUTPUT ${out} @ONLY CONTENT
-"// Generated from the files of ${room}/${folder}/; do not edit.
-#include <apsis/${room}/${what}_registry.hpp>
+"// Generated from the files of ${folder}/; do not edit.
+#include <${header}>
 
 namespace apsis {
 @declarations@

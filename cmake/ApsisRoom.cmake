@@ -8,7 +8,7 @@ add_library(apsis_options INTERFACE)
 target_compile_features(apsis_options INTERFACE cxx_std_20)
 # As Boost::headers has it; a precompiled header wants it in all files or in none.
 target_compile_definitions(apsis_options INTERFACE BOOST_ALL_NO_LIB)
-# Kernels are compiled for the plain architecture, 256 and 512 bit (core/simd-inl.hpp); what lies between, or differs in
+# Kernels are compiled for the plain architecture, 256 and 512 bit (exec/simd-inl.hpp); what lies between, or differs in
 # instructions that no kernel uses, only costs time to build.
 target_compile_definitions(apsis_options INTERFACE
   "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL)")

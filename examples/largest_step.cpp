@@ -2,7 +2,7 @@
 // turn round at rate 1/(2ε),  f±_t ± f±_x = (ρ/2 − f±)/ε, ρ = f₊ + f₋, on a ring of length 1, first-order
 // upwind. The state holds f₊ of all cells, then f₋.
 #include <apsis/integrate/relaxation_problem.hpp>
-#include <apsis/study/strong_stability.hpp>
+#include <apsis/verify/strong_stability.hpp>
 
 #include <algorithm>
 #include <cstdio>

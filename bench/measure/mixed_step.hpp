@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/core/profile.hpp>
+#include <apsis/exec/profile.hpp>
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/run/setup.hpp>
 

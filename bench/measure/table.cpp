@@ -1,6 +1,6 @@
 #include "table.hpp"
 
-#include <apsis/core/instruction_set.hpp>
+#include <apsis/exec/instruction_set.hpp>
 
 #include <algorithm>
 #include <chrono>

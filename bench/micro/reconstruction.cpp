@@ -1,6 +1,6 @@
 #include "triad.hpp"
 
-#include <apsis/space/reconstruction_registry.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <cmath>
 #include <memory>

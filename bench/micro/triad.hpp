@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/core/aligned.hpp>
+#include <apsis/exec/aligned.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/space/field.hpp>
+#include <apsis/phase/field.hpp>
 
 #include <memory>
 

@@ -3,7 +3,7 @@
 
 #include <apsis/core/expression.hpp>
 #include <apsis/integrate/integrate.hpp>
-#include <apsis/space/quartic.hpp>
+#include <apsis/scheme/quartic.hpp>
 
 #include <algorithm>
 #include <cmath>

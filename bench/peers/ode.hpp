@@ -3,11 +3,12 @@
 #include "contest.hpp"
 
 #include <apsis/method/method.hpp>
-#include <apsis/study/ode_study.hpp>
+
+#include <paper/ode_study.hpp>
 
 namespace apsis::bench::peers {
 
-/// The ODE model of the paper from t = 0 to 1 (study/ode_study.hpp): two unknowns, u2 out of equilibrium at
+/// The ODE model of the paper from t = 0 to 1 (paper/ode_study.hpp): two unknowns, u2 out of equilibrium at
 /// first.
 struct ode_task {
   double epsilon;

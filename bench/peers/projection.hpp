@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/model/model.hpp>
-#include <apsis/space/field.hpp>
+#include <apsis/phase/field.hpp>
 
 #include <span>
 #include <vector>

@@ -1,8 +1,8 @@
 #include "arrays.hpp"
 
 #include <apsis/config/case_schema.hpp>
-#include <apsis/core/parallel.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/run/session.hpp>

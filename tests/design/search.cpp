@@ -2,9 +2,9 @@
 // method.
 #include <apsis/design/search.hpp>
 
-#include <apsis/core/parallel.hpp>
 #include <apsis/design/finish.hpp>
 #include <apsis/design/sparsify.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/export.hpp>

@@ -1,4 +1,4 @@
-// What models refuse. (Properties 2–5 of the paper: tests/study/model_properties.cpp.)
+// What models refuse. (Properties 2–5 of the paper: tests/verify/model_properties.cpp.)
 #include <apsis/model/model_registry.hpp>
 
 #include <algorithm>

@@ -70,8 +70,9 @@ TEST(conservation, a_factor_of_1e_13_is_found_at_the_next_step) {
     EXPECT_EQ(message_of(c, 0.0, 10), "");
     for (const double defect : {1e-13, -1e-13, 1e-11}) {
       const std::string message = message_of(c, defect, 2);
-      EXPECT_NE(message.find("broken promise: mass is not conserved to rounding (a step of md-imex-6-3 explains"),
-                std::string::npos)
+      EXPECT_NE(
+          message.find("broken promise: mass is not conserved to rounding (a step of md-imex-6-3 explains"),
+          std::string::npos)
           << defect << " " << message;
       EXPECT_NE(message.find("use velocity.equilibrium = \"discrete\""), std::string::npos) << message;
       EXPECT_EQ(message.find("smaller step"), std::string::npos) << message;

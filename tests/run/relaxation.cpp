@@ -2,7 +2,7 @@
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/parallel.hpp>
+#include <apsis/exec/parallel.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -2,10 +2,10 @@
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/parallel.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/model/maxwellian.hpp>
-#include <apsis/space/field.hpp>
-#include <apsis/space/grid.hpp>
+#include <apsis/phase/field.hpp>
+#include <apsis/phase/grid.hpp>
 
 #include <new>
 #include <string>

@@ -1,7 +1,7 @@
 // How many threads a run takes whose user gives no number.
 #include "cases.hpp"
 
-#include <apsis/core/parallel.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/run/session.hpp>
 
 #include <cstdlib>

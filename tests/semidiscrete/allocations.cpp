@@ -1,7 +1,7 @@
 // What a step takes from the heap: its buffers at the first step, as the schedule says, and then nothing.
 #include "bgk_case.hpp"
 
-#include <apsis/core/parallel.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/stepper.hpp>
 

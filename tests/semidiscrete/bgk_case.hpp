@@ -1,8 +1,8 @@
 #pragma once
 
 #include <apsis/model/model_registry.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
-#include <apsis/space/reconstruction_registry.hpp>
 
 #include <algorithm>
 #include <cmath>

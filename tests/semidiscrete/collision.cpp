@@ -1,8 +1,8 @@
 #include "bgk_case.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/parallel.hpp>
-#include <apsis/space/quartic.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/scheme/quartic.hpp>
 
 #include <limits>
 

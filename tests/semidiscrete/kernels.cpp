@@ -2,11 +2,11 @@
 // at a time in extended precision; and what the passes over memory must not change.
 #include "bgk_case.hpp"
 
-#include <apsis/core/parallel.hpp>
 #include <apsis/core/random_source.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/scheme/limiter.hpp>
+#include <apsis/scheme/quartic.hpp>
 #include <apsis/semidiscrete/relaxation_rows.hpp>
-#include <apsis/space/limiter.hpp>
-#include <apsis/space/quartic.hpp>
 
 #include <array>
 

@@ -2,9 +2,9 @@
 #include "bgk_case.hpp"
 
 #include <apsis/core/random_source.hpp>
+#include <apsis/scheme/limiter.hpp>
+#include <apsis/scheme/quartic.hpp>
 #include <apsis/semidiscrete/relaxation_rows.hpp>
-#include <apsis/space/limiter.hpp>
-#include <apsis/space/quartic.hpp>
 
 #include <support/instruction_sets.hpp>
 

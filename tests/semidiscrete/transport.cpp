@@ -1,6 +1,6 @@
 #include "bgk_case.hpp"
 
-#include <apsis/core/parallel.hpp>
+#include <apsis/exec/parallel.hpp>
 
 #include <algorithm>
 #include <limits>

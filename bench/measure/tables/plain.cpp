@@ -7,7 +7,7 @@
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
-#include <apsis/space/quartic.hpp>
+#include <apsis/scheme/quartic.hpp>
 
 #include <cmath>
 #include <stdexcept>

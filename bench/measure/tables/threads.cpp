@@ -2,8 +2,8 @@
 #include "../mixed_step.hpp"
 #include "../table.hpp"
 
-#include <apsis/core/ceilings.hpp>
-#include <apsis/core/parallel.hpp>
+#include <apsis/exec/ceilings.hpp>
+#include <apsis/exec/parallel.hpp>
 
 #include <string>
 #include <vector>

@@ -3,7 +3,7 @@
 #include "../mixed_step.hpp"
 #include "../table.hpp"
 
-#include <apsis/core/ceilings.hpp>
+#include <apsis/exec/ceilings.hpp>
 
 #include <cstdint>
 #include <string>

@@ -3,8 +3,8 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
-#include <apsis/space/boundary.hpp>
-#include <apsis/space/reconstruction_registry.hpp>
+#include <apsis/phase/boundary.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <cmath>
 #include <limits>

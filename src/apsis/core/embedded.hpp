@@ -14,7 +14,6 @@ struct embedded_text {
 namespace embedded {
 std::vector<embedded_text> methods();  ///< every file of methods/
 std::vector<embedded_text> cases();    ///< every file of cases/
-std::vector<embedded_text> scripts();  ///< every module of python/apsis (the program draws with them)
 }  // namespace embedded
 
 }  // namespace apsis

@@ -1,9 +1,9 @@
 #include <apsis/design/search.hpp>
 
-#include <apsis/core/parallel.hpp>
 #include <apsis/design/draw.hpp>
 #include <apsis/design/feasibility.hpp>
 #include <apsis/design/sparsify.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/stability.hpp>
 

@@ -4,7 +4,7 @@
 
 #include <apsis/model/line_sums.hpp>
 
-#include <apsis/core/simd-inl.hpp>
+#include <apsis/exec/simd-inl.hpp>
 
 #include <algorithm>
 #include <cstddef>

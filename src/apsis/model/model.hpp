@@ -98,7 +98,7 @@ class relaxation_model : public model {
   virtual double rate(const double* omega) const = 0;
   /// For messages: "temperature -0.3 is not positive".
   virtual std::string why_inadmissible(const double* omega) const = 0;
-  /// Operations (core/counted.hpp) of ℛu and E(ω) together for each component; 0: not counted.
+  /// Operations (exec/counted.hpp) of ℛu and E(ω) together for each component; 0: not counted.
   virtual double operations_of_equilibrium() const { return 0.0; }
 };
 

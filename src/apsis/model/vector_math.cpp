@@ -4,7 +4,7 @@
 
 #include <apsis/model/vector_math.hpp>
 
-#include <apsis/core/simd-inl.hpp>
+#include <apsis/exec/simd-inl.hpp>
 
 #include <hwy/contrib/math/math-inl.h>
 

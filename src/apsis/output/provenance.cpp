@@ -1,8 +1,8 @@
 #include <apsis/output/provenance.hpp>
 
-#include <apsis/core/instruction_set.hpp>
-#include <apsis/core/parallel.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/exec/instruction_set.hpp>
+#include <apsis/exec/parallel.hpp>
 
 #include <array>
 #include <chrono>

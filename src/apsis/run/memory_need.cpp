@@ -1,9 +1,9 @@
 #include <apsis/run/memory_need.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/memory.hpp>
+#include <apsis/exec/memory.hpp>
 #include <apsis/integrate/schedule.hpp>
-#include <apsis/space/field.hpp>
+#include <apsis/phase/field.hpp>
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 #include <apsis/run/monitor.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/parallel.hpp>
-#include <apsis/core/profile.hpp>
-#include <apsis/space/row_check.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
+#include <apsis/scheme/row_check.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <apsis/model/model.hpp>
+#include <apsis/phase/field.hpp>
 #include <apsis/run/simulation.hpp>
-#include <apsis/space/field.hpp>
 
 #include <vector>
 

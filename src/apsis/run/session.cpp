@@ -3,8 +3,8 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
-#include <apsis/core/parallel.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/run/memory_need.hpp>
 

@@ -5,9 +5,9 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/convexity.hpp>
+#include <apsis/scheme/quartic.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/newton_collision.hpp>
-#include <apsis/space/quartic.hpp>
-#include <apsis/space/reconstruction_registry.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include <apsis/core/parallel.hpp>
-#include <apsis/core/profile.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
+#include <apsis/scheme/quartic.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/local_relaxation.hpp>
 #include <apsis/semidiscrete/relaxation_rows.hpp>
-#include <apsis/space/quartic.hpp>
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
-#include <apsis/core/parallel.hpp>
-#include <apsis/core/profile.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/local_relaxation.hpp>
 #include <apsis/semidiscrete/relaxation_rows.hpp>

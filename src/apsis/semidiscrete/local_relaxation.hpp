@@ -1,11 +1,11 @@
 #pragma once
 
-#include <apsis/core/aligned.hpp>
 #include <apsis/core/errors.hpp>
-#include <apsis/core/profile.hpp>
 #include <apsis/core/relaxation_weights.hpp>
+#include <apsis/exec/aligned.hpp>
+#include <apsis/exec/profile.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/space/field.hpp>
+#include <apsis/phase/field.hpp>
 
 #include <algorithm>
 #include <cstddef>

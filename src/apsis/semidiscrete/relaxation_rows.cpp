@@ -4,9 +4,9 @@
 
 #include <apsis/semidiscrete/relaxation_rows.hpp>
 
-#include <apsis/core/counted.hpp>
-#include <apsis/space/limiter-inl.hpp>
-#include <apsis/space/quartic.hpp>
+#include <apsis/exec/counted.hpp>
+#include <apsis/scheme/limiter-inl.hpp>
+#include <apsis/scheme/quartic.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
@@ -48,7 +48,7 @@ void add_collision(std::span<const relaxation::strong_rows> points, const double
   });
 }
 
-/// The quartic of space/quartic.hpp at the Gauss points and at the inner points of the Gauss–Lobatto rule,
+/// The quartic of scheme/quartic.hpp at the Gauss points and at the inner points of the Gauss–Lobatto rule,
 /// minus its average. Both rules give the average, which leaves one term of the even parts.
 template <class N>
 struct gauss_points {

@@ -44,14 +44,14 @@ struct quartic_rows {
       *right;            ///< value at the edge between i and i+1
 };
 
-/// points[q·width + k] ← values of the quartics (space/quartic.hpp) at the Gauss–Legendre points; `limited`:
+/// points[q·width + k] ← values of the quartics (scheme/quartic.hpp) at the Gauss–Legendre points; `limited`:
 /// moved towards the average until these and those at the Gauss–Lobatto points are not negative.
 void gauss_values(const quartic_rows& cell, bool limited, int width, double* points);
 
 inline constexpr double operations_of_combine = 2.0,  ///< operations of combine() for one number of a row
     operations_of_average = 6.0;                      ///< operations of average() for one number of a row
 /// Operations of gauss_values() for one number of a row, all three points; a multiply–add is one
-/// (core/counted.hpp).
+/// (exec/counted.hpp).
 double operations_of_points(bool limited);
 
 }  // namespace relaxation

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <apsis/core/aligned.hpp>
-#include <apsis/space/boundary.hpp>
-#include <apsis/space/field.hpp>
-#include <apsis/space/grid.hpp>
-#include <apsis/space/reconstruction.hpp>
+#include <apsis/exec/aligned.hpp>
+#include <apsis/phase/boundary.hpp>
+#include <apsis/phase/field.hpp>
+#include <apsis/phase/grid.hpp>
+#include <apsis/scheme/reconstruction.hpp>
 
 #include <memory>
 #include <vector>

@@ -1,10 +1,10 @@
 #include <apsis/semidiscrete/transport.hpp>
 
-#include <apsis/core/parallel.hpp>
-#include <apsis/core/profile.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
 #include <apsis/model/vector_math.hpp>
+#include <apsis/scheme/limiter.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
-#include <apsis/space/limiter.hpp>
 
 #include <algorithm>
 #include <cmath>

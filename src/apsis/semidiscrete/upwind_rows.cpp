@@ -4,9 +4,9 @@
 
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
-#include <apsis/core/counted.hpp>
-#include <apsis/space/limiter-inl.hpp>
-#include <apsis/space/walk-inl.hpp>
+#include <apsis/exec/counted.hpp>
+#include <apsis/scheme/limiter-inl.hpp>
+#include <apsis/scheme/walk-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/integrate/problem.hpp>
-#include <apsis/space/field.hpp>
+#include <apsis/phase/field.hpp>
 
 #include <cstddef>
 #include <span>
@@ -60,7 +60,7 @@ void add(const cells& run, std::span<const row_target> targets);
 /// −2 … count+1 are read.
 void add_limited(const cells& run, std::span<const row_target> targets);
 
-/// Operations of add, or of add_limited, that T takes for one number (core/counted.hpp).
+/// Operations of add, or of add_limited, that T takes for one number (exec/counted.hpp).
 double operations(bool limited);
 /// Additional operations per number and target.
 inline constexpr double operations_of_target = 4.0;

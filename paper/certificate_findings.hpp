@@ -1,0 +1,24 @@
+#pragma once
+
+#include <apsis/method/certificate.hpp>
+#include <paper/claim.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// What every method of the paper must show: its order from the generated conditions, with small residuals.
+std::vector<finding> certificate_findings(const std::string& method, int order);
+
+/// The same, and the signs that make an implicit method SSP for every step.
+std::vector<finding> unconditional_findings(const std::string& method, int order);
+
+/// The same for an IMEX method that is SSP for steps up to r Δt_FE: r, re-derived from its Butcher form
+/// alone, is within `tolerance` of the paper's.
+std::vector<finding> coefficient_findings(const std::string& method, int order, double r, double tolerance);
+
+/// Agreement with the Butcher form that the paper prints; for the methods of printed_butcher_form.
+finding agrees_with_print(const std::string& method);
+
+}  // namespace apsis

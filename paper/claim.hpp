@@ -1,0 +1,51 @@
+#pragma once
+
+#include <apsis/output/picture.hpp>
+#include <apsis/verify/report_table.hpp>
+#include <apsis/verify/study_control.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// One measured figure and what it must be.
+struct finding {
+  std::string what;       ///< "slope between dt = 1/512 and 1/1024, eps = 1"
+  double value = 0.0;     ///< as measured
+  std::string condition;  ///< "at least 2.85", "3 ± 0.15", "at most 1e-13"
+  bool holds = false;     ///< whether the value satisfies the condition
+};
+
+/// value ≤ bound. As with the other builders of findings, a value that is not a number never holds.
+finding at_most(std::string what, double value, double bound);
+/// value ≥ bound.
+finding at_least(std::string what, double value, double bound);
+/// |value − target| ≤ tolerance.
+finding near(std::string what, double value, double target, double tolerance);
+/// value = wanted.
+finding exactly(std::string what, long value, long wanted);
+/// Something that is true or false; a figure of 1 or 0.
+finding holds(std::string what, bool value);
+
+/// What came out of checking a claim.
+struct claim_result {
+  std::vector<finding> findings;     ///< short tables show the first, or the first that does not hold
+  std::vector<report_table> tables;  ///< details, below the findings
+  std::vector<picture> pictures;     ///< drawn by the report
+  std::vector<std::string> remarks;  ///< corrections to the paper, deviations and their reasons
+
+  bool all_hold() const;  ///< and there is at least one finding
+};
+
+/// One claim of the paper: a file of paper/claims/ defines `extern const claim_entry claim_<file>`.
+struct claim_entry {
+  std::string id;                               ///< "C7"
+  std::string section;                          ///< of the paper
+  std::string statement;                        ///< what the paper says, or what is said of it
+  std::string how;                              ///< how it is shown
+  claim_result (*check)(const study_control&);  ///< computes all that is shown
+  bool slow = false;                            ///< more than about 20 s on two cores
+};
+
+}  // namespace apsis

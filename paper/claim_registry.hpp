@@ -1,0 +1,17 @@
+#pragma once
+
+#include <paper/claim.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// Every claim, sorted by file name (generated).
+std::vector<const claim_entry*> claim_entries();
+
+/// The claims with these ids, in the order of the registry; all of them for an empty list. Upper and lower
+/// case are the same. Throws input_error with the nearest id.
+std::vector<const claim_entry*> find_claims(const std::vector<std::string>& ids);
+
+}  // namespace apsis

@@ -1,0 +1,22 @@
+#include <paper/claim.hpp>
+#include <paper/condition_tables.hpp>
+
+namespace apsis {
+namespace {
+
+claim_result check(const study_control&) {
+  claim_result result;
+  result.findings =
+      condition_findings(tree_colours::both, printed_imex_conditions, {3, 20}, {{4, 52}, {5, 214}});
+  return result;
+}
+
+}  // namespace
+
+extern const claim_entry claim_C02;
+const claim_entry claim_C02 = {
+    "C2", "Formulating order conditions",
+    "order conditions of multi-derivative IMEX Runge-Kutta methods up to order 3",
+    "generated from two-coloured rooted trees and compared with the printed table term by term", check};
+
+}  // namespace apsis

@@ -1,0 +1,25 @@
+#include <paper/certificate_findings.hpp>
+#include <paper/claim.hpp>
+
+namespace apsis {
+namespace {
+
+claim_result check(const study_control&) {
+  claim_result result;
+  result.findings = unconditional_findings("imdrk-1-2", 2);
+  const auto& stability = find_certificate("imdrk-1-2").stability;
+  result.findings.push_back(near("angle of A(α)-stability, degrees", stability.angle, 90.0, 0.0));
+  result.findings.push_back(at_least("smallest value of R(z) = 1/(1 - z + z²/2) on the negative axis",
+                                     stability.smallest_on_negative_axis, 0.0));
+  return result;
+}
+
+}  // namespace
+
+extern const claim_entry claim_C03;
+const claim_entry claim_C03 = {
+    "C3", "New SSP implicit two-derivative Runge-Kutta methods",
+    "the one-stage implicit Taylor method is of second order and SSP for every step",
+    "certificate from the coefficients alone", check};
+
+}  // namespace apsis

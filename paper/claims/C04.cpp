@@ -1,0 +1,22 @@
+#include <paper/certificate_findings.hpp>
+#include <paper/claim.hpp>
+
+namespace apsis {
+namespace {
+
+claim_result check(const study_control&) {
+  claim_result result;
+  result.findings = unconditional_findings("imdrk-2-3", 3);
+  result.findings.push_back(agrees_with_print("imdrk-2-3"));
+  return result;
+}
+
+}  // namespace
+
+extern const claim_entry claim_C04;
+const claim_entry claim_C04 = {
+    "C4", "New SSP implicit two-derivative Runge-Kutta methods",
+    "the two-stage method is of third order and SSP for every step; its printed forms agree",
+    "certificate; conversion of the Shu-Osher form compared with the printed matrices", check};
+
+}  // namespace apsis

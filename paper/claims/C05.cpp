@@ -1,0 +1,25 @@
+#include <paper/certificate_findings.hpp>
+#include <paper/claim.hpp>
+
+namespace apsis {
+namespace {
+
+claim_result check(const study_control&) {
+  claim_result result;
+  result.findings = unconditional_findings("imdrk-5-4", 4);
+  result.findings.push_back(agrees_with_print("imdrk-5-4"));
+  result.remarks = {
+      "The printed Butcher entries off the diagonal have their two indices swapped (the matrices are lower "
+      "triangular): read a_21 for a_12 and so on. With that, every printed digit agrees."};
+  return result;
+}
+
+}  // namespace
+
+extern const claim_entry claim_C05;
+const claim_entry claim_C05 = {
+    "C5", "New SSP implicit two-derivative Runge-Kutta methods",
+    "the five-stage method is of fourth order and SSP for every step; its printed forms agree",
+    "certificate; conversion of the Shu-Osher form compared with the printed matrices", check};
+
+}  // namespace apsis

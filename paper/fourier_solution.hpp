@@ -1,0 +1,43 @@
+#pragma once
+
+#include <paper/limit_equations.hpp>
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// Solution of a limit system for smooth data on a periodic interval, as exact as double precision allows
+/// while it stays smooth: Fourier collocation in space (whose error falls faster than any power of 1/points),
+/// the classical Runge–Kutta method in time. Shares nothing with the schemes it is compared with.
+class fourier_solution {
+ public:
+  /// From ω(x) = initial(x, ω) on [a, b] to t = end with `points` (odd) collocation points and `steps` steps.
+  /// Systems without space take one point. Throws input_error for an even number of points.
+  fourier_solution(const limit_equations& system, double a, double b, int points,
+                   const std::function<void(double, std::span<double>)>& initial, double end, int steps);
+
+  /// ω_k at x.
+  double value(int k, double x) const { return average(k, x, 0.0); }
+  /// The average of ω_k over [x − h/2, x + h/2]; the value at x for h = 0.
+  double average(int k, double x, double h) const;
+  /// Size of the highest Fourier modes relative to the largest: how well the points resolve the solution.
+  double resolution() const;
+
+ private:
+  void slope(const std::vector<double>& omega, std::vector<double>& change) const;
+  void transform(const std::vector<double>& omega);
+  std::size_t at(int point, int k) const {
+    return static_cast<std::size_t>(point) * static_cast<std::size_t>(unknowns_) +
+           static_cast<std::size_t>(k);
+  }
+
+  limit_equations system_;
+  double a_, length_;
+  int points_, unknowns_;
+  std::vector<double> derivative_;     ///< of the distance of two points, points_ of them
+  std::vector<double> cosine_, sine_;  ///< [mode][unknown]
+};
+
+}  // namespace apsis

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <paper/claim.hpp>
+
+#include <string>
+
+namespace apsis {
+
+/// The maps of all relaxation models: one picture each, and findings about the paper's methods.
+void add_order_maps(const std::string& id, const study_control& control, claim_result& result);
+
+}  // namespace apsis

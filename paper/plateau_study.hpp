@@ -1,0 +1,40 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/method/intermediate_regime.hpp>
+#include <paper/claim.hpp>
+#include <paper/ode_study.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// The terms of size ε that a method shows on a case (docs/plateaus.md), each as a multiple of what the exact
+/// solution shows, with ε = 1e-6: two runs with steps Δt and Δt/2 are extrapolated to Δt → 0.
+struct measured_regime {
+  double flux,  ///< of the term of size ε in ω at the end, data at equilibrium
+      last,     ///< of the deviation E(ℛu) − u at the end, data at equilibrium
+      layer;    ///< of what the initial layer of the data as given adds to ω
+};
+
+/// For each method, from its difference between ε and ε = 0, which frees it of errors Δt^p, projected on the
+/// same difference of exact solutions; `layer` from data as given against the same data at equilibrium.
+/// Throws what time_study throws.
+std::vector<measured_regime> measure_regimes(const case_config& config,
+                                             const std::vector<std::string>& methods, long steps,
+                                             const study_control& control = {});
+
+/// The errors of u1 and u2 of the ODE model at t = 1 over ε, on a plateau (ε → 0, then Δt → 0), as the three
+/// numbers predict them:
+///   e1 = (1 − flux) E(u) ∫_2^u E′/(C E) dw + [data given] (1 − layer) E(u)/C(2),   E = sin, C = 1 + w²,
+///   e2 = E′(u) e1 + (1 − last) E′(u) E(u)/C(u),   u the limit solution at t = 1.
+std::array<double, 2> predicted_ode_plateau(const intermediate_regime<double>& regime, ode_data data);
+
+/// The same as measured: error of the part of size ε with ε = 1e-9, in long double, extrapolated to Δt → 0.
+std::array<double, 2> measured_ode_plateau(const method& m, ode_data data);
+
+/// Findings, tables and pictures that show what causes the plateaus, and that the coefficients predict them.
+void add_plateau_study(const std::string& id, const study_control& control, claim_result& result);
+
+}  // namespace apsis

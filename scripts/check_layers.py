@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""check_layers.py [ROOT]: includes that reach up from one room to another.
+
+The rooms, and what each may include, are those of the apsis_room() calls in src/apsis/CMakeLists.txt. Above the library
+lie paper/, app/, python/bindings/, tests/, bench/ and examples/, which it may not include. The README of a room has to
+name what CMake allows. Prints one line for each violation; exit code 1 if there are any.
+"""
+import re
+import sys
+from pathlib import Path
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.MULTILINE)
+
+
+def read_rooms(cmake: str) -> dict[str, set[str]]:
+    """For each room the rooms that it may include, in any depth."""
+    rooms: dict[str, set[str]] = {}
+    for name, arguments in re.findall(r"apsis_room\((\w+)([^)]*)\)", cmake):
+        words = arguments.split()
+        direct = []
+        if "DEPENDS" in words:
+            for word in words[words.index("DEPENDS") + 1:]:
+                if word.isupper():
+                    break
+                direct.append(word)
+        rooms[name] = set(direct).union(*(rooms[room] for room in direct)) if direct else set()
+    return rooms
+
+
+def room_of(include: str) -> str | None:
+    parts = include.split("/")
+    return parts[1] if parts[0] == "apsis" and len(parts) > 2 else None
+
+
+def violations(root: Path) -> list[str]:
+    library = root / "src/apsis"
+    rooms = read_rooms((library / "CMakeLists.txt").read_text(encoding="utf-8"))
+    found = [f"src/apsis/{folder.name}: is no room of src/apsis/CMakeLists.txt"
+             for folder in sorted(library.iterdir()) if folder.is_dir() and folder.name not in rooms]
+    for room, allowed in rooms.items():
+        readme = library / room / "README.md"
+        named = set(re.findall(r"`(\w+)`", " ".join(readme.read_text(encoding="utf-8").split()).rpartition("May include")[2]))
+        if named != allowed:
+            found.append(f"src/apsis/{room}/README.md: says that it may include {sorted(named)} (CMake allows {sorted(allowed)})")
+        for file in sorted((library / room).rglob("*.[ch]pp")):
+            text = file.read_text(encoding="utf-8")
+            for match in INCLUDE.finditer(text):
+                line = text.count("\n", 0, match.start()) + 1
+                other = room_of(match[1])
+                if other is not None and other != room and other not in allowed:
+                    found.append(f"{file.relative_to(root)}:{line}: {room} includes {other} ({match[1]})")
+                elif (root / match[1]).exists() and not (file.parent / match[1]).exists():
+                    found.append(f"{file.relative_to(root)}:{line}: {room} includes {match[1]} (above the library)")
+    return found
+
+
+if __name__ == "__main__":
+    problems = violations(Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).resolve().parents[1]))
+    print("\n".join(problems), end="\n" if problems else "")
+    sys.exit(1 if problems else 0)

@@ -1,0 +1,90 @@
+#include <apsis/exec/memory.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace apsis {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::infinity();
+
+/// The number behind `key` in a file of lines "key number"; `missing` if there is none.
+double number_after(const fs::path& path, const std::string& key, double missing) {
+  std::ifstream in(path);
+  for (std::string word; in >> word;)
+    if (double value = 0.0; word == key && in >> value) return value;
+  return missing;
+}
+
+/// A file that holds one number; "max" and other words mean unlimited.
+double number_in(const fs::path& path) {
+  std::ifstream in(path);
+  double value = 0.0;
+  return in >> value ? value : unknown;
+}
+
+/// What one control group leaves. The kernel gives the inactive part of the page cache back on demand.
+double left_in_group(const fs::path& group, const char* limit, const char* used, const char* cache) {
+  const double most = number_in(group / limit), now = number_in(group / used);
+  if (most == unknown || now == unknown) return unknown;
+  return most - now + number_after(group / "memory.stat", cache, 0.0);
+}
+
+/// The path of the group of this process: of version 2 with an empty `controller`.
+std::string group_of_process(const fs::path& root, const std::string& controller) {
+  std::ifstream in(root / "proc/self/cgroup");
+  for (std::string line; std::getline(in, line);) {
+    const auto first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    if (line.substr(first + 1, second - first - 1) == controller) return line.substr(second + 1);
+  }
+  return "/";
+}
+
+/// The tightest of a group and those above it. Inside a container the path may be one of the host; its own
+/// group is then the mount itself.
+double left_in_groups(const fs::path& mount, const std::string& path, const char* limit, const char* used,
+                      const char* cache) {
+  double left = left_in_group(mount, limit, used, cache);
+  fs::path group = mount;
+  for (const auto& part : fs::path(path).relative_path()) {
+    group /= part;
+    left = std::min(left, left_in_group(group, limit, used, cache));
+  }
+  return left;
+}
+
+double left_of_address_space(const fs::path& root) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unknown;
+  const double pages = number_in(root / "proc/self/statm");
+  if (pages == unknown) return unknown;
+  return static_cast<double>(limit.rlim_cur) - pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+memory_limit available_memory(const fs::path& root) {
+  memory_limit least{unknown, "nothing known"};
+  const auto consider = [&least](double bytes, const char* source) {
+    if (bytes < least.bytes) least = {std::max(bytes, 0.0), source};
+  };
+  const fs::path groups = root / "sys/fs/cgroup";
+  consider(1024.0 * number_after(root / "proc/meminfo", "MemAvailable:", unknown),
+           "available memory of the machine");
+  consider(
+      left_in_groups(groups, group_of_process(root, ""), "memory.max", "memory.current", "inactive_file"),
+      "limit of the control group");
+  consider(left_in_groups(groups / "memory", group_of_process(root, "memory"), "memory.limit_in_bytes",
+                          "memory.usage_in_bytes", "total_inactive_file"),
+           "limit of the control group");
+  consider(left_of_address_space(root), "limit of the address space");
+  return least;
+}
+
+}  // namespace apsis

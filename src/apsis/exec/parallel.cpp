@@ -1,0 +1,119 @@
+#include <apsis/exec/parallel.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+#include <apsis/exec/processors.hpp>
+#include <apsis/exec/thread_team.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+std::atomic<int> thread_count = 1;
+
+/// The team of the calling thread, made when it is needed. That of a parent process stays its own.
+thread_team& team_of(int size) {
+  thread_local std::unique_ptr<thread_team> team;
+  if (team && team->left_behind()) static_cast<void>(team.release());
+  if (!team || team->size() != size) team = std::make_unique<thread_team>(size);
+  return *team;
+}
+
+/// All numbers on this thread, which is then number 0.
+void run_alone(int n, numbered_job job) {
+  auto& here = place_of_this_thread();
+  struct restore {
+    place_in_region& here;
+    place_in_region before;
+    ~restore() { here = before; }
+  } const after{here, here};
+  here = {true, 0};
+  for (int k = 0; k < n; ++k) job(k);
+}
+
+}  // namespace
+
+void set_threads(int n) {
+  if (n < 0 || n > most_threads)
+    throw input_error(
+        fmt::format("{} threads cannot be used (1 to {} are possible, and 0 stands for all {} "
+                    "processors that this process may use); give a number in this range",
+                    n, most_threads, available_processors()));
+  thread_count = n > 0 ? n : std::min(available_processors(), most_threads);
+}
+
+int requested_threads() {
+  const char* const text = std::getenv("OMP_NUM_THREADS");
+  if (text == nullptr || *text == '\0') return 0;
+  // A list has a number for each level of nested regions; the first is that of the outermost.
+  const char* const end = text + std::strcspn(text, ",");
+  int n = 0;
+  const auto [stop, problem] = std::from_chars(text, end, n);
+  if (problem == std::errc::result_out_of_range && *text != '-') return most_threads;
+  if (problem == std::errc() && stop == end && n > 0) return std::min(n, most_threads);
+  log::warning(fmt::format(
+      "OMP_NUM_THREADS = '{}' is ignored (it is not a positive number); give one, or unset it", text));
+  return 0;
+}
+
+int default_threads() {
+  const int requested = requested_threads();
+  return requested > 0 ? requested : std::min(available_processors(), most_threads);
+}
+
+int threads() {
+  return thread_count;
+}
+
+int threads_here() {
+  return place_of_this_thread().inside ? 1 : threads();
+}
+
+int thread_number() {
+  return place_of_this_thread().number;
+}
+
+void run_parallel_for(int n, numbered_job body) {
+  const int team = threads_here(), together = std::min(team, n);
+  if (together <= 1) return run_alone(n, body);
+  thread_team& all = team_of(team);
+  if (all.rests()) return run_alone(n, body);
+  all.run(n, together, body, thread_team::split::parts);
+}
+
+part_blocks::part_blocks(int n, int longest, int parts) : n_(n), parts_(std::max(1, parts)) {
+  const int length = n_ / parts_ + (n_ % parts_ != 0 ? 1 : 0);
+  whole_ = std::max(1, length / longest + (length % longest != 0 ? 1 : 0));
+  // To begin a block costs something, so that small ones are not cut.
+  const int last = length / whole_;
+  pieces_ = parts_ == 1 || last < 32 ? 1 : last < 64 ? 2 : 4;
+}
+
+int part_blocks::begin(int block) const {
+  // In eighths of a whole block: a half, a quarter and two eighths are the last one.
+  static constexpr int eighths[] = {0, 4, 6, 7};
+  const int part = block / per_part(), i = block % per_part();
+  if (part == parts_) return n_;
+  const int whole = std::min(i, whole_ - 1);
+  const long at = 8L * whole + eighths[i - whole];
+  const auto first = [this](int p) { return static_cast<int>(static_cast<long>(n_) * p / parts_); };
+  return first(part) + static_cast<int>((first(part + 1) - first(part)) * at / (8L * whole_));
+}
+
+void run_parallel_tasks(int n, numbered_job body) {
+  const int team = threads_here(), together = std::min(team, n);
+  if (together <= 1) return run_alone(n, body);
+  team_of(team).run(n, together, body, thread_team::split::one_by_one);
+}
+
+}  // namespace apsis

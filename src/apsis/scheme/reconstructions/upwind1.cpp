@@ -1,0 +1,37 @@
+#include <apsis/scheme/reconstruction_registry.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace apsis {
+namespace {
+
+/// Both edges are the cell's own value: with upwind fluxes the first-order upwind scheme, monotone and
+/// entropy-decaying up to CFL 1.
+class upwind1 final : public reconstruction {
+ public:
+  int ghost_width() const override { return 1; }
+  int order() const override { return 1; }
+  void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
+    for (int i = 0; i < count; ++i) {
+      std::copy_n(rows[i], width, left + static_cast<std::ptrdiff_t>(i) * width);
+      std::copy_n(rows[i], width, right + static_cast<std::ptrdiff_t>(i) * width);
+    }
+  }
+  void outflow_edges(const double* const* rows, int count, int width, const double*,
+                     double* edge) const override {
+    for (int i = 0; i < count; ++i)
+      std::copy_n(rows[i], width, edge + static_cast<std::ptrdiff_t>(i) * width);
+  }
+  double operations(bool) const override { return 0.0; }
+};
+
+}  // namespace
+
+extern const reconstruction_entry reconstruction_upwind1;
+const reconstruction_entry reconstruction_upwind1 = {
+    "upwind1", "first order upwind: monotone, positive and entropy-decaying to CFL 1",
+    "Courant, Isaacson, Rees (1952)",
+    []() -> std::unique_ptr<reconstruction> { return std::make_unique<upwind1>(); }};
+
+}  // namespace apsis

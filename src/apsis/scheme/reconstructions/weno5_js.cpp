@@ -1,0 +1,68 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/scheme/reconstructions/weno5_js.cpp"
+#include <hwy/foreach_target.h>
+
+#include <apsis/scheme/weno5-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+/// g_k = 1/(β_k + 1e-6)² (Jiang & Shu, JCP 126, 1996). The 1e-6 is theirs and has the unit of the data
+/// squared.
+struct weights_js {
+  template <class N>
+  static HWY_INLINE N delta(N) {
+    return N(4e-6);
+  }
+  template <class N>
+  static HWY_INLINE weno5::factors<N> factors(const weno5::smoothness<N>& y) {
+    const N z0 = y.s0 * y.s0, z1 = y.s1 * y.s1, z2 = y.s2 * y.s2;
+    return {z1 * z2, z0 * z2, z0 * z1};
+  }
+};
+
+void edges_js(const double* const* rows, int count, int width, double* left, double* right) {
+  weno5::sweep_edges<weights_js>(rows, count, width, left, right);
+}
+
+void outflow_js(const double* const* rows, int count, int width, const double* forward, double* edge) {
+  weno5::sweep_outflow<weights_js>(rows, count, width, forward, edge);
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <apsis/scheme/reconstruction_registry.hpp>
+
+namespace apsis {
+namespace {
+
+HWY_EXPORT(edges_js);
+HWY_EXPORT(outflow_js);
+
+class weno5_js final : public reconstruction {
+ public:
+  int ghost_width() const override { return 2; }
+  int order() const override { return 5; }
+  void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
+    HWY_DYNAMIC_DISPATCH(edges_js)(rows, count, width, left, right);
+  }
+  void outflow_edges(const double* const* rows, int count, int width, const double* forward,
+                     double* edge) const override {
+    HWY_DYNAMIC_DISPATCH(outflow_js)(rows, count, width, forward, edge);
+  }
+  double operations(bool both_edges) const override {
+    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>(both_edges);
+  }
+};
+
+}  // namespace
+
+extern const reconstruction_entry reconstruction_weno5_js;
+const reconstruction_entry reconstruction_weno5_js = {
+    "weno5-js", "fifth order WENO with the weights of Jiang and Shu", "Jiang, Shu, JCP 126 (1996) 202-228",
+    []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_js>(); }};
+
+}  // namespace apsis
+#endif

@@ -1,0 +1,92 @@
+// Walks along a pencil in the direction of motion, so that upwind formulas are written once.
+#if defined(APSIS_SPACE_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef APSIS_SPACE_WALK_INL_HPP
+#undef APSIS_SPACE_WALK_INL_HPP
+#else
+#define APSIS_SPACE_WALK_INL_HPP
+#endif
+
+#include <apsis/exec/simd-inl.hpp>
+
+#include <hwy/cache_control.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+enum class course { forward, backward, either };
+
+/// Cells 0 … count−1 of a pencil for one pack of components. Cell j of the walk is cell j of the pencil where
+/// the components move forward, cell count−1−j where they move backward; so cell j−1 of the walk is always
+/// upstream. A pack with components of both kinds reads both cells.
+template <course C, class D>
+class walk {
+ public:
+  using number = pack<D>;
+
+  HWY_INLINE walk(int count, int k, const double* forward) : last_(count - 1), k_(k), forward_(forward) {}
+
+  /// rows[i] is the row of cell i of the pencil.
+  HWY_INLINE number load(const double* const* rows, int j) const {
+    if constexpr (C == course::forward) return number::load(rows[j] + k_);
+    if constexpr (C == course::backward) return number::load(rows[last_ - j] + k_);
+    return select(ahead(), number::load(rows[j] + k_), number::load(rows[last_ - j] + k_));
+  }
+  /// Asks memory for the row of cell j, or of the last one before it. No further: rows behind the end may be
+  /// another core's.
+  HWY_INLINE void prefetch(const double* const* rows, int j) const {
+    if constexpr (C != course::backward) hwy::Prefetch(rows[j < last_ ? j : last_] + k_);
+    if constexpr (C != course::forward) hwy::Prefetch(rows[j < last_ ? last_ - j : 0] + k_);
+  }
+  /// Rows at equal distances, from that of cell 0 of the pencil on.
+  HWY_INLINE number load(const double* row, std::ptrdiff_t pitch, int j) const {
+    if constexpr (C == course::forward) return number::load(row + j * pitch + k_);
+    if constexpr (C == course::backward) return number::load(row + (last_ - j) * pitch + k_);
+    return select(ahead(), number::load(row + j * pitch + k_), number::load(row + (last_ - j) * pitch + k_));
+  }
+  /// Of two rows, that which is downstream in the cell: `right` where components move forward.
+  HWY_INLINE number load_downstream(const double* left, const double* right, std::ptrdiff_t pitch,
+                                    int j) const {
+    if constexpr (C == course::forward) return load(right, pitch, j);
+    if constexpr (C == course::backward) return load(left, pitch, j);
+    return select(ahead(), number::load(right + j * pitch + k_),
+                  number::load(left + (last_ - j) * pitch + k_));
+  }
+  HWY_INLINE void store(number x, double* row, std::ptrdiff_t pitch, int j) const {
+    if constexpr (C == course::forward) {
+      x.store(row + j * pitch + k_);
+    } else if constexpr (C == course::backward) {
+      x.store(row + (last_ - j) * pitch + k_);
+    } else {
+      hn::BlendedStore(x.v, ahead(), D(), row + j * pitch + k_);
+      hn::BlendedStore(x.v, hn::Not(ahead()), D(), row + (last_ - j) * pitch + k_);
+    }
+  }
+
+ private:
+  HWY_INLINE auto ahead() const { return number::load(forward_ + k_) > number(0.5); }
+
+  int last_, k_;
+  const double* forward_;
+};
+
+/// body(walk, k) for every pack of `width` components; forward[k] is 1 where a component moves forward, else
+/// 0.
+template <class Body>
+HWY_INLINE void for_walks(const double* forward, int count, int width, const Body& body) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using D = decltype(lanes);
+    const auto ahead = pack<D>::load(forward + k) > pack<D>(0.5);
+    if (pack<D>::all(ahead)) {
+      body(walk<course::forward, D>(count, k, forward), k);
+    } else if (!pack<D>::any(ahead)) {
+      body(walk<course::backward, D>(count, k, forward), k);
+    } else {
+      body(walk<course::either, D>(count, k, forward), k);
+    }
+  });
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

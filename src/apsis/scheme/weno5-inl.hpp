@@ -1,0 +1,242 @@
+#if defined(APSIS_SPACE_WENO5_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef APSIS_SPACE_WENO5_INL_HPP
+#undef APSIS_SPACE_WENO5_INL_HPP
+#else
+#define APSIS_SPACE_WENO5_INL_HPP
+#endif
+
+#include <apsis/exec/counted.hpp>
+#include <apsis/scheme/walk-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE::weno5 {
+
+/// Fifth-order WENO edge values of a cell from the cells i−2 … i+2. Three third-order candidates at each edge
+/// are weighted by (linear weight) × g_k, where g_k depends on the indicators of smoothness β_k (Jiang & Shu,
+/// JCP 126, 1996). Right edge: linear weights (1, 6, 3)/10; left edge by mirror symmetry. Everything is
+/// written with first and second differences, which neighbouring cells share, and the edge as the cell's own
+/// value and a deviation.
+
+/// u_{i−1} − 2u_i + u_{i+1}, and 13/3 of its square.
+template <class N>
+struct bend {
+  N second, square;
+  HWY_INLINE bend(N before, N after) : second(after - before), square(N(13.0 / 3.0) * second * second) {}
+};
+
+/// What the formulas need of the cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} −
+/// u_i, and the second differences at i−1, i and i+1.
+template <class N>
+class window {
+ public:
+  HWY_INLINE window(N a, N b, N c, N d, N e)
+      : here(c),
+        before(c - b),
+        after(d - c),
+        three_before(N(3.0) * before),
+        three_after(N(3.0) * after),
+        bend0(b - a, before),
+        bend1(before, after),
+        bend2(after, e - d),
+        next_(d),
+        last_(e) {}
+
+  /// One cell on; `value` is u_{i+2} of the new cell i.
+  HWY_INLINE void advance(N value) {
+    here = next_;
+    next_ = last_;
+    before = after;
+    after = next_ - here;
+    three_before = three_after;
+    three_after = N(3.0) * after;
+    bend0 = bend1;
+    bend1 = bend2;
+    bend2 = bend<N>(after, value - next_);
+    last_ = value;
+  }
+
+  N here, before, after, three_before, three_after;
+  bend<N> bend0, bend1, bend2;
+
+ private:
+  N next_, last_;
+};
+
+/// 4β_k.
+template <class N>
+struct smoothness {
+  N s0, s1, s2;
+};
+
+template <class N>
+HWY_INLINE smoothness<N> indicators(const window<N>& u) {
+  const N two(2.0), y0 = fma(two, u.before, u.bend0.second), y1 = u.before + u.after,
+                    y2 = negative_fma(two, u.after, u.bend2.second);
+  return {fma(y0, y0, u.bend0.square), fma(y1, y1, u.bend1.square), fma(y2, y2, u.bend2.square)};
+}
+
+/// 4(β_k + δ) times the power of two that brings the largest of them to about 1, and kept above 1e-40:
+/// products of six of these neither overflow nor underflow, whatever the size of the data. Where the data are
+/// so small that only δ is left, all three are equal.
+template <class N>
+HWY_INLINE smoothness<N> scale(const smoothness<N>& s, N delta) {
+  const N by = inverse_power_of_two(maximum(maximum(s.s1, s.s2), s.s0) + delta),
+          least = fma(delta, by, N(1e-40));
+  return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least)};
+}
+
+/// What the edges of a cell need of its window.
+template <class Weights, class N>
+struct measured {
+  N here, before, after, three_before, three_after, second0, second1, second2;
+  smoothness<N> y;
+
+  HWY_INLINE measured(const window<N>& u)
+      : here(u.here),
+        before(u.before),
+        after(u.after),
+        three_before(u.three_before),
+        three_after(u.three_after),
+        second0(u.bend0.second),
+        second1(u.bend1.second),
+        second2(u.bend2.second),
+        y(scale(indicators(u), Weights::delta(u.here))) {}
+};
+
+/// g_k > 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over one common denominator.
+template <class N>
+struct factors {
+  N g0, g1, g2;
+};
+
+/// An edge but for the division, u + numerator/denominator: twice the candidates minus u_i are r₀, q₁/3 and
+/// q₂/3, and their weights g₀, 6g₁ and 3g₂.
+template <class N>
+struct right_fraction {
+  N here, numerator, denominator;
+
+  template <class Weights>
+  HWY_INLINE right_fraction(const measured<Weights, N>& u)
+      : here(u.here), numerator(u.here), denominator(u.here) {
+    const auto g = Weights::factors(u.y);
+    const N r0 = fma(N(2.0 / 3.0), u.second0, u.before), q1 = u.three_after - u.second1,
+            q2 = u.three_after - u.second2;
+    const N twice = g.g1 + g.g1;
+    numerator = fma(g.g2, q2, fma(twice, q1, g.g0 * r0));
+    denominator = fma(N(3.0), twice + g.g2, g.g0);
+  }
+
+  HWY_INLINE N edge() const { return here + numerator / (denominator + denominator); }
+};
+
+/// Both edges with one division; the left one from the mirrored cells, its numerator with the opposite sign.
+template <class N>
+struct both_fractions {
+  N here, right, right_sum, left, left_sum;
+
+  template <class Weights>
+  HWY_INLINE both_fractions(const measured<Weights, N>& u)
+      : here(u.here), right(u.here), right_sum(u.here), left(u.here), left_sum(u.here) {
+    const auto g = Weights::factors(u.y);
+    const N r0 = fma(N(2.0 / 3.0), u.second0, u.before), q1 = u.three_after - u.second1,
+            q2 = u.three_after - u.second2;
+    const N l0 = negative_fma(N(2.0 / 3.0), u.second2, u.after), p1 = u.three_before + u.second1,
+            p2 = u.three_before + u.second0;
+    const N twice = g.g1 + g.g1;
+    right = fma(g.g2, q2, fma(twice, q1, g.g0 * r0));
+    left = fma(g.g0, p2, fma(twice, p1, g.g2 * l0));
+    const N common = fma(N(3.0), twice, g.g0 + g.g2);
+    right_sum = fma(N(2.0), g.g2, common);
+    left_sum = fma(N(2.0), g.g0, common);
+  }
+
+  HWY_INLINE void edges(N& left_edge, N& right_edge) const {
+    const N half = N(0.5) / (right_sum * left_sum);
+    right_edge = fma(right, left_sum * half, here);
+    left_edge = negative_fma(left, right_sum * half, here);
+  }
+};
+
+/// Calls put(fraction, j) for cells 0 … count−1 of the walk. The formulas of a cell are one long chain,
+/// longer than a processor looks ahead; so they are cut in three, and those of three cells are under way at a
+/// time. Rows of neighbouring cells are too far apart for the processor to guess which comes next: it is told
+/// as many cells ahead as memory is slow.
+template <class Weights, template <class> class Fraction, class Walk, class Put>
+HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Put& put) {
+  using N = typename Walk::number;
+  window<N> u(way.load(rows, -2), way.load(rows, -1), way.load(rows, 0), way.load(rows, 1),
+              way.load(rows, 2));
+  measured<Weights, N> newest(u);
+  Fraction<N> waiting(newest);
+  if (count > 1) {
+    u.advance(way.load(rows, 3));
+    newest = measured<Weights, N>(u);
+  }
+  constexpr int cells_ahead = 16;
+  for (int j = 2; j < count; ++j) {
+    way.prefetch(rows, j + cells_ahead);
+    put(waiting, j - 2);
+    waiting = Fraction<N>(newest);
+    u.advance(way.load(rows, j + 2));
+    newest = measured<Weights, N>(u);
+  }
+  if (count > 1) {
+    put(waiting, count - 2);
+    waiting = Fraction<N>(newest);
+  }
+  put(waiting, count - 1);
+}
+
+/// Applies `Weights::factors(window) → factors` along a pencil; see reconstruction::edges for the arguments.
+template <class Weights>
+HWY_INLINE void sweep_edges(const double* const* rows, int count, int width, double* left, double* right) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using D = decltype(lanes);
+    const walk<course::forward, D> way(count, k, nullptr);
+    along<Weights, both_fractions>(way, rows, count, [&](const auto& cell, int j) APSIS_PACKED {
+      pack<D> l(0.0), r(0.0);
+      cell.edges(l, r);
+      way.store(l, left, width, j);
+      way.store(r, right, width, j);
+    });
+  });
+}
+
+/// The same for reconstruction::outflow_edges.
+template <class Weights>
+HWY_INLINE void sweep_outflow(const double* const* rows, int count, int width, const double* forward,
+                              double* edge) {
+  for_walks(forward, count, width, [&](const auto& way, int) APSIS_PACKED {
+    along<Weights, right_fraction>(way, rows, count, [&](const auto& cell, int j) APSIS_PACKED {
+      way.store(cell.edge(), edge, width, j);
+    });
+  });
+}
+
+/// Operations for one number of a long pencil.
+template <class Weights>
+double count_operations(bool both) {
+  const counted x(0.0);
+  window<counted> u(x, x, x, x, x);
+  return counted::operations_of([&] {
+    counted left(0.0), right(0.0);
+    u.advance(x);
+    if (both) {
+      both_fractions<counted>(measured<Weights, counted>(u)).edges(left, right);
+    } else {
+      right_fraction<counted>(measured<Weights, counted>(u)).edge();
+    }
+  });
+}
+
+/// The same, counted once; see reconstruction::operations.
+template <class Weights>
+double operations(bool both) {
+  static const double of_one = count_operations<Weights>(false), of_both = count_operations<Weights>(true);
+  return both ? of_both : of_one;
+}
+
+}  // namespace apsis::HWY_NAMESPACE::weno5
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <apsis/verify/outcome.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// Norms of a difference d over cells and components, with V the volume of a cell (length of a cell, times
+/// that of a velocity cell for kinetic models; 1 without space). Dimensionless.
+enum class error_norm {
+  l1,   ///< Σ |d| V
+  l2,   ///< (Σ d² V)^½
+  linf  ///< max |d|
+};
+
+/// Throws input_error with the nearest name; names are "l1", "l2" and "linf".
+error_norm find_norm(const std::string& name);
+/// The name that find_norm() knows.
+std::string to_string(error_norm norm);
+
+/// Whether results of the two cases can be subtracted: same model, end time, domain, formulation and
+/// velocities (the last only where the full state is compared, `quantity` ""), and a mesh of `reference` that
+/// can be brought onto that of `run`. Throws input_error, with the key that differs.
+void check_comparable(const case_config& run, const case_config& reference, const std::string& quantity);
+
+/// The state of `finer` as the mesh of `run` sees it, [cells][components].
+/// Finite volumes: cell averages of cell averages, exact; the numbers of cells must be multiples. Finite
+/// differences: point values at the centres of the coarse cells, which lie between those of the fine mesh
+/// unless the ratio is odd, by the polynomial through the eight nearest points (eighth order, so that the
+/// fifth order of the scheme is seen; fewer points on meshes that have fewer). Throws input_error.
+std::vector<double> on_mesh_of(const outcome& run, const outcome& finer);
+
+/// Norm of the difference of a run and a state on its mesh; of a macroscopic field if `quantity` names one
+/// (computed from the state on the mesh of the run). Dimensionless. NaN where a value is no number.
+double distance(const outcome& run, const std::vector<double>& state, error_norm norm,
+                const std::string& quantity = "");
+
+/// The same between two runs: distance(run, on_mesh_of(run, finer), …); a macroscopic field may be compared
+/// across velocity grids.
+double distance(const outcome& run, const outcome& finer, error_norm norm, const std::string& quantity = "");
+
+}  // namespace apsis

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/phase/boundary.hpp>
+#include <apsis/phase/field.hpp>
+#include <apsis/phase/grid.hpp>
+#include <apsis/scheme/reconstruction.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace apsis {
+
+/// The space discretisation of a case, face by face, for the limit ε → 0. Written beside the operators of a
+/// run (semidiscrete), of which it uses nothing: only reconstruction, quartic, limiter and ghost cells of the
+/// room space, and moments and equilibrium of the model. Plain and slow. One space dimension, or none.
+class limit_space {
+ public:
+  /// `equation` must outlive this. Throws input_error for an unknown reconstruction or boundary.
+  limit_space(const case_config& config, const relaxation_model& equation);
+
+  /// Cells of the mesh; 1 without space.
+  int cells() const { return mesh_.size(); }
+  /// Unknowns are averages of cells in which the equilibrium varies, so that their equilibrium is a mean over
+  /// Gauss points; otherwise everything happens point by point.
+  bool averages() const { return averages_; }
+
+  /// ω_i = ℛu_i, [cells][moments].
+  field moments(const field& u) const;
+  /// E(ω_i), [cells][components]. Throws numerical_error where ω has no equilibrium.
+  field equilibria(const field& omega) const;
+  /// Π(u)_i = Σ_q w_q E(ℛu(x_q)) with the (limited) quartics u(x) of every component through the averages u;
+  /// only if averages(). ℛΠ(u) = ℛu.
+  field equilibrium_averages(const field& u) const;
+  /// T(u)_i = −(φ_{i+1/2} − φ_{i−1/2})/Δx + S(u_i), φ the upwind fluxes of all components.
+  field transport(const field& u) const;
+
+ private:
+  struct pencil;
+  pencil reconstruct(const field& u) const;
+  void add_divergence(const field& u, field& t) const;
+  double face_value(const pencil& p, int face, std::size_t k, bool ahead) const;
+  double harmless_fraction(const pencil& p, int cell, std::size_t k, bool ahead) const;
+
+  const relaxation_model& equation_;
+  grid mesh_;
+  std::shared_ptr<const reconstruction> scheme_;
+  boundary_kind boundary_ = boundary_kind::periodic;
+  bool has_space_, averages_ = false, limit_edges_ = false, limit_fluxes_ = false;
+};
+
+}  // namespace apsis

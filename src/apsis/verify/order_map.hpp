@@ -1,0 +1,53 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/output/picture.hpp>
+#include <apsis/verify/study_control.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// What halving a step does to an error.
+enum class order_class {
+  design,   ///< at least order p − 0.3
+  reduced,  ///< between
+  plateau,  ///< less than order 0.3: the error stays, or grows
+  unknown   ///< below what the reference can tell
+};
+
+/// Errors of a method on a case over ε and Δt, space discretised once (time_study): where the order of the
+/// method is seen, and where it is lost.
+struct order_map {
+  static constexpr double tolerated_loss = 0.3;  ///< of order, see order_class
+  std::string model,                             ///< model.name
+      method;                                    ///< time.method
+  int order = 0;                                 ///< order p that the method claims
+  std::vector<double> epsilon,                   ///< in the order in which they were given
+      dt;                                        ///< each half of the one before
+  /// [epsilon][dt], largest difference to the exact solution in time.
+  std::vector<std::vector<double>> error;
+
+  /// log2(error(Δt)/error(Δt/2)) for dt[k] and dt[k + 1]; NaN below what the reference can tell.
+  double slope(std::size_t e, std::size_t k) const;
+  /// What slope(e, k) means for the order of the method.
+  order_class kind(std::size_t e, std::size_t k) const;
+  /// Smallest slope of the map; +infinity if none could be measured.
+  double smallest_slope() const;
+  /// Mean slope at epsilon[e] from the largest Δt to the last with a measurable error above `smallest`; NaN
+  /// if there is none.
+  double coarse_slope(std::size_t e, double smallest) const;
+  /// Mean of the last two measurable slopes at epsilon[e].
+  double fine_slope(std::size_t e) const;
+  /// Slopes over (Δt, ε).
+  panel map() const;
+};
+
+/// Maps of the methods for a case: end/2^coarsest ≥ Δt ≥ end/2^finest. ε, method and step of the case are not
+/// used. Throws what time_study throws.
+std::vector<order_map> measure_order_maps(const case_config& config, const std::vector<std::string>& methods,
+                                          const std::vector<double>& epsilons, int coarsest, int finest,
+                                          const study_control& control = {});
+
+}  // namespace apsis

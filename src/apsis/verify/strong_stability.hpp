@@ -1,0 +1,153 @@
+#pragma once
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/stepper.hpp>
+#include <apsis/method/certificate.hpp>
+#include <apsis/verify/step_search.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+
+/// Something that a step from `before` to `after` should keep. `excess` says by how much it does not, beyond
+/// rounding: ≤ 0 where it is kept; NaN counts as lost. Dimensionless.
+template <class State>
+struct kept_property {
+  std::string name;  ///< "total variation"
+  /// By how much a step does not keep it; ≤ 0 where it does.
+  std::function<double(const State& before, const State& after)> excess;
+};
+
+/// A convex functional Φ that must not grow: Φ(after) ≤ Φ(before) + rounding (1 + |Φ(before)|).
+template <class State>
+kept_property<State> does_not_grow(std::string name, std::function<double(const State&)> functional,
+                                   double rounding = 1e-13) {
+  return {std::move(name),
+          [functional = std::move(functional), rounding](const State& before, const State& after) {
+            const double start = functional(before);
+            return functional(after) - start - rounding * (1.0 + std::abs(start));
+          }};
+}
+
+/// Membership of a convex set, given by how far a state is outside (≤ 0 inside): max(0, distance) ≤ rounding.
+template <class State>
+kept_property<State> stays_inside(std::string name, std::function<double(const State&)> distance,
+                                  double rounding = 0.0) {
+  return {std::move(name), [distance = std::move(distance), rounding](const State&, const State& after) {
+            return distance(after) - rounding;
+          }};
+}
+
+/// r such that Δt ≤ r Δt_FE keeps what forward Euler steps keep, from the certificate: of the transport for
+/// IMEX methods, of T + Q for explicit ones. Implicit methods: infinity if every step does, otherwise the
+/// classical radius, which counts forward Euler steps of Q.
+double promised_coefficient(const certificate& c);
+
+/// A problem whose stages are looked at: `look(u)` is called with every stage value.
+template <problem P>
+class watched_problem {
+ public:
+  using state = typename P::state;  ///< state of the problem
+  using real = typename P::real;    ///< number type of the problem
+  /// Accumulators of add_transport().
+  using targets_type = std::span<const target<state, real>>;
+
+  /// `inner` must outlive this.
+  watched_problem(P& inner, std::function<void(const state&)> look) : inner_(inner), look_(std::move(look)) {}
+
+  /// As the problem does it; u is looked at where T(u) is wanted.
+  void add_transport(real t, const state& u, targets_type targets) {
+    // Where only multiples of u are asked for, it may be the explicit part of a stage.
+    for (const auto& to : targets)
+      if (to.beta != real(0)) {
+        look_(u);
+        break;
+      }
+    inner_.add_transport(t, u, targets);
+  }
+  /// As the problem does it; the solution is looked at.
+  void solve_collision(real t, real a, real b, state& u) {
+    inner_.solve_collision(t, a, b, u);
+    look_(u);
+  }
+  /// As the problem does it.
+  void add_collision(real t, const state& u, targets_type targets)
+    requires problem_with_explicit_collision<P>
+  {
+    inner_.add_collision(t, u, targets);
+  }
+  /// Δt_FE of the problem.
+  real forward_euler_step(real t, const state& u) const { return inner_.forward_euler_step(t, u); }
+
+ private:
+  P& inner_;
+  std::function<void(const state&)> look_;
+};
+
+/// The largest Δt for which a method keeps a property in every one of `how.steps` steps from all of the data,
+/// in units of Δt_FE (the smallest of the data; `how.unit` where T sets none). Methods with SSP coefficient r
+/// keep what forward Euler steps keep for Δt ≤ r Δt_FE, so a smaller result refutes the method, the property
+/// or Δt_FE; a larger one says that the data are not the worst. A step that ends with a numerical_error loses
+/// the property. Throws input_error if there are no data, or no unit.
+template <problem P>
+step_limit largest_step(const method& m, P& equation, std::span<const typename P::state> data,
+                        const kept_property<typename P::state>& property, const step_search& how = {}) {
+  using state = typename P::state;
+  using real = typename P::real;
+  double unit = std::numeric_limits<double>::infinity();
+  for (const state& u : data)
+    unit = std::min(unit, static_cast<double>(equation.forward_euler_step(real(0), u)));
+  const state* before = nullptr;
+  double excess = 0.0;
+  const auto judge = [&](const state& after) {
+    const double found = property.excess(*before, after);
+    if (!(found <= excess)) excess = found;
+  };
+  watched_problem<P> watched(equation, [&](const state& stage) {
+    if (how.stages) judge(stage);
+  });
+  stepper march(m, watched);
+  return search_step(data.size(), unit, how, [&](std::size_t k, double dt) {
+    state u = data[k], previous = u;
+    before = &previous;
+    excess = 0.0;
+    try {
+      for (int n = 0; n < how.steps && excess <= 0.0; ++n) {
+        previous = u;
+        march.step(real(n) * real(dt), real(dt), u);
+        judge(u);
+      }
+    } catch (const numerical_error&) {
+      return std::numeric_limits<double>::infinity();
+    }
+    return excess;
+  });
+}
+
+/// The largest τ for which u + τ T(u) keeps the property from all of the data: what Δt_FE may be at most. In
+/// units of the problem's own Δt_FE: below 1 its promise is wrong. Throws as largest_step.
+template <problem P>
+step_limit largest_forward_euler_step(P& equation, std::span<const typename P::state> data,
+                                      const kept_property<typename P::state>& property,
+                                      const step_search& how = {}) {
+  using state = typename P::state;
+  using real = typename P::real;
+  double unit = std::numeric_limits<double>::infinity();
+  for (const state& u : data)
+    unit = std::min(unit, static_cast<double>(equation.forward_euler_step(real(0), u)));
+  return search_step(data.size(), unit, how, [&](std::size_t k, double dt) {
+    state after = data[k];
+    const target<state, real> to{&after, real(1), real(dt), true};
+    equation.add_transport(real(0), data[k], std::span(&to, 1));
+    return property.excess(data[k], after);
+  });
+}
+
+}  // namespace apsis

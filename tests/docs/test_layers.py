@@ -1,0 +1,54 @@
+"""The rooms of src/apsis include only the rooms below them, and a planted violation of each kind is found."""
+import shutil
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / "scripts"))
+import check_layers  # noqa: E402
+
+
+class Layers(unittest.TestCase):
+    def test_no_room_includes_one_above_it(self):
+        self.assertEqual(check_layers.violations(SOURCE), [])
+
+    def test_the_order_of_the_rooms_is_that_of_the_data(self):
+        rooms = check_layers.read_rooms((SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8"))
+        self.assertEqual(rooms["core"], set())
+        self.assertEqual(rooms["integrate"], {"core", "method"})
+        for room in ("method", "integrate", "model", "phase", "scheme"):
+            self.assertFalse(rooms[room] & {"semidiscrete", "config", "output", "run", "verify"}, room)
+        self.assertIn("semidiscrete", rooms["run"])
+
+    def planted(self, file, text):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            shutil.copytree(SOURCE / "src", root / "src")
+            (root / "paper").mkdir()
+            (root / "paper/claim.hpp").touch()
+            path = root / file
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+            return check_layers.violations(root)
+
+    def test_a_planted_violation_is_found_with_its_place(self):
+        self.assertEqual(self.planted("src/apsis/method/planted.hpp", "#pragma once\n#include <apsis/run/setup.hpp>\n"),
+                         ["src/apsis/method/planted.hpp:2: method includes run (apsis/run/setup.hpp)"])
+        self.assertEqual(self.planted("src/apsis/phase/planted.cpp", '#include "apsis/model/model.hpp"\n'),
+                         ["src/apsis/phase/planted.cpp:1: phase includes model (apsis/model/model.hpp)"])
+        self.assertEqual(self.planted("src/apsis/verify/planted.cpp", "#include <paper/claim.hpp>\n"),
+                         ["src/apsis/verify/planted.cpp:1: verify includes paper/claim.hpp (above the library)"])
+
+    def test_a_room_that_cmake_does_not_know_is_found(self):
+        self.assertEqual(self.planted("src/apsis/attic/planted.hpp", "#pragma once\n"),
+                         ["src/apsis/attic: is no room of src/apsis/CMakeLists.txt"])
+
+    def test_a_readme_that_promises_something_else_is_found(self):
+        found = self.planted("src/apsis/method/README.md", "# method\nMay include `core` and `run`.\n")
+        self.assertEqual(found, ["src/apsis/method/README.md: says that it may include ['core', 'run'] (CMake allows ['core'])"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,85 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/phase/boundary.hpp>
+#include <apsis/phase/field.hpp>
+#include <apsis/phase/grid.hpp>
+#include <apsis/scheme/quartic.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <support/property.hpp>
+
+TEST(grid, pencils_of_every_direction_visit_every_cell_once) {
+  const apsis::grid mesh(3, {3, 4, 5}, {0, 0, 0}, {1, 2, 3});
+  for (int direction = 0; direction < 3; ++direction) {
+    std::set<int> seen;
+    for (int p = 0; p < mesh.pencils(direction); ++p)
+      for (int i = 0; i < mesh.cells(direction); ++i) {
+        const int cell = mesh.first_cell(direction, p) + i * mesh.stride(direction);
+        EXPECT_TRUE(seen.insert(cell).second);
+        // The coordinate along the direction is that of the i-th cell.
+        EXPECT_DOUBLE_EQ(mesh.centre(cell, direction), mesh.spacing(direction) * (i + 0.5));
+      }
+    EXPECT_EQ(static_cast<int>(seen.size()), mesh.size());
+  }
+}
+
+TEST(grid, refuses_what_is_no_mesh) {
+  EXPECT_THROW(apsis::grid::line(0, 0.0, 1.0), apsis::input_error);
+  EXPECT_THROW(apsis::grid::line(4, 1.0, 1.0), apsis::input_error);
+  EXPECT_THROW(apsis::grid::line(4, 0.0, std::numeric_limits<double>::infinity()), apsis::input_error);
+}
+
+TEST(boundary, periodic_ghosts_wrap_even_when_wider_than_the_mesh) {
+  const auto mesh = apsis::grid::line(3, 0.0, 1.0);
+  apsis::field u(3, 1);
+  std::vector<const double*> rows;
+  apsis::pencil_rows(u, mesh, 0, 0, apsis::boundary_kind::periodic, -4, 7, rows);
+  for (int i = -4; i < 7; ++i) EXPECT_EQ(rows[static_cast<std::size_t>(i + 4)], u.row(((i % 3) + 3) % 3));
+}
+
+TEST(boundary, outflow_ghosts_repeat_the_nearest_cell_inside) {
+  const auto mesh = apsis::grid::line(3, 0.0, 1.0);
+  apsis::field u(3, 1);
+  std::vector<const double*> rows;
+  apsis::pencil_rows(u, mesh, 0, 0, apsis::boundary_kind::outflow, -4, 7, rows);
+  const std::vector<int> inside = {0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2};
+  for (std::size_t k = 0; k < rows.size(); ++k) EXPECT_EQ(rows[k], u.row(inside[k])) << k;
+}
+
+TEST(boundary, every_name_is_found_and_a_wrong_one_is_an_input_error) {
+  for (const auto& name : apsis::boundary_names()) EXPECT_NO_THROW(apsis::find_boundary(name)) << name;
+  EXPECT_THROW(apsis::find_boundary("outfow"), apsis::input_error);
+}
+
+TEST(field, rows_of_a_kinetic_field_start_on_cache_lines) {
+  apsis::field u(7, 150);
+  for (int cell = 0; cell < 7; ++cell) EXPECT_EQ(reinterpret_cast<std::uintptr_t>(u.row(cell)) % 64, 0u);
+}
+
+TEST(quartic, meets_its_five_conditions_and_gauss_integrates_it) {
+  check_property("conditions", [] {
+    const auto number = [] { return *rc::gen::inRange(-1000, 1000) * 1e-3; };
+    const double m = number(), c = number(), p = number(), l = number(), r = number();
+    const apsis::quartic q(m, c, p, l, r);
+    // Averages over [a, a+1] by the antiderivative.
+    const auto average = [&q](double a) {
+      const auto primitive = [&q](double x) {
+        return x * (q.c + q.d0 + x * (q.d1 / 2 + x * (q.d2 / 3 + x * (q.d3 / 4 + x * q.d4 / 5))));
+      };
+      return primitive(a + 1.0) - primitive(a);
+    };
+    const double rounding = 1e-13;  // about 20 operations with coefficients up to 10
+    RC_ASSERT(std::abs(q(-0.5) - l) < rounding);
+    RC_ASSERT(std::abs(q(0.5) - r) < rounding);
+    RC_ASSERT(std::abs(average(-1.5) - m) < rounding);
+    RC_ASSERT(std::abs(average(-0.5) - c) < rounding);
+    RC_ASSERT(std::abs(average(0.5) - p) < rounding);
+    double gauss = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) gauss += apsis::gauss3::weight[k] * q(apsis::gauss3::xi[k]);
+    RC_ASSERT(std::abs(gauss - c) < rounding);
+  });
+}

@@ -1,0 +1,149 @@
+// Kernels of every instruction set against the formulas as they are in the literature, one number at a time.
+#include <apsis/core/random_source.hpp>
+#include <apsis/exec/aligned.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <support/instruction_sets.hpp>
+
+namespace {
+
+using apsis::aligned_vector;
+using stencil5 = std::array<long double, 5>;
+
+/// Jiang & Shu 1996, (2.16) and (2.17).
+std::array<long double, 3> indicators(const stencil5& u) {
+  const auto [a, b, c, d, e] = u;
+  const auto square = [](long double x) { return x * x; };
+  return {13.0L / 12 * square(a - 2 * b + c) + 0.25L * square(a - 4 * b + 3 * c),
+          13.0L / 12 * square(b - 2 * c + d) + 0.25L * square(b - d),
+          13.0L / 12 * square(c - 2 * d + e) + 0.25L * square(3 * c - 4 * d + e)};
+}
+
+/// Value at the right edge with weights (linear weight) × g(k, β).
+long double right_edge(const stencil5& u, const std::function<long double(std::size_t)>& g) {
+  const auto [a, b, c, d, e] = u;
+  const std::array<long double, 3> linear = {0.1L, 0.6L, 0.3L};
+  const std::array<long double, 3> candidate = {(2 * a - 7 * b + 11 * c) / 6, (-b + 5 * c + 2 * d) / 6,
+                                                (2 * c + 5 * d - e) / 6};
+  long double sum = 0, weights = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum += linear[k] * g(k) * candidate[k];
+    weights += linear[k] * g(k);
+  }
+  return sum / weights;
+}
+
+/// What a kernel may give, which has the indicators with some rounding errors.
+struct expected {
+  double value, uncertainty;
+};
+
+expected jiang_shu(const stencil5& u) {
+  const auto beta = indicators(u);
+  const auto value =
+      right_edge(u, [&](std::size_t k) { return 1 / ((beta[k] + 1e-6L) * (beta[k] + 1e-6L)); });
+  return {static_cast<double>(value), 0.0};
+}
+
+/// τ is a difference, in which the rounding of β₀ and β₂ may be all that is left.
+expected borges(const stencil5& u) {
+  const auto beta = indicators(u);
+  const long double delta = 1e-200L + 1e-6L * u[2] * u[2];
+  const auto with = [&](long double tau) {
+    return right_edge(u, [&](std::size_t k) { return 1 + std::pow(tau / (beta[k] + delta), 2.0L); });
+  };
+  const long double tau = std::abs(beta[0] - beta[2]), lost = 1e-15L * (beta[0] + beta[2]);
+  return {static_cast<double>(with(tau)), static_cast<double>(std::abs(with(tau + lost) - with(tau)))};
+}
+
+/// Rows of a velocity distribution, its tails below 1e-150 included, disturbed, with zeros and single spikes.
+struct pencil {
+  int width, cells, ghosts;
+  aligned_vector<double> u;
+  std::vector<const double*> rows;
+};
+
+pencil draw(int width, int cells, int ghosts, std::uint64_t seed) {
+  pencil p{width, cells, ghosts, {}, {}};
+  apsis::random_source random(seed);
+  for (int i = 0; i < cells + 2 * ghosts; ++i)
+    for (int k = 0; k < width; ++k) {
+      const double v = 40.0 * (k + 0.5) / width - 20.0, x = 0.2 * i;
+      double value = (1.0 + 0.2 * std::sin(x)) * std::exp(-v * v);
+      const double kind = random.uniform(0.0, 1.0);
+      if (kind < 0.1) value = 0.0;
+      if (kind > 0.98) value = 1e3;
+      if (kind > 0.5 && kind < 0.9) value *= random.uniform(0.0, 2.0);
+      p.u.push_back(value);
+    }
+  for (int i = 0; i < cells + 2 * ghosts; ++i) p.rows.push_back(p.u.data() + i * width);
+  return p;
+}
+
+/// Cells i−2 … i+2 of component k.
+stencil5 around(const pencil& p, int i, int k) {
+  stencil5 u{};
+  for (int j = -2; j <= 2; ++j)
+    u[static_cast<std::size_t>(j + 2)] = p.rows[static_cast<std::size_t>(i + p.ghosts + j)][k];
+  return u;
+}
+
+stencil5 mirrored(stencil5 u) {
+  std::swap(u[0], u[4]);
+  std::swap(u[1], u[3]);
+  return u;
+}
+
+/// A relative error of some rounding errors in β moves an edge by that much of the largest value around. The
+/// floor of β at 1e-40 of the largest is far below that.
+constexpr double rounding = 2e-14;
+
+void expect_edges(const std::string& name, expected (*formula)(const stencil5&), int width) {
+  const auto scheme = apsis::find_reconstruction(name)->make();
+  const pencil p = draw(width, 20, scheme->ghost_width(), static_cast<std::uint64_t>(width));
+  const auto count = static_cast<std::size_t>(p.cells * width);
+  aligned_vector<double> left(count), right(count), out(count), forward;
+  for (int k = 0; k < width; ++k) forward.push_back(k % 3 == 0 ? 0.0 : 1.0);
+  scheme->edges(p.rows.data() + p.ghosts, p.cells, width, left.data(), right.data());
+  scheme->outflow_edges(p.rows.data() + p.ghosts, p.cells, width, forward.data(), out.data());
+  for (int i = 0; i < p.cells; ++i)
+    for (int k = 0; k < width; ++k) {
+      const auto at = static_cast<std::size_t>(i * width + k);
+      const auto u = around(p, i, k);
+      double size = 0.0;
+      for (const auto x : u) size = std::max(size, static_cast<double>(x));
+      const auto expect_near = [&](double edge, const expected& from) {
+        ASSERT_NEAR(edge, from.value, rounding * size + 2.0 * from.uncertainty)
+            << name << " " << testing::PrintToString(u);
+      };
+      const expected l = formula(mirrored(u)), r = formula(u);
+      expect_near(left[at], l);
+      expect_near(right[at], r);
+      expect_near(out[at], k % 3 == 0 ? l : r);
+    }
+}
+
+}  // namespace
+
+TEST(kernels, edges_are_those_of_the_literature_in_every_instruction_set) {
+  for_each_instruction_set([] {
+    for (const int width : {1, 3, 8, 40, 152}) {
+      expect_edges("weno5-z", borges, width);
+      expect_edges("weno5-js", jiang_shu, width);
+    }
+  });
+}
+
+/// Steps of one run use either; the limiter of fluxes sees the same edges as that of averages.
+TEST(kernels, the_plain_architecture_and_at_least_one_other_are_tested) {
+  int sets = 0;
+  for_each_instruction_set([&sets] { ++sets; });
+  EXPECT_GE(sets, 2);
+}

@@ -1,0 +1,34 @@
+// A study that is asked to stop: within a step, with the runs that are finished.
+#include <apsis/exec/parallel.hpp>
+#include <apsis/verify/convergence.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace apsis;
+
+TEST(interrupted_convergence, stops_between_steps_and_keeps_the_runs_that_are_finished) {
+  set_threads(1);
+  convergence study({.case_name = "paper/ode",
+                     .vary = {parse_vary("time.dt=1/16..1/64")},
+                     .reference = parse_reference("time.dt=1/128")});
+  // The longest run comes first. It has 128 steps, the next one 64 (to t = 1): asked before each run and each
+  // step, the study stops within the second one.
+  int asked = 0;
+  study_control control;
+  control.stop = [&asked] { return ++asked > 128 + 32; };
+  const long runs = study.table().runs;
+  EXPECT_THROW(study.run(control), study_interrupted);
+  EXPECT_EQ(study.finished_runs(), 1);
+  EXPECT_FALSE(study.table().complete);
+  // What is left is computed by the next call; the result is that of a study that was never stopped.
+  study.run();
+  EXPECT_EQ(study.finished_runs(), runs);
+  const convergence_table table = study.table();
+  EXPECT_TRUE(table.complete);
+  convergence whole({.case_name = "paper/ode",
+                     .vary = {parse_vary("time.dt=1/16..1/64")},
+                     .reference = parse_reference("time.dt=1/128")});
+  whole.run();
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_EQ(table.blocks[0].rows[k].error, whole.table().blocks[0].rows[k].error);
+}

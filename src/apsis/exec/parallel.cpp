@@ -105,9 +105,10 @@ int part_blocks::begin(int block) const {
   const int part = block / per_part(), i = block % per_part();
   if (part == parts_) return n_;
   const int whole = std::min(i, whole_ - 1);
-  const long at = 8L * whole + eighths[i - whole];
   const auto first = [this](int p) { return static_cast<int>(static_cast<long>(n_) * p / parts_); };
-  return first(part) + static_cast<int>((first(part + 1) - first(part)) * at / (8L * whole_));
+  const long cells = first(part + 1) - first(part);
+  // cells (8 whole + eighths)/(8 whole_), in an order in which no product leaves 64 bits.
+  return first(part) + static_cast<int>((cells * whole + cells * eighths[i - whole] / 8) / whole_);
 }
 
 void run_parallel_tasks(int n, numbered_job body) {

@@ -41,7 +41,7 @@ class recording final : public apsis::boundary {
       ghost[1] = where.direction + (where.upper ? 0.5 : 0.0);
       ghost[2] = static_cast<double>(g);
       ghost[3] = rows.inside[0][0];  // of the cell at the face
-      for (int k = 0; k < 3; ++k) ghost[4 + k] = rows.position[static_cast<std::size_t>(k)];
+      for (int k = 0; k < 3; ++k) ghost[4 + k] = rows.at[static_cast<std::size_t>(k)];
     }
   }
 };

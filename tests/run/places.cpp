@@ -35,7 +35,7 @@ TEST(places, of_what_the_mesh_the_velocity_grid_or_the_method_cannot_do) {
     EXPECT_EQ(message.substr(0, start.size()), start) << message;
   };
   starts(complaint(deck("4", good_velocity, "1.0", good_time)),
-         "my.toml:5:1: space.cells = 4 is smaller than the");
+         "my.toml:5:1: space.cells: a mesh of 4 cells is smaller than the");
   starts(complaint(deck("20", "max = 2\npoints = 36", "1.0", good_time)),
          "my.toml:8:1: velocity.max = 2 is too small");
   starts(complaint(deck("20", "max = 20\npoints = 12", "1.0", good_time)),

@@ -113,7 +113,8 @@ TEST(relaxation, refuses_at_the_key_what_the_data_forbid) {
   EXPECT_EQ(
       complaint({"model.flux=log(u - 0.2)"}).rfind("override 'model.flux=log(u - 0.2)': model.flux = ", 0),
       0U);
-  EXPECT_NE(complaint({"space.limiter=positivity"}).find("its unknowns may be negative"), std::string::npos);
+  EXPECT_NE(complaint({"space.limiter=positivity"}).find("unknowns of the model may be negative"),
+            std::string::npos);
 }
 
 TEST(relaxation, ends_named_one_by_one_are_those_of_one_name) {

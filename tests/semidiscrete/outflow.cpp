@@ -47,9 +47,9 @@ TEST(outflow, collisions_in_cells_keep_any_data_nonnegative) {
   check_property("any strength", [&] {
     field u = random_rows(mesh, 3);
     const double epsilon = std::pow(10.0, *rc::gen::inRange(-12, 3));
-    const auto q = apsis::make_cell_average_collision(
-        *m, space_of(mesh, "outflow"), scheme("weno5-z", limiter_kind::edges),
-        std::vector<double>(21, epsilon));
+    const auto q = apsis::make_cell_average_collision(*m, space_of(mesh, "outflow"),
+                                                      scheme("weno5-z", limiter_kind::edges),
+                                                      std::vector<double>(21, epsilon));
     q->solve(0.0, *rc::gen::element(0.0, 0.1), -*rc::gen::element(0.0, 0.1), u);
     RC_ASSERT(smallest(u) >= 0.0);
   });

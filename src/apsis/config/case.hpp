@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/phase/domain.hpp>
+#include <apsis/scheme/formulation.hpp>
 
 #include <array>
 #include <map>
@@ -12,12 +13,6 @@
 #include <vector>
 
 namespace apsis {
-
-/// What the numbers of a cell are.
-enum class formulation {
-  finite_volume,     ///< averages over the cell
-  finite_difference  ///< values at its centre
-};
 
 /// A case as resolved: every key has its value, every name exists. What the keys mean is documented once,
 /// in case_schema.cpp (`apsis show case`).

@@ -1,5 +1,6 @@
 #include <apsis/model/model_registry.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -7,6 +8,12 @@ namespace apsis {
 
 std::span<const double> model::speeds(int) const {
   return {};
+}
+
+double model::reference_speed(int direction) const {
+  double fastest = 0.0;
+  for (const double v : speeds(direction)) fastest = std::max(fastest, std::abs(v));
+  return fastest;
 }
 
 void model::source(const double*, double* s) const {

@@ -43,6 +43,9 @@ class model {
   virtual int space_dimensions() const = 0;
   /// Transport speed of every component along a direction; empty without space.
   virtual std::span<const double> speeds(int direction) const;
+  /// v of the CFL number v Δt/Δx along a direction: the largest |speed| where a model says nothing else; 0
+  /// without space.
+  virtual double reference_speed(int direction) const;
 
   /// Whether S(u) is not 0 everywhere.
   virtual bool has_source() const { return false; }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <array>
+#include <apsis/phase/grid.hpp>
+
 #include <optional>
 #include <span>
 
@@ -17,7 +18,7 @@ struct pencil_end {
   std::span<const double* const> inside;  ///< of all cells of the pencil, counted inwards from the face
   std::span<double* const> ghosts;        ///< to be filled, counted outwards from the face
   int components = 0;                     ///< numbers of a row
-  std::array<double, 3> position{};       ///< where the pencil meets the face
+  position at{};                          ///< where the pencil meets the face
 };
 
 /// What lies beyond a face of the domain. Transport and collision see it through ghost rows only.

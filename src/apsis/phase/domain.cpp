@@ -72,10 +72,9 @@ void domain::reserve(int components, int width) {
   width_ = std::max(width, width_);
 }
 
-std::array<double, 3> domain::position(const face& where, int pencil) const {
-  const int cell = mesh_.first_cell(where.direction, pencil);
-  std::array<double, 3> x{};
-  for (int k = 0; k < mesh_.dimensions(); ++k) x[at(k)] = mesh_.centre(cell, k);
+/// Where a pencil meets a face.
+position domain::meeting_point(const face& where, int pencil) const {
+  position x = mesh_.centre(mesh_.first_cell(where.direction, pencil));
   double& along = x[at(where.direction)];
   along -= 0.5 * mesh_.spacing(where.direction);
   if (where.upper) along += mesh_.spacing(where.direction) * mesh_.cells(where.direction);
@@ -93,7 +92,7 @@ void domain::fill_face(const face& where, double t, const field& u) {
       const int first = mesh_.first_cell(where.direction, pencil);
       for (int k = 0; k < n; ++k) inside[at(k)] = u.row(first + (where.upper ? n - 1 - k : k) * stride);
       for (int g = 0; g < width_; ++g) beyond[at(g)] = rows.row(pencil * width_ + g);
-      side(where).fill(where, t, {inside, beyond, u.components(), position(where, pencil)});
+      side(where).fill(where, t, {inside, beyond, u.components(), meeting_point(where, pencil)});
     }
   });
 }

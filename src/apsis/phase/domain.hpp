@@ -49,7 +49,7 @@ class domain {
   bool repeats(const face& where) const;
   const double* ghost_row(const field& u, const face& where, int pencil, int ghost) const;
   void fill_face(const face& where, double t, const field& u);
-  std::array<double, 3> position(const face& where, int pencil) const;
+  position meeting_point(const face& where, int pencil) const;
 
   grid mesh_;
   std::vector<faces> sides_;

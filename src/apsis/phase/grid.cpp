@@ -42,6 +42,12 @@ double grid::centre(int cell, int direction) const {
   return lower_[at(direction)] + spacing(direction) * (i + 0.5);
 }
 
+position grid::centre(int cell) const {
+  position x{};
+  for (int k = 0; k < dimensions_; ++k) x[at(k)] = centre(cell, k);
+  return x;
+}
+
 int grid::stride(int direction) const {
   int stride = 1;
   for (int k = 2; k > direction; --k) stride *= cells(k);

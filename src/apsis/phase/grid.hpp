@@ -7,6 +7,9 @@
 
 namespace apsis {
 
+/// A point of space; coordinates beyond the dimensions of the mesh are 0.
+using position = std::array<double, 3>;
+
 /// Uniform cells on a box in D = 1, 2 or 3 dimensions, the last direction fastest. Unused directions have one
 /// cell. Dimensionless lengths.
 class grid {
@@ -27,6 +30,8 @@ class grid {
   double cell_volume() const;                                              ///< product of the D spacings
   /// Centre of cell number `cell` along `direction`.
   double centre(int cell, int direction) const;
+  /// Centre of cell number `cell`.
+  position centre(int cell) const;
   /// Distance in cell numbers between neighbours along `direction`.
   int stride(int direction) const;
 

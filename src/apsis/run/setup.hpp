@@ -4,17 +4,16 @@
 #include <apsis/method/method.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/run/simulation.hpp>
-#include <apsis/semidiscrete/semidiscrete_problem.hpp>
+#include <apsis/semidiscrete/problem_builder.hpp>
 
-#include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace apsis {
 
-/// Everything that a case names, made and checked against each other before the first step.
+/// Everything that a case names, made and checked against each other before the first step: names and numbers
+/// of the case become calls of a problem_builder.
 class run_setup {
  public:
   /// Throws input_error: mesh smaller than the stencil, method that cannot integrate the model, epsilon(x)
@@ -30,7 +29,7 @@ class run_setup {
   /// r of Δt ≤ r Δt_FE; 0 if the method has none.
   double ssp_coefficient() const { return ssp_coefficient_; }
 
-  /// T and Q on the mesh of the case. Refers to this setup, which must outlive it.
+  /// T and Q on the mesh of the case. Refers to the model of this setup, which must outlive it.
   std::unique_ptr<semidiscrete_problem> make_problem() const;
   /// Cell averages (finite volume) or point values (finite difference) of the named initial data. Throws
   /// input_error where the velocity grid cannot hold them.
@@ -41,13 +40,13 @@ class run_setup {
   bool has_exact_state() const { return static_cast<bool>(data().exact); }
 
   /// Whether the model has a mesh; without one there is a single cell.
-  bool has_space() const { return equation->space_dimensions() > 0; }
+  bool has_space() const { return builder_.has_space(); }
   /// Δx, or 1 without space.
-  double cell_volume() const { return has_space() ? mesh().cell_volume() : 1.0; }
+  double cell_volume() const { return has_space() ? builder_.mesh().cell_volume() : 1.0; }
   /// x of the cell centres; {0} without space.
   std::vector<double> centres() const;
   /// ε(x) at the cell centres.
-  std::vector<double> epsilon_at_centres() const;
+  std::vector<double> epsilon_at_centres() const { return builder_.epsilon_at_centres(); }
   /// dt if it was given as a number and every step is that long.
   std::optional<double> given_dt() const { return has_tolerance() ? std::nullopt : config_.time.dt; }
   /// Whether the steps keep time.tolerance.
@@ -66,24 +65,15 @@ class run_setup {
                        bool exact_equilibrium) const;
 
  private:
-  const grid& mesh() const { return space_->mesh(); }
-  bool first_order() const { return how_.scheme && how_.scheme->order() == 1; }
-  /// Whether steps within r Δt_FE keep nonnegative data so.
-  bool keeps_sign() const { return how_.positivity != limiter_kind::none || first_order() || !has_space(); }
-  /// Collision on the averages themselves: point values, or first order, where the quartic would be too much.
-  bool pointwise() const;
   const initial_data& data() const;
-  field sampled(const std::function<void(double x, std::span<double> u)>& point_value,
-                const std::vector<double>& jumps) const;
-  std::vector<double> epsilon_on(const std::vector<double>& x) const;
+  void build_space();
+  void set_epsilon();
   void check_method();
   void check_startup() const;
   void check_tolerance() const;
-  void choose_stencil();
 
   case_config config_;
-  std::shared_ptr<domain> space_;
-  stencil how_;
+  problem_builder builder_;
   const method* method_ = nullptr;
   double ssp_coefficient_ = 0.0;
 };

@@ -30,6 +30,8 @@ class bgk_model final : public relaxation_model {
   int components() const override { return grid_.size(); }
   int space_dimensions() const override { return 1; }
   std::span<const double> speeds(int direction) const override { return grid_.component(direction); }
+  /// The end of the velocity grid, half an interval beyond its last point.
+  double reference_speed(int) const override { return grid_.max(); }
   bool positive() const override { return true; }
 
   int moment_count() const override { return grid_.dimensions() + 2; }

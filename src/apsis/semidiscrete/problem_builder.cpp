@@ -1,0 +1,177 @@
+#include <apsis/semidiscrete/problem_builder.hpp>
+
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/scheme/quartic.hpp>
+#include <apsis/semidiscrete/newton_collision.hpp>
+
+#include <cmath>
+#include <utility>
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+struct interval {
+  double centre, half;
+};
+
+/// The cell cut at the jumps that lie in it; the cell itself where there are none. A jump on an edge, up to
+/// rounding, cuts nothing.
+std::vector<interval> smooth_parts(const std::vector<double>& jumps, double centre, double half) {
+  std::vector<double> ends = {centre - half};
+  for (const double jump : jumps)  // in increasing order
+    if (std::abs(jump - centre) < (1.0 - 1e-9) * half) ends.push_back(jump);
+  if (ends.size() == 1) return {{centre, half}};
+  ends.push_back(centre + half);
+  std::vector<interval> parts;
+  for (std::size_t k = 1; k < ends.size(); ++k)
+    parts.push_back({0.5 * (ends[k - 1] + ends[k]), 0.5 * (ends[k] - ends[k - 1])});
+  return parts;
+}
+
+}  // namespace
+
+problem_builder::problem_builder(const model& equation)
+    : equation_(&equation), mesh_(grid::line(1, 0.0, 1.0)), epsilon_([](const position&) { return 1.0; }) {}
+
+problem_builder& problem_builder::on(const grid& mesh) {
+  if (mesh.dimensions() != equation_->space_dimensions())
+    throw input_error(fmt::format("a mesh of {} dimensions (the model has {}); give one of {}",
+                                  mesh.dimensions(), equation_->space_dimensions(),
+                                  equation_->space_dimensions()));
+  mesh_ = mesh;
+  const auto periodic = make_boundary("periodic");
+  sides_.assign(static_cast<std::size_t>(mesh.dimensions()), {periodic, periodic});
+  return *this;
+}
+
+problem_builder& problem_builder::with_boundary(const face& where, std::shared_ptr<const boundary> side) {
+  if (where.direction < 0 || static_cast<std::size_t>(where.direction) >= sides_.size())
+    throw input_error(fmt::format("no face in direction {} (the mesh has {} dimensions); call on() first",
+                                  where.direction + 1, sides_.size()));
+  sides_[static_cast<std::size_t>(where.direction)][where.upper ? 1 : 0] = std::move(side);
+  return *this;
+}
+
+problem_builder& problem_builder::with_reconstruction(std::shared_ptr<const reconstruction> scheme) {
+  const int needed = 2 * scheme->ghost_width() + 1;
+  for (int direction = 0; direction < mesh_.dimensions(); ++direction)
+    if (mesh_.cells(direction) < needed)
+      throw input_error(
+          fmt::format("a mesh of {} cells is smaller than the stencil ({} cells); give at least {}",
+                      mesh_.cells(direction), needed, needed));
+  how_.scheme = std::move(scheme);
+  return *this;
+}
+
+problem_builder& problem_builder::with_unknowns(formulation unknowns) {
+  unknowns_ = unknowns;
+  return *this;
+}
+
+problem_builder& problem_builder::with_positivity_limiter() {
+  if (!equation_->positive())
+    throw input_error(
+        "the positivity limiter cannot be used (unknowns of the model may be negative); leave it out");
+  limited_ = true;
+  return *this;
+}
+
+problem_builder& problem_builder::with_epsilon(scale epsilon) {
+  epsilon_ = std::move(epsilon);
+  return *this;
+}
+
+problem_builder& problem_builder::with_explicit_collision() {
+  explicit_collision_ = true;
+  return *this;
+}
+
+/// Collision on the unknowns themselves: point values, or first order, where the quartic would be too much.
+bool problem_builder::pointwise() const {
+  return !has_space() || first_order() || unknowns_ == formulation::finite_difference;
+}
+
+stencil problem_builder::complete_stencil() const {
+  stencil how = how_;
+  if (limited_ && !first_order())
+    how.positivity = unknowns_ == formulation::finite_volume ? limiter_kind::edges : limiter_kind::fluxes;
+  return how;
+}
+
+domain problem_builder::space() const {
+  return has_space() ? domain(mesh_, sides_) : domain::point();
+}
+
+/// In every cell at the points `offsets` · Δx from its centre, along the first direction.
+std::vector<double> problem_builder::epsilon_at(std::span<const double> offsets) const {
+  std::vector<double> values;
+  for (int cell = 0; cell < mesh_.size(); ++cell)
+    for (const double offset : offsets) {
+      position x = has_space() ? mesh_.centre(cell) : position{};
+      x[0] += offset * mesh_.spacing(0);
+      values.push_back(epsilon_(x));
+      if (!(values.back() >= 0.0) || !std::isfinite(values.back()))
+        throw input_error(fmt::format(
+            "epsilon is {} at x = {:.6g} (a finite number >= 0 is needed); change it", values.back(), x[0]));
+    }
+  return values;
+}
+
+std::vector<double> problem_builder::epsilon_at_centres() const {
+  constexpr double centre = 0.0;
+  return epsilon_at({&centre, 1});
+}
+
+std::unique_ptr<collision> problem_builder::make_collision(const std::shared_ptr<domain>& space) const {
+  if (const auto* general = dynamic_cast<const general_model*>(equation_))
+    return make_newton_collision(*general);
+  const auto& relaxation = dynamic_cast<const relaxation_model&>(*equation_);
+  if (pointwise()) return make_pointwise_collision(relaxation, epsilon_at_centres(), keeps_sign());
+  return make_cell_average_collision(relaxation, space, complete_stencil(), epsilon_at(gauss3::xi));
+}
+
+std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
+  if (has_space() && sides_.empty()) throw input_error("no mesh (the model has space); call on()");
+  if (has_space() && !how_.scheme)
+    throw input_error("no reconstruction (the model has space); call with_reconstruction()");
+  const auto space = std::make_shared<domain>(this->space());
+  auto problem =
+      std::make_unique<semidiscrete_problem>(*equation_, space, complete_stencil(), make_collision(space));
+  if (explicit_collision_) problem->treat_collision_explicitly();
+  return problem;
+}
+
+field problem_builder::sample(const data& value, const std::vector<double>& jumps) const {
+  field u(mesh_.size(), equation_->components());
+  std::vector<double> values(static_cast<std::size_t>(u.components()));
+  const bool averages = has_space() && unknowns_ == formulation::finite_volume;
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    const position centre = has_space() ? mesh_.centre(cell) : position{};
+    const double half = 0.5 * mesh_.spacing(0);
+    double* row = u.row(cell);
+    const auto add = [&](double x, double weight) {
+      value({x, centre[1], centre[2]}, values);
+      for (std::size_t k = 0; k < values.size(); ++k) row[k] += weight * values[k];
+    };
+    if (averages) {
+      // Ten points on every smooth part: exact to round-off for data that the mesh resolves at all.
+      using rule = boost::math::quadrature::gauss<double, 10>;
+      for (const auto& part : smooth_parts(jumps, centre[0], half)) {
+        for (std::size_t q = 0; q < rule::abscissa().size(); ++q) {
+          const double weight = part.half / half * 0.5 * rule::weights()[q];
+          add(part.centre - part.half * rule::abscissa()[q], weight);
+          add(part.centre + part.half * rule::abscissa()[q], weight);
+        }
+      }
+    } else {
+      add(centre[0], 1.0);
+    }
+  }
+  return u;
+}
+
+}  // namespace apsis

@@ -1,0 +1,161 @@
+// Problems made from C++ objects, without a case: what they are, and what is refused.
+#include <apsis/semidiscrete/problem_builder.hpp>
+
+#include "bgk_case.hpp"
+
+#include <apsis/core/errors.hpp>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using apsis::grid;
+using apsis::position;
+using apsis::problem_builder;
+using testing::HasSubstr;
+
+std::string message_of(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const apsis::input_error& failure) {
+    return failure.what();
+  }
+  return "accepted";
+}
+
+std::shared_ptr<const apsis::reconstruction> weno() {
+  return apsis::find_reconstruction("weno5-z")->make();
+}
+
+std::unique_ptr<apsis::model> made(const std::string& name) {
+  const auto* entry = apsis::find_model(name);
+  return entry->make(apsis::default_config(*entry));
+}
+
+/// Two directions, one component that moves with (1, 0.5): the least that a mesh in the plane needs.
+class plane_wave final : public apsis::relaxation_model {
+ public:
+  int components() const override { return 1; }
+  int space_dimensions() const override { return 2; }
+  std::span<const double> speeds(int direction) const override {
+    static constexpr double v[] = {1.0, 0.5};
+    return {v + direction, 1};
+  }
+  int moment_count() const override { return 1; }
+  void moments(const double* u, double* omega) const override { *omega = *u; }
+  bool equilibrium(const double* omega, double* e) const override { return *e = *omega, true; }
+  double rate(const double*) const override { return 1.0; }
+  std::string why_inadmissible(const double*) const override { return ""; }
+  std::vector<std::string> invariants() const override { return {"mass"}; }
+  void invariant_densities(const double* u, double* densities) const override { *densities = *u; }
+  std::vector<apsis::field_name> fields() const override { return {{"u", "u"}}; }
+  void macroscopic(const double* u, double* values) const override { *values = *u; }
+  const std::vector<apsis::initial_data>& initial() const override { return none_; }
+
+ private:
+  std::vector<apsis::initial_data> none_;
+};
+
+}  // namespace
+
+TEST(problem_builder, averages_are_exact_between_jumps_and_points_are_values) {
+  const auto m = made("relaxation");
+  problem_builder builder(*m);
+  builder.on(grid::line(5, 0.0, 1.0));
+  const auto data = [](const position& x, std::span<double> u) {
+    u[0] = u[1] = x[0] < 0.5 ? x[0] * x[0] : 2.0;
+  };
+  const auto averages = builder.sample(data, {0.5});
+  // ∫ x² over [0, 0.2] is 0.2³/3; the jump is in the middle of the third cell, [0.4, 0.6].
+  EXPECT_NEAR(averages.row(0)[0], 0.04 / 3.0, 1e-16);
+  EXPECT_NEAR(averages.row(2)[1], (0.125 - 0.064) / 3.0 / 0.2 + 1.0, 1e-15);
+  const auto points = builder.with_unknowns(apsis::formulation::finite_difference).sample(data, {0.5});
+  EXPECT_EQ(points.row(0)[0], 0.1 * 0.1);
+  EXPECT_EQ(points.row(2)[0], 2.0);
+}
+
+TEST(problem_builder, data_and_epsilon_are_functions_of_position_in_the_plane) {
+  const plane_wave m;
+  const grid mesh(2, {9, 11, 1}, {0.0, 10.0, 0.0}, {0.9, 11.1, 0.0});
+  problem_builder builder(m);
+  builder.on(mesh)
+      .with_unknowns(apsis::formulation::finite_difference)
+      .with_reconstruction(weno())
+      .with_epsilon([](const position& x) { return x[0] + 100.0 * x[1] + 1e4 * x[2]; });
+  const auto u =
+      builder.sample([](const position& x, std::span<double> value) { value[0] = x[0] - x[1] + x[2]; });
+  const auto epsilon = builder.epsilon_at_centres();
+  for (int cell = 0; cell < mesh.size(); ++cell) {
+    EXPECT_EQ(u.row(cell)[0], mesh.centre(cell, 0) - mesh.centre(cell, 1));
+    EXPECT_EQ(epsilon[static_cast<std::size_t>(cell)], mesh.centre(cell, 0) + 100.0 * mesh.centre(cell, 1));
+  }
+  // T(x − y) = −(1 − 0.5) away from the faces: the reconstruction is exact for linear data.
+  const auto problem = builder.build();
+  apsis::field t(mesh.size(), 1);
+  const apsis::target<apsis::field, double> to{&t, 0.0, 1.0, true};
+  problem->add_transport(0.0, u, {&to, 1});
+  EXPECT_NEAR(t.row(4 * 11 + 5)[0], -0.5, 1e-12);
+  // κ = 1: 1/Δt_FE = 1/0.1 + 0.5/0.1.
+  EXPECT_NEAR(problem->forward_euler_step(0.0, u), 1.0 / 15.0, 1e-12);
+}
+
+TEST(problem_builder, refuses_what_does_not_fit_together) {
+  const auto m = made("relaxation"), ode = made("ode");
+  const auto bgk = small_bgk();
+  const grid line = grid::line(9, 0.0, 1.0);
+  EXPECT_THAT(message_of([&] { problem_builder(*ode).on(line); }),
+              HasSubstr("a mesh of 1 dimensions (the model has 0)"));
+  EXPECT_THAT(message_of([&] { problem_builder(*m).on(grid(2, {9, 9, 1}, {0, 0, 0}, {1, 1, 1})); }),
+              HasSubstr("a mesh of 2 dimensions (the model has 1)"));
+  EXPECT_THAT(message_of([&] { problem_builder(*m).build(); }), HasSubstr("no mesh"));
+  EXPECT_THAT(message_of([&] { problem_builder(*m).on(line).build(); }), HasSubstr("no reconstruction"));
+  EXPECT_THAT(
+      message_of([&] { problem_builder(*m).on(grid::line(4, 0.0, 1.0)).with_reconstruction(weno()); }),
+      HasSubstr("a mesh of 4 cells is smaller than the stencil (5 cells); give at least 5"));
+  EXPECT_THAT(message_of([&] { problem_builder(*m).with_positivity_limiter(); }),
+              HasSubstr("the positivity limiter cannot be used"));
+  EXPECT_THAT(
+      message_of([&] { problem_builder(*m).with_boundary({0, false}, apsis::make_boundary("outflow")); }),
+      HasSubstr("call on() first"));
+  EXPECT_THAT(message_of([&] {
+                problem_builder(*m)
+                    .on(line)
+                    .with_reconstruction(weno())
+                    .with_boundary({0, true}, apsis::make_boundary("outflow"))
+                    .build();
+              }),
+              HasSubstr("only one face of direction 1 is periodic"));
+  for (const double epsilon : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_THAT(message_of([&] {
+                  problem_builder(*bgk)
+                      .on(line)
+                      .with_reconstruction(weno())
+                      .with_epsilon([&](const position&) { return epsilon; })
+                      .build();
+                }),
+                HasSubstr("a finite number >= 0 is needed"));
+  const plane_wave plane;
+  EXPECT_THAT(message_of([&] {
+                problem_builder(plane)
+                    .on(grid(2, {9, 9, 1}, {0, 0, 0}, {1, 1, 1}))
+                    .with_reconstruction(weno())
+                    .build();
+              }),
+              HasSubstr("one space dimension only"));
+}
+
+TEST(problem_builder, an_equation_without_space_needs_no_mesh) {
+  const auto ode = made("ode");
+  problem_builder builder(*ode);
+  const auto problem = builder.with_epsilon([](const position&) { return 0.0; }).build();
+  auto u = builder.sample([](const position&, std::span<double> value) { value[0] = 2.0, value[1] = 0.0; });
+  problem->solve_collision(0.0, 1.0, 0.0, u);
+  EXPECT_DOUBLE_EQ(u.row(0)[1], std::sin(2.0));  // ε = 0: the equilibrium sin u₁ of the paper's model
+}

@@ -301,9 +301,21 @@ TEST(method_files, that_changed_are_read_and_certified_again) {
 }
 
 TEST(method_files, that_are_not_there_or_no_files_are_refused) {
-  EXPECT_THROW(load_method_file("/nowhere/at/all.toml"), error);
-  EXPECT_THROW(load_method_file("/"), error);
-  EXPECT_THROW(load_method_file(""), error);
+  const auto refused_by = [](const std::string& path) -> std::pair<exit_code, std::string> {
+    try {
+      load_method_file(path);
+    } catch (const error& refused) {
+      return {refused.code(), refused.what()};
+    }
+    return {exit_code::success, "accepted"};
+  };
+  const auto is = [](exit_code code, const char* message) {
+    return ::testing::Pair(code, ::testing::StartsWith(message));
+  };
+  EXPECT_THAT(refused_by("/nowhere/at/all.toml"),
+              is(exit_code::input, "cannot read the method file '/nowhere/at/all.toml' (it does not exist)"));
+  EXPECT_THAT(refused_by("/"), is(exit_code::output, "cannot read '/' (it is a folder or not readable)"));
+  EXPECT_THAT(refused_by(""), is(exit_code::input, "cannot read the method file '' (it does not exist)"));
 }
 
 TEST(method_files, a_name_that_is_not_in_the_catalogue_is_met_by_the_nearest) {

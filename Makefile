@@ -9,7 +9,7 @@ export CTEST_PARALLEL_LEVEL ?= $(CORES)
 FORMATTED = $(shell find src app tests bench examples python -name '*.[ch]pp' 2>/dev/null)
 
 .DEFAULT_GOAL := help
-.PHONY: help run reproduce study program figures test test-all test-slow clang asan bench packages format format-check tidy docs docs-links clean
+.PHONY: help run reproduce study program figures test test-all test-slow clang asan tsan bench packages format format-check tidy docs docs-links clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' Makefile
@@ -48,7 +48,7 @@ test-slow:
 
 test-all: test ## test, and: slow tests, clang, sanitizers, clang-tidy, format
 	@scripts/install-packages.sh dev
-	$(MAKE) --no-print-directory test-slow format-check clang tidy asan
+	$(MAKE) --no-print-directory test-slow format-check clang tidy asan tsan
 
 clang: ## everything built by clang-19, without a warning
 	cmake --preset clang -DAPSIS_PCH=ON >/dev/null
@@ -58,6 +58,11 @@ asan: ## tests under the address and undefined-behaviour sanitizers
 	cmake --preset asan -DAPSIS_PCH=ON >/dev/null
 	cmake --build build/asan
 	ctest --preset asan -LE slow
+
+tsan: ## tests of the threads and of all that uses them under the thread sanitizer
+	cmake --preset tsan >/dev/null
+	cmake --build build/tsan --target tests/all
+	ctest --preset tsan -LE slow
 
 tidy: ## clang-tidy over the library, the program and the Python package
 	cmake --preset clang -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) >/dev/null

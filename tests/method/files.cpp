@@ -5,6 +5,7 @@
 #include <apsis/method/export.hpp>
 
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <random>
@@ -263,10 +264,58 @@ TEST(method_files, may_repeat_a_catalogue_method_but_not_its_name_alone) {
   EXPECT_THAT(refused_as(named("md-imex-chain-99-2")), ::testing::HasSubstr("is reserved"));
 }
 
+TEST(method_files, that_changed_are_read_and_certified_again) {
+  // Backward Euler twice, each for half the step: order 1.
+  const auto text = [](const std::string& order, const std::string& d) {
+    return "name = \"mine-1\"\ntitle = \"t\"\nkind = \"implicit\"\ncitation = \"c\"\n[claims]\norder = " +
+           order + "\n[shu_osher]\nP = [[], [\"1\"]]\nd = [\"1/2\", \"" + d + "\"]\nddot = [\"0\", \"0\"]\n";
+  };
+  const auto path = write_file("edited.toml", text("1", "1/2"));
+  const method& first = find_method(path);
+  const certificate& certified = find_certificate(path);
+  EXPECT_EQ(&find_method(path), &first) << "an unchanged file is certified once";
+  const double constant = certified.error_constant.convert_to<double>();
+  EXPECT_TRUE(certified.claims_hold);
+
+  write_file("edited.toml", text("2", "1/2"));
+  try {
+    find_method(path);
+    FAIL() << "the certificate of the earlier text was returned";
+  } catch (const claim_error& refused) {
+    EXPECT_THAT(refused.what(), ::testing::HasSubstr("order 2: the condition of tree G[G]"));
+  }
+  EXPECT_FALSE(find_certificate(path).claims_hold);
+
+  // As long as the first text and perhaps within the same tick of the file system's clock: neither size nor
+  // time of modification may stand for the text.
+  write_file("edited.toml", text("1", "2/2"));
+  EXPECT_THAT(find_certificate(path).failures, ::testing::Contains(::testing::HasSubstr("tree G is 1.5")));
+  write_file("edited.toml", text("1", "1/2"));
+  EXPECT_EQ(&find_method(path), &first);
+
+  EXPECT_EQ(first.exact.D(1, 1), "1/2") << "references returned before an edit stay valid";
+  EXPECT_EQ(certified.error_constant.convert_to<double>(), constant);
+
+  std::filesystem::remove(path);
+  EXPECT_THROW(find_method(path), input_error) << "a removed file is no method any more";
+}
+
 TEST(method_files, that_are_not_there_or_no_files_are_refused) {
-  EXPECT_THROW(load_method_file("/nowhere/at/all.toml"), error);
-  EXPECT_THROW(load_method_file("/"), error);
-  EXPECT_THROW(load_method_file(""), error);
+  const auto refused_by = [](const std::string& path) -> std::pair<exit_code, std::string> {
+    try {
+      load_method_file(path);
+    } catch (const error& refused) {
+      return {refused.code(), refused.what()};
+    }
+    return {exit_code::success, "accepted"};
+  };
+  const auto is = [](exit_code code, const char* message) {
+    return ::testing::Pair(code, ::testing::StartsWith(message));
+  };
+  EXPECT_THAT(refused_by("/nowhere/at/all.toml"),
+              is(exit_code::input, "cannot read the method file '/nowhere/at/all.toml' (it does not exist)"));
+  EXPECT_THAT(refused_by("/"), is(exit_code::output, "cannot read '/' (it is a folder or not readable)"));
+  EXPECT_THAT(refused_by(""), is(exit_code::input, "cannot read the method file '' (it does not exist)"));
 }
 
 TEST(method_files, a_name_that_is_not_in_the_catalogue_is_met_by_the_nearest) {

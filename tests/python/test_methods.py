@@ -84,6 +84,23 @@ def test_a_file_that_claims_too_much_is_refused_and_can_be_looked_at(tmp_path):
         apsis.read_method(tmp_path / "none.toml")
 
 
+def test_a_file_that_changed_is_read_and_certified_again(tmp_path):
+    file = tmp_path / "mine.toml"
+    text = ('name = "mine-1"\ntitle = "backward Euler"\nkind = "implicit"\ncitation = "none"\n'
+            '[claims]\norder = 1\n[shu_osher]\nP = [[]]\nd = ["1"]\nddot = ["0"]\n')
+    file.write_text(text, encoding="utf-8")
+    first = apsis.method(str(file))
+    assert first.certificate.order == 1
+    # The implicit Taylor method of order 2.
+    file.write_text(text.replace("order = 1", "order = 2").replace('ddot = ["0"]', 'ddot = ["-1/2"]'), encoding="utf-8")
+    second = apsis.method(str(file))
+    assert second.certificate.order == 2 and second != first
+    assert first.ddot[0] == 0 and second.ddot[0] == -0.5
+    file.write_text(text.replace('d = ["1"]', 'd = ["2"]'), encoding="utf-8")
+    with pytest.raises(apsis.ClaimError, match="tree G is 2 instead of 1"):
+        apsis.method(str(file))
+
+
 def test_methods_and_certificates_are_values(tmp_path):
     one, again = apsis.method("md-imex-6-3"), apsis.method("md-imex-6-3")
     assert one == again and hash(one) == hash(again) and one != apsis.method("md-imex-3-2") and one != "md-imex-6-3"

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -48,9 +49,8 @@ void require_own_name(const method& m, const std::string& path) {
     throw input_error(source_place{path, 0, 0}, problem);
 }
 
-/// From the file of the catalogue, by its family, or from a file of the user.
-method make_method(std::string_view name) {
-  if (is_method_file(name)) return parse_method(read_method_text(std::string(name)), std::string(name));
+/// From the file of the catalogue or by its family.
+method make_named_method(std::string_view name) {
   for (const auto& file : embedded::methods())
     if (file.name == name) return parse_method(file.text, "methods/" + std::string(file.name) + ".toml");
   if (const family_entry* family = find_family(name)) return make_member(*family, name);
@@ -60,24 +60,28 @@ method make_method(std::string_view name) {
   throw input_error("unknown method '" + text + "' " + suggest(text, known));
 }
 
-/// Made and certified when first asked for, then kept.
-const entry& find_entry(std::string_view name) {
+/// Parsed and certified at the first request, then kept. A file of the user is kept by its path and its text,
+/// so that a changed file is certified again; entries of earlier texts stay, because callers hold references
+/// to them.
+const entry& find_entry(const std::string& name) {
   static std::mutex guard;
-  static std::map<std::string, std::unique_ptr<entry>, std::less<>> known;
+  static std::map<std::pair<std::string, std::string>, std::unique_ptr<entry>> known;
+  const bool is_file = is_method_file(name);
+  std::pair key(name, is_file ? read_method_text(name) : std::string());
   const std::lock_guard lock(guard);
-  const auto found = known.find(name);
+  const auto found = known.find(key);
   if (found != known.end()) return *found->second;
   auto made = std::make_unique<entry>();
-  made->parsed = make_method(name);
+  made->parsed = is_file ? parse_method(key.second, name) : make_named_method(name);
   made->certified = certify(made->parsed);
-  if (is_method_file(name) && made->certified.claims_hold) require_own_name(made->parsed, std::string(name));
-  return *known.emplace(std::string(name), std::move(made)).first->second;
+  if (is_file && made->certified.claims_hold) require_own_name(made->parsed, name);
+  return *known.emplace(std::move(key), std::move(made)).first->second;
 }
 
 }  // namespace
 
 const method& find_method(std::string_view name) {
-  const entry& found = find_entry(name);
+  const entry& found = find_entry(std::string(name));
   require_claims(found.certified);
   return found.parsed;
 }

@@ -86,7 +86,8 @@ struct certificate {
 /// Certifies a method in 60 digits (numerical tolerance: that of its digits).
 certificate certify(const method& m);
 
-/// The certificate of a method by its name, made once. Throws input_error as find_method.
+/// The certificate of a method by its name, of a changed file a new one. Throws as find_method, but returns
+/// the certificate of a method whose claims do not hold.
 const certificate& find_certificate(const std::string& name);
 
 /// Throws claim_error that lists the failures, if there are any.

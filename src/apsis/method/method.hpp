@@ -86,9 +86,10 @@ class method {
 };
 
 /// The method called `name`: of the catalogue (methods/*.toml), a member of a family (family_registry.hpp),
-/// or a file of the user, FILE.toml, read when first asked for; certified. Throws input_error with the
-/// nearest name if there is none, or the range of S if a family has no such member, claim_error if its claims
-/// do not hold.
+/// or a file of the user, FILE.toml; certified. The file is read at every call and certified again when its
+/// text has changed; references returned before stay valid. Throws input_error with the nearest name if there
+/// is none, or the range of S if a family has no such member, claim_error if its claims do not hold, and
+/// io_error.
 const method& find_method(std::string_view name);
 
 /// The same method. Throws input_error with the names of those of the catalogue that have one if it has no

@@ -1,10 +1,10 @@
 #include <apsis/run/setup.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/expression.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/convexity.hpp>
+#include <apsis/model/expression.hpp>
 #include <apsis/scheme/quartic.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/newton_collision.hpp>

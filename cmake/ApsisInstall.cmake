@@ -4,12 +4,31 @@
 include(CMakePackageConfigHelpers)
 set(apsis_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/apsis)
 
-list(TRANSFORM APSIS_ROOMS PREPEND apsis_ OUTPUT_VARIABLE apsis_room_targets)
-install(TARGETS apsis ${apsis_room_targets} EXPORT apsisTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        COMPONENT development)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/apsis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
-        FILES_MATCHING PATTERN "*.hpp")
-install(EXPORT apsisTargets NAMESPACE apsis:: DESTINATION ${apsis_package_dir} COMPONENT development)
+# The targets of each component have a file of their own, which apsisConfig.cmake reads where the component is asked for.
+set(apsis_package_lists "")
+foreach(part IN LISTS apsis_parts)
+  get_property(rooms GLOBAL PROPERTY APSIS_ROOMS_${part})
+  list(TRANSFORM rooms PREPEND apsis_ OUTPUT_VARIABLE targets)
+  if(part STREQUAL kinetic)
+    list(APPEND targets apsis_kinetic)
+  endif()
+  install(TARGETS ${targets} EXPORT apsisTargets-${part}
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program NAMELINK_COMPONENT development)
+  install(EXPORT apsisTargets-${part} NAMESPACE apsis:: DESTINATION ${apsis_package_dir} COMPONENT development)
+  foreach(room IN LISTS rooms)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/apsis/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis
+            COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+  endforeach()
+
+  set(packages ${apsis_packages_${part}})
+  if(NOT BUILD_SHARED_LIBS)
+    list(APPEND packages ${apsis_link_packages_${part}})
+  endif()
+  list(TRANSFORM packages REPLACE "(.+)" "\"\\1\"")
+  list(JOIN packages " " packages)
+  string(APPEND apsis_package_lists "set(apsis_packages_${part} ${packages})\n")
+endforeach()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/apsisConfig.cmake.in
   ${PROJECT_BINARY_DIR}/apsisConfig.cmake INSTALL_DESTINATION ${apsis_package_dir}
@@ -18,14 +37,22 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/apsisConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/apsisConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/apsisConfig.cmake ${PROJECT_BINARY_DIR}/apsisConfigVersion.cmake
-        ${PROJECT_SOURCE_DIR}/cmake/FindIpopt.cmake
         DESTINATION ${apsis_package_dir} COMPONENT development)
+if("design" IN_LIST apsis_parts AND NOT BUILD_SHARED_LIBS)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/FindIpopt.cmake DESTINATION ${apsis_package_dir} COMPONENT development)
+endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CITATION.cff
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
+if(NOT PROJECT_IS_TOP_LEVEL)
+  return()
+endif()
 # Debian packages (cpack): apsis, the program, and libapsis-dev, for programs of one's own.
 file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/packages.txt run_lines REGEX "^run ")
 string(REGEX MATCHALL "[a-z0-9+-]+-dev" development_packages "${run_lines}")
+if(NOT "design" IN_LIST apsis_parts)
+  list(REMOVE_ITEM development_packages coinor-libipopt-dev)
+endif()
 list(JOIN development_packages ", " development_packages)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME apsis)

@@ -1,8 +1,11 @@
-# One static library per room of src/apsis. A room may link only the rooms below it, so an include
-# that reaches back does not link and the direction of the data flow is kept by the build.
+# One library per room of src/apsis, static or shared as BUILD_SHARED_LIBS says. A room may link only the rooms below it,
+# so an include that reaches back does not link and the direction of the data flow is kept by the build.
 #
-#   apsis_room(method DEPENDS core PUBLIC Boost::headers PRIVATE tomlplusplus::tomlplusplus)
-set(APSIS_ROOMS "" CACHE INTERNAL "rooms in the order they are declared")
+#   apsis_room(method COMPONENT integrate DEPENDS core PUBLIC Boost::headers PRIVATE tomlplusplus::tomlplusplus)
+#
+# PUBLIC and PRIVATE as in target_link_libraries; INSIDE is for packages of headers that only sources read, which users
+# of the installed library therefore need not have. The component is kinetic if not given; a room of a component that is
+# not built (ApsisComponents.cmake) is skipped.
 
 add_library(apsis_options INTERFACE)
 target_compile_features(apsis_options INTERFACE cxx_std_20)
@@ -39,9 +42,9 @@ target_compile_options(apsis_kernel_options INTERFACE
 # Headers that most files read, for seconds each (see APSIS_PCH). Rooms with kernels have other flags and go
 # without.
 if(APSIS_PCH)
-  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/precompiled.cpp CONTENT "")
-  add_library(apsis_precompiled STATIC ${CMAKE_BINARY_DIR}/generated/precompiled.cpp)
-  set_target_properties(apsis_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/precompiled.cpp CONTENT "")
+  add_library(apsis_precompiled STATIC ${PROJECT_BINARY_DIR}/generated/precompiled.cpp)
+  set_target_properties(apsis_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
   target_link_libraries(apsis_precompiled PRIVATE apsis_options Boost::headers fmt::fmt)
   target_compile_options(apsis_precompiled PRIVATE ${APSIS_PLAIN})
   target_precompile_headers(apsis_precompiled PRIVATE
@@ -50,24 +53,42 @@ if(APSIS_PCH)
 endif()
 
 function(apsis_room name)
-  cmake_parse_arguments(ROOM "KERNELS" "" "DEPENDS;PUBLIC;PRIVATE;GENERATED" ${ARGN})
+  cmake_parse_arguments(ROOM "KERNELS" "COMPONENT" "DEPENDS;PUBLIC;PRIVATE;INSIDE;GENERATED" ${ARGN})
+  if(NOT ROOM_COMPONENT)
+    set(ROOM_COMPONENT kinetic)
+  endif()
+  if(NOT ROOM_COMPONENT IN_LIST apsis_parts)
+    return()
+  endif()
+  set_property(GLOBAL APPEND PROPERTY APSIS_ROOMS_${ROOM_COMPONENT} ${name})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp
        ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*/*.cpp)
-  add_library(apsis_${name} STATIC ${sources} ${ROOM_GENERATED})
+  add_library(apsis_${name} ${sources} ${ROOM_GENERATED})
   add_library(apsis::${name} ALIAS apsis_${name})
-  set_target_properties(apsis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(apsis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF
+    # What a room exports is not marked, so all of it is, whatever a project around this one prefers.
+    CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF
+    # Static and shared libraries are compiled alike.
+    DEFINE_SYMBOL "")
+  get_target_property(type apsis_${name} TYPE)
+  if(type STREQUAL SHARED_LIBRARY)
+    # Before 1.0 a minor version may change the interface.
+    set_target_properties(apsis_${name} PROPERTIES INSTALL_RPATH "$ORIGIN" VERSION ${PROJECT_VERSION}
+      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  endif()
   target_compile_features(apsis_${name} PUBLIC cxx_std_20)
   target_include_directories(apsis_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   list(TRANSFORM ROOM_DEPENDS PREPEND apsis_)
+  list(TRANSFORM ROOM_INSIDE REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
   target_link_libraries(apsis_${name} PUBLIC ${ROOM_DEPENDS} ${ROOM_PUBLIC})
-  target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_options> ${ROOM_PRIVATE}
-                        $<$<BOOL:${ROOM_KERNELS}>:$<BUILD_INTERFACE:apsis_kernel_options>>)
-  if(NOT ROOM_KERNELS)
+  target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_options> ${ROOM_PRIVATE} ${ROOM_INSIDE})
+  if(ROOM_KERNELS)
+    target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_kernel_options>)
+  else()
     target_compile_options(apsis_${name} PRIVATE ${APSIS_PLAIN})
     if(APSIS_PCH)
       target_precompile_headers(apsis_${name} REUSE_FROM apsis_precompiled)
     endif()
   endif()
-  set(APSIS_ROOMS ${APSIS_ROOMS} ${name} CACHE INTERNAL "")
 endfunction()

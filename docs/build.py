@@ -116,7 +116,8 @@ def add_interfaces(site: Site, headers: dict[str, Header]):
         site.add(f"api/{room}.md", text, f"src/apsis/{room}/README.md")
         listed += f"- [{room}]({room}.md): {about.split(chr(10), 1)[1].split('. ')[0].strip().rstrip('.')}.\n"
     site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a row of rooms, each a library that is linked only to those "
-             f"before it. `find_package(apsis)` brings all as `apsis::apsis`.\n\n{listed}\n```{{toctree}}\n:hidden:\n\n"
+             f"before it. `find_package(apsis)` brings all as `apsis::apsis`, [components](../linking.md) bring less."
+             f"\n\n{listed}\n```{{toctree}}\n:hidden:\n\n"
              + "\n".join(rooms()) + "\n```\n")
     site.add("python-api.md", "# Python interface\n\n```{eval-rst}\n.. automodule:: apsis\n   :members:\n   :undoc-members:\n"
              "```\n")

@@ -1,8 +1,8 @@
 #include "measure/clock.hpp"
 #include "mixed.hpp"
 
-#include <apsis/core/expression.hpp>
 #include <apsis/integrate/integrate.hpp>
+#include <apsis/model/expression.hpp>
 #include <apsis/scheme/quartic.hpp>
 
 #include <algorithm>

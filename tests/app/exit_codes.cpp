@@ -28,8 +28,10 @@ const std::vector<reader> readers = {
     {{"show", "FILE"}, input, input, input},
     {{"plot", "FILE"}, input, output, input},
     {{"report", "FILE"}, output, output, output},
+#if APSIS_HAS_DESIGN
     {{"design", "--order", "2", "--stages", "3", "--out", "d.toml", "--from", "FILE"}, input, output, input},
     {{"design", "--out", "d.toml", "--embedded", "FILE"}, input, output, input},
+#endif
     {{"run", "paper/ode", "--restart", "FILE"}, output, output, output},
     {{"run", "paper/ode", "time.method=FILE"}, input, output, input},
 };

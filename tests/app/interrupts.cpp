@@ -56,8 +56,9 @@ TEST_P(every_signal, ends_converge_within_a_step_and_says_what_is_awaited) {
 
 TEST_P(every_signal, ends_commands_that_have_nothing_to_keep) {
   using words = std::vector<std::string>;
-  for (const words& command :
-       {words{"check", "m.toml", "--observe"}, words{"design", "--embedded", "m.toml", "--out", "o.toml"}}) {
+  std::vector<words> commands = {{"check", "m.toml", "--observe"}};
+  if (APSIS_HAS_DESIGN) commands.push_back({"design", "--embedded", "m.toml", "--out", "o.toml"});
+  for (const words& command : commands) {
     const work_folder folder;
     const std::string pipe = (folder.path() / "m.toml").string();
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

@@ -5,7 +5,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
-FOLDERS = ["app", "src/apsis/core", "src/apsis/config"]
+FOLDERS = ["app", "src/apsis/core", "src/apsis/model", "src/apsis/config"]
 
 LITERAL = r'"(?:[^"\\\n]|\\.)*"'
 # A call that makes a message, up to the literals of its text; a place may stand before them.

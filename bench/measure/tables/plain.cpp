@@ -3,8 +3,8 @@
 #include "measure/table.hpp"
 #include "plain/bgk.hpp"
 
-#include <apsis/core/expression.hpp>
 #include <apsis/integrate/stepper.hpp>
+#include <apsis/model/expression.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 #include <apsis/scheme/quartic.hpp>

@@ -5,8 +5,8 @@
 #include <apsis/config/case_text.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/core/embedded.hpp>
-#include <apsis/core/expression.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/model/expression.hpp>
 
 #include <algorithm>
 #include <cmath>

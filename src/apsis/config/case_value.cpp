@@ -1,7 +1,7 @@
 #include <apsis/config/case_value.hpp>
 
-#include <apsis/core/expression.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/model/expression.hpp>
 
 #include <algorithm>
 #include <cctype>

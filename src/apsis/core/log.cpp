@@ -1,44 +1,46 @@
 #include <apsis/core/log.hpp>
 
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include <unistd.h>
 
 namespace apsis::log {
 namespace {
 
-// The only file that sees spdlog: it is slow to compile and its macros are many.
-spdlog::logger& logger() {
-  static const auto instance = [] {
-    auto made =
-        std::make_shared<spdlog::logger>("apsis", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-    made->set_pattern("%^%l%$: %v");
-    return made;
+std::atomic<level> lowest_shown{level::info};
+
+/// Whether standard error is a terminal that understands colours.
+bool in_colour() {
+  static const bool answer = [] {
+    const char* terminal = std::getenv("TERM");
+    return isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb";
   }();
-  return *instance;
+  return answer;
+}
+
+/// One call of fwrite for the whole line, so that lines of several threads do not mix.
+void write(std::string_view name, std::string_view colour, const std::string& message) {
+  std::string line(name);
+  if (in_colour()) line = std::string(colour) + line + "\033[m";
+  line += ": " + message + "\n";
+  std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
 }  // namespace
 
 void set_level(level lowest) {
-  switch (lowest) {
-    case level::quiet:
-      logger().set_level(spdlog::level::off);
-      return;
-    case level::warning:
-      logger().set_level(spdlog::level::warn);
-      return;
-    case level::info:
-      logger().set_level(spdlog::level::info);
-      return;
-  }
+  lowest_shown = lowest;
 }
 
 void info(const std::string& message) {
-  logger().info("{}", message);
+  if (lowest_shown >= level::info) write("info", "\033[32m", message);
 }
 
 void warning(const std::string& message) {
-  logger().warn("{}", message);
+  if (lowest_shown >= level::warning) write("warning", "\033[33m\033[1m", message);
 }
 
 }  // namespace apsis::log

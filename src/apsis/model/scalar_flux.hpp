@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/core/expression.hpp>
+#include <apsis/model/expression.hpp>
 
 #include <memory>
 #include <string>

@@ -1,9 +1,9 @@
 #include <apsis/run/setup.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/expression.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/convexity.hpp>
+#include <apsis/model/expression.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include <apsis/verify/settings.hpp>
 
 #include <apsis/config/case_schema.hpp>
-#include <apsis/core/expression.hpp>
+#include <apsis/model/expression.hpp>
 
 #include <algorithm>
 #include <cmath>

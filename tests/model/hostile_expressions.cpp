@@ -1,5 +1,5 @@
 // Formulas that nobody means: each is a value or one short message with its place, and never a crash.
-#include <apsis/core/expression.hpp>
+#include <apsis/model/expression.hpp>
 
 #include <cmath>
 #include <random>

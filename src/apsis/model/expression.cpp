@@ -1,4 +1,4 @@
-#include <apsis/core/expression.hpp>
+#include <apsis/model/expression.hpp>
 
 #include <apsis/core/suggest.hpp>
 

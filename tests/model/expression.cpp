@@ -1,4 +1,4 @@
-#include <apsis/core/expression.hpp>
+#include <apsis/model/expression.hpp>
 
 #include <atomic>
 #include <cmath>

@@ -1,0 +1,59 @@
+# The components of the package, what is built of them, and the packages that each needs. The rooms of src/apsis name
+# their component (see ApsisRoom.cmake); apsisConfig.cmake finds the same packages again.
+#   integrate   the methods and the time integrator, for any problem
+#   kinetic     the solver of kinetic equations
+#   design      the search for new methods
+# exec is no component that can be asked for, but what kinetic and design have in common.
+set(apsis_components integrate kinetic design)
+foreach(component IN LISTS APSIS_COMPONENTS)
+  if(NOT component IN_LIST apsis_components)
+    list(JOIN apsis_components ", " valid)
+    message(FATAL_ERROR "APSIS_COMPONENTS: unknown component '${component}' (there is no such component); valid: ${valid}")
+  endif()
+endforeach()
+
+if(APSIS_COMPONENTS)
+  set(apsis_components ${APSIS_COMPONENTS})
+endif()
+if(NOT "integrate" IN_LIST apsis_components)
+  list(PREPEND apsis_components integrate)
+endif()
+if("design" IN_LIST apsis_components)
+  if(APSIS_COMPONENTS)
+    find_package(Ipopt REQUIRED)
+  else()
+    find_package(Ipopt)
+  endif()
+  if(NOT Ipopt_FOUND)
+    message(STATUS "The component design is not built (Ipopt was not found)")
+    list(REMOVE_ITEM apsis_components design)
+  endif()
+endif()
+
+# In the order in which they depend on each other.
+set(apsis_parts "")
+foreach(part integrate exec kinetic design)
+  if(part IN_LIST apsis_components OR (part STREQUAL exec AND NOT apsis_components STREQUAL "integrate"))
+    list(APPEND apsis_parts ${part})
+  endif()
+endforeach()
+
+# Packages whose headers or libraries are in the interface: users of the component find them too.
+set(apsis_packages_integrate fmt "Boost 1.74")
+set(apsis_packages_exec hwy Threads)
+set(apsis_packages_kinetic "Boost 1.74" nlohmann_json)
+set(apsis_packages_design "Eigen3 NO_MODULE")
+# Libraries that only sources use: users of static libraries link them.
+set(apsis_link_packages_integrate tomlplusplus)
+set(apsis_link_packages_kinetic tomlplusplus muparser "HDF5 COMPONENTS C")
+set(apsis_link_packages_design Ipopt)
+# Headers that only sources read.
+set(apsis_build_packages_integrate "Eigen3 NO_MODULE")
+set(apsis_build_packages_kinetic "Eigen3 NO_MODULE")
+
+foreach(part IN LISTS apsis_parts)
+  foreach(package IN LISTS apsis_packages_${part} apsis_link_packages_${part} apsis_build_packages_${part})
+    separate_arguments(package)
+    find_package(${package} REQUIRED)
+  endforeach()
+endforeach()

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""check_headers.py BUILD [FOLDER ...] [--jobs N]: headers that do not compile alone.
+
+Each header of the folders (src/apsis, app and paper if none is given) is compiled as the only include of a file, twice, by the
+compiler and flags that BUILD/compile_commands.json has for the nearest source: of the same room, or for all else of the
+program. Precompiled headers are left out, since they would hide what is missing. Prints what the compiler says of each; exit
+code 1 if there are any.
+"""
+import argparse
+import concurrent.futures
+import json
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def flags_of(command: str) -> list[str]:
+    """Compiler and flags, without the launcher, what is compiled and what is made of it."""
+    words = shlex.split(command)
+    if Path(words[0]).name == "ccache":  # has no use for a compilation without output
+        words = words[1:]
+    flags, skip = words[:1], 0
+    for k, word in enumerate(words[1:], 1):
+        if skip:
+            skip -= 1
+        elif word in ("-o", "-MF", "-MT", "-MQ", "-include"):
+            skip = 1
+        elif word == "-Xclang" and any("pch" in w for w in words[k + 1:k + 4]):
+            skip = 1
+        elif word not in ("-c", "-MD", "-MMD", "-Winvalid-pch") and not word.endswith(".cpp") and not word.startswith("-O"):
+            flags.append(word)
+    return flags
+
+
+def nearest(header: Path, sources: list[Path]) -> Path:
+    return max(sources, key=lambda source: len(os.path.commonpath([header, source])))
+
+
+def problem_of(header: Path, command: list[str]) -> str:
+    text = f'#include "{header}"\n' * 2
+    done = subprocess.run([*command, "-fsyntax-only", "-x", "c++", "-"], input=text, capture_output=True, text=True)
+    return "" if done.returncode == 0 else f"{header}: does not compile alone (see below); include what it uses\n{done.stderr}"
+
+
+def problems(build: Path, folders: list[Path], jobs: int) -> tuple[int, list[str]]:
+    """The number of headers, and what is wrong with them."""
+    entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
+    commands = {Path(entry["file"]): entry["command"] for entry in entries}
+    sources = [file for file in commands if file.is_relative_to(ROOT) and not file.is_relative_to(build)]
+    headers = sorted(header for folder in folders for header in folder.rglob("*.hpp"))
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        found = pool.map(lambda header: problem_of(header, flags_of(commands[nearest(header, sources)])), headers)
+        return len(headers), [text for text in found if text]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=Path)
+    parser.add_argument("folders", type=Path, nargs="*", default=[ROOT / "src/apsis", ROOT / "app", ROOT / "paper"])
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
+    given = parser.parse_args()
+    number, found = problems(given.build.resolve(), [folder.resolve() for folder in given.folders], given.jobs)
+    print(*found, f"{number} headers, {len(found)} of them do not compile alone", sep="\n")
+    return 1 if found or number == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,36 @@
+// apsis design in a program that was built without Ipopt: an error of exit code 2 that says so, whatever is
+// asked.
+#include "commands.hpp"
+
+#include <apsis/core/errors.hpp>
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+TEST(without_design, the_command_says_that_it_is_missing) {
+  const std::vector<std::vector<std::string>> lines = {
+      {"design"},
+      {"design", "--order", "2", "--stages", "3", "--out", "d.toml"},
+      {"design", "--embedded", "m"}};
+  for (const auto& line : lines) {
+    CLI::App program;
+    apsis::app::action chosen;
+    apsis::app::add_design(program, chosen);
+    program.parse(std::vector<std::string>(line.rbegin(), line.rend()));  // as CLI11 wants it
+    ASSERT_TRUE(chosen);
+    try {
+      chosen();
+      FAIL() << "the command ran";
+    } catch (const apsis::error& refusal) {
+      EXPECT_EQ(refusal.code(), apsis::exit_code::input);
+      EXPECT_THAT(refusal.what(), testing::HasSubstr("built without Ipopt"));
+    }
+  }
+}
+
+}  // namespace

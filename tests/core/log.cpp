@@ -1,0 +1,60 @@
+// Messages: their form, which levels are shown, and lines that stay whole when threads write together.
+#include <apsis/core/log.hpp>
+
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using testing::internal::CaptureStderr;
+using testing::internal::GetCapturedStderr;
+
+/// Every message is shown again when a test ends.
+struct log_of_messages : testing::Test {
+  ~log_of_messages() override { apsis::log::set_level(apsis::log::level::info); }
+
+  static std::string both_at(apsis::log::level lowest) {
+    apsis::log::set_level(lowest);
+    CaptureStderr();
+    apsis::log::info("100% of {}");
+    apsis::log::warning("too long (3 s); stop");
+    return GetCapturedStderr();
+  }
+};
+
+TEST_F(log_of_messages, names_the_level_and_takes_the_text_as_it_is) {
+  EXPECT_EQ(both_at(apsis::log::level::info), "info: 100% of {}\nwarning: too long (3 s); stop\n");
+}
+
+TEST_F(log_of_messages, level_warning_hides_what_is_only_information) {
+  EXPECT_EQ(both_at(apsis::log::level::warning), "warning: too long (3 s); stop\n");
+}
+
+TEST_F(log_of_messages, level_quiet_hides_all) {
+  EXPECT_EQ(both_at(apsis::log::level::quiet), "");
+}
+
+TEST_F(log_of_messages, lines_of_several_threads_stay_whole) {
+  CaptureStderr();
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 4; ++k)
+    threads.emplace_back([k] {
+      for (int n = 0; n < 500; ++n) apsis::log::warning(std::string(50, static_cast<char>('a' + k)));
+    });
+  for (auto& thread : threads) thread.join();
+  const std::string text = GetCapturedStderr();
+  std::size_t lines = 0;
+  for (std::size_t begin = 0; begin < text.size(); ++lines) {
+    const std::size_t end = text.find('\n', begin);
+    const std::string line = text.substr(begin, end - begin);
+    ASSERT_EQ(line, "warning: " + std::string(50, line.back()));
+    begin = end + 1;
+  }
+  EXPECT_EQ(lines, 2000u);
+}
+
+}  // namespace

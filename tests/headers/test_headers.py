@@ -1,0 +1,56 @@
+"""scripts/check_headers.py: headers that compile alone pass, a planted one that does not is named with its reason."""
+import contextlib
+import io
+import os
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+BUILD = Path(os.environ["APSIS_BUILD"]).resolve()
+sys.path.insert(0, str(SOURCE / "scripts"))
+import check_headers  # noqa: E402
+
+
+class Headers(unittest.TestCase):
+    def problems(self, **headers):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in headers.items():
+                (Path(folder) / f"{name}.hpp").write_text(text, encoding="utf-8")
+            return check_headers.problems(BUILD, [Path(folder)], 2)
+
+    def test_what_a_header_uses_is_missed_where_it_is_not_included(self):
+        number, found = self.problems(planted="#pragma once\nstd::string name_of(int);\n",
+                                      good="#pragma once\n#include <string>\nstd::string name_of(int);\n")
+        self.assertEqual(number, 2)
+        self.assertEqual(len(found), 1)
+        self.assertIn("planted.hpp: does not compile alone", found[0])
+        self.assertIn("string", found[0])
+
+    def test_a_header_without_a_guard_is_found(self):
+        number, found = self.problems(planted="struct twice {};\n")
+        self.assertEqual((number, len(found)), (1, 1))
+
+    def test_a_warning_is_a_problem_as_in_the_build(self):
+        _, found = self.problems(planted="#pragma once\ninline int narrow(double x) { int y = x; return y; }\n")
+        self.assertEqual(len(found), 1)
+
+    def test_what_a_precompiled_header_has_is_missed(self):
+        flags = check_headers.flags_of("/usr/bin/ccache g++ -Wall -Winvalid-pch -include a/cmake_pch.hxx -O2 -o x.o -c x.cpp")
+        self.assertEqual(flags, ["g++", "-Wall"])
+        flags = check_headers.flags_of("clang++ -Wall -Xclang -include-pch -Xclang a/cmake_pch.hxx.pch -Xclang -include "
+                                       "-Xclang a/cmake_pch.hxx -I b -o x.o -c x.cpp")
+        self.assertEqual(flags, ["clang++", "-Wall", "-I", "b"])
+
+    def test_a_folder_without_headers_is_no_success(self):
+        arguments, sys.argv = sys.argv, ["check_headers.py", str(BUILD), str(SOURCE / "methods")]
+        try:
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(check_headers.main(), 1)
+        finally:
+            sys.argv = arguments
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,17 @@
+// The best method of second order with three stages: its SSP coefficient is s − 2 = 1.
+#include <apsis/design/search.hpp>
+
+#include <cmath>
+#include <cstdio>
+
+int main() {
+  apsis::design_task task;
+  task.stages = 3;
+  task.demands.order = 2;
+  apsis::design_search how;
+  how.starts = 40;
+  const auto found = apsis::search(task, how);
+  if (!found.best) return 1;
+  std::printf("r = %.9g\n", found.best->r);
+  return std::abs(found.best->r - 1) < 1e-6 ? 0 : 1;
+}

@@ -1,0 +1,34 @@
+# The component integrate alone, as shared libraries where the build has static ones, and the other way round: built
+# without the packages of the other components, installed and consumed. The build type, of no flags, and all that
+# follows from it is that of subproject/, so that a compiler cache has work to do only once.
+include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
+set(work ${WORK}/shared-${SHARED})
+set(others "")
+foreach(package HDF5 hwy Ipopt muparser nlohmann_json OpenMP Threads)
+  list(APPEND others -DCMAKE_DISABLE_FIND_PACKAGE_${package}=TRUE)
+endforeach()
+configure(${SOURCE} ${work}/build -DBUILD_SHARED_LIBS=${SHARED} -DAPSIS_COMPONENTS=integrate -DAPSIS_TESTS=OFF
+          -DCMAKE_BUILD_TYPE=Plain -DAPSIS_WERROR=OFF -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} ${others})
+run(${CMAKE_COMMAND} --build ${work}/build)
+install_into(${work}/build ${work}/prefix)
+
+file(GLOB_RECURSE archives ${work}/prefix/libapsis_*.a ${work}/prefix/*/libapsis_*.a)
+file(GLOB_RECURSE libraries ${work}/prefix/libapsis_*.so ${work}/prefix/*/libapsis_*.so)
+list(LENGTH archives archives)
+list(LENGTH libraries libraries)
+if(SHARED)
+  set(expected "0 3")
+  set(packages fmt Boost)
+else()
+  set(expected "3 0")
+  set(packages fmt Boost tomlplusplus)
+endif()
+if(NOT "${archives} ${libraries}" STREQUAL expected)
+  message(FATAL_ERROR "${archives} static and ${libraries} shared libraries (expected: ${expected})")
+endif()
+
+consume(${CMAKE_CURRENT_LIST_DIR}/integrate ${work}/prefix ${work}/consumer "${packages}")
+file(WRITE ${work}/refused/CMakeLists.txt
+  "cmake_minimum_required(VERSION 3.25)\nproject(refused LANGUAGES CXX)\nfind_package(apsis REQUIRED COMPONENTS kinetic)\n")
+configure_fails("component 'kinetic' is not installed (it was not built); valid: integrate"
+                ${work}/refused ${work}/refused/build -DCMAKE_PREFIX_PATH=${work}/prefix)

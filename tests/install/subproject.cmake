@@ -1,0 +1,22 @@
+# A project that includes the sources, by add_subdirectory or FetchContent, and keeps its own settings. It is the project
+# itself that checks these; with BUILT it is also built and run.
+include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
+set(work ${WORK}/${CONSUMER})
+file(REMOVE_RECURSE ${work})
+configure(${CMAKE_CURRENT_LIST_DIR}/${CONSUMER} ${work} -DAPSIS_SOURCE=${SOURCE} -DFETCHCONTENT_SOURCE_DIR_APSIS=${SOURCE}
+          -DFETCHCONTENT_FULLY_DISCONNECTED=ON -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
+if(EXISTS ${work}/compile_commands.json OR EXISTS ${work}/CPackConfig.cmake OR EXISTS ${work}/CTestTestfile.cmake)
+  message(FATAL_ERROR "the project of the consumer has compile commands, packages or tests that it did not ask for")
+endif()
+run(${CMAKE_COMMAND} --install ${work} --prefix ${work}/prefix)
+if(EXISTS ${work}/prefix)
+  message(FATAL_ERROR "the project of the consumer installs what it did not ask for")
+endif()
+run(${CMAKE_COMMAND} --build ${work} --target help)
+if(output MATCHES "\n(test_|apsis_program|apsis_python|apsis_paper|apsis_bench)")
+  message(FATAL_ERROR "the project of the consumer builds more than the library:\n${output}")
+endif()
+if(BUILT)
+  run(${CMAKE_COMMAND} --build ${work} --target consumer bystander)
+  run(${work}/consumer)
+endif()

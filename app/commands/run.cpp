@@ -1,6 +1,7 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
 #include "interrupt.hpp"
 #include "option_values.hpp"
+#include "print.hpp"
 #include "run_profile.hpp"
 #include "run_report.hpp"
 #include "threads_option.hpp"
@@ -62,29 +63,35 @@ int run(run_options options) {
   return static_cast<int>(end == run_end::complete ? exit_code::success : exit_code::interrupted);
 }
 
+action define(CLI::App& command) {
+  auto options = std::make_shared<run_options>();
+  command
+      .add_option("CASE", options->case_name,
+                  "a case file, or the name of a built-in case (apsis list cases)")
+      ->required();
+  command.add_option("key=value", options->overrides,
+                     "keys of the case that take another value (apsis show case)");
+  command.add_option("--out", options->session.out, "folder for the results; without it nothing is written");
+  command.add_flag("--json", options->json, "print one JSON object on standard output, and nothing else");
+  add_threads(command, options->threads, "threads to use",
+              "all processors for a large case and 1 for a small one");
+  command.add_flag("--profile", options->profile,
+                   "tell how long each kernel took, and how near it came to the ceilings of this machine");
+  command.add_option("--restart", options->session.restart, "go on from a checkpoint.h5 of the same case");
+  command
+      .add_option("--wall", options->session.wall,
+                  "stop after this many seconds with a checkpoint, as if interrupted (exit code 130)")
+      ->check(positive_number());
+  return [options] { return run(*options); };
+}
+
 }  // namespace
 
-void add_run(CLI::App& program, action& chosen) {
-  auto options = std::make_shared<run_options>();
-  CLI::App* command = program.add_subcommand("run", "Run a case and write its results");
-  command
-      ->add_option("CASE", options->case_name,
-                   "a case file, or the name of a built-in case (apsis list cases)")
-      ->required();
-  command->add_option("key=value", options->overrides,
-                      "keys of the case that take another value (apsis show case)");
-  command->add_option("--out", options->session.out, "folder for the results; without it nothing is written");
-  command->add_flag("--json", options->json, "print one JSON object on standard output, and nothing else");
-  add_threads(*command, options->threads, "threads to use",
-              "all processors for a large case and 1 for a small one");
-  command->add_flag("--profile", options->profile,
-                    "tell how long each kernel took, and how near it came to the ceilings of this machine");
-  command->add_option("--restart", options->session.restart, "go on from a checkpoint.h5 of the same case");
-  command
-      ->add_option("--wall", options->session.wall,
-                   "stop after this many seconds with a checkpoint, as if interrupted (exit code 130)")
-      ->check(positive_number());
-  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
-}
+extern const command_entry command_run;
+const command_entry command_run = {.name = "run",
+                                   .summary = "Run a case and write its results",
+                                   .place = 10,
+                                   .completion = completed_from_list("cases"),
+                                   .define = define};
 
 }  // namespace apsis::app

@@ -2,6 +2,7 @@
 #include "drawing.hpp"
 #include "interrupt.hpp"
 #include "print.hpp"
+#include "progress_bar.hpp"
 #include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -9,7 +10,6 @@
 #include <apsis/core/version.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
-#include <apsis/output/progress.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/verify/convergence_report.hpp>
@@ -83,7 +83,7 @@ void write_results(result_folder& folder, const options& given, const convergenc
 
 /// False if it was interrupted.
 bool run_all_of(convergence& study) {
-  task_progress bar;
+  progress_bar bar;
   study_control control;
   control.stop = interrupted;
   control.progress = [&bar](double part, const std::string& what) { bar.update(part, what); };

@@ -4,6 +4,7 @@
 #include "method_report.hpp"
 #include "method_writer.hpp"
 #include "print.hpp"
+#include "progress_bar.hpp"
 #include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -16,7 +17,6 @@
 #include <apsis/design/sparsify.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/schedule.hpp>
-#include <apsis/output/progress.hpp>
 
 #include <chrono>
 #include <cmath>
@@ -196,7 +196,7 @@ int design(const options& given) {
         fmt::format("a method of {} stages is left (the time of {:.0f} s is over); give more --time",
                     task.from->stages(), elapsed()));
   }
-  task_progress bar;
+  progress_bar bar;
   design_search how;
   how.starts = given.starts;
   how.stop = stop;

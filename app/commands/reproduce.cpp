@@ -4,6 +4,7 @@
 #include "drawing.hpp"
 #include "interrupt.hpp"
 #include "print.hpp"
+#include "progress_bar.hpp"
 #include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -11,7 +12,6 @@
 #include <apsis/core/version.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
-#include <apsis/output/progress.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
 
@@ -48,7 +48,7 @@ class reproduction {
 
   /// False if it was interrupted.
   bool run() {
-    task_progress bar;
+    progress_bar bar;
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
       const claim_entry& claim = *chosen_[k];
       if (known(claim.id) == nullptr) {

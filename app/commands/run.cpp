@@ -2,6 +2,7 @@
 #include "interrupt.hpp"
 #include "option_values.hpp"
 #include "print.hpp"
+#include "progress_bar.hpp"
 #include "run_profile.hpp"
 #include "run_report.hpp"
 #include "threads_option.hpp"
@@ -10,7 +11,6 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/output/case_json.hpp>
-#include <apsis/output/progress.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/run/session.hpp>
 
@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
@@ -33,16 +34,22 @@ struct run_options {
   bool json = false, profile = false;
 };
 
+/// "step 1234/2900  t = 0.21  min 1.20e-31"
+std::string step_text(const simulation& now) {
+  return fmt::format("step {}/{}  t = {:.4g}  min {:.2e}", now.step(), now.steps_total(), now.t(),
+                     now.last().min_value);
+}
+
 int run(run_options options) {
   // First of all: an interrupt that comes before the first step is then no different from a later one.
   watch_for_interrupts("the step under way, and for a checkpoint where there is a folder (--out)");
   case_config config = load_case(options.case_name, options.overrides);
   set_threads(options.threads.value_or(threads_for(config)));
-  progress bar(config.time.end);
+  progress_bar bar;
   options.session.command = command_line();
   options.session.stop = interrupted;
-  options.session.watch = [&bar](const simulation& now) {
-    if (bar.due()) bar.update(now.step(), now.steps_total(), now.t(), now.last().min_value);
+  options.session.watch = [&bar, end = config.time.end](const simulation& now) {
+    if (bar.due()) bar.update(now.t() / end, step_text(now));
   };
   options.session.stepped = [&bar] { bar.finish(); };
   run_session session(std::move(config), options.session);

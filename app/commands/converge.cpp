@@ -78,6 +78,7 @@ void write_results(result_folder& folder, const options& given, const convergenc
     // The numbers are there, and the picture can be drawn from picture.json at any time.
     log::warning(problem.what());
   } catch (const interruption&) {
+    return;  // so can it after an interrupt
   }
 }
 

@@ -1,3 +1,4 @@
+#include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/extremes.hpp>
 #include <apsis/core/random_source.hpp>
 #include <apsis/model/model_registry.hpp>
@@ -52,7 +53,7 @@ void collide_randomly(const broadwell& b, random_source& random, moment_form_def
   field u(1, 3), change(1, 3);
   std::copy(f.begin(), f.end(), u.row(0));
   const target<field, double> to{&change, 0.0, 1.0, true};
-  q->add_collision(u, {&to, 1});
+  q->add_collision(0.0, u, {&to, 1});
   const auto w = moments_of(f.data()), rate = moments_of(change.row(0));
   // Everything is measured against the size of the terms, ρ²/ε.
   const double size = w.rho * w.rho / epsilon;
@@ -60,7 +61,7 @@ void collide_randomly(const broadwell& b, random_source& random, moment_form_def
   const double written = (w.rho * w.rho + w.m * w.m - 2.0 * w.rho * w.z) / (2.0 * epsilon);
   worst.relaxation = maximum(worst.relaxation, std::abs(rate.z - written) / size);
 
-  q->solve(1e300 * epsilon, 0.0, u);  // an implicit stage for epsilon → 0
+  q->solve(0.0, 1e300 * epsilon, 0.0, u);  // an implicit stage for epsilon → 0
   const auto limit = moments_of(u.row(0));
   worst.projection =
       maximum(worst.projection, std::abs(limit.z - (w.rho * w.rho + w.m * w.m) / (2.0 * w.rho)) / w.rho);
@@ -72,14 +73,14 @@ void transport_randomly(const broadwell& b, const std::string& scheme, random_so
                         moment_form_defects& worst) {
   constexpr int cells = 15;
   const grid mesh = grid::line(cells, 0.0, cells);
-  const transport t(b.equation, mesh,
-                    {find_reconstruction(scheme)->make(), limiter_kind::none, boundary_kind::periodic});
+  const transport t(b.equation, std::make_shared<domain>(make_domain(mesh, "periodic")),
+                    {find_reconstruction(scheme)->make(), limiter_kind::none});
   const populations start = random_populations(random), slope = random_populations(random);
   field u(cells, 3), change(cells, 3);
   for (int i = 0; i < cells; ++i)
     for (std::size_t k = 0; k < 3; ++k) u.row(i)[k] = start[k] + slope[k] * mesh.centre(i, 0);
   const target<field, double> to{&change, 0.0, 1.0, true};
-  t.add_transport(u, {&to, 1});
+  t.add_transport(0.0, u, {&to, 1});
   const auto rate = moments_of(change.row(cells / 2)), x = moments_of(slope.data());
   const double size = moments_of(u.row(cells - 1)).rho;
   worst.transport = maximum({worst.transport, std::abs(rate.rho + x.m) / size, std::abs(rate.m + x.z) / size,

@@ -142,6 +142,21 @@ const std::vector<bad_case> all = {
 INSTANTIATE_TEST_SUITE_P(table, bad_cases, testing::ValuesIn(all),
                          [](const auto& c) { return c.param.name; });
 
+TEST(bad_case, an_end_has_a_kind_that_exists_and_is_not_periodic_alone) {
+  EXPECT_THAT(
+      error_of(good + "[boundary.left]\nkind = \"outfow\"\n"),
+      StartsWith("c.toml:19:1: 'boundary.left.kind' is the text 'outfow' (there is no such name); did "
+                 "you mean 'outflow'?"));
+  EXPECT_THAT(
+      error_of(good + "[boundary.left]\nkind = \"outflow\"\n"),
+      StartsWith("c.toml:19:1: 'boundary.left.kind' is the text 'outflow' (only one of the two ends is "
+                 "periodic); write "));
+  EXPECT_THAT(error_of(good + "[boundary.top]\nkind = \"outflow\"\n"),
+              StartsWith("c.toml:19:1: unknown key 'boundary.top.kind' (no such key for model 'bgk'); "));
+  EXPECT_THAT(error_of(good + "[boundary]\nleft = \"outflow\"\n"),
+              StartsWith("c.toml:19:1: unknown key 'boundary.left' (no such key for model 'bgk'); "));
+}
+
 TEST(bad_case, the_text_that_the_table_changes_is_good) {
   EXPECT_EQ(error_of(good), "accepted");
 }

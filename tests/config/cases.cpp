@@ -101,6 +101,23 @@ RC_GTEST_PROP(cases, resolved_text_keeps_every_bit_of_random_values, ()) {
   RC_ASSERT(again.title == c.title);
 }
 
+TEST(cases, each_end_may_have_a_boundary_of_its_own) {
+  const std::string text = to_toml(load_case("paper/bgk-mixed"));
+  const auto kinds = [](const case_config& c) {
+    const auto faces = make_boundaries(c);
+    return std::pair{faces[0]->periodic(), faces[1]->periodic()};
+  };
+  EXPECT_EQ(kinds(parse_case(text, "c.toml")), std::pair(true, true));
+  // As tables, as dotted keys, and on the command line.
+  const case_config c = parse_case(
+      text + "[boundary.left]\nkind = \"outflow\"\n[boundary.right]\nkind = \"outflow\"\n", "c.toml");
+  EXPECT_EQ(kinds(c), std::pair(false, false));
+  EXPECT_EQ(c.space.boundary, "periodic");
+  EXPECT_EQ(kinds(parse_case(to_toml(c), "again")), std::pair(false, false));
+  EXPECT_EQ(kinds(parse_case(text, "c.toml", {"boundary.left.kind=outflow", "boundary.right.kind=outflow"})),
+            std::pair(false, false));
+}
+
 TEST(cases, texts_of_a_model_survive_their_own_text) {
   const case_config c = load_case("paper/relaxation", {"model.flux=u < 0.5 ? u/4 : (u - 0.25)/2"});
   EXPECT_EQ(c.model.texts.at("flux"), "u < 0.5 ? u/4 : (u - 0.25)/2");

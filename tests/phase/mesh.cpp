@@ -1,5 +1,4 @@
 #include <apsis/core/errors.hpp>
-#include <apsis/phase/boundary.hpp>
 #include <apsis/phase/field.hpp>
 #include <apsis/phase/grid.hpp>
 #include <apsis/scheme/quartic.hpp>
@@ -31,28 +30,6 @@ TEST(grid, refuses_what_is_no_mesh) {
   EXPECT_THROW(apsis::grid::line(0, 0.0, 1.0), apsis::input_error);
   EXPECT_THROW(apsis::grid::line(4, 1.0, 1.0), apsis::input_error);
   EXPECT_THROW(apsis::grid::line(4, 0.0, std::numeric_limits<double>::infinity()), apsis::input_error);
-}
-
-TEST(boundary, periodic_ghosts_wrap_even_when_wider_than_the_mesh) {
-  const auto mesh = apsis::grid::line(3, 0.0, 1.0);
-  apsis::field u(3, 1);
-  std::vector<const double*> rows;
-  apsis::pencil_rows(u, mesh, 0, 0, apsis::boundary_kind::periodic, -4, 7, rows);
-  for (int i = -4; i < 7; ++i) EXPECT_EQ(rows[static_cast<std::size_t>(i + 4)], u.row(((i % 3) + 3) % 3));
-}
-
-TEST(boundary, outflow_ghosts_repeat_the_nearest_cell_inside) {
-  const auto mesh = apsis::grid::line(3, 0.0, 1.0);
-  apsis::field u(3, 1);
-  std::vector<const double*> rows;
-  apsis::pencil_rows(u, mesh, 0, 0, apsis::boundary_kind::outflow, -4, 7, rows);
-  const std::vector<int> inside = {0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2};
-  for (std::size_t k = 0; k < rows.size(); ++k) EXPECT_EQ(rows[k], u.row(inside[k])) << k;
-}
-
-TEST(boundary, every_name_is_found_and_a_wrong_one_is_an_input_error) {
-  for (const auto& name : apsis::boundary_names()) EXPECT_NO_THROW(apsis::find_boundary(name)) << name;
-  EXPECT_THROW(apsis::find_boundary("outfow"), apsis::input_error);
 }
 
 TEST(field, rows_of_a_kinetic_field_start_on_cache_lines) {

@@ -3,11 +3,13 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/output/case_json.hpp>
 
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -112,4 +114,16 @@ TEST(relaxation, refuses_at_the_key_what_the_data_forbid) {
       complaint({"model.flux=log(u - 0.2)"}).rfind("override 'model.flux=log(u - 0.2)': model.flux = ", 0),
       0U);
   EXPECT_NE(complaint({"space.limiter=positivity"}).find("its unknowns may be negative"), std::string::npos);
+}
+
+TEST(relaxation, ends_named_one_by_one_are_those_of_one_name) {
+  const std::vector<std::string> both = {"space.cells=60", "time.end=0.1"};
+  auto one_by_one = both;
+  one_by_one.insert(one_by_one.end(),
+                    {"space.boundary=periodic", "boundary.left.kind=outflow", "boundary.right.kind=outflow"});
+  const auto a = finished_run("relaxation-buckley-leverett", both),
+             b = finished_run("relaxation-buckley-leverett", one_by_one);
+  EXPECT_EQ(a.state(), b.state());
+  EXPECT_FALSE(b.promises().conservation);
+  EXPECT_NE(apsis::to_json(b.config())["boundary"]["left"]["kind"], nullptr);
 }

@@ -56,11 +56,12 @@ apsis::semidiscrete_problem problem_of(const apsis::relaxation_model& m, const a
                                        unknowns what) {
   const auto cells = static_cast<std::size_t>(mesh.size());
   if (what == unknowns::points)
-    return {m, mesh, scheme("weno5-z", apsis::limiter_kind::fluxes),
+    return {m, space_of(mesh), scheme("weno5-z", apsis::limiter_kind::fluxes),
             apsis::make_pointwise_collision(m, std::vector<double>(cells, 1e-3))};
   const auto how = scheme("weno5-z", apsis::limiter_kind::edges);
-  return {m, mesh, how,
-          apsis::make_cell_average_collision(m, mesh, how, std::vector<double>(3 * cells, 1e-3))};
+  const auto space = space_of(mesh);
+  return {m, space, how,
+          apsis::make_cell_average_collision(m, space, how, std::vector<double>(3 * cells, 1e-3))};
 }
 
 struct heap_use {

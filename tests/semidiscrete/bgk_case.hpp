@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
@@ -23,9 +24,13 @@ inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, doubl
   return std::unique_ptr<apsis::relaxation_model>(dynamic_cast<apsis::relaxation_model*>(made.release()));
 }
 
-inline apsis::stencil scheme(const std::string& name, apsis::limiter_kind positivity,
-                             apsis::boundary_kind boundary = apsis::boundary_kind::periodic) {
-  return {apsis::find_reconstruction(name)->make(), positivity, boundary};
+inline apsis::stencil scheme(const std::string& name, apsis::limiter_kind positivity) {
+  return {apsis::find_reconstruction(name)->make(), positivity};
+}
+
+inline std::shared_ptr<apsis::domain> space_of(const apsis::grid& mesh,
+                                               const std::string& kind = "periodic") {
+  return std::make_shared<apsis::domain>(apsis::make_domain(mesh, kind));
 }
 
 /// Nonnegative rows with zeros, jumps and values of very different size.
@@ -76,7 +81,7 @@ apsis::field sample(const apsis::grid& mesh, int components, bool averages, Func
 inline apsis::field transport_of(const apsis::transport& t, const apsis::field& u) {
   apsis::field result(u.cells(), u.components());
   const apsis::target<apsis::field, double> to{&result, 0.0, 1.0, true};
-  t.add_transport(u, {&to, 1});
+  t.add_transport(0.0, u, {&to, 1});
   return result;
 }
 

@@ -47,13 +47,13 @@ TEST(collision, conserves_to_rounding_although_epsilon_varies_inside_cells) {
   const auto m = small_bgk();
   const grid mesh = grid::line(20, 0.0, 2.0);
   for (const bool averages : {true, false}) {
-    const auto q = averages
-                       ? apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", limiter_kind::edges),
-                                                            at_gauss_points(mesh, epsilon_of))
-                       : apsis::make_pointwise_collision(*m, at_centres(mesh, epsilon_of));
+    const auto q = averages ? apsis::make_cell_average_collision(*m, space_of(mesh),
+                                                                 scheme("weno5-z", limiter_kind::edges),
+                                                                 at_gauss_points(mesh, epsilon_of))
+                            : apsis::make_pointwise_collision(*m, at_centres(mesh, epsilon_of));
     field u = smooth(*m, mesh, averages);
     const field before = u;
-    q->solve(1e-2, -1e-4, u);
+    q->solve(0.0, 1e-2, -1e-4, u);
     for (int k = 0; k < 3; ++k)
       EXPECT_NEAR(total(*m, u, k), total(*m, before, k), 2e-14 * 20) << averages << " moment " << k;
   }
@@ -65,10 +65,10 @@ TEST(collision, averages_are_fifth_order_against_the_exact_average_of_relaxed_po
   const auto error = [&](int n) {
     const grid mesh = grid::line(n, 0.0, 2.0);
     const auto smooth_epsilon = [](double x) { return 1.2 + std::sin(std::numbers::pi * x); };
-    const auto q = apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", limiter_kind::edges),
-                                                      at_gauss_points(mesh, +smooth_epsilon));
+    const auto q = apsis::make_cell_average_collision(
+        *m, space_of(mesh), scheme("weno5-z", limiter_kind::edges), at_gauss_points(mesh, +smooth_epsilon));
     field u = smooth(*m, mesh, true);
-    q->solve(a, 0.0, u);
+    q->solve(0.0, a, 0.0, u);
     std::vector<double> row(static_cast<std::size_t>(m->components())), e = row, omega(3);
     const field exact = sample(mesh, m->components(), true, [&](double x, int k) {
       m->initial()[2].point_value(x, row);
@@ -97,8 +97,8 @@ TEST(collision, limit_of_vanishing_epsilon_is_the_equilibrium_and_zero_is_allowe
   std::vector<double> e(static_cast<std::size_t>(m->components())), omega(3);
   m->moments(u0.row(3), omega.data());
   m->equilibrium(omega.data(), e.data());
-  q0->solve(0.1, -0.3, u0);
-  q1->solve(0.0, -0.3, u1);
+  q0->solve(0.0, 0.1, -0.3, u0);
+  q1->solve(0.0, 0.0, -0.3, u1);
   for (int k = 0; k < m->components(); ++k) {
     EXPECT_EQ(u0.row(3)[k], e[static_cast<std::size_t>(k)]);
     EXPECT_EQ(u1.row(3)[k], e[static_cast<std::size_t>(k)]);
@@ -111,14 +111,15 @@ TEST(collision, never_makes_a_negative_value_from_limited_data) {
   check_property("nonnegative", [&] {
     static double epsilon = 1.0;
     epsilon = *rc::gen::inRange(0, 4) == 0 ? 0.0 : std::pow(10.0, *rc::gen::inRange(-12, 13));
-    const auto q = apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", limiter_kind::edges),
-                                                      at_gauss_points(mesh, [](double) { return epsilon; }));
+    const auto q =
+        apsis::make_cell_average_collision(*m, space_of(mesh), scheme("weno5-z", limiter_kind::edges),
+                                           at_gauss_points(mesh, [](double) { return epsilon; }));
     field u(12, m->components());
     for (int i = 0; i < 12; ++i)
       for (int k = 0; k < m->components(); ++k)
         u.row(i)[k] = *rc::gen::element(0.0, 1.0, 0.2) * std::pow(10.0, *rc::gen::element(0, -2, -8)) +
                       1e-3 * (k == 20);
-    q->solve(*rc::gen::element(0.0, 1e-3, 1.0), -*rc::gen::element(0.0, 1e-6, 1.0), u);
+    q->solve(0.0, *rc::gen::element(0.0, 1e-3, 1.0), -*rc::gen::element(0.0, 1e-6, 1.0), u);
     for (int i = 0; i < 12; ++i)
       for (int k = 0; k < m->components(); ++k) RC_ASSERT(u.row(i)[k] >= 0.0);
   });
@@ -131,7 +132,7 @@ TEST(collision, a_state_without_temperature_is_a_numerical_failure_with_its_cell
   field u = smooth(*m, mesh, false);
   for (int k = 0; k < m->components(); ++k) u.row(5)[k] = k == 0 || k == 39 ? -0.4 : 0.05;
   try {
-    q->solve(1.0, 0.0, u);
+    q->solve(0.0, 1.0, 0.0, u);
     FAIL() << "no error";
   } catch (const apsis::numerical_error& failure) {
     EXPECT_EQ(failure.site().cell, 5);
@@ -148,7 +149,7 @@ TEST(collision, advises_the_limiter_only_where_it_is_off) {
   const auto said = [&](apsis::collision& q) -> std::string {
     field v = u;
     try {
-      q.solve(1.0, 0.0, v);
+      q.solve(0.0, 1.0, 0.0, v);
     } catch (const apsis::numerical_error& failure) {
       return failure.problem();
     }
@@ -160,7 +161,7 @@ TEST(collision, advises_the_limiter_only_where_it_is_off) {
   EXPECT_NE(said(*apsis::make_pointwise_collision(*m, ones)).find(off), std::string::npos);
   EXPECT_NE(said(*apsis::make_pointwise_collision(*m, ones, true)).find(on), std::string::npos);
   for (const auto kind : {limiter_kind::none, limiter_kind::edges}) {
-    const auto q = apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", kind), ones);
+    const auto q = apsis::make_cell_average_collision(*m, space_of(mesh), scheme("weno5-z", kind), ones);
     EXPECT_NE(said(*q).find(kind == limiter_kind::none ? off : on), std::string::npos) << said(*q);
   }
 }
@@ -169,16 +170,16 @@ TEST(collision, explicit_evaluation_agrees_with_the_implicit_one_for_small_steps
   const auto m = small_bgk();
   const grid mesh = grid::line(10, 0.0, 2.0);
   for (const bool averages : {true, false}) {
-    const auto q = averages
-                       ? apsis::make_cell_average_collision(*m, mesh, scheme("weno5-z", limiter_kind::none),
-                                                            std::vector<double>(30, 0.5))
-                       : apsis::make_pointwise_collision(*m, std::vector<double>(10, 0.5));
+    const auto q = averages ? apsis::make_cell_average_collision(*m, space_of(mesh),
+                                                                 scheme("weno5-z", limiter_kind::none),
+                                                                 std::vector<double>(30, 0.5))
+                            : apsis::make_pointwise_collision(*m, std::vector<double>(10, 0.5));
     const field u = smooth(*m, mesh, averages);
     field implicit = u, change(10, m->components());
     const double dt = 1e-7;
-    q->solve(dt, 0.0, implicit);
+    q->solve(0.0, dt, 0.0, implicit);
     const apsis::target<field, double> to{&change, 0.0, 1.0, true};
-    q->add_collision(u, {&to, 1});
+    q->add_collision(0.0, u, {&to, 1});
     for (int i = 0; i < 10; ++i)
       for (int k = 0; k < m->components(); ++k)  // first order in dt, and rounding of u over dt
         EXPECT_NEAR((implicit.row(i)[k] - u.row(i)[k]) / dt, change.row(i)[k], 2e-6);

@@ -98,12 +98,13 @@ void expect_plain_transport(const apsis::relaxation_model& m, const std::string&
                             int cells) {
   const grid mesh = grid::line(cells, 0.0, 1.0);
   const auto how = scheme(name, kind);
-  const apsis::transport t(m, mesh, how);
+  const apsis::transport t(m, space_of(mesh), how);
   const field u = adversarial(cells, m.components(), static_cast<std::uint64_t>(cells));
   field first(cells, m.components()), second = u;
   const double dt = t.forward_euler_step();
-  t.add_transport(u, std::vector<apsis::target<field, double>>{{&first, 0.7, 0.6 * dt, true},
-                                                               {&second, 0.25, 0.2 * dt, false}});
+  t.add_transport(0.0, u,
+                  std::vector<apsis::target<field, double>>{{&first, 0.7, 0.6 * dt, true},
+                                                            {&second, 0.25, 0.2 * dt, false}});
   for (int k = 0; k < m.components(); ++k) {
     const plain_transport plain(u, k, m.speeds(0)[static_cast<std::size_t>(k)], mesh.spacing(0), how);
     for (int i = 0; i < cells; ++i) {
@@ -200,7 +201,7 @@ void expect_same_in_one_pass(int cells, int threads) {
   const auto make = [&] {
     std::vector<double> epsilon(static_cast<std::size_t>(cells));
     for (std::size_t i = 0; i < epsilon.size(); ++i) epsilon[i] = std::pow(10.0, -static_cast<double>(i % 8));
-    return apsis::semidiscrete_problem(*m, mesh, scheme("weno5-z", limiter_kind::fluxes),
+    return apsis::semidiscrete_problem(*m, space_of(mesh), scheme("weno5-z", limiter_kind::fluxes),
                                        apsis::make_pointwise_collision(*m, epsilon));
   };
   auto problem = make();

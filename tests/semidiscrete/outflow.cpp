@@ -6,7 +6,6 @@
 
 namespace {
 
-using apsis::boundary_kind;
 using apsis::field;
 using apsis::grid;
 using apsis::limiter_kind;
@@ -31,12 +30,12 @@ TEST(outflow, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
   const auto m = broadwell();
   const grid mesh = grid::line(7, 0.0, 1.0);  // every cell sees an end
   for (const auto& c : choices) {
-    const apsis::transport t(*m, mesh, scheme(c.scheme, c.positivity, boundary_kind::outflow));
+    const apsis::transport t(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
     check_property(c.scheme, [&] {
       const field u = random_rows(mesh, 3);
       field result(mesh.size(), 3);
       const apsis::target<field, double> to{&result, 1.0, t.forward_euler_step(), true};
-      t.add_transport(u, {&to, 1});
+      t.add_transport(0.0, u, {&to, 1});
       RC_ASSERT(smallest(result) >= 0.0);
     });
   }
@@ -49,9 +48,9 @@ TEST(outflow, collisions_in_cells_keep_any_data_nonnegative) {
     field u = random_rows(mesh, 3);
     const double epsilon = std::pow(10.0, *rc::gen::inRange(-12, 3));
     const auto q = apsis::make_cell_average_collision(
-        *m, mesh, scheme("weno5-z", limiter_kind::edges, boundary_kind::outflow),
+        *m, space_of(mesh, "outflow"), scheme("weno5-z", limiter_kind::edges),
         std::vector<double>(21, epsilon));
-    q->solve(*rc::gen::element(0.0, 0.1), -*rc::gen::element(0.0, 0.1), u);
+    q->solve(0.0, *rc::gen::element(0.0, 0.1), -*rc::gen::element(0.0, 0.1), u);
     RC_ASSERT(smallest(u) >= 0.0);
   });
 }
@@ -60,7 +59,7 @@ TEST(outflow, uniform_data_do_not_change) {
   const auto m = broadwell();
   const grid mesh = grid::line(9, 0.0, 1.0);
   for (const auto& c : choices) {
-    const apsis::transport t(*m, mesh, scheme(c.scheme, c.positivity, boundary_kind::outflow));
+    const apsis::transport t(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
     const field change = transport_of(t, sample(mesh, 3, false, [](double, int k) { return 0.1 + k; }));
     // Differences of equal fluxes: a rounding of the edge values, over Δx = 1/9.
     for (int i = 0; i < 9; ++i)
@@ -75,7 +74,7 @@ TEST(outflow, a_pulse_leaves_and_nothing_comes_back) {
   const grid mesh = grid::line(60, 0.0, 1.0);
   const auto pulse = [](double x) { return std::exp(-400.0 * x * x); };
   for (const auto& c : choices) {
-    const apsis::transport t(*m, mesh, scheme(c.scheme, c.positivity, boundary_kind::outflow));
+    const apsis::transport t(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
     field u = sample(mesh, 3, true, [&](double x, int k) { return pulse(x - (k == 0 ? 0.3 : 0.7)); });
     const double start = total(*m, u, 0);
     double inside = start;
@@ -83,7 +82,7 @@ TEST(outflow, a_pulse_leaves_and_nothing_comes_back) {
     for (double now = 0.0; now < 2.0; now += dt) {
       field next(60, 3);
       const apsis::target<field, double> to{&next, 1.0, dt, true};
-      t.add_transport(u, {&to, 1});
+      t.add_transport(0.0, u, {&to, 1});
       u = next;
       const double mass = total(*m, u, 0);
       EXPECT_LE(mass, inside * (1.0 + 1e-13)) << "mass comes in";

@@ -37,7 +37,7 @@ field tiny_rows(int cells, int components, apsis::random_source& random) {
 field longest_step(const apsis::transport& t, const field& u, double alpha, bool fresh) {
   field result(u.cells(), u.components());
   const apsis::target<field, double> to{&result, alpha, alpha * t.forward_euler_step(), fresh};
-  t.add_transport(u, {&to, 1});
+  t.add_transport(0.0, u, {&to, 1});
   return result;
 }
 
@@ -55,7 +55,7 @@ void expect_nonnegative_steps(const std::string& name, limiter_kind kind, int ro
     // |v|/Δx from 1e-8 to 1e8: a product with it rounds where it is small, and is exact where it is large.
     const grid mesh = grid::line(cells, 0.0, std::pow(10.0, random.uniform(-8.0, 8.0)));
     const auto m = small_bgk(10);
-    const apsis::transport t(*m, mesh, scheme(name, kind));
+    const apsis::transport t(*m, space_of(mesh), scheme(name, kind));
     const field u = tiny_rows(cells, m->components(), random);
     const double alpha = round % 3 == 0 ? 1.0 : std::pow(10.0, random.uniform(-8.0, 0.0));
     ASSERT_GE(smallest_unknown(longest_step(t, u, alpha, round % 2 == 0)), 0.0)
@@ -80,10 +80,10 @@ TEST(subnormal, a_step_beyond_the_bound_is_negative) {
   const auto m = small_bgk(10);
   field u(20, m->components());
   for (int k = 0; k < m->components(); ++k) u.row(9)[k] = 1.0;
-  const apsis::transport t(*m, mesh, scheme("upwind1", limiter_kind::none));
+  const apsis::transport t(*m, space_of(mesh), scheme("upwind1", limiter_kind::none));
   field result(20, m->components());
   const apsis::target<field, double> to{&result, 1.0, 1.001 * t.forward_euler_step(), true};
-  t.add_transport(u, {&to, 1});
+  t.add_transport(0.0, u, {&to, 1});
   EXPECT_LT(smallest_unknown(result), 0.0);
 }
 

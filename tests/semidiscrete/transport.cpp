@@ -17,7 +17,7 @@ using apsis::limiter_kind;
 double transport_error(const apsis::relaxation_model& m, const std::string& name, limiter_kind kind,
                        bool averages, int n) {
   const grid mesh = grid::line(n, 0.0, 1.0);
-  const apsis::transport t(m, mesh, scheme(name, kind));
+  const apsis::transport t(m, space_of(mesh), scheme(name, kind));
   const double w = 2.0 * std::numbers::pi;
   const field u =
       sample(mesh, m.components(), averages, [w](double x, int) { return 1.0 + std::sin(w * x); });
@@ -62,7 +62,7 @@ TEST(transport, cutting_the_edges_of_point_values_costs_three_orders_which_cutti
 TEST(transport, first_order_upwind_is_the_difference_of_neighbours) {
   const auto m = small_bgk(6);
   const grid mesh = grid::line(9, 0.0, 1.8);
-  const apsis::transport t(*m, mesh, scheme("upwind1", limiter_kind::none));
+  const apsis::transport t(*m, space_of(mesh), scheme("upwind1", limiter_kind::none));
   const field u = sample(mesh, 6, false, [](double x, int k) { return 1.0 + x * x + k; });
   const field change = transport_of(t, u);
   for (int i = 0; i < 9; ++i) {
@@ -80,7 +80,7 @@ TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
   const grid mesh = grid::line(12, 0.0, 1.0);
   for (const auto kind : {limiter_kind::edges, limiter_kind::fluxes, limiter_kind::none}) {
     const std::string name = kind == limiter_kind::none ? "upwind1" : "weno5-z";
-    const apsis::transport t(*m, mesh, scheme(name, kind));
+    const apsis::transport t(*m, space_of(mesh), scheme(name, kind));
     const double dt = t.forward_euler_step();
     check_property(name + " limiter " + std::to_string(static_cast<int>(kind)), [&] {
       const field u = random_rows(mesh, 8);
@@ -88,7 +88,7 @@ TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
       const double w = *rc::gen::inRange(1, 1001) * 1e-3;
       field result(mesh.size(), 8);
       const apsis::target<field, double> to{&result, w, w * dt, true};
-      t.add_transport(u, {&to, 1});
+      t.add_transport(0.0, u, {&to, 1});
       RC_ASSERT(smallest(result) >= 0.0);
     });
   }
@@ -99,12 +99,12 @@ TEST(transport, above_dt_fe_positivity_breaks) {
   // data of its neighbours, and the update is negative beyond some multiple of Δt_FE.
   const auto m = small_bgk(8);
   const grid mesh = grid::line(12, 0.0, 1.0);
-  const apsis::transport upwind(*m, mesh, scheme("upwind1", limiter_kind::none));
+  const apsis::transport upwind(*m, space_of(mesh), scheme("upwind1", limiter_kind::none));
   field u(12, 8);
   for (int k = 0; k < 8; ++k) u.row(5)[k] = 1.0;
   field result(12, 8);
   const apsis::target<field, double> to{&result, 1.0, 1.0001 * upwind.forward_euler_step(), true};
-  upwind.add_transport(u, {&to, 1});
+  upwind.add_transport(0.0, u, {&to, 1});
   EXPECT_LT(smallest(result), 0.0);
 }
 
@@ -112,7 +112,7 @@ TEST(transport, conserves_every_component) {
   const auto m = small_bgk(8);
   const grid mesh = grid::line(20, 0.0, 1.0);
   for (const auto kind : {limiter_kind::none, limiter_kind::edges, limiter_kind::fluxes}) {
-    const apsis::transport t(*m, mesh, scheme("weno5-z", kind));
+    const apsis::transport t(*m, space_of(mesh), scheme("weno5-z", kind));
     const field u = sample(mesh, 8, true, [](double x, int k) { return x < 0.4 ? 1.0 + k : 1e-3; });
     const field change = transport_of(t, u);
     for (int k = 0; k < 8; ++k) {
@@ -129,7 +129,7 @@ TEST(transport, conserves_every_component) {
 TEST(transport, does_not_depend_on_the_number_of_threads_or_on_blocks) {
   const auto m = small_bgk(150, 15.0);
   const grid mesh = grid::line(97, 0.0, 2.0);
-  const apsis::transport t(*m, mesh, scheme("weno5-z", limiter_kind::edges));
+  const apsis::transport t(*m, space_of(mesh), scheme("weno5-z", limiter_kind::edges));
   const field u =
       sample(mesh, 150, false, [](double x, int k) { return std::exp(std::sin(3.0 * x) - 0.1 * k); });
   apsis::set_threads(1);
@@ -177,7 +177,7 @@ TEST(transport, is_fifth_order_in_two_dimensions_by_the_same_code) {
   const double w = 2.0 * std::numbers::pi;
   const auto error = [&](int n) {
     const grid mesh(2, {n, n, 1}, {0, 0, 0}, {1, 1, 1});
-    const apsis::transport t(m, mesh, scheme("weno5-z", limiter_kind::edges));
+    const apsis::transport t(m, space_of(mesh), scheme("weno5-z", limiter_kind::edges));
     field u(mesh.size(), 3), exact(mesh.size(), 3);
     for (int i = 0; i < mesh.size(); ++i) {
       const double x = mesh.centre(i, 0), y = mesh.centre(i, 1);

@@ -114,7 +114,7 @@ TEST_P(interpolated_points, are_of_eighth_order_also_at_the_ends) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(boundaries, interpolated_points, testing::Values("periodic", "open"));
+INSTANTIATE_TEST_SUITE_P(boundaries, interpolated_points, testing::Values("periodic", "outflow"));
 
 TEST(meshes, interpolation_reproduces_polynomials_of_degree_seven) {
   check_property("degree seven", [] {
@@ -127,7 +127,7 @@ TEST(meshes, interpolation_reproduces_polynomials_of_degree_seven) {
     const int cells = *rc::gen::inRange(3, 20), fine = cells + *rc::gen::inRange(0, 60);
     RC_PRE(fine >= 8);
     auto coarse = points(cells, f);
-    coarse.config.space.boundary = "open";
+    coarse.config.space.boundary = "outflow";
     // Values up to 40 and weights of one-sided stencils of a few hundred.
     RC_ASSERT(largest(on_mesh_of(coarse, points(fine, f)), coarse.state) <= 1e-11);
   });

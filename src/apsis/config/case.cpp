@@ -1,5 +1,6 @@
 #include <apsis/config/case.hpp>
 
+#include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_text.hpp>
 #include <apsis/config/case_value.hpp>
@@ -54,7 +55,7 @@ class resolver {
   }
 
   void check_tables() const {
-    std::vector<std::string> names = {"model", "space", "velocity", "time", "output"};
+    std::vector<std::string> names = {"model", "space", "boundary", "velocity", "time", "output"};
     for (const auto& [name, place] : text_.tables)
       if (std::find(names.begin(), names.end(), name) == names.end())
         throw input_error(place, fmt::format("unknown table [{}] (a case has no such table); {}", shown(name),
@@ -204,12 +205,21 @@ class resolver {
       refuse(*raw, "space.domain",
              fmt::format("cells of [{}, {}] cannot be told apart in double precision", left, right),
              "give a domain nearer to 0 or fewer cells");
+    check_faces();
     const double points = static_cast<double>(config_.space.cells) * std::max(1, config_.velocity.points);
     if (points > 2e9)
       refuse(*find("space.cells"), "space.cells",
              fmt::format("with velocity.points = {} that is {:.3g} unknowns, at most 2e9 are possible",
                          config_.velocity.points, points),
              "give fewer cells or velocities");
+  }
+
+  void check_faces() const {
+    const auto faces = make_boundaries(config_);
+    if (faces[0]->periodic() == faces[1]->periodic()) return;
+    const char* own = config_.boundary.left ? "boundary.left.kind" : "boundary.right.kind";
+    refuse(*find(own), own, "only one of the two ends is periodic",
+           "write space.boundary = \"periodic\" alone, or give both ends another kind");
   }
 
   // At cell centres and edges, as far as a thousand points go; the run evaluates it where it needs it.
@@ -339,6 +349,11 @@ std::unique_ptr<model> make_model(const case_config& config) {
   for (const auto& [name, value] : config.model.texts) parts.texts[name] = value;
   parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium};
   return entry->make(parts);
+}
+
+domain::faces make_boundaries(const case_config& config) {
+  return {make_boundary(config.boundary.left.value_or(config.space.boundary)),
+          make_boundary(config.boundary.right.value_or(config.space.boundary))};
 }
 
 std::vector<std::string> case_names() {

@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/phase/domain.hpp>
 
 #include <array>
 #include <map>
@@ -38,9 +39,13 @@ struct case_config {
     std::array<double, 2> domain = {0.0, 1.0};
     apsis::formulation formulation = apsis::formulation::finite_volume;
     std::string reconstruction = "weno5-z";
-    std::string limiter = "none";  ///< "none" | "positivity"
-    std::string boundary = "periodic";
+    std::string limiter = "none";       ///< "none" | "positivity"
+    std::string boundary = "periodic";  ///< kind of every face without one of its own
   } space;
+  /// Tables [boundary.left] and [boundary.right], of models with space.
+  struct {
+    std::optional<std::string> left, right;  ///< kind of the face; space.boundary where it is not set
+  } boundary;
   /// Table [velocity], of models with a velocity grid.
   struct {
     double max = 0.0;
@@ -81,6 +86,9 @@ case_config load_case(const std::string& name_or_path, const std::vector<std::st
 
 /// The model of the case with its parameters. Throws input_error if there is no such model.
 std::unique_ptr<model> make_model(const case_config& config);
+
+/// The boundaries at the left and the right end. Throws input_error if there is no such kind.
+domain::faces make_boundaries(const case_config& config);
 
 /// Names of the built-in cases, sorted.
 std::vector<std::string> case_names();

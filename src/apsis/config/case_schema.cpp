@@ -1,9 +1,9 @@
 #include <apsis/config/case_schema.hpp>
 
+#include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
-#include <apsis/phase/boundary.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <cmath>
@@ -50,6 +50,10 @@ std::optional<std::string> method_besides(const std::string& name) {
 
 case_value optional_number(const std::optional<double>& x) {
   return x ? case_value(*x) : case_value();
+}
+
+case_value optional_text(const std::optional<std::string>& text) {
+  return text ? case_value(*text) : case_value();
 }
 
 const char* formulation_name(formulation f) {
@@ -136,6 +140,14 @@ std::vector<case_key> make_schema() {
        "(outflow; conservation and entropy decay are then not promised).",
        [](c& o, const v& x) { o.space.boundary = text_of(x); },
        [](const c& o) { return v(o.space.boundary); }},
+      {"boundary.left.kind", text, key_scope::space, false, "", 0, 0, false, boundary_choices,
+       "What lies beyond the left end, where it differs from space.boundary. Table [boundary.left].",
+       [](c& o, const v& x) { o.boundary.left = text_of(x); },
+       [](const c& o) { return optional_text(o.boundary.left); }},
+      {"boundary.right.kind", text, key_scope::space, false, "", 0, 0, false, boundary_choices,
+       "What lies beyond the right end, where it differs from space.boundary. Table [boundary.right].",
+       [](c& o, const v& x) { o.boundary.right = text_of(x); },
+       [](const c& o) { return optional_text(o.boundary.right); }},
       {"velocity.max", number, key_scope::velocity, true, none, 0, 1e6, true, nullptr,
        "The velocity grid covers [-max, max]; it must hold the tails of the data.",
        [](c& o, const v& x) { o.velocity.max = number_of(x); }, [](const c& o) { return v(o.velocity.max); }},

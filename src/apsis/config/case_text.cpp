@@ -120,7 +120,15 @@ case_text read_case_text(std::string_view text, const std::string& file) {
         continue;
       }
       out.tables.emplace(name, place_of(node.source(), file));
-      for (const auto& [inner, value] : *table) add(fmt::format("{}.{}", name, inner.str()), inner, value);
+      for (const auto& [inner, value] : *table) {
+        const std::string path = fmt::format("{}.{}", name, inner.str());
+        const toml::table* side = name == "boundary" ? value.as_table() : nullptr;
+        if (side == nullptr) {
+          add(path, inner, value);
+        } else {
+          for (const auto& [last, item] : *side) add(fmt::format("{}.{}", path, last.str()), last, item);
+        }
+      }
     }
   } catch (const toml::parse_error& e) {
     throw input_error(place_of(e.source(), file), syntax_message(e.description()));

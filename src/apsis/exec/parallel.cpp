@@ -24,7 +24,8 @@ std::atomic<int> thread_count = 1;
 /// The team of the calling thread, made when it is needed. That of a parent process stays its own.
 thread_team& team_of(int size) {
   thread_local std::unique_ptr<thread_team> team;
-  if (team && team->left_behind()) static_cast<void>(team.release());
+  if (team && team->left_behind())
+    static_cast<void>(team.release());  // NOLINT(bugprone-unused-return-value): of the parent process
   if (!team || team->size() != size) team = std::make_unique<thread_team>(size);
   return *team;
 }

@@ -199,7 +199,8 @@ thread_team::thread_team(int size)
   pthread_sigmask(SIG_SETMASK, &all, &before);
   try {
     for (; workers_ < size - 1; ++workers_) std::thread(serve, shared_, workers_ + 1).detach();
-  } catch (const std::system_error&) {  // the caller does the work of those that could not be started
+  } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch)
+    // The caller does the work of those that could not be started.
   }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }

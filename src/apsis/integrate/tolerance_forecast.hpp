@@ -32,10 +32,11 @@ typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, ty
   for (int k = 0; k < 30; ++k) {  // a factor of 5 each: from 1e-20 to 1
     dt = std::min(longest, control.proposed());
     const bool rejected_before = control.rejected() > 0;
-    real error = std::numeric_limits<real>::infinity();
+    real error(0);
     try {
       error = estimate(p, t, dt, u, method_stepper.attempt(t, dt, u), target, distance);
     } catch (const numerical_error&) {
+      error = std::numeric_limits<real>::infinity();  // a step that fails is too long
     }
     const bool good = control.accepts(dt, error);
     if (good && (rejected_before || dt >= longest || control.proposed() <= dt * real(1.3))) break;
@@ -114,7 +115,7 @@ tolerance_forecast<typename P::real> forecast_tolerance(stepper<P>& method_stepp
     found.error = (real(bounds.last) + moved * real(bounds.flux)) * plateau +
                   (real(bounds.last_band) + moved * real(bounds.flux_band)) * band;
   } catch (const numerical_error&) {
-    // The run will say what is wrong with the data.
+    return found;  // the run will say what is wrong with the data
   }
   return found;
 }

@@ -228,15 +228,15 @@ bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double*
 }
 
 bool discrete_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m) {
-  const int d = grid.dimensions();
+  const auto d = static_cast<std::size_t>(grid.dimensions());
   std::array<double, 5> omega{};
-  double square = d * state.T;
+  double square = static_cast<double>(d) * state.T;
   omega[0] = state.rho;
-  for (int k = 0; k < d; ++k) {
-    omega[static_cast<std::size_t>(1 + k)] = state.rho * state.u[k];
+  for (std::size_t k = 0; k < d; ++k) {
+    omega[1 + k] = state.rho * state.u[k];
     square += state.u[k] * state.u[k];
   }
-  omega[static_cast<std::size_t>(1 + d)] = 0.5 * state.rho * square;
+  omega[1 + d] = 0.5 * state.rho * square;
   return discrete_maxwellian(grid, omega.data(), m);
 }
 

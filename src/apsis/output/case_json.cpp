@@ -24,12 +24,13 @@ nlohmann::ordered_json to_json(const case_config& config) {
     const case_value value = key.load(config);
     if ((model != nullptr && !applies(key, *model)) || std::holds_alternative<std::monostate>(value))
       continue;
-    const auto dot = key.path.find('.');
-    nlohmann::ordered_json item = std::visit(to_json_visitor{}, value);
-    if (dot == std::string::npos)
-      out[key.path] = std::move(item);
-    else
-      out[key.path.substr(0, dot)][key.path.substr(dot + 1)] = std::move(item);
+    nlohmann::ordered_json* place = &out;  // one object for each table of the path
+    for (std::size_t from = 0; from != std::string::npos;) {
+      const auto dot = key.path.find('.', from);
+      place = &(*place)[key.path.substr(from, dot == std::string::npos ? dot : dot - from)];
+      from = dot == std::string::npos ? dot : dot + 1;
+    }
+    *place = std::visit(to_json_visitor{}, value);
   }
   for (const auto& [name, value] : config.model.parameters) out["model"][name] = value;
   for (const auto& [name, value] : config.model.texts) out["model"][name] = value;

@@ -1,25 +1,47 @@
 #pragma once
 
-#include <apsis/phase/field.hpp>
-#include <apsis/phase/grid.hpp>
-
-#include <string>
-#include <vector>
+#include <array>
+#include <optional>
+#include <span>
 
 namespace apsis {
 
-/// What lies beyond the ends of a pencil. This is the only place that knows it: everything else sees rows.
-/// `outflow` is zero gradient: a ghost cell repeats the nearest cell inside.
-enum class boundary_kind { periodic, outflow };
+/// A face of the domain: the lower or the upper end of a direction.
+struct face {
+  int direction = 0;   ///< 0, 1 or 2
+  bool upper = false;  ///< at the largest coordinate
+};
 
-/// Names of all kinds in case files: "periodic", …
-std::vector<std::string> boundary_names();
-/// The kind of that name. Throws input_error with the nearest name if there is none.
-boundary_kind find_boundary(const std::string& name);
+/// The rows on either side of a face, along one pencil.
+struct pencil_end {
+  std::span<const double* const> inside;  ///< of all cells of the pencil, counted inwards from the face
+  std::span<double* const> ghosts;        ///< to be filled, counted outwards from the face
+  int components = 0;                     ///< numbers of a row
+  std::array<double, 3> position{};       ///< where the pencil meets the face
+};
 
-/// rows[i − begin] ← the row of cell i of a pencil for i = begin … end−1; cells outside 0 … n−1 are ghost
-/// cells.
-void pencil_rows(const field& u, const grid& mesh, int direction, int pencil, boundary_kind kind, int begin,
-                 int end, std::vector<const double*>& rows);
+/// What lies beyond a face of the domain. Transport and collision see it through ghost rows only.
+class boundary {
+ public:
+  virtual ~boundary() = default;
+
+  /// The cell, counted inwards from the face, whose row is ghost row `ghost` = 0, 1, … (outwards) of a pencil
+  /// of `cells` cells; empty where fill() has to compute the row. A repeated row is never copied.
+  virtual std::optional<int> repeated_cell(int ghost, int cells) const;
+  /// Fills the ghost rows of a pencil at time t. Called before every evaluation of T, and of Q where it needs
+  /// neighbours, by any number of threads for different pencils.
+  virtual void fill(const face& where, double t, const pencil_end& rows) const = 0;
+  /// Whether the opposite face continues the domain; then both faces of the direction have to.
+  virtual bool periodic() const { return false; }
+  /// Whether no invariant enters or leaves through the face.
+  virtual bool closed() const { return false; }
+};
+
+/// A boundary whose ghost rows are rows of cells inside.
+class repeating_boundary : public boundary {
+ public:
+  /// Copies the repeated rows.
+  void fill(const face& where, double t, const pencil_end& rows) const final;
+};
 
 }  // namespace apsis

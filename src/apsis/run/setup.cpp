@@ -20,9 +20,10 @@
 namespace apsis {
 namespace {
 
-grid make_mesh(const case_config& config, bool has_space) {
-  return has_space ? grid::line(config.space.cells, config.space.domain[0], config.space.domain[1])
-                   : grid::line(1, 0.0, 1.0);
+domain make_space(const case_config& config, bool has_space) {
+  if (!has_space) return domain::point();
+  const grid mesh = grid::line(config.space.cells, config.space.domain[0], config.space.domain[1]);
+  return {mesh, {make_boundaries(config)}};
 }
 
 /// An input error at the place of a key, as far as that is known.
@@ -69,7 +70,9 @@ std::vector<interval> smooth_parts(const std::vector<double>& jumps, double cent
 }  // namespace
 
 run_setup::run_setup(const case_config& config)
-    : equation(make_model(config)), config_(config), mesh_(make_mesh(config, has_space())) {
+    : equation(make_model(config)),
+      config_(config),
+      space_(std::make_shared<domain>(make_space(config, has_space()))) {
   method_ = &find_method(config.time.method);
   check_method();
   if (has_space()) choose_stencil();
@@ -137,7 +140,6 @@ void run_setup::choose_stencil() {
   if (config_.space.limiter == "positivity" && !first_order())
     how_.positivity =
         config_.space.formulation == formulation::finite_volume ? limiter_kind::edges : limiter_kind::fluxes;
-  how_.boundary = find_boundary(config_.space.boundary);
   const int needed = 2 * how_.scheme->ghost_width() + 1;
   if (config_.space.cells < needed)
     refuse(config_, "space.cells",
@@ -151,7 +153,7 @@ bool run_setup::pointwise() const {
 
 std::vector<double> run_setup::centres() const {
   std::vector<double> x;
-  for (int cell = 0; cell < mesh_.size(); ++cell) x.push_back(has_space() ? mesh_.centre(cell, 0) : 0.0);
+  for (int cell = 0; cell < mesh().size(); ++cell) x.push_back(has_space() ? mesh().centre(cell, 0) : 0.0);
   return x;
 }
 
@@ -179,11 +181,11 @@ std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
     } else {
       std::vector<double> points;
       for (const double centre : centres())
-        for (const double xi : gauss3::xi) points.push_back(centre + xi * mesh_.spacing(0));
-      q = make_cell_average_collision(relaxation, mesh_, how_, epsilon_on(points));
+        for (const double xi : gauss3::xi) points.push_back(centre + xi * mesh().spacing(0));
+      q = make_cell_average_collision(relaxation, space_, how_, epsilon_on(points));
     }
   }
-  auto problem = std::make_unique<semidiscrete_problem>(*equation, mesh_, how_, std::move(q));
+  auto problem = std::make_unique<semidiscrete_problem>(*equation, space_, how_, std::move(q));
   if (method_->kind == method_kind::explicit_only) problem->treat_collision_explicitly();
   return problem;
 }
@@ -199,11 +201,11 @@ const initial_data& run_setup::data() const {
 
 field run_setup::sampled(const std::function<void(double, std::span<double>)>& point_value,
                          const std::vector<double>& jumps) const {
-  field u(mesh_.size(), equation->components());
+  field u(mesh().size(), equation->components());
   std::vector<double> values(static_cast<std::size_t>(u.components()));
   const bool averages = has_space() && config_.space.formulation == formulation::finite_volume;
   for (int cell = 0; cell < u.cells(); ++cell) {
-    const double centre = mesh_.centre(cell, 0), half = 0.5 * mesh_.spacing(0);
+    const double centre = mesh().centre(cell, 0), half = 0.5 * mesh().spacing(0);
     double* row = u.row(cell);
     const auto add = [&](double x, double weight) {
       point_value(x, values);
@@ -249,7 +251,7 @@ double run_setup::cfl_length() const {
   double fastest = config_.velocity.max;
   if (!(fastest > 0.0))
     for (const double v : equation->speeds(0)) fastest = std::max(fastest, std::abs(v));
-  return mesh_.spacing(0) / fastest;
+  return mesh().spacing(0) / fastest;
 }
 
 double run_setup::equilibrium_defect(const field& u) const {
@@ -280,7 +282,7 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
                                 bool exact_equilibrium) const {
   const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
   // Through open ends mass and entropy come and go.
-  const bool closed = !has_space() || how_.boundary == boundary_kind::periodic;
+  const bool closed = space_->closed();
   // An explicit Q/epsilon beyond the step that it allows carries its rounding times dt/epsilon into the
   // invariants.
   const bool explicit_collision = schedule(method_->coefficients<double>()).collision_evaluations() > 0;

@@ -43,7 +43,7 @@ class run_setup {
   /// Whether the model has a mesh; without one there is a single cell.
   bool has_space() const { return equation->space_dimensions() > 0; }
   /// Δx, or 1 without space.
-  double cell_volume() const { return has_space() ? mesh_.cell_volume() : 1.0; }
+  double cell_volume() const { return has_space() ? mesh().cell_volume() : 1.0; }
   /// x of the cell centres; {0} without space.
   std::vector<double> centres() const;
   /// ε(x) at the cell centres.
@@ -66,6 +66,7 @@ class run_setup {
                        bool exact_equilibrium) const;
 
  private:
+  const grid& mesh() const { return space_->mesh(); }
   bool first_order() const { return how_.scheme && how_.scheme->order() == 1; }
   /// Whether steps within r Δt_FE keep nonnegative data so.
   bool keeps_sign() const { return how_.positivity != limiter_kind::none || first_order() || !has_space(); }
@@ -81,7 +82,7 @@ class run_setup {
   void choose_stencil();
 
   case_config config_;
-  grid mesh_;
+  std::shared_ptr<domain> space_;
   stencil how_;
   const method* method_ = nullptr;
   double ssp_coefficient_ = 0.0;

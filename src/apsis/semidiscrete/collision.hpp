@@ -15,12 +15,13 @@ class collision {
  public:
   virtual ~collision() = default;
 
-  /// In place u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², a = Δt d ≥ 0, b = Δt² ḋ ≤ 0. Nonnegative rows stay so.
+  /// In place u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², a = Δt d ≥ 0, b = Δt² ḋ ≤ 0, t the time of the stage.
+  /// Nonnegative rows stay so.
   /// Throws numerical_error with the cell where the moments have no equilibrium.
-  virtual void solve(double a, double b, field& u) = 0;
+  virtual void solve(double t, double a, double b, field& u) = 0;
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε. Throws numerical_error where ε = 0.
-  virtual void add_collision(const field& u, std::span<const target<field, double>> targets) = 0;
+  virtual void add_collision(double t, const field& u, std::span<const target<field, double>> targets) = 0;
 
   /// Largest Δt for which u + Δt Q(u)/ε keeps what the collision keeps (for a relaxation: min ε/C).
   virtual double forward_euler_step(const field& u) const = 0;
@@ -49,7 +50,8 @@ std::unique_ptr<collision> make_pointwise_collision(const relaxation_model& equa
 /// quartic through the reconstructed edges and the neighbouring averages, with ω from the (limited) values at
 /// the point; the new average is the weighted mean. Conserves exactly although ε varies inside the cell.
 /// `epsilon` holds three values per cell, in the order of the points.
-std::unique_ptr<collision> make_cell_average_collision(const relaxation_model& equation, const grid& mesh,
-                                                       stencil how, std::vector<double> epsilon);
+std::unique_ptr<collision> make_cell_average_collision(const relaxation_model& equation,
+                                                       std::shared_ptr<domain> space, stencil how,
+                                                       std::vector<double> epsilon);
 
 }  // namespace apsis

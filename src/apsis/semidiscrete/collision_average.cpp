@@ -16,14 +16,16 @@ namespace {
 
 class cell_average_collision final : public collision {
  public:
-  cell_average_collision(const relaxation_model& equation, const grid& mesh, stencil how,
+  cell_average_collision(const relaxation_model& equation, std::shared_ptr<domain> space, stencil how,
                          std::vector<double> epsilon)
-      : equation_(equation), mesh_(mesh), how_(std::move(how)), epsilon_(std::move(epsilon)) {}
+      : equation_(equation), space_(std::move(space)), how_(std::move(how)), epsilon_(std::move(epsilon)) {
+    space_->reserve(equation.components(), how_.scheme->ghost_width());
+  }
 
-  void solve(double a, double b, field& u) override {
+  void solve(double t, double a, double b, field& u) override {
     if (result_.cells() != u.cells() || result_.components() != u.components())
       result_ = field(u.cells(), u.components());
-    for_blocks(u, [&](int begin, int cells, const double* points, local_relaxation& local) {
+    for_blocks(t, u, [&](int begin, int cells, const double* points, local_relaxation& local) {
       const auto pitch = static_cast<std::ptrdiff_t>(u.stride());
       const profile::section timed(kernel::relaxation, static_cast<double>(cells) * u.stride(),
                                    {relaxation::operations_of_average, sizeof(double)});
@@ -43,9 +45,9 @@ class cell_average_collision final : public collision {
     std::swap(u, result_);  // neighbours need the old averages, so the new ones are made beside them
   }
 
-  void add_collision(const field& u, std::span<const target<field, double>> targets) override {
+  void add_collision(double t, const field& u, std::span<const target<field, double>> targets) override {
     rows_.prepare([&](auto& rows) { rows.reserve(targets.size()); });
-    for_blocks(u, [&](int begin, int cells, const double* points, const local_relaxation& local) {
+    for_blocks(t, u, [&](int begin, int cells, const double* points, const local_relaxation& local) {
       auto& rows = rows_.here();
       for (int i = 0; i < cells; ++i) {
         relaxation::strong_rows at[gauss3::points];
@@ -89,7 +91,8 @@ class cell_average_collision final : public collision {
 
   /// body(first cell, number of cells, rows of the values at their Gauss points, the equilibria there).
   template <class Body>
-  void for_blocks(const field& u, Body body) {
+  void for_blocks(double t, const field& u, Body body) {
+    space_->fill_ghosts(t, u);
     const int at_once = std::max(1, points_at_once(u.stride()) / gauss3::points);
     const int longest = collision_block_length(u.stride());
     scratch_.prepare([&](auto& own) {
@@ -103,7 +106,7 @@ class cell_average_collision final : public collision {
       {
         const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(),
                                      {how_.scheme->operations(true), sizeof(double)});
-        block.load(u, mesh_, how_, 0, 0, begin, end, 0);
+        block.load(u, *space_, how_, 0, 0, begin, end, 0);
       }
       for (int i = begin; i < end; i += at_once) {
         const int cells = std::min(at_once, end - i);
@@ -126,7 +129,7 @@ class cell_average_collision final : public collision {
   }
 
   const relaxation_model& equation_;
-  const grid& mesh_;
+  std::shared_ptr<domain> space_;
   stencil how_;
   std::vector<double> epsilon_;
   field result_;
@@ -141,13 +144,15 @@ class cell_average_collision final : public collision {
 
 }  // namespace
 
-std::unique_ptr<collision> make_cell_average_collision(const relaxation_model& equation, const grid& mesh,
-                                                       stencil how, std::vector<double> epsilon) {
-  if (mesh.dimensions() != 1)
+std::unique_ptr<collision> make_cell_average_collision(const relaxation_model& equation,
+                                                       std::shared_ptr<domain> space, stencil how,
+                                                       std::vector<double> epsilon) {
+  if (space->mesh().dimensions() != 1)
     throw input_error(
         "the finite volume formulation collides at the Gauss points of intervals and knows one space "
         "dimension only; use the finite difference formulation");
-  return std::make_unique<cell_average_collision>(equation, mesh, std::move(how), std::move(epsilon));
+  return std::make_unique<cell_average_collision>(equation, std::move(space), std::move(how),
+                                                  std::move(epsilon));
 }
 
 }  // namespace apsis

@@ -17,7 +17,7 @@ class pointwise_collision final : public cellwise_collision {
   pointwise_collision(const relaxation_model& equation, std::vector<double> epsilon, bool limited)
       : equation_(equation), epsilon_(std::move(epsilon)), limited_(limited) {}
 
-  void solve(double a, double b, field& u) override {
+  void solve(double, double a, double b, field& u) override {
     prepare(u);
     parallel_blocks(u.cells(), points_at_once(u.stride()),
                     [&](int begin, int end) { relax(a, b, u, begin, end - begin, 2.0 * sizeof(double)); });
@@ -32,7 +32,7 @@ class pointwise_collision final : public cellwise_collision {
       relax(a, b, u, first, std::min(end - first, length), 0.0);
   }
 
-  void add_collision(const field& u, std::span<const target<field, double>> targets) override {
+  void add_collision(double, const field& u, std::span<const target<field, double>> targets) override {
     prepare(u);
     rows_.prepare([&](auto& rows) { rows.reserve(targets.size()); });
     parallel_blocks(u.cells(), points_at_once(u.stride()), [&](int begin, int end) {

@@ -56,7 +56,7 @@ class newton_collision final : public collision {
     local_.with_admissible([&equation](std::span<const double> u) { return equation.admissible(u.data()); });
   }
 
-  void solve(double a, double b, field& u) override {
+  void solve(double, double a, double b, field& u) override {
     for (int cell = 0; cell < u.cells(); ++cell) {
       load(u, cell);
       local_.solve_collision(0.0, a, b, row_);
@@ -64,7 +64,7 @@ class newton_collision final : public collision {
     }
   }
 
-  void add_collision(const field& u, std::span<const target<field, double>> targets) override {
+  void add_collision(double, const field& u, std::span<const target<field, double>> targets) override {
     for (int cell = 0; cell < u.cells(); ++cell) {
       load(u, cell);
       change_.resize(row_.size());

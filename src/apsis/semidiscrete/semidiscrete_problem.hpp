@@ -15,9 +15,10 @@ class semidiscrete_problem {
   using state = field;  ///< f[cell][component]
   using real = double;  ///< of time and coefficients
 
-  /// Both references must outlive the problem.
-  semidiscrete_problem(const model& equation, const grid& mesh, stencil how, std::unique_ptr<collision> q)
-      : transport_(equation, mesh, std::move(how)),
+  /// `equation` must outlive the problem.
+  semidiscrete_problem(const model& equation, std::shared_ptr<domain> space, stencil how,
+                       std::unique_ptr<collision> q)
+      : transport_(equation, std::move(space), std::move(how)),
         has_transport_(equation.space_dimensions() > 0 || equation.has_source()),
         collision_(std::move(q)),
         cellwise_(dynamic_cast<cellwise_collision*>(collision_.get())) {}
@@ -26,29 +27,29 @@ class semidiscrete_problem {
   /// is a convex combination of a step of T and a step of Q.
   void treat_collision_explicitly() { explicit_collision_ = true; }
 
-  /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target; T does not depend on time.
-  void add_transport(double, const field& u, std::span<const target<field, double>> targets) {
-    transport_.add_transport(u, targets);
+  /// acc ← (fresh ? 0 : acc) + α u + β T(t, u) for every target; boundaries know the time t.
+  void add_transport(double t, const field& u, std::span<const target<field, double>> targets) {
+    transport_.add_transport(t, u, targets);
   }
   /// u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε². Throws numerical_error where there is no equilibrium, or
   /// Newton's method finds no solution.
-  void solve_collision(double, double a, double b, field& u) { collision_->solve(a, b, u); }
+  void solve_collision(double t, double a, double b, field& u) { collision_->solve(t, a, b, u); }
   /// add_transport(), then solve_collision() as `due` says, to the same numbers; where possible, cells are
   /// solved while they are in the cache.
-  void add_transport_and_solve(double, const field& u, std::span<const target<field, double>> targets,
+  void add_transport_and_solve(double t, const field& u, std::span<const target<field, double>> targets,
                                due_collision<field, double> due) {
     const auto collide_cells = [&](int begin, int end) {
       cellwise_->solve_cells(due.a, due.b, *due.u, begin, end);
     };
     if (cellwise_) cellwise_->prepare(*due.u);
     const bool done =
-        transport_.add_transport(u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
-    if (!done) collision_->solve(due.a, due.b, *due.u);
+        transport_.add_transport(t, u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
+    if (!done) collision_->solve(due.t, due.a, due.b, *due.u);
   }
   /// acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε for every target. Throws numerical_error where ε = 0
   /// or there is no equilibrium.
-  void add_collision(double, const field& u, std::span<const target<field, double>> targets) {
-    collision_->add_collision(u, targets);
+  void add_collision(double t, const field& u, std::span<const target<field, double>> targets) {
+    collision_->add_collision(t, u, targets);
   }
   /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it.
   double forward_euler_step(double, const field& u) const {

@@ -13,14 +13,14 @@ void pencil_block::reserve(const stencil& how, int cells, int halo, int stride) 
   right.resize(needed);
 }
 
-void pencil_block::load(const field& u, const grid& mesh, const stencil& how, int direction, int pencil,
+void pencil_block::load(const field& u, const domain& space, const stencil& how, int direction, int pencil,
                         int begin, int end, int halo) {
   const int ghosts = how.scheme->ghost_width();
   const int count = end - begin + 2 * halo;
   width = u.stride();
   first_edge = begin - halo;
   first_row = first_edge - ghosts;
-  pencil_rows(u, mesh, direction, pencil, how.boundary, first_row, end + halo + ghosts, rows);
+  space.pencil_rows(u, direction, pencil, first_row, end + halo + ghosts, rows);
   reserve(how, end - begin, halo, width);
   how.scheme->edges(rows.data() + ghosts, count, width, left.data(), right.data());
 }

@@ -1,9 +1,8 @@
 #pragma once
 
 #include <apsis/exec/aligned.hpp>
-#include <apsis/phase/boundary.hpp>
+#include <apsis/phase/domain.hpp>
 #include <apsis/phase/field.hpp>
-#include <apsis/phase/grid.hpp>
 #include <apsis/scheme/reconstruction.hpp>
 
 #include <memory>
@@ -37,9 +36,8 @@ struct cells_job {
 
 /// How transport and collision see neighbouring cells.
 struct stencil {
-  std::shared_ptr<const reconstruction> scheme;      ///< of edge values; null without space
-  limiter_kind positivity = limiter_kind::none;      ///< limiter of edges or fluxes
-  boundary_kind boundary = boundary_kind::periodic;  ///< what lies beyond the ends of a pencil
+  std::shared_ptr<const reconstruction> scheme;  ///< of edge values; null without space
+  limiter_kind positivity = limiter_kind::none;  ///< limiter of edges or fluxes
 };
 
 /// A few consecutive cells of one pencil with their edge values, small enough to stay in the cache. Reused
@@ -49,7 +47,7 @@ struct pencil_block {
   void reserve(const stencil& how, int cells, int halo, int stride);
 
   /// Cells begin−halo … end−1+halo of a pencil get edge values. Rows reach the ghost cells of the scheme.
-  void load(const field& u, const grid& mesh, const stencil& how, int direction, int pencil, int begin,
+  void load(const field& u, const domain& space, const stencil& how, int direction, int pencil, int begin,
             int end, int halo);
 
   /// The components of a cell of the pencil, or of a ghost cell.

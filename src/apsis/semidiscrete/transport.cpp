@@ -38,6 +38,16 @@ work traffic(targets_view targets) {
   return each;
 }
 
+/// Cells beyond those of a block whose edges are needed: one for the flux, one more for its limiter.
+int halo_of(const stencil& how) {
+  return how.positivity == limiter_kind::fluxes ? 2 : 1;
+}
+
+/// Cells on either side that the edges of a cell and the limiter depend on.
+int reach_of(const stencil& how) {
+  return std::max(how.scheme->ghost_width(), halo_of(how));
+}
+
 /// First component of column 0 … columns of a row, columns being cut at whole vectors.
 int first_component(int width, int columns, int column) {
   if (column == columns) return width;
@@ -110,8 +120,7 @@ class transport::block_sweep {
     first_edge_ = at.begin - halo_;
     const int beyond = halo_ + reach_;
     first_row_ = at.begin - beyond;
-    pencil_rows(u, from.mesh_, at.direction, at.pencil, from.how_.boundary, first_row_, at.end + beyond,
-                rows_);
+    from.space_->pencil_rows(u, at.direction, at.pencil, first_row_, at.end + beyond, rows_);
     joined_.assign(rows_.size(), 1);
     if (cells_of_a_row(u.stride()) > 1)
       for (std::size_t j = rows_.size() - 1; j-- > 0;)
@@ -121,8 +130,8 @@ class transport::block_sweep {
   }
 
   void find_reach(const transport& from) {
-    halo_ = from.how_.positivity == limiter_kind::fluxes ? 2 : 1;
-    reach_ = std::max(from.how_.scheme->ghost_width(), halo_);  // as far as edges and limiter look
+    halo_ = halo_of(from.how_);
+    reach_ = reach_of(from.how_);
   }
 
   /// Where neighbours are joined, a row of edges ends beyond its last cell.
@@ -166,7 +175,7 @@ class transport::block_sweep {
 
   void add(int i, const run_of_cells& run, const place& at, targets_view targets) {
     const bool first = at.direction == 0;
-    const auto& mesh = from_->mesh_;
+    const auto& mesh = from_->mesh();
     const int apart = mesh.stride(at.direction), cell = mesh.first_cell(at.direction, at.pencil) + i * apart;
     upwind::rows_of(targets, cell, targets_, {at.first, apart, first});
     const double* right = right_.data() + offset(i);
@@ -204,16 +213,20 @@ struct transport::scratch {
 transport::~transport() = default;
 transport::transport(transport&&) noexcept = default;
 
-transport::transport(const model& equation, const grid& mesh, stencil how)
-    : equation_(equation), mesh_(mesh), how_(std::move(how)), scratch_(std::make_unique<scratch>()) {
+transport::transport(const model& equation, std::shared_ptr<domain> space, stencil how)
+    : equation_(equation),
+      space_(std::move(space)),
+      how_(std::move(how)),
+      scratch_(std::make_unique<scratch>()) {
   if (equation.space_dimensions() == 0) return;
+  space_->reserve(equation.components(), halo_of(how_) + reach_of(how_));
   const field layout(1, equation.components());
-  for (int direction = 0; direction < mesh.dimensions(); ++direction) {
+  for (int direction = 0; direction < mesh().dimensions(); ++direction) {
     line_speeds line;
     const auto v = equation.speeds(direction);
     for (int cell = 0; cell < cells_of_a_row(layout.stride()); ++cell)
       for (std::size_t k = 0; k < static_cast<std::size_t>(layout.stride()); ++k) {
-        line.per_cell.push_back(k < v.size() ? std::abs(v[k]) / mesh.spacing(direction) : 0.0);
+        line.per_cell.push_back(k < v.size() ? std::abs(v[k]) / mesh().spacing(direction) : 0.0);
         line.forward.push_back(k < v.size() && v[k] > 0.0 ? 1.0 : 0.0);
       }
     speeds_.push_back(std::move(line));
@@ -226,7 +239,7 @@ double transport::forward_euler_step() const {
   return rounding_allowance * (how_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) / rate;
 }
 
-bool transport::add_transport(const field& u, targets_view targets, const cells_job& then) const {
+bool transport::add_transport(double t, const field& u, targets_view targets, const cells_job& then) const {
   const bool moves =
       std::any_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta != 0.0; });
   if (!moves) {
@@ -237,10 +250,11 @@ bool transport::add_transport(const field& u, targets_view targets, const cells_
     add_source(u, targets);
     return false;
   }
-  for (int direction = 0; direction + 1 < mesh_.dimensions(); ++direction)
-    add_direction(u, targets, direction, {});
+  space_->fill_ghosts(t, u);
+  const int dimensions = mesh().dimensions();
+  for (int direction = 0; direction + 1 < dimensions; ++direction) add_direction(u, targets, direction, {});
   // Cells are complete pencil by pencil only where one direction is all there is.
-  return add_direction(u, targets, mesh_.dimensions() - 1, mesh_.dimensions() == 1 ? then : cells_job());
+  return add_direction(u, targets, dimensions - 1, dimensions == 1 ? then : cells_job());
 }
 
 void transport::add_source(const field& u, targets_view targets) const {
@@ -276,7 +290,7 @@ void transport::add_weighted(const field& u, targets_view targets, const cells_j
 
 bool transport::add_direction(const field& u, targets_view targets, int direction,
                               const cells_job& then) const {
-  const int n = mesh_.cells(direction), pencils = mesh_.pencils(direction), width = u.stride();
+  const int n = mesh().cells(direction), pencils = mesh().pencils(direction), width = u.stride();
   // A source is a function of all components of a cell.
   const bool whole_cells = equation_.has_source();
   int columns = whole_cells ? 1 : (width + most_columns - 1) / most_columns;

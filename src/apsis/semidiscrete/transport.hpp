@@ -18,16 +18,16 @@ inline constexpr double rounding_allowance = 1.0 - 1e-14;
 /// operator is the same for cell averages (finite volume) and point values (finite difference).
 class transport {
  public:
-  /// Both references must outlive this. Without space `how` is not used.
-  transport(const model& equation, const grid& mesh, stencil how);
+  /// `equation` must outlive this. Without space `how` is not used.
+  transport(const model& equation, std::shared_ptr<domain> space, stencil how);
   ~transport();
   transport(transport&&) noexcept;  ///< leaves the source empty
 
-  /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(u). One evaluation of T, none if every β is 0.
+  /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u). One evaluation of T, none if every β is 0.
   /// With the positivity limiter and β max|v|/Δx ≤ α/12 no result is negative, in floating point.
   /// `then` is called with cells of all targets that are complete, while they are in the cache, and the
   /// result says so; on a mesh, or with a number of threads, where that is of no use, it is not called.
-  bool add_transport(const field& u, std::span<const target<field, double>> targets,
+  bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const;
 
   /// Δt_FE = κ / Σ_k (max|v_k|/Δx_k): κ = 1/12 with the positivity limiter (Zhang & Shu 2010), else 1, which
@@ -41,8 +41,10 @@ class transport {
   bool add_direction(const field& u, std::span<const target<field, double>> targets, int direction,
                      const cells_job& then) const;
 
+  const grid& mesh() const { return space_->mesh(); }
+
   const model& equation_;
-  const grid& mesh_;
+  std::shared_ptr<domain> space_;
   stencil how_;
   struct line_speeds {
     aligned_vector<double> per_cell;  ///< |v|/Δx of every component

@@ -161,7 +161,7 @@ std::vector<double> on_mesh_of(const outcome& run, const outcome& finer) {
   if (run.cells == finer.cells) return finer.state;
   if (run.config.space.formulation == formulation::finite_volume)
     return averages{static_cast<std::size_t>(finer.cells / run.cells), components}(finer.state);
-  const bool periodic = run.config.space.boundary == "periodic";
+  const bool periodic = make_boundaries(run.config)[0]->periodic();
   return interpolation(finer.cells, run.cells, periodic)(finer.state, components);
 }
 

@@ -15,9 +15,10 @@ namespace {
 /// Cells beyond either end whose edge values are used: one for the flux, one more for its limiter.
 constexpr int halo = 2;
 
-grid mesh_of(const case_config& config, bool has_space) {
-  return has_space ? grid::line(config.space.cells, config.space.domain[0], config.space.domain[1])
-                   : grid::line(1, 0.0, 1.0);
+domain space_of(const case_config& config, bool has_space) {
+  if (!has_space) return domain::point();
+  const grid mesh = grid::line(config.space.cells, config.space.domain[0], config.space.domain[1]);
+  return {mesh, {make_boundaries(config)}};
 }
 
 }  // namespace
@@ -37,13 +38,12 @@ struct limit_space::pencil {
 
 limit_space::limit_space(const case_config& config, const relaxation_model& equation)
     : equation_(equation),
-      mesh_(mesh_of(config, equation.space_dimensions() > 0)),
+      space_(space_of(config, equation.space_dimensions() > 0)),
       has_space_(equation.space_dimensions() > 0) {
   if (!has_space_) return;
   const reconstruction_entry* entry = find_reconstruction(config.space.reconstruction);
   if (entry == nullptr) throw input_error("unknown reconstruction '" + config.space.reconstruction + "'");
   scheme_ = entry->make();
-  boundary_ = find_boundary(config.space.boundary);
   const bool volumes = config.space.formulation == formulation::finite_volume;
   const bool first_order = scheme_->order() == 1;
   averages_ = volumes && !first_order;
@@ -68,10 +68,10 @@ field limit_space::equilibria(const field& omega) const {
 
 limit_space::pencil limit_space::reconstruct(const field& u) const {
   pencil p;
-  const int ghosts = scheme_->ghost_width(), count = mesh_.size() + 2 * halo;
+  const int ghosts = scheme_->ghost_width(), count = cells() + 2 * halo;
   p.first_row = -halo - ghosts;
   p.width = static_cast<std::size_t>(u.stride());
-  pencil_rows(u, mesh_, 0, 0, boundary_, p.first_row, mesh_.size() + halo + ghosts, p.rows);
+  space_.pencil_rows(u, 0, 0, p.first_row, cells() + halo + ghosts, p.rows);
   p.left_edges.resize(static_cast<std::size_t>(count) * p.width);
   p.right_edges.resize(static_cast<std::size_t>(count) * p.width);
   scheme_->edges(p.rows.data() + ghosts, count, u.stride(), p.left_edges.data(), p.right_edges.data());
@@ -137,7 +137,8 @@ void limit_space::add_divergence(const field& u, field& t) const {
   fluxes(0, before);
   for (int i = 0; i < u.cells(); ++i) {
     fluxes(i + 1, after);
-    for (std::size_t k = 0; k < v.size(); ++k) t.row(i)[k] -= (after[k] - before[k]) / mesh_.spacing(0);
+    for (std::size_t k = 0; k < v.size(); ++k)
+      t.row(i)[k] -= (after[k] - before[k]) / space_.mesh().spacing(0);
     std::swap(before, after);
   }
 }

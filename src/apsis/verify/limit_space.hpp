@@ -2,9 +2,8 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/boundary.hpp>
+#include <apsis/phase/domain.hpp>
 #include <apsis/phase/field.hpp>
-#include <apsis/phase/grid.hpp>
 #include <apsis/scheme/reconstruction.hpp>
 
 #include <memory>
@@ -21,7 +20,7 @@ class limit_space {
   limit_space(const case_config& config, const relaxation_model& equation);
 
   /// Cells of the mesh; 1 without space.
-  int cells() const { return mesh_.size(); }
+  int cells() const { return space_.mesh().size(); }
   /// Unknowns are averages of cells in which the equilibrium varies, so that their equilibrium is a mean over
   /// Gauss points; otherwise everything happens point by point.
   bool averages() const { return averages_; }
@@ -44,9 +43,8 @@ class limit_space {
   double harmless_fraction(const pencil& p, int cell, std::size_t k, bool ahead) const;
 
   const relaxation_model& equation_;
-  grid mesh_;
+  domain space_;
   std::shared_ptr<const reconstruction> scheme_;
-  boundary_kind boundary_ = boundary_kind::periodic;
   bool has_space_, averages_ = false, limit_edges_ = false, limit_fluxes_ = false;
 };
 

@@ -92,7 +92,7 @@ std::vector<double> backward_euler_on_collision(const model& m, const std::vecto
                      : make_pointwise_collision(dynamic_cast<const relaxation_model&>(m), {1.0});
   field point(1, m.components());
   std::copy(u.begin(), u.end(), point.row(0));
-  q->solve(lambda, 0.0, point);
+  q->solve(0.0, lambda, 0.0, point);
   return {point.row(0), point.row(0) + m.components()};
 }
 

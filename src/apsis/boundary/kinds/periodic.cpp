@@ -1,0 +1,22 @@
+#include <apsis/boundary/boundary_registry.hpp>
+
+namespace apsis {
+namespace {
+
+/// The domain continues at its opposite face, as often as a stencil wider than the mesh needs.
+class periodic_boundary final : public repeating_boundary {
+ public:
+  std::optional<int> repeated_cell(int ghost, int cells) const override { return cells - 1 - ghost % cells; }
+  bool periodic() const override { return true; }
+  bool closed() const override { return true; }
+};
+
+}  // namespace
+
+extern const boundary_entry boundary_periodic;
+const boundary_entry boundary_periodic = {
+    .name = "periodic",
+    .description = "the opposite face continues the domain",
+    .make = []() -> std::unique_ptr<boundary> { return std::make_unique<periodic_boundary>(); }};
+
+}  // namespace apsis

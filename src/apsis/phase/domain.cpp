@@ -1,0 +1,128 @@
+#include <apsis/phase/domain.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/exec/parallel.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+std::size_t at(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+}  // namespace
+
+domain::domain(const grid& mesh, std::vector<faces> sides)
+    : mesh_(mesh), sides_(std::move(sides)), ghosts_(sides_.size()) {
+  if (sides_.size() != at(mesh.dimensions()))
+    throw input_error(fmt::format("{} pairs of boundaries (the mesh has {} dimensions); give one for each",
+                                  sides_.size(), mesh.dimensions()));
+  for (int k = 0; k < mesh.dimensions(); ++k)
+    if (side({k, false}).periodic() != side({k, true}).periodic())
+      throw input_error(fmt::format(
+          "only one face of direction {} is periodic (its ends continue each other); make both periodic",
+          k + 1));
+}
+
+domain::domain() : mesh_(grid::line(1, 0.0, 1.0)) {}
+
+domain domain::point() {
+  return {};
+}
+
+const boundary& domain::side(const face& where) const {
+  return *sides_[at(where.direction)][where.upper ? 1 : 0];
+}
+
+field& domain::ghosts(const face& where) {
+  return ghosts_[at(where.direction)][where.upper ? 1 : 0];
+}
+
+const field& domain::ghosts(const face& where) const {
+  return ghosts_[at(where.direction)][where.upper ? 1 : 0];
+}
+
+bool domain::periodic(int direction) const {
+  return side({direction, false}).periodic();
+}
+
+bool domain::closed() const {
+  return std::all_of(sides_.begin(), sides_.end(),
+                     [](const faces& pair) { return pair[0]->closed() && pair[1]->closed(); });
+}
+
+bool domain::repeats(const face& where) const {
+  return side(where).repeated_cell(0, mesh_.cells(where.direction)).has_value();
+}
+
+void domain::reserve(int components, int width) {
+  for (int direction = 0; direction < static_cast<int>(sides_.size()); ++direction)
+    for (const bool upper : {false, true}) {
+      const face where{direction, upper};
+      field& rows = ghosts(where);
+      if (repeats(where) || (rows.components() == components && width_ >= width)) continue;
+      rows = field(mesh_.pencils(direction) * std::max(width, width_), components);
+    }
+  width_ = std::max(width, width_);
+}
+
+std::array<double, 3> domain::position(const face& where, int pencil) const {
+  const int cell = mesh_.first_cell(where.direction, pencil);
+  std::array<double, 3> x{};
+  for (int k = 0; k < mesh_.dimensions(); ++k) x[at(k)] = mesh_.centre(cell, k);
+  double& along = x[at(where.direction)];
+  along -= 0.5 * mesh_.spacing(where.direction);
+  if (where.upper) along += mesh_.spacing(where.direction) * mesh_.cells(where.direction);
+  return x;
+}
+
+void domain::fill_face(const face& where, double t, const field& u) {
+  const int n = mesh_.cells(where.direction), stride = mesh_.stride(where.direction);
+  field& rows = ghosts(where);
+  constexpr int pencils_at_once = 16;
+  parallel_blocks(mesh_.pencils(where.direction), pencils_at_once, [&](int begin, int end) {
+    std::vector<const double*> inside(at(n));
+    std::vector<double*> beyond(at(width_));
+    for (int pencil = begin; pencil < end; ++pencil) {
+      const int first = mesh_.first_cell(where.direction, pencil);
+      for (int k = 0; k < n; ++k) inside[at(k)] = u.row(first + (where.upper ? n - 1 - k : k) * stride);
+      for (int g = 0; g < width_; ++g) beyond[at(g)] = rows.row(pencil * width_ + g);
+      side(where).fill(where, t, {inside, beyond, u.components(), position(where, pencil)});
+    }
+  });
+}
+
+void domain::fill_ghosts(double t, const field& u) {
+  for (int direction = 0; direction < static_cast<int>(sides_.size()); ++direction)
+    for (const bool upper : {false, true})
+      if (const face where{direction, upper}; !repeats(where)) fill_face(where, t, u);
+}
+
+const double* domain::ghost_row(const field& u, const face& where, int pencil, int ghost) const {
+  const int n = mesh_.cells(where.direction);
+  if (const auto cell = side(where).repeated_cell(ghost, n)) {
+    const int i = where.upper ? n - 1 - *cell : *cell;
+    return u.row(mesh_.first_cell(where.direction, pencil) + i * mesh_.stride(where.direction));
+  }
+  return ghosts(where).row(pencil * width_ + ghost);
+}
+
+void domain::pencil_rows(const field& u, int direction, int pencil, int begin, int end,
+                         std::vector<const double*>& rows) const {
+  const int n = mesh_.cells(direction), first = mesh_.first_cell(direction, pencil),
+            stride = mesh_.stride(direction);
+  rows.resize(at(end - begin));
+  for (int i = begin; i < std::min(end, 0); ++i)
+    rows[at(i - begin)] = ghost_row(u, {direction, false}, pencil, -1 - i);
+  for (int i = std::max(begin, 0); i < std::min(end, n); ++i) rows[at(i - begin)] = u.row(first + i * stride);
+  for (int i = std::max(begin, n); i < end; ++i)
+    rows[at(i - begin)] = ghost_row(u, {direction, true}, pencil, i - n);
+}
+
+}  // namespace apsis

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <apsis/phase/boundary.hpp>
+#include <apsis/phase/field.hpp>
+#include <apsis/phase/grid.hpp>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace apsis {
+
+/// A grid with what lies beyond its faces: ghost rows, which belong to the domain and are filled by the
+/// boundary of their face. A ghost row that repeats a row inside is that row, without a copy.
+class domain {
+ public:
+  /// Lower and upper face of a direction.
+  using faces = std::array<std::shared_ptr<const boundary>, 2>;
+
+  /// One pair of faces for each direction of the mesh. Throws input_error where only one of the two faces of
+  /// a direction is periodic.
+  domain(const grid& mesh, std::vector<faces> sides);
+  /// A single cell without faces, for equations without space.
+  static domain point();
+
+  /// The cells inside.
+  const grid& mesh() const { return mesh_; }
+  /// Whether the faces of the direction continue each other.
+  bool periodic(int direction) const;
+  /// Whether no invariant enters or leaves through any face.
+  bool closed() const;
+
+  /// Makes room for `width` ghost rows of `components` numbers beyond every face.
+  void reserve(int components, int width);
+  /// Fills the ghost rows of u at time t.
+  void fill_ghosts(double t, const field& u);
+
+  /// rows[i − begin] ← the row of cell i of a pencil, i = begin … end−1; cells outside 0 … n−1 are ghost
+  /// cells, as many as were reserved. They hold what fill_ghosts() left, or are rows of u.
+  void pencil_rows(const field& u, int direction, int pencil, int begin, int end,
+                   std::vector<const double*>& rows) const;
+
+ private:
+  domain();
+
+  const boundary& side(const face& where) const;
+  field& ghosts(const face& where);
+  const field& ghosts(const face& where) const;
+  bool repeats(const face& where) const;
+  const double* ghost_row(const field& u, const face& where, int pencil, int ghost) const;
+  void fill_face(const face& where, double t, const field& u);
+  std::array<double, 3> position(const face& where, int pencil) const;
+
+  grid mesh_;
+  std::vector<faces> sides_;
+  std::vector<std::array<field, 2>> ghosts_;  ///< [direction][upper], rows [pencil][ghost]
+  int width_ = 0;
+};
+
+}  // namespace apsis

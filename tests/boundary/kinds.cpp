@@ -1,0 +1,151 @@
+// Ghost rows: what each kind of boundary puts there, and that transport cannot tell how they came.
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/core/errors.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using apsis::domain;
+using apsis::face;
+using apsis::field;
+using apsis::grid;
+using testing::HasSubstr;
+
+/// The same boundary, whose rows have to be computed.
+class copied final : public apsis::boundary {
+ public:
+  explicit copied(std::shared_ptr<const apsis::boundary> of) : of_(std::move(of)) {}
+  void fill(const face& where, double t, const apsis::pencil_end& rows) const override {
+    of_->fill(where, t, rows);
+  }
+  bool periodic() const override { return of_->periodic(); }
+  bool closed() const override { return of_->closed(); }
+
+ private:
+  std::shared_ptr<const apsis::boundary> of_;
+};
+
+/// Ghost rows that say where and when they were filled.
+class recording final : public apsis::boundary {
+ public:
+  void fill(const face& where, double t, const apsis::pencil_end& rows) const override {
+    for (std::size_t g = 0; g < rows.ghosts.size(); ++g) {
+      double* ghost = rows.ghosts[g];
+      ghost[0] = t;
+      ghost[1] = where.direction + (where.upper ? 0.5 : 0.0);
+      ghost[2] = static_cast<double>(g);
+      ghost[3] = rows.inside[0][0];  // of the cell at the face
+      for (int k = 0; k < 3; ++k) ghost[4 + k] = rows.position[static_cast<std::size_t>(k)];
+    }
+  }
+};
+
+std::string message_of(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const apsis::input_error& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+field numbered(int cells, int components) {
+  field u(cells, components);
+  for (int i = 0; i < cells; ++i)
+    for (int k = 0; k < components; ++k) u.row(i)[k] = 100.0 * i + k;
+  return u;
+}
+
+TEST(boundary, periodic_ghosts_wrap_even_when_wider_than_the_mesh) {
+  const domain space = apsis::make_domain(grid::line(3, 0.0, 1.0), "periodic");
+  const field u(3, 1);
+  std::vector<const double*> rows;
+  space.pencil_rows(u, 0, 0, -4, 7, rows);
+  for (int i = -4; i < 7; ++i)
+    EXPECT_EQ(rows[static_cast<std::size_t>(i + 4)], u.row(((i % 3) + 3) % 3)) << i;
+}
+
+TEST(boundary, outflow_ghosts_repeat_the_nearest_cell_inside) {
+  const domain space = apsis::make_domain(grid::line(3, 0.0, 1.0), "outflow");
+  const field u(3, 1);
+  std::vector<const double*> rows;
+  space.pencil_rows(u, 0, 0, -4, 7, rows);
+  const std::vector<int> inside = {0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2};
+  for (std::size_t k = 0; k < rows.size(); ++k) EXPECT_EQ(rows[k], u.row(inside[k])) << k;
+}
+
+TEST(boundary, rows_that_are_computed_equal_rows_that_are_repeated) {
+  // In every kind, in every direction of meshes of 1, 2 and 3 dimensions, some narrower than the stencil.
+  for (const grid& mesh : {grid::line(5, 0, 1), grid(2, {2, 4, 1}, {0, 0, 0}, {1, 1, 1}),
+                           grid(3, {4, 3, 2}, {0, 0, 0}, {1, 1, 1})})
+    for (const std::string& name : apsis::boundary_names()) {
+      const auto side = std::make_shared<copied>(apsis::make_boundary(name));
+      domain repeated = apsis::make_domain(mesh, name);
+      domain computed(mesh,
+                      std::vector<domain::faces>(static_cast<std::size_t>(mesh.dimensions()), {side, side}));
+      const field u = numbered(mesh.size(), 9);
+      computed.reserve(9, 2);
+      computed.reserve(9, 4);
+      computed.fill_ghosts(0.0, u);
+      for (int direction = 0; direction < mesh.dimensions(); ++direction)
+        for (int pencil = 0; pencil < mesh.pencils(direction); ++pencil) {
+          const int n = mesh.cells(direction);
+          std::vector<const double*> a, b;
+          repeated.pencil_rows(u, direction, pencil, -4, n + 4, a);
+          computed.pencil_rows(u, direction, pencil, -4, n + 4, b);
+          for (std::size_t i = 0; i < a.size(); ++i)
+            EXPECT_EQ(std::vector<double>(a[i], a[i] + 9), std::vector<double>(b[i], b[i] + 9))
+                << name << " " << mesh.dimensions() << " " << direction << " " << pencil << " " << i;
+        }
+    }
+}
+
+TEST(boundary, is_told_face_time_and_position_of_every_pencil) {
+  const grid mesh(2, {2, 3, 1}, {0.0, 10.0, 0.0}, {1.0, 16.0, 0.0});
+  const auto side = std::make_shared<recording>();
+  domain space(mesh, {{side, side}, {side, side}});
+  const field u = numbered(mesh.size(), 8);
+  space.reserve(8, 2);
+  space.fill_ghosts(0.25, u);
+  const auto ghost = [&](int direction, int pencil, int i) {
+    std::vector<const double*> rows;
+    space.pencil_rows(u, direction, pencil, i, i + 1, rows);
+    return std::vector<double>(rows[0], rows[0] + 7);
+  };
+  // Cells are numbered with the last direction fastest: (x, y) is cell 3x + y, its row begins with 100 (3x +
+  // y).
+  EXPECT_EQ(ghost(0, 1, -2), (std::vector<double>{0.25, 0.0, 1.0, 100.0, 0.0, 13.0, 0.0}));
+  EXPECT_EQ(ghost(0, 2, 2), (std::vector<double>{0.25, 0.5, 0.0, 500.0, 1.0, 15.0, 0.0}));
+  EXPECT_EQ(ghost(1, 1, -1), (std::vector<double>{0.25, 1.0, 0.0, 300.0, 0.75, 10.0, 0.0}));
+  EXPECT_EQ(ghost(1, 0, 4), (std::vector<double>{0.25, 1.5, 1.0, 200.0, 0.25, 16.0, 0.0}));
+}
+
+TEST(boundary, that_is_periodic_on_one_side_only_is_refused) {
+  const auto periodic = apsis::make_boundary("periodic"), outflow = apsis::make_boundary("outflow");
+  EXPECT_THAT(message_of([&] { domain(grid::line(4, 0, 1), {{periodic, outflow}}); }),
+              HasSubstr("only one face of direction 1 is periodic"));
+  EXPECT_THAT(message_of([&] { domain(grid::line(4, 0, 1), {}); }), HasSubstr("0 pairs of boundaries"));
+}
+
+TEST(boundary, every_name_is_found_and_a_wrong_one_has_a_suggestion) {
+  for (const auto& name : apsis::boundary_names()) EXPECT_NE(apsis::make_boundary(name), nullptr) << name;
+  EXPECT_EQ(
+      message_of([] { apsis::make_boundary("outfow"); }),
+      "unknown boundary 'outfow' (there is no such kind); did you mean 'outflow'? valid: outflow, periodic");
+}
+
+TEST(boundary, a_domain_is_closed_where_all_its_faces_are) {
+  const grid mesh(2, {2, 2, 1}, {0, 0, 0}, {1, 1, 1});
+  const auto periodic = apsis::make_boundary("periodic"), outflow = apsis::make_boundary("outflow");
+  EXPECT_TRUE(domain(mesh, {{periodic, periodic}, {periodic, periodic}}).closed());
+  EXPECT_FALSE(domain(mesh, {{periodic, periodic}, {outflow, outflow}}).closed());
+  EXPECT_TRUE(domain::point().closed());
+}
+
+}  // namespace

@@ -1,6 +1,6 @@
 #include "method_report.hpp"
 
-#include <apsis/core/errors.hpp>
+#include <apsis/core/word_wrap.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/export.hpp>
@@ -8,7 +8,6 @@
 #include <apsis/method/intermediate_regime.hpp>
 
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -179,18 +178,6 @@ json figure_of_merit(const certificate& c) {
   return c.ssp_coefficient.convert_to<double>() / c.explicit_evaluations;
 }
 
-/// Words on lines of at most 90 characters.
-std::vector<std::string> lines_of(const std::string& text) {
-  constexpr std::size_t width = 90;
-  std::vector<std::string> lines(1);
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > width) lines.emplace_back();
-    lines.back() += (lines.back().empty() ? "" : " ") + word;
-  }
-  return lines;
-}
-
 std::string ssp_text(const certificate& c) {
   if (!c.bounded) return "no bound";
   return fmt::format("{:.15g}{}", c.ssp_coefficient.convert_to<double>(),
@@ -300,7 +287,7 @@ std::string check_text(const method& m) {
                                       c.stability.largest_on_negative_axis, c.stability.at_infinity));
   const auto paragraph = [&line](std::string name, const std::string& text) {
     if (text.empty()) return;
-    for (const auto& one : lines_of(text)) line(std::exchange(name, ""), one);
+    for (const auto& one : word_wrap(text, 90)) line(std::exchange(name, ""), one);
   };
   paragraph("recommended for", m.purpose);
   paragraph("origin", m.origin);

@@ -103,16 +103,7 @@ class reproduction {
     return nullptr;
   }
 
-  void save() {
-    folder_.publish(document_name, [this](const std::string& path) {
-      std::ofstream out(path, std::ios::binary);
-      out << json_text(document()) << '\n';
-      out.close();
-      if (!out)
-        throw io_error(
-            fmt::format("cannot write '{}' (no permission or no space left); free some space", path));
-    });
-  }
+  void save() { folder_.publish_text(document_name, json_text(document()) + "\n"); }
 
   /// What an earlier run of the same version has shown.
   void load() {

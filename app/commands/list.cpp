@@ -1,5 +1,6 @@
 #include "command_registry.hpp"
 #include "method_report.hpp"
+#include "method_table.hpp"
 #include "print.hpp"
 
 #include <apsis/config/case.hpp>

@@ -1,7 +1,7 @@
 #include "command_registry.hpp"
 #include "drawing.hpp"
 #include "interrupt.hpp"
-#include "method_report.hpp"
+#include "method_document.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>

@@ -1,5 +1,5 @@
 #include "command_registry.hpp"
-#include "method_report.hpp"
+#include "method_document.hpp"
 #include "print.hpp"
 
 #include <apsis/config/case.hpp>

@@ -1,8 +1,8 @@
-#include "commands.hpp"
 #include "design_embedded.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
 #include "method_writer.hpp"
+#include "print.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>

@@ -3,11 +3,11 @@
 
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/core/text_file.hpp>
 
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -110,10 +110,7 @@ std::string drawing::add(const std::string& name, const std::string& text) const
   const fs::path path = folder_ / name;
   std::error_code problem;
   fs::create_directories(path.parent_path(), problem);
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw io_error(fmt::format("cannot write '{}' (no space left); set TMPDIR", path.string()));
+  write_text_file(path.string(), text, "set TMPDIR to a folder with space");
   return path.string();
 }
 

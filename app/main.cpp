@@ -1,4 +1,4 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
 #include "interrupt.hpp"
 #include "option_values.hpp"
 
@@ -18,12 +18,6 @@
 #include <unistd.h>
 
 namespace apsis::app {
-
-void print(const std::string& text) {
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (!written || std::fflush(stdout) != 0)
-    throw io_error("standard output cannot be written (closed or full); check where it goes");
-}
 
 namespace {
 
@@ -66,17 +60,11 @@ int run_program(int argc, char** argv) {
       "folder, 5 claims do not hold, 130 interrupted (after a checkpoint).");
   program.require_subcommand(1);
   action chosen;
-  add_run(program, chosen);
-  add_converge(program, chosen);
-  add_list(program, chosen);
-  add_show(program, chosen);
-  add_check(program, chosen);
-  add_reproduce(program, chosen);
-  add_design(program, chosen);
-  add_plot(program, chosen);
-  add_report(program, chosen);
-  add_info(program, chosen);
-  add_manual(program, chosen);
+  for (const command_entry* command : commands_in_order()) {
+    CLI::App* added = program.add_subcommand(command->name, command->summary);
+    // Only noted while the line is parsed, so that nothing runs before the whole line is known to be good.
+    added->callback([&chosen, run = command->define(*added)] { chosen = run; });
+  }
   check_option_values(program);
   const std::vector<std::string> names = command_names(program);
   if (argc < 2) throw input_error("command line: no command (one of them is needed); " + suggest("", names));

@@ -1,14 +1,12 @@
 #include "method_report.hpp"
 
-#include <apsis/core/errors.hpp>
+#include <apsis/core/word_wrap.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/certificate.hpp>
-#include <apsis/method/export.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/intermediate_regime.hpp>
 
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,76 +22,6 @@ certificate certificate_of(const method& m) {
   const family_entry* family = find_family(m.name);
   const bool named = family == nullptr ? is_method_name(m.name) : missing_member(*family, m.name).empty();
   return named && &find_method(m.name) == &m ? find_certificate(m.name) : certify(m);
-}
-
-json rows(const matrix<double>& a) {
-  json out = json::array();
-  for (std::size_t i = 0; i < a.rows(); ++i) {
-    json row = json::array();
-    for (std::size_t j = 0; j < a.cols(); ++j) row.push_back(a(i, j));
-    out.push_back(row);
-  }
-  return out;
-}
-
-json rows(const matrix<std::string>& a) {
-  json out = json::array();
-  for (std::size_t i = 0; i < a.rows(); ++i) {
-    json row = json::array();
-    for (std::size_t j = 0; j < a.cols(); ++j) row.push_back(a(i, j).empty() ? "0" : a(i, j));
-    out.push_back(row);
-  }
-  return out;
-}
-
-template <class Real>
-bool is_diagonal(const matrix<Real>& a) {
-  for (std::size_t i = 0; i < a.rows(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (a(i, j) != Real(0)) return false;
-  return true;
-}
-
-json diagonal(const json& matrix_rows) {
-  json out = json::array();
-  for (std::size_t i = 0; i < matrix_rows.size(); ++i) out.push_back(matrix_rows[i][i]);
-  return out;
-}
-
-json document_json(const method& m) {
-  const auto form = m.coefficients<double>();
-  const auto butcher = to_butcher(form);
-  const json d_rows = rows(form.D), exact_d_rows = rows(m.exact.D);
-  const bool diagonal_d = is_diagonal(form.D);
-  // Methods outside the paper's class have a full lower triangular D; d is then its diagonal.
-  json out = {{"name", m.name},       {"title", m.title},     {"citation", m.citation},
-              {"origin", m.origin},   {"purpose", m.purpose}, {"kind", to_string(m.kind)},
-              {"stages", m.stages()}, {"P", rows(form.P)},    {"W", rows(form.W)},
-              {"d", diagonal(d_rows)}};
-  json exact = {{"P", rows(m.exact.P)}, {"W", rows(m.exact.W)}, {"d", diagonal(exact_d_rows)}};
-  if (!diagonal_d) {
-    out["D"] = d_rows;
-    exact["D"] = exact_d_rows;
-  }
-  out["ddot"] = form.ddot;
-  out["r"] = form.r;
-  exact["ddot"] = m.exact.ddot;
-  exact["r"] = m.exact.r;
-  out["A_hat"] = rows(butcher.A_hat);
-  out["A"] = rows(butcher.A);
-  out["A_dot"] = rows(butcher.A_dot);
-  out["exact"] = exact;
-  out["claims"] = {{"order", m.claims.order}};
-  if (m.claims.ssp_coefficient) out["claims"]["ssp_coefficient"] = *m.claims.ssp_coefficient;
-  if (m.claims.type) out["claims"]["type"] = *m.claims.type;
-  if (m.claims.explicit_radius) out["claims"]["explicit_radius"] = *m.claims.explicit_radius;
-  if (m.claims.l_stable) out["claims"]["l_stable"] = *m.claims.l_stable;
-  if (m.claims.intermediate) out["claims"]["intermediate"] = *m.claims.intermediate;
-  if (m.embedded)
-    out["embedded"] = {{"order", m.embedded->order}, {"origin", m.embedded->origin},
-                       {"P", m.embedded->P},         {"W", m.embedded->W},
-                       {"d", m.embedded->d},         {"ddot", m.embedded->ddot}};
-  return out;
 }
 
 /// What the embedded solution is and what it adds to a step; null without one.
@@ -179,44 +107,10 @@ json figure_of_merit(const certificate& c) {
   return c.ssp_coefficient.convert_to<double>() / c.explicit_evaluations;
 }
 
-/// Words on lines of at most 90 characters.
-std::vector<std::string> lines_of(const std::string& text) {
-  constexpr std::size_t width = 90;
-  std::vector<std::string> lines(1);
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > width) lines.emplace_back();
-    lines.back() += (lines.back().empty() ? "" : " ") + word;
-  }
-  return lines;
-}
-
 std::string ssp_text(const certificate& c) {
   if (!c.bounded) return "no bound";
   return fmt::format("{:.15g}{}", c.ssp_coefficient.convert_to<double>(),
                      c.unconditional || c.ssp_coefficient == 0 ? "" : " (bounded by Q too)");
-}
-
-std::string matrix_text(const std::string& name, const matrix<double>& a) {
-  std::string out = name + "\n";
-  for (std::size_t i = 0; i < a.rows(); ++i) {
-    out += "   ";
-    for (std::size_t j = 0; j <= i; ++j)
-      out += a(i, j) == 0.0 ? fmt::format(" {:>20}", 0) : fmt::format(" {:>20.15g}", a(i, j));
-    out += "\n";
-  }
-  return out;
-}
-
-std::string document_text(const method& m) {
-  const auto form = m.coefficients<double>();
-  const auto butcher = to_butcher(form);
-  std::string out = check_text(m) + "\n";
-  out += fmt::format("Shu-Osher form, r = {:.15g}\n", form.r);
-  out += matrix_text("P", form.P) + matrix_text("W", form.W) + matrix_text("D", form.D) + "ddot\n   ";
-  for (const double x : form.ddot) out += fmt::format(" {:>20.15g}", x);
-  out += "\nButcher form\n" + matrix_text("A_hat", butcher.A_hat) + matrix_text("A", butcher.A);
-  return out + matrix_text("A_dot", butcher.A_dot);
 }
 
 }  // namespace
@@ -300,7 +194,7 @@ std::string check_text(const method& m) {
                                       c.stability.largest_on_negative_axis, c.stability.at_infinity));
   const auto paragraph = [&line](std::string name, const std::string& text) {
     if (text.empty()) return;
-    for (const auto& one : lines_of(text)) line(std::exchange(name, ""), one);
+    for (const auto& one : word_wrap(text, 90)) line(std::exchange(name, ""), one);
   };
   paragraph("recommended for", m.purpose);
   paragraph("origin", m.origin);
@@ -312,63 +206,6 @@ std::string check_text(const method& m) {
 std::string first_failure(const method& m) {
   const certificate c = certificate_of(m);
   return c.failures.empty() ? "" : c.failures.front();
-}
-
-namespace {
-
-/// "any", "cons.", "any m", … of "any data", "consistent data", "any data (moments only)", …
-std::string short_data(const std::string& data) {
-  if (data.empty() || data == "none") return "-";
-  const std::string first = data.starts_with("any") ? "any" : "cons.";
-  return data.ends_with("(moments only)") ? first + " m" : first;
-}
-
-/// A number of the table, "-" where there is none.
-std::string entry(const json& number, const std::string& none = "-") {
-  return number.is_null() ? none : fmt::format("{:.4g}", number.get<double>());
-}
-
-}  // namespace
-
-std::string method_table(const json& all) {
-  const auto row = [](const auto&... cells) {
-    std::string line =
-        fmt::format("{:<23}{:>3}{:>4}{:>5}{:>8}{:>10}{:>7}{:>9}{:>8}{:>4}  {:<9}{:<6}{}", cells...);
-    line.erase(line.find_last_not_of(' ') + 1);
-    return line + "\n";
-  };
-  std::string out;
-  for (const auto kind : {method_kind::imex, method_kind::implicit_only, method_kind::explicit_only}) {
-    out += fmt::format("{}{} methods\n", out.empty() ? "" : "\n", to_string(kind));
-    out += row("name", "p", "s", "n_F", "solves", "r", "r/n_F", "error", "buffers", "emb", "AP", "eps",
-               "recommended for");
-    for (const auto& c : all) {
-      if (c["kind"] != to_string(kind)) continue;
-      const bool has_terms = c.contains("intermediate_regime") && !c["intermediate_regime"].is_null();
-      out += row(c["name"].get<std::string>(), c["order"].get<int>(), c["stages"].get<int>(),
-                 c["explicit_evaluations"].get<int>(), c["implicit_solves"].get<int>(),
-                 entry(c["ssp_coefficient"], "unbounded"), entry(c["r_per_evaluation"]),
-                 entry(c["error_constant"]), c["buffers"].get<int>(),
-                 c["embedded"].is_null() ? "-" : std::to_string(c["embedded"]["order"].get<int>()),
-                 short_data(c["ap_data"].get<std::string>()),
-                 has_terms ? c["intermediate_regime"]["keeps"].get<std::string>() : std::string("-"),
-                 c["purpose"].get<std::string>());
-    }
-  }
-  return out + R"(
-p order, s stages, n_F transport evaluations, solves of Q, r SSP coefficient, error: 2-norm of the residuals of
-order p + 1, buffers of the size of a state, emb: order of the embedded solution, from which the error of a step is
-estimated (time.tolerance), AP: the initial data for which the limit epsilon -> 0 is right (cons.:
-consistent data only, m: in the moments only), eps: which terms of size epsilon are right for epsilon << dt
-(slow: for data near equilibrium).
-)";
-}
-
-std::string method_document(const method& m, const std::string& format) {
-  if (format == "json") return document_json(m).dump(2) + "\n";
-  if (format == "latex") return to_latex(m);
-  if (format == "toml") return to_toml(m);
-  return document_text(m);
 }
 
 }  // namespace apsis::app

@@ -15,10 +15,4 @@ std::string check_text(const method& m);
 /// The first condition that does not hold; "" if all do.
 std::string first_failure(const method& m);
 
-/// Table of `apsis list methods` from an array of objects of check_json.
-std::string method_table(const nlohmann::ordered_json& all);
-
-/// Coefficients and claims; `format` is "text", "json", "latex" or "toml".
-std::string method_document(const method& m, const std::string& format);
-
 }  // namespace apsis::app

@@ -4,8 +4,6 @@
 #include <apsis/method/export.hpp>
 #include <apsis/method/method_text.hpp>
 
-#include <fstream>
-
 #include <fmt/format.h>
 
 namespace apsis::app {
@@ -43,12 +41,7 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
 method_writer::method_writer(const std::string& path) : path_(path), folder_(folder_of(path_)) {}
 
 void method_writer::write(const method& m) {
-  folder_.publish(path_.filename().string(), [&m](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << to_toml(m);
-    out.close();
-    if (!out) throw io_error(fmt::format("cannot write '{}' (no space left); free some space", temporary));
-  });
+  folder_.publish_text(path_.filename().string(), to_toml(m));
 }
 
 }  // namespace apsis::app

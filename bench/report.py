@@ -205,7 +205,7 @@ def read(path):
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as problem:
-        raise ReportError(f"cannot read {path} ({problem}) run make bench") from problem
+        raise ReportError(f"cannot read {path} ({problem}); run make bench") from problem
 
 
 def keep(results, folder):
@@ -217,7 +217,7 @@ def keep(results, folder):
 def newest_first(folder):
     machines = [read(path) for path in sorted(folder.glob("*.json"))]
     if not machines:
-        raise ReportError(f"no results in {folder} run make bench")
+        raise ReportError(f"no results in {folder}; run make bench")
     return sorted(machines, key=lambda results: any_of(results)["machine"]["date"], reverse=True)
 
 

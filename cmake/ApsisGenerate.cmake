@@ -28,9 +28,14 @@ std::vector<embedded_text> ${symbol}() {
   set(${out_var} ${out} PARENT_SCOPE)
 endfunction()
 
-# apsis_registry(what header folder out): every file x.cpp of the folder defines `<what>_entry <what>_x`; the
-# generated registry, which defines `<what>_entries()` of the header, is the one place that knows them all.
+# apsis_registry(what header folder out [namespace]): every file x.cpp of the folder defines `<what>_entry <what>_x`; the
+# generated registry, which defines `<what>_entries()` of the header, is the one place that knows them all. They are
+# in the namespace apsis where no other is given.
 function(apsis_registry what header folder out_var)
+  set(namespace apsis)
+  if(ARGC GREATER 4)
+    set(namespace ${ARGV4})
+  endif()
   file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
   list(SORT files)
   set(declarations "")
@@ -45,13 +50,13 @@ function(apsis_registry what header folder out_var)
 "// Generated from the files of ${folder}/; do not edit.
 #include <${header}>
 
-namespace apsis {
+namespace @namespace@ {
 @declarations@
 std::vector<const ${what}_entry*> ${what}_entries() {
   return {
 @entries@  };
 }
-}  // namespace apsis
+}  // namespace @namespace@
 ")
   set(${out_var} ${out} PARENT_SCOPE)
 endfunction()

@@ -58,7 +58,7 @@ def read_blocks(text: str) -> list[Block]:
             marks[comment[1]] = (comment[2] or "", at)
             continue
         if re.match(r"\s*>.*(```|~~~)", lines[at - 1]):
-            raise Problem(at, "a block stands in a quotation (it cannot be read there) take it out")
+            raise Problem(at, "a block stands in a quotation (it cannot be read there); take it out")
         if not fence:
             stray(marks, MARKS, "is not before a block")
             marks = {}
@@ -68,7 +68,7 @@ def read_blocks(text: str) -> list[Block]:
         while at < len(lines) and not (lines[at].strip().startswith(fence[2]) and not lines[at].strip(" `~")):
             at += 1
         if at == len(lines):
-            raise Problem(first, f"the block does not end (no closing {fence[2]}) add it")
+            raise Problem(first, f"the block does not end (no closing {fence[2]}); add it")
         body = "".join(line.removeprefix(indent) + "\n" for line in lines[first:at])
         blocks.append(Block(fence[3], first, at, body, indent, {name: value for name, (value, _) in marks.items()}))
         marks, at = {}, at + 1
@@ -78,7 +78,7 @@ def read_blocks(text: str) -> list[Block]:
 
 def stray(marks, names, why):
     for name in marks.keys() & names:
-        raise Problem(marks[name][1], f"<!-- {name} --> {why} (instructions: {', '.join(sorted(MARKS))}) mend or remove it")
+        raise Problem(marks[name][1], f"<!-- {name} --> {why} (instructions: {', '.join(sorted(MARKS))}); mend or remove it")
 
 
 def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
@@ -89,25 +89,25 @@ def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
             command = next((line for line in block.text.splitlines() if COMMAND.match(line)), None)
             if command:
                 found.append(Problem(block.line, f"'{command.strip()}' stands in a block that is not run (its language is "
-                                     f"'{block.language}') write ```sh, ```python or ```cpp"))
+                                     f"'{block.language}'); write ```sh, ```python or ```cpp"))
         elif block.language == "cpp" and block.runs and not re.search(r"\bint main\b", block.text):
-            found.append(Problem(block.line, "the program has no main (nothing can run it) say <!-- from: PATH --> or "
+            found.append(Problem(block.line, "the program has no main (nothing can run it); say <!-- from: PATH --> or "
                                  "<!-- file: NAME -->"))
         elif not block.runs and not block.marks.keys() - {"exit"}:
-            found.append(Problem(block.line, f"nothing checks this block (language '{block.language}') put one of "
+            found.append(Problem(block.line, f"nothing checks this block (language '{block.language}'); put one of "
                                  f"{', '.join(f'<!-- {mark} -->' for mark in sorted(MARKS))} before it"))
         for mark, kind in (("output", float), ("exit", int)):
             if block.marks.get(mark) and not is_number(block.marks[mark], kind):
-                found.append(Problem(block.line, f"<!-- {mark}: {block.marks[mark]} --> (that is no number) give one, or none"))
+                found.append(Problem(block.line, f"<!-- {mark}: {block.marks[mark]} --> (that is no number); give one, or none"))
         if "exit" in block.marks and not (block.runs and block.language in ("sh", "cpp")):
-            found.append(Problem(block.line, "an exit code belongs to a program (```sh or ```cpp that is run here) take it away"))
+            found.append(Problem(block.line, "an exit code belongs to a program (```sh or ```cpp that is run here); take it away"))
         if "file" in block.marks and not is_used(block, blocks):
-            found.append(Problem(block.line, f"{block.marks['file']} is written and not used (no other block names it) run or "
+            found.append(Problem(block.line, f"{block.marks['file']} is written and not used (no other block names it); run or "
                                  "compile it in an ```sh block"))
     inside = {n for block in blocks for n in range(block.line, block.last + 2)}
     for number, line in enumerate(text.splitlines(), 1):
         if number not in inside and line.startswith("    ") and COMMAND.match(line):
-            found.append(Problem(number, f"'{line.strip()}' is indented text (nothing runs it) write an ```sh block"))
+            found.append(Problem(number, f"'{line.strip()}' is indented text (nothing runs it); write an ```sh block"))
     return found
 
 

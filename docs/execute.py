@@ -128,7 +128,7 @@ class Page:
             test = self.root / block.marks["elsewhere"]
             if not test.is_file() or self.name not in test.read_text(encoding="utf-8"):
                 raise Problem(block.line, f"{block.marks['elsewhere']} does not run this block (no such file, or it does not "
-                              f"name {self.name}) name a test that does")
+                              f"name {self.name}); name a test that does")
         elif "file" in block.marks:
             self.write(block)
         elif "output" in block.marks:
@@ -141,7 +141,7 @@ class Page:
     def write(self, block: Block):
         file = (self.folder / block.marks["file"]).resolve()
         if not file.is_relative_to(self.folder.resolve()):
-            raise Problem(block.line, f"{block.marks['file']} is outside (of the folder of the page) give a relative path")
+            raise Problem(block.line, f"{block.marks['file']} is outside (of the folder of the page); give a relative path")
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(block.text, encoding="utf-8")
         if file.suffix == ".toml":
@@ -154,18 +154,18 @@ class Page:
         name = block.marks["from"]
         file = next((f / name for f in (self.folder, self.root) if (f / name).is_file()), None)
         if file is None:
-            raise Problem(block.line, f"there is no {name} (in the repository or in the folder of the page) mend the path")
+            raise Problem(block.line, f"there is no {name} (in the repository or in the folder of the page); mend the path")
         if not is_excerpt(block.text, file.read_text(encoding="utf-8")):
-            self.problems.append(Problem(block.line, f"the block is not in {name} (it may have changed) copy it again"))
+            self.problems.append(Problem(block.line, f"the block is not in {name} (it may have changed); copy it again"))
 
     def compare_output(self, block: Block):
         if self.printed is None:
-            raise Problem(block.line, "no block before this one prints anything (outputs belong to the block before) move it")
+            raise Problem(block.line, "no block before this one prints anything (outputs belong to the block before); move it")
         tolerance = float(block.marks["output"] or 1e-6)
         if not is_same_output(block.text, self.printed, tolerance):
             lines = difflib.unified_diff(block.text.splitlines(), self.printed.splitlines(), "page", "printed", lineterm="", n=1)
             self.outputs[block.line] = self.printed
-            self.problems.append(Problem(block.line, "the output is another one (the program or the page has changed) look at "
+            self.problems.append(Problem(block.line, "the output is another one (the program or the page has changed); look at "
                                          "it, then docs/execute.py --update\n" + indented("\n".join(list(lines)[:40]))))
 
     def run_shell(self, block: Block, out: Path):
@@ -189,7 +189,7 @@ class Page:
                 answer = json.loads(line.result(LIMIT) or '"the interpreter ended"')
             except concurrent.futures.TimeoutError:
                 os.killpg(self.session.pid, signal.SIGKILL)
-                raise Problem(block.line, f"the block takes too long (more than {LIMIT} s) take a smaller example") from None
+                raise Problem(block.line, f"the block takes too long (more than {LIMIT} s); take a smaller example") from None
         if answer != "ok":
             raise Problem(block.line, f"the block fails (python)\n{indented(answer)}")
 
@@ -205,7 +205,7 @@ class Page:
             except subprocess.TimeoutExpired:
                 os.killpg(process.pid, signal.SIGKILL)
                 process.communicate()
-                raise Problem(block.line, f"the block takes too long (more than {LIMIT} s) take a smaller example") from None
+                raise Problem(block.line, f"the block takes too long (more than {LIMIT} s); take a smaller example") from None
         if process.returncode not in wanted:
             told = out.read_text(encoding="utf-8", errors="replace")[-1500:] + error[-1500:]
             raise Problem(block.line, f"the block fails (exit code {process.returncode}, not {wanted[0]})\n{indented(told)}")
@@ -214,9 +214,9 @@ class Page:
         """A picture is kept in docs/images, where GitHub finds it, and drawn by a block of some page or by a report."""
         for name, line in self.pictures().items():
             if not (self.root / "docs" / "images" / name).is_file():
-                self.problems.append(Problem(line, f"docs/images has no {name} (nothing is shown) docs/execute.py --update"))
+                self.problems.append(Problem(line, f"docs/images has no {name} (nothing is shown); docs/execute.py --update"))
             elif not any(self.folder.parent.glob(f"*/images/{name}")) and not any(re.fullmatch(one, name) for one in reports):
-                self.problems.append(Problem(line, f"nothing draws {name} (no block into images/, no report) draw it here"))
+                self.problems.append(Problem(line, f"nothing draws {name} (no block into images/, no report); draw it here"))
 
     def pictures(self) -> dict[str, int]:
         return {name: number for number, line in enumerate(self.text.splitlines(), 1)

@@ -1,6 +1,5 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
-#include <paper/claim_registry.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -8,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <paper/claim_registry.hpp>
 
 namespace apsis {
 
@@ -43,7 +43,7 @@ std::vector<const claim_entry*> find_claims(const std::vector<std::string>& ids)
     std::transform(id.begin(), id.end(), id.begin(), [](unsigned char c) { return std::toupper(c); });
     const auto found = std::find(names.begin(), names.end(), id);
     if (found == names.end())
-      throw input_error(fmt::format("no claim '{}' (the paper's claims are numbered) {}", id.substr(0, 20),
+      throw input_error(fmt::format("no claim '{}' (the paper's claims are numbered); {}", id.substr(0, 20),
                                     suggest(id, names)));
     wanted[static_cast<std::size_t>(found - names.begin())] = true;
   }

@@ -37,7 +37,7 @@ def read_json(path):
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as problem:
-        raise ReportError(f"cannot read {path} ({problem}) remove it and run studies/run.py again") from problem
+        raise ReportError(f"cannot read {path} ({problem}); remove it and run studies/run.py again") from problem
 
 
 def summary_of(run, result):

@@ -18,9 +18,6 @@ double read(clockid_t clock) {
 double cpu_seconds() {
   return read(CLOCK_PROCESS_CPUTIME_ID);
 }
-double thread_seconds() {
-  return read(CLOCK_THREAD_CPUTIME_ID);
-}
 double wall_seconds() {
   return read(CLOCK_MONOTONIC);
 }

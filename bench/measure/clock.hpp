@@ -1,5 +1,7 @@
 #pragma once
 
+#include <apsis/exec/thread_clock.hpp>
+
 #include <functional>
 #include <vector>
 
@@ -7,9 +9,6 @@ namespace apsis::bench {
 
 /// CPU seconds of this process, all its threads together.
 double cpu_seconds();
-/// CPU seconds of the calling thread: what a sequential measurement costs does not depend on what else the
-/// machine does.
-double thread_seconds();
 /// Seconds of the wall clock, for what runs on several threads.
 double wall_seconds();
 

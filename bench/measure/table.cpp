@@ -1,10 +1,10 @@
 #include "table.hpp"
 
 #include <apsis/exec/instruction_set.hpp>
+#include <apsis/output/provenance.hpp>
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <thread>
 
 #include <fmt/chrono.h>
@@ -18,13 +18,6 @@ namespace {
 std::vector<entry>& all() {
   static std::vector<entry> list;
   return list;
-}
-
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  return "unknown";
 }
 
 std::string cell_text(const nlohmann::json& cell) {
@@ -71,7 +64,7 @@ nlohmann::json machine() {
   const auto cache = [](int name) { return sysconf(name) / 1024; };
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   return {{"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", now)},
-          {"processor", processor()},
+          {"processor", machine_info()["processor"]},
           {"cores", std::thread::hardware_concurrency()},
           {"cache_kib",
            {{"L1", cache(_SC_LEVEL1_DCACHE_SIZE)},

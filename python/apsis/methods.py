@@ -190,7 +190,7 @@ def read_method(file: str | Path) -> Method:
     try:
         text = Path(file).read_text(encoding="utf-8")
     except OSError as problem:
-        raise FileError(f"cannot read '{file}' ({problem.strerror}) give a readable method file") from problem
+        raise FileError(f"cannot read '{file}' ({problem.strerror}); give a readable method file") from problem
     return Method(_core.parse_method(text, str(file)))
 
 

@@ -36,7 +36,7 @@ def method_description(name: str) -> dict[str, Any]:
         import apsis  # here, because everything else draws without the compiled part
         method = apsis.read_method(name) if Path(name).is_file() else apsis.method(name)
     except ImportError as problem:
-        raise PictureError(f"'{name}' is neither a folder nor a file of results ({problem}) give one of these") from problem
+        raise PictureError(f"'{name}' is neither a folder nor a file of results ({problem}); give one of these") from problem
     except apsis.Error as problem:
         raise PictureError(str(problem), problem.exit_code) from problem
     return {"name": method.name, "A_hat": method.A_hat, "A": method.A, "A_dot": method.A_dot}
@@ -53,12 +53,12 @@ def of_document(document: dict[str, Any], path: Path) -> Iterable[tuple[str, Any
         return
     found = pictures.pictures_of(document)
     if not found:
-        raise PictureError(f"'{path}' holds no picture (no \"panels\") give a file that apsis wrote")
+        raise PictureError(f"'{path}' holds no picture (no \"panels\"); give a file that apsis wrote")
     for picture in found:
         try:
             yield picture["name"], pictures.draw(picture)
         except (KeyError, TypeError, ValueError) as problem:
-            raise PictureError(f"'{path}' holds a damaged picture ({type(problem).__name__}: {problem}) make it anew") from problem
+            raise PictureError(f"'{path}' holds a damaged picture ({type(problem).__name__}: {problem}); make it anew") from problem
 
 
 def drawn(what: str) -> tuple[Path, Iterable[tuple[str, Any]]]:

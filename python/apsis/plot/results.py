@@ -54,25 +54,25 @@ def read_history(path: Path) -> dict[str, Array]:
         table = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows], dtype=float)
         return {name: table[:, k] for k, name in enumerate(header)}
     except OSError as problem:
-        raise PictureError(f"cannot read '{path}' ({problem.strerror}) run the case with --out first") from problem
+        raise PictureError(f"cannot read '{path}' ({problem.strerror}); run the case with --out first") from problem
     except (IndexError, ValueError) as problem:
-        raise PictureError(f"'{path}' is no table of numbers ({problem}) run the case again") from problem
+        raise PictureError(f"'{path}' is no table of numbers ({problem}); run the case again") from problem
 
 
 def read_any_json(path: Path) -> Any:
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except OSError as problem:
-        raise PictureError(f"cannot read '{path}' ({problem.strerror}) give what apsis wrote") from problem
+        raise PictureError(f"cannot read '{path}' ({problem.strerror}); give what apsis wrote") from problem
     except ValueError as problem:
-        raise PictureError(f"'{path}' is not JSON ({problem}) give what apsis wrote") from problem
+        raise PictureError(f"'{path}' is not JSON ({problem}); give what apsis wrote") from problem
 
 
 def read_json(path: Path) -> dict[str, Any]:
     """An object of JSON. Raises PictureError."""
     document = read_any_json(path)
     if not isinstance(document, dict):
-        raise PictureError(f"'{path}' is no object of JSON (it is a {type(document).__name__}) give what apsis wrote")
+        raise PictureError(f"'{path}' is no object of JSON (it is a {type(document).__name__}); give what apsis wrote")
     return document
 
 
@@ -80,7 +80,7 @@ def read_json_list(path: Path) -> list[dict[str, Any]]:
     """A list of objects of JSON. Raises PictureError."""
     document = read_any_json(path)
     if not isinstance(document, list) or not all(isinstance(one, dict) for one in document):
-        raise PictureError(f"'{path}' is no list of objects of JSON (it is damaged) make it anew")
+        raise PictureError(f"'{path}' is no list of objects of JSON (it is damaged); make it anew")
     return document
 
 
@@ -102,7 +102,7 @@ def read_result(folder: str | Path) -> RunResult:
                     labels[name] = words(item.attrs.get("long_name", f"{name} (dimensionless)"))
             case = words(file.attrs.get("case", ""))
     except OSError as problem:
-        raise PictureError(f"cannot read '{path}' ({problem}) run the case again with --out") from problem
+        raise PictureError(f"cannot read '{path}' ({problem}); run the case again with --out") from problem
     fields = groups["fields"]
     in_order = {name: fields[name] for name in (*columns_of(folder / "fields.csv"), *fields) if name in fields}
     return RunResult(folder, manifest, in_order, groups["snapshots"], arrays, history, labels, case)
@@ -168,7 +168,7 @@ def comparison_figure(runs: Sequence[tuple[str, RunResult]]) -> Any:
     as lines."""
     names = [name for name in runs[0][1].fields if all(name in run.fields and run.has_space for _, run in runs)]
     if not names:
-        raise PictureError("nothing to compare (the runs share no field over x) give runs of one model")
+        raise PictureError("nothing to compare (the runs share no field over x); give runs of one model")
     finest = finest_of(runs)
     equal = len({len(run.arrays["x"]) for _, run in runs}) == 1
     figure, axes = panels(len(names))

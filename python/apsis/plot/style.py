@@ -63,7 +63,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     except OSError as problem:
         with suppress(OSError):
             partial.unlink()
-        raise PictureError(f"cannot write '{path}' ({problem.strerror}) choose another folder or free some space") from problem
+        raise PictureError(f"cannot write '{path}' ({problem.strerror}); choose another folder or free some space") from problem
 
 
 def save(figure: Any, path: Path) -> Path:

@@ -26,10 +26,10 @@ def make_report(folder: str | Path) -> Path:
         elif (folder / "manifest.json").exists():
             content = run.report(folder)
         else:
-            raise PictureError(f"'{folder}' holds no results (neither manifest.json nor reproduce.json) give a folder that "
+            raise PictureError(f"'{folder}' holds no results (neither manifest.json nor reproduce.json); give a folder that "
                                "apsis run --out, apsis converge --out or apsis reproduce wrote")
     except (KeyError, TypeError, IndexError) as problem:
-        raise PictureError(f"results in '{folder}' are damaged or of another version ({type(problem).__name__}: {problem}) "
+        raise PictureError(f"results in '{folder}' are damaged or of another version ({type(problem).__name__}: {problem}); "
                            "make them anew") from problem
     write(folder / "report.html", content)
     return folder / "report.html"

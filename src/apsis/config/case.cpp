@@ -6,22 +6,17 @@
 #include <apsis/config/case_value.hpp>
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/core/text_file.hpp>
 #include <apsis/model/expression.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 
 namespace apsis {
 namespace {
-
-const std::vector<std::string>& step_keys() {
-  static const std::vector<std::string> keys = {"time.dt", "time.cfl", "time.safety"};
-  return keys;
-}
 
 /// From flat keys to a case: one pass over the schema, then what one key alone cannot decide.
 class resolver {
@@ -293,24 +288,10 @@ void apply_overrides(case_text& text, const std::vector<std::string>& overrides)
     all.push_back({path, trimmed(item.substr(equals + 1)), place});
   }
   // A step rule on the command line takes the place of the one in the file.
-  const auto sets_step = [](const key_and_value& item) {
-    return std::find(step_keys().begin(), step_keys().end(), item.path) != step_keys().end();
-  };
+  const auto sets_step = [](const key_and_value& item) { return is_step_key(item.path); };
   if (std::any_of(all.begin(), all.end(), sets_step))
     for (const auto& key : step_keys()) text.values.erase(key);
   for (const auto& [path, value, place] : all) apply_override(text, path, value, form_of(path), place);
-}
-
-std::string read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text(longest_case_file + 1, '\0');
-  if (in) in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  // A file may open and fail later; what came until then is not the case.
-  if (in.bad() || !in.is_open() || std::filesystem::is_directory(path))
-    throw io_error(
-        fmt::format("cannot read '{}' (it is a folder or not readable); give a readable case file", path));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
 }
 
 }  // namespace
@@ -329,7 +310,7 @@ std::string read_case(const std::string& name_or_path) {
   if (!std::filesystem::exists(name_or_path, ignored))
     throw input_error(fmt::format("no case '{}' (neither a file nor a built-in case); {}",
                                   shown(name_or_path), suggest(name_or_path, case_names())));
-  return read_file(name_or_path);
+  return read_text_file(name_or_path, longest_case_file, "case file");
 }
 
 case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides) {

@@ -1,5 +1,6 @@
 // The schema in words, and cases as text: both follow the one table of keys.
 #include <apsis/config/case_schema.hpp>
+#include <apsis/core/word_wrap.hpp>
 
 #include <cmath>
 
@@ -67,21 +68,12 @@ std::string scope_text(key_scope scope) {
   return "";
 }
 
-// Lines of at most `width` characters, each after `indent`.
-std::string wrapped(const std::string& text, const std::string& indent, std::size_t width) {
-  std::string out, line;
-  std::size_t from = 0;
-  while (from < text.size()) {
-    const std::size_t to = std::min(text.find(' ', from), text.size());
-    const std::string word = text.substr(from, to - from);
-    if (!line.empty() && indent.size() + line.size() + 1 + word.size() > width) {
-      out += indent + line + "\n";
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-    from = to + 1;
-  }
-  return out + indent + line + "\n";
+// Lines of at most 100 characters below the name of a key or model.
+std::string indented(const std::string& text) {
+  constexpr std::size_t indent = 6;
+  std::string out;
+  for (const auto& line : word_wrap(text, 100 - indent)) out += std::string(indent, ' ') + line + "\n";
+  return out;
 }
 
 std::string default_text(const case_key& key) {
@@ -103,10 +95,10 @@ std::string key_text(const case_key& key) {
   add(default_text(key));
   add(scope_text(key.scope));
   std::string out = fmt::format("  {} ({})\n", name_of(key.path), facts);
-  out += wrapped(key.doc, "      ", 100);
+  out += indented(key.doc);
   // The names of initial data belong to a model and stand there.
   if (key.choices != nullptr && key.path != "model.initial")
-    out += wrapped(fmt::format("one of: {}", fmt::join(key.choices(case_config{}), ", ")), "      ", 100);
+    out += indented(fmt::format("one of: {}", fmt::join(key.choices(case_config{}), ", ")));
   return out;
 }
 
@@ -116,15 +108,12 @@ std::string describe(const model_entry& model) {
       model.has_space ? (model.has_velocity ? "space, velocity" : "space") : "none but time, output";
   out += fmt::format("      tables: {}; initial data: {}\n", tables, fmt::join(model.initial, ", "));
   for (const model_parameter& p : model.parameters)
-    out += wrapped(
-        fmt::format("{} (number, {} to {}, default {}): {}", p.name, p.lowest, p.highest, p.value, p.doc),
-        "      ", 100);
+    out += indented(
+        fmt::format("{} (number, {} to {}, default {}): {}", p.name, p.lowest, p.highest, p.value, p.doc));
   for (const model_text& t : model.texts)
-    out +=
-        wrapped(fmt::format("{} (text, one of {}{}, default \"{}\"): {}", t.name, fmt::join(t.choices, ", "),
-                            t.variable.empty() ? "" : fmt::format(", or a formula in {}", t.variable),
-                            t.value, t.doc),
-                "      ", 100);
+    out += indented(fmt::format(
+        "{} (text, one of {}{}, default \"{}\"): {}", t.name, fmt::join(t.choices, ", "),
+        t.variable.empty() ? "" : fmt::format(", or a formula in {}", t.variable), t.value, t.doc));
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <apsis/method/method_file.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -244,6 +245,15 @@ std::vector<case_key> make_schema() {
 const std::vector<case_key>& case_schema() {
   static const std::vector<case_key> schema = make_schema();
   return schema;
+}
+
+const std::vector<std::string>& step_keys() {
+  static const std::vector<std::string> keys = {"time.dt", "time.cfl", "time.safety"};
+  return keys;
+}
+
+bool is_step_key(const std::string& key) {
+  return std::find(step_keys().begin(), step_keys().end(), key) != step_keys().end();
 }
 
 bool applies(const case_key& key, const model_entry& model) {

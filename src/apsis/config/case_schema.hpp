@@ -54,6 +54,12 @@ struct case_key {
 /// Every key except the parameters of the models, in the order in which they are read and written.
 const std::vector<case_key>& case_schema();
 
+/// Keys that set the step: time.dt, time.cfl, time.safety. A case has one of them.
+const std::vector<std::string>& step_keys();
+
+/// Whether a key is one of step_keys().
+bool is_step_key(const std::string& key);
+
 /// Whether a case of this model may have the key.
 bool applies(const case_key& key, const model_entry& model);
 

@@ -11,18 +11,6 @@
 namespace apsis {
 namespace {
 
-tree_colours colours_of(method_kind kind) {
-  switch (kind) {
-    case method_kind::implicit_only:
-      return tree_colours::G_only;
-    case method_kind::explicit_only:
-      return tree_colours::F_only;
-    case method_kind::imex:
-      break;
-  }
-  return tree_colours::both;
-}
-
 bool is_leaf(const rooted_tree& tree, colour root) {
   return tree.children.empty() && tree.root == root;
 }

@@ -19,11 +19,6 @@ using mp_matrix = Eigen::Matrix<mp_real, Eigen::Dynamic, Eigen::Dynamic>;
 
 constexpr int digits = 45;
 
-tree_colours colours_of(method_kind kind) {
-  if (kind == method_kind::implicit_only) return tree_colours::G_only;
-  return kind == method_kind::imex ? tree_colours::both : tree_colours::F_only;
-}
-
 /// Trees of T alone, of Q alone, and others.
 enum class tree_part { transport, relaxation, mixed };
 

@@ -6,10 +6,10 @@
 
 #include <apsis/exec/aligned.hpp>
 #include <apsis/exec/simd-inl.hpp>
+#include <apsis/exec/thread_clock.hpp>
 
 #include <algorithm>
 #include <cstddef>
-#include <ctime>
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
@@ -62,12 +62,6 @@ HWY_EXPORT(multiply_adds);
 HWY_EXPORT(multiply_adds_in_a_round);
 
 constexpr int attempts = 20;
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 }  // namespace
 

@@ -57,7 +57,7 @@ method make_named_method(std::string_view name) {
   std::vector<std::string> known = method_names();
   for (const family_entry* family : family_entries()) known.push_back(family->pattern);
   const std::string text(name.substr(0, 60));
-  throw input_error("unknown method '" + text + "' " + suggest(text, known));
+  throw input_error("unknown method '" + text + "'; " + suggest(text, known));
 }
 
 /// Parsed and certified at the first request, then kept. A file of the user is kept by its path and its text,

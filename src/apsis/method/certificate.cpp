@@ -21,11 +21,6 @@ mp_real tolerance_of(int digits) {
   return digits > 0 ? pow(mp_real(10), 3 - digits) : mp_real(1e-50);
 }
 
-tree_colours colours_of(method_kind kind) {
-  if (kind == method_kind::implicit_only) return tree_colours::G_only;
-  return kind == method_kind::imex ? tree_colours::both : tree_colours::F_only;
-}
-
 void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certificate& c) {
   constexpr int highest = 6;
   for (int p = 1; p <= highest && c.order == p - 1; ++p) {

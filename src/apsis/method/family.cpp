@@ -52,7 +52,7 @@ std::string missing_member(const family_entry& family, std::string_view name) {
 method make_member(const family_entry& family, std::string_view name) {
   const std::size_t stages = stages_of(family, name);
   if (stages == 0)
-    throw input_error(fmt::format("no method '{}' ({}) take for example {}", name.substr(0, 60),
+    throw input_error(fmt::format("no method '{}' ({}); take for example {}", name.substr(0, 60),
                                   missing_member(family, name), member_name(family, family.lowest)));
   method m = family.make(stages);
   m.name = std::string(name);

@@ -19,6 +19,18 @@ std::string to_string(method_kind kind) {
   return "";
 }
 
+tree_colours colours_of(method_kind kind) {
+  switch (kind) {
+    case method_kind::implicit_only:
+      return tree_colours::G_only;
+    case method_kind::explicit_only:
+      return tree_colours::F_only;
+    case method_kind::imex:
+      break;
+  }
+  return tree_colours::both;
+}
+
 bool method::ends_with_update() const {
   const std::size_t last = stages() - 1;
   return kind != method_kind::explicit_only && coefficient_value(exact.D(last, last)) == 0 &&

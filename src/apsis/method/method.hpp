@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/method/tableau.hpp>
+#include <apsis/method/trees.hpp>
 
 #include <optional>
 #include <string>
@@ -18,6 +19,9 @@ enum class method_kind {
 
 /// "implicit", "imex" or "explicit".
 std::string to_string(method_kind kind);
+
+/// The trees whose order conditions a method of this kind must satisfy.
+tree_colours colours_of(method_kind kind);
 
 /// What the file of a method says about it; certified when it is loaded.
 struct method_claims {

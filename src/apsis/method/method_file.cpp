@@ -36,7 +36,7 @@ class section {
       const auto& at = key.source().begin;
       throw input_error(
           {file_, static_cast<int>(at.line), static_cast<int>(at.column)},
-          fmt::format("unknown key '{}'{} {}", text.substr(0, 60), inside(), suggest(text, keys)));
+          fmt::format("unknown key '{}'{}; {}", text.substr(0, 60), inside(), suggest(text, keys)));
     }
   }
 
@@ -173,7 +173,7 @@ method_kind read_kind(const section& top) {
   const std::string text = top.text("kind");
   for (const auto kind : {method_kind::implicit_only, method_kind::imex, method_kind::explicit_only})
     if (to_string(kind) == text) return kind;
-  top.fail("kind", fmt::format("unknown kind '{}' {}", text.substr(0, 40), suggest(text, names)));
+  top.fail("kind", fmt::format("unknown kind '{}'; {}", text.substr(0, 40), suggest(text, names)));
 }
 
 method_claims read_claims(const toml::table& root, const std::string& file) {
@@ -185,7 +185,7 @@ method_claims read_claims(const toml::table& root, const std::string& file) {
     claims.type = table.text("type");
     const std::vector<std::string> types = {"A", "ARS", "CK"};
     if (std::find(types.begin(), types.end(), *claims.type) == types.end())
-      table.fail("type", fmt::format("unknown type '{}' {}", claims.type->substr(0, 40),
+      table.fail("type", fmt::format("unknown type '{}'; {}", claims.type->substr(0, 40),
                                      suggest(*claims.type, types)));
   }
   if (table.has("ssp_coefficient")) {
@@ -200,7 +200,7 @@ method_claims read_claims(const toml::table& root, const std::string& file) {
     claims.intermediate = table.text("intermediate");
     const std::vector<std::string> kinds = {"slow", "all"};
     if (std::find(kinds.begin(), kinds.end(), *claims.intermediate) == kinds.end())
-      table.fail("intermediate", fmt::format("unknown claim '{}' {}", claims.intermediate->substr(0, 40),
+      table.fail("intermediate", fmt::format("unknown claim '{}'; {}", claims.intermediate->substr(0, 40),
                                              suggest(*claims.intermediate, kinds)));
   }
   return claims;

@@ -1,13 +1,13 @@
 #include <apsis/method/method_text.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/text_file.hpp>
 #include <apsis/core/text_place.hpp>
 #include <apsis/method/method_file.hpp>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 
@@ -106,14 +106,7 @@ std::string read_method_text(const std::string& path) {
   if (!std::filesystem::exists(path, ignored))
     throw input_error(
         fmt::format("cannot read the method file '{}' (it does not exist); check the path", path));
-  std::ifstream in(path, std::ios::binary);
-  std::string text(longest_file + 1, '\0');
-  if (in) in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad() || (!in && !in.eof()))
-    throw io_error(
-        fmt::format("cannot read '{}' (it is a folder or not readable); give a readable method file", path));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
+  return read_text_file(path, longest_file, "method file");
 }
 
 }  // namespace apsis

@@ -43,9 +43,7 @@ class coefficient_system {
       full_row_.push_back(i > 0 && abs(initial[i]) < mp_real(1e-12));
       counts_.push_back(abs(weights(m.stages() - 1, i)) > mp_real(1e-12));
     }
-    trees_ = rooted_trees(m.claims.order, m.kind == method_kind::imex            ? tree_colours::both
-                                          : m.kind == method_kind::implicit_only ? tree_colours::G_only
-                                                                                 : tree_colours::F_only);
+    trees_ = rooted_trees(m.claims.order, colours_of(m.kind));
   }
 
   std::size_t unknowns() const { return values_.size(); }

@@ -29,7 +29,7 @@ std::string joined(const std::vector<std::string>& parts) {
 
 [[noreturn]] void damaged(const std::string& path, const std::string& what) {
   throw io_error(
-      fmt::format("'{}' is no usable checkpoint ({}) give a checkpoint.h5 written by apsis", path, what));
+      fmt::format("'{}' is no usable checkpoint ({}); give a checkpoint.h5 written by apsis", path, what));
 }
 
 void write_rows(hdf5_file& file, const std::string& name, const std::vector<std::vector<double>>& rows,
@@ -58,7 +58,7 @@ double checkpoint::number(const std::string& name) const {
   const auto found = numbers.find(name);
   if (found == numbers.end())
     throw io_error(fmt::format(
-        "the checkpoint has no number '{}' (written by another version?) run the case again", name));
+        "the checkpoint has no number '{}' (written by another version?); run the case again", name));
   return found->second;
 }
 

@@ -107,7 +107,7 @@ hdf5_file hdf5_file::open(const std::string& path) {
   silence();
   hdf5_file file(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   if (file.id_ < 0)
-    file.fail("cannot be opened (missing, damaged, or not an HDF5 file) give a file written by apsis");
+    file.fail("cannot be opened (missing, damaged, or not an HDF5 file); give a file written by apsis");
   return file;
 }
 
@@ -165,19 +165,19 @@ bool hdf5_file::has(const std::string& name) const {
 hdf5_file::shape hdf5_file::extents(const std::string& name) const {
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!data.good())
-    fail(fmt::format("has no data '{}' (not written by this program?) give another file", name));
+    fail(fmt::format("has no data '{}' (not written by this program?); give another file", name));
   const handle space(H5Dget_space(data), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space);
   std::vector<hsize_t> dims(rank > 0 ? static_cast<std::size_t>(rank) : 0);
   if (rank < 0 || H5Sget_simple_extent_dims(space, dims.data(), nullptr) < 0)
-    fail(fmt::format("the extents of '{}' cannot be read (damaged file) give another file", name));
+    fail(fmt::format("the extents of '{}' cannot be read (damaged file); give another file", name));
   return {dims.begin(), dims.end()};
 }
 
 precision hdf5_file::stored(const std::string& name) const {
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!data.good())
-    fail(fmt::format("has no data '{}' (not written by this program?) give another file", name));
+    fail(fmt::format("has no data '{}' (not written by this program?); give another file", name));
   const handle type(H5Dget_type(data), H5Tclose);
   return H5Tget_size(type) == sizeof(float) ? precision::float32 : precision::float64;
 }
@@ -186,40 +186,40 @@ std::vector<double> hdf5_file::read(const std::string& name) const {
   std::uint64_t count = 1;
   for (const std::uint64_t n : extents(name)) {
     if (n > most_elements || (n > 0 && count > most_elements / n))
-      fail(fmt::format("'{}' claims an impossible size (damaged file) give another file", name));
+      fail(fmt::format("'{}' claims an impossible size (damaged file); give another file", name));
     count *= n;
   }
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   // Storage that is not there reads as zeros: a file cut short must not pass for one with an empty state.
   const std::uint64_t bytes = stored(name) == precision::float32 ? sizeof(float) : sizeof(double);
   if (count > 0 && H5Dget_storage_size(data) < count * bytes)
-    fail(fmt::format("'{}' is incomplete (damaged file) give another file", name));
+    fail(fmt::format("'{}' is incomplete (damaged file); give another file", name));
   std::vector<double> values(count);
   if (H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    fail(fmt::format("'{}' cannot be read (damaged file) give another file", name));
+    fail(fmt::format("'{}' cannot be read (damaged file); give another file", name));
   return values;
 }
 
 std::string hdf5_file::read_text(const std::string& name) const {
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!data.good())
-    fail(fmt::format("has no text '{}' (not written by this program?) give another file", name));
+    fail(fmt::format("has no text '{}' (not written by this program?); give another file", name));
   const handle type(H5Dget_type(data), H5Tclose);
   const handle space(H5Dget_space(data), H5Sclose);
   const std::size_t length = H5Tget_size(type);
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || length > longest_text ||
       H5Sget_simple_extent_npoints(space) != 1)
-    fail(fmt::format("'{}' is no text (damaged file) give another file", name));
+    fail(fmt::format("'{}' is no text (damaged file); give another file", name));
   std::string text(length, '\0');
   if (H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0)
-    fail(fmt::format("'{}' cannot be read (damaged file) give another file", name));
+    fail(fmt::format("'{}' cannot be read (damaged file); give another file", name));
   return text;
 }
 
 double hdf5_file::read_attribute(const std::string& name) const {
   for (const auto& [key, value] : attributes())
     if (key == name) return value;
-  fail(fmt::format("has no number '{}' (not written by this program?) give another file", name));
+  fail(fmt::format("has no number '{}' (not written by this program?); give another file", name));
 }
 
 namespace {
@@ -249,20 +249,20 @@ std::vector<std::string> hdf5_file::datasets() const {
   std::vector<std::string> names;
   const handle root(H5Gopen2(id_, "/", H5P_DEFAULT), H5Gclose);
   if (!root.good() || !list_datasets(root, "", names))
-    fail("its content cannot be listed (damaged file) give another file");
+    fail("its content cannot be listed (damaged file); give another file");
   return names;
 }
 
 std::string hdf5_file::read_text_attribute(const std::string& name) const {
   const handle attribute(H5Aopen(id_, name.c_str(), H5P_DEFAULT), H5Aclose);
   if (!attribute.good())
-    fail(fmt::format("has no text '{}' (not written by this program?) give another file", name));
+    fail(fmt::format("has no text '{}' (not written by this program?); give another file", name));
   const handle type(H5Aget_type(attribute), H5Tclose);
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Tget_size(type) > longest_text)
-    fail(fmt::format("'{}' is no text (damaged file) give another file", name));
+    fail(fmt::format("'{}' is no text (damaged file); give another file", name));
   std::string text(H5Tget_size(type), '\0');
   if (H5Aread(attribute, type, text.data()) < 0)
-    fail(fmt::format("'{}' cannot be read (damaged file) give another file", name));
+    fail(fmt::format("'{}' cannot be read (damaged file); give another file", name));
   return text;
 }
 
@@ -280,7 +280,7 @@ std::vector<std::pair<std::string, double>> hdf5_file::attributes() const {
     double value = 0.0;
     if (H5Aget_name(attribute, name.size(), name.data()) < 0 ||
         H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0)
-      fail("its attributes cannot be read (damaged file) give another file");
+      fail("its attributes cannot be read (damaged file); give another file");
     all.emplace_back(name.data(), value);
   }
 }

@@ -1,6 +1,7 @@
 #include <apsis/output/result_folder.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/text_file.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,16 +23,10 @@ constexpr std::array<const char*, 11> result_names = {
 
 constexpr std::array<const char*, 1> series_names = {"snapshots"};
 
-[[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::string& why) {
-  throw io_error(fmt::format("cannot {} '{}' ({}) choose another folder with --out or free some space", verb,
-                             path.string(), why));
-}
+constexpr const char* advice = "choose another folder with --out or free some space";
 
-void write_text(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) cannot("write", path, "no permission or no space left");
+[[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::string& why) {
+  throw io_error(fmt::format("cannot {} '{}' ({}); {}", verb, path.string(), why, advice));
 }
 
 /// Names live in the folder, which has to reach the disk like a file.
@@ -61,7 +56,7 @@ result_folder::result_folder(fs::path path) : path_(std::move(path)) {
   const fs::path probe = temporary("probe");
   try {
     lock_.emplace(path_);
-    write_text(probe.string(), "apsis\n");
+    write_text_file(probe.string(), "apsis\n", advice);
   } catch (const io_error&) {
     discard();
     throw;
@@ -97,7 +92,7 @@ void result_folder::prepare(const std::string& name, const std::function<void(co
 }
 
 void result_folder::prepare_text(const std::string& name, const std::string& text) {
-  prepare(name, [&text](const std::string& path) { write_text(path, text); });
+  prepare(name, [&text](const std::string& path) { write_text_file(path, text, advice); });
 }
 
 void result_folder::publish(const std::string& name, const std::function<void(const std::string&)>& write) {
@@ -108,6 +103,10 @@ void result_folder::publish(const std::string& name, const std::function<void(co
   see_names_through(path_);
   prepared_.erase(std::find(prepared_.begin(), prepared_.end(), name));
   keep_ = true;
+}
+
+void result_folder::publish_text(const std::string& name, const std::string& text) {
+  publish(name, [&text](const std::string& path) { write_text_file(path, text, advice); });
 }
 
 void result_folder::begin_series(const std::string& series) {

@@ -32,6 +32,9 @@ class result_folder {
   /// Prepares and names one file at once (checkpoints of a run that goes on).
   void publish(const std::string& name, const std::function<void(const std::string&)>& write);
 
+  /// Prepares and names one file with this content.
+  void publish_text(const std::string& name, const std::string& text);
+
   /// Adds a file to a series, which is a folder below this one. Such files are whole as soon as they are
   /// there, and a run that was killed leaves them for its continuation; the series takes its name in
   /// commit().

@@ -20,7 +20,7 @@ namespace apsis {
 namespace {
 
 [[noreturn]] void unusable(const std::string& path, const std::string& kind, const std::string& why) {
-  throw io_error(fmt::format("'{}' is no usable {} ({}) give one that was written by this version of apsis",
+  throw io_error(fmt::format("'{}' is no usable {} ({}); give one that was written by this version of apsis",
                              path, kind, why));
 }
 
@@ -77,7 +77,7 @@ void write_through(const std::string& path, const std::string& block) {
                        fsync(file) == 0;
   const bool closed = file < 0 || close(file) == 0;
   if (!written || !closed)
-    throw io_error(fmt::format("'{}' cannot be written to its end (disk full?) free some space", path));
+    throw io_error(fmt::format("'{}' cannot be written to its end (disk full?); free some space", path));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::vector<double> to_row(const step_record& r) {
 step_record from_row(const std::vector<double>& row) {
   if (row.size() < columns_before_defects + columns_after_defects)
     throw io_error(
-        "the history of the checkpoint has too few columns (damaged file) give another checkpoint");
+        "the history of the checkpoint has too few columns (damaged file); give another checkpoint");
   step_record r;
   r.step = static_cast<long>(row[0]);
   r.t = row[1];
@@ -44,7 +44,8 @@ bool has_space(const simulation& run) {
 long count(const checkpoint& c, const std::string& name) {
   const double x = c.number(name);
   if (!(x >= 0.0 && x <= 9007199254740992.0))
-    throw io_error("the checkpoint has a wrong number '" + name + "' (damaged file) give another checkpoint");
+    throw io_error("the checkpoint has a wrong number '" + name +
+                   "' (damaged file); give another checkpoint");
   return static_cast<long>(x);
 }
 
@@ -81,7 +82,7 @@ run_records::run_records(const simulation& run, const checkpoint& from)
   name_fields(run);
   if (from.history.columns != history_columns(run))
     throw io_error(
-        "the history of the checkpoint has other columns (written by another version?) run the case again");
+        "the history of the checkpoint has other columns (written by another version?); run the case again");
   // The choice of fields may have changed; then earlier snapshots cannot be continued.
   if (from.fields.names == fields_.names) fields_.snapshots = from.fields.snapshots;
 }
@@ -157,7 +158,7 @@ saved_run to_saved_run(const checkpoint& c) {
   saved.startup_done = count(c, "startup_done");
   saved.startup_length = c.number("startup_length");
   if (saved.startup_steps > 64 || saved.startup_done > saved.startup_steps)
-    throw io_error("the checkpoint has a wrong start-up (damaged file) give another checkpoint");
+    throw io_error("the checkpoint has a wrong start-up (damaged file); give another checkpoint");
   if (c.numbers.count("proposed_dt") > 0) {  // of runs that keep a tolerance
     saved.proposed_dt = c.number("proposed_dt");
     saved.previous_error = c.number("previous_error");

@@ -75,7 +75,7 @@ void check_same_case(const case_config& mine, const std::string& saved_text, con
     if (b.empty()) std::getline(there, b);
     if (a != b)
       throw input_error(fmt::format(
-          "'{}' belongs to another case ('{}' there, '{}' here) restart with the case it was written for",
+          "'{}' belongs to another case ('{}' there, '{}' here); restart with the case it was written for",
           path, b, a));
     a.clear();
     b.clear();
@@ -108,10 +108,11 @@ run_session::run_session(case_config configured, session_options options)
   else if (simulation_.step() == 0 && config.output.every > 0.0)
     write_distribution_snapshot();
   if (!folder_ && config.output.checkpoint_every > 0)
-    log::warning("no checkpoints are written (output.checkpoint_every needs a folder) give one with --out");
+    log::warning("no checkpoints are written (output.checkpoint_every needs a folder); give one with --out");
   if (config.output.distribution == "snapshots" && !(folder_ && config.output.every > 0.0))
     log::warning(
-        "no snapshots of f are written (output.distribution = \"snapshots\" needs output.every and a folder) "
+        "no snapshots of f are written (output.distribution = \"snapshots\" needs output.every and a "
+        "folder); "
         "give both");
   const long steps = simulation_.steps_total();
   log::info(fmt::format("{}: about {} steps of {} on {} thread{}; {}", config.source, steps,
@@ -127,11 +128,11 @@ void run_session::resume(const std::string& path) {
   if (saved.cells != static_cast<std::uint64_t>(simulation_.cells()) ||
       saved.components != static_cast<std::uint64_t>(simulation_.components()))
     throw input_error(fmt::format(
-        "'{}' holds {} x {} unknowns (the case has {} x {}) restart with the case it was written for", path,
+        "'{}' holds {} x {} unknowns (the case has {} x {}); restart with the case it was written for", path,
         saved.cells, saved.components, simulation_.cells(), simulation_.components()));
   const saved_run state = to_saved_run(saved);
   if (!(state.t < simulation_.config().time.end))
-    throw input_error(fmt::format("'{}' is already at t = {} (time.end is {}) give a later time.end", path,
+    throw input_error(fmt::format("'{}' is already at t = {} (time.end is {}); give a later time.end", path,
                                   state.t, simulation_.config().time.end));
   simulation_.restore(state);
   records_ = std::make_unique<run_records>(simulation_, saved);
@@ -150,7 +151,7 @@ run_end run_session::run() {
   if (folder_)
     write_results(*folder_, end_, "");
   else if (end_ != run_end::complete)
-    log::warning("nothing was saved (a checkpoint needs a folder) give one with --out");
+    log::warning("nothing was saved (a checkpoint needs a folder); give one with --out");
   return end_;
 }
 

@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/exec/thread_clock.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/tolerance_forecast.hpp>
 #include <apsis/run/memory_need.hpp>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -22,13 +22,6 @@
 namespace apsis {
 
 namespace {
-
-/// CPU time of the calling thread: what a step costs does not depend on what else the machine does.
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// ‖u − v‖₂/‖u‖₂ over all cells and components.
 double relative_distance(const field& u, const field& v) {

@@ -24,7 +24,7 @@ const std::map<std::string, error_norm>& norms() {
 
 [[noreturn]] void not_comparable(const std::string& key, const std::string& why) {
   throw input_error(
-      fmt::format("a run and its reference differ in '{}' ({}) leave it the same in both", key, why));
+      fmt::format("a run and its reference differ in '{}' ({}); leave it the same in both", key, why));
 }
 
 struct averages {
@@ -102,7 +102,7 @@ std::vector<double> field_of(const case_config& config, const std::vector<double
   for (const auto& field : setup.equation->fields()) names.push_back(field.name);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw input_error(fmt::format("no quantity '{}' (model '{}' has no such field) {}", name.substr(0, 60),
+    throw input_error(fmt::format("no quantity '{}' (model '{}' has no such field); {}", name.substr(0, 60),
                                   config.model.name, suggest(name, names)));
   const auto components = static_cast<std::size_t>(setup.equation->components());
   std::vector<double> values(names.size()), out;
@@ -123,7 +123,7 @@ void check_meshes(const case_config& run, const case_config& reference) {
   const bool averaged = run.space.formulation == formulation::finite_volume;
   if (fine < cells || (averaged && fine % cells != 0))
     throw input_error(
-        fmt::format("a reference with {} cells cannot be compared with a run of {} ({}) choose numbers of "
+        fmt::format("a reference with {} cells cannot be compared with a run of {} ({}); choose numbers of "
                     "cells that are multiples",
                     fine, cells, fine < cells ? "it is coarser" : "averages need whole cells"));
 }
@@ -136,7 +136,7 @@ error_norm find_norm(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& item : norms()) names.push_back(item.first);
   throw input_error(
-      fmt::format("no norm '{}' (there is no such norm) {}", name.substr(0, 60), suggest(name, names)));
+      fmt::format("no norm '{}' (there is no such norm); {}", name.substr(0, 60), suggest(name, names)));
 }
 
 std::string to_string(error_norm norm) {

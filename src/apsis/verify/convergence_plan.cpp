@@ -1,6 +1,7 @@
 #include <apsis/verify/convergence_plan.hpp>
 
 #include <apsis/config/case_text.hpp>
+#include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/run/setup.hpp>
@@ -48,28 +49,28 @@ class planner {
 
   void check_keys() const {
     if (study_.vary.empty())
-      throw input_error("nothing is varied (a study has at least one varied key) give --vary key=v1,v2,...");
+      throw input_error("nothing is varied (a study has at least one varied key); give --vary key=v1,v2,...");
     double runs = 1.0;
     for (const auto& varied : study_.vary) {
       if (varied.values.empty())
         throw input_error(
-            fmt::format("'{}' has no values (each value makes a run) list some", shown(varied.key)));
+            fmt::format("'{}' has no values (each value makes a run); list some", shown(varied.key)));
       if (std::count(plan_.keys.begin(), plan_.keys.end(), varied.key) > 1)
-        throw input_error(fmt::format("'{}' is varied twice (a key has one list of values) join the lists",
+        throw input_error(fmt::format("'{}' is varied twice (a key has one list of values); join the lists",
                                       shown(varied.key)));
       for (const auto& item : study_.overrides)
         if (key_of(item) == varied.key)
           throw input_error(fmt::format(
-              "'{}' is both varied and set to a value (one of them would be ignored) leave one out",
+              "'{}' is both varied and set to a value (one of them would be ignored); leave one out",
               shown(varied.key)));
       if (varied.key == "title" || varied.key.rfind("output.", 0) == 0)
         throw input_error(fmt::format(
-            "'{}' cannot be varied (no number of a run depends on it) vary another key", shown(varied.key)));
+            "'{}' cannot be varied (no number of a run depends on it); vary another key", shown(varied.key)));
       runs *= static_cast<double>(varied.values.size());
     }
     if (runs > static_cast<double>(convergence::most_runs))
       throw input_error(
-          fmt::format("the combinations of all values make {:.0f} runs (at most {} are possible) vary fewer "
+          fmt::format("the combinations of all values make {:.0f} runs (at most {} are possible); vary fewer "
                       "keys at a time",
                       runs, convergence::most_runs));
   }
@@ -116,7 +117,7 @@ class planner {
       for (const auto& other : grid_)
         if (other.run == p.run)
           throw input_error(fmt::format(
-              "the values {} and {} of {} make the same run (each run is compared once) remove one of them",
+              "the values {} and {} of {} make the same run (each run is compared once); remove one of them",
               fmt::join(other.values, ", "), fmt::join(p.values, ", "), fmt::join(plan_.keys, ", ")));
       grid_.push_back(std::move(p));
       more = false;
@@ -187,21 +188,21 @@ class planner {
       if (how_ == kind::next && !resolves_)
         throw input_error(
             fmt::format("there is nothing to compare with (no mesh or step is refined, and model '{}' has no "
-                        "exact solution) give --reference",
+                        "exact solution); give --reference",
                         model));
     }
     if (how_ == kind::exact && !all_exact())
       throw input_error(
           fmt::format("reference 'exact' does not exist (no exact solution of model '{}' is known for these "
-                      "data) choose --reference next, time or METHOD@STEP",
+                      "data); choose --reference next, time or METHOD@STEP",
                       model));
     if (how_ == kind::next && (!resolves_ || refined_key() == "velocity.points"))
       throw input_error(
-          "reference 'next' needs a finer run (no mesh or step is refined) vary space.cells or a step, or "
+          "reference 'next' needs a finer run (no mesh or step is refined); vary space.cells or a step, or "
           "choose another reference");
     if (how_ == kind::space_time && !has_space)
       throw input_error(
-          fmt::format("reference 'space+time' needs a mesh (model '{}' has no space) choose time", model));
+          fmt::format("reference 'space+time' needs a mesh (model '{}' has no space); choose time", model));
     plan_.measured = how_ == kind::next ? "difference" : "error";
     plan_.measure = fmt::format("{} norm of the difference{} to {}", to_string(study_.norm),
                                 study_.quantity.empty() ? "" : " of " + study_.quantity, reference_name());

@@ -16,20 +16,7 @@ using texts = std::vector<std::string>;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-bool contains(const texts& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 }  // namespace
-
-const texts& step_keys() {
-  static const texts keys = {"time.dt", "time.cfl", "time.safety"};
-  return keys;
-}
-
-bool is_step_key(const std::string& key) {
-  return contains(step_keys(), key);
-}
 
 bool is_resolution_key(const std::string& key) {
   return is_step_key(key) || key == "space.cells" || key == "velocity.points";

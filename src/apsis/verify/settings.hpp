@@ -9,10 +9,6 @@ namespace apsis {
 
 /// Keys of a case as studies handle them: settings "key=value" in layers, and the numbers behind them.
 
-/// time.dt, time.cfl, time.safety: a case has one of them.
-const std::vector<std::string>& step_keys();
-/// Whether a key is one of step_keys().
-bool is_step_key(const std::string& key);
 /// Whether a key is a step key, space.cells or velocity.points.
 bool is_resolution_key(const std::string& key);
 

@@ -80,7 +80,7 @@ struct written_number {
 };
 
 [[noreturn]] void bad_vary(const std::string& text, const std::string& problem, const std::string& advice) {
-  throw input_error(fmt::format("--vary '{}': {} {}", shown(text), problem, advice));
+  throw input_error(fmt::format("--vary '{}': {}; {}", shown(text), problem, advice));
 }
 
 /// The values of "a..b"; nothing if the text is no range of numbers.
@@ -140,7 +140,7 @@ convergence_reference parse_reference(const std::string& text) {
   for (const auto& item : words) names.push_back(item.first);
   names.emplace_back("METHOD@STEP");
   names.emplace_back("key=value,...");
-  throw input_error(fmt::format("no reference '{}' (a word, a method and its step, or keys of the case) {}",
+  throw input_error(fmt::format("no reference '{}' (a word, a method and its step, or keys of the case); {}",
                                 shown(text), suggest(text, names)));
 }
 

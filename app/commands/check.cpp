@@ -1,6 +1,7 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
+#include "print.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
@@ -88,17 +89,22 @@ int check(const options& given) {
   return report(read_method(what), given);
 }
 
+action define(CLI::App& command) {
+  auto given = std::make_shared<options>();
+  command.add_option("METHOD", given->what, "a method of the catalogue or a method file")->required();
+  command.add_flag("--json", given->json, "print one JSON object");
+  command.add_flag("--observe", given->observe,
+                   "also look for the largest steps that keep positivity, total variation, entropy, ...");
+  return [given] { return check(*given); };
+}
+
 }  // namespace
 
-void add_check(CLI::App& program, action& chosen) {
-  auto given = std::make_shared<options>();
-  CLI::App* command =
-      program.add_subcommand("check", "Certify a method: order, SSP coefficient, structure, cost");
-  command->add_option("METHOD", given->what, "a method of the catalogue or a method file")->required();
-  command->add_flag("--json", given->json, "print one JSON object");
-  command->add_flag("--observe", given->observe,
-                    "also look for the largest steps that keep positivity, total variation, entropy, ...");
-  command->callback([given, &chosen] { chosen = [given] { return check(*given); }; });
-}
+extern const command_entry command_check;
+const command_entry command_check = {.name = "check",
+                                     .summary = "Certify a method: order, SSP coefficient, structure, cost",
+                                     .place = 50,
+                                     .completion = completed_from_list("methods"),
+                                     .define = define};
 
 }  // namespace apsis::app

@@ -1,5 +1,6 @@
-#include "commands.hpp"
-#include "method_report.hpp"
+#include "command_registry.hpp"
+#include "method_document.hpp"
+#include "print.hpp"
 
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
@@ -54,16 +55,22 @@ int show(const options& given) {
   return 0;
 }
 
+action define(CLI::App& command) {
+  auto given = std::make_shared<options>();
+  command.add_option("WHAT", given->what, "a method, a method file, a built-in case, or: case")->required();
+  command.add_option("--format", given->format, "of a method: text, json, latex or toml")
+      ->check(CLI::IsMember({"text", "json", "latex", "toml"}));
+  return [given] { return show(*given); };
+}
+
 }  // namespace
 
-void add_show(CLI::App& program, action& chosen) {
-  auto given = std::make_shared<options>();
-  CLI::App* command =
-      program.add_subcommand("show", "Show a method, a built-in case, or the keys of a case (show case)");
-  command->add_option("WHAT", given->what, "a method, a method file, a built-in case, or: case")->required();
-  command->add_option("--format", given->format, "of a method: text, json, latex or toml")
-      ->check(CLI::IsMember({"text", "json", "latex", "toml"}));
-  command->callback([given, &chosen] { chosen = [given] { return show(*given); }; });
-}
+extern const command_entry command_show;
+const command_entry command_show = {
+    .name = "show",
+    .summary = "Show a method, a built-in case, or the keys of a case (show case)",
+    .place = 40,
+    .completion = completed_from_list("methods"),
+    .define = define};
 
 }  // namespace apsis::app

@@ -1,4 +1,5 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
+#include "print.hpp"
 
 #include <apsis/core/version.hpp>
 #include <apsis/exec/parallel.hpp>
@@ -32,13 +33,18 @@ int info(bool json) {
   return 0;
 }
 
+action define(CLI::App& command) {
+  auto json = std::make_shared<bool>(false);
+  command.add_flag("--json", *json, "print one JSON object");
+  return [json] { return info(*json); };
+}
+
 }  // namespace
 
-void add_info(CLI::App& program, action& chosen) {
-  auto json = std::make_shared<bool>(false);
-  CLI::App* command = program.add_subcommand("info", "Version, compiler, build, machine and libraries");
-  command->add_flag("--json", *json, "print one JSON object");
-  command->callback([json, &chosen] { chosen = [json] { return info(*json); }; });
-}
+extern const command_entry command_info;
+const command_entry command_info = {.name = "info",
+                                    .summary = "Version, compiler, build, machine and libraries",
+                                    .place = 100,
+                                    .define = define};
 
 }  // namespace apsis::app

@@ -1,6 +1,10 @@
-#include "commands.hpp"
+#include <paper/reproduce.hpp>
+
+#include "command_registry.hpp"
 #include "drawing.hpp"
 #include "interrupt.hpp"
+#include "print.hpp"
+#include "progress_bar.hpp"
 #include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -8,7 +12,6 @@
 #include <apsis/core/version.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
-#include <apsis/output/progress.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
 
@@ -20,7 +23,6 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <paper/claim_registry.hpp>
-#include <paper/reproduce.hpp>
 
 namespace apsis::app {
 namespace {
@@ -46,7 +48,7 @@ class reproduction {
 
   /// False if it was interrupted.
   bool run() {
-    task_progress bar;
+    progress_bar bar;
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
       const claim_entry& claim = *chosen_[k];
       if (known(claim.id) == nullptr) {
@@ -101,16 +103,7 @@ class reproduction {
     return nullptr;
   }
 
-  void save() {
-    folder_.publish(document_name, [this](const std::string& path) {
-      std::ofstream out(path, std::ios::binary);
-      out << json_text(document()) << '\n';
-      out.close();
-      if (!out)
-        throw io_error(
-            fmt::format("cannot write '{}' (no permission or no space left); free some space", path));
-    });
-  }
+  void save() { folder_.publish_text(document_name, json_text(document()) + "\n"); }
 
   /// What an earlier run of the same version has shown.
   void load() {
@@ -174,20 +167,25 @@ int reproduce(const options& given) {
   return 0;
 }
 
+action define(CLI::App& command) {
+  auto given = std::make_shared<options>();
+  command.add_option("CLAIM", given->claims, "claims such as C22 (apsis list claims); all if none is named");
+  command.add_option("--out", given->out, "folder for report.html, reproduce.json and pictures")
+      ->capture_default_str();
+  command.add_flag("--resume", given->resume,
+                   "keep the claims that an earlier run in the same folder has shown");
+  add_threads(command, given->threads, "threads to use", "all processors");
+  command.add_flag("--json", given->json, "print reproduce.json on standard output, and nothing else");
+  return [given] { return reproduce(*given); };
+}
+
 }  // namespace
 
-void add_reproduce(CLI::App& program, action& chosen) {
-  auto given = std::make_shared<options>();
-  CLI::App* command =
-      program.add_subcommand("reproduce", "Check every claim of the paper and redraw its figures");
-  command->add_option("CLAIM", given->claims, "claims such as C22 (apsis list claims); all if none is named");
-  command->add_option("--out", given->out, "folder for report.html, reproduce.json and pictures")
-      ->capture_default_str();
-  command->add_flag("--resume", given->resume,
-                    "keep the claims that an earlier run in the same folder has shown");
-  add_threads(*command, given->threads, "threads to use", "all processors");
-  command->add_flag("--json", given->json, "print reproduce.json on standard output, and nothing else");
-  command->callback([given, &chosen] { chosen = [given] { return reproduce(*given); }; });
-}
+extern const command_entry command_reproduce;
+const command_entry command_reproduce = {.name = "reproduce",
+                                         .summary = "Check every claim of the paper and redraw its figures",
+                                         .place = 60,
+                                         .completion = completed_from_list("claims"),
+                                         .define = define};
 
 }  // namespace apsis::app

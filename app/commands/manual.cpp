@@ -1,4 +1,5 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
+#include "print.hpp"
 
 #include <apsis/core/version.hpp>
 
@@ -98,11 +99,14 @@ std::string words_of(const CLI::App& command) {
 }
 
 std::string bash_completion(const CLI::App& program) {
-  std::string cases;
+  std::string options, arguments;
   std::vector<std::string> names;
-  for (const auto* command : commands_of(program)) {
-    names.push_back(command->get_name());
-    cases += fmt::format("    {}) words='{}' ;;\n", command->get_name(), words_of(*command));
+  for (const command_entry* command : commands_in_order()) {
+    names.push_back(command->name);
+    options += fmt::format("    {}) words='{}' ;;\n", command->name,
+                           words_of(*program.get_subcommand(command->name)));
+    if (!command->completion.empty())
+      arguments += fmt::format("      {}) words=\"{}\" ;;\n", command->name, command->completion);
   }
   return fmt::format(
       "# Completion of apsis for bash, written by: apsis manual --format bash\n"
@@ -114,34 +118,33 @@ std::string bash_completion(const CLI::App& program) {
       "  fi\n"
       "  case ${{COMP_WORDS[1]}} in\n{}  esac\n"
       "  if [[ $word != -* ]]; then\n"
-      "    case ${{COMP_WORDS[1]}} in\n"
-      "      run | converge) words=$(apsis list cases --names 2>/dev/null) ;;\n"
-      "      check | show | plot) words=$(apsis list methods --names 2>/dev/null) ;;\n"
-      "      list) words='{}' ;;\n"
-      "    esac\n"
+      "    case ${{COMP_WORDS[1]}} in\n{}    esac\n"
       "  fi\n"
       "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n"
       "}}\n"
       "complete -o default -F _apsis apsis\n",
-      fmt::join(names, " "), cases, fmt::join(list_names(), " "));
+      fmt::join(names, " "), options, arguments);
+}
+
+action define(CLI::App& command) {
+  auto format = std::make_shared<std::string>("man");
+  command.add_option("--format", *format, "man, bash, or json for all commands with their options")
+      ->check(CLI::IsMember({"man", "bash", "json"}));
+  return [format, &program = *command.get_parent()] {
+    print(*format == "man"    ? manual_page(program)
+          : *format == "bash" ? bash_completion(program)
+                              : document(program));
+    return 0;
+  };
 }
 
 }  // namespace
 
-void add_manual(CLI::App& program, action& chosen) {
-  auto format = std::make_shared<std::string>("man");
-  CLI::App* command =
-      program.add_subcommand("manual", "Print the manual page, or the completion of command lines for bash");
-  command->add_option("--format", *format, "man, bash, or json for all commands with their options")
-      ->check(CLI::IsMember({"man", "bash", "json"}));
-  command->callback([format, &program, &chosen] {
-    chosen = [format, &program] {
-      print(*format == "man"    ? manual_page(program)
-            : *format == "bash" ? bash_completion(program)
-                                : document(program));
-      return 0;
-    };
-  });
-}
+extern const command_entry command_manual;
+const command_entry command_manual = {
+    .name = "manual",
+    .summary = "Print the manual page, or the completion of command lines for bash",
+    .place = 110,
+    .define = define};
 
 }  // namespace apsis::app

@@ -1,5 +1,7 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
 #include "method_report.hpp"
+#include "method_table.hpp"
+#include "print.hpp"
 
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
@@ -143,6 +145,12 @@ const std::map<std::string, json (*)()>& lists() {
   return all;
 }
 
+std::vector<std::string> list_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : lists()) names.push_back(name);
+  return names;
+}
+
 /// Nothing but names; those of methods without certifying them.
 std::string names_text(const std::string& what) {
   if (what == "methods") return fmt::format("{}\n", fmt::join(method_names(), "\n"));
@@ -172,20 +180,24 @@ int list(const options& given) {
 
 }  // namespace
 
-std::vector<std::string> list_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, unused] : lists()) names.push_back(name);
-  return names;
+namespace {
+
+action define(CLI::App& command) {
+  auto given = std::make_shared<options>();
+  command.add_option("WHAT", given->what, fmt::format("{}", fmt::join(list_names(), ", ")))->required();
+  auto* as_json = command.add_flag("--json", given->json, "print a JSON array");
+  command.add_flag("--names", given->names, "print names alone, a line each")->excludes(as_json);
+  return [given] { return list(*given); };
 }
 
-void add_list(CLI::App& program, action& chosen) {
-  auto given = std::make_shared<options>();
-  const std::string all = fmt::format("{}", fmt::join(list_names(), ", "));
-  CLI::App* command = program.add_subcommand("list", "List what there is: " + all);
-  command->add_option("WHAT", given->what, all)->required();
-  auto* as_json = command->add_flag("--json", given->json, "print a JSON array");
-  command->add_flag("--names", given->names, "print names alone, a line each")->excludes(as_json);
-  command->callback([given, &chosen] { chosen = [given] { return list(*given); }; });
-}
+}  // namespace
+
+extern const command_entry command_list;
+const command_entry command_list = {
+    .name = "list",
+    .summary = fmt::format("List what there is: {}", fmt::join(list_names(), ", ")),
+    .place = 30,
+    .completion = fmt::format("{}", fmt::join(list_names(), " ")),
+    .define = define};
 
 }  // namespace apsis::app

@@ -1,8 +1,10 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
 #include "design_embedded.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
 #include "method_writer.hpp"
+#include "print.hpp"
+#include "progress_bar.hpp"
 #include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -15,7 +17,6 @@
 #include <apsis/design/sparsify.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/schedule.hpp>
-#include <apsis/output/progress.hpp>
 
 #include <chrono>
 #include <cmath>
@@ -195,7 +196,7 @@ int design(const options& given) {
         fmt::format("a method of {} stages is left (the time of {:.0f} s is over); give more --time",
                     task.from->stages(), elapsed()));
   }
-  task_progress bar;
+  progress_bar bar;
   design_search how;
   how.starts = given.starts;
   how.stop = stop;
@@ -239,54 +240,58 @@ int design(const options& given) {
   return 0;
 }
 
-}  // namespace
-
-void add_design(CLI::App& program, action& chosen) {
+action define(CLI::App& command) {
   auto given = std::make_shared<options>();
   auto& d = given->demands;
-  CLI::App* command =
-      program.add_subcommand("design", "Find a new method: order, stages, what it is to be best in");
-  command->add_option("--order", given->order,
-                      "order of accuracy (with --embedded: of the embedded solution)");
-  command->add_option("--stages", given->stages, "stages; the last one is the result");
-  command->add_flag("--implicit", given->implicit, "a method without transport, u' = Q(u)");
-  command->add_option("--evaluations", given->evaluations,
-                      "transport evaluations in a step (any number if not given)");
-  command->add_option("--box", d.box, "largest d and |ddot|")->capture_default_str();
-  command->add_option("--margin", d.margin, "least d + |ddot| of a stage")->capture_default_str();
+  command.add_option("--order", given->order,
+                     "order of accuracy (with --embedded: of the embedded solution)");
+  command.add_option("--stages", given->stages, "stages; the last one is the result");
+  command.add_flag("--implicit", given->implicit, "a method without transport, u' = Q(u)");
+  command.add_option("--evaluations", given->evaluations,
+                     "transport evaluations in a step (any number if not given)");
+  command.add_option("--box", d.box, "largest d and |ddot|")->capture_default_str();
+  command.add_option("--margin", d.margin, "least d + |ddot| of a stage")->capture_default_str();
   command
-      ->add_option("--objective", given->objective,
-                   "r, r/n_F, error or band: what the method is to be best in")
+      .add_option("--objective", given->objective,
+                  "r, r/n_F, error or band: what the method is to be best in")
       ->capture_default_str();
-  command->add_option("--ssp", d.least_r, "least SSP coefficient r")->capture_default_str();
-  command->add_option(
+  command.add_option("--ssp", d.least_r, "least SSP coefficient r")->capture_default_str();
+  command.add_option(
       "--from", given->from,
       "a method (name or FILE.toml) to improve instead of random starts; stages above --stages are taken "
       "out, evaluations up to --evaluations are added");
   command
-      ->add_option("--regime", given->regime, "terms of size epsilon that are to be exact: none, slow or all")
+      .add_option("--regime", given->regime, "terms of size epsilon that are to be exact: none, slow or all")
       ->capture_default_str();
-  command->add_option("--angle", d.least_angle, "least angle of A(alpha)-stability, degrees");
-  command->add_option("--pole", d.least_pole, "least distance of poles on the imaginary axis from zero");
-  command->add_option("--buffers", d.most_buffers, "most state-sized buffers");
-  command->add_option("--sparsify", given->sparsify, "part of the objective to give for fewer coefficients");
-  command->add_option("--starts", given->starts, "random starts")->capture_default_str();
-  command->add_option("--time", given->seconds, "the search ends after this many seconds")
+  command.add_option("--angle", d.least_angle, "least angle of A(alpha)-stability, degrees");
+  command.add_option("--pole", d.least_pole, "least distance of poles on the imaginary axis from zero");
+  command.add_option("--buffers", d.most_buffers, "most state-sized buffers");
+  command.add_option("--sparsify", given->sparsify, "part of the objective to give for fewer coefficients");
+  command.add_option("--starts", given->starts, "random starts")->capture_default_str();
+  command.add_option("--time", given->seconds, "the search ends after this many seconds")
       ->capture_default_str();
-  command->add_option("--seed", given->seed, "of the random starts")->capture_default_str();
-  add_threads(*command, given->threads, "threads to use", "all processors");
-  command->add_option("--out", given->out, "method file to write (FILE.toml)")->required();
-  command->add_flag("--json", given->json, "print one JSON object");
-  CLI::Option* embedded = command->add_option(
+  command.add_option("--seed", given->seed, "of the random starts")->capture_default_str();
+  add_threads(command, given->threads, "threads to use", "all processors");
+  command.add_option("--out", given->out, "method file to write (FILE.toml)")->required();
+  command.add_flag("--json", given->json, "print one JSON object");
+  CLI::Option* embedded = command.add_option(
       "--embedded", given->embedded, "find an embedded solution of this method (name or FILE.toml) instead");
-  for (CLI::Option* option : command->get_options())
+  for (CLI::Option* option : command.get_options())
     if (!option->check_lname("order") && !option->check_lname("out") && !option->check_lname("json") &&
         !option->check_lname("help") && option != embedded)
       embedded->excludes(option);
-  command->add_option("--cost", given->cost, "of the embedded solution in a step: nothing or one-solve")
+  command.add_option("--cost", given->cost, "of the embedded solution in a step: nothing or one-solve")
       ->needs(embedded)
       ->capture_default_str();
-  command->callback([given, &chosen] { chosen = [given] { return design(*given); }; });
+  return [given] { return design(*given); };
 }
+
+}  // namespace
+
+extern const command_entry command_design;
+const command_entry command_design = {.name = "design",
+                                      .summary = "Find a new method: order, stages, what it is to be best in",
+                                      .place = 70,
+                                      .define = define};
 
 }  // namespace apsis::app

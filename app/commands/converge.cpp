@@ -1,6 +1,8 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
 #include "drawing.hpp"
 #include "interrupt.hpp"
+#include "print.hpp"
+#include "progress_bar.hpp"
 #include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -8,7 +10,6 @@
 #include <apsis/core/version.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
-#include <apsis/output/progress.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/verify/convergence_report.hpp>
@@ -83,7 +84,7 @@ void write_results(result_folder& folder, const options& given, const convergenc
 
 /// False if it was interrupted.
 bool run_all_of(convergence& study) {
-  task_progress bar;
+  progress_bar bar;
   study_control control;
   control.stop = interrupted;
   control.progress = [&bar](double part, const std::string& what) { bar.update(part, what); };
@@ -132,38 +133,42 @@ constexpr const char* description =
     "from coarse to fine. The rate is the slope of the error against the cell length, the step, or that "
     "number. A run that fails leaves a message in its row, and the exit code is 3.";
 
-}  // namespace
-
-void add_converge(CLI::App& program, action& chosen) {
+action define(CLI::App& command) {
   auto given = std::make_shared<options>();
-  CLI::App* command =
-      program.add_subcommand("converge", "Run a case on many meshes or steps: errors and rates");
-  command->footer(description);
+  command.footer(description);
   command
-      ->add_option("CASE", given->case_name, "a case file, or the name of a built-in case (apsis list cases)")
+      .add_option("CASE", given->case_name, "a case file, or the name of a built-in case (apsis list cases)")
       ->required();
-  command->add_option("key=value", given->overrides, "keys of the case that take another value in every run");
+  command.add_option("key=value", given->overrides, "keys of the case that take another value in every run");
   command
-      ->add_option("--vary", given->vary,
-                   "key=v1,v2,...: a key and its values, 20..160 stands for 20,40,80,160; all combinations "
-                   "of several --vary are run")
+      .add_option("--vary", given->vary,
+                  "key=v1,v2,...: a key and its values, 20..160 stands for 20,40,80,160; all combinations "
+                  "of several --vary are run")
       ->required()
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option(
+  command.add_option(
       "--reference", given->reference,
       "what errors are measured against: exact (if the model knows it; then the default), next (the next "
       "finer run; else the default), time (1/8 of the smallest step), space+time (three times the cells, a "
       "third of the step), METHOD@STEP, or key=value,... for a run with these keys");
-  command->add_option("--norm", given->norm, "l1, l2 or linf")->capture_default_str();
-  command->add_option("--quantity", given->quantity,
-                      "a macroscopic field, such as rho, to compare instead of the full state");
-  command->add_option(
-      "--out", given->out,
-      "folder for converge.csv, converge.json, and the plot as picture.json and converge.png");
-  command->add_flag("--json", given->json, "print a JSON array with one object per run, and nothing else");
-  add_threads(*command, given->threads, "runs at the same time", "all processors");
-  command->callback([given, &chosen] { chosen = [given] { return converge(*given); }; });
+  command.add_option("--norm", given->norm, "l1, l2 or linf")->capture_default_str();
+  command.add_option("--quantity", given->quantity,
+                     "a macroscopic field, such as rho, to compare instead of the full state");
+  command.add_option("--out", given->out,
+                     "folder for converge.csv, converge.json, and the plot as picture.json and converge.png");
+  command.add_flag("--json", given->json, "print a JSON array with one object per run, and nothing else");
+  add_threads(command, given->threads, "runs at the same time", "all processors");
+  return [given] { return converge(*given); };
 }
+
+}  // namespace
+
+extern const command_entry command_converge;
+const command_entry command_converge = {.name = "converge",
+                                        .summary = "Run a case on many meshes or steps: errors and rates",
+                                        .place = 20,
+                                        .completion = completed_from_list("cases"),
+                                        .define = define};
 
 }  // namespace apsis::app

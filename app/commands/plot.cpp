@@ -1,7 +1,7 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
 #include "drawing.hpp"
 #include "interrupt.hpp"
-#include "method_report.hpp"
+#include "method_document.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
@@ -51,25 +51,31 @@ int plot(const options& given) {
   return status;
 }
 
-}  // namespace
-
-void add_plot(CLI::App& program, action& chosen) {
+action define(CLI::App& command) {
   auto given = std::make_shared<options>();
-  CLI::App* command =
-      program.add_subcommand("plot", "Draw results of any kind, or the stability regions of a method");
   command
-      ->add_option("WHAT", given->what,
-                   "folders of results (pictures go into DIR/pictures), picture.json files, methods or "
-                   "method files; with --compare folders of runs, also as LABEL=DIR")
+      .add_option("WHAT", given->what,
+                  "folders of results (pictures go into DIR/pictures), picture.json files, methods or "
+                  "method files; with --compare folders of runs, also as LABEL=DIR")
       ->required();
-  command->add_option("--out", given->out, "folder of the pictures");
-  command->add_option("--format", given->format, "png, svg or pdf")
+  command.add_option("--out", given->out, "folder of the pictures");
+  command.add_option("--format", given->format, "png, svg or pdf")
       ->check(CLI::IsMember({"png", "svg", "pdf"}))
       ->capture_default_str();
-  command->add_option("--compare", given->compare,
-                      "draw these runs of one model into one picture of this name, and tell how far they are "
-                      "from the one with most cells");
-  command->callback([given, &chosen] { chosen = [given] { return plot(*given); }; });
+  command.add_option("--compare", given->compare,
+                     "draw these runs of one model into one picture of this name, and tell how far they are "
+                     "from the one with most cells");
+  return [given] { return plot(*given); };
 }
+
+}  // namespace
+
+extern const command_entry command_plot;
+const command_entry command_plot = {
+    .name = "plot",
+    .summary = "Draw results of any kind, or the stability regions of a method",
+    .place = 80,
+    .completion = completed_from_list("methods"),
+    .define = define};
 
 }  // namespace apsis::app

@@ -1,6 +1,8 @@
-#include "commands.hpp"
+#include "command_registry.hpp"
 #include "interrupt.hpp"
 #include "option_values.hpp"
+#include "print.hpp"
+#include "progress_bar.hpp"
 #include "run_profile.hpp"
 #include "run_report.hpp"
 #include "threads_option.hpp"
@@ -9,7 +11,6 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/output/case_json.hpp>
-#include <apsis/output/progress.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/run/session.hpp>
 
@@ -18,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
@@ -32,16 +34,22 @@ struct run_options {
   bool json = false, profile = false;
 };
 
+/// "step 1234/2900  t = 0.21  min 1.20e-31"
+std::string step_text(const simulation& now) {
+  return fmt::format("step {}/{}  t = {:.4g}  min {:.2e}", now.step(), now.steps_total(), now.t(),
+                     now.last().min_value);
+}
+
 int run(run_options options) {
   // First of all: an interrupt that comes before the first step is then no different from a later one.
   watch_for_interrupts("the step under way, and for a checkpoint where there is a folder (--out)");
   case_config config = load_case(options.case_name, options.overrides);
   set_threads(options.threads.value_or(threads_for(config)));
-  progress bar(config.time.end);
+  progress_bar bar;
   options.session.command = command_line();
   options.session.stop = interrupted;
-  options.session.watch = [&bar](const simulation& now) {
-    if (bar.due()) bar.update(now.step(), now.steps_total(), now.t(), now.last().min_value);
+  options.session.watch = [&bar, end = config.time.end](const simulation& now) {
+    if (bar.due()) bar.update(now.t() / end, step_text(now));
   };
   options.session.stepped = [&bar] { bar.finish(); };
   run_session session(std::move(config), options.session);
@@ -62,29 +70,35 @@ int run(run_options options) {
   return static_cast<int>(end == run_end::complete ? exit_code::success : exit_code::interrupted);
 }
 
+action define(CLI::App& command) {
+  auto options = std::make_shared<run_options>();
+  command
+      .add_option("CASE", options->case_name,
+                  "a case file, or the name of a built-in case (apsis list cases)")
+      ->required();
+  command.add_option("key=value", options->overrides,
+                     "keys of the case that take another value (apsis show case)");
+  command.add_option("--out", options->session.out, "folder for the results; without it nothing is written");
+  command.add_flag("--json", options->json, "print one JSON object on standard output, and nothing else");
+  add_threads(command, options->threads, "threads to use",
+              "all processors for a large case and 1 for a small one");
+  command.add_flag("--profile", options->profile,
+                   "tell how long each kernel took, and how near it came to the ceilings of this machine");
+  command.add_option("--restart", options->session.restart, "go on from a checkpoint.h5 of the same case");
+  command
+      .add_option("--wall", options->session.wall,
+                  "stop after this many seconds with a checkpoint, as if interrupted (exit code 130)")
+      ->check(positive_number());
+  return [options] { return run(*options); };
+}
+
 }  // namespace
 
-void add_run(CLI::App& program, action& chosen) {
-  auto options = std::make_shared<run_options>();
-  CLI::App* command = program.add_subcommand("run", "Run a case and write its results");
-  command
-      ->add_option("CASE", options->case_name,
-                   "a case file, or the name of a built-in case (apsis list cases)")
-      ->required();
-  command->add_option("key=value", options->overrides,
-                      "keys of the case that take another value (apsis show case)");
-  command->add_option("--out", options->session.out, "folder for the results; without it nothing is written");
-  command->add_flag("--json", options->json, "print one JSON object on standard output, and nothing else");
-  add_threads(*command, options->threads, "threads to use",
-              "all processors for a large case and 1 for a small one");
-  command->add_flag("--profile", options->profile,
-                    "tell how long each kernel took, and how near it came to the ceilings of this machine");
-  command->add_option("--restart", options->session.restart, "go on from a checkpoint.h5 of the same case");
-  command
-      ->add_option("--wall", options->session.wall,
-                   "stop after this many seconds with a checkpoint, as if interrupted (exit code 130)")
-      ->check(positive_number());
-  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
-}
+extern const command_entry command_run;
+const command_entry command_run = {.name = "run",
+                                   .summary = "Run a case and write its results",
+                                   .place = 10,
+                                   .completion = completed_from_list("cases"),
+                                   .define = define};
 
 }  // namespace apsis::app

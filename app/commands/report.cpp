@@ -1,0 +1,33 @@
+#include "command_registry.hpp"
+#include "drawing.hpp"
+#include "interrupt.hpp"
+
+#include <apsis/core/errors.hpp>
+
+#include <memory>
+
+namespace apsis::app {
+namespace {
+
+action define(CLI::App& command) {
+  auto folders = std::make_shared<std::vector<std::string>>();
+  command.add_option("DIR", *folders, "folders of apsis run, converge or reproduce; gets report.html")
+      ->required();
+  return [folders] {
+    watch_for_interrupts("the report to end");
+    const int status = drawing().run("report", *folders, false);
+    if (status < 0) throw io_error("the report failed (Python ended without a status); try again");
+    return status;
+  };
+}
+
+}  // namespace
+
+extern const command_entry command_report;
+const command_entry command_report = {
+    .name = "report",
+    .summary = "Make one page of a folder of results: summary, promises, pictures, case, manifest",
+    .place = 90,
+    .define = define};
+
+}  // namespace apsis::app

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <apsis/method/method.hpp>
+
+#include <string>
+
+namespace apsis::app {
+
+/// Coefficients and claims; `format` is "text", "json", "latex" or "toml".
+std::string method_document(const method& m, const std::string& format);
+
+}  // namespace apsis::app

@@ -1,0 +1,33 @@
+#include <apsis/core/text_file.hpp>
+
+#include <apsis/core/errors.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+namespace apsis {
+
+std::string read_text_file(const std::string& path, std::size_t longest, const std::string& kind) {
+  std::ifstream in(path, std::ios::binary);
+  std::string text(longest + 1, '\0');
+  if (in) in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::error_code ignored;
+  // A file may open and fail later; what came until then is not its content.
+  if (in.bad() || !in.is_open() || std::filesystem::is_directory(path, ignored))
+    throw io_error(
+        fmt::format("cannot read '{}' (it is a folder or not readable); give a readable {}", path, kind));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+void write_text_file(const std::string& path, const std::string& text, const std::string& suggestion) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out)
+    throw io_error(fmt::format("cannot write '{}' (no permission or no space left); {}", path, suggestion));
+}
+
+}  // namespace apsis

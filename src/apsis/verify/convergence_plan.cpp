@@ -1,7 +1,7 @@
 #include <apsis/verify/convergence_plan.hpp>
 
-#include <apsis/config/case_text.hpp>
 #include <apsis/config/case_schema.hpp>
+#include <apsis/config/case_text.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/run/setup.hpp>

@@ -1,6 +1,6 @@
 // apsis design in a program that was built without Ipopt: an error of exit code 2 that says so, whatever is
 // asked.
-#include "commands.hpp"
+#include "command_registry.hpp"
 
 #include <apsis/core/errors.hpp>
 
@@ -9,6 +9,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+namespace apsis::app {
+extern const command_entry command_design;
+}  // namespace apsis::app
 
 namespace {
 
@@ -19,12 +23,12 @@ TEST(without_design, the_command_says_that_it_is_missing) {
       {"design", "--embedded", "m"}};
   for (const auto& line : lines) {
     CLI::App program;
-    apsis::app::action chosen;
-    apsis::app::add_design(program, chosen);
+    CLI::App* command = program.add_subcommand(apsis::app::command_design.name);
+    const auto run = apsis::app::command_design.define(*command);
     program.parse(std::vector<std::string>(line.rbegin(), line.rend()));  // as CLI11 wants it
-    ASSERT_TRUE(chosen);
+    ASSERT_TRUE(command->parsed());
     try {
-      chosen();
+      run();
       FAIL() << "the command ran";
     } catch (const apsis::error& refusal) {
       EXPECT_EQ(refusal.code(), apsis::exit_code::input);

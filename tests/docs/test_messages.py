@@ -77,6 +77,7 @@ def all_messages():
 
 def unseparated(text):
     """Whether a suggestion follows what stands before it, a reason in parentheses or a name, with nothing but a space."""
+    text = re.sub(r"(?<=\w)\(\)", "", text)  # the name of a function, as in "call on() first"
     return re.search(r"\) [^\s();][^();]*$|['})] (\{\})+$", text) is not None and re.search("[a-z]{3}", text) is not None
 
 
@@ -106,6 +107,7 @@ class Messages(unittest.TestCase):
         self.assertFalse(unseparated("cannot read '{}' (it is a folder); give a file"))
         self.assertFalse(unseparated("unknown method '{}'; {}{}"))
         self.assertFalse(unseparated("unknown key 'a' (line 3)"))
+        self.assertFalse(unseparated("no face {} (there are {}); call on() first"))
 
 
 if __name__ == "__main__":

@@ -212,7 +212,7 @@ class resolver {
   void check_faces() const {
     const auto faces = make_boundaries(config_);
     if (faces[0]->periodic() == faces[1]->periodic()) return;
-    const char* own = config_.boundary.left ? "boundary.left.kind" : "boundary.right.kind";
+    const char* own = config_.faces.left ? "boundary.left.kind" : "boundary.right.kind";
     refuse(*find(own), own, "only one of the two ends is periodic",
            "write space.boundary = \"periodic\" alone, or give both ends another kind");
   }
@@ -333,8 +333,8 @@ std::unique_ptr<model> make_model(const case_config& config) {
 }
 
 domain::faces make_boundaries(const case_config& config) {
-  return {make_boundary(config.boundary.left.value_or(config.space.boundary)),
-          make_boundary(config.boundary.right.value_or(config.space.boundary))};
+  return {make_boundary(config.faces.left.value_or(config.space.boundary)),
+          make_boundary(config.faces.right.value_or(config.space.boundary))};
 }
 
 std::vector<std::string> case_names() {

@@ -40,7 +40,7 @@ struct case_config {
   /// Tables [boundary.left] and [boundary.right], of models with space.
   struct {
     std::optional<std::string> left, right;  ///< kind of the face; space.boundary where it is not set
-  } boundary;
+  } faces;
   /// Table [velocity], of models with a velocity grid.
   struct {
     double max = 0.0;

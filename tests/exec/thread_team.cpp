@@ -153,8 +153,8 @@ TEST(thread_team, a_forked_child_has_threads_of_its_own) {
   }
 }
 
-TEST(waiting_account, rests_for_twelve_times_what_waiting_has_cost) {
-  using account = apsis::waiting_account;
+TEST(team_overhead, backs_off_for_twelve_times_what_waiting_has_cost) {
+  using account = apsis::team_overhead;
   using std::chrono::microseconds;
   const std::chrono::steady_clock::time_point start(microseconds(1'000'000));
   const auto region = [&](long work, long wait) {
@@ -163,17 +163,17 @@ TEST(waiting_account, rests_for_twelve_times_what_waiting_has_cost) {
   account lucky, unlucky, idle;
   for (int k = 0; k < 1000; ++k) lucky.add(region(100, 10), 5, 10);  // alone: 200 µs
   lucky.add(region(100, 450), 5, 10);
-  EXPECT_FALSE(lucky.rests(start)) << "350 µs are lost, of which a credit of 200 pays a part";
+  EXPECT_FALSE(lucky.backs_off(start)) << "350 µs are lost, of which a credit of 200 pays a part";
   unlucky.add(region(100, 6100), 5, 10);
-  EXPECT_TRUE(unlucky.rests(start + microseconds(6200 + 12 * 6000 - 1)));
-  EXPECT_FALSE(unlucky.rests(start + microseconds(6200 + 12 * 6000 + 1)));
+  EXPECT_TRUE(unlucky.backs_off(start + microseconds(6200 + 12 * 6000 - 1)));
+  EXPECT_FALSE(unlucky.backs_off(start + microseconds(6200 + 12 * 6000 + 1)));
   for (int k = 0; k < 30; ++k) idle.add(region(100, 5), 10, 10);  // workers that do not wake up
-  EXPECT_FALSE(idle.rests(start));
+  EXPECT_FALSE(idle.backs_off(start));
   for (int k = 0; k < 30; ++k) idle.add(region(100, 5), 10, 10);
-  EXPECT_TRUE(idle.rests(start + microseconds(1000)));
+  EXPECT_TRUE(idle.backs_off(start + microseconds(1000)));
   idle = account();
   idle.add(region(0, 9000), 0, 10);
-  EXPECT_FALSE(idle.rests(start)) << "others did all of it";
+  EXPECT_FALSE(idle.backs_off(start)) << "others did all of it";
 }
 
 TEST(per_thread, is_ready_for_all_threads_before_any_of_them_comes) {

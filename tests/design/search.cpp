@@ -36,10 +36,10 @@ design_task implicit_task(int order, std::size_t stages) {
 }
 
 design_progress look(const design_task& task, int starts, int team = 2) {
-  design_search how;
-  how.starts = starts;
+  design_search_options options;
+  options.starts = starts;
   set_threads(team);
-  auto found = search(task, how);
+  auto found = search_methods(task, options);
   set_threads(1);
   return found;
 }
@@ -118,7 +118,7 @@ TEST(design_search, finds_implicit_methods_of_the_fewest_stages) {
 TEST(design_search, finds_an_implicit_method_of_order_five_with_nine_stages) {
   const auto task = implicit_task(5, 9);
   double residual = 0.0;
-  const auto found = search_once(task, 477, residual);
+  const auto found = run_search_start(task, 477, residual);
   ASSERT_TRUE(found);
   EXPECT_LT(found->error, 0.0023);
   expect_certified(task, *found);
@@ -182,12 +182,12 @@ TEST(design_search, does_not_depend_on_the_number_of_threads) {
 }
 
 TEST(design_search, stops_when_asked) {
-  design_search how;
-  how.starts = 1'000'000;
+  design_search_options options;
+  options.starts = 1'000'000;
   int told = 0;
-  how.report = [&told](const design_progress&, bool) { ++told; };
-  how.stop = [&told] { return told >= 3; };
-  const auto found = search(imex_task(2, 3, 2.0), how);
+  options.report = [&told](const design_progress&, bool) { ++told; };
+  options.stop = [&told] { return told >= 3; };
+  const auto found = search_methods(imex_task(2, 3, 2.0), options);
   EXPECT_GE(found.starts, 3);
   EXPECT_LT(found.starts, 10);
 }

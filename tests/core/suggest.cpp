@@ -1,4 +1,5 @@
-// Suggestions for misspelt words: every small slip finds its word, and nothing far is offered.
+// Suggestions for misspelled words: every single typing error finds its word, and distant words
+// are not suggested.
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
@@ -19,7 +20,7 @@ const std::vector<std::string> functions = {"x",     "pi",   "e",    "sin",  "co
 const std::vector<std::string> keys = {"time.dt",     "time.end",       "time.method",  "time.tolerance",
                                        "space.cells", "space.boundary", "velocity.max", "velocity.points"};
 
-/// Damerau–Levenshtein distance by recursion over the first letters, as it is defined.
+/// Damerau–Levenshtein distance by its recursive definition.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return a.size() + b.size();
   if (a.front() == b.front()) return edit_distance(a.substr(1), b.substr(1));
@@ -46,7 +47,7 @@ std::vector<std::string> slips_of(const std::string& word, std::size_t from) {
 
 }  // namespace
 
-TEST(suggest, offers_nothing_that_is_far) {
+TEST(suggest, does_not_suggest_distant_words) {
   EXPECT_EQ(nearest_word("foo", functions), "");
   EXPECT_EQ(nearest_word("y", functions), "");
   EXPECT_EQ(nearest_word("zz", functions), "");
@@ -59,7 +60,7 @@ TEST(suggest, offers_nothing_that_is_far) {
   EXPECT_EQ(suggest("foo", {"cos", "sin"}), "valid: cos, sin");
 }
 
-TEST(suggest, one_slip_in_three_or_more_letters_finds_the_word_or_one_as_near) {
+TEST(suggest, single_slip_in_three_or_more_letters_finds_the_word_or_one_equally_close) {
   for (const auto& word : functions) {
     if (word.size() < 3) continue;
     for (const auto& slip : slips_of(word, 0)) {
@@ -75,7 +76,7 @@ TEST(suggest, one_slip_in_three_or_more_letters_finds_the_word_or_one_as_near) {
   }
 }
 
-TEST(suggest, swaps_and_case_are_forgiven_in_short_words) {
+TEST(suggest, swaps_and_case_are_ignored_in_short_words) {
   EXPECT_EQ(nearest_word("time.td", keys), "time.dt");
   EXPECT_EQ(nearest_word("ip", functions), "pi");
   EXPECT_EQ(nearest_word("X", functions), "x");
@@ -83,7 +84,7 @@ TEST(suggest, swaps_and_case_are_forgiven_in_short_words) {
   EXPECT_EQ(nearest_word("Time.DT", keys), "time.dt");
 }
 
-TEST(suggest, of_random_words_never_differ_in_more_than_a_third) {
+TEST(suggest, suggestions_for_random_words_differ_in_at_most_a_third) {
   std::mt19937 random(3);
   int offered = 0;
   for (int k = 0; k < 4000; ++k) {

@@ -221,7 +221,7 @@ TEST(embedded_row, with_a_changed_coefficient_is_detected) {
     expect_changes_are_detected(find_method(name));
 }
 
-TEST(embedded_row, of_many_stages_with_a_changed_coefficient_is_detected_slow) {
+TEST(embedded_row, with_a_changed_coefficient_is_detected_for_many_stages_slow) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded && m.stages() >= 9; }))
     expect_changes_are_detected(find_method(name));
 }

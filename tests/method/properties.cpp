@@ -64,9 +64,9 @@ TEST(trees, have_the_order_and_density_of_their_names) {
   }
 }
 
-TEST(trees, have_the_densities_of_the_tall_tree_and_the_bush) {
-  // Σ over trees of order n of n!/(γ σ) = (n−1)!; symmetries are not available here, so test two trees: the
-  // tall tree has γ = n!, the bush n.
+TEST(trees, have_densities_between_those_of_the_bush_and_the_tall_tree) {
+  // Among the trees of order n, the tall tree has the largest density, γ = n!, and the bush the smallest,
+  // γ = n.
   double factorial = 1;
   for (int n = 1; n <= 6; ++n) {
     factorial *= n;

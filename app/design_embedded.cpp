@@ -53,11 +53,10 @@ int design_embedded(const embedded_options& given) {
   }
   m.embedded = search.found;
   m.embedded->origin = fmt::format(
-      "apsis design --embedded {}{}: of all convex rows of order {} {}that whose distance to u^(n+1) is "
-      "nearest to "
-      "1/{} of the Taylor term of order {}",
+      "apsis design --embedded {}{}: the convex row of order {} {}whose distance to u^(n+1) is closest "
+      "to 1/{} of the Taylor term of order {}",
       m.name, given.cost == "nothing" ? " --cost nothing" : "", m.embedded->order,
-      m.claims.intermediate ? "that keep the terms of size epsilon of the last stage, " : "", task.parts,
+      m.claims.intermediate ? "with the O(epsilon) term of the last stage " : "", task.parts,
       m.embedded->order + 1);
   m.name = file.name();
   file.write(m);

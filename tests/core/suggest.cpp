@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-using apsis::nearest;
+using apsis::nearest_word;
 using apsis::suggest;
 
 namespace {

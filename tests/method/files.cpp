@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
         bad_file{"d_too_short", "d = [\"1/2\", \"0\", \"1/2\"]", "d = [\"1/2\", \"0\"]", "13:5",
                  "has 2 entries"},
         bad_file{"claims_missing", "[claims]\norder = 2\n", "", "1:1", "missing table [claims]"},
-        bad_file{"no_form", good.substr(good.find("[shu_osher]")), "", "1:1", "exactly one of the tables"},
+        bad_file{"no_form", good.substr(good.find("[shu_osher]")), "", "1:1", "missing or given twice"},
         bad_file{"unknown_key", "title =", "titel =", "2:1", "did you mean 'title'"},
         bad_file{"unknown_claim", "order = 2", "order = 2\nspp_coefficient = \"1\"", "8:1",
                  "did you mean 'ssp_coefficient'"},
@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
         bad_file{"duplicate_key", "r = \"1\"", "r = \"1\"\nr = \"1\"", "11:5", "not TOML"},
         bad_file{"claims_is_a_value", "\n[claims]\norder = 2\n", "claims = 3\n", "5:10", "not a table"},
         bad_file{"both_forms", "ddot = [\"0\", \"-1/2\", \"0\"]",
-                 "ddot = [\"0\", \"-1/2\", \"0\"]\n[butcher]\nA = [[]]", "1:1", "exactly one"},
+                 "ddot = [\"0\", \"-1/2\", \"0\"]\n[butcher]\nA = [[]]", "1:1", "missing or given twice"},
         bad_file{"transport_in_implicit_method", "\"imex\"", "\"implicit\"", "12:1", "unknown key 'W'"},
         bad_file{"collision_in_explicit_method", "\"imex\"", "\"explicit\"", "13:1", "unknown key 'd'"}),
     name_of);

@@ -29,7 +29,7 @@ class named_tree {
     return product;
   }
 
-  /// Returns the elementary weights at the stages, the last of which is u^{n+1}.
+  /// Returns the elementary weights at all stages; the last stage is u^{n+1}.
   std::vector<mp_real> weights(const butcher_form<mp_real>& b) const {
     const std::size_t s = b.A.rows();
     const auto at_stages = product(b, children_, children_.size());

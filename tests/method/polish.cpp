@@ -172,7 +172,7 @@ TEST_P(printed_digits, move_by_almost_the_minimum) {
 
 // For the third-order IMEX method no coefficients within one unit of all printed digits satisfy the
 // conditions exactly: the bound is 1.07. For SSPRK(5,4), r = min α/β is known only to about 1e-14. Hu, Shu
-// and Zhang print fourteen digits, one unit of which is 10 here.
+// and Zhang print fourteen digits; a unit of the last one is 10 here.
 INSTANTIATE_TEST_SUITE_P(papers, printed_digits,
                          ::testing::Values(expected_move{"imdrk-5-4", printed_imdrk_5_4, 0.72, 0.70},
                                            expected_move{"md-imex-6-3", printed_md_imex_6_3, 1.08, 1.07},

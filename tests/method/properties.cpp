@@ -187,7 +187,7 @@ TEST(conversion, to_butcher_and_back_is_the_identity) {
     }
     const auto again = to_shu_osher(to_butcher(m), R, m.r);
     for (std::size_t i = 0; i < s; ++i) {
-      // 60 digits, of which the inverse of R loses a few.
+      // 60 digits, minus a few lost in the inverse of R.
       RC_ASSERT(abs(again.ddot[i] - m.ddot[i]) < mp_real(1e-50));
       for (std::size_t j = 0; j <= i; ++j) {
         RC_ASSERT(abs(again.P(i, j) - m.P(i, j)) < mp_real(1e-50));

@@ -46,8 +46,7 @@ struct embedded_certificate {
 struct certificate {
   std::string name;                      ///< name of the method
   method_kind kind = method_kind::imex;  ///< determines which order conditions apply
-  int order = 0;                         ///< order p by the order conditions, of which those up to order
-                                         ///< 6 are evaluated
+  int order = 0;                         ///< order p by the order conditions, at most 6
   mp_real order_residual;                ///< largest residual of the conditions up to `order`
   std::vector<failed_condition> next;    ///< violated conditions of order p + 1
   int conditions = 0;                    ///< number of conditions up to order p
@@ -58,9 +57,9 @@ struct certificate {
   mp_real ssp_coefficient = 0;          ///< r, from the Butcher form alone; undefined if !bounded
   mp_real radius_of_implicit_part = 0;  ///< radius of absolute monotonicity of A: relevant where Q satisfies
                                         ///< a forward Euler condition
-  mp_real explicit_radius = 0;  ///< radius of absolute monotonicity of Â: SSP coefficient of the
-                                ///< explicit part alone
-  std::string limiting_entry;   ///< entry that limits r, or rules out every r > 0
+  mp_real explicit_radius = 0;          ///< radius of absolute monotonicity of Â: SSP coefficient of the
+                                        ///< explicit part alone
+  std::string limiting_entry;           ///< entry that limits r, or rules out every r > 0
 
   std::string type;              ///< "A", "ARS", "CK", "explicit" or "none"; a final update does not count
                                  ///< as a stage

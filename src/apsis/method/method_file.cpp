@@ -346,7 +346,8 @@ method parse_method(std::string_view text, const std::string& file) {
   m.claims = read_claims(root, file);
   if (top.has("shu_osher") == top.has("butcher"))
     throw input_error(source_place{file, 1, 1},
-                      "exactly one of the tables [shu_osher] and [butcher] must be there");
+                      "the coefficients are missing or given twice (a method has either [shu_osher] or "
+                      "[butcher]); give one of them");
   if (top.has("shu_osher")) {
     read_shu_osher(need_table(root, "shu_osher", file), file, m);
   } else {

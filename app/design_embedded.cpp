@@ -32,7 +32,7 @@ embedded_task task_of(const embedded_options& given, const method& m) {
 std::string text_of(const embedded_attempt& tried, double useful) {
   if (tried.nearest < 1e-15)  // the row of u^{n+1} always is a solution
     return fmt::format("order {}: sees {:.2g} of the error, {:.2g} is asked for", tried.order,
-                       tried.seen < 1e-12 ? 0.0 : tried.seen, useful);
+                       tried.coverage < 1e-12 ? 0.0 : tried.coverage, useful);
   return fmt::format("order {}: nearest residual {:.1e}", tried.order, tried.nearest);
 }
 
@@ -46,18 +46,17 @@ int design_embedded(const embedded_options& given) {
   const embedded_search search = find_embedded(m, task);
   if (!search.found) {
     std::vector<std::string> tried;
-    for (const auto& attempt : search.attempts) tried.push_back(text_of(attempt, task.useful));
+    for (const auto& attempt : search.attempts) tried.push_back(text_of(attempt, task.least_coverage));
     throw numerical_error(fmt::format(
         "'{}' has no embedded solution with the cost {} ({}); {}", m.name, given.cost, fmt::join(tried, "; "),
         task.cost == embedded_cost::nothing ? "try --cost one-solve" : "try a lower --order"));
   }
   m.embedded = search.found;
   m.embedded->origin = fmt::format(
-      "apsis design --embedded {}{}: of all convex rows of order {} {}that whose distance to u^(n+1) is "
-      "nearest to "
-      "1/{} of the Taylor term of order {}",
+      "apsis design --embedded {}{}: the convex row of order {} {}whose distance to u^(n+1) is closest "
+      "to 1/{} of the Taylor term of order {}",
       m.name, given.cost == "nothing" ? " --cost nothing" : "", m.embedded->order,
-      m.claims.intermediate ? "that keep the terms of size epsilon of the last stage, " : "", task.parts,
+      m.claims.intermediate ? "with the O(epsilon) term of the last stage " : "", task.parts,
       m.embedded->order + 1);
   m.name = file.name();
   file.write(m);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tables and pictures of what `make bench` measured.
+"""Makes tables and pictures of the measurements of `make bench`.
 
     bench/report.py [--results results/bench/speed.json] [--docs docs] [--readme README.md]
 
@@ -19,7 +19,7 @@ from plot.style import COLOURS, MARKERS, plt  # noqa: E402  (one style for all p
 
 
 class ReportError(Exception):
-    """Results that are missing or damaged, or a document without a place for them."""
+    """Results are missing or invalid, or a document has no place for them."""
 
 
 # --- tables ----------------------------------------------------------------------------------------------------------------------
@@ -66,7 +66,7 @@ def rows_where(result, **wanted):
 
 
 def against(result, label, errors, epsilon=None):
-    """How long the row of `label` takes, in units of the best method of ours."""
+    """Formats the time of the row `label` relative to the best method of Apsis."""
     row = next(row for row in result["rows"] if label in row and (epsilon is None or row[0] == epsilon))
     ratios = []
     for error in errors:
@@ -77,7 +77,7 @@ def against(result, label, errors, epsilon=None):
 
 
 def summary(results):
-    """The rows of the README, from the same file."""
+    """Returns the rows of the table in the README."""
     rows = []
     if "throughput" in results:
         for formulation in ("finite-difference", "finite-volume"):
@@ -111,7 +111,7 @@ def any_of(results):
 
 
 def comparison(machines):
-    """The summaries side by side."""
+    """Tabulates the summaries of several machines side by side."""
     columns = [dict(summary(results)) for results in machines]
     measures = list(dict.fromkeys(measure for column in columns for measure in column))
     table = markdown(("measure", *(processor(any_of(results)) for results in machines)),
@@ -123,7 +123,7 @@ def comparison(machines):
 
 
 def fronts(points):
-    """Of every contestant, the runs that no other of its runs beats in both error and time."""
+    """Returns the Pareto front of every contestant: runs that no other of its runs beats in both error and time."""
     by_name = {}
     for point in points:
         if point.get("error") and point.get("seconds") and not point.get("failure"):
@@ -140,7 +140,7 @@ def fronts(points):
 
 
 def draw_work(axes, points):
-    """Filled marks: no value was negative in the run."""
+    """Draws time against error; marks are filled if no value was negative in the run."""
     for k, name in enumerate(sorted({point["contestant"] for point in points})):
         front = fronts(points).get(name, [])
         colour, mark = COLOURS[k % len(COLOURS)], MARKERS[k // len(COLOURS) % len(MARKERS)]
@@ -178,11 +178,11 @@ def draw_ode(result, path):
     plt.close(figure)
 
 
-# --- all of it -------------------------------------------------------------------------------------------------------------------
+# --- main ------------------------------------------------------------------------------------------------------------------------
 
 
 def compact(results):
-    """What the tables and pictures need: of many runs those that no other run of the contestant beats."""
+    """Keeps only what tables and pictures show, which is the Pareto front of each contestant."""
     kept = {}
     for name, result in results.items():
         points = result["data"].get("points", [])
@@ -196,7 +196,7 @@ def compact(results):
 
 
 def text_of(results):
-    """JSON with a line for each row and each run, so that a change shows what changed."""
+    """Formats JSON with one line per row and run, so that diffs are readable."""
     text = json.dumps(results, ensure_ascii=False)
     return re.sub(r"(\}|\]), (?=[\{\[\"])", "\\1,\n", text) + "\n"
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Tables and pictures of the study of methods.
+"""Makes tables and pictures of the study of methods.
 
     studies/report.py [--results results/study] [--docs docs] [--apsis PROGRAM]
 
-Gathers what studies/run.py left in RESULTS into DOCS/data/study.json, or reads that file where there are no results; draws
-DOCS/images/study-*.png; and writes the tables between the marks <!-- NAME --> and <!-- end --> of DOCS/study.md.
+Collects the results of studies/run.py from RESULTS in DOCS/data/study.json, or reads that file if there are no results;
+draws DOCS/images/study-*.png; and writes the tables between the marks <!-- NAME --> and <!-- end --> of DOCS/study.md.
 """
 import argparse
 import json
@@ -27,7 +27,7 @@ LEVELS = {"ode": (1e-4, 1e-6, 1e-8), "broadwell": (1e-4, 1e-5, 1e-6), "bgk": (1e
 
 
 class ReportError(Exception):
-    """Results that are missing or damaged; the message names the file."""
+    """A result file is missing or invalid; the message names it."""
 
 
 # --- data ------------------------------------------------------------------------------------------------------------------------
@@ -41,7 +41,7 @@ def read_json(path):
 
 
 def summary_of(run, result):
-    """What the tables need of a design."""
+    """Extracts the quantities in the tables from the result of a design."""
     method = result.get("method") or {}
     kept = {"name": run["name"], "args": run["args"], "found": result["found"], "seconds": round(result["wall_s"], 1)
             if "wall_s" in result else None, "starts": result.get("starts"), "feasible": result.get("feasible"),
@@ -56,13 +56,13 @@ def summary_of(run, result):
 
 
 def compact(row):
-    """A row with six digits, which is more than a table or a picture shows."""
+    """Rounds a row to six digits, more than tables and pictures show."""
     return {key: float(f"{value:.6g}") if isinstance(value, float) else value for key, value in row.items()
             if key not in ("rate", "wall_s", "dt")}
 
 
 def gather(plan, results):
-    """All results that are there, in the order of the plan."""
+    """Collects all existing results in the order of the plan."""
     data = {"design": [], "work": {}}
     for group in plan["design"]:
         runs = [summary_of(run, read_json(results / "design" / f"{run['name']}.json"))
@@ -76,8 +76,8 @@ def gather(plan, results):
 
 
 def curves(rows, cost_of, positive):
-    """{(epsilon, method, startup): (error, cost)} from coarse to fine, without runs that failed or, if so wanted, were negative
-    anywhere."""
+    """Returns {(epsilon, method, startup): (error, cost)}, from coarse to fine, without failed runs and, with `positive`, without
+    runs in which f was negative."""
     found = {}
     for row in rows:
         if row.get("error") is None or (positive and row["min_value"] < 0.0):
@@ -88,8 +88,8 @@ def curves(rows, cost_of, positive):
 
 
 def seconds_of_steps(rows):
-    """Median CPU time of a step of each method over all its runs of a study: the speed of a machine changes while it runs, the
-    number of steps does not."""
+    """Returns the median CPU time per step of each method over all its runs of a study: the speed of a machine varies, the number
+    of steps does not."""
     seconds = {}
     for row in rows:
         if row["steps"] > 0:
@@ -98,7 +98,8 @@ def seconds_of_steps(rows):
 
 
 def cost_at(curve, level):
-    """Least cost at which the error is at most `level`, between runs by straight lines in logarithms. None if no run is so good."""
+    """Returns the minimum cost for an error of at most `level`, interpolated between runs linearly in logarithms; None if no run
+    reaches it."""
     errors, costs = curve[:, 0], curve[:, 1]
     if errors.min() > level:
         return None
@@ -145,8 +146,8 @@ def cost_text(study, cost):
 
 
 def work_table(study, found, paper, methods):
-    """Cost of each method at some errors, with or without start-up, whichever is less; in brackets relative to the better of
-    the paper's methods as the paper has them, without."""
+    """Tabulates the cost of each method at several errors, with or without start-up, whichever is less; in brackets relative to
+    the better of the paper's methods without start-up."""
     blocks = []
     for epsilon in dict.fromkeys(key[0] for key in found):
         title = f"ε = {epsilon:g}" if isinstance(epsilon, float) else study["title"]
@@ -193,7 +194,7 @@ def draw_fronts(data, images):
     chosen = [g for g in data["design"] if "largest r" in g["group"]]
     for k, group in enumerate(chosen):
         runs = sorted((r for r in group["runs"] if r["found"]), key=lambda r: r["stages"])
-        # Of several orders in a group each is a curve of its own.
+        # One curve for each order in a group.
         for order in sorted({r["args"].split()[1] for r in runs}):
             of_order = [r for r in runs if r["args"].split()[1] == order]
             of_work = ", for r/n_F" if group["group"].endswith("r/n_F") else ""
@@ -245,7 +246,7 @@ def draw_stability(apsis, methods, images):
 
 
 def draw_work(study, found, paper, methods, images):
-    """The paper's methods in black; dotted with start-up."""
+    """Draws errors against work: the paper's methods in black, curves with start-up dotted."""
     colours = dict.fromkeys(paper, BLACK) | {m: plt.cm.tab10(k % 10) for k, m in enumerate(m for m in methods if m not in paper)}
     values = list(dict.fromkeys(key[0] for key in found))
     columns = 2 if len(values) > 1 else 1
@@ -265,11 +266,11 @@ def draw_work(study, found, paper, methods, images):
     figure.savefig(images / f"study-work-{study['name']}.png")
 
 
-# --- all of it -------------------------------------------------------------------------------------------------------------------
+# --- main ------------------------------------------------------------------------------------------------------------------------
 
 
 def costs_of_steps(apsis, methods):
-    """Evaluations of T and solves of a step."""
+    """Returns the number of evaluations of T and stage solves per step of each method."""
     costs = {}
     for name in methods:
         checked = json.loads(subprocess.run([apsis, "check", name, "--json"], capture_output=True, text=True, check=True).stdout)
@@ -307,7 +308,7 @@ def main():
         if rows is None:
             continue
         if study["name"] == "positivity":
-            # One run per method: the same steps as those of the study before it give the time of a step.
+            # One run per method; the time of a step is that of the previous study.
             page = insert(page, "positivity", positivity_table(rows, seconds_of_steps(data["work"].get("bgk-mixed", rows))))
             continue
         of_step = steps if study["cost"] == "evaluations" else seconds_of_steps(rows)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the study of methods: designs, then errors against work. Interrupt it at any time; what is there stays.
+"""Runs the study of methods: designs, then errors against work. It can be interrupted and continued at any time.
 
     studies/run.py [--apsis PROGRAM] [--out results/study] [--only PART ...]
 
-One file of results for each design and each work study, in OUT/design and OUT/work, exactly as `apsis design --json` and
-`apsis converge --json` print them. Then studies/report.py makes tables and pictures of them.
+Each design and each work study has a result file in OUT/design or OUT/work with the output of `apsis design --json` or
+`apsis converge --json`. studies/report.py makes tables and pictures from these files.
 """
 import argparse
 import json
@@ -18,18 +18,18 @@ HERE = Path(__file__).resolve().parent
 
 
 class StudyError(Exception):
-    """The program said something that is not understood; the message names the command."""
+    """A command failed unexpectedly; the message names it."""
 
 
 def publish(path, text):
-    """A result is there as a whole or not at all."""
+    """Writes a result file atomically."""
     temporary = path.with_suffix(".part")
     temporary.write_text(text, encoding="utf-8")
     temporary.replace(path)
 
 
 def call(command):
-    """Standard output, standard error and exit code. Ctrl-C reaches the program, too, and ends the study."""
+    """Runs a command and returns the completed process. Ctrl-C also reaches the program and ends the study."""
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode == 130:
         raise KeyboardInterrupt
@@ -39,14 +39,14 @@ def call(command):
 
 
 def design(apsis, run, folder):
-    """One design; exit code 3 says that nothing was found, which is a result."""
+    """Runs a design, unless its result exists. Exit code 3 means that no method was found, which is a result."""
     result_file = folder / f"{run['name']}.json"
     if result_file.exists():
         return False
     args = [str(folder / f"{a[1:]}.toml") if a.startswith("@") else a for a in run["args"].split()]
-    begins_with = [a for a in args if a.endswith(".toml")]
-    if not all(Path(a).exists() for a in begins_with):
-        publish(result_file, json.dumps({"args": run["args"], "found": False, "reason": "nothing to begin with"}, indent=2))
+    starts_from = [a for a in args if a.endswith(".toml")]
+    if not all(Path(a).exists() for a in starts_from):
+        publish(result_file, json.dumps({"args": run["args"], "found": False, "reason": "nothing to start from"}, indent=2))
         return True
     begin = time.monotonic()
     done = call([apsis, "design", *args, "--time", "100000", "--out", str(folder / f"{run['name']}.toml"), "--json"])
@@ -59,7 +59,7 @@ def design(apsis, run, folder):
 
 
 def work(apsis, study, methods, folder):
-    """Errors and costs of one study. Runs are one after the other: side by side they would share caches."""
+    """Measures errors and costs of a work study, unless its result exists. Runs are sequential, so that they do not share caches."""
     result_file = folder / f"{study['name']}.json"
     if result_file.exists():
         return False
@@ -74,7 +74,7 @@ def work(apsis, study, methods, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--apsis", default="build/release/app/apsis", help="the program")
+    parser.add_argument("--apsis", default="build/release/app/apsis", help="path of the program")
     parser.add_argument("--out", type=Path, default=Path("results/study"), help="folder of the results")
     parser.add_argument("--only", nargs="*", help="names of designs and work studies; all if not given")
     given = parser.parse_args()
@@ -94,7 +94,7 @@ def main():
     for k, (kind, name, run) in enumerate(wanted, 1):
         begin = time.monotonic()
         print(f"[{k}/{len(wanted)}] {kind} {name} ", end="", flush=True)
-        print(f"{time.monotonic() - begin:.0f} s" if run() else "is there", flush=True)
+        print(f"{time.monotonic() - begin:.0f} s" if run() else "exists", flush=True)
 
 
 if __name__ == "__main__":

@@ -197,15 +197,15 @@ int design(const options& given) {
                     task.from->stages(), elapsed()));
   }
   progress_bar bar;
-  design_search how;
-  how.starts = given.starts;
-  how.stop = stop;
-  how.report = [&](const design_progress& p, bool improved) {
+  design_search_options limits;
+  limits.starts = given.starts;
+  limits.stop = stop;
+  limits.report = [&](const design_progress& p, bool improved) {
     if (improved) file.write(to_method(task, *p.best, file.name()));
     const double part = std::max(static_cast<double>(p.starts) / given.starts, elapsed() / given.seconds);
     bar.update(part, state_of(p));
   };
-  const design_progress found = search(task, how);
+  const design_progress found = search_methods(task, limits);
   bar.finish();
   json result = summary(task, given, found, elapsed());
   if (!found.best) {

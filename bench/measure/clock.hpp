@@ -7,26 +7,27 @@
 
 namespace apsis::bench {
 
-/// CPU seconds of this process, all its threads together.
+/// Returns the CPU seconds of this process, summed over its threads.
 double cpu_seconds();
-/// Seconds of the wall clock, for what runs on several threads.
+/// Returns wall-clock seconds, for jobs on several threads.
 double wall_seconds();
 
-/// The middle of the values, the mean of the two middle ones of an even number. At least one value.
+/// Returns the median; of an even number of values, the mean of the two middle ones. Requires at
+/// least one value.
 double median(std::vector<double> values);
 
-/// Seconds (by `now`) of each of the jobs, run in turns, `repeats` times after one turn that does not count:
-/// the speed of a machine that drifts enters all of them alike. seconds[job][repeat].
+/// Measures seconds[job][repeat] by `now`, running the jobs in turns, `repeats` times after one warm-up turn,
+/// so that a drift of the clock rate affects all jobs equally.
 using job = std::function<void()>;
 std::vector<std::vector<double>> in_turns(const std::vector<job>& jobs, int repeats,
                                           double (*now)() = thread_seconds);
 
-/// Medians of `in_turns`, one for each job.
+/// Returns the medians of `in_turns`, one for each job.
 std::vector<double> median_seconds(const std::vector<job>& jobs, int repeats,
                                    double (*now)() = thread_seconds);
 
-/// Median over the turns of seconds[numerator]/seconds[denominator]: the ratio of two jobs that ran side by
-/// side.
+/// Returns the median over the turns of seconds[numerator]/seconds[denominator], the ratio of two jobs
+/// measured in the same turns.
 double median_ratio(const std::vector<std::vector<double>>& seconds, std::size_t numerator,
                     std::size_t denominator);
 

@@ -24,7 +24,7 @@ json read_results(const std::string& path) {
   return file ? json::parse(file) : json::object();
 }
 
-/// Under a temporary name first, so that an interrupt leaves the old results.
+/// Writes to a temporary file first, so that an interrupt leaves the old results.
 void write_results(const std::string& path, const json& results) {
   const std::filesystem::path target(path), beside(path + ".part");
   if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path());
@@ -46,20 +46,20 @@ std::vector<entry> chosen(const std::vector<std::string>& names) {
         found = true;
       }
     if (!found)
-      throw apsis::input_error("there is no measurement '" + name + "' " + apsis::suggest(name, known));
+      throw apsis::input_error("unknown measurement '" + name + "'; " + apsis::suggest(name, known));
   }
   return some;
 }
 
 int measure(const std::vector<std::string>& names, const std::string& path,
-            const apsis::bench::settings& how) {
+            const apsis::bench::settings& options) {
   for (const auto& one : chosen(names)) {
     fmt::print(stderr, "measuring {}: {}\n", one.name, one.description);
     json result;
-    const auto table = one.measure(how);
+    const auto table = one.measure(options);
     result = to_json(table);
     result["machine"] = apsis::bench::machine();
-    result["repeats"] = how.repeats;
+    result["repeats"] = options.repeats;
     fmt::print("{}\n", markdown(table));
     std::fflush(stdout);
     if (path.empty()) continue;
@@ -76,21 +76,21 @@ int main(int argc, char** argv) {
   CLI::App program{"Measures the speed of Apsis as ratios and as fractions of ceilings of the same run."};
   std::vector<std::string> names;
   std::string path;
-  apsis::bench::settings how;
+  apsis::bench::settings options;
   bool list = false;
-  program.add_option("NAME", names, "measurements; all of them where none is named");
-  program.add_option("--out", path, "JSON file that the results are added to");
-  program.add_option("--repeats", how.repeats, "turns of which the median is taken")
+  program.add_option("NAME", names, "measurements; default: all");
+  program.add_option("--out", path, "JSON file to which results are added");
+  program.add_option("--repeats", options.repeats, "number of turns; results are medians")
       ->check(CLI::Range(1, 1000));
-  program.add_flag("--quick", how.quick, "small problems: shows that it works, measures nothing");
-  program.add_flag("--list", list, "what can be measured");
+  program.add_flag("--quick", options.quick, "smoke test on small problems, without meaningful results");
+  program.add_flag("--list", list, "list the measurements");
   CLI11_PARSE(program, argc, argv);
   try {
     if (list) {
       for (const auto& one : apsis::bench::entries()) fmt::print("{:<14} {}\n", one.name, one.description);
       return 0;
     }
-    return measure(names, path, how);
+    return measure(names, path, options);
   } catch (const apsis::input_error& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return 2;

@@ -24,9 +24,9 @@ mixed_step::mixed_step(const std::string& formulation, const std::string& method
       problem_(setup_.make_problem()),
       stepper_(setup_.integrator(), *problem_),
       u_(setup_.initial_state()),
-      solves_in_passing_(formulation == "finite-difference"),
+      fuses_solves_(formulation == "finite-difference"),
       dt_(0.9 * stepper_.r() * problem_->forward_euler_step(0.0, u_)) {
-  take(1);  // buffers exist from here on
+  take(1);  // allocates the buffers
 }
 
 work mixed_step::count_work() {
@@ -56,7 +56,7 @@ double mixed_step::subnormal_share() const {
 
 int mixed_step::passes() const {
   const auto& plan = stepper_.plan();
-  return static_cast<int>(plan.instructions().size()) - (solves_in_passing_ ? plan.implicit_solves() : 0);
+  return static_cast<int>(plan.instructions().size()) - (fuses_solves_ ? plan.implicit_solves() : 0);
 }
 
 int mixed_step::steps_in(double seconds) {

@@ -10,29 +10,29 @@
 
 namespace apsis::bench {
 
-/// Steps of the paper's mixed-regime problem (data V, 150 velocities) without any looking at them.
+/// Steps of the mixed-regime problem of the paper (data V, 150 velocities) without monitoring.
 class mixed_step {
  public:
-  /// `overrides` are further keys of the case, "key=value".
+  /// `overrides` are additional keys of the case, "key=value".
   mixed_step(const std::string& formulation, const std::string& method, int cells,
              std::vector<std::string> overrides = {});
 
   void take(int steps) {
     for (int k = 0; k < steps; ++k) stepper_.step(0.0, dt_, u_);
   }
-  /// Operations and bytes of one step, counted while one is done.
+  /// Counts the operations and bytes of a step by taking one.
   work count_work();
-  /// Fraction of the values that are subnormal numbers.
+  /// Returns the fraction of values that are subnormal.
   double subnormal_share() const;
-  /// Point·stages of a step: N · N_v · s.
+  /// Returns the point·stages of a step: N · N_v · s.
   double point_stages() const;
-  /// Numbers of one field, padding included.
+  /// Returns the number of values of a field, including padding.
   std::size_t numbers() const {
     return static_cast<std::size_t>(u_.cells()) * static_cast<std::size_t>(u_.stride());
   }
-  /// How often a step passes over the field, all threads waiting for each other after each time.
+  /// Returns the number of passes of a step over the field; threads synchronize after each.
   int passes() const;
-  /// So many steps take about this long.
+  /// Returns the number of steps that take about this many seconds.
   int steps_in(double seconds);
 
  private:
@@ -40,7 +40,7 @@ class mixed_step {
   std::unique_ptr<semidiscrete_problem> problem_;
   stepper<semidiscrete_problem> stepper_;
   field u_;
-  bool solves_in_passing_;  ///< point values: as soon as they are complete, in the pass that makes them
+  bool fuses_solves_;  ///< point values: stages are solved in the pass that completes them
   double dt_;
 };
 

@@ -7,22 +7,22 @@
 
 namespace apsis::bench {
 
-/// How much is measured: `repeats` turns of everything, or a run that only shows that everything works.
+/// Extent of a measurement: `repeats` turns, or a quick smoke test.
 struct settings {
   int repeats = 5;
   bool quick = false;
 };
 
-/// A table of results; a cell is a number or a text.
+/// A table of results; a cell is a number or a string.
 struct table {
   std::string title;
-  std::string note;  ///< what was measured, in which unit, and how the numbers are to be read
+  std::string note;  ///< what was measured, units, and how to read the numbers
   std::vector<std::string> columns;
   std::vector<std::vector<nlohmann::json>> rows;
-  nlohmann::json data = nlohmann::json::object();  ///< more than a table shows, for pictures
+  nlohmann::json data = nlohmann::json::object();  ///< additional data for pictures
 };
 
-/// A measurement of `apsis_measure`. Adding one is adding a file to bench/measure/tables with
+/// A measurement of `apsis_measure`. To add one, add a file to bench/measure/tables with
 ///   const registered here({"name", "what it answers", measure});
 struct entry {
   std::string name, description;
@@ -34,14 +34,14 @@ class registered {
   explicit registered(entry what);
 };
 
-/// In the order of their names.
+/// Returns all entries, sorted by name.
 std::vector<entry> entries();
 
-/// As Markdown, columns aligned.
+/// Formats a table as Markdown.
 std::string markdown(const table& what);
 nlohmann::json to_json(const table& what);
 
-/// Processor, caches, cores, compiler, flags, instruction set of the kernels, version and date.
+/// Returns processor, caches, cores, compiler, flags, instruction set of the kernels, version and date.
 nlohmann::json machine();
 
 }  // namespace apsis::bench

@@ -11,8 +11,8 @@
 
 namespace {
 
-/// Steps of a built-in case, promises checked as in every run. A stage must at least read a state, read an
-/// accumulator and write it: 24 bytes a point, like an element of the triad.
+/// Steps of a built-in case, with promises checked as in every run. A stage must at least read a state, read
+/// an accumulator and write it: 24 bytes per point, like an element of the triad.
 void step(benchmark::State& state, const std::string& name, const std::string& method) {
   apsis::simulation run(apsis::load_case(name, {"time.method=" + method, "time.end=1e6"}));
   const auto points = static_cast<double>(run.cells()) * run.components();

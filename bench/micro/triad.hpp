@@ -8,8 +8,8 @@
 
 namespace apsis::bench {
 
-/// Bytes per second of a = b + s·c on arrays of `count` doubles each (24 bytes an element): the best of
-/// several runs, because a ceiling is what the machine can do when nobody disturbs it.
+/// Measures the bytes per second of a = b + s·c on arrays of `count` doubles each (24 bytes per element): the
+/// best of several runs, because a ceiling is the performance of an undisturbed machine.
 inline double triad_bytes_per_second(std::size_t count) {
   aligned_vector<double> a(count, 0.0), b(count, 1.0), c(count, 2.0);
   const std::size_t sweeps = std::max<std::size_t>(1, (std::size_t{1} << 22) / count);
@@ -19,7 +19,7 @@ inline double triad_bytes_per_second(std::size_t count) {
     for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
       const double s = 1.0 + 1e-9 * static_cast<double>(sweep);
       for (std::size_t i = 0; i < count; ++i) a[i] = b[i] + s * c[i];
-      // The array is used, so no sweep may be left out.
+      // Marks the array as used, so that no sweep can be optimized away.
       asm volatile("" : : "r"(a.data()) : "memory");
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -28,8 +28,8 @@ inline double triad_bytes_per_second(std::size_t count) {
   return best;
 }
 
-/// Rate of `elements` handled since `start`, as a fraction of the triad's rate on arrays of `count` doubles.
-/// Each element must move at least 24 bytes, as one of the triad does.
+/// Returns the rate of `elements` processed since `start` as a fraction of the rate of the triad on arrays of
+/// `count` doubles. Each element must move at least 24 bytes, like one of the triad.
 inline double fraction_of_triad(double elements, std::chrono::steady_clock::time_point start,
                                 std::size_t count) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

@@ -11,32 +11,32 @@
 namespace apsis::bench::peers {
 namespace {
 
-/// Nonnegative; nonnegative but for the rounding that a projection leaves; any sign.
+/// Lower bounds of f: nonnegative, nonnegative up to the rounding errors of a projection, any sign.
 constexpr double floors[] = {0.0, -1e-20, -std::numeric_limits<double>::infinity()};
 
 }  // namespace
 
 void contest::run(int repeats, double seconds_each) {
   for (auto& one : attempts_) {
-    one.seen = one.run();
-    if (one.seen.seconds < 0.02) continue;  // nobody waits for these
+    one.measured = one.run();
+    if (one.measured.seconds < 0.02) continue;  // too short to matter
     fmt::print(stderr, "  {}, {}: {:.3g} s, error {:.3g}, smallest {:.2g}, {} steps {}\n", one.contestant,
-               one.setting, one.seen.seconds, one.seen.error, one.seen.smallest, one.seen.steps,
-               one.seen.failure);
+               one.setting, one.measured.seconds, one.measured.error, one.measured.smallest,
+               one.measured.steps, one.measured.failure);
   }
   choose();
   std::map<std::size_t, std::vector<double>> seconds;
   for (std::size_t k = 0; k < attempts_.size(); ++k)
-    if (attempts_[k].counts && attempts_[k].seen.seconds < seconds_each) seconds[k] = {};
+    if (attempts_[k].counts && attempts_[k].measured.seconds < seconds_each) seconds[k] = {};
   for (int turn = 0; turn < repeats; ++turn)
     for (auto& [index, times] : seconds) times.push_back(attempts_[index].run().seconds);
   for (auto& [index, times] : seconds)
-    if (!times.empty()) attempts_[index].seen.seconds = median(times);
+    if (!times.empty()) attempts_[index].measured.seconds = median(times);
 }
 
 bool contest::reaches(const attempt& one, double error) const {
-  if (!one.seen.failure.empty() || !(one.seen.error <= error)) return false;
-  return !one.ours || rule_ == rule::any_sign || one.seen.smallest >= 0.0;
+  if (!one.measured.failure.empty() || !(one.measured.error <= error)) return false;
+  return !one.ours || rule_ == rule::any_sign || one.measured.smallest >= 0.0;
 }
 
 std::size_t contest::cheapest(double error, const std::function<bool(const attempt&)>& allowed) const {
@@ -44,7 +44,7 @@ std::size_t contest::cheapest(double error, const std::function<bool(const attem
   for (std::size_t k = 0; k < attempts_.size(); ++k) {
     const auto& one = attempts_[k];
     if (!allowed(one) || !reaches(one, error)) continue;
-    if (best == none || one.seen.seconds < attempts_[best].seen.seconds) best = k;
+    if (best == none || one.measured.seconds < attempts_[best].measured.seconds) best = k;
   }
   return best;
 }
@@ -65,22 +65,22 @@ void contest::choose() {
   }
   for (const double floor : floors)
     for (const double error : errors_)
-      take(cheapest(error, [&](const attempt& one) { return !one.ours && one.seen.smallest >= floor; }));
+      take(cheapest(error, [&](const attempt& one) { return !one.ours && one.measured.smallest >= floor; }));
 }
 
 double contest::best_seconds(std::size_t error) const {
   const auto best = cheapest(errors_[error], [](const attempt& one) { return one.ours && one.counts; });
-  return best == none ? std::numeric_limits<double>::quiet_NaN() : attempts_[best].seen.seconds;
+  return best == none ? std::numeric_limits<double>::quiet_NaN() : attempts_[best].measured.seconds;
 }
 
-/// Seconds, or microseconds of what takes no second.
+/// Formats seconds, or microseconds for short times.
 std::string contest::time(std::size_t index) const {
-  const double seconds = attempts_[index].seen.seconds;
+  const double seconds = attempts_[index].measured.seconds;
   return rule_ == rule::any_sign ? fmt::format("{:.3g}", 1e6 * seconds) : fmt::format("{:.3g}", seconds);
 }
 
 std::string contest::ratio(std::size_t index, std::size_t error) const {
-  const double ratio = attempts_[index].seen.seconds / best_seconds(error);
+  const double ratio = attempts_[index].measured.seconds / best_seconds(error);
   if (std::isnan(ratio)) return "";
   return ratio < 100.0 ? fmt::format("({:.2g})", ratio) : fmt::format("({:.0f})", ratio);
 }
@@ -94,7 +94,7 @@ std::vector<std::vector<nlohmann::json>> contest::rows() const {
       const bool reached = index != none;
       row.push_back(reached ? nlohmann::json(time(index) + " " + ratio(index, e)) : nlohmann::json());
       if (rule_ == rule::any_sign) continue;
-      row.push_back(reached ? nlohmann::json(fmt::format("{:.0e}", attempts_[index].seen.smallest))
+      row.push_back(reached ? nlohmann::json(fmt::format("{:.0e}", attempts_[index].measured.smallest))
                             : nlohmann::json());
     }
     all.push_back(std::move(row));
@@ -111,7 +111,7 @@ std::vector<std::vector<nlohmann::json>> contest::best_of_others() const {
                                            : fmt::format("best of the others with least ≥ {:g}", floor)};
     for (std::size_t e = 0; e < errors_.size(); ++e) {
       const auto best = cheapest(errors_[e], [&](const attempt& one) {
-        return !one.ours && one.counts && one.seen.smallest >= floor;
+        return !one.ours && one.counts && one.measured.smallest >= floor;
       });
       const bool found = best != none;
       const auto name = found ? attempts_[best].contestant : std::string();
@@ -133,12 +133,12 @@ nlohmann::json contest::points() const {
     nlohmann::json point = {{"contestant", one.contestant},
                             {"setting", one.setting},
                             {"ours", one.ours},
-                            {"error", one.seen.error},
-                            {"seconds", one.seen.seconds},
-                            {"smallest", one.seen.smallest},
-                            {"smallest_final", one.seen.smallest_final},
-                            {"steps", one.seen.steps}};
-    if (!one.seen.failure.empty()) point["failure"] = one.seen.failure;
+                            {"error", one.measured.error},
+                            {"seconds", one.measured.seconds},
+                            {"smallest", one.measured.smallest},
+                            {"smallest_final", one.measured.smallest_final},
+                            {"steps", one.measured.steps}};
+    if (!one.measured.failure.empty()) point["failure"] = one.measured.failure;
     all.push_back(std::move(point));
   }
   return all;

@@ -8,33 +8,33 @@
 
 namespace apsis::bench::peers {
 
-/// What one integration cost and gave.
+/// Cost and accuracy of one integration.
 struct outcome {
-  double seconds = 0.0;         ///< CPU time of the steps, without what looks at them
-  double error = 0.0;           ///< at the end
-  double smallest = 0.0;        ///< of the unknowns, after any step
+  double seconds = 0.0;         ///< CPU time of the steps, without monitoring
+  double error = 0.0;           ///< at the end time
+  double smallest = 0.0;        ///< smallest unknown after any step
   double smallest_final = 0.0;  ///< at the end
   long steps = 0;
-  std::string failure = {};  ///< empty where the end was reached
+  std::string failure = {};  ///< empty if the end time was reached
 };
 
-/// One point of a work–precision diagram: a contestant with one step length or tolerance.
+/// A point of a work–precision diagram: a contestant with a given step length or tolerance.
 struct attempt {
   std::string contestant, setting;
   bool ours = false;
   std::function<outcome()> run;
-  outcome seen = {};
-  bool counts = false;  ///< the cheapest of some kind for some error
+  outcome measured = {};
+  bool counts = false;  ///< whether it is the cheapest of its kind for some error
 };
 
-/// Who reaches an error with how much work. Of the runs of a contestant that reach an error, the cheapest
-/// counts, with whatever setting: no interpolation.
+/// Work needed by each contestant to reach an error: that of the cheapest run that reaches it, whatever its
+/// setting, without interpolation.
 class contest {
  public:
   enum class rule {
-    nonnegative,  ///< runs of Apsis count where no unknown was ever negative, those of others always; signs
-                  ///< are shown
-    any_sign      ///< all count
+    nonnegative,  ///< runs of Apsis count if no unknown was ever negative, those of others always;
+                  ///< signs are shown
+    any_sign      ///< all runs count
   };
 
   explicit contest(std::vector<double> errors, rule how = rule::nonnegative)
@@ -42,17 +42,17 @@ class contest {
 
   void add(attempt one) { attempts_.push_back(std::move(one)); }
 
-  /// Every attempt once, then those that count again in turns, `repeats` times, where that takes less than
-  /// `seconds_each` a time; their CPU time is then the median.
+  /// Runs every attempt once, and then those that count in turns, `repeats` times, if that takes less than
+  /// `seconds_each` per turn; their CPU time is then the median.
   void run(int repeats, double seconds_each);
 
-  /// After run(): a row for each contestant, for every error the CPU time, in brackets relative to the best
-  /// of Apsis, and the smallest unknown.
+  /// After run(), returns a row for each contestant: for every error the CPU time, in brackets relative to
+  /// the best of Apsis, and the smallest unknown.
   std::vector<std::vector<nlohmann::json>> rows() const;
-  /// After run(): for every error the best of the others, relative to the best of Apsis, and its name; a row
-  /// each for those that stay nonnegative, those that do up to rounding, and all.
+  /// After run(), returns for every error the best of the others, relative to the best of Apsis, and its
+  /// name; one row each for those that stay nonnegative, those that do up to rounding, and all.
   std::vector<std::vector<nlohmann::json>> best_of_others() const;
-  /// All runs, for diagrams.
+  /// Returns all runs, for diagrams.
   nlohmann::json points() const;
   std::vector<std::string> columns() const;
 
@@ -69,7 +69,8 @@ class contest {
   rule rule_;
   std::vector<attempt> attempts_;
   std::vector<std::string> names_;
-  std::vector<std::vector<std::size_t>> chosen_;  ///< of every contestant for every error
+  std::vector<std::vector<std::size_t>> chosen_;  ///< index of the chosen run of every contestant
+                                                  ///< for every error
 };
 
 }  // namespace apsis::bench::peers

@@ -8,7 +8,7 @@
 namespace apsis::bench::peers {
 namespace {
 
-/// What the operations of the serial vector look at, and the field that their `data` belong to.
+/// Content used by the operations of the serial vector, and the field that owns its `data`.
 struct content : _N_VectorContent_Serial {
   explicit content(const field& from) : u(from) {
     length = static_cast<sunindextype>(u.cells()) * u.stride();
@@ -45,7 +45,7 @@ owned_context make_context() {
 }
 
 owned_vector make_field_vector(const field& u, SUNContext context) {
-  // An empty serial vector lends its operations.
+  // Use the operations of an empty serial vector.
   const owned_vector serial(N_VNewEmpty_Serial(0, context));
   N_Vector v = N_VNewEmpty(context);
   N_VCopyOps(serial.get(), v);

@@ -20,12 +20,11 @@ struct vector_deleter {
 };
 using owned_vector = std::unique_ptr<_generic_N_Vector, vector_deleter>;
 
-/// The serial vector of SUNDIALS with the numbers of a field, padding included: its operations work on the
-/// rows as they lie, and right-hand sides see fields, with no copy in between. Its clones are of the same
-/// kind.
+/// Wraps a field, padding included, as a serial vector of SUNDIALS, whose operations act on the rows in
+/// place; right-hand sides get fields without copying. Clones are of the same kind.
 owned_vector make_field_vector(const field& u, SUNContext context);
 
-/// The field of such a vector.
+/// Returns the field of such a vector.
 field& field_of(N_Vector v);
 
 }  // namespace apsis::bench::peers

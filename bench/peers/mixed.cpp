@@ -23,12 +23,12 @@ double smallest_of(const field& u) {
 
 }  // namespace
 
-void watch::start() {
+void run_monitor::start() {
   smallest_ = std::numeric_limits<double>::infinity();
   begin_ = thread_seconds();
 }
 
-bool watch::stepped(const field& u) {
+bool run_monitor::stepped(const field& u) {
   seconds_ += thread_seconds() - begin_;
   ++steps_;
   smallest_ = std::min(smallest_, smallest_of(u));
@@ -36,7 +36,7 @@ bool watch::stepped(const field& u) {
   return seconds_ < allowed_;
 }
 
-outcome watch::seen(const field& u) const {
+outcome run_monitor::result(const field& u) const {
   outcome what;
   what.seconds = seconds_;
   what.smallest = smallest_;
@@ -75,7 +75,7 @@ long mixed_regime::positive_steps(const method& m) const {
 outcome mixed_regime::run(const method& m, long steps, bool graded, double seconds_allowed, field* result) {
   stepper march(m, *problem_);
   field u = initial_;
-  watch timer(seconds_allowed);
+  run_monitor timer(seconds_allowed);
   const auto rule = step_rule<double>::fixed(end_ / static_cast<double>(steps))
                         .with(graded ? startup::graded : startup::none);
   bool in_time = true;
@@ -91,7 +91,7 @@ outcome mixed_regime::run(const method& m, long steps, bool graded, double secon
   } catch (const numerical_error&) {
     failure = "failed";
   }
-  outcome what = timer.seen(u);
+  outcome what = timer.result(u);
   what.failure = in_time ? failure : "too slow";
   what.error = error(u);
   if (!std::isfinite(what.error) && failure.empty()) what.failure = "failed";

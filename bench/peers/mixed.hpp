@@ -9,23 +9,23 @@
 
 namespace apsis::bench::peers {
 
-/// Watches a run between its steps: smallest values, and the time of the steps alone.
-class watch {
+/// Monitors a run between its steps: smallest values, and the time of the steps alone.
+class run_monitor {
  public:
-  explicit watch(double seconds_allowed) : allowed_(seconds_allowed) {}
+  explicit run_monitor(double seconds_allowed) : allowed_(seconds_allowed) {}
   void start();
-  /// After a step; false if the time that is allowed is over.
+  /// To be called after each step; returns false once the time limit is exceeded.
   bool stepped(const field& u);
-  /// What was seen; `u` is the state at the end.
-  outcome seen(const field& u) const;
+  /// Returns the measurements; `u` is the state at the end.
+  outcome result(const field& u) const;
 
  private:
   double allowed_, begin_ = 0.0, seconds_ = 0.0, smallest_;
   long steps_ = 0;
 };
 
-/// The mixed-regime problem of the paper on its mesh: a system of ordinary differential equations f' = T(f) +
-/// Q(f)/ε, the same functions for all who integrate it.
+/// The mixed-regime problem of the paper on its mesh as a system of ordinary differential equations f' = T(f)
+/// + Q(f)/ε, with the same functions for all integrators.
 class mixed_regime {
  public:
   explicit mixed_regime(double end);
@@ -34,13 +34,13 @@ class mixed_regime {
   const field& initial() const { return initial_; }
   semidiscrete_problem& problem() { return *problem_; }
   const relaxation_model& equation() const;
-  /// Mean of 1/ε over the Gauss points of every cell.
+  /// Returns the mean of 1/ε over the Gauss points of every cell.
   const std::vector<double>& rates() const { return rates_; }
-  /// Steps of `m` in [0, end] at the largest Δt for which f stays nonnegative, r Δt_FE.
+  /// Returns the number of steps of `m` in [0, end] at the largest Δt for which f stays nonnegative, r Δt_FE.
   long positive_steps(const method& m) const;
 
-  /// `steps` equal steps of a method; `graded`: the first of them cut into steps that resolve the initial
-  /// layer.
+  /// Runs `steps` equal steps of a method; `graded`: the first of them divided into steps that resolve
+  /// the initial layer.
   outcome run(const method& m, long steps, bool graded, double seconds_allowed, field* result = nullptr);
 
   void set_reference(field exact) { reference_ = std::move(exact); }

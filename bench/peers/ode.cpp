@@ -19,7 +19,7 @@
 namespace apsis::bench::peers {
 namespace {
 
-/// Seconds of one call, from so many that the clock is fine enough.
+/// Seconds per call, averaged over enough calls for the resolution of the clock.
 template <class Body>
 double seconds_of(const Body& body) {
   constexpr double enough = 1e-3;
@@ -38,24 +38,24 @@ outcome run_ode(const ode_task& task, const method& m, long steps, bool graded) 
   stepper march(m, problem);
   const auto rule = step_rule<double>::fixed(1.0 / static_cast<double>(steps))
                         .with(graded ? startup::graded : startup::none);
-  outcome seen;
-  seen.smallest = std::numeric_limits<double>::infinity();
+  outcome measured;
+  measured.smallest = std::numeric_limits<double>::infinity();
   auto u = ode_initial(ode_data::inconsistent, task.epsilon);
   try {
     integrate(march, u, 0.0, 1.0, rule, [&](long step, double, double, const auto& now) {
-      seen.smallest = std::min({seen.smallest, now[0], now[1]});
-      seen.steps = step;
+      measured.smallest = std::min({measured.smallest, now[0], now[1]});
+      measured.steps = step;
     });
-    seen.seconds = seconds_of([&] {
+    measured.seconds = seconds_of([&] {
       u = ode_initial(ode_data::inconsistent, task.epsilon);
       integrate(march, u, 0.0, 1.0, rule);
     });
   } catch (const numerical_error&) {
-    seen.failure = "failed";
+    measured.failure = "failed";
   }
-  seen.error = ode_distance(u, task.exact);
-  seen.smallest_final = std::min(u[0], u[1]);
-  return seen;
+  measured.error = ode_distance(u, task.exact);
+  measured.smallest_final = std::min(u[0], u[1]);
+  return measured;
 }
 
 namespace {
@@ -102,7 +102,7 @@ void require(int flag, const char* what) {
   if (flag < 0) throw std::runtime_error(std::string(what) + " failed");
 }
 
-/// An integrator of SUNDIALS with all that it holds.
+/// An integrator of SUNDIALS with its resources.
 class sundials_ode {
  public:
   sundials_ode(double epsilon, const sundials_ode_options& how)
@@ -124,7 +124,7 @@ class sundials_ode {
     SUNMatDestroy(matrix_);
   }
 
-  /// From t = 0 to 1; false if it fails.
+  /// Integrates from t = 0 to 1; returns false if that fails.
   bool integrate() {
     restart();
     double t = 0.0;
@@ -132,15 +132,15 @@ class sundials_ode {
                        : ARKStepEvolve(memory_, 1.0, y_.get(), &t, ARK_NORMAL)) >= 0;
   }
 
-  /// The same step by step, to see all values.
-  bool watch(outcome& seen) {
+  /// Integrates step by step to monitor all values.
+  bool integrate_monitored(outcome& measured) {
     restart();
-    seen.smallest = std::numeric_limits<double>::infinity();
-    for (double t = 0.0; t < 1.0; ++seen.steps) {
+    measured.smallest = std::numeric_limits<double>::infinity();
+    for (double t = 0.0; t < 1.0; ++measured.steps) {
       const int flag = is_cvode() ? CVode(memory_, 1.0, y_.get(), &t, CV_ONE_STEP)
                                   : ARKStepEvolve(memory_, 1.0, y_.get(), &t, ARK_ONE_STEP);
-      if (flag < 0 || seen.steps >= most_steps) return false;
-      seen.smallest = std::min({seen.smallest, value()[0], value()[1]});
+      if (flag < 0 || measured.steps >= most_steps) return false;
+      measured.smallest = std::min({measured.smallest, value()[0], value()[1]});
     }
     return true;
   }
@@ -200,7 +200,7 @@ class sundials_ode {
       require(ARKStepSetNonlinConvCoef(memory_, how_.nonlinear), "ARKStepSetNonlinConvCoef");
   }
 
-  static constexpr long most_steps = 20000;  ///< more is hopeless
+  static constexpr long most_steps = 20000;  ///< limit on the number of steps
   double epsilon_;
   sundials_ode_options how_;
   owned_context context_ = make_context();
@@ -214,15 +214,15 @@ class sundials_ode {
 
 outcome run_sundials_ode(const ode_task& task, const sundials_ode_options& how) {
   sundials_ode run(task.epsilon, how);
-  outcome seen;
-  if (!run.watch(seen)) {
-    seen.failure = "failed";
-    return seen;
+  outcome measured;
+  if (!run.integrate_monitored(measured)) {
+    measured.failure = "failed";
+    return measured;
   }
-  seen.seconds = seconds_of([&] { run.integrate(); });
-  seen.error = ode_distance(run.value(), task.exact);
-  seen.smallest_final = std::min(run.value()[0], run.value()[1]);
-  return seen;
+  measured.seconds = seconds_of([&] { run.integrate(); });
+  measured.error = ode_distance(run.value(), task.exact);
+  measured.smallest_final = std::min(run.value()[0], run.value()[1]);
+  return measured;
 }
 
 }  // namespace apsis::bench::peers

@@ -26,7 +26,8 @@ system_of_equations& of(void* data) {
   return *static_cast<system_of_equations*>(data);
 }
 
-/// Moments without equilibrium: the step is too long, a shorter one may do.
+/// Returns "recoverable" for moments without an equilibrium: the step was too long, a shorter
+/// one may succeed.
 template <class Body>
 int recoverable(const Body& body) {
   try {
@@ -75,7 +76,7 @@ SUNLinearSolver make_linear_solver(linear_solver which, N_Vector like, SUNContex
   return SUNLinSol_SPGMR(like, which == linear_solver::spgmr ? SUN_PREC_NONE : SUN_PREC_LEFT, 0, context);
 }
 
-/// All that an integration holds.
+/// Resources of an integration.
 struct workspace {
   owned_context sundials = make_context();
   owned_vector y, constraints;
@@ -150,7 +151,7 @@ outcome run_sundials(mixed_regime& what, const sundials_options& how, field* res
     set_up_arkode(work, equations, what.end(), how);
   else
     set_up_cvode(work, equations, what.end(), how);
-  watch timer(how.seconds_allowed);
+  run_monitor timer(how.seconds_allowed);
   const field& u = field_of(work.y.get());
   double t = 0.0;
   std::string failure;
@@ -164,12 +165,12 @@ outcome run_sundials(mixed_regime& what, const sundials_options& how, field* res
     else if (!in_time)
       failure = "too slow";
   }
-  outcome seen = timer.seen(u);
-  seen.failure = failure;
-  seen.error = what.error(u);
-  if (!std::isfinite(seen.error) && failure.empty()) seen.failure = "failed";
+  outcome measured = timer.result(u);
+  measured.failure = failure;
+  measured.error = what.error(u);
+  if (!std::isfinite(measured.error) && failure.empty()) measured.failure = "failed";
   if (result != nullptr) *result = u;
-  return seen;
+  return measured;
 }
 
 }  // namespace apsis::bench::peers

@@ -4,26 +4,26 @@
 
 namespace apsis::bench::peers {
 
-/// How SUNDIALS solves the linear systems of Newton's method.
+/// Linear solver of SUNDIALS in Newton's method.
 enum class linear_solver {
-  spgmr,            ///< its default for large systems, without preconditioner
-  preconditioned,   ///< with `projection`
-  projection_only,  ///< that alone, as if it were the inverse
+  spgmr,            ///< default for large systems, without preconditioner
+  preconditioned,   ///< preconditioned with `projection`
+  projection_only,  ///< `projection` alone as the inverse
 };
 
 struct sundials_options {
   enum class integrator { arkode, cvode } which = integrator::arkode;
-  int order = 4;  ///< of the tables of ARKODE
+  int order = 4;  ///< order of the tables of ARKODE
   linear_solver linear = linear_solver::spgmr;
   bool tuned = false;      ///< ARKODE: implicit right-hand side deduced; both: up to 20 nonlinear iterations
-  double nonlinear = 0.0;  ///< coefficient of the nonlinear convergence test; 0: as it comes
-  bool constrained = false;  ///< f ≥ 0 asked for
+  double nonlinear = 0.0;  ///< coefficient of the nonlinear convergence test; 0: default
+  bool constrained = false;  ///< constrains f ≥ 0
   double rtol = 1e-4, atol = 1e-8;
-  double longest = 0.0;  ///< step; 0: no limit
+  double longest = 0.0;  ///< longest step; 0: no limit
   double seconds_allowed = 60.0;
 };
 
-/// ARKODE: T explicit, Q/ε implicit, adaptive. CVODE: BDF, both implicit.
+/// Runs ARKODE (adaptive, T explicit, Q/ε implicit) or CVODE (BDF, both implicit).
 outcome run_sundials(mixed_regime& what, const sundials_options& how, field* result = nullptr);
 
 }  // namespace apsis::bench::peers

@@ -27,8 +27,8 @@ struct weno_z {
     g2 = 1.0 + square(tau / (beta2 + delta));
   }
 
-  /// `near` and `far` are the sides of the edge's cell seen from the edge: weights (1, 6, 3)/10 from far to
-  /// near.
+  /// `near` and `far` are the neighbours of the edge's cell, close to the edge and away from it: weights (1,
+  /// 6, 3)/10 from far to near.
   static double edge(double far, double middle, double near, double a, double b, double c, double d,
                      double e) {
     const double w0 = 0.1 * far, w1 = 0.6 * middle, w2 = 0.3 * near;
@@ -39,8 +39,8 @@ struct weno_z {
   }
 };
 
-/// Zhang & Shu: how much of the deviation from the average c may stay, if `lowest` is the smallest value. The
-/// floor keeps the rounding of the update from crossing zero.
+/// Zhang & Shu: admissible fraction of the deviation from the average c, where `lowest` is the smallest
+/// value. The floor prevents rounding errors of the update from crossing zero.
 double scaling(double c, double lowest) {
   const double floor = 1e-13 * c;
   return lowest < floor ? std::max((c - floor) / (c - lowest), 0.0) : 1.0;
@@ -119,7 +119,7 @@ void bgk::reconstruct(const std::vector<double>& f) {
 }
 
 void bgk::limit(const std::vector<double>& f) {
-  // Four-point Gauss–Lobatto: the average is (l + r)/12 + (10/12) of a value between.
+  // Four-point Gauss–Lobatto: the average is (l + r)/12 + (10/12) times an interior value.
   for (std::size_t n = 0; n < f.size(); ++n) {
     const double c = f[n], l = left_[n], r = right_[n];
     const double between = (c - (l + r) * (1.0 / 12.0)) * 1.2;
@@ -152,7 +152,7 @@ void bgk::gauss_values(const std::vector<double>& f, int cell) {
   const double *left = left_.data() + at(cell, 0), *right = right_.data() + at(cell, 0);
   for (int j = 0; j < velocities_; ++j) {
     const double c = average[j], l = left[j], r = right[j];
-    // The quartic through both edges whose averages on the three cells are given, in differences from c.
+    // Quartic with the given edge values and averages on the three cells, in differences from c.
     const double edges = (l - c) + (r - c), slope = r - l, neighbours = (m[j] - c) + (p[j] - c),
                  rise = p[j] - m[j];
     const double d0 = -9.0 / 32.0 * edges + neighbours * (1.0 / 192.0);

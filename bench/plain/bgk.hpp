@@ -13,10 +13,10 @@ struct method {
   double r = 1.0;
 };
 
-/// f_t + v f_x = (M[f] − f)/ε(x), periodic in x, as the formulas of the papers say it: loops over cells and
+/// f_t + v f_x = (M[f] − f)/ε(x), periodic in x, directly as in the literature: loops over cells and
 /// velocities and arrays of doubles. Finite volumes with WENO5-Z (Borges et al. 2008), the positivity limiter
 /// of Zhang & Shu (2010), upwind fluxes, collisions at three Gauss points of the quartic of every cell, and
-/// the stages of the method with T(u_j) stored. What the library is compared with: it shares no line with it.
+/// stages with T(u_j) stored. Baseline for the library, with which it shares no code.
 class bgk {
  public:
   struct mesh {
@@ -28,7 +28,7 @@ class bgk {
 
   bgk(mesh space, method how);
 
-  /// f ← the solution one step later; f[cell · velocities + j].
+  /// Advances f[cell · velocities + j] by one step.
   void step(double dt, std::vector<double>& f);
 
  private:
@@ -38,7 +38,7 @@ class bgk {
   }
   const double* neighbour(const std::vector<double>& f, int cell) const;
 
-  /// left_, right_ ← edge values of every cell.
+  /// Computes left_ and right_, the edge values of every cell.
   void reconstruct(const std::vector<double>& f);
   void limit(const std::vector<double>& f);
   void transport(const std::vector<double>& f, std::vector<double>& out);
@@ -52,7 +52,7 @@ class bgk {
   int velocities_;
   double dv_;
   std::vector<std::vector<double>> stages_, transports_;
-  std::vector<bool> transported_;  ///< T of the stage enters a later one
+  std::vector<bool> transported_;  ///< whether T of the stage enters a later one
   std::vector<double> left_, right_, result_, maxwellian_;
   std::vector<double> gauss_[3];
 };

@@ -160,7 +160,7 @@ const std::vector<bad_input> all = {
     {"run_with_a_taken_name",
      {"run", "paper/ode", "time.method=taken.toml"},
      2,
-     "the name 'md-imex-3-2' is that of another method"},
+     "the name 'md-imex-3-2' is taken"},
     {"method_with_many_dots", {"check", "dots.toml"}, 2, "dots.toml:1:16: the key has more than 8 parts"},
     {"case_with_many_dots", {"run", "dots.toml"}, 2, "dots.toml:1:4097: the line is longer than 4096 bytes"},
     {"value_of_many_parts",

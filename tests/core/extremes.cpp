@@ -13,7 +13,7 @@ namespace {
 const double nan = std::numeric_limits<double>::quiet_NaN();
 const double infinity = std::numeric_limits<double>::infinity();
 
-TEST(extremes, are_those_of_the_standard_library_for_numbers) {
+TEST(extremes, equal_std_max_and_min_without_nan) {
   for (const double a : {-infinity, -1.0, 0.0, 2.0, infinity})
     for (const double b : {-infinity, -3.0, 0.0, 2.0, infinity}) {
       EXPECT_EQ(maximum(a, b), std::max(a, b));
@@ -21,7 +21,7 @@ TEST(extremes, are_those_of_the_standard_library_for_numbers) {
     }
 }
 
-TEST(extremes, keep_a_nan_wherever_it_stands) {
+TEST(extremes, propagate_nan_from_any_position) {
   for (const double x : {-infinity, 0.0, infinity, nan}) {
     EXPECT_TRUE(std::isnan(maximum(x, nan)) && std::isnan(maximum(nan, x)));
     EXPECT_TRUE(std::isnan(minimum(x, nan)) && std::isnan(minimum(nan, x)));
@@ -33,7 +33,7 @@ TEST(extremes, keep_a_nan_wherever_it_stands) {
   }
 }
 
-TEST(extremes, of_a_list_are_its_largest_number) {
+TEST(extremes, maximum_of_a_list_is_its_largest_number) {
   EXPECT_EQ(maximum({-3.0, -1.0, -2.0}), -1.0);
   EXPECT_EQ(maximum(std::vector<double>{}), -infinity);
 }

@@ -1,4 +1,4 @@
-// Messages: their form, which levels are shown, and lines that stay whole when threads write together.
+// Log messages: format, verbosity levels, and atomic lines when several threads write.
 #include <apsis/core/log.hpp>
 
 #include <string>
@@ -13,7 +13,7 @@ namespace {
 using testing::internal::CaptureStderr;
 using testing::internal::GetCapturedStderr;
 
-/// Every message is shown again when a test ends.
+/// Restores full verbosity when a test ends.
 struct log_of_messages : testing::Test {
   ~log_of_messages() override { apsis::log::set_level(apsis::log::level::info); }
 
@@ -26,19 +26,19 @@ struct log_of_messages : testing::Test {
   }
 };
 
-TEST_F(log_of_messages, names_the_level_and_takes_the_text_as_it_is) {
+TEST_F(log_of_messages, prefixes_the_level_and_does_not_format_the_text) {
   EXPECT_EQ(both_at(apsis::log::level::info), "info: 100% of {}\nwarning: too long (3 s); stop\n");
 }
 
-TEST_F(log_of_messages, level_warning_hides_what_is_only_information) {
+TEST_F(log_of_messages, level_warning_hides_info_messages) {
   EXPECT_EQ(both_at(apsis::log::level::warning), "warning: too long (3 s); stop\n");
 }
 
-TEST_F(log_of_messages, level_quiet_hides_all) {
+TEST_F(log_of_messages, level_quiet_hides_all_messages) {
   EXPECT_EQ(both_at(apsis::log::level::quiet), "");
 }
 
-TEST_F(log_of_messages, lines_of_several_threads_stay_whole) {
+TEST_F(log_of_messages, lines_of_several_threads_do_not_interleave) {
   CaptureStderr();
   std::vector<std::thread> threads;
   for (int k = 0; k < 4; ++k)

@@ -1,4 +1,5 @@
-// Suggestions for misspelt words: every small slip finds its word, and nothing far is offered.
+// Suggestions for misspelled words: every single typing error finds its word, and distant words
+// are not suggested.
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-using apsis::nearest;
+using apsis::nearest_word;
 using apsis::suggest;
 
 namespace {
@@ -19,14 +20,14 @@ const std::vector<std::string> functions = {"x",     "pi",   "e",    "sin",  "co
 const std::vector<std::string> keys = {"time.dt",     "time.end",       "time.method",  "time.tolerance",
                                        "space.cells", "space.boundary", "velocity.max", "velocity.points"};
 
-/// Damerau–Levenshtein distance by recursion over the first letters, as it is defined.
-std::size_t distance(const std::string& a, const std::string& b) {
+/// Damerau–Levenshtein distance by its recursive definition.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return a.size() + b.size();
-  if (a.front() == b.front()) return distance(a.substr(1), b.substr(1));
-  std::size_t best =
-      1 + std::min({distance(a.substr(1), b), distance(a, b.substr(1)), distance(a.substr(1), b.substr(1))});
+  if (a.front() == b.front()) return edit_distance(a.substr(1), b.substr(1));
+  std::size_t best = 1 + std::min({edit_distance(a.substr(1), b), edit_distance(a, b.substr(1)),
+                                   edit_distance(a.substr(1), b.substr(1))});
   if (a.size() > 1 && b.size() > 1 && a[0] == b[1] && a[1] == b[0])
-    best = std::min(best, 1 + distance(a.substr(2), b.substr(2)));
+    best = std::min(best, 1 + edit_distance(a.substr(2), b.substr(2)));
   return best;
 }
 
@@ -46,57 +47,57 @@ std::vector<std::string> slips_of(const std::string& word, std::size_t from) {
 
 }  // namespace
 
-TEST(suggest, offers_nothing_that_is_far) {
-  EXPECT_EQ(nearest("foo", functions), "");
-  EXPECT_EQ(nearest("y", functions), "");
-  EXPECT_EQ(nearest("zz", functions), "");
-  EXPECT_EQ(nearest("time.foo", keys), "");
-  EXPECT_EQ(nearest("time.ab", keys), "");
-  EXPECT_EQ(nearest("paper/foo", {"paper/ode", "paper/decay"}), "");
-  EXPECT_EQ(nearest("--ab", {"--box", "--out"}), "");
-  EXPECT_EQ(nearest("", functions), "");
-  EXPECT_EQ(nearest(std::string(65, 'x'), {std::string(65, 'x')}), "");
+TEST(suggest, does_not_suggest_distant_words) {
+  EXPECT_EQ(nearest_word("foo", functions), "");
+  EXPECT_EQ(nearest_word("y", functions), "");
+  EXPECT_EQ(nearest_word("zz", functions), "");
+  EXPECT_EQ(nearest_word("time.foo", keys), "");
+  EXPECT_EQ(nearest_word("time.ab", keys), "");
+  EXPECT_EQ(nearest_word("paper/foo", {"paper/ode", "paper/decay"}), "");
+  EXPECT_EQ(nearest_word("--ab", {"--box", "--out"}), "");
+  EXPECT_EQ(nearest_word("", functions), "");
+  EXPECT_EQ(nearest_word(std::string(65, 'x'), {std::string(65, 'x')}), "");
   EXPECT_EQ(suggest("foo", {"cos", "sin"}), "valid: cos, sin");
 }
 
-TEST(suggest, one_slip_in_three_or_more_letters_finds_the_word_or_one_as_near) {
+TEST(suggest, single_slip_in_three_or_more_letters_finds_the_word_or_one_equally_close) {
   for (const auto& word : functions) {
     if (word.size() < 3) continue;
     for (const auto& slip : slips_of(word, 0)) {
-      const std::string found = nearest(slip, functions);
+      const std::string found = nearest_word(slip, functions);
       ASSERT_FALSE(found.empty()) << slip;
-      EXPECT_LE(distance(slip, found), 1U) << slip << " " << found;
+      EXPECT_LE(edit_distance(slip, found), 1U) << slip << " " << found;
     }
   }
   for (const auto& key : keys) {
     if (key.size() - key.find('.') < 4) continue;
     for (const auto& slip : slips_of(key, key.find('.') + 1))
-      EXPECT_LE(distance(slip, nearest(slip, keys)), 1U) << slip;
+      EXPECT_LE(edit_distance(slip, nearest_word(slip, keys)), 1U) << slip;
   }
 }
 
-TEST(suggest, swaps_and_case_are_forgiven_in_short_words) {
-  EXPECT_EQ(nearest("time.td", keys), "time.dt");
-  EXPECT_EQ(nearest("ip", functions), "pi");
-  EXPECT_EQ(nearest("X", functions), "x");
-  EXPECT_EQ(nearest("COS", functions), "cos");
-  EXPECT_EQ(nearest("Time.DT", keys), "time.dt");
+TEST(suggest, swaps_and_case_are_ignored_in_short_words) {
+  EXPECT_EQ(nearest_word("time.td", keys), "time.dt");
+  EXPECT_EQ(nearest_word("ip", functions), "pi");
+  EXPECT_EQ(nearest_word("X", functions), "x");
+  EXPECT_EQ(nearest_word("COS", functions), "cos");
+  EXPECT_EQ(nearest_word("Time.DT", keys), "time.dt");
 }
 
-TEST(suggest, of_random_words_never_differ_in_more_than_a_third) {
+TEST(suggest, suggestions_for_random_words_differ_in_at_most_a_third) {
   std::mt19937 random(3);
   int offered = 0;
   for (int k = 0; k < 4000; ++k) {
     std::string word(1 + random() % 6, ' ');
     for (char& c : word) c = "acosinqtexph"[random() % 12];
-    const std::string found = nearest(word, functions);
+    const std::string found = nearest_word(word, functions);
     if (found.empty()) continue;
     ++offered;
-    const std::size_t d = distance(word, found);
+    const std::size_t d = edit_distance(word, found);
     const bool swapped = d == 1 && std::is_permutation(word.begin(), word.end(), found.begin(), found.end());
     EXPECT_TRUE(3 * d <= std::max(word.size(), found.size()) || swapped) << word << " " << found;
     for (const auto& other : functions) {
-      const std::size_t to_other = distance(word, other);
+      const std::size_t to_other = edit_distance(word, other);
       if (3 * to_other <= std::max(word.size(), other.size())) {
         EXPECT_LE(d, to_other) << word << " " << other;
       }

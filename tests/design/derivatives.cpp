@@ -1,5 +1,5 @@
-// First and second derivatives of what a design must satisfy, against differences, and its values against the
-// order conditions of the Butcher form, which know nothing of Shu–Osher variables.
+// First and second derivatives of design problems against finite differences, and their values against the
+// order conditions of the Butcher form, which do not involve Shu–Osher variables.
 #include <apsis/core/random_source.hpp>
 #include <apsis/design/design_problem.hpp>
 #include <apsis/method/intermediate_regime.hpp>
@@ -21,7 +21,7 @@ using measure = design_problem::measure;
 /// Away from the poles of stages with d = 0, which are on the imaginary axis.
 constexpr double demanded_angle = 60.0;
 
-/// A problem with some coefficients left out, and a point inside its bounds.
+/// A problem with a random zero pattern, and a point inside its bounds.
 struct sample {
   design_problem problem;
   Eigen::VectorXd x;
@@ -66,9 +66,9 @@ const std::vector<kind_and_order> all = {{method_kind::imex, 1, 2, regime_demand
                                          {method_kind::implicit_only, 5, 6, regime_demand::none},
                                          {method_kind::explicit_only, 3, 4, regime_demand::none}};
 
-// Central differences with h = 1e-5 of quantities of size 1 with derivatives up to some hundreds: h² times
-// third derivatives, and 1e-16/h; 1e-6 of the size of the row holds both.
-constexpr double h = 1e-5, near = 1e-6;
+// Central differences with h = 1e-5 of quantities of size 1 with derivatives up to some hundreds: the
+// tolerance 1e-6, relative to the size of the row, covers h² times third derivatives and 1e-16/h.
+constexpr double h = 1e-5, tolerance = 1e-6;
 
 Eigen::VectorXd draw_vector(Eigen::Index size, random_source& random) {
   Eigen::VectorXd v(size);
@@ -76,7 +76,7 @@ Eigen::VectorXd draw_vector(Eigen::Index size, random_source& random) {
   return v;
 }
 
-/// Σ λ residual + Σ μ limit + the weighted half squares: its gradient.
+/// Gradient of Σ λ residual + Σ μ limit + the weighted half squares.
 Eigen::VectorXd gradient_of_sum(design_problem& problem, const Eigen::VectorXd& x,
                                 const design_problem::weights& given) {
   Eigen::VectorXd g = problem.jacobian(x).transpose() * given.equations, part;
@@ -112,7 +112,7 @@ TEST(design_derivatives, agree_with_differences) {
       below(u) -= h;
       const auto expect_slope = [&](const auto& quantity, const Eigen::VectorXd& slope) {
         const Eigen::VectorXd column = (quantity(above) - quantity(below)) / (2.0 * h);
-        EXPECT_LT((column - slope).norm(), near * (1.0 + slope.norm())) << k << " " << u;
+        EXPECT_LT((column - slope).norm(), tolerance * (1.0 + slope.norm())) << k << " " << u;
       };
       expect_slope([&](const auto& y) { return problem.residuals(y); }, J.col(u));
       if (problem.limits() > 0) {
@@ -142,15 +142,15 @@ butcher_form<long double> butcher_of(const shu_osher_form<double>& m) {
   return {wide(b.A_hat), wide(b.A), wide(b.A_dot)};
 }
 
-// The residuals of the band and the limits of an angle, against the certificate's flux(z) and R(ζ). Both
-// sides solve triangular systems; what they differ by is rounding times the size of the terms.
-TEST(design_conditions, are_the_flux_and_the_stability_function_of_the_certificate) {
+// The residuals of the band and the stability limits against flux(z) and R(ζ) of the certificate. Both solve
+// triangular systems and differ by rounding errors times the size of the terms.
+TEST(design_conditions, agree_with_flux_and_stability_function_of_the_certificate) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (all[k].kind == method_kind::explicit_only) continue;
     auto [problem, x] = draw(all[k].kind, all[k].order, all[k].stages, all[k].regime, 200 + k);
     const auto butcher = butcher_of(problem.form(x));
     const auto limits = problem.limit_values(x);
-    ASSERT_EQ(limits.size(), 85);  // 24 to a decade from 10^-1 to 10^2.5
+    ASSERT_EQ(limits.size(), 85);  // 24 per decade from 10^-1 to 10^2.5
     for (Eigen::Index l = 0; l < limits.size(); ++l) {
       const long double radius = std::pow(10.0L, -1.0L + static_cast<long double>(l) / 24.0L);
       const long double angle = problem.demands().aimed_angle() * std::numbers::pi_v<long double> / 180.0L;
@@ -160,7 +160,7 @@ TEST(design_conditions, are_the_flux_and_the_stability_function_of_the_certifica
     }
     if (all[k].kind == method_kind::implicit_only) continue;
     double sum = 0.0;
-    for (int l = -8; l <= 20; ++l) {  // 8 to a decade
+    for (int l = -8; l <= 20; ++l) {  // 8 per decade
       const long double z = std::pow(10.0L, l / 8.0L);
       const long double R = stability_function(butcher, -z).real();
       const long double residual = (at_finite_rate(butcher, z).flux - 1) / z * (1 - R) / -std::expm1(-z);
@@ -170,7 +170,7 @@ TEST(design_conditions, are_the_flux_and_the_stability_function_of_the_certifica
   }
 }
 
-TEST(design_conditions, are_those_of_the_butcher_form) {
+TEST(design_conditions, agree_with_the_butcher_form) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     auto [problem, x] = draw(all[k].kind, all[k].order, all[k].stages, all[k].regime, 100 + k);
     const auto m = problem.form(x);
@@ -189,7 +189,7 @@ TEST(design_conditions, are_those_of_the_butcher_form) {
       for (Eigen::Index e = 0; e < problem.equations(); ++e)
         if (problem.equation_name(e) == trees[t].name) {
           ++seen;
-          // Both are sums of some hundred products, in another order.
+          // Both are sums of several hundred products, in different order.
           EXPECT_NEAR(residuals(e), missing, 1e-13 * (1.0 + std::abs(missing)));
         }
     }
@@ -218,14 +218,14 @@ int count_of_trees(method_kind kind, int order, std::size_t stages) {
   }));
 }
 
-TEST(design_conditions, are_fewer_where_abscissae_are_equal) {
+TEST(design_conditions, are_fewer_if_abscissae_are_equal) {
   EXPECT_EQ(count_of_trees(method_kind::imex, 2, 3), 6);
   EXPECT_EQ(count_of_trees(method_kind::imex, 3, 6), 15);
   EXPECT_EQ(count_of_trees(method_kind::imex, 4, 14), 49);
   EXPECT_EQ(count_of_trees(method_kind::implicit_only, 5, 9), 17);
 }
 
-/// The pattern of a method of the catalogue.
+/// Returns the pattern of a method of the catalogue.
 zero_pattern pattern_of(const shu_osher_form<double>& m, method_kind kind) {
   zero_pattern p = full_pattern(kind, std::vector<char>(m.stages(), 1));
   for (std::size_t i = 0; i < m.stages(); ++i) {

@@ -1,4 +1,4 @@
-// Embedded solutions: the least squares behind them, what is found, and what is not.
+// Search for embedded solutions: nonnegative least squares, methods with and without a solution.
 #include <apsis/design/embedded.hpp>
 
 #include "support/catalogue.hpp"
@@ -33,8 +33,8 @@ embedded_certificate certified(const std::string& name, const embedded_row& row)
   return *c.embedded;
 }
 
-/// The first-order conditions, which decide in a convex problem: no gradient along a positive x, and none
-/// that would let a zero grow.
+/// The first-order conditions, which are sufficient for a convex problem: zero gradient along positive x, and
+/// no descent direction that increases a zero.
 TEST(nonnegative_least_squares, satisfies_its_optimality_conditions) {
   check_property("random matrices", [] {
     const auto rows = *rc::gen::inRange<Eigen::Index>(1, 9), cols = *rc::gen::inRange<Eigen::Index>(1, 9);
@@ -50,16 +50,16 @@ TEST(nonnegative_least_squares, satisfies_its_optimality_conditions) {
     for (Eigen::Index j = 0; j < cols; ++j) {
       RC_ASSERT(x(j) >= 0.0);
       RC_ASSERT(gradient(j) <= 1e-9);
-      // Nearly dependent columns have large x, and gradients that are as large as its rounding.
+      // Nearly dependent columns give large x, with gradients of the size of its rounding errors.
       const bool flat = gradient(j) >= -1e-9 * (1.0 + x.maxCoeff());
       RC_ASSERT(x(j) == 0.0 || flat);
     }
   });
 }
 
-/// Rounding once let the entry that blocks a step keep a last digit, and the search ended away from the
-/// minimum.
-TEST(nonnegative_least_squares, goes_on_where_a_step_is_blocked) {
+/// Regression: rounding once left the blocking entry with a nonzero last digit, and the iteration ended away
+/// from the minimum.
+TEST(nonnegative_least_squares, continues_after_a_blocked_step) {
   Eigen::MatrixXd A(2, 6);
   A << -1.0, -1.0, -1.0, -0.13, -1.0, -0.39, -1.0, -1.0, -1.0, -0.44, -1.0, -0.87;
   const Eigen::VectorXd b = Eigen::Vector2d(-0.08, -1.0);
@@ -69,8 +69,8 @@ TEST(nonnegative_least_squares, goes_on_where_a_step_is_blocked) {
   EXPECT_EQ(x.sum(), x(3));
 }
 
-/// What the files hold is what is found: the highest order that serves, and that row.
-void expect_found_again(const std::string& name) {
+/// The search reproduces the file: the highest useful order, and the same row.
+void expect_reproduced(const std::string& name) {
   const method& m = find_method(name);
   const auto search = search_for(name);
   ASSERT_TRUE(search.found) << name;
@@ -84,18 +84,18 @@ void expect_found_again(const std::string& name) {
   EXPECT_EQ(e.explicit_evaluations, 0);
 }
 
-TEST(embedded_solution, of_the_catalogue_is_found_again) {
+TEST(embedded_solution, of_the_catalogue_is_reproduced) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded && m.claims.order < 4; }))
-    expect_found_again(name);
+    expect_reproduced(name);
 }
 
-TEST(embedded_solution, of_fourth_order_methods_is_found_again_slow) {
+TEST(embedded_solution, of_fourth_order_methods_is_reproduced_slow) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded && m.claims.order >= 4; }))
-    expect_found_again(name);
+    expect_reproduced(name);
 }
 
-TEST(embedded_solution, is_a_multiple_of_the_taylor_term_where_it_can_be) {
-  // Implicit methods have two trees of order 3; two of five unknowns are left by the equations.
+TEST(embedded_solution, is_a_multiple_of_the_taylor_term_if_possible) {
+  // Implicit methods have two trees of order 3, and the equations leave two of five unknowns free.
   const auto e = certified("imdrk-3-3", *search_for("imdrk-3-3").found);
   EXPECT_EQ(e.order, 2);
   EXPECT_NEAR(e.alignment.convert_to<double>(), 1.0, 1e-30);
@@ -106,8 +106,8 @@ TEST(embedded_solution, is_a_multiple_of_the_taylor_term_where_it_can_be) {
   EXPECT_NEAR((larger.estimate / e.estimate).convert_to<double>(), 5.0, 1e-12);
 }
 
-/// c̃ = Σ p̃_j c_j = 1 cannot be where every stage but the last has c_j < 1: the nearest point is far from it.
-TEST(embedded_solution, cannot_be_free_where_all_earlier_stages_lie_before_the_end) {
+/// c̃ = Σ p̃_j c_j = 1 is impossible if all stages but the last have c_j < 1: the closest point is far away.
+TEST(embedded_solution, has_a_cost_if_all_earlier_abscissae_are_below_1) {
   for (const char* name : {"md-imex-3-2", "imdrk-3-3", "md-imex-5-2"}) {
     const auto search = search_for(name, 0, embedded_cost::nothing);
     EXPECT_FALSE(search.found) << name;
@@ -116,7 +116,7 @@ TEST(embedded_solution, cannot_be_free_where_all_earlier_stages_lie_before_the_e
   }
 }
 
-TEST(embedded_solution, is_free_where_stages_lie_around_the_end) {
+TEST(embedded_solution, costs_nothing_if_abscissae_lie_on_both_sides_of_1) {
   // imdrk-9-5 has c = 1.42 at a stage.
   const auto search = search_for("imdrk-9-5", 0, embedded_cost::nothing);
   ASSERT_TRUE(search.found);
@@ -124,14 +124,15 @@ TEST(embedded_solution, is_free_where_stages_lie_around_the_end) {
   EXPECT_EQ(e.order, 1);
   EXPECT_EQ(e.implicit_solves, 0);
   EXPECT_FALSE(e.relaxes);
-  // An explicit method knows T of its stages anyway.
+  // In an explicit method T of the stages is available.
   const auto explicit_search = search_for("ssprk-3-3", 0, embedded_cost::nothing);
   ASSERT_TRUE(explicit_search.found);
   EXPECT_EQ(certified("ssprk-3-3", *explicit_search.found).order, 2);
 }
 
-TEST(embedded_solution, is_none_where_only_the_method_itself_has_the_order) {
-  // The row of u^{n+1} satisfies the equations and says nothing; its 45 digits are what `nearest` shows.
+TEST(embedded_solution, does_not_exist_if_only_the_method_itself_has_the_order) {
+  // The row of u^{n+1} satisfies the equations but estimates nothing; `nearest` shows the rounding of
+  // its 45 digits.
   for (const char* name : {"imdrk-7-4", "md-imex-16-4-large-r"}) {
     const auto search = search_for(name, 3);
     EXPECT_FALSE(search.found) << name;
@@ -139,13 +140,13 @@ TEST(embedded_solution, is_none_where_only_the_method_itself_has_the_order) {
     EXPECT_LT(search.attempts[0].nearest, 1e-15) << name;
     EXPECT_LT(search.attempts[0].seen, 1e-15) << name;
   }
-  // md-imex-6-3 has others, but they hardly see the limit.
+  // md-imex-6-3 has other solutions, but with little coverage in the limit.
   const auto search = search_for("md-imex-6-3", 2);
   EXPECT_FALSE(search.found);
   EXPECT_GT(search.attempts[0].seen, 0.001);
 }
 
-TEST(embedded_solution, keeps_the_margin_that_is_asked_for) {
+TEST(embedded_solution, respects_the_margin) {
   embedded_task task;
   task.margin = 0.75;  // imdrk-7-4 has 0.46 without it
   const auto search = find_embedded(find_method("imdrk-7-4"), task);
@@ -155,12 +156,12 @@ TEST(embedded_solution, keeps_the_margin_that_is_asked_for) {
   EXPECT_GE(coefficient_value(search.found->d) - coefficient_value(search.found->ddot), mp_real(0.75));
 }
 
-TEST(embedded_solution, is_refused_where_the_form_has_no_place_for_it) {
+TEST(embedded_solution, is_rejected_for_unsupported_methods) {
   EXPECT_THROW(search_for("ars-443"), input_error);                 // D below the diagonal
   EXPECT_THROW(search_for("forward-backward-euler"), input_error);  // order 1
   EXPECT_THROW(search_for("md-imex-3-2", 2), input_error);          // not below its order
   EXPECT_THROW(search_for("md-imex-3-2", -1), input_error);
-  EXPECT_THROW(search_for("ssprk-3-3"), input_error);  // nothing to solve
+  EXPECT_THROW(search_for("ssprk-3-3"), input_error);  // no stage solves
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Taking stages out of a method: the smaller one has what is asked for, and where no stage can go it says so.
+// Removing stages from a method: the smaller method meets the demands, and the residual weight is reported if
+// no stage can be removed.
 #include <apsis/design/fewer_stages.hpp>
 
 #include <apsis/method/method.hpp>
@@ -21,7 +22,8 @@ design_task task_like(const method& m, int order) {
   return task;
 }
 
-/// Largest |weight − 1/γ| of the trees up to an order, by the Butcher form: nothing of the designer's.
+/// Returns the largest |weight − 1/γ| of the trees up to an order, from the Butcher form, independently of
+/// the design code.
 double order_residual(const shu_osher_form<double>& m, int order) {
   const auto trees = rooted_trees(order, tree_colours::both);
   const auto weights = elementary_weights(to_butcher(m), trees);
@@ -31,14 +33,14 @@ double order_residual(const shu_osher_form<double>& m, int order) {
   return worst;
 }
 
-// Eight stages are more than third order needs: six are enough (md-imex-6-3).
+// Third order needs only six of the eight stages (md-imex-6-3).
 TEST(fewer_stages, keep_order_and_signs) {
   const method& m = find_method("md-imex-8-3-accurate");
   const auto task = task_like(m, 3);
   const auto smaller = without_a_stage(task, m.coefficients<double>());
   ASSERT_TRUE(smaller);
   EXPECT_EQ(smaller->stages(), m.stages() - 1);
-  // The equations were solved to 1e-11.
+  // The equations are solved to 1e-11.
   EXPECT_LT(order_residual(*smaller, 3), 1e-10);
   for (std::size_t i = 0; i < smaller->stages(); ++i) {
     EXPECT_GE(initial_weights(*smaller)[i], -1e-12);
@@ -52,8 +54,8 @@ TEST(fewer_stages, keep_order_and_signs) {
   }
 }
 
-// One stage cannot have order 3 without transport: both stages of imdrk-2-3 are needed, and each is tried.
-TEST(fewer_stages, says_what_is_left_where_all_are_needed) {
+// Order 3 without transport needs two stages: both stages of imdrk-2-3 are tried in vain.
+TEST(fewer_stages, reports_the_residual_weight_if_all_are_needed) {
   const method& m = find_method("imdrk-2-3");
   std::size_t tried = 0;
   double least = 1.0;

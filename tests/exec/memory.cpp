@@ -1,4 +1,4 @@
-// How much memory is left, from files of /proc and /sys as the kernel writes them.
+// Available memory, from files of /proc and /sys in the format of the kernel.
 #include <apsis/exec/memory.hpp>
 
 #include <cmath>
@@ -18,7 +18,7 @@ void write(const fs::path& path, const std::string& text) {
 
 }  // namespace
 
-TEST(available_memory, is_what_the_machine_has_where_no_group_limits_it) {
+TEST(available_memory, is_that_of_the_machine_without_control_group_limits) {
   const test_folder folder;
   const fs::path root = folder / "root";
   write(root / "proc/meminfo", "MemTotal:  8000 kB\nMemFree:  10 kB\nMemAvailable:  3000 kB\n");
@@ -30,7 +30,7 @@ TEST(available_memory, is_what_the_machine_has_where_no_group_limits_it) {
   EXPECT_EQ(limit.source, "available memory of the machine");
 }
 
-TEST(available_memory, is_the_tightest_of_nested_groups_and_counts_page_cache_as_free) {
+TEST(available_memory, is_the_minimum_over_nested_groups_and_counts_page_cache_as_free) {
   const test_folder folder;
   const fs::path root = folder / "root", groups = root / "sys/fs/cgroup";
   write(root / "proc/meminfo", "MemAvailable:  3000 kB\n");
@@ -45,7 +45,7 @@ TEST(available_memory, is_the_tightest_of_nested_groups_and_counts_page_cache_as
   EXPECT_EQ(limit.source, "limit of the control group");
 }
 
-TEST(available_memory, reads_control_groups_of_version_1_too) {
+TEST(available_memory, supports_control_groups_of_version_1) {
   const test_folder folder;
   const fs::path root = folder / "root", group = root / "sys/fs/cgroup/memory/job";
   write(root / "proc/self/cgroup", "5:cpu:/other\n4:memory:/job\n");
@@ -54,6 +54,6 @@ TEST(available_memory, reads_control_groups_of_version_1_too) {
   EXPECT_EQ(apsis::available_memory(root).bytes, 0.0);
 }
 
-TEST(available_memory, of_this_machine_is_more_than_nothing) {
+TEST(available_memory, of_this_machine_is_positive) {
   EXPECT_GT(apsis::available_memory().bytes, 1e6);
 }

@@ -1,4 +1,4 @@
-// The blocks that loops over cells are cut into.
+// Blocks of parallel loops over cells.
 #include <apsis/exec/parallel.hpp>
 
 #include <atomic>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-TEST(part_blocks, cover_the_range_once_in_blocks_that_are_not_too_long) {
+TEST(part_blocks, partition_the_range_into_blocks_of_limited_length) {
   for (const int n : {0, 1, 2, 7, 40, 63, 64, 65, 400, 1000, 12345})
     for (const int longest : {1, 6, 26, 64, 4096})
       for (const int parts : {1, 2, 3, 8, 64}) {
@@ -20,7 +20,7 @@ TEST(part_blocks, cover_the_range_once_in_blocks_that_are_not_too_long) {
       }
 }
 
-TEST(part_blocks, give_a_thread_the_same_part_whatever_their_length) {
+TEST(part_blocks, assign_the_same_part_to_a_thread_for_any_block_length) {
   constexpr int n = 1000;
   for (const int parts : {2, 3, 8})
     for (int p = 0; p < parts; ++p)
@@ -30,15 +30,15 @@ TEST(part_blocks, give_a_thread_the_same_part_whatever_their_length) {
       }
 }
 
-TEST(part_blocks, become_short_at_the_end_of_a_long_part) {
+TEST(part_blocks, taper_at_the_end_of_a_long_part) {
   const apsis::part_blocks blocks(1000, 100, 2);
   const int per_part = blocks.count() / 2;
   for (const int last : {per_part - 1, blocks.count() - 1})
     EXPECT_LE(blocks.end(last) - blocks.begin(last), 100 / 8 + 1);
-  EXPECT_EQ(apsis::part_blocks(1000, 100, 1).count(), 10) << "nobody to be helped";
+  EXPECT_EQ(apsis::part_blocks(1000, 100, 1).count(), 10) << "one thread needs no load balance";
 }
 
-TEST(parallel_blocks, do_every_number_once_and_hand_exceptions_on) {
+TEST(parallel_blocks, process_every_index_once_and_propagate_exceptions) {
   for (const int threads : {1, 2, 5}) {
     apsis::set_threads(threads);
     for (const int n : {0, 1, 3, 100, 999}) {

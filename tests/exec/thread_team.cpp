@@ -1,5 +1,4 @@
-// Threads that wait for one another as little as they can: late workers, failures, forks, and what each has
-// for itself.
+// Thread teams: preempted workers, exceptions, forks, and per-thread data.
 #include <apsis/exec/thread_team.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -24,7 +23,7 @@
 
 namespace {
 
-/// Sets the threads of a test and puts back the one of the others.
+/// Sets the number of threads for a test and restores it afterwards.
 struct with_threads {
   explicit with_threads(int n) { apsis::set_threads(n); }
   ~with_threads() { apsis::set_threads(1); }
@@ -42,19 +41,19 @@ long sum_in_parallel(int n) {
 
 }  // namespace
 
-TEST(thread_team, every_number_is_done_once_in_any_number_of_regions) {
+TEST(thread_team, runs_every_job_exactly_once_in_repeated_regions) {
   for (const int threads : {2, 3, 7}) {
     const with_threads some(threads);
     for (int region = 0; region < 3000; ++region) {
       const int n = 1 + region % 23;
-      std::vector<int> seen(static_cast<std::size_t>(n), 0);  // no atomics: a number belongs to one thread
+      std::vector<int> seen(static_cast<std::size_t>(n), 0);  // no atomics: an entry is written by one thread
       apsis::parallel_for(n, [&](int k) { ++seen[static_cast<std::size_t>(k)]; });
       for (const int count : seen) ASSERT_EQ(count, 1) << threads << " " << region;
     }
   }
 }
 
-TEST(thread_team, the_exception_of_the_smallest_number_leaves_and_the_team_works_on) {
+TEST(thread_team, rethrows_the_exception_of_the_smallest_index_and_remains_usable) {
   const with_threads three(3);
   for (int round = 0; round < 200; ++round) {
     try {
@@ -69,8 +68,8 @@ TEST(thread_team, the_exception_of_the_smallest_number_leaves_and_the_team_works
   }
 }
 
-TEST(thread_team, the_caller_does_the_work_of_workers_that_hold_nothing) {
-  // A worker that holds a number is kept there until all others are done, which the other threads must do.
+TEST(thread_team, caller_takes_over_the_jobs_of_idle_workers) {
+  // A worker is blocked in its job until all other jobs are done, which the other threads must take over.
   const with_threads two(2);
   constexpr int n = 64;
   std::mutex mutex;
@@ -85,7 +84,7 @@ TEST(thread_team, the_caller_does_the_work_of_workers_that_hold_nothing) {
   EXPECT_EQ(done, n);
 }
 
-TEST(thread_team, loops_inside_of_loops_run_on_their_thread) {
+TEST(thread_team, nested_loops_run_on_the_calling_thread) {
   const with_threads two(2);
   std::atomic<int> inner = 0;
   apsis::parallel_tasks(6, [&](int) {
@@ -102,7 +101,7 @@ TEST(thread_team, loops_inside_of_loops_run_on_their_thread) {
   EXPECT_EQ(apsis::thread_number(), 0);
 }
 
-TEST(thread_team, callers_on_several_threads_do_not_disturb_each_other) {
+TEST(thread_team, concurrent_callers_are_independent) {
   const with_threads two(2);
   std::vector<std::thread> callers;
   std::atomic<int> right = 0;
@@ -115,7 +114,7 @@ TEST(thread_team, callers_on_several_threads_do_not_disturb_each_other) {
   EXPECT_EQ(right, 400);
 }
 
-TEST(thread_team, tasks_begin_no_more_once_one_has_failed) {
+TEST(thread_team, starts_no_further_tasks_after_a_failure) {
   std::atomic<int> begun = 0;
   const auto job = [&](int k) {
     ++begun;
@@ -135,9 +134,9 @@ TEST(thread_team, tasks_begin_no_more_once_one_has_failed) {
   EXPECT_EQ(failure(), "fourth");
 }
 
-TEST(thread_team, a_forked_child_has_threads_of_its_own) {
+TEST(thread_team, forked_child_creates_its_own_threads) {
   const with_threads two(2);
-  const long expected = sum_in_parallel(1000);  // the parent has its workers now
+  const long expected = sum_in_parallel(1000);  // starts the workers of the parent
   for (int round = 0; round < 20; ++round) {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
@@ -153,30 +152,30 @@ TEST(thread_team, a_forked_child_has_threads_of_its_own) {
   }
 }
 
-TEST(waiting_account, rests_for_twelve_times_what_waiting_has_cost) {
-  using account = apsis::waiting_account;
+TEST(team_overhead, backs_off_for_twelve_times_the_waiting_time) {
+  using account = apsis::team_overhead;
   using std::chrono::microseconds;
   const std::chrono::steady_clock::time_point start(microseconds(1'000'000));
   const auto region = [&](long work, long wait) {
     return account::times{start, start, start + microseconds(work), start + microseconds(work + wait)};
   };
   account lucky, unlucky, idle;
-  for (int k = 0; k < 1000; ++k) lucky.add(region(100, 10), 5, 10);  // alone: 200 µs
+  for (int k = 0; k < 1000; ++k) lucky.add(region(100, 10), 5, 10);  // sequential: 200 µs
   lucky.add(region(100, 450), 5, 10);
-  EXPECT_FALSE(lucky.rests(start)) << "350 µs are lost, of which a credit of 200 pays a part";
+  EXPECT_FALSE(lucky.backs_off(start)) << "350 µs lost, minus a credit of 200 µs";
   unlucky.add(region(100, 6100), 5, 10);
-  EXPECT_TRUE(unlucky.rests(start + microseconds(6200 + 12 * 6000 - 1)));
-  EXPECT_FALSE(unlucky.rests(start + microseconds(6200 + 12 * 6000 + 1)));
-  for (int k = 0; k < 30; ++k) idle.add(region(100, 5), 10, 10);  // workers that do not wake up
-  EXPECT_FALSE(idle.rests(start));
+  EXPECT_TRUE(unlucky.backs_off(start + microseconds(6200 + 12 * 6000 - 1)));
+  EXPECT_FALSE(unlucky.backs_off(start + microseconds(6200 + 12 * 6000 + 1)));
+  for (int k = 0; k < 30; ++k) idle.add(region(100, 5), 10, 10);  // workers do not wake up
+  EXPECT_FALSE(idle.backs_off(start));
   for (int k = 0; k < 30; ++k) idle.add(region(100, 5), 10, 10);
-  EXPECT_TRUE(idle.rests(start + microseconds(1000)));
+  EXPECT_TRUE(idle.backs_off(start + microseconds(1000)));
   idle = account();
   idle.add(region(0, 9000), 0, 10);
-  EXPECT_FALSE(idle.rests(start)) << "others did all of it";
+  EXPECT_FALSE(idle.backs_off(start)) << "workers did everything";
 }
 
-TEST(per_thread, is_ready_for_all_threads_before_any_of_them_comes) {
+TEST(per_thread, is_prepared_for_all_threads_before_the_loop) {
   const with_threads four(4);
   apsis::per_thread<std::vector<double>> scratch;
   int prepared = 0;
@@ -192,7 +191,7 @@ TEST(per_thread, is_ready_for_all_threads_before_any_of_them_comes) {
   EXPECT_EQ(with_room, 64);
 }
 
-TEST(threads, are_counted_within_bounds_or_refused) {
+TEST(threads, outside_the_valid_range_are_rejected) {
   for (const int n : {-1, apsis::most_threads + 1, 1000000}) {
     try {
       apsis::set_threads(n);
@@ -208,7 +207,7 @@ TEST(threads, are_counted_within_bounds_or_refused) {
   EXPECT_EQ(apsis::threads(), std::min(apsis::available_processors(), apsis::most_threads));
 }
 
-TEST(processors, of_a_quota_are_rounded_up) {
+TEST(processors, granted_by_a_quota_are_rounded_up) {
   EXPECT_EQ(apsis::processors_of_quota("max 100000"), 0);
   EXPECT_EQ(apsis::processors_of_quota(""), 0);
   EXPECT_EQ(apsis::processors_of_quota("200000 100000"), 2);

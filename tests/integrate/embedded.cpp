@@ -1,4 +1,4 @@
-// Embedded solutions through the stepper: what they cost, their order, and step size control with them.
+// Embedded solutions through the stepper: cost, order, and step-size control.
 #include "support/catalogue.hpp"
 
 #include <apsis/integrate/error_control.hpp>
@@ -36,8 +36,8 @@ const auto distance = [](const auto& u, const auto& v) {
   return sum;
 };
 
-/// The ODE model of the paper from u2(0) = `rest`, or u' = −10u² for methods without transport (as
-/// tests/integrate/method_orders.cpp).
+/// The ODE model of the paper with u2(0) = `rest`, or u' = −10u² for methods without transport
+/// (as in method_orders.cpp).
 template <class Use>
 auto with_problem(const std::string& name, real epsilon, real rest, const Use& use) {
   const apsis::method& m = apsis::find_method(name);
@@ -52,11 +52,11 @@ auto with_problem(const std::string& name, real epsilon, real rest, const Use& u
   return use(march, state{2, rest});
 }
 
-/// In equilibrium Q is 0, and with it all elementary differentials of the ODE model that a method of order 1
-/// may be blind for.
+/// In equilibrium Q vanishes, and with it all elementary differentials of the ODE model that a method of
+/// order 1 may not resolve.
 const real consistent = std::sin(real(2)), inconsistent = 0;
 
-/// ‖u^{n+1} − ũ‖ after one step.
+/// Returns ‖u^{n+1} − ũ‖ after one step.
 double estimate(const std::string& name, real epsilon, real rest, real dt) {
   return with_problem(name, epsilon, rest, [dt](auto& march, state u) {
     const auto tried = march.attempt(0, dt, u);
@@ -64,7 +64,7 @@ double estimate(const std::string& name, real epsilon, real rest, real dt) {
   });
 }
 
-/// The error at t = 1 if ũ is carried on instead of u^{n+1}.
+/// Returns the error at t = 1 if the steps continue from ũ instead of u^{n+1}.
 double error_carried_on(const std::string& name, long steps) {
   return with_problem(name, 1, inconsistent, [steps](auto& march, state u) {
     const real dt = real(1) / static_cast<real>(steps);
@@ -77,32 +77,32 @@ double error_carried_on(const std::string& name, long steps) {
 
 class every_embedded_row : public ::testing::TestWithParam<std::string> {};
 
-/// Where the first term of an error is small, it takes short steps for the next to be below a tenth of it:
-/// 0.15 in the slope.
+/// If the leading error term is small, only short steps make the next one less than a tenth of it: 0.15
+/// in the slope.
 constexpr double tolerance = 0.15;
 
-TEST_P(every_embedded_row, has_its_order) {
+TEST_P(every_embedded_row, has_its_certified_order) {
   const int q = apsis::find_certificate(GetParam()).embedded->order;
   EXPECT_NEAR(std::log2(error_carried_on(GetParam(), 4096) / error_carried_on(GetParam(), 8192)), q,
               tolerance);
 }
 
-TEST_P(every_embedded_row, estimates_a_term_of_its_order_and_one) {
+TEST_P(every_embedded_row, estimates_a_term_of_order_q_plus_1) {
   const int q = apsis::find_certificate(GetParam()).embedded->order;
   const real dt = real(1) / 1024;
   const auto slope = [&](real epsilon, real rest) {
     return std::log2(estimate(GetParam(), epsilon, rest, dt) / estimate(GetParam(), epsilon, rest, dt / 2));
   };
   EXPECT_NEAR(slope(1, inconsistent), q + 1, tolerance);
-  // In the limit ũ is on the equilibrium manifold as u^{n+1} is, and what is left are the trees of T alone.
-  // Terms of size ε Δt are 1e-17: far below the smallest estimate, 1e-12.
+  // In the limit ũ is on the equilibrium manifold like u^{n+1}, and only the trees of T alone remain. Terms
+  // of size ε Δt are 1e-17, far below the smallest estimate, 1e-12.
   if (apsis::find_method(GetParam()).kind == method_kind::imex) {
     EXPECT_NEAR(slope(1e-14L, consistent), q + 1, tolerance);
     EXPECT_NEAR(slope(1e-14L, inconsistent), q + 1, tolerance);
   }
 }
 
-TEST_P(every_embedded_row, leaves_the_result_as_it_is_to_the_last_bit) {
+TEST_P(every_embedded_row, does_not_change_the_result_bitwise) {
   with_problem(GetParam(), 1e-2L, inconsistent, [&](auto& march, state u) {
     auto& problem = march.target_problem();
     apsis::stepper alone(apsis::find_method(GetParam()), problem);
@@ -113,7 +113,7 @@ TEST_P(every_embedded_row, leaves_the_result_as_it_is_to_the_last_bit) {
       const auto tried = march.attempt(real(0), dt, u);
       EXPECT_EQ(tried.result, v);
       EXPECT_NE(tried.embedded, v);
-      EXPECT_NE(u, v);  // u^n stays until the step is accepted
+      EXPECT_NE(u, v);  // u is still u^n until the step is accepted
       march.accept(u);
       EXPECT_EQ(u, v);
     }
@@ -121,7 +121,7 @@ TEST_P(every_embedded_row, leaves_the_result_as_it_is_to_the_last_bit) {
   });
 }
 
-TEST_P(every_embedded_row, costs_what_its_certificate_says) {
+TEST_P(every_embedded_row, has_the_cost_of_its_certificate) {
   const apsis::method& m = apsis::find_method(GetParam());
   const auto& c = apsis::find_certificate(GetParam());
   const apsis::schedule alone(m.coefficients<double>()),
@@ -129,7 +129,7 @@ TEST_P(every_embedded_row, costs_what_its_certificate_says) {
   EXPECT_EQ(both.transport_evaluations(), c.explicit_evaluations + c.embedded->explicit_evaluations);
   EXPECT_EQ(both.implicit_solves(), c.implicit_solves + c.embedded->implicit_solves);
   EXPECT_GE(both.buffers(), alone.buffers());
-  EXPECT_LE(both.buffers(), alone.buffers() + 2);  // ũ, and a stage that waits for it
+  EXPECT_LE(both.buffers(), alone.buffers() + 2);  // ũ, and a stage that it still needs
 }
 
 INSTANTIATE_TEST_SUITE_P(catalogue, every_embedded_row, ::testing::ValuesIn(methods_with_embedded_row()),
@@ -168,7 +168,7 @@ apsis::shu_osher_form<double> without_last_row(const apsis::shu_osher_form<doubl
   return rest;
 }
 
-TEST(embedded_schedule, of_any_zero_pattern_makes_both_solutions) {
+TEST(embedded_schedule, of_any_zero_pattern_computes_both_solutions) {
   check_property("random forms", [] {
     const auto form = random_input::form(2);
     linear p;
@@ -181,13 +181,13 @@ TEST(embedded_schedule, of_any_zero_pattern_makes_both_solutions) {
     alone.step(0.0, 1.0, result);
     whole.step(0.0, 1.0, last);
     const auto tried = both.attempt(0.0, 1.0, u);
-    RC_ASSERT(tried.result == result);  // to the last bit
+    RC_ASSERT(tried.result == result);  // bitwise
     RC_ASSERT(std::abs(tried.embedded[0] - last[0]) <= 1e-11 * (1.0 + std::abs(last[0])));
     RC_ASSERT(u[0] == 1.0);
   });
 }
 
-TEST(embedded_solution, is_asked_for_in_vain_where_there_is_none) {
+TEST(embedded_solution, of_a_method_without_one_is_rejected) {
   auto problem = ode_model::as_relaxation<state>(1);
   const apsis::method& m = apsis::find_method("ars-443");
   try {
@@ -204,7 +204,7 @@ struct controlled {
   long steps, rejected;
 };
 
-/// The ODE model from data out of equilibrium, whose layer of width ε asks for short steps first.
+/// The ODE model from data out of equilibrium, whose layer of width ε requires short initial steps.
 controlled solve_to(const std::string& name, real tol, real epsilon, real longest) {
   const apsis::method& m = apsis::find_method(name);
   const auto exact = reference::radau(epsilon, 1);
@@ -225,24 +225,25 @@ controlled solve_to(const std::string& name, real tol, real epsilon, real longes
           control.rejected()};
 }
 
-TEST(step_control, makes_the_error_as_small_as_is_asked) {
+TEST(step_control, reduces_the_error_with_the_tolerance) {
   const auto coarse = solve_to("md-imex-8-3-accurate", 1e-5L, 1e-2L, 1),
              fine = solve_to("md-imex-8-3-accurate", 1e-8L, 1e-2L, 1);
-  // Of a method of order p with an estimate of order q + 1, errors per step below tol, the error at the end
-  // is about tol^{(p+1)/(q+1)} times the number of steps, tol^{p/(q+1)}: for p = 3 and q = 2 as small as the
-  // tolerance, and a tenth of that is let go for the resolution of ε/C, which ends between the two.
+  // For a method of order p with an estimate of order q + 1 and errors per step below tol, the error at the
+  // end is about tol^{(p+1)/(q+1)} times the number of steps, tol^{−1/(q+1)}, that is tol^{p/(q+1)}:
+  // proportional to the tolerance for p = 3 and q = 2. A tenth of that is allowed for the resolution of ε/C,
+  // which ends between the two tolerances.
   EXPECT_LT(fine.error, 1e-2 * coarse.error);
   EXPECT_LT(fine.error, 1e-6);
-  // Steps go with tol^{-1/(q+1)} = 10.
+  // The number of steps scales with tol^{-1/(q+1)} = 10.
   EXPECT_GT(fine.steps, 4 * coarse.steps);
   EXPECT_LT(fine.steps, 25 * coarse.steps);
-  EXPECT_LT(coarse.rejected, coarse.steps / 4);  // the first step is no guess of a far too long one
+  EXPECT_LT(coarse.rejected, coarse.steps / 4);  // the first step is not far too long
   EXPECT_LT(fine.rejected, fine.steps / 4);
 }
 
-TEST(step_control, does_not_resolve_a_relaxation_that_the_tolerance_does_not_ask_for) {
-  // ε = 1e-4 is far above the tolerance, and left behind with the layer by methods with and without plateau.
-  // With ‖u^{n+1} − ũ‖ as it is, md-imex-3-2 takes 9400 steps here.
+TEST(step_control, does_not_resolve_the_relaxation_beyond_the_tolerance) {
+  // ε = 1e-4 is far above the tolerance, and after the layer irrelevant for methods with and without plateau.
+  // With the unweighted estimate ‖u^{n+1} − ũ‖, md-imex-3-2 takes 9400 steps here.
   const real tol = 3e-6L;
   for (const char* name : {"md-imex-8-3", "md-imex-3-2"}) {
     const long steps = solve_to(name, tol, 1e-4L, 1).steps;
@@ -251,28 +252,28 @@ TEST(step_control, does_not_resolve_a_relaxation_that_the_tolerance_does_not_ask
   EXPECT_LT(solve_to("md-imex-8-3", tol, 1e-4L, 1).error, 1e-4);
 }
 
-TEST(step_control, never_takes_longer_steps_than_the_rule_allows) {
+TEST(step_control, never_exceeds_the_limit_of_the_step_rule) {
   EXPECT_EQ(solve_to("md-imex-8-3", 1.0L, 1, real(1) / 8).steps, 8);
   EXPECT_EQ(solve_to("md-imex-8-3", 1.0L, 1, real(1) / 8).rejected, 0);
 }
 
-TEST(step_control, rejects_what_is_no_number_and_refuses_no_tolerance) {
+TEST(step_control, rejects_nan_errors_and_invalid_tolerances) {
   step_controller<double> control(1e-3, 2);
   EXPECT_FALSE(control.accepts(1.0, std::nan("")));
   EXPECT_DOUBLE_EQ(control.proposed(), 0.2);
   EXPECT_FALSE(control.accepts(0.2, std::numeric_limits<double>::infinity()));
   EXPECT_DOUBLE_EQ(control.proposed(), 0.04);
   EXPECT_TRUE(control.accepts(0.04, 0.0));
-  EXPECT_DOUBLE_EQ(control.proposed(), 0.04);  // no longer right after a rejection
+  EXPECT_DOUBLE_EQ(control.proposed(), 0.04);  // no increase right after a rejection
   EXPECT_TRUE(control.accepts(0.04, 0.0));
-  // An error of nothing counts as 1e-4 of the tolerance: (1e-4)^{-0.7/3 + 0.4/3}.
+  // A zero error counts as 1e-4 of the tolerance: (1e-4)^{-0.7/3 + 0.4/3}.
   EXPECT_DOUBLE_EQ(control.proposed(), 0.04 * 0.9 * std::pow(1e-4, -0.1));
   EXPECT_EQ(control.rejected(), 2);
   for (const double wrong : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
     EXPECT_THROW(step_controller<double>(wrong, 2), apsis::input_error);
 }
 
-TEST(step_control, settles_where_the_error_is_the_tolerance) {
+TEST(step_control, settles_where_the_error_is_close_to_the_tolerance) {
   // err = Δt³: the fixed point of Δt ← 0.9 Δt (tol/err)^{0.7/3} (err/tol)^{0.4/3} is err = 0.9^{10} tol.
   step_controller<double> control(1e-6, 2);
   double dt = 1.0;
@@ -283,7 +284,7 @@ TEST(step_control, settles_where_the_error_is_the_tolerance) {
   EXPECT_NEAR(dt, 1e-2 * std::pow(0.9, 10.0 / 3.0), 1e-8);
 }
 
-TEST(step_control, ends_where_no_step_is_short_enough) {
+TEST(step_control, throws_if_no_step_is_short_enough) {
   auto problem = ode_model::as_relaxation<state>(1);
   apsis::stepper march(apsis::find_method("md-imex-3-2"), problem, solutions::result_and_embedded);
   step_controller<real> control(1e-3L, 1);
@@ -295,7 +296,7 @@ TEST(step_control, ends_where_no_step_is_short_enough) {
   EXPECT_EQ(u, ode_model::initial_state<state>());
 }
 
-/// u' = −u with u ≥ 0 demanded of every stage, which steps beyond r violate.
+/// u' = −u with u ≥ 0 required of every stage, which steps beyond r violate.
 auto nonnegative_decay(bool possible) {
   apsis::relaxation_problem problem(
       [](double, const std::vector<double>& u, std::vector<double>& T) { T = {-u[0]}; },
@@ -309,11 +310,11 @@ double no_distance(const std::vector<double>&, const std::vector<double>&) {
   return 0.0;
 }
 
-TEST(step_control, takes_a_shorter_step_where_a_stage_fails) {
+TEST(step_control, shortens_the_step_if_a_stage_fails) {
   auto problem = nonnegative_decay(true);
   apsis::stepper march(apsis::find_method("md-imex-8-3-mixed"), problem, solutions::result_and_embedded);
   std::vector<double> u{1.0};
-  EXPECT_THROW(march.attempt(0.0, 8.0, u), apsis::numerical_error) << "the test would show nothing";
+  EXPECT_THROW(march.attempt(0.0, 8.0, u), apsis::numerical_error) << "the test requires a failing step";
   step_controller<double> control(1e-3, 1);
   const auto done =
       apsis::integrate_to_tolerance(march, u, 0.0, 8.0, step_rule<double>::fixed(8), control, no_distance);
@@ -322,7 +323,7 @@ TEST(step_control, takes_a_shorter_step_where_a_stage_fails) {
   EXPECT_GE(u[0], 0.0);
 }
 
-TEST(step_control, tells_why_no_step_is_possible) {
+TEST(step_control, reports_why_no_step_is_possible) {
   auto problem = nonnegative_decay(false);
   apsis::stepper march(apsis::find_method("md-imex-8-3-mixed"), problem, solutions::result_and_embedded);
   std::vector<double> u{1.0};

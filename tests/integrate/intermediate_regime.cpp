@@ -1,6 +1,6 @@
-// The terms of size ε that the coefficients predict, against the production stepper on a linear problem whose
-// slow manifold is known: u' = v, v' = (a u − v)/ε. Its slow eigenvalue is a − ε a² + O(ε²), with the right
-// eigenvector (1, a − ε a²) and the left eigenvector (1, ε) up to O(ε²).
+// O(ε) terms predicted from coefficients against the production stepper on a linear problem whose slow
+// manifold is known: u' = v, v' = (a u − v)/ε. Its slow eigenvalue is a − ε a² + O(ε²), with right
+// eigenvector (1, a − ε a²) and left eigenvector (1, ε) up to O(ε²).
 #include <apsis/method/intermediate_regime.hpp>
 
 #include "support/catalogue.hpp"
@@ -21,7 +21,7 @@ using real = long double;
 using state = std::array<real, 2>;
 constexpr real a = 0.7L;
 
-/// The columns of the matrix of one step.
+/// Returns the columns of the matrix of one step.
 std::array<state, 2> columns_of_step(const std::string& name, real slope, real epsilon, real dt) {
   auto problem = apsis::make_relaxation_problem<state>(
       [](real, const state& u, state& out) { out = {u[1], 0}; }, [](const state& u) { return u[0]; },
@@ -32,8 +32,8 @@ std::array<state, 2> columns_of_step(const std::string& name, real slope, real e
   return columns;
 }
 
-/// The largest (|Δu| + |Δv|)/(ε²/Δt + εΔt + Δt^p) at t = 1 for u' = v, v' = −(u + v)/ε from u = 1, over
-/// Δt = 1/16 … 1/4096 and ε from Δt/3 to 3·10⁻⁸ Δt; v = 0 at the start, or on the slow manifold.
+/// Returns the maximum of (|Δu| + |Δv|)/(ε²/Δt + εΔt + Δt^p) at t = 1 for u' = v, v' = −(u + v)/ε from u = 1,
+/// over Δt = 1/16 … 1/4096 and ε from Δt/3 to 3·10⁻⁸ Δt; initially v = 0, or v on the slow manifold.
 real remainder_constant(const std::string& name, bool on_the_manifold) {
   const int order = apsis::find_method(name).claims.order;
   real largest = 0;
@@ -45,7 +45,7 @@ real remainder_constant(const std::string& name, bool on_the_manifold) {
       const real slow = -2 / (1 + root), fast = -(1 + root) / (2 * epsilon), v0 = on_the_manifold ? slow : 0;
       const real c_fast = (v0 - slow) / (fast - slow), c_slow = 1 - c_fast;
       auto m = columns_of_step(name, -1, epsilon, dt);
-      for (int k = 0; k < halvings; ++k) {  // squares of the matrix
+      for (int k = 0; k < halvings; ++k) {  // repeated squaring of the matrix
         const auto [x, y] = m;
         m = {state{x[0] * x[0] + y[0] * x[1], x[1] * x[0] + y[1] * x[1]},
              state{x[0] * y[0] + y[0] * y[1], x[1] * y[0] + y[1] * y[1]}};
@@ -59,23 +59,23 @@ real remainder_constant(const std::string& name, bool on_the_manifold) {
 }
 
 struct slow_mode {
-  real growth;  ///< logarithm of the eigenvalue over Δt
+  real growth;  ///< logarithm of the slow eigenvalue over Δt
   real right;   ///< second component of the right eigenvector over the first
-  real left;    ///< of the left eigenvector
+  real left;    ///< the same ratio of the left eigenvector
 };
 
-/// From the 2 × 2 matrix of one step.
+/// Computes the slow mode from the 2 × 2 matrix of one step.
 slow_mode measure(const std::string& name, real epsilon, real dt) {
   const auto [x, y] = columns_of_step(name, a, epsilon, dt);
   const real trace = x[0] + y[1], determinant = x[0] * y[1] - y[0] * x[1];
   const real slow = trace / 2 + std::sqrt(trace * trace / 4 - determinant), fast = determinant / slow;
-  // (M − fast) maps onto the slow eigenvector, (M − fast)ᵀ onto the left one.
+  // (M − fast) maps onto the right eigenvector of the slow mode, (M − fast)ᵀ onto the left one.
   return {std::log(slow) / dt, x[1] / (x[0] - fast), y[0] / (x[0] - fast)};
 }
 
 class intermediate : public testing::TestWithParam<std::string> {};
 
-TEST_P(intermediate, flux_last_stage_and_layer_are_what_a_linear_problem_shows) {
+TEST_P(intermediate, flux_last_stage_and_layer_agree_with_a_linear_problem) {
   const auto& m = apsis::find_method(GetParam());
   const auto predicted = apsis::analyse_intermediate_regime(m.coefficients<real>());
   const real epsilon = 1e-10L, dt = 1e-4L;  // ε/Δt = 1e-6, and terms ε Δt of relative size 1e-4
@@ -89,19 +89,19 @@ TEST_P(intermediate, flux_last_stage_and_layer_are_what_a_linear_problem_shows) 
   if (std::isfinite(predicted.layer)) {
     as_predicted(shown.left / epsilon, predicted.layer);
   } else {
-    EXPECT_GT(std::abs(shown.left), 1e-2L * dt);  // of size Δt, not ε
+    EXPECT_GT(std::abs(shown.left), 1e-2L * dt);  // O(Δt), not O(ε)
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(catalogue, intermediate, testing::ValuesIn(methods_with_an_intermediate_regime()),
                          test_name);
 
-TEST(intermediate, remainders_have_the_constants_of_the_documentation) {
+TEST(intermediate, remainders_have_the_documented_constants) {
   struct row {
     const char* name;
     double on_manifold, off_manifold;
   };
-  // docs/plateaus.md, to the two digits that it prints.
+  // docs/plateaus.md, to the two digits printed there.
   for (const row& r : {row{"md-imex-5-2", 0.72, 1.8}, row{"md-imex-plateau-free-12-2", 2.0, 2.0},
                        row{"md-imex-6-2-mixed", 0.95, 5.3}, row{"md-imex-8-3-mixed", 3.0, 9.6},
                        row{"md-imex-8-3", 5.6, 12.3}, row{"md-imex-6-3", 2154, 960}}) {

@@ -1,7 +1,6 @@
-// The terms of size εΔt, and those of the band ε ~ Δt, that the coefficients predict (docs/plateaus.md),
-// against the production stepper in 60 digits. One step of u1' = s(u1) u2, u2' = k(u1) + C(u1)(E(u1) − u2)/ε
-// from u1 = 0, with straight lines s, k, C and a parabola E, so that every elementary differential is a
-// product of slopes:
+// Terms of size εΔt, and those of the band ε ~ Δt, predicted from coefficients (docs/plateaus.md) against the
+// production stepper in 60 digits. One step of u1' = s(u1) u2, u2' = k(u1) + C(u1)(E(u1) − u2)/ε from u1 = 0,
+// with linear s, k, C and quadratic E, so that every elementary differential is a product of slopes:
 //   f = sE, g = E'f − k, Ψ = s/C;  f' = s'E + E', g'f = (E''E + E'f' − k')E, E''(f, f) = E''E², Ψ' = s' − C'.
 #include "support/catalogue.hpp"
 
@@ -24,8 +23,8 @@ namespace {
 using real = apsis::mp_real;
 using state = std::array<real, 2>;
 
-/// u1' = T1(u), u2' = T2(u) + C(u1)(E(u1) − u2)/ε in 60 digits (the ready-made problems are for built-in
-/// numbers).
+/// u1' = T1(u), u2' = T2(u) + C(u1)(E(u1) − u2)/ε in 60 digits (the ready-made problems support
+/// built-in types only).
 struct exact_problem {
   using real = apsis::mp_real;
   using state = std::array<real, 2>;
@@ -63,7 +62,7 @@ exact_problem make(const slopes& p, const real& epsilon) {
       [p](const real& w) { return real(1 + real(p.c1) * w); }, epsilon};
 }
 
-/// What one step makes of (0, v).
+/// Returns the result of one step from (0, v).
 state stepped(const apsis::method& m, const slopes& p, const real& epsilon, const real& dt, const real& v) {
   auto problem = make(p, epsilon);
   apsis::stepper march(m, problem);
@@ -72,7 +71,7 @@ state stepped(const apsis::method& m, const slopes& p, const real& epsilon, cons
   return u;
 }
 
-/// In 60 digits too: a rounding of g is divided by Δt.
+/// Also in 60 digits, because rounding errors of g are divided by Δt.
 struct differentials {
   real E = 1.25, f1, g, gf, eff, psi1;
   explicit differentials(const slopes& p)
@@ -88,8 +87,8 @@ void expect_close(const real& measured, const real& predicted, const std::string
       << what << ": " << measured.str(12) << " instead of " << predicted.str(12);
 }
 
-// Every problem switches other differentials on; the second one only g'f, the third only those of linear
-// problems.
+// Each problem has other nonzero differentials: the second one only g'f, the third only those
+// of linear problems.
 const std::vector<slopes> problems = {{0.3, 0.7, 0.4, 0.9, 0.2, 0.5},  {0.0, 0.0, 0.0, 0.0, 0.6, 1.1},
                                       {0.0, 0.8, 0.0, 0.0, 0.0, 0.0},  {0.0, 0.5, 0.0, 1.3, 0.1, 0.0},
                                       {0.0, 0.5, -1.5, 0.0, 0.0, 0.0}, {-0.8, 0.2, 1.5, -0.4, 0.6, 0.0}};
@@ -98,15 +97,14 @@ class intermediate_terms : public testing::TestWithParam<std::string> {
  protected:
   const apsis::method& m = apsis::find_method(GetParam());
   apsis::intermediate_regime<real> terms = apsis::analyse_intermediate_regime(m.coefficients<real>());
-  // ε/Δt² = 6e-12, more where a stage relaxes slowly, and Δt = 4e-10 are the relative sizes of what is left
-  // out.
+  // The neglected terms have relative sizes ε/Δt² = 6e-12, more where a stage relaxes slowly, and Δt = 4e-10.
   const real epsilon = real("1e-30"), dt = real("4e-10");
 };
 
-TEST_P(intermediate_terms, of_size_epsilon_dt_are_those_of_one_step) {
+TEST_P(intermediate_terms, of_size_epsilon_dt_agree_with_one_step) {
   for (const auto& p : problems) {
     const differentials of(p);
-    // Data whose deviation is what the last step, at t − Δt, left: only ARS methods see the difference.
+    // Data with the deviation left by the previous step, at t − Δt; matters for ARS methods only.
     const real slope = terms.last_slope - terms.last, curvature = terms.last_curvature - terms.last_slope;
     const real y = terms.last * of.g + dt * (slope * of.gf + curvature * of.eff);
     const state with = stepped(m, p, epsilon, dt, of.E - epsilon * y);
@@ -122,8 +120,8 @@ TEST_P(intermediate_terms, of_size_epsilon_dt_are_those_of_one_step) {
   }
 }
 
-TEST_P(intermediate_terms, of_the_layer_are_those_of_one_step) {
-  if (isinf(terms.layer)) return;  // u^n is a stage: of size Δt, not ε
+TEST_P(intermediate_terms, of_the_layer_agree_with_one_step) {
+  if (isinf(terms.layer)) return;  // u^n is a stage: O(Δt), not O(ε)
   const double D0 = 0.45;
   for (const auto& p : problems) {
     const differentials of(p);
@@ -136,7 +134,7 @@ TEST_P(intermediate_terms, of_the_layer_are_those_of_one_step) {
 
 /// u' = v, v' = (a u − v)/ε with ε = Δt/z: logarithm of the slow eigenvalue of one step over Δt, and the
 /// second component of its eigenvector.
-TEST_P(intermediate_terms, of_the_band_are_those_of_the_hydrodynamic_mode) {
+TEST_P(intermediate_terms, of_the_band_agree_with_the_hydrodynamic_mode) {
   const auto butcher = apsis::to_butcher(m.coefficients<real>());
   for (const char* z : {"0.01", "0.5", "3", "70", "1e4"}) {
     const auto at = apsis::at_finite_rate(butcher, real(z));
@@ -164,9 +162,9 @@ TEST_P(intermediate_terms, of_the_band_are_those_of_the_hydrodynamic_mode) {
 INSTANTIATE_TEST_SUITE_P(catalogue, intermediate_terms,
                          testing::ValuesIn(methods_with_an_intermediate_regime()), test_name);
 
-/// With transport that is not linear in u the layer's integral is not linear in D₀: u1' = u2², E = cos u1.
-/// Methods with layer = 1 have its linear part, −2ED₀ instead of −2ED₀ + D₀²/2, times ε/C.
-TEST(layer, of_transport_that_is_not_linear_is_seen_in_its_linear_part) {
+/// For transport nonlinear in u, the integral over the layer is nonlinear in D₀: u1' = u2², E = cos u1.
+/// Methods with layer = 1 reproduce its linear part, −2ED₀ instead of −2ED₀ + D₀²/2, times ε/C.
+TEST(layer, of_nonlinear_transport_is_reproduced_in_its_linear_part) {
   const real epsilon = real("1e-20"), dt = real("1e-9"), E = cos(real("0.3")), C = 1.25, D0 = 0.5;
   exact_problem problem = {[](const state& u) { return state{u[1] * u[1], real(0)}; },
                            [](const real& w) { return real(cos(w)); }, [C](const real&) { return C; },

@@ -1,6 +1,6 @@
-// Order of every method of the catalogue as observed through the stepper: far from the limit ε → 0 and in it,
-// where it must be what the certificate says of initial data. A method added tomorrow is tested by being
-// there.
+// Observed order of every method of the catalogue through the stepper: far from the limit ε → 0,
+// and in the limit, where it must agree with the certificate for the given initial data. New
+// methods are tested automatically.
 #include "support/catalogue.hpp"
 
 #include <apsis/integrate/integrate.hpp>
@@ -20,8 +20,8 @@ namespace {
 using apsis::certificate;
 using apsis::method_kind;
 using apsis::step_rule;
-using real =
-    long double;  // the errors of fourth order are far above its rounding, not always above that of double
+using real = long double;  // errors of fourth-order methods are far above its rounding, but not always above
+                           // that of double
 using state = std::vector<real>;
 
 state solve(const std::string& method, real epsilon, long steps, state u) {
@@ -31,7 +31,7 @@ state solve(const std::string& method, real epsilon, long steps, state u) {
   return u;
 }
 
-/// u' = −10u² from u(0) = 1/10, exact 1/(10 + 10t): slow enough for its order to be seen.
+/// u' = −10u² from u(0) = 1/10, exact 1/(10 + 10t): slow enough to observe the order.
 double decay_error(const std::string& method, long steps) {
   const auto g = [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; };
   auto problem = apsis::make_newton_problem<state>(apsis::no_transport{}, g);
@@ -47,8 +47,8 @@ double ode_error(const std::string& method, long steps) {
   return static_cast<double>(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1]));
 }
 
-/// Observed orders of the conserved and of the relaxing component of the ODE model for ε ≪ Δt. The plateau at
-/// some tenths of ε = 1e-14 lies below a hundredth of every error.
+/// Observed orders of the conserved and of the relaxing component of the ODE model for ε ≪ Δt. The plateau, a
+/// few tenths of ε = 1e-14, is below a hundredth of every error.
 struct limit_orders {
   double moment, rest;
 };
@@ -66,23 +66,23 @@ limit_orders in_the_limit(const std::string& method, real initial_rest) {
 
 const real consistent = std::sin(real(2)), inconsistent = 0;
 
-/// The next term of an error in the steps used here is below a tenth of the first: 0.15 in the slope.
+/// For the steps used here, the second error term is below a tenth of the first: 0.15 in the slope.
 constexpr double tolerance = 0.15;
 
 class every_method : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(every_method, has_its_order) {
+TEST_P(every_method, has_its_certified_order) {
   const certificate& c = apsis::find_certificate(GetParam());
   const auto error = c.kind == method_kind::implicit_only ? decay_error : ode_error;
-  // Where the first term of the error is small, it takes shorter steps to be the largest; errors of fourth
-  // order would then be as small as that of the reference.
+  // If the leading error term is small, it dominates only for shorter steps; errors of fourth order would
+  // then be as small as that of the reference.
   const long steps = c.order == 3 ? 256 : 128;
   EXPECT_NEAR(std::log2(error(GetParam(), steps) / error(GetParam(), 2 * steps)), c.order, tolerance);
 }
 
 class every_imex_method : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(every_imex_method, has_its_order_in_the_limit_for_the_data_of_its_certificate) {
+TEST_P(every_imex_method, has_its_certified_order_in_the_limit) {
   const certificate& c = apsis::find_certificate(GetParam());
   const auto near_equilibrium = in_the_limit(GetParam(), consistent);
   const auto far_from_it = in_the_limit(GetParam(), inconsistent);
@@ -90,7 +90,7 @@ TEST_P(every_imex_method, has_its_order_in_the_limit_for_the_data_of_its_certifi
   if (c.type == "A") {
     EXPECT_NEAR(far_from_it.moment, c.order, tolerance);
   }
-  // T(u^n) of the first step is that of data which the limit does not know.
+  // T(u^n) of the first step uses data off the limit manifold.
   if (c.type == "ARS") {
     EXPECT_NEAR(far_from_it.moment, 1, tolerance);
   }
@@ -115,8 +115,8 @@ const auto members =
 INSTANTIATE_TEST_SUITE_P(families, every_method, members, test_name);
 INSTANTIATE_TEST_SUITE_P(families, every_imex_method, members, test_name);
 
-// What docs/methods.md says of methods that are not globally stiffly accurate: u^{n+1} is not projected, and
-// how far it is from equilibrium is left to the weights b A⁻¹ of the stages.
+// Methods that are not globally stiffly accurate (docs/methods.md): u^{n+1} is not projected, and its
+// deviation from equilibrium depends on the weights b A⁻¹ of the stages.
 TEST(comparators, without_gsa_lose_order_outside_the_moments) {
   EXPECT_NEAR(in_the_limit("ssp2-222", inconsistent).rest, 1, tolerance);
   EXPECT_NEAR(in_the_limit("ssp3-433", inconsistent).rest, 1, tolerance);

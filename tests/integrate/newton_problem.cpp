@@ -1,5 +1,5 @@
 // Automatic derivatives against derivatives by hand, and the guarded Newton method on stages that are easy,
-// stiff, singular, without root, or not finite.
+// stiff, singular, without a root, or not finite.
 #include <apsis/integrate/newton_problem.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -40,7 +40,7 @@ std::string message_of(const std::function<void()>& what) {
   return "no numerical_error";
 }
 
-TEST(autodiff, derivatives_of_a_coupled_field_are_those_by_hand) {
+TEST(autodiff, derivatives_of_a_coupled_field_agree_with_those_by_hand) {
   // G = (sin(x) y, x² + e^y): G' and G'' written out; Ġ = G'G and Ġ'w = G''[G, w] + G'G'w follow.
   const auto g = [](const auto& u, auto& out) {
     using std::exp, std::sin;
@@ -65,7 +65,7 @@ TEST(autodiff, derivatives_of_a_coupled_field_are_those_by_hand) {
     field.second_product(u, direction, j, k);
     for (Eigen::Index i = 0; i < 2; ++i) {
       const std::size_t s = static_cast<std::size_t>(i);
-      // All numbers are below 200, and a dozen roundings of them make up each.
+      // All numbers are below 200 and result from about a dozen roundings.
       RC_ASSERT(std::abs(g0[s] - value[i]) <= 1e-13);
       RC_ASSERT(std::abs(g_dot[s] - dot[i]) <= 1e-12);
       RC_ASSERT(std::abs(j[s] - jw[i]) <= 1e-13);
@@ -89,7 +89,7 @@ TEST(newton_problem, solves_the_cubic_of_square_decay_to_round_off_for_any_step)
   });
 }
 
-TEST(newton_problem, works_in_long_double_to_its_own_round_off) {
+TEST(newton_problem, solves_to_round_off_in_long_double) {
   auto problem = apsis::make_newton_problem<std::vector<long double>>(no_transport{}, square_decay);
   for (const long double dt : {1e-4L, 1.0L, 1e8L}) {
     std::vector<long double> state{10};
@@ -99,7 +99,7 @@ TEST(newton_problem, works_in_long_double_to_its_own_round_off) {
   }
 }
 
-TEST(newton_problem, zero_and_nothing_implicit_are_exact) {
+TEST(newton_problem, is_exact_for_zero_data_and_for_explicit_stages) {
   apsis::newton_problem problem{no_transport{}, square_decay};
   row u{0};
   problem.solve_collision(0, 1.0, -1.0, u);
@@ -109,7 +109,7 @@ TEST(newton_problem, zero_and_nothing_implicit_are_exact) {
   EXPECT_EQ(u, row{3});
 }
 
-TEST(newton_problem, solves_where_squares_underflow) {
+TEST(newton_problem, solves_even_if_squares_underflow) {
   const auto decay = [](const auto& u, auto& out) { out[0] = -u[0]; };
   for (const auto solver : {linear_solver::dense, linear_solver::krylov}) {
     apsis::newton_problem problem(no_transport{}, decay, newton_options{solver});
@@ -119,7 +119,7 @@ TEST(newton_problem, solves_where_squares_underflow) {
   }
 }
 
-/// A tridiagonal diffusion with a cubic sink, N unknowns.
+/// Tridiagonal diffusion with a cubic sink, N unknowns.
 constexpr auto reaction_diffusion = [](const auto& u, auto& out) {
   const std::size_t n = u.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -154,7 +154,7 @@ TEST(newton_problem, automatic_choice_is_krylov_beyond_the_dense_limit) {
   EXPECT_EQ(u, v);
 }
 
-TEST(newton_problem, errata_4_singular_stage_of_a_rotation_is_detected_and_named) {
+TEST(newton_problem, errata_4_singular_stage_of_a_rotation_is_reported) {
   const double w = 3;
   const auto rotation = [w](const auto& u, auto& out) {
     out[0] = w * u[1];
@@ -169,11 +169,11 @@ TEST(newton_problem, errata_4_singular_stage_of_a_rotation_is_detected_and_named
     };
     // I − b G'² = (1 − |b| w²) I: with ḋ = −1 this is Δt λ = ±i.
     EXPECT_THAT(message_of([&] { solve(-(1 + 1e-15) / (w * w)); }), HasSubstr("singular"));
-    // A millionth beside it the stage is regular, and amplifies by 1e6.
+    // At a relative distance of 1e-6 the stage is regular and amplifies by 1e6.
     const row near = solve(-(1 + 1e-6) / (w * w));
     EXPECT_NEAR(near[0], -1e6, 1e-3);
     EXPECT_NEAR(near[1], -2e6, 2e-3);
-    // With the first derivative in it the stage is regular: v = b G'² v cancels and a G v = −u is left.
+    // With a first-derivative term the stage is regular: v = b G'² v cancels, which leaves a G v = −u.
     row u{1, 2};
     problem.solve_collision(0, 0.5, -1 / (w * w), u);
     EXPECT_NEAR(u[0], 2 / (0.5 * w), 1e-14);
@@ -185,7 +185,7 @@ TEST(newton_problem, errata_4_singular_stage_of_a_rotation_is_detected_and_named
   EXPECT_EQ(u, (row{1, 2}));
 }
 
-TEST(newton_problem, stiffness_and_units_are_not_taken_for_singularity) {
+TEST(newton_problem, does_not_mistake_stiffness_or_units_for_singularity) {
   check_property("fast and slow, large and small variables", [] {
     const double k = magnitude(0, 24), unit = magnitude(-8, 8);
     const auto g = [=](const auto& u, auto& out) {
@@ -201,7 +201,7 @@ TEST(newton_problem, stiffness_and_units_are_not_taken_for_singularity) {
 }
 
 TEST(newton_problem, iterates_never_leave_the_admissible_set) {
-  // √u has no value below 0: one inadmissible iterate would be seen by G as well.
+  // √u is undefined below 0, so G would also detect an inadmissible iterate.
   double smallest = 1;
   const auto g = [&smallest](const auto& u, auto& out) {
     using std::sqrt;
@@ -215,10 +215,10 @@ TEST(newton_problem, iterates_never_leave_the_admissible_set) {
   EXPECT_GT(smallest, 0);
   // w = √v solves w² + 10 w = 1e-4.
   const double w = 2e-4 / (10 + std::sqrt(100 + 4e-4));
-  EXPECT_NEAR(u[0] / (w * w), 1, 1e-14);  // a few roundings
+  EXPECT_NEAR(u[0] / (w * w), 1, 1e-14);  // a few rounding errors
 }
 
-TEST(newton_problem, no_admissible_root_is_an_error_that_leaves_the_state) {
+TEST(newton_problem, throws_without_an_admissible_root_and_keeps_the_state) {
   apsis::newton_problem problem{no_transport{}, square_decay};
   row u{-5};  // 10 v² + v + 5 = 0 has no real root at all
   EXPECT_THAT(message_of([&] { problem.solve_collision(0, 1.0, 0.0, u); }), HasSubstr("no admissible root"));
@@ -230,7 +230,7 @@ TEST(newton_problem, no_admissible_root_is_an_error_that_leaves_the_state) {
   EXPECT_THAT(message_of([&] { problem.solve_collision(0, 0.0, 0.0, u); }), HasSubstr("not admissible"));
 }
 
-TEST(newton_problem, explicit_part_outside_the_admissible_set_is_no_error_if_the_root_is_inside) {
+TEST(newton_problem, accepts_an_inadmissible_explicit_part_if_the_root_is_admissible) {
   const auto g = [](const auto& u, auto& out) { out[0] = 1 - u[0]; };
   apsis::newton_problem problem{no_transport{}, g};
   problem.with_admissible([](std::span<const double> v) { return v[0] >= 0; });
@@ -239,7 +239,7 @@ TEST(newton_problem, explicit_part_outside_the_admissible_set_is_no_error_if_the
   EXPECT_NEAR(u[0], 0.25, 1e-16);
 }
 
-TEST(newton_problem, not_a_number_is_reported_with_its_component) {
+TEST(newton_problem, reports_nan_with_its_component) {
   const auto g = [](const auto& u, auto& out) {
     using std::sqrt;
     out[0] = -u[0];
@@ -253,7 +253,7 @@ TEST(newton_problem, not_a_number_is_reported_with_its_component) {
   EXPECT_THAT(message_of([&] { problem.solve_collision(0, 0.0, 0.0, u); }), HasSubstr("component 0"));
 }
 
-TEST(newton_problem, limit_of_iterations_is_an_error) {
+TEST(newton_problem, throws_at_the_iteration_limit) {
   newton_options few;
   few.max_iterations = 3;
   apsis::newton_problem problem{no_transport{}, square_decay, few};
@@ -265,7 +265,7 @@ TEST(newton_problem, limit_of_iterations_is_an_error) {
 
 namespace {
 
-/// Steps of imdrk-9-5 to a relative tolerance of 1e-6 (against 1e-6 absolutely).
+/// Integrates with imdrk-9-5 to relative and absolute tolerances of 1e-6.
 template <class G>
 apsis::integration_result<double> solve_stiff(const G& g, std::vector<double>& u, double end,
                                               long& rejected) {
@@ -288,9 +288,9 @@ apsis::integration_result<double> solve_stiff(const G& g, std::vector<double>& u
 }  // namespace
 
 TEST(newton_problem, follows_a_slow_manifold_in_steps_far_beyond_the_relaxation_time) {
-  // Van der Pol's equation in Liénard's time, ε = 1e-6: a full Newton step leaves the manifold by a residual
-  // of (Δt/ε)² times its square. With backtracking on the residual alone Newton's method crept along it,
-  // failed after 200 iterations, and it took 6300 steps.
+  // Van der Pol's equation in Liénard time, ε = 1e-6: a full Newton step leaves the manifold with a residual
+  // of (Δt/ε)² times its square. With backtracking on the residual alone, Newton's method crept along the
+  // manifold, failed after 200 iterations, and the integration took 6300 steps.
   std::vector<double> u{2.0, -0.66};
   long rejected = 0;
   const auto done = solve_stiff(
@@ -307,8 +307,8 @@ TEST(newton_problem, follows_a_slow_manifold_in_steps_far_beyond_the_relaxation_
 }
 
 TEST(newton_problem, slow_reaches_the_end_of_robertson_s_problem) {
-  // Steps grow over sixteen decades; the residuals of the last stages are rounding of numbers near 1e5. A
-  // Newton method that wants them below its tolerance in absolute terms never ends.
+  // Steps grow over sixteen decades; residuals of the last stages are rounding errors of numbers near 1e5. A
+  // Newton method with an absolute tolerance below these would never end.
   std::vector<double> u{1.0, 0.0, 0.0};
   long rejected = 0;
   const auto done = solve_stiff(
@@ -320,8 +320,8 @@ TEST(newton_problem, slow_reaches_the_end_of_robertson_s_problem) {
       },
       u, 1e11, rejected);
   EXPECT_EQ(done.t, 1e11);
-  // Mazzia & Magherini, Test Set for Initial Value Problem Solvers (2008), problem ROBER. The tolerance is
-  // 1e-6 in absolute terms, far above u[0] and u[1] themselves.
+  // Mazzia & Magherini, Test Set for Initial Value Problem Solvers (2008), problem ROBER. The absolute
+  // tolerance of 1e-6 is far above u[0] and u[1].
   EXPECT_NEAR(u[0], 0.2083340149701255e-7, 1e-5);
   EXPECT_NEAR(u[1], 0.8333360770334713e-13, 1e-10);
   EXPECT_NEAR(u[2], 0.9999999791665050, 1e-5);

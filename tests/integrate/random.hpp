@@ -6,10 +6,11 @@
 
 #include <rapidcheck.h>
 
-/// Random numbers inside a property (they shrink towards `low`).
+/// Random numbers inside a property, which shrink towards `low`.
 namespace random_input {
 
-/// An integer in [low, high), from the whole range in every case; RapidCheck itself starts with small ones.
+/// Returns an integer in [low, high), drawn from the whole range in every case; RapidCheck itself starts
+/// with small ones.
 inline int integer(int low, int high) {
   return *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(low, high));
 }
@@ -22,12 +23,12 @@ inline double uniform(double low, double high) {
   return low + (high - low) * (integer(0, 1000001) * 1e-6);
 }
 
-/// 10^x with x uniform.
+/// Returns 10^x with x uniform in [low, high).
 inline double magnitude(double low, double high) {
   return std::pow(10.0, uniform(low, high));
 }
 
-/// n numbers ≥ 0 over thirteen orders of magnitude, about a quarter of them exactly zero.
+/// Returns n numbers ≥ 0 over thirteen orders of magnitude, about a quarter of them exactly zero.
 inline std::vector<double> nonnegative(std::size_t n) {
   std::vector<double> u(n);
   for (double& x : u) x = one_in(4) ? 0.0 : magnitude(-12, 1);

@@ -1,4 +1,4 @@
-// The references that errors are measured against must be right themselves.
+// Verification of the reference solutions that errors are measured against.
 #include <integrate/reference.hpp>
 
 #include <apsis/integrate/extrapolation.hpp>
@@ -26,7 +26,8 @@ TEST(reference, distance_to_the_exact_limit_solution_is_proportional_to_epsilon)
     const auto u = reference::radau(epsilon, 1);
     return std::abs(u[0] - limit[0]) + std::abs(u[1] - limit[1]);
   };
-  // The next term of the expansion is O(ε) smaller, hence 1e-3 for ε ≤ 1e-6; 1e-16 · 1e10 is far below it.
+  // The next term of the expansion is smaller by a factor O(ε), hence 1e-3 for ε ≤ 1e-6; the error of the
+  // reference, 1e-16 · 1e10, is far below it.
   EXPECT_NEAR(static_cast<double>(distance(1e-6L) / distance(1e-8L)), 100, 0.1);
   EXPECT_NEAR(static_cast<double>(distance(1e-8L) / distance(1e-10L)), 100, 0.1);
 }
@@ -37,11 +38,11 @@ constexpr auto distance = [](const state& a, const state& b) {
   return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]);
 };
 
-state extrapolated(long double epsilon, apsis::extrapolation_options<long double> how,
+state extrapolated(long double epsilon, apsis::extrapolation_options<long double> options,
                    long* steps = nullptr) {
   auto problem = ode_model::as_relaxation<state>(epsilon);
   auto u = ode_model::initial_state<state>();
-  const long n = apsis::extrapolate(problem, u, 0.0L, 1.0L, how, distance);
+  const long n = apsis::extrapolate(problem, u, 0.0L, 1.0L, options, distance);
   if (steps != nullptr) *steps = n;
   return u;
 }
@@ -53,19 +54,20 @@ TEST(extrapolation, agrees_with_both_solvers_for_every_epsilon) {
     const auto radau = reference::radau(epsilon, 1);
     const auto cvode = reference::cvode(epsilon, 1);
     EXPECT_LT(distance(u, {radau[0], radau[1]}), 1e-13L) << epsilon;
-    EXPECT_LT(distance(u, {cvode[0], cvode[1]}), 2e-12L) << epsilon;  // what CVODE can do, see above
-    EXPECT_LT(steps, 5000) << epsilon;  // an explicit method needs more than 1/ε
+    EXPECT_LT(distance(u, {cvode[0], cvode[1]}), 2e-12L) << epsilon;  // accuracy of CVODE, see above
+    EXPECT_LT(steps, 5000) << epsilon;  // an explicit method needs more than 1/ε steps
   }
 }
 
-TEST(extrapolation, error_follows_the_tolerance) {
+TEST(extrapolation, error_decreases_with_the_tolerance) {
   for (const double epsilon : {1.0, 1e-3, 1e-8})
     for (const int order : {4, 6, 8}) {
       const auto radau = reference::radau(epsilon, 1);
       const auto error = [&](long double tolerance) {
         return distance(extrapolated(epsilon, {tolerance, 0, order}), {radau[0], radau[1]});
       };
-      // A tolerance per step is met up to the number of steps; estimates are pessimistic, so often by far.
+      // The tolerance per step bounds the error up to the number of steps; estimates are pessimistic,
+      // often by far.
       EXPECT_LT(error(1e-6L), 1e-5L) << epsilon << " " << order;
       EXPECT_LT(error(1e-10L), 1e-9L) << epsilon << " " << order;
     }
@@ -77,7 +79,7 @@ TEST(extrapolation, epsilon_zero_gives_the_limit) {
   EXPECT_LT(distance(u, {limit[0], limit[1]}), 1e-13L);
 }
 
-TEST(extrapolation, says_so_if_the_tolerance_cannot_be_met) {
+TEST(extrapolation, throws_if_the_tolerance_cannot_be_met) {
   EXPECT_THROW(extrapolated(1.0L, {1e-24L, 0, 8, 1000}), apsis::numerical_error);
 }
 

@@ -3,16 +3,16 @@
 #include <array>
 #include <functional>
 
-/// Two solvers for the ODE model of the paper that share no code with the library and none with each other.
+/// Two solvers for the ODE model of the paper that share no code with the library or with each other.
 namespace reference {
 
 using pair = std::array<long double, 2>;
 
-/// Radau IIA, order 5, in long double, with the step chosen by comparing one step with two halves. The local
-/// error per step stays below 1e-17; the steps of the initial layer follow its width by themselves.
+/// Radau IIA, order 5, in long double, with step control by comparing one step with two half steps. The local
+/// error per step stays below 1e-17; the initial layer is resolved automatically.
 pair radau(long double epsilon, long double t_end);
 
-/// CVODE at its tightest tolerances, double precision. The stiff method (BDF) for ε ≤ 0.1, Adams above.
+/// CVODE at its tightest tolerances, in double precision: BDF for ε ≤ 0.1, Adams above.
 pair cvode(double epsilon, double t_end);
 
 /// The solution of the limit ε = 0 from u1(0) = 2: u1' = sin u1 gives tan(u1/2) = tan(1) e^t, u2 = sin u1.

@@ -40,7 +40,8 @@ matrix3 radau_matrix() {
   return a;
 }
 
-/// One step for the increments z_i = u_i − u; false if Newton's method does not converge.
+/// Takes one step, solving for the increments z_i = u_i − u; returns false if Newton's method
+/// does not converge.
 bool radau_step(const model& f, long double h, vector2& u) {
   static const matrix3 a = radau_matrix();
   vector6 z = vector6::Zero();

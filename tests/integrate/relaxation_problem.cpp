@@ -1,5 +1,5 @@
-// The closed-form stage of relaxation problems: its weights, Properties 3–5 of the paper (C14), positivity of
-// backward Euler (C15) and what happens at ε = 0.
+// Closed-form stages of relaxation problems: weights, Properties 3–5 of the paper (C14), positivity of
+// backward Euler (C15), and ε = 0.
 #include <apsis/integrate/relaxation_problem.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -30,7 +30,8 @@ using row = std::vector<double>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
-/// The collision of the Broadwell model in the form of kinetic theory, f = (f+, f0, f-): no E, no C.
+/// The collision operator of the Broadwell model in the form of kinetic theory, f = (f+, f0, f-), without
+/// E and C.
 constexpr auto broadwell_collision = [](const auto& f, auto& out) {
   const auto gain = f[1] * f[1] - f[0] * f[2];
   out[0] = gain;
@@ -42,8 +43,8 @@ struct broadwell_moments {
   double rho, m;
 };
 
-/// The same as relaxation: C = ρ, E = ((ρ+m)², ρ²−m², (ρ−m)²)/(4ρ) (paper, C16); the vacuum relaxes to
-/// itself.
+/// The Broadwell model as relaxation: C = ρ, E = ((ρ+m)², ρ²−m², (ρ−m)²)/(4ρ) (paper, C16); a vacuum is
+/// its own equilibrium.
 auto broadwell(double epsilon) {
   return apsis::relaxation_problem(
       apsis::no_transport{},
@@ -57,7 +58,7 @@ auto broadwell(double epsilon) {
       [](broadwell_moments w) { return w.rho; }, epsilon);
 }
 
-TEST(relaxation_weights, are_the_two_fractions_to_a_few_ulps_and_sum_to_one) {
+TEST(relaxation_weights, are_accurate_to_a_few_ulps_and_sum_to_one) {
   check_property("weights", [] {
     const double a = one_in(3) ? 0.0 : magnitude(-12, 12);
     const double b = one_in(3) ? 0.0 : -magnitude(-20, 20);
@@ -65,7 +66,7 @@ TEST(relaxation_weights, are_the_two_fractions_to_a_few_ulps_and_sum_to_one) {
     const auto w = apsis::relax_weights(a, b, rate, epsilon);
     const long double k = static_cast<long double>(rate) / epsilon, mu = a * k - b * k * k;
     const long double stay = 1 / (1 + mu), relax = mu / (1 + mu);
-    // Five roundings lie between the arguments and the smaller weight.
+    // The smaller weight results from five roundings.
     RC_ASSERT(std::abs(w.stay - stay) <= 5 * rounding * stay);
     RC_ASSERT(std::abs(w.relax - relax) <= 5 * rounding * relax);
     RC_ASSERT(w.stay + w.relax == 1.0);
@@ -103,7 +104,7 @@ TEST(claims, C14_broadwell_is_a_relaxation_with_rate_rho) {
     RC_ASSERT(std::abs(q[0] + 2 * q[1] + q[2]) <= tolerance);
     RC_ASSERT(std::abs(q[0] - q[2]) <= tolerance);
     row e = f;
-    problem.solve_collision(0, 1.0, 0.0, e);  // any state will do as long as it is nonnegative
+    problem.solve_collision(0, 1.0, 0.0, e);  // any nonnegative state
     auto limit = broadwell(0.0);
     limit.solve_collision(0, 1.0, 0.0, e);
     problem.add_collision(0, e, {&to, 1});
@@ -111,7 +112,7 @@ TEST(claims, C14_broadwell_is_a_relaxation_with_rate_rho) {
   });
 }
 
-/// Largest deviation from Q'(u)Q(u) = −C Q(u), relative to the largest |C Q_k|.
+/// Returns the largest deviation from Q'(u)Q(u) = −C Q(u), relative to the largest |C Q_k|.
 template <class Q>
 double property_5_defect(const Q& collision, double rate, const row& u) {
   apsis::vector_field<double, Q> field(collision);
@@ -182,12 +183,12 @@ TEST(claims, C14_property_5_for_bgk_by_automatic_differentiation) {
           0.4 * std::exp(-(v - shift) * (v - shift) / 2) + 0.2 * std::exp(-(v + 1) * (v + 1));
     }
     const double rho = std::accumulate(f.begin(), f.end(), 0.0) * dv;
-    // The midpoint rule keeps the moments of these Maxwellians to 1e-13 or so: that is what E' Q leaves.
+    // The midpoint rule reproduces the moments of these Maxwellians to about 1e-13, the size of E' Q.
     EXPECT_LT(property_5_defect(collision, rho, f), 1e-11) << shift;
   }
 }
 
-TEST(claims, C15_backward_euler_is_positive_for_every_step_also_from_zeros) {
+TEST(claims, C15_backward_euler_is_positive_for_every_step_including_zero_data) {
   check_property("Broadwell, λ from 1e-12 to 1e12", [] {
     const double lambda = magnitude(-12, 12);
     const row f = nonnegative(3);
@@ -195,8 +196,7 @@ TEST(claims, C15_backward_euler_is_positive_for_every_step_also_from_zeros) {
     broadwell(1.0).solve_collision(0, lambda, 0.0, v);
     const double rho = f[0] + 2 * f[1] + f[2];
     for (const double x : v) RC_ASSERT(x >= 0.0);
-    // v is what it should be: v − f = λ Q(v) in extended precision, up to roundings of terms of size ρ and
-    // λρ².
+    // v − f = λ Q(v) holds in extended precision, up to rounding of terms of size ρ and λρ².
     const long double gain = static_cast<long double>(v[1]) * v[1] - static_cast<long double>(v[0]) * v[2];
     const std::array<long double, 3> sign{1, -1, 1};
     for (std::size_t k = 0; k < 3; ++k)
@@ -216,7 +216,7 @@ TEST(claims, C15_stages_with_two_derivatives_are_positive_too) {
   });
 }
 
-TEST(relaxation_problem, closed_form_equals_newton_on_the_same_equation) {
+TEST(relaxation_problem, closed_form_agrees_with_newton) {
   check_property("ODE model, any stage", [] {
     const double epsilon = magnitude(-10, 1);
     const double a = one_in(3) ? 0.0 : magnitude(-4, 0);
@@ -225,12 +225,12 @@ TEST(relaxation_problem, closed_form_equals_newton_on_the_same_equation) {
     row closed = u, solved = u;
     ode_model::as_relaxation(epsilon).solve_collision(0, a, b, closed);
     ode_model::as_newton(epsilon).solve_collision(0, a, b, solved);
-    // Newton sees terms of size up to 1e4 × the result cancel at the last iterate, relative to the stiff one.
+    // In the last Newton iterate, terms of up to 1e4 × the result cancel, relative to the stiff term.
     for (std::size_t k = 0; k < 2; ++k) RC_ASSERT(std::abs(closed[k] - solved[k]) <= 1e-13);
   });
 }
 
-TEST(relaxation_problem, epsilon_zero_is_the_equilibrium_exactly_and_nothing_where_nothing_is_implicit) {
+TEST(relaxation_problem, at_epsilon_zero_implicit_stages_are_the_equilibrium_and_explicit_ones_unchanged) {
   auto problem = ode_model::as_relaxation(0.0);
   row u{2, 0.1};
   problem.solve_collision(0, 0.0, 0.0, u);
@@ -239,7 +239,7 @@ TEST(relaxation_problem, epsilon_zero_is_the_equilibrium_exactly_and_nothing_whe
   EXPECT_EQ(u, (row{2, std::sin(2.0)}));
 }
 
-TEST(relaxation_problem, explicit_collision_is_refused_at_epsilon_zero) {
+TEST(relaxation_problem, rejects_explicit_collision_at_epsilon_zero) {
   auto problem = ode_model::as_relaxation(0.0);
   const row u{2, 0};
   row acc(2);
@@ -249,7 +249,7 @@ TEST(relaxation_problem, explicit_collision_is_refused_at_epsilon_zero) {
   EXPECT_EQ(acc, u);
 }
 
-TEST(relaxation_problem, says_what_is_wrong_with_a_state) {
+TEST(relaxation_problem, reports_why_a_state_is_invalid) {
   auto problem = ode_model::as_relaxation(1.0);
   row bad{2, std::nan("")};
   EXPECT_THROW(problem.solve_collision(0, 1.0, 0.0, bad), apsis::numerical_error);
@@ -264,14 +264,14 @@ TEST(relaxation_problem, says_what_is_wrong_with_a_state) {
     EXPECT_THROW(ode_model::as_relaxation(epsilon), apsis::input_error) << epsilon;
 }
 
-TEST(relaxation_problem, forward_euler_step_is_infinite_unless_given) {
+TEST(relaxation_problem, forward_euler_step_is_infinite_unless_set) {
   auto problem = ode_model::as_relaxation(1.0);
   EXPECT_EQ(problem.forward_euler_step(0, {2, 0}), infinity);
   problem.with_forward_euler_step([](double t, const row& u) { return t + u[0]; });
   EXPECT_EQ(problem.forward_euler_step(1, {2, 0}), 3);
 }
 
-TEST(accumulate, evaluates_once_and_only_if_a_target_wants_it) {
+TEST(accumulate, evaluates_at_most_once_and_only_if_a_target_needs_it) {
   const row u{1, 2}, slope{10, 20};
   int evaluations = 0;
   const auto evaluate = [&]() -> const row& {
@@ -303,7 +303,7 @@ auto two_numbers(double kept_share) {
       [](double) { return 1.0; }, 1.0);
 }
 
-/// What a step of the method says.
+/// Returns the error message of a step of the method.
 template <class Problem>
 std::string complaint_of_step(Problem problem, const std::string& method) {
   apsis::stepper march(apsis::find_method(method), problem);
@@ -319,14 +319,14 @@ std::string complaint_of_step(Problem problem, const std::string& method) {
 
 }  // namespace
 
-TEST(relaxation_problem, refuses_an_equilibrium_with_other_moments) {
+TEST(relaxation_problem, rejects_an_equilibrium_with_wrong_moments) {
   EXPECT_EQ(complaint_of_step(two_numbers(1.0), "md-imex-3-2"), "");
   EXPECT_EQ(complaint_of_step(two_numbers(1.0 + 1e-12), "md-imex-3-2"), "");
   EXPECT_EQ(
       complaint_of_step(two_numbers(1.001), "md-imex-3-2"),
-      "the equilibrium does not have the moments that it is given (R E(w) differs from w by 0.001 of the "
-      "largest); correct equilibrium or moments");
-  // Moments that are a range are compared one by one.
+      "the equilibrium does not have the given moments (R E(w) differs from w by 0.001 of the largest); "
+      "correct the equilibrium or the moments");
+  // Moments given as a range are compared one by one.
   const apsis::relaxation_problem ranged(
       [](double, const std::vector<double>&, std::vector<double>& T) { T = {0.0, 0.0}; },
       [](const std::vector<double>& u) { return std::array{u[0] + u[1], u[0] - u[1]}; },
@@ -335,7 +335,7 @@ TEST(relaxation_problem, refuses_an_equilibrium_with_other_moments) {
   EXPECT_NE(complaint_of_step(ranged, "md-imex-3-2").find("differs from w by 0.33 of"), std::string::npos);
 }
 
-TEST(method_without_transport, is_refused_where_the_problem_has_transport) {
+TEST(method_without_transport, is_rejected_for_problems_with_transport) {
   EXPECT_EQ(complaint_of_step(two_numbers(1.0), "imdrk-2-3"),
             "method 'imdrk-2-3' cannot integrate this problem (it is implicit only and the problem has "
             "transport); choose an IMEX or explicit method");
@@ -350,7 +350,7 @@ TEST(method_without_transport, is_refused_where_the_problem_has_transport) {
   EXPECT_EQ(complaint_of_step(still, "imdrk-2-3"), "");
 }
 
-TEST(rule_of_ssp_steps, needs_a_method_with_an_ssp_coefficient) {
+TEST(rule_of_ssp_steps, requires_a_method_with_an_ssp_coefficient) {
   auto problem = two_numbers(1.0);
   problem.with_forward_euler_step([](double, const std::vector<double>&) { return 0.1; });
   const auto run = [&](const std::string& method, apsis::step_rule<double> rule) {

@@ -14,7 +14,7 @@ namespace {
 using apsis::schedule;
 using apsis::shu_osher_form;
 
-/// u' = λ_T u + λ_Q u with everything counted; fails on demand.
+/// u' = λ_T u + λ_Q u that counts all calls and fails on demand.
 class counted {
  public:
   using state = std::vector<double>;
@@ -42,7 +42,8 @@ class counted {
   double forward_euler_step(double, const state&) const { return 1.0; }
 };
 
-/// The same step from the Butcher form, without schedule: (I − z_T Â − z_Q A − z_Q² Ȧ) U = e by substitution.
+/// Takes the same step by the Butcher form, without a schedule: (I − z_T Â − z_Q A − z_Q² Ȧ) U = e
+/// by forward substitution.
 double direct(const shu_osher_form<double>& m, double zt, double zq) {
   const auto b = apsis::to_butcher(m);
   std::vector<double> u(m.stages());
@@ -66,14 +67,14 @@ double stepped(const shu_osher_form<double>& m, counted& p) {
 
 }  // namespace
 
-TEST(schedule, methods_of_the_paper_need_three_and_six_buffers) {
+TEST(schedule, of_the_papers_methods_needs_three_and_six_buffers) {
   EXPECT_EQ(schedule(apsis::find_method("md-imex-3-2").coefficients<double>()).buffers(), 3);
   EXPECT_EQ(schedule(apsis::find_method("md-imex-6-3").coefficients<double>()).buffers(), 6);
 }
 
-TEST(schedule, explicit_methods_need_the_registers_in_place_one_more_and_one_for_u_n_where_they_lose_it) {
-  // Ketcheson (2008): two registers with T(u) added to u in place. add_transport reads u while it writes
-  // elsewhere: one more. u^n is kept for a step that fails; (10,4) alone overwrites it on its way.
+TEST(schedule, of_explicit_methods_needs_the_known_registers_plus_one_or_two) {
+  // Ketcheson (2008): two registers if T(u) is added to u in place. add_transport reads u while it writes
+  // elsewhere, which takes one more. u^n is kept in case a step fails; only (10,4) would overwrite it.
   struct counted_in_place {
     const char* name;
     int registers;
@@ -83,13 +84,13 @@ TEST(schedule, explicit_methods_need_the_registers_in_place_one_more_and_one_for
                         counted_in_place{"ssprk-4-3", 2, true}, counted_in_place{"ssprk-10-4", 2, false}}) {
     const schedule plan(apsis::find_method(m.name).coefficients<double>());
     EXPECT_EQ(plan.buffers(), m.registers + 1 + (m.keeps_u_n ? 0 : 1)) << m.name;
-    // Buffer 0 is u^n: nothing but the start of a step may write there.
+    // Buffer 0 holds u^n and must not be written during a step.
     for (const auto& instruction : plan.instructions())
       for (const auto& to : instruction.to) EXPECT_NE(to.buffer, 0) << m.name << " writes stage " << to.stage;
   }
 }
 
-TEST(schedule, counts_of_every_method_are_those_of_its_certificate_and_of_a_step) {
+TEST(schedule, counts_agree_with_the_certificate_and_with_a_step) {
   for (const auto& name : apsis::method_names()) {
     const auto form = apsis::find_method(name).coefficients<double>();
     const schedule plan(form);
@@ -104,7 +105,7 @@ TEST(schedule, counts_of_every_method_are_those_of_its_certificate_and_of_a_step
   }
 }
 
-TEST(schedule, a_step_of_every_method_is_its_stability_function) {
+TEST(schedule, of_every_method_reproduces_its_stability_function) {
   for (const auto& name : apsis::method_names()) {
     const auto form = apsis::find_method(name).coefficients<double>();
     check_property(name, [&] {
@@ -112,27 +113,26 @@ TEST(schedule, a_step_of_every_method_is_its_stability_function) {
       p.transport = *rc::gen::inRange(-2000, 2000) * 1e-3;
       p.collision = -std::pow(10.0, *rc::gen::inRange(-3, 5));
       const double expected = direct(form, p.transport, p.collision);
-      // A dozen products of numbers whose partial sums are up to 10³ times the result for DIRK methods.
+      // A dozen products; partial sums are up to 10³ times the result for DIRK methods.
       RC_ASSERT(std::abs(stepped(form, p) - expected) <= 1e-12 * (1.0 + std::abs(expected)));
     });
   }
 }
 
-TEST(schedule, a_step_of_any_zero_pattern_is_its_stability_function) {
+TEST(schedule, of_any_zero_pattern_reproduces_its_stability_function) {
   check_property("random forms", [] {
     const auto form = random_input::form(1);
     counted p;
     p.transport = *rc::gen::inRange(-1000, 1000) * 1e-3;
     p.collision = -*rc::gen::inRange(1, 1000) * 1e-3;
-    // Stages with ḋ and an off-diagonal Q of another stage are recovered from Q evaluated, or from the stage
-    // itself.
+    // For stages with ḋ, an off-diagonal Q is evaluated; for others it is recovered from the stage.
     const double expected = direct(form, p.transport, p.collision);
     RC_ASSERT(std::abs(stepped(form, p) - expected) <= 1e-11 * (1.0 + std::abs(expected)));
     RC_ASSERT(schedule(form).buffers() <= static_cast<int>(form.stages()) + 1);
   });
 }
 
-TEST(stepper, leaves_the_state_alone_when_a_stage_fails) {
+TEST(stepper, keeps_the_state_if_a_stage_fails) {
   for (const auto& name : apsis::method_names()) {
     const auto form = apsis::find_method(name).coefficients<double>();
     const int solves = schedule(form).implicit_solves();
@@ -156,8 +156,8 @@ TEST(stepper, leaves_the_state_alone_when_a_stage_fails) {
 
 namespace {
 
-/// As `counted`, without the third verb.
-class two_verbs {
+/// A problem without add_collision.
+class minimal_problem {
  public:
   using state = double;
   using real = double;
@@ -170,12 +170,12 @@ class two_verbs {
 
 }  // namespace
 
-TEST(stepper, refuses_a_method_that_needs_a_verb_the_problem_lacks) {
-  two_verbs p;
-  EXPECT_NO_THROW(apsis::stepper<two_verbs>(apsis::find_method("md-imex-6-3"), p));
+TEST(stepper, rejects_a_method_that_needs_add_collision_if_the_problem_lacks_it) {
+  minimal_problem p;
+  EXPECT_NO_THROW(apsis::stepper<minimal_problem>(apsis::find_method("md-imex-6-3"), p));
   for (const std::string name : {"ssprk-3-3", "dirk-2-2"}) {
     try {
-      apsis::stepper<two_verbs>(apsis::find_method(name), p);
+      apsis::stepper<minimal_problem>(apsis::find_method(name), p);
       ADD_FAILURE() << name << " accepted";
     } catch (const apsis::input_error& refused) {
       EXPECT_NE(std::string(refused.what()).find("method '" + name + "' evaluates Q explicitly"),

@@ -1,4 +1,4 @@
-// A graded start in the time loop: the first step, and nothing else, is cut into steps that double.
+// Graded start in the time loop: the first step, and no other, is divided into steps that double.
 #include "ode_model.hpp"
 #include "random.hpp"
 #include "support/property.hpp"
@@ -24,7 +24,7 @@ struct visited {
   long startup_steps = 0;
 };
 
-/// All times and steps. `width` < 0: without start-up.
+/// Records all times and steps. `width` < 0 means no start-up.
 visited march_through(apsis::time_marcher<double> march, double proposed, double width) {
   visited out{{march.t()}, {}, 0};
   if (width >= 0.0) march.start_up(proposed, width);
@@ -45,7 +45,7 @@ apsis::time_marcher<double> random_march(double& proposed) {
   return {t0, t0 + length, given ? std::optional<double>(proposed) : std::nullopt};
 }
 
-TEST(startup, cuts_the_first_step_and_leaves_all_later_times_to_the_last_digit) {
+TEST(startup, divides_the_first_step_and_keeps_all_later_times_bitwise) {
   check_property("start-up", [] {
     double proposed = 0.0;
     const auto march = random_march(proposed);
@@ -55,8 +55,8 @@ TEST(startup, cuts_the_first_step_and_leaves_all_later_times_to_the_last_digit) 
     RC_ASSERT(cut.t.size() == plain.t.size() + extra);
     for (std::size_t n = 1; n < plain.t.size(); ++n) RC_ASSERT(cut.t[n + extra] == plain.t[n]);
     for (std::size_t n = 1; n < plain.dt.size(); ++n) RC_ASSERT(cut.dt[n + extra] == plain.dt[n]);
-    // Within the first step: the sum is the step, each is as long as the time before it, none is longer than
-    // the first step, and there are no more than needed.
+    // The start-up steps add up to the first step, each is as long as the time before it, none exceeds the
+    // first step, and there are no more than needed.
     double sum = 0.0;
     for (std::size_t k = 0; k <= extra; ++k) {
       RC_ASSERT(k == 0 || cut.dt[k] == sum);
@@ -71,7 +71,7 @@ TEST(startup, cuts_the_first_step_and_leaves_all_later_times_to_the_last_digit) 
   });
 }
 
-TEST(startup, goes_on_after_a_save_at_any_step_to_the_last_digit) {
+TEST(startup, is_restored_bitwise_from_a_save_at_any_step) {
   check_property("restart", [] {
     double proposed = 0.0;
     const auto march = random_march(proposed);
@@ -93,11 +93,12 @@ TEST(startup, goes_on_after_a_save_at_any_step_to_the_last_digit) {
   });
 }
 
-TEST(startup, has_nothing_to_do_without_a_layer_and_an_end_for_every_width) {
+TEST(startup, does_nothing_without_a_layer_and_ends_for_every_width) {
   const apsis::time_marcher<double> march(0.0, 1.0, 0.25);
   for (const double width : {0.0, infinite, 1.0, 7.0})
     EXPECT_EQ(march_through(march, 0.25, width).startup_steps, 1) << width;
-  // What a thinner layer moves is below rounding: as many steps as the digits have bits, and two.
+  // The effect of a thinner layer is below rounding: the number of steps is limited to the number of
+  // bits plus two.
   for (const double width : {1e-16, 1e-40, 1e-300, 4e-308}) {
     const auto cut = march_through(march, 0.25, width);
     EXPECT_LE(cut.startup_steps, 56) << width;
@@ -106,12 +107,12 @@ TEST(startup, has_nothing_to_do_without_a_layer_and_an_end_for_every_width) {
     EXPECT_EQ(cut.dt.back(), 0.25);
   }
   EXPECT_EQ(march_through({2.0, 2.0}, 0.25, 1e-3).startup_steps, 0);      // no first step
-  EXPECT_EQ(march_through({0.0, 0.25, 0.25}, 0.0, 0.01).t.back(), 0.25);  // nothing but a first step
+  EXPECT_EQ(march_through({0.0, 0.25, 0.25}, 0.0, 0.01).t.back(), 0.25);  // only a first step
   EXPECT_EQ(march_through({0.0, 0.1}, 0.25, 0.01).t.back(), 0.1);         // shortened at the end
   EXPECT_THROW(march_through({0.0, 1.0}, infinite, 0.01), apsis::input_error);
 }
 
-TEST(startup, gives_way_to_a_rule_that_allows_less) {
+TEST(startup, ends_if_the_rule_allows_only_shorter_steps) {
   apsis::time_marcher<double> march(0.0, 1.0);
   march.start_up(0.5, 0.125);  // 1/32, 1/32, 1/16, 1/8, 1/4
   double longest = 0.0;
@@ -126,7 +127,7 @@ TEST(startup, gives_way_to_a_rule_that_allows_less) {
   EXPECT_EQ(march.startup_steps(), 3);
 }
 
-TEST(startup, counts_the_steps_that_are_left) {
+TEST(startup, counts_the_remaining_steps) {
   for (const bool given : {true, false}) {
     apsis::time_marcher<double> march(0.0, 1.0, given ? std::optional<double>(0.125) : std::nullopt);
     march.start_up(0.125, 1e-4);
@@ -158,20 +159,20 @@ double error(const std::string& method, state u, real epsilon, startup how) {
   return static_cast<double>(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1]));
 }
 
-TEST(startup, makes_data_out_of_equilibrium_as_accurate_as_data_near_it) {
+TEST(startup, makes_errors_for_inconsistent_data_as_small_as_for_consistent_data) {
   const real epsilon = 1e-4L, e = std::sin(real(2));
   const state near = {2, e - epsilon * std::cos(real(2)) * e / 5}, far = {2, 0};
   const double consistent = error("md-imex-4-2", near, epsilon, startup::none);
   const double resolved = error("md-imex-4-2", far, epsilon, startup::graded);
   const double as_it_is = error("md-imex-4-2", far, epsilon, startup::none);
   EXPECT_LT(resolved, 2 * consistent);
-  EXPECT_GT(as_it_is, 10 * resolved);  // without it the layer is not seen
+  EXPECT_GT(as_it_is, 10 * resolved);  // without it the layer is not resolved
   EXPECT_LT(10 * consistent, error("md-imex-3-2", near, epsilon, startup::none));
   EXPECT_LT(10 * resolved, error("md-imex-3-2", far, epsilon, startup::none));
   EXPECT_LT(10 * resolved, error("md-imex-3-2", far, epsilon, startup::graded));
 }
 
-TEST(startup, takes_one_step_in_the_limit_and_asks_for_a_relaxation_time) {
+TEST(startup, takes_one_step_in_the_limit_and_requires_a_relaxation_time) {
   auto limit = ode_model::as_relaxation<state>(0);
   apsis::stepper march(apsis::find_method("md-imex-4-2"), limit);
   state plain = {2, 0}, graded = plain;

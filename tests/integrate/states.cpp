@@ -1,5 +1,5 @@
-// The same problem on any state type gives the same numbers: standard vectors, Eigen vectors, fixed arrays,
-// long double, and a class that only has size() and [].
+// The same problem gives the same numbers for every state type: standard vectors, Eigen vectors, fixed
+// arrays, long double, and a class that has only size() and [].
 #include <apsis/integrate/integrate.hpp>
 
 #include <array>
@@ -13,10 +13,10 @@
 
 namespace {
 
-/// Compilers fuse multiplications and additions differently for each container: 64 steps, a few ulps of 3.
+/// Compilers contract multiply–adds differently for each container: 64 steps, a few ulps of 3.
 constexpr double rounding = 1e-14;
 
-/// The least a row of numbers can be: no arithmetic, no iterators.
+/// A minimal array_state: no arithmetic, no iterators.
 class plain_pair {
  public:
   std::size_t size() const { return 2; }
@@ -37,7 +37,7 @@ State solved(Problem problem, const std::string& method = "md-imex-6-3") {
   return u;
 }
 
-TEST(states, relaxation_is_the_same_for_every_container) {
+TEST(states, relaxation_does_not_depend_on_the_container) {
   const double epsilon = 1e-2;
   const auto standard = solved<std::vector<double>>(ode_model::as_relaxation(epsilon));
   const auto eigen = solved<Eigen::VectorXd>(ode_model::as_relaxation<Eigen::VectorXd>(epsilon));
@@ -53,7 +53,7 @@ TEST(states, relaxation_is_the_same_for_every_container) {
   }
 }
 
-TEST(states, newton_is_the_same_for_every_container) {
+TEST(states, newton_does_not_depend_on_the_container) {
   const double epsilon = 1e-2;
   const auto standard = solved<std::vector<double>>(ode_model::as_newton(epsilon));
   const auto eigen = solved<Eigen::VectorXd>(ode_model::as_newton<Eigen::VectorXd>(epsilon));
@@ -64,7 +64,7 @@ TEST(states, newton_is_the_same_for_every_container) {
   }
 }
 
-TEST(states, both_ways_in_and_both_precisions_give_the_same_solution) {
+TEST(states, both_problem_types_and_precisions_give_the_same_solution) {
   const double epsilon = 1e-2;
   const auto closed = solved<std::vector<double>>(ode_model::as_relaxation(epsilon));
   const auto newton = solved<std::vector<double>>(ode_model::as_newton(epsilon));
@@ -72,7 +72,7 @@ TEST(states, both_ways_in_and_both_precisions_give_the_same_solution) {
   const auto closed_extended = solved<extended>(ode_model::as_relaxation<extended>(1e-2L));
   const auto newton_extended = solved<extended>(ode_model::as_newton<extended>(1e-2L));
   for (std::size_t k = 0; k < 2; ++k) {
-    // 64 steps of six stages, each good to a few roundings of numbers below 3.
+    // 64 steps of six stages, each accurate to a few rounding errors of numbers below 3.
     EXPECT_NEAR(closed[k], newton[k], 1e-13);
     EXPECT_NEAR(static_cast<double>(closed_extended[k] - newton_extended[k]), 0, 1e-16);
     EXPECT_NEAR(static_cast<double>(closed_extended[k] - static_cast<long double>(closed[k])), 0, 1e-13);

@@ -1,4 +1,4 @@
-// Time in the stepper and in the loop.
+// Time dependence in the stepper, and the time loop.
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/method/certificate.hpp>
@@ -28,12 +28,12 @@ long double forced_error(const std::string& name, int steps) {
 
 }  // namespace
 
-TEST(stepper, every_method_with_transport_has_its_order_for_transport_that_depends_on_time) {
+TEST(stepper, every_method_with_transport_has_its_order_for_time_dependent_transport) {
   for (const auto& name : apsis::method_names()) {
     if (apsis::find_method(name).kind == apsis::method_kind::implicit_only) continue;
     const int order = apsis::find_certificate(name).order;
-    // The next term of the error is below 7 % of the first, also where methods have a small first one; in
-    // long double rounding is far below both.
+    // The second error term is below 7 % of the first, even where the first is small; rounding in long double
+    // is far below both.
     const long double slope = std::log2(forced_error(name, 640) / forced_error(name, 1280));
     EXPECT_NEAR(static_cast<double>(slope), order, 0.1) << name;
   }
@@ -44,7 +44,7 @@ TEST(time_marcher, an_interval_of_length_zero_has_no_steps) {
   EXPECT_TRUE(apsis::time_marcher<double>(1.0, 1.0, 0.1).done());
 }
 
-TEST(time_marcher, a_given_dt_that_divides_is_kept_and_ends_exactly) {
+TEST(time_marcher, a_dt_that_divides_the_interval_is_kept_and_ends_exactly) {
   apsis::time_marcher<double> march(0.0, 0.5, 0.5 / 3600);
   EXPECT_FALSE(march.adjusted());
   while (!march.done()) march.advance(march.next(0.0));
@@ -52,16 +52,16 @@ TEST(time_marcher, a_given_dt_that_divides_is_kept_and_ends_exactly) {
   EXPECT_EQ(march.t(), 0.5);
 }
 
-TEST(time_marcher, a_given_dt_that_does_not_divide_is_reduced) {
+TEST(time_marcher, a_dt_that_does_not_divide_the_interval_is_reduced) {
   const apsis::time_marcher<double> march(0.0, 1.0, 0.3);
   EXPECT_TRUE(march.adjusted());
   EXPECT_DOUBLE_EQ(*march.fixed_dt(), 0.25);
-  // 1e-12 relative is still "divides".
+  // A relative deviation of 1e-12 still counts as dividing.
   EXPECT_FALSE(apsis::time_marcher<double>(0.0, 1.0, 0.1 * (1.0 + 5e-13)).adjusted());
   EXPECT_TRUE(apsis::time_marcher<double>(0.0, 1.0, 0.1 * (1.0 + 5e-12)).adjusted());
 }
 
-TEST(time_marcher, otherwise_the_last_step_is_shortened_and_rounding_makes_no_step_of_its_own) {
+TEST(time_marcher, without_dt_the_last_step_is_shortened_and_rounding_adds_no_step) {
   apsis::time_marcher<double> march(0.0, 1.0);
   std::vector<double> steps;
   while (!march.done()) {
@@ -78,7 +78,7 @@ TEST(time_marcher, otherwise_the_last_step_is_shortened_and_rounding_makes_no_st
   EXPECT_EQ(many.step(), 36000);
 }
 
-TEST(time_marcher, refuses_what_cannot_be_marched) {
+TEST(time_marcher, rejects_invalid_intervals_and_steps) {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
   EXPECT_THROW(apsis::time_marcher<double>(1.0, 0.0), apsis::input_error);
   EXPECT_THROW(apsis::time_marcher<double>(0.0, inf), apsis::input_error);
@@ -93,7 +93,7 @@ TEST(time_marcher, refuses_what_cannot_be_marched) {
   EXPECT_THROW(apsis::time_marcher<double>(1e6, 2e6).next(1e-12), apsis::numerical_error);
 }
 
-TEST(time_marcher, goes_on_after_a_save_to_the_same_last_digit) {
+TEST(time_marcher, is_restored_bitwise_from_a_save) {
   apsis::time_marcher<double> whole(0.0, 0.7), first(0.0, 0.7);
   const auto march = [](apsis::time_marcher<double>& m, int steps) {
     for (int k = 0; k < steps && !m.done(); ++k) m.advance(m.next(0.013));
@@ -110,8 +110,8 @@ TEST(time_marcher, goes_on_after_a_save_to_the_same_last_digit) {
   EXPECT_EQ(second.step(), whole.step());
 }
 
-TEST(integrate, reports_the_step_and_the_time_of_a_failure_and_keeps_the_last_good_state) {
-  // u' = u² explicitly in T blows up; the guarded implicit part refuses what is not finite.
+TEST(integrate, reports_step_and_time_of_a_failure_and_keeps_the_last_good_state) {
+  // u' = u² in T blows up; the guarded implicit part rejects values that are not finite.
   const auto blow_up = [](double, const std::vector<double>& u, std::vector<double>& out) {
     out[0] = 1e200 * u[0] * u[0];
   };
@@ -134,7 +134,7 @@ TEST(integrate, reports_the_step_and_the_time_of_a_failure_and_keeps_the_last_go
   EXPECT_EQ(u, last);
 }
 
-TEST(integrate, an_observer_can_end_it) {
+TEST(integrate, can_be_ended_by_the_observer) {
   const auto none = [](double, const std::vector<double>&, std::vector<double>& out) { out[0] = 0.0; };
   const auto damp = [](const auto& u, auto& out) { out[0] = -u[0]; };
   apsis::newton_problem p(none, damp);

@@ -1,4 +1,4 @@
-// A method given by its Butcher form is the method given by its Shu–Osher form.
+// Method files in Butcher form define the same methods as files in Shu–Osher form.
 #include "tableaux.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -20,7 +20,7 @@ std::string head(const std::string& kind, int order, const std::string& claim) {
 void expect_same_form(const method& a, const method& b) {
   const auto x = a.coefficients<double>(), y = b.coefficients<double>();
   ASSERT_EQ(x.stages(), y.stages());
-  // Both are correctly rounded from numbers that agree to 47 digits, or lie on the same grid.
+  // Both are correctly rounded from values that agree to 47 digits, or rounded to the same grid.
   EXPECT_DOUBLE_EQ(x.r, y.r);
   for (std::size_t i = 0; i < x.stages(); ++i) {
     EXPECT_DOUBLE_EQ(x.ddot[i], y.ddot[i]);
@@ -31,7 +31,7 @@ void expect_same_form(const method& a, const method& b) {
   }
 }
 
-TEST(butcher_files, give_the_second_order_imex_method_its_shu_osher_form) {
+TEST(butcher_files, reproduce_the_shu_osher_form_of_the_second_order_imex_method) {
   const method m = parse_method(head("imex", 2, "1") +
                                     "A_hat = [[], [\"1\"], [\"1/2\", \"1/2\"]]\n"
                                     "A = [[\"1/2\"], [\"1/2\", \"0\"], [\"1/2\", \"0\", \"1/2\"]]\n"
@@ -41,7 +41,7 @@ TEST(butcher_files, give_the_second_order_imex_method_its_shu_osher_form) {
   expect_same_form(m, find_method("md-imex-3-2"));
 }
 
-TEST(butcher_files, give_the_third_order_implicit_method_its_shu_osher_form) {
+TEST(butcher_files, reproduce_the_shu_osher_form_of_the_third_order_implicit_method) {
   const method m =
       parse_method(head("implicit", 3, "unconditional") +
                        "A = [[\"0\"], [\"0\", \"1\"]]\nA_dot = [[\"-1/6\"], [\"-1/6\", \"-1/3\"]]\n",
@@ -50,7 +50,7 @@ TEST(butcher_files, give_the_third_order_implicit_method_its_shu_osher_form) {
   expect_same_form(m, find_method("imdrk-2-3"));
 }
 
-TEST(butcher_files, give_explicit_methods_their_canonical_form) {
+TEST(butcher_files, reproduce_the_canonical_form_of_explicit_methods) {
   const method m = parse_method(
       head("explicit", 3, "1") + "A_hat = [[], [\"1\"], [\"1/4\", \"1/4\"], [\"1/6\", \"1/6\", \"2/3\"]]\n",
       "x");
@@ -60,8 +60,8 @@ TEST(butcher_files, give_explicit_methods_their_canonical_form) {
     for (std::size_t j = 0; j < i; ++j) EXPECT_EQ(m.exact.P(i, j), "0");
 }
 
-TEST(butcher_files, without_a_convex_form_are_refused_with_the_entry_that_forbids_it) {
-  // Q̇(u_1) enters stage 2 with a weight that no convex combination of u^n and u_1 gives.
+TEST(butcher_files, without_a_convex_form_are_rejected_naming_the_offending_entry) {
+  // Q̇(u_1) enters stage 2 with a weight that no convex combination of u^n and u_1 has.
   try {
     parse_method(head("imex", 1, "0") +
                      "A_hat = [[], [\"1\"]]\nA = [[\"1\"], [\"0\", \"1\"]]\n"
@@ -74,7 +74,7 @@ TEST(butcher_files, without_a_convex_form_are_refused_with_the_entry_that_forbid
   }
 }
 
-/// Problem and place of a file that must not be read.
+/// Returns the error message for an invalid file.
 std::string refusal(const std::string& text) {
   try {
     parse_method(text, "x");
@@ -84,7 +84,7 @@ std::string refusal(const std::string& text) {
   return "accepted";
 }
 
-TEST(butcher_files, give_the_method_of_hu_shu_zhang_its_exact_weights) {
+TEST(butcher_files, reproduce_the_exact_weights_of_hu_shu_zhang) {
   // The first stage is u^n: it carries the weight of u^n in every row.
   const method m = parse_method(
       head("imex", 2, "0.8125") +
@@ -103,7 +103,7 @@ TEST(butcher_files, give_the_method_of_hu_shu_zhang_its_exact_weights) {
 const std::string midpoint_rows = "A_hat = [[], [\"1/2\"]]\nA = [[\"0\"], [\"0\", \"1/2\"]]\n";
 const std::string midpoint_update = "b_hat = [\"0\", \"1\"]\nb = [\"0\", \"1\"]\n";
 
-TEST(butcher_files, take_an_update_that_is_no_stage_as_one_more_row) {
+TEST(butcher_files, treat_an_update_as_an_additional_row) {
   // The IMEX midpoint rule, ARS(1,2,2).
   const method m = parse_method(head("imex", 2, "0") + midpoint_rows + midpoint_update, "x");
   EXPECT_TRUE(m.ends_with_update());
@@ -121,8 +121,8 @@ TEST(butcher_files, take_an_update_that_is_no_stage_as_one_more_row) {
   EXPECT_EQ(b.A(2, 2), 0.0);
 }
 
-TEST(butcher_files, know_every_kind_with_an_update) {
-  // Implicit midpoint: Q(u_1) enters u^{n+1} beyond what u_1 contains.
+TEST(butcher_files, support_updates_for_methods_of_every_kind) {
+  // Implicit midpoint: Q(u_1) enters u^{n+1} with a larger weight than through u_1.
   const method implicit = parse_method(head("implicit", 2, "0") + "A = [[\"1/2\"]]\nb = [\"1\"]\n", "x");
   EXPECT_TRUE(certify(implicit).claims_hold);
   EXPECT_FALSE(certify(implicit).gsa);
@@ -132,12 +132,12 @@ TEST(butcher_files, know_every_kind_with_an_update) {
                                         "b_hat = [\"1/6\", \"1/3\", \"1/3\", \"1/6\"]\n",
                                     "x");
   EXPECT_TRUE(certify(kutta).claims_hold) << ::testing::PrintToString(certify(kutta).failures);
-  // Heun, whose update is a convex combination: r = 1 is found.
+  // Heun's method, whose update is a convex combination with r = 1.
   const method heun =
       parse_method(head("explicit", 2, "1") + "A_hat = [[], [\"1\"]]\nb_hat = [\"1/2\", \"1/2\"]\n", "x");
   EXPECT_TRUE(certify(heun).claims_hold);
-  // The fourth-order method of Chan and Tsai (2010) with both derivatives of an explicit stage is none of
-  // ours.
+  // The fourth-order method of Chan and Tsai (2010) with both derivatives of an explicit stage
+  // is not supported.
   EXPECT_NE(
       refusal(head("implicit", 4, "0") + "A = [[\"0\"], [\"1/2\", \"0\"]]\nb = [\"1\", \"0\"]\n"
                                          "A_dot = [[\"0\"], [\"1/8\", \"0\"]]\nb_dot = [\"1/6\", \"1/3\"]\n")
@@ -145,8 +145,8 @@ TEST(butcher_files, know_every_kind_with_an_update) {
       std::string::npos);
 }
 
-TEST(butcher_files, with_a_bad_update_are_refused_where_it_stands) {
-  const std::string start = head("imex", 2, "0") + midpoint_rows;  // its rows are lines 9 and 10
+TEST(butcher_files, with_an_invalid_update_are_rejected_with_its_position) {
+  const std::string start = head("imex", 2, "0") + midpoint_rows;  // rows on lines 9 and 10
   using ::testing::AllOf;
   using ::testing::HasSubstr;
   using ::testing::StartsWith;
@@ -168,24 +168,24 @@ TEST(butcher_files, with_a_bad_update_are_refused_where_it_stands) {
   EXPECT_THAT(refusal(head("explicit", 2, "1") + many + "]\nb_hat = []\n"), HasSubstr("too many"));
 }
 
-TEST(butcher_files, do_not_crash_whatever_byte_is_changed) {
+TEST(butcher_files, with_any_byte_changed_do_not_crash) {
   const std::string good = head("imex", 2, "0") + midpoint_rows + "A_dot = [[\"0\"], [\"0\", \"0\"]]\n" +
                            midpoint_update + "b_dot = [\"0\", \"0\"]\n";
   std::mt19937 draw(3);
   int read = 0;
   for (int k = 0; k < 2000; ++k) {
     std::string text = good;
-    // Among the coefficients, where most changes are still a file.
+    // Mutate coefficients, where most changes leave a valid file.
     const std::size_t start = good.find("A_hat");
     text[start + draw() % (text.size() - start)] = "0123456789/-.e\", ]"[draw() % 19];
     try {
       certify(parse_method(text, "x"));
       ++read;
     } catch (const input_error&) {
-      // Whatever else is thrown fails the test.
+      // Any other exception fails the test.
     }
   }
-  EXPECT_GT(read, 100);  // and some of them are methods
+  EXPECT_GT(read, 100);  // some mutants are valid methods
 }
 
 }  // namespace

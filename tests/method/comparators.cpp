@@ -1,4 +1,4 @@
-// Methods of others: what their authors print, typed here from the page, against what the files say.
+// Methods from the literature: coefficients transcribed from the publications against the method files.
 #include "tableaux.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace apsis::test {
 namespace {
 
-/// Entries that are printed, by row and column from 1; all others are 0.
+/// Printed entries by row and column, from 1; all others are 0.
 using entries = std::map<std::pair<std::size_t, std::size_t>, double>;
 
 void expect_matrix(const matrix<double>& m, const entries& printed, double tolerance, const char* what) {
@@ -23,10 +23,10 @@ void expect_matrix(const matrix<double>& m, const entries& printed, double toler
     }
 }
 
-TEST(comparators, method_2_6_2_of_hu_shu_zhang_has_their_butcher_form) {
-  // The last row is u^{n+1} after the correction with α = 0.8, which leaves T and Q as they are.
+TEST(comparators, method_2_6_2_of_hu_shu_zhang_has_the_published_butcher_form) {
+  // The last row is u^{n+1} after the correction with α = 0.8, which does not change T and Q.
   const auto b = to_butcher(find_method("hsz-ars-4-2").coefficients<double>());
-  constexpr double rounding = 1e-15;  // of a dozen operations with numbers below 2
+  constexpr double rounding = 1e-15;  // for a dozen operations on numbers below 2
   expect_matrix(b.A_hat, {{{3, 1}, 1.0}, {{4, 1}, 0.5}, {{4, 3}, 0.5}, {{5, 1}, 0.5}, {{5, 3}, 0.5}},
                 rounding, "Ahat");
   expect_matrix(b.A,
@@ -71,7 +71,7 @@ TEST(comparators, ssp3_433_is_the_l_stable_member_of_a_family_of_order_3) {
   EXPECT_TRUE(certify(parse_method(member_of_ssp3_433(root), "x")).stability.l_stable);
   const auto b = to_butcher(find_method("ssp3-433").coefficients<mp_real>());
   EXPECT_LT(abs(b.A(0, 0) - root), mp_real("1e-49"));
-  // The digits printed are those of the root, of β and of η, rounded.
+  // The printed digits are the rounded root, β and η.
   EXPECT_LT(abs(b.A(0, 0) - mp_real("0.24169426078821")), mp_real("0.5e-14"));
   EXPECT_LT(abs(b.A(3, 0) - mp_real("0.06042356519705")), mp_real("0.5e-14"));
   EXPECT_LT(abs(b.A(3, 1) - mp_real("0.12915286960590")), mp_real("0.5e-14"));
@@ -92,9 +92,9 @@ TEST(comparators, bhr_553_follows_from_gamma_and_c4) {
     EXPECT_LT(abs(row_sum(b.A, i) - c[i]), digits) << i;
     EXPECT_LT(abs(row_sum(b.A_hat, i) - c[i]), digits) << i;
     EXPECT_LT(abs(b.A(5, i) - b.A_hat(5, i)), digits) << i;  // b̂ = b
-    EXPECT_LT(abs(b.A(5, i) - b.A(4, i)), digits) << i;      // the last stage of the implicit part is u^{n+1}
+    EXPECT_LT(abs(b.A(5, i) - b.A(4, i)), digits) << i;      // the implicit part is stiffly accurate
     if (i < 2) continue;
-    // Stage order 2, A c = c²/2, and the same of Â, from the third stage on.
+    // Stage order 2, A c = c²/2, and the same for Â, from the third stage on.
     mp_real implicit(0), transport(0);
     for (std::size_t j = 0; j < 6; ++j) {
       implicit += b.A(i, j) * c[j];
@@ -103,12 +103,12 @@ TEST(comparators, bhr_553_follows_from_gamma_and_c4) {
     EXPECT_LT(abs(implicit - c[i] * c[i] / 2), digits) << i;
     EXPECT_LT(abs(transport - c[i] * c[i] / 2), digits) << i;
   }
-  // What settles the last coefficient: b·Âc² = 1/12, a condition of order 4.
+  // The last coefficient follows from b·Âc² = 1/12, a condition of order 4.
   mp_real fourth(0);
   for (std::size_t i = 0; i < 5; ++i)
     for (std::size_t j = 0; j < i; ++j) fourth += b.A_hat(5, i) * b.A_hat(i, j) * c[j] * c[j];
   EXPECT_LT(abs(fourth - mp_real(1) / 12), digits);
-  // The digits printed are rounded, but for the last one of two of them.
+  // The printed digits are rounded correctly, except for the last one in two cases.
   const mp_real half_unit("0.5e-15");
   EXPECT_LT(abs(b.A(4, 2) - mp_real("0.362863385578740")), half_unit);
   EXPECT_LT(abs(b.A(4, 3) + mp_real("0.168124349878957")), half_unit);
@@ -117,7 +117,7 @@ TEST(comparators, bhr_553_follows_from_gamma_and_c4) {
   EXPECT_LT(abs(gamma - mp_real("0.435866521508459")), half_unit);          // printed …460
 }
 
-/// The rational coefficients in circulation of the older BHR(5,5,3), c_4 = 2684624/1147171 (Boscarino, Appl.
+/// Rational coefficients in common use for the older BHR(5,5,3), c_4 = 2684624/1147171 (Boscarino, Appl.
 /// Numer. Math. 59 (2009)).
 TEST(comparators, rational_coefficients_of_bhr_satisfy_their_conditions_to_13_digits_only) {
   const std::string g = "424782/974569", zero = "0";
@@ -150,7 +150,7 @@ TEST(comparators, rational_coefficients_of_bhr_satisfy_their_conditions_to_13_di
       ", " + row({b1, zero, b3, b4, g}) + "]\nb = " + row({b1, zero, b3, b4, g}) + "\n";
   const auto c = certify(parse_method(text, "x"));
   EXPECT_FALSE(c.claims_hold);
-  EXPECT_EQ(c.order, 1);  // exact rationals are taken at their word: b·c is not 1/2
+  EXPECT_EQ(c.order, 1);  // rationals are exact, and their b·c is not 1/2
   mp_real largest(0);
   for (const auto& condition : c.next)
     largest = std::max(largest, mp_real(abs(condition.value - condition.wanted)));

@@ -1,5 +1,5 @@
-// The Shu–Osher forms of the catalogue come back from their Butcher forms; random forms are in
-// properties.cpp.
+// Shu–Osher forms of the catalogue are recovered from their Butcher forms; random forms are
+// tested in properties.cpp.
 #include "tableaux.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace {
 
 void expect_same(const shu_osher_form<mp_real>& a, const shu_osher_form<mp_real>& b,
                  const std::string& name) {
-  // Sixty digits, of which two triangular inverses of order 1 lose a few.
+  // Sixty digits, minus a few lost in two triangular inverses.
   const mp_real rounding("1e-55");
   EXPECT_EQ(a.r, b.r) << name;
   for (std::size_t i = 0; i < a.stages(); ++i) {
@@ -22,7 +22,7 @@ void expect_same(const shu_osher_form<mp_real>& a, const shu_osher_form<mp_real>
   }
 }
 
-TEST(conversion, brings_every_method_of_the_catalogue_back) {
+TEST(conversion, recovers_every_method_of_the_catalogue) {
   for (const auto& name : method_names()) {
     const auto form = find_method(name).coefficients<mp_real>();
     auto R = matrix<mp_real>::identity(form.stages());
@@ -32,7 +32,7 @@ TEST(conversion, brings_every_method_of_the_catalogue_back) {
   }
 }
 
-TEST(conversion, finds_the_form_of_the_methods_of_the_paper_without_knowing_R) {
+TEST(conversion, recovers_the_form_of_the_papers_methods_without_R) {
   // D and Ḋ are diagonal, so each column of A = R⁻¹D or of Ȧ = R⁻¹Ḋ is a multiple of the column of R⁻¹.
   for (const std::string name : {"imdrk-1-2", "imdrk-2-3", "imdrk-5-4", "md-imex-3-2", "md-imex-6-3"}) {
     const auto form = find_method(name).coefficients<mp_real>();

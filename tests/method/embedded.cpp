@@ -1,4 +1,4 @@
-// Embedded rows of method files: what is read, what is written, and what the certificate says of them.
+// Embedded rows of method files: parsing, export and certificate.
 #include "support/catalogue.hpp"
 #include "tableaux.hpp"
 
@@ -78,7 +78,7 @@ TEST(embedded_row, is_certified_with_its_estimate) {
   EXPECT_NEAR(c.embedded->alignment.convert_to<double>(), std::sqrt(0.5), 1e-15);
 }
 
-TEST(embedded_row, changes_nothing_that_is_said_of_the_method) {
+TEST(embedded_row, does_not_change_the_certificate_of_the_method) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded.has_value(); })) {
     method m = find_method(name);
     const auto with = find_certificate(name);
@@ -92,7 +92,7 @@ TEST(embedded_row, changes_nothing_that_is_said_of_the_method) {
   }
 }
 
-TEST(embedded_row, is_there_for_every_recommended_method_and_costs_one_solve) {
+TEST(embedded_row, exists_for_every_recommended_method_at_the_cost_of_one_solve) {
   const auto names = methods_where([](const method& m) {
     return !m.purpose.empty() || m.name == "md-imex-3-2" || m.name == "md-imex-6-3";
   });
@@ -103,13 +103,13 @@ TEST(embedded_row, is_there_for_every_recommended_method_and_costs_one_solve) {
     EXPECT_LT(e->order, find_certificate(name).order) << name;
     EXPECT_EQ(e->implicit_solves, 1) << name;
     EXPECT_EQ(e->explicit_evaluations, 0) << name;
-    EXPECT_LT(e->order_residual, mp_real(1e-42)) << name;  // 45 digits, sums of a dozen
+    EXPECT_LT(e->order_residual, mp_real(1e-42)) << name;  // sums of a dozen terms with 45 digits
     if (find_certificate(name).keeps_slow_terms) {
       ASSERT_TRUE(e->last) << name;
       EXPECT_LT(abs(*e->last - 1), mp_real(1e-40)) << name;
     }
-    // A tenth of the Taylor term was asked for, and at least 0.15 of that in the limit ε → 0. The terms
-    // of the limit are 0.4 of all.
+    // The target was a tenth of the Taylor term, with a coverage of at least 0.15 in the limit ε → 0, whose
+    // terms are 0.4 of all.
     EXPECT_GT(e->estimate, mp_real(0.15 * 0.1 * 0.4)) << name;
     EXPECT_LT(e->estimate, mp_real(0.15)) << name;
   }
@@ -125,7 +125,7 @@ TEST(embedded_row, is_shown_in_latex) {
   EXPECT_THAT(to_latex(find_method("imdrk-2-3")), testing::Not(testing::HasSubstr("tilde")));
 }
 
-TEST(embedded_row, is_written_as_it_was_read) {
+TEST(embedded_row, is_exported_as_it_was_read) {
   auto names = methods_where([](const method& m) { return m.embedded.has_value(); });
   for (const auto& name : names) {
     const method& m = find_method(name);
@@ -138,7 +138,7 @@ TEST(embedded_row, is_written_as_it_was_read) {
     EXPECT_EQ(again.embedded->d, m.embedded->d);
     EXPECT_EQ(again.embedded->ddot, m.embedded->ddot);
   }
-  // What may be left out is zero: a solution of order 1 of the two stages of forward Euler steps.
+  // Omitted entries are zero: a solution of order 1 from two stages of forward Euler steps.
   const std::string explicit_method =
       "name = \"x\"\ntitle = \"t\"\ncitation = \"c\"\nkind = \"explicit\"\n[claims]\norder = 2\n"
       "[shu_osher]\nr = \"1\"\nP = [[], [\"0\"], [\"1/2\", \"0\"]]\nW = [[], [\"1\"], [\"0\", \"1/2\"]]\n"
@@ -149,7 +149,7 @@ TEST(embedded_row, is_written_as_it_was_read) {
   EXPECT_FALSE(c.embedded->relaxes);
 }
 
-TEST(embedded_row, is_refused_with_place_and_reason) {
+TEST(embedded_row, is_rejected_with_position_and_reason) {
   const auto refused = [](const std::string& old, const std::string& replacement, const std::string& place,
                           const std::string& reason) {
     const std::string message = complaint(changed(old, replacement));
@@ -163,7 +163,7 @@ TEST(embedded_row, is_refused_with_place_and_reason) {
           "'embedded.P' has 2 entries (the method has 3 stages)");
   refused("\"9/20\", \"0\"]", "\"9/20\"]", "19:5", "'embedded.W' has 2 entries");
   refused("d = \"1/2\"", "d = 0.5", "20:5", "a coefficient in quotes");
-  refused("ddot = \"-3/40\"", "ddot = \"-3/0\"", "21:8", "is no coefficient");
+  refused("ddot = \"-3/40\"", "ddot = \"-3/0\"", "21:8", "is not a coefficient");
   std::string implicit = good;
   implicit.replace(implicit.find("\"imex\""), 6, "\"implicit\"");
   for (const char* row : {"r = \"1\"\n", "W = [[], [\"1\"], [\"0\", \"1/2\"]]\n"})
@@ -171,7 +171,7 @@ TEST(embedded_row, is_refused_with_place_and_reason) {
   EXPECT_THAT(complaint(implicit), HasSubstr("unknown key 'W' in [embedded]"));
 }
 
-TEST(embedded_row, needs_the_shu_osher_form) {
+TEST(embedded_row, requires_the_shu_osher_form) {
   const std::string text =
       "name = \"x\"\ntitle = \"t\"\ncitation = \"c\"\nkind = \"explicit\"\n[claims]\norder = 2\n"
       "[butcher]\nA_hat = [[], [\"1\"]]\nb_hat = [\"1/2\", \"1/2\"]\n"
@@ -179,14 +179,15 @@ TEST(embedded_row, needs_the_shu_osher_form) {
   EXPECT_THAT(complaint(text), HasSubstr("[embedded] is a row of the Shu-Osher form"));
 }
 
-TEST(embedded_row, of_another_order_or_sign_fails_the_check) {
+TEST(embedded_row, of_wrong_order_or_sign_fails_certification) {
   using ::testing::Contains, ::testing::ElementsAre;
-  // Order 2 is claimed by moving a claim only: u^{n+1} itself as embedded solution has order 2, not 1.
+  // u^{n+1} itself as embedded solution has order 2, not 1 as claimed.
   EXPECT_THAT(failures(changed(good.substr(good.find("P = [\"9/20\"")),
                                "P = [\"1/2\", \"0\", \"0\"]\nW = [\"0\", \"1/2\", \"0\"]\nd = \"1/2\"\n")),
               ElementsAre("embedded.order = 1 but the embedded solution has order 2"));
   EXPECT_THAT(failures(changed("order = 1", "order = 2")),
-              Contains("embedded.order = 2 is not below that of the method, 2: nothing could be estimated"));
+              Contains("embedded.order = 2 is not below the order 2 of the method, so that the error could "
+                       "not be estimated"));
   EXPECT_THAT(failures(changed("ddot = \"-3/40\"", "ddot = \"3/40\"")),
               ElementsAre(HasSubstr("embedded.ddot = -0.075 is negative")));
   EXPECT_THAT(failures(changed("[\"9/20\", \"0\", \"0\"]", "[\"19/20\", \"-1/2\", \"0\"]")),
@@ -195,9 +196,9 @@ TEST(embedded_row, of_another_order_or_sign_fails_the_check) {
               Contains(HasSubstr("the weight of u^n in [embedded] = -0.1 is negative")));
 }
 
-/// A coefficient that is moved by a millionth breaks a condition. Those of order 1 do not know Q̇, so neither
-/// d̃̇ nor the weight of a first stage with ḋ alone, whose u_1 is u^n + O(Δt²).
-void expect_damage_is_noticed(const method& m) {
+/// Changing a coefficient by 1e-6 violates a condition. Those of order 1 do not involve Q̇, and hence neither
+/// d̃̇ nor the weight of a first stage with ḋ alone, for which u_1 = u^n + O(Δt²).
+void expect_changes_are_detected(const method& m) {
   method damaged = m;
   const auto expect_noticed = [&](std::string& place, const std::string& what) {
     const std::string kept = place;
@@ -215,14 +216,14 @@ void expect_damage_is_noticed(const method& m) {
   if (e.order > 1) expect_noticed(e.ddot, "ddot");
 }
 
-TEST(embedded_row, that_is_damaged_is_noticed) {
+TEST(embedded_row, with_a_changed_coefficient_is_detected) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded && m.stages() < 9; }))
-    expect_damage_is_noticed(find_method(name));
+    expect_changes_are_detected(find_method(name));
 }
 
-TEST(embedded_row, of_many_stages_that_is_damaged_is_noticed_slow) {
+TEST(embedded_row, with_a_changed_coefficient_is_detected_for_many_stages_slow) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded && m.stages() >= 9; }))
-    expect_damage_is_noticed(find_method(name));
+    expect_changes_are_detected(find_method(name));
 }
 
 }  // namespace

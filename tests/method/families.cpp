@@ -1,5 +1,4 @@
-// Families in closed form: every member is a method of the catalogue, certified, found by name and by nothing
-// else.
+// Families in closed form: every member is certified and found by exactly one name.
 #include "tableaux.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -26,7 +25,7 @@ std::string plateau_free(std::size_t s) {
   return "md-imex-plateau-free-" + std::to_string(s) + "-2";
 }
 
-/// Exact rationals in 60 digits: rounding of sums of up to 64 terms is all that is left.
+/// Exact rationals in 60 digits: only rounding of sums of up to 64 terms remains.
 const mp_real rounding("1e-55");
 
 void expect_member(const std::string& name, std::size_t stages, int evaluations, int r) {
@@ -57,17 +56,17 @@ void expect_plateau_free(std::size_t s) {
   for (const auto& one : {terms.flux, terms.last, terms.layer}) EXPECT_LT(abs(one - 1), rounding) << s;
 }
 
-TEST(families, have_order_2_and_the_r_that_is_promised) {
+TEST(families, have_order_2_and_the_documented_r) {
   for (const std::size_t s : {3U, 4U, 5U, 8U, 16U, 64U}) expect_chain(s);
   for (const std::size_t s : {5U, 6U, 7U, 16U}) expect_plateau_free(s);
 }
 
-TEST(families, slow_every_member_has_order_2_and_the_r_that_is_promised) {
+TEST(families, slow_every_member_has_order_2_and_the_documented_r) {
   for (std::size_t s = 3; s <= 64; ++s) expect_chain(s);
   for (std::size_t s = 5; s <= 64; ++s) expect_plateau_free(s);
 }
 
-TEST(families, in_a_chain_are_third_order_where_there_is_no_transport) {
+TEST(families, in_a_chain_are_third_order_without_transport) {
   const auto trees = rooted_trees(3, tree_colours::G_only);
   for (const std::size_t s : {3U, 4U, 9U, 16U}) {
     const auto weights = elementary_weights(to_butcher(find_method(chain(s)).coefficients<mp_real>()), trees);
@@ -78,7 +77,7 @@ TEST(families, in_a_chain_are_third_order_where_there_is_no_transport) {
 
 using exact_form = shu_osher_form<std::string>;
 
-/// Names of the coefficients, without ḋ, in which two forms differ.
+/// Returns the names of the coefficients, except for ḋ, in which two forms differ.
 std::vector<std::string> differences(const exact_form& a, const exact_form& b) {
   std::vector<std::string> found;
   const auto compare = [&](const std::string& what, const std::string& x, const std::string& y) {
@@ -94,26 +93,26 @@ std::vector<std::string> differences(const exact_form& a, const exact_form& b) {
   return found;
 }
 
-TEST(families, in_a_chain_of_three_stages_differ_from_the_papers_method_in_the_derivative_only) {
+TEST(families, in_a_chain_of_three_stages_differ_from_the_papers_method_only_in_ddot) {
   const auto& made = find_method(chain(3)).exact;
   const auto& paper = find_method("md-imex-3-2").exact;
   EXPECT_THAT(differences(made, paper), ::testing::IsEmpty());
   EXPECT_THAT(made.ddot, ::testing::ElementsAre("-1/8", "-1/6", "-1/24"));
-  // Its error constant is smaller: 0.4061 and 0.4658, from a program of its own.
+  // Its error constant is smaller, 0.4061 instead of 0.4658 (computed by an independent program).
   EXPECT_NEAR(find_certificate(chain(3)).error_constant.convert_to<double>(), 0.4061164310337068, 1e-15);
   EXPECT_NEAR(find_certificate("md-imex-3-2").error_constant.convert_to<double>(), 0.46584749531245623,
               1e-15);
 }
 
-TEST(families, without_plateaus_begin_with_the_method_of_the_catalogue) {
+TEST(families, without_plateaus_start_with_the_method_of_the_catalogue) {
   const auto& made = find_method(plateau_free(5)).exact;
   const auto& file = find_method("md-imex-5-2").exact;
   EXPECT_THAT(differences(made, file), ::testing::IsEmpty());
   EXPECT_EQ(made.ddot, file.ddot);
 }
 
-TEST(families, without_plateaus_have_nearly_the_least_error_constant_of_their_free_coefficient) {
-  // ḋ_2 + (n−1) ḋ_{n+1} is given; move t from one to the other and look for anything 3 % better.
+TEST(families, without_plateaus_have_nearly_minimal_error_constants) {
+  // ḋ_2 + (n−1) ḋ_{n+1} is fixed; shift t from one to the other and search for an improvement of 3 %.
   for (const std::size_t s : {6U, 10U}) {
     const method& m = find_method(plateau_free(s));
     const auto error = [&](const mp_real& t) {
@@ -134,7 +133,7 @@ TEST(families, without_plateaus_have_nearly_the_least_error_constant_of_their_fr
   }
 }
 
-TEST(families, are_written_and_read_as_files) {
+TEST(families, survive_export_and_parsing) {
   for (const auto& name : {chain(7), plateau_free(7)}) {
     const method& m = find_method(name);
     const method again = parse_method(to_toml(m), "again.toml");
@@ -144,7 +143,7 @@ TEST(families, are_written_and_read_as_files) {
   }
 }
 
-TEST(families, have_no_members_beyond_their_range_and_one_name_for_each) {
+TEST(families, have_one_name_per_member_and_no_members_out_of_range) {
   const auto refusal = [](const std::string& name) -> std::string {
     try {
       find_method(name);
@@ -161,7 +160,7 @@ TEST(families, have_no_members_beyond_their_range_and_one_name_for_each) {
     EXPECT_TRUE(is_method_name("md-imex-chain-" + s + "-2"));
   }
   EXPECT_THAT(refusal(plateau_free(4)), ::testing::HasSubstr("md-imex-plateau-free-S-2 has S from 5 to 64"));
-  // Nearly the pattern is another name.
+  // Names that almost match the pattern are unknown.
   for (const std::string name :
        {"md-imex-chain-7-3", "md-imex-chain-7", "md-imex-chain-2", "md-imex-chain"}) {
     EXPECT_FALSE(is_method_name(name)) << name;
@@ -170,7 +169,7 @@ TEST(families, have_no_members_beyond_their_range_and_one_name_for_each) {
   EXPECT_THAT(refusal("md-imex-chian-S-2"), ::testing::HasSubstr("did you mean 'md-imex-chain-S-2'"));
 }
 
-TEST(families, describe_members_that_exist) {
+TEST(families, have_descriptions_with_existing_members) {
   const auto families = family_entries();
   ASSERT_GE(families.size(), 2U);
   for (const family_entry* f : families) {

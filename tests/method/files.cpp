@@ -1,4 +1,4 @@
-// Method files that no one should write, and where the error message points.
+// Invalid method files and the positions in their error messages.
 #include "tableaux.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -55,7 +55,7 @@ std::optional<std::string> complaint(const std::string& text) {
 
 class bad_files : public ::testing::TestWithParam<bad_file> {};
 
-TEST_P(bad_files, are_refused_with_place_and_reason) {
+TEST_P(bad_files, are_rejected_with_position_and_reason) {
   const auto& [name, old, replacement, place, reason] = GetParam();
   std::string text = good;
   const auto at = text.find(old);
@@ -71,7 +71,7 @@ std::string long_text(std::size_t n) {
   return std::string(n, '7');
 }
 
-/// "a.a.a", n parts.
+/// Returns "a.a.a" with n parts.
 std::string dotted(int n) {
   std::string key = "a";
   for (int i = 1; i < n; ++i) key += ".a";
@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
         bad_file{"d_too_short", "d = [\"1/2\", \"0\", \"1/2\"]", "d = [\"1/2\", \"0\"]", "13:5",
                  "has 2 entries"},
         bad_file{"claims_missing", "[claims]\norder = 2\n", "", "1:1", "missing table [claims]"},
-        bad_file{"no_form", good.substr(good.find("[shu_osher]")), "", "1:1", "exactly one of the tables"},
+        bad_file{"no_form", good.substr(good.find("[shu_osher]")), "", "1:1", "missing or given twice"},
         bad_file{"unknown_key", "title =", "titel =", "2:1", "did you mean 'title'"},
         bad_file{"unknown_claim", "order = 2", "order = 2\nspp_coefficient = \"1\"", "8:1",
                  "did you mean 'ssp_coefficient'"},
@@ -108,19 +108,19 @@ INSTANTIATE_TEST_SUITE_P(
         bad_file{"order_is_zero", "order = 2", "order = 0", "7:9", "out of range"},
         bad_file{"order_is_huge", "order = 2", "order = 9223372036854775807", "7:9", "out of range"},
         bad_file{"unknown_kind", "\"imex\"", "\"imax\"", "4:8", "did you mean 'imex'"},
-        bad_file{"kind_is_number", "\"imex\"", "3", "4:8", "text in quotes"},
+        bad_file{"kind_is_number", "\"imex\"", "3", "4:8", "string in quotes"},
         bad_file{"coefficient_is_number", "r = \"1\"", "r = 1.0", "10:5", "in quotes"},
-        bad_file{"coefficient_is_nan", "r = \"1\"", "r = \"nan\"", "10:5", "no coefficient"},
-        bad_file{"coefficient_is_infinite", "r = \"1\"", "r = \"inf\"", "10:5", "no coefficient"},
-        bad_file{"coefficient_has_spaces", "r = \"1\"", "r = \" 1\"", "10:5", "no coefficient"},
+        bad_file{"coefficient_is_nan", "r = \"1\"", "r = \"nan\"", "10:5", "not a coefficient"},
+        bad_file{"coefficient_is_infinite", "r = \"1\"", "r = \"inf\"", "10:5", "not a coefficient"},
+        bad_file{"coefficient_has_spaces", "r = \"1\"", "r = \" 1\"", "10:5", "not a coefficient"},
         bad_file{"coefficient_has_comma", "\"1/2\", \"0\", \"1/2\"", "\"0,5\", \"0\", \"1/2\"", "13:6",
-                 "no coefficient"},
-        bad_file{"coefficient_is_empty", "r = \"1\"", "r = \"\"", "10:5", "no coefficient"},
-        bad_file{"division_by_zero", "r = \"1\"", "r = \"1/0\"", "10:5", "no coefficient"},
-        bad_file{"two_slashes", "r = \"1\"", "r = \"1/2/3\"", "10:5", "no coefficient"},
-        bad_file{"huge_exponent", "r = \"1\"", "r = \"1e99999\"", "10:5", "no coefficient"},
+                 "not a coefficient"},
+        bad_file{"coefficient_is_empty", "r = \"1\"", "r = \"\"", "10:5", "not a coefficient"},
+        bad_file{"division_by_zero", "r = \"1\"", "r = \"1/0\"", "10:5", "not a coefficient"},
+        bad_file{"two_slashes", "r = \"1\"", "r = \"1/2/3\"", "10:5", "not a coefficient"},
+        bad_file{"huge_exponent", "r = \"1\"", "r = \"1e99999\"", "10:5", "not a coefficient"},
         bad_file{"too_long_number", "r = \"1\"", "r = \"" + long_text(100000) + "\"", "10:5",
-                 "no coefficient"},
+                 "not a coefficient"},
         bad_file{"too_long_name", "name = \"x\"", "name = \"" + long_text(100000) + "\"", "1:8", "too long"},
         bad_file{"empty_name", "name = \"x\"", "name = \"\"", "1:8", "the name is empty"},
         bad_file{"name_leaves_the_folder", "name = \"x\"", "name = \"../escape\"", "1:8", "cannot be used"},
@@ -142,11 +142,11 @@ INSTANTIATE_TEST_SUITE_P(
         bad_file{"lists_of_lists_of_lists", "title =", "x = " + std::string(9, '[') + "\ntitle =", "2:13",
                  "nested deeper than 8"},
         bad_file{"origin_is_a_list", "citation = \"c\"", "citation = \"c\"\norigin = [\"a\"]", "4:10",
-                 "text in quotes"},
+                 "string in quotes"},
         bad_file{"too_long_origin", "citation = \"c\"",
                  "citation = \"c\"\norigin = \"" + long_text(501) + "\"", "4:10", "too long"},
         bad_file{"purpose_is_a_number", "citation = \"c\"", "citation = \"c\"\npurpose = 3", "4:11",
-                 "text in quotes"},
+                 "string in quotes"},
         bad_file{"misspelled_purpose", "citation = \"c\"", "citation = \"c\"\npurpos = \"x\"", "4:1",
                  "did you mean 'purpose'"},
         bad_file{"negative_r", "r = \"1\"", "r = \"-1\"", "10:5", "not positive"},
@@ -164,12 +164,12 @@ INSTANTIATE_TEST_SUITE_P(
         bad_file{"duplicate_key", "r = \"1\"", "r = \"1\"\nr = \"1\"", "11:5", "not TOML"},
         bad_file{"claims_is_a_value", "\n[claims]\norder = 2\n", "claims = 3\n", "5:10", "not a table"},
         bad_file{"both_forms", "ddot = [\"0\", \"-1/2\", \"0\"]",
-                 "ddot = [\"0\", \"-1/2\", \"0\"]\n[butcher]\nA = [[]]", "1:1", "exactly one"},
+                 "ddot = [\"0\", \"-1/2\", \"0\"]\n[butcher]\nA = [[]]", "1:1", "missing or given twice"},
         bad_file{"transport_in_implicit_method", "\"imex\"", "\"implicit\"", "12:1", "unknown key 'W'"},
         bad_file{"collision_in_explicit_method", "\"imex\"", "\"explicit\"", "13:1", "unknown key 'd'"}),
     name_of);
 
-TEST(method_files, may_say_where_they_come_from_and_what_for) {
+TEST(method_files, may_state_origin_and_purpose) {
   EXPECT_EQ(parse_method(good, "m.toml").origin, "");
   EXPECT_EQ(parse_method(good, "m.toml").purpose, "");
   const method m = parse_method("origin = \"by hand\"\npurpose = \"a test\"\n" + good, "m.toml");
@@ -177,11 +177,11 @@ TEST(method_files, may_say_where_they_come_from_and_what_for) {
   EXPECT_EQ(m.purpose, "a test");
 }
 
-TEST(method_files, are_refused_wherever_they_are_cut) {
+TEST(method_files, truncated_anywhere_are_rejected) {
   for (std::size_t n = 0; n + 2 < good.size(); ++n) EXPECT_TRUE(complaint(good.substr(0, n))) << n;
 }
 
-TEST(method_files, do_not_crash_whatever_byte_is_changed) {
+TEST(method_files, with_any_byte_changed_do_not_crash) {
   std::mt19937 draw(7);
   for (int k = 0; k < 3000; ++k) {
     std::string text = good;
@@ -190,26 +190,26 @@ TEST(method_files, do_not_crash_whatever_byte_is_changed) {
     try {
       parse_method(text, "m.toml");
     } catch (const input_error&) {
-      // Whatever else is thrown fails the test.
+      // Any other exception fails the test.
     }
   }
 }
 
-TEST(method_files, ten_megabytes_of_anything_are_refused_at_once) {
+TEST(method_files, of_ten_megabytes_are_rejected_quickly) {
   std::mt19937 draw(11);
   std::string garbage(10'000'000, ' ');
   for (char& c : garbage) c = static_cast<char>(draw() % 256);
   std::string brackets = "x = " + std::string(900'000, '[');
-  const std::clock_t start = std::clock();  // processor time: that of other programs is not in it
+  const std::clock_t start = std::clock();  // CPU time, which excludes other programs
   EXPECT_TRUE(complaint(garbage));
   EXPECT_TRUE(complaint(std::string(10'000'000, '\n')));
   EXPECT_TRUE(complaint(brackets));
   EXPECT_TRUE(complaint(std::string(1'000'000, '\0')));
-  // Some milliseconds; a sanitizer takes more.
+  // A few milliseconds; more under a sanitizer.
   EXPECT_LT(std::clock() - start, 3 * CLOCKS_PER_SEC);
 }
 
-TEST(method_files, dots_in_texts_comments_and_numbers_divide_no_key) {
+TEST(method_files, dots_in_strings_comments_and_numbers_do_not_split_keys) {
   const std::string dots(60, '.');
   std::string text =
       "# " + dots + "\norigin = \"\"\"a\n" + dots + "\\\"\"\"\"\npurpose = '" + dots + "'\n" + good;
@@ -218,15 +218,15 @@ TEST(method_files, dots_in_texts_comments_and_numbers_divide_no_key) {
   EXPECT_EQ(parse_method(text, "m.toml").claims.order, 2);
 }
 
-/// A file in the folder of the test.
+/// Writes a file into the folder of the test and returns its path.
 std::string write_file(const std::string& name, const std::string& text) {
   const std::string path = ::testing::TempDir() + name;
   std::ofstream(path, std::ios::binary) << text;
   return path;
 }
 
-TEST(method_files, larger_than_a_mebibyte_are_refused_and_not_cut) {
-  // What is behind the limit would be a comment, or another key; the message gives the place of the limit.
+TEST(method_files, larger_than_a_mebibyte_are_rejected_rather_than_truncated) {
+  // Beyond the limit there is a comment or another key; the message gives the position of the limit.
   const std::string comment = "# " + std::string(1 << 20, 'c') + "\n";
   const auto path = write_file("large.toml", good + comment);
   try {
@@ -239,7 +239,7 @@ TEST(method_files, larger_than_a_mebibyte_are_refused_and_not_cut) {
   EXPECT_THROW(find_method(path), input_error);
 }
 
-TEST(method_files, may_repeat_a_catalogue_method_but_not_its_name_alone) {
+TEST(method_files, may_repeat_a_catalogue_method_but_not_reuse_its_name) {
   std::string text = to_toml(find_method("md-imex-3-2"));
   text.replace(text.find("1/2"), 3, "0.5");  // the same number
   EXPECT_EQ(load_method_file(write_file("same.toml", text)).name, "md-imex-3-2");
@@ -259,13 +259,13 @@ TEST(method_files, may_repeat_a_catalogue_method_but_not_its_name_alone) {
     return "accepted";
   };
   EXPECT_EQ(refused_as(named("my-method")), "accepted");
-  EXPECT_THAT(refused_as(named("md-imex-3-2")), ::testing::HasSubstr("is that of another method"));
-  EXPECT_THAT(refused_as(named("md-imex-chain-5-2")), ::testing::HasSubstr("is that of another method"));
+  EXPECT_THAT(refused_as(named("md-imex-3-2")), ::testing::HasSubstr("is taken"));
+  EXPECT_THAT(refused_as(named("md-imex-chain-5-2")), ::testing::HasSubstr("is taken"));
   EXPECT_THAT(refused_as(named("md-imex-chain-99-2")), ::testing::HasSubstr("is reserved"));
 }
 
-TEST(method_files, that_changed_are_read_and_certified_again) {
-  // Backward Euler twice, each for half the step: order 1.
+TEST(method_files, that_changed_are_certified_again) {
+  // Two backward Euler steps of half the length: order 1.
   const auto text = [](const std::string& order, const std::string& d) {
     return "name = \"mine-1\"\ntitle = \"t\"\nkind = \"implicit\"\ncitation = \"c\"\n[claims]\norder = " +
            order + "\n[shu_osher]\nP = [[], [\"1\"]]\nd = [\"1/2\", \"" + d + "\"]\nddot = [\"0\", \"0\"]\n";
@@ -280,14 +280,14 @@ TEST(method_files, that_changed_are_read_and_certified_again) {
   write_file("edited.toml", text("2", "1/2"));
   try {
     find_method(path);
-    FAIL() << "the certificate of the earlier text was returned";
+    FAIL() << "the certificate of the previous contents was returned";
   } catch (const claim_error& refused) {
     EXPECT_THAT(refused.what(), ::testing::HasSubstr("order 2: the condition of tree G[G]"));
   }
   EXPECT_FALSE(find_certificate(path).claims_hold);
 
-  // As long as the first text and perhaps within the same tick of the file system's clock: neither size nor
-  // time of modification may stand for the text.
+  // Same length as the first text and possibly the same time stamp: neither size nor modification time may
+  // identify the contents.
   write_file("edited.toml", text("1", "2/2"));
   EXPECT_THAT(find_certificate(path).failures, ::testing::Contains(::testing::HasSubstr("tree G is 1.5")));
   write_file("edited.toml", text("1", "1/2"));
@@ -297,10 +297,10 @@ TEST(method_files, that_changed_are_read_and_certified_again) {
   EXPECT_EQ(certified.error_constant.convert_to<double>(), constant);
 
   std::filesystem::remove(path);
-  EXPECT_THROW(find_method(path), input_error) << "a removed file is no method any more";
+  EXPECT_THROW(find_method(path), input_error) << "a removed file is not a method";
 }
 
-TEST(method_files, that_are_not_there_or_no_files_are_refused) {
+TEST(method_files, that_do_not_exist_or_are_folders_are_rejected) {
   const auto refused_by = [](const std::string& path) -> std::pair<exit_code, std::string> {
     try {
       load_method_file(path);
@@ -318,7 +318,7 @@ TEST(method_files, that_are_not_there_or_no_files_are_refused) {
   EXPECT_THAT(refused_by(""), is(exit_code::input, "cannot read the method file '' (it does not exist)"));
 }
 
-TEST(method_files, a_name_that_is_not_in_the_catalogue_is_met_by_the_nearest) {
+TEST(method_files, unknown_names_get_the_closest_name_as_suggestion) {
   try {
     find_method("md-imex-3-3");
     FAIL();

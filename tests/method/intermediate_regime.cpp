@@ -1,4 +1,4 @@
-// Terms of size ε, from coefficients alone. What they mean is tested with the stepper (tests/integrate).
+// O(ε) terms from coefficients alone. Their meaning is tested with the stepper (tests/integrate).
 #include <apsis/method/intermediate_regime.hpp>
 
 #include "tableaux.hpp"
@@ -22,7 +22,7 @@ intermediate_regime<mp_real> of(const std::string& name) {
   return analyse_intermediate_regime(find_method(name).coefficients<mp_real>());
 }
 
-TEST(intermediate_regime, of_the_papers_second_order_method_has_no_flux) {
+TEST(intermediate_regime, flux_of_the_papers_second_order_method_is_zero) {
   const auto terms = of("md-imex-3-2");  // by hand: χ = (0, 0, ½/½), b̂ = (½, ½, 0), λ = (1/½, 0, 0)
   ASSERT_TRUE(terms.applies);
   EXPECT_EQ(terms.flux, 0);
@@ -30,7 +30,7 @@ TEST(intermediate_regime, of_the_papers_second_order_method_has_no_flux) {
   EXPECT_EQ(terms.layer, 1);
 }
 
-TEST(intermediate_regime, of_the_papers_third_order_method_has_too_much) {
+TEST(intermediate_regime, flux_of_the_papers_third_order_method_is_too_large) {
   const auto terms = of("md-imex-6-3");
   ASSERT_TRUE(terms.applies);
   // By hand from the printed coefficients: χ₃ = w₃₁/(r d₃), χ₄ = w₄₃/(r d₄), b̂ = last row of R⁻¹W/r.
@@ -45,7 +45,7 @@ TEST(intermediate_regime, of_the_papers_third_order_method_has_too_much) {
   EXPECT_NEAR(terms.layer.convert_to<double>(), b4 * 0.583517183806433 / 0.083529464436389, 1e-12);
 }
 
-TEST(intermediate_regime, of_methods_made_for_it_is_exact) {
+TEST(intermediate_regime, is_exact_for_methods_designed_for_it) {
   for (const std::string name : {"md-imex-4-2", "md-imex-5-2", "md-imex-8-3"}) {
     const auto terms = of(name);
     ASSERT_TRUE(terms.applies) << name;
@@ -57,7 +57,7 @@ TEST(intermediate_regime, of_methods_made_for_it_is_exact) {
   EXPECT_GT(abs(of("md-imex-4-2").layer - 1), mp_real(1));
 }
 
-TEST(intermediate_regime, where_the_start_is_a_stage_only_consistent_data_are_right) {
+TEST(intermediate_regime, with_u_n_as_a_stage_is_exact_for_consistent_data_only) {
   const auto terms = of("forward-backward-euler");
   ASSERT_TRUE(terms.applies);
   EXPECT_EQ(terms.flux, 1);
@@ -65,14 +65,14 @@ TEST(intermediate_regime, where_the_start_is_a_stage_only_consistent_data_are_ri
   EXPECT_TRUE(isinf(terms.layer));
 }
 
-TEST(intermediate_regime, does_not_apply_where_a_stage_is_explicit) {
+TEST(intermediate_regime, does_not_apply_if_a_stage_is_explicit) {
   for (const std::string name : {"ssprk-3-3", "ssp2-222"}) EXPECT_FALSE(of(name).applies) << name;
 }
 
-TEST(intermediate_regime, has_the_next_terms_too) {
-  // md-imex-5-2 by hand: T counts at stages 1, 3, 4 with weights 1/3 and ĉ = 0, 1/2, 1; χ = (0, 0, 3, 0, 1).
-  // RÂĉ is (1/2) ĉ of the stage before, so (0, 0, 0, 1/4, 1/3·…): χ′ is 0 but for χ′_5; Rĉ²/2 is 1/8 at stage
-  // 3 and χ″_3 = (1/8)/(1/6).
+TEST(intermediate_regime, includes_the_terms_of_next_order) {
+  // md-imex-5-2 by hand: T contributes at stages 1, 3, 4 with weights 1/3 and ĉ = 0, 1/2, 1; χ = (0, 0, 3, 0,
+  // 1). RÂĉ is (1/2) ĉ of the previous stage, so (0, 0, 0, 1/4, 1/3·…): χ′ is 0 except for χ′_5; Rĉ²/2 is 1/8
+  // at stage 3 and χ″_3 = (1/8)/(1/6).
   const auto terms = of("md-imex-5-2");
   const auto expect = [](const mp_real& value, double wanted) {
     EXPECT_NEAR(value.convert_to<double>(), wanted, 1e-15);
@@ -87,7 +87,7 @@ TEST(intermediate_regime, has_the_next_terms_too) {
   expect(terms.layer_carried, 1.0);
 }
 
-TEST(intermediate_regime, is_reached_from_the_band_and_left_with_the_order) {
+TEST(intermediate_regime, is_the_limit_of_the_band_and_vanishes_with_the_order) {
   for (const auto& name : method_names()) {
     const auto& m = find_method(name);
     const auto form = m.coefficients<mp_real>();
@@ -105,7 +105,7 @@ TEST(intermediate_regime, is_reached_from_the_band_and_left_with_the_order) {
   }
 }
 
-TEST(intermediate_claims, are_certified) {
+TEST(intermediate_claims, of_the_catalogue_are_certified) {
   EXPECT_EQ(find_certificate("md-imex-3-2").keeps(), "none");
   EXPECT_EQ(find_certificate("md-imex-4-2").keeps(), "slow");
   EXPECT_EQ(find_certificate("ars-222").keeps(), "slow");
@@ -118,17 +118,18 @@ TEST(intermediate_claims, are_certified) {
   EXPECT_NEAR(find_certificate("md-imex-5-2").band.at, 4.47, 0.3);
 }
 
-TEST(intermediate_band, is_the_largest_of_ten_thousand_values_of_z) {
+TEST(intermediate_band, is_the_maximum_over_ten_thousand_samples) {
   for (const auto& name : method_names()) {
     const auto& m = find_method(name);
     if (m.kind != method_kind::imex) continue;
     const auto b = to_butcher(m.coefficients<long double>());
     long double largest = 0;
-    for (int k = -5000; k <= 5000; ++k) {  // 0.05 < z < 20, where all maxima are
+    for (int k = -5000; k <= 5000; ++k) {  // 0.05 < z < 20, the range of all maxima
       const long double z = std::exp(3 * static_cast<long double>(k) / 5000);
       largest = std::max(largest, std::abs(at_finite_rate(b, z).flux - 1) / z);
     }
-    // A maximum is flat: samples 6e-4 apart miss 1e-7 of it. Methods without a band have rounding, 1e-12.
+    // Maxima are flat: samples 6e-4 apart miss 1e-7 of them. Methods without a band have
+    // rounding errors, 1e-12.
     EXPECT_NEAR(find_certificate(name).band.error, static_cast<double>(largest),
                 2e-7 * static_cast<double>(largest) + 1e-12)
         << name;
@@ -151,16 +152,16 @@ std::vector<std::string> failures_with(const std::string& name, const std::strin
   return certify(parse_method(text, "m.toml")).failures;
 }
 
-TEST(intermediate_claims, that_do_not_hold_are_refused) {
+TEST(intermediate_claims, that_do_not_hold_are_rejected) {
   using ::testing::Contains, ::testing::HasSubstr, ::testing::IsEmpty;
-  EXPECT_THAT(failures_with("md-imex-5-2", "slow"), IsEmpty());  // less than there is
+  EXPECT_THAT(failures_with("md-imex-5-2", "slow"), IsEmpty());  // claims less than holds
   EXPECT_THAT(failures_with("ars-222", "slow"), IsEmpty());
   EXPECT_THAT(failures_with("md-imex-3-2", "slow"), Contains(HasSubstr("claims.intermediate = slow but the "
                                                                        "O(epsilon) terms are flux 0")));
   EXPECT_THAT(failures_with("md-imex-4-2", "all"), Contains(HasSubstr("layer 2.16")));
   EXPECT_THAT(failures_with("ars-222", "all"), Contains(HasSubstr("claims.intermediate = all")));
   EXPECT_THAT(failures_with("ssp2-222", "slow"), Contains(HasSubstr("neither relaxed nor u^n")));
-  // d_3 = 1/6 moved by a millionth moves the flux by six.
+  // Changing d_3 = 1/6 by 1e-6 changes the flux by 6e-6.
   EXPECT_THAT(failures_with("md-imex-5-2", "slow", "1/6", "0.166667666666666666666666666667"),
               Contains(HasSubstr("claims.intermediate = slow but the O(epsilon) terms are flux 0.99999")));
   try {
@@ -171,8 +172,8 @@ TEST(intermediate_claims, that_do_not_hold_are_refused) {
   }
 }
 
-// Four digits, found by a search, are enough for Newton's method to find the other forty; zeros make sure
-// that no number is taken for an exact one.
+// Four digits from a search suffice for Newton's method to find the other forty; trailing zeros mark the
+// numbers as inexact.
 const std::string four_digits = test::method_text("md-imex-4-2", "imex", 2, R"([shu_osher]
 r = "1.511000000000"
 P = [[], ["0"], ["0", "0"], ["0.373200000000", "0", "0"]]
@@ -181,19 +182,19 @@ d = ["0.703900000000", "0.112700000000", "0.112700000000", "0.414800000000"]
 ddot = ["-0.078300000000", "0", "-0.387100000000", "0"]
 )");
 
-TEST(polishing, with_conditions_of_the_intermediate_regime_finds_the_method_of_the_catalogue) {
+TEST(polishing, with_conditions_of_the_intermediate_regime_recovers_the_catalogue_method) {
   const auto keeps_flux = [](const shu_osher_form<mp_real>& m) {
     const auto terms = analyse_intermediate_regime(m);
     return std::vector<mp_real>{terms.flux - 1, terms.last - 1};
   };
   const auto polished = polish(parse_method(four_digits, "four digits"), 45, keeps_flux).polished;
-  // Eight conditions leave one of nine coefficients free, so the four digits lead to a neighbour of the
-  // file's method, no nearer than the four digits are.
+  // Eight conditions leave one of nine coefficients free, so the result is as close to the method of the file
+  // as four digits allow.
   const auto m = polished.coefficients<mp_real>(), file = find_method("md-imex-4-2").coefficients<mp_real>();
   EXPECT_LT(abs(m.r - file.r), mp_real(1e-3));
   EXPECT_LT(abs(analyse_intermediate_regime(m).flux - 1), mp_real(1e-42));
   EXPECT_EQ(certify(polished).order, 2);
-  // The digits of the file itself do not move.
+  // Polishing the file itself changes nothing.
   const auto again = polish(find_method("md-imex-4-2"), 45, keeps_flux);
   EXPECT_LT(again.largest_move, mp_real(1e-42));
   EXPECT_LT(again.residual, mp_real(1e-50));

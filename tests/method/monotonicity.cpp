@@ -1,5 +1,4 @@
-// SSP coefficients against formulas of their own: from random Shu–Osher forms, from θ methods, from
-// polynomials.
+// SSP coefficients against independent formulas: random Shu–Osher forms, θ methods, stability polynomials.
 #include <apsis/method/monotonicity.hpp>
 
 #include "tableaux.hpp"
@@ -19,7 +18,7 @@ struct random_form {
   bool bounded = false;  ///< some w_ij > 0
 };
 
-/// A form with all the signs of the theorem: weights k/1024 with row sums below 1, d ≥ 0 ≥ ḋ, not both 0.
+/// A form with the signs of the theorem: weights k/1024 with row sums below 1, d ≥ 0 ≥ ḋ, not both 0.
 random_form draw_form(std::size_t s) {
   const auto dyadic = [](int low, int high) { return mp_real(*rc::gen::inRange(low, high)) / 1024; };
   random_form m;
@@ -46,7 +45,7 @@ std::string named(const char* what, std::size_t i, std::size_t j) {
   return what + std::string("_") + std::to_string(i + 1) + "," + std::to_string(j + 1) + " = ";
 }
 
-TEST(monotonicity, coefficient_of_random_forms_is_found_from_their_butcher_form_alone) {
+TEST(monotonicity, recovers_the_coefficient_of_random_forms_from_their_butcher_forms) {
   check_property("r = min r₀ (P + W)/W", [] {
     const auto m = draw_form(*rc::gen::inRange<std::size_t>(1, 8));
     const auto found = analyse_imex(to_butcher(m.form), zero);
@@ -57,7 +56,7 @@ TEST(monotonicity, coefficient_of_random_forms_is_found_from_their_butcher_form_
   });
 }
 
-TEST(monotonicity, a_wrong_sign_anywhere_is_found_and_named) {
+TEST(monotonicity, names_any_entry_of_wrong_sign) {
   check_property("one entry of the wrong sign", [] {
     const auto s = *rc::gen::inRange<std::size_t>(2, 8);
     auto form = draw_form(s).form;
@@ -70,7 +69,7 @@ TEST(monotonicity, a_wrong_sign_anywhere_is_found_and_named) {
         entry = named("R", i, j);
         break;
       case 1:
-        form.P(i, j) += form.W(i, j) + mp_real(1) / 1024;  // R_ij < 0 whatever W_ij is
+        form.P(i, j) += form.W(i, j) + mp_real(1) / 1024;  // R_ij < 0 for any W_ij
         form.W(i, j) = -mp_real(1) / 1024;
         entry = named("(R A_hat)", i, j);
         break;
@@ -89,14 +88,14 @@ TEST(monotonicity, a_wrong_sign_anywhere_is_found_and_named) {
   });
 }
 
-TEST(monotonicity, of_theta_methods_is_1_over_1_minus_theta) {
+TEST(monotonicity, radius_of_theta_methods_is_1_over_1_minus_theta) {
   check_property("u' = u^n + Δt ((1 − θ) Q(u^n) + θ Q(u'))", [] {
     const mp_real theta = mp_real(*rc::gen::inRange(0, 1000)) / 1000;
     butcher_form<mp_real> b{matrix<mp_real>(2, 2), matrix<mp_real>(2, 2), matrix<mp_real>(2, 2)};
     b.A(1, 0) = 1 - theta;
     b.A(1, 1) = theta;
     RC_ASSERT(abs(monotonicity_radius(b.A, zero) * (1 - theta) - 1) < mp_real("1e-40"));
-    // Not of the paper's class: Q(u^n) is explicit, whatever θ is.
+    // Outside the paper's class for every θ: Q(u^n) enters explicitly.
     const auto found = analyse_imex(b, zero);
     RC_ASSERT(!found.exists);
     RC_ASSERT(!found.unconditional);
@@ -104,14 +103,14 @@ TEST(monotonicity, of_theta_methods_is_1_over_1_minus_theta) {
   });
 }
 
-TEST(monotonicity, of_backward_euler_has_no_bound) {
+TEST(monotonicity, of_backward_euler_is_unconditional) {
   matrix<mp_real> A(1, 1);
   A(0, 0) = 1;
   EXPECT_GE(monotonicity_radius(A, zero), mp_real(1e6));
 }
 
-/// Derivatives of the stability polynomial ψ(z) = Σ z^k/k! at −x are ≥ 0 just up to its threshold factor, a
-/// bound for r.
+/// Whether the derivatives of the stability polynomial ψ(z) = Σ z^k/k! at −x are ≥ 0, which holds up to its
+/// threshold factor, an upper bound for r.
 bool absolutely_monotonic(int degree, double x) {
   for (int derivative = 0; derivative <= degree; ++derivative) {
     double sum = 0, term = 1;
@@ -124,18 +123,18 @@ bool absolutely_monotonic(int degree, double x) {
   return true;
 }
 
-TEST(monotonicity, of_explicit_methods_lies_between_their_form_and_their_polynomial) {
+TEST(monotonicity, of_explicit_methods_lies_between_the_bounds_by_form_and_polynomial) {
   for (const auto& [name, stages] : {std::pair{"ssprk-2-2", 2}, std::pair{"ssprk-3-3", 3}}) {
     const auto form = find_method(name).coefficients<mp_real>();
-    // From below: the weights of the file are convex with r = 1.
+    // Lower bound: the weights of the file are convex with r = 1.
     for (const auto& weight : initial_weights(form)) EXPECT_GE(weight, 0) << name;
     for (std::size_t i = 0; i < form.stages(); ++i)
       for (std::size_t j = 0; j < i; ++j) EXPECT_GE(std::min(form.P(i, j), form.W(i, j)), 0) << name;
     EXPECT_EQ(form.r, 1) << name;
-    // From above: no method with this polynomial has more than 1.
+    // Upper bound: no method with this polynomial has r > 1.
     EXPECT_TRUE(absolutely_monotonic(stages, 1.0)) << name;
     EXPECT_FALSE(absolutely_monotonic(stages, 1.0 + 1e-9)) << name;
-    // So it is 1, and that is what bisection on the tableau finds.
+    // Hence r = 1, which bisection on the tableau finds.
     EXPECT_LT(abs(monotonicity_radius(to_butcher(form).A_hat, zero) - 1), mp_real("1e-40")) << name;
   }
 }

@@ -1,4 +1,4 @@
-// A file whose coefficients are wrong must be refused, whatever is wrong about it.
+// Files with wrong coefficients are rejected, whichever coefficient is wrong.
 #include "named_tree.hpp"
 #include "support/catalogue.hpp"
 #include "tableaux.hpp"
@@ -23,14 +23,14 @@ namespace {
 
 struct mutant {
   std::string what, text;
-  int weight_of_first_stage = 0;  ///< i where P_i1 is changed, otherwise 0
+  int weight_of_first_stage = 0;  ///< i if P_i1 is changed, otherwise 0
 };
 
 std::string moved(const std::string& text, const char* by) {
   return mp_real(coefficient_value(text) + mp_real(by)).str(45, std::ios_base::fixed);
 }
 
-/// The files of all methods that differ from m in one coefficient of its file, zeros included.
+/// Returns the files of all methods that differ from m in one coefficient, zeros included.
 std::vector<mutant> mutants(const method& m, const char* by) {
   std::vector<mutant> all;
   method changed = m;
@@ -63,14 +63,12 @@ std::vector<mutant> mutants(const method& m, const char* by) {
   return all;
 }
 
-/// Coefficients that the claims leave free: moved by a millionth they make another method with the same
-/// claims.
+/// Coefficients that the claims leave free: changing them by 1e-6 gives another method with the same claims.
 const std::map<std::string, std::vector<std::string>> free_coefficients = {
-    // No condition of order 1 knows Q̇.
+    // Conditions of order 1 do not involve Q̇.
     {"forward-backward-euler", {"ddot22 + -1e-6"}},
-    // Only T(u_2) is used, and it reaches u^{n+1} through u_3 and u_5 with weights γ b̂_3 and −γ b̂_3: no
-    // condition
-    // of order 3 sees where stage 2 lies.
+    // Only T(u_2) is used, and it reaches u^{n+1} through u_3 and u_5 with weights γ b̂_3 and −γ b̂_3:
+    // conditions of order 3 do not depend on the abscissa of stage 2.
     {"bhr-553",
      {"A21 + 1e-6", "A21 + -1e-6", "d22 + 1e-6", "d22 + -1e-6", "A_hat21 + 1e-6", "A_hat21 + -1e-6"}}};
 
@@ -90,21 +88,19 @@ bool same_butcher_form(const method& a, const method& b) {
   return true;
 }
 
-/// What refuses a mutant that satisfies the order conditions; every other one is refused for an order
-/// condition.
+/// Reasons for rejecting mutants that satisfy the order conditions; all others violate an order condition.
 const std::map<std::pair<std::string, std::string>, std::string> other_causes = {
-    // No condition of order 1 knows Q̇: its sign decides on strong stability, its presence in stage 1 on the
-    // type.
+    // Conditions of order 1 do not involve Q̇: its sign decides strong stability, its presence in stage
+    // 1 the type.
     {{"forward-backward-euler", "ddot11 + 1e-6"}, "claims.ssp_coefficient = 1 but the Butcher form gives 0"},
     {{"forward-backward-euler", "ddot22 + 1e-6"}, "claims.ssp_coefficient = 1 but the Butcher form gives 0"},
     {{"forward-backward-euler", "ddot11 + -1e-6"}, "claims.type = ARS but the method is of type A"},
-    // No later stage reads T of stage 1, whose Q has weight 0 in u^{n+1}.
+    // T of stage 1 is not used, and its Q has weight 0 in u^{n+1}.
     {{"ssp3-433", "d11 + 1e-6"}, "claims.l_stable = true but the implicit part is A("},
     {{"ssp3-433", "d11 + -1e-6"}, "claims.l_stable = true but the implicit part is A("},
 };
 
-/// The refusal names a condition of the claimed order, and `m` does violate it by the residual that is
-/// printed.
+/// The message names a condition of the claimed order, which `m` violates by the printed residual.
 void expect_violated_condition(const method& m, const std::string& refusal) {
   const std::regex pattern(
       R"(order (\d+): the condition of tree ([FG\[\],]+) is \S+ instead of \S+ \(residual (\S+)\))");
@@ -117,15 +113,16 @@ void expect_violated_condition(const method& m, const std::string& refusal) {
   const mp_real residual = weights.back() - 1 / tree.density();
   const mp_real printed(part[3].str());
   EXPECT_NE(printed, 0) << refusal;
-  EXPECT_LE(abs(residual - printed), mp_real("0.01") * abs(residual)) << refusal;  // of three digits
+  EXPECT_LE(abs(residual - printed), mp_real("0.01") * abs(residual))
+      << refusal;  // printed with three digits
 }
 
 class every_method : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(every_method, is_refused_for_the_right_cause_when_any_coefficient_is_off_by_a_millionth) {
+TEST_P(every_method, is_rejected_for_the_right_reason_if_a_coefficient_is_off_by_a_millionth) {
   const method& m = find_method(GetParam());
-  // A stage that is u^n itself: P_i1 moves weight from u^n to u^n, the same method in a form that is not
-  // unique.
+  // For a first stage u^n, changing P_i1 shifts weight from u^n to u^n: the same method in a form that
+  // is not unique.
   const bool first_is_initial = !m.is_tableau() && m.exact.D(0, 0) == "0" && m.exact.ddot[0] == "0";
   for (const char* by : {"1e-6", "-1e-6"})
     for (const auto& mutant : mutants(m, by)) {
@@ -155,7 +152,7 @@ TEST_P(every_method, is_refused_for_the_right_cause_when_any_coefficient_is_off_
     }
 }
 
-TEST_P(every_method, survives_being_written_and_read) {
+TEST_P(every_method, survives_export_and_parsing) {
   const method& m = find_method(GetParam());
   const method again = parse_method(to_toml(m), "again.toml");
   EXPECT_EQ(to_toml(again), to_toml(m));
@@ -174,7 +171,7 @@ std::string name_of(const ::testing::TestParamInfo<std::string>& method_name) {
   return name;
 }
 
-/// Methods with many stages have some hundred mutants, some hundredths of a second each.
+/// Methods with many stages have several hundred mutants of about 10 ms each.
 std::vector<std::string> methods_with(bool many_stages) {
   return methods_where([&](const method& m) { return (m.stages() > 6) == many_stages; });
 }
@@ -182,7 +179,7 @@ std::vector<std::string> methods_with(bool many_stages) {
 INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(methods_with(false)), name_of);
 INSTANTIATE_TEST_SUITE_P(slow_catalogue, every_method, ::testing::ValuesIn(methods_with(true)), name_of);
 
-/// A file in the folder for temporary files, removed with the object.
+/// A temporary file, removed by the destructor.
 class temporary_file {
  public:
   explicit temporary_file(const std::string& text)
@@ -216,7 +213,7 @@ std::string with(std::string text, const std::string& old, const std::string& re
   return at == std::string::npos ? text : text.replace(at, old.size(), replacement);
 }
 
-TEST(refusals, name_the_condition_its_value_and_its_tree) {
+TEST(refusals, name_condition_value_and_tree) {
   const std::string text = catalogue_text("md-imex-3-2");
   ASSERT_FALSE(text.empty());
   {
@@ -228,7 +225,7 @@ TEST(refusals, name_the_condition_its_value_and_its_tree) {
   EXPECT_THAT(wrong, ::testing::HasSubstr("tree G is 1.1 instead of 1"));
 }
 
-TEST(refusals, an_order_too_high_or_too_low_a_wrong_coefficient_a_wrong_type) {
+TEST(refusals, reject_wrong_orders_coefficients_and_types) {
   const std::string text = catalogue_text("md-imex-3-2");
   EXPECT_THAT(refusal(with(text, "order = 2", "order = 3")), ::testing::HasSubstr("order 3"));
   EXPECT_THAT(refusal(with(text, "order = 2", "order = 1")), ::testing::HasSubstr("the method has order 2"));
@@ -243,13 +240,13 @@ TEST(refusals, an_order_too_high_or_too_low_a_wrong_coefficient_a_wrong_type) {
               ::testing::HasSubstr("0.9044021741306"));
 }
 
-TEST(refusals, a_method_that_is_ssp_only_without_its_negative_weight) {
+TEST(refusals, reject_a_method_with_a_negative_weight) {
   // The trapezoidal rule uses Q(u^n) explicitly, so no form of the paper's class exists.
   const auto& c = find_certificate("dirk-2-2");
   EXPECT_EQ(c.ssp_coefficient, 0);
   EXPECT_FALSE(c.unconditional);
   EXPECT_THAT(c.limiting_entry, ::testing::HasSubstr("A_2,1 = 0.5"));
-  // Its classical radius of absolute monotonicity: 1 − r/2 ≥ 0.
+  // Its radius of absolute monotonicity follows from 1 − r/2 ≥ 0.
   EXPECT_NEAR(c.radius_of_implicit_part.convert_to<double>(), 2.0, 1e-15);
 }
 

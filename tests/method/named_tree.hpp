@@ -8,8 +8,8 @@
 
 namespace apsis::test {
 
-/// The left-hand side of the order condition of a tree by its name, "G[F,G[F]]", and what it should be:
-/// recursions of their own, so that a condition named in a refusal is not checked by what named it.
+/// The left-hand side of the order condition of a tree given by name, "G[F,G[F]]", and its exact value, by
+/// independent recursions, so that a condition named in a message is not checked by the code that named it.
 class named_tree {
  public:
   explicit named_tree(const std::string& name) {
@@ -29,7 +29,7 @@ class named_tree {
     return product;
   }
 
-  /// The weights at the stages, the last of which is u^{n+1}.
+  /// Returns the elementary weights at all stages; the last stage is u^{n+1}.
   std::vector<mp_real> weights(const butcher_form<mp_real>& b) const {
     const std::size_t s = b.A.rows();
     const auto at_stages = product(b, children_, children_.size());

@@ -1,5 +1,5 @@
-// Polishing the digits that papers print gives the digits of the catalogue. The printed coefficients are
-// typed here from the page, so that neither the files nor the polishing can hide a wrong digit of the other.
+// Polishing the digits printed in papers gives the digits of the catalogue. The printed coefficients are
+// transcribed here, so that errors in the files and in polishing cannot cancel.
 #include <apsis/method/polish.hpp>
 
 #include "tableaux.hpp"
@@ -29,7 +29,7 @@ d = ["0.660949255604937", "0.242201390400848", "1.137542996287740", "0.191388711
 ddot = ["-0.177750705279127", "-0.354733903778084", "-0.403963513682271", "-0.161628266349058", "-0.218859021269943"]
 )");
 
-// The printed 2 of d and of ddot is a number known to fifteen decimals like the others.
+// The printed 2 in d and ddot is known to fifteen decimals, like the other coefficients.
 const std::string printed_md_imex_6_3 = method_text("md-imex-6-3", "imex", 3, R"([shu_osher]
 r = "0.904402174130635"
 P = [
@@ -70,7 +70,7 @@ A_dot = [["0"], ["0", "0"], ["0", "0", "0"], ["0", "0", "0", "-0.27973737915215"
 )");
 
 /// SSPRK(5,4) of Spiteri and Ruuth, u_i = Σ_j α_ij u_j + Δt β_ij T(u_j): in our form W = rβ and P = α − rβ
-/// with r = min α/β, and P = 0 where r is attained up to the digits printed.
+/// with r = min α/β, and P = 0 where r is attained to the printed digits.
 std::string printed_ssprk_5_4() {
   using rows = std::vector<std::vector<std::string>>;
   const rows alpha = {{"1"},
@@ -106,7 +106,7 @@ std::string printed_ssprk_5_4() {
                      "[shu_osher]\nr = \"" + digits(r) + "\"\nP = " + P + "]\nW = " + W + "]\n");
 }
 
-/// What the two methods have in every place, in the order of the file.
+/// Pairs of corresponding coefficients of two methods, in file order.
 std::vector<std::pair<std::string, std::string>> side_by_side(const method& a, const method& b) {
   std::vector<std::pair<std::string, std::string>> pairs{{a.exact.r, b.exact.r}};
   for (std::size_t i = 0; i < a.stages(); ++i) {
@@ -120,11 +120,11 @@ std::vector<std::pair<std::string, std::string>> side_by_side(const method& a, c
   return pairs;
 }
 
-mp_real distance(const std::string& a, const std::string& b) {
+mp_real difference(const std::string& a, const std::string& b) {
   return abs(coefficient_value(a) - coefficient_value(b));
 }
 
-/// Largest allowed change and least possible change, in units of the fifteenth decimal.
+/// Largest allowed and smallest possible change, in units of the fifteenth decimal.
 struct expected_move {
   std::string name, text;
   double at_most, at_least;
@@ -137,43 +137,42 @@ TEST_P(printed_digits, lead_to_the_digits_of_the_catalogue) {
   const auto result = polish(printed);
   EXPECT_LT(result.residual, mp_real("1e-45"));
   for (const auto& [polished, known] : side_by_side(result.polished, find_method(GetParam().name)))
-    EXPECT_LT(distance(polished, known), mp_real("1e-40")) << polished << " and " << known;
+    EXPECT_LT(difference(polished, known), mp_real("1e-40")) << polished << " and " << known;
 }
 
-TEST_P(printed_digits, keep_their_order_conditions_when_written_with_45_decimals) {
+TEST_P(printed_digits, satisfy_the_order_conditions_after_export_with_45_decimals) {
   const auto c = certify(polish(parse_method(GetParam().text, "printed.toml")).polished);
   EXPECT_TRUE(c.claims_hold);
   // Each of some forty decimals is rounded by up to 5e-46, with weights in the conditions of order 10.
   EXPECT_LT(c.order_residual, mp_real("1e-43"));
 }
 
-TEST_P(printed_digits, move_hardly_more_than_they_must) {
+TEST_P(printed_digits, move_by_almost_the_minimum) {
   const auto& [name, text, at_most, at_least] = GetParam();
   const method printed = parse_method(text, "printed.toml");
   const auto result = polish(printed);
   const mp_real unit("1e-15");
   mp_real largest(0);
   for (const auto& [polished, before] : side_by_side(result.polished, printed)) {
-    const mp_real moved = distance(polished, before);
+    const mp_real moved = difference(polished, before);
     largest = std::max(largest, moved);
     EXPECT_LE(moved, mp_real(at_most) * unit) << before << " became " << polished;
     if (decimals(before) == 0) {
-      EXPECT_EQ(polished, before) << "an exact coefficient has moved";
+      EXPECT_EQ(polished, before) << "an exact coefficient has changed";
     }
   }
-  // The reported move is that of the unrounded coefficients.
+  // The reported change refers to the unrounded coefficients.
   EXPECT_LT(abs(largest - result.largest_move), mp_real("1e-44"));
-  // What duality forbids lies below what was found, and close to it: the polished method is all but the
-  // nearest one.
+  // The dual bound lies below the change found, and close to it: the polished method is almost optimal.
   EXPECT_GE(result.smallest_possible_move, mp_real(at_least) * unit);
-  // The bound is that of the linearised conditions; moves of 1e-15 change gradients by about as much,
-  // relatively.
+  // The bound is that of the linearized conditions; changes of 1e-15 change gradients by about
+  // as much, relatively.
   EXPECT_LE(result.smallest_possible_move, result.largest_move * mp_real(1 + 1e-12));
 }
 
 // For the third-order IMEX method no coefficients within one unit of all printed digits satisfy the
-// conditions exactly: the bound says 1.07. Of SSPRK(5,4) r = min α/β is known to about 1e-14 only. The digits
-// of Hu, Shu and Zhang are fourteen, a unit of which is 10 here.
+// conditions exactly: the bound is 1.07. For SSPRK(5,4), r = min α/β is known only to about 1e-14. Hu, Shu
+// and Zhang print fourteen digits; a unit of the last one is 10 here.
 INSTANTIATE_TEST_SUITE_P(papers, printed_digits,
                          ::testing::Values(expected_move{"imdrk-5-4", printed_imdrk_5_4, 0.72, 0.70},
                                            expected_move{"md-imex-6-3", printed_md_imex_6_3, 1.08, 1.07},
@@ -185,8 +184,8 @@ INSTANTIATE_TEST_SUITE_P(papers, printed_digits,
                            return name;
                          });
 
-// A largest residual that drops NaN would call this converged.
-TEST(polish, does_not_take_what_is_no_number_for_a_solution) {
+// A maximum that drops NaN would report convergence here.
+TEST(polish, does_not_accept_nan_as_a_solution) {
   const method& m = find_method("md-imex-6-3");
   const auto broken = [](const shu_osher_form<mp_real>&) {
     return std::vector<mp_real>{std::numeric_limits<mp_real>::quiet_NaN()};

@@ -1,4 +1,4 @@
-// What the numbers of the catalogue are worth in each arithmetic.
+// Accuracy of the catalogue in each arithmetic.
 #include "tableaux.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -17,7 +17,7 @@
 namespace apsis::test {
 namespace {
 
-TEST(catalogue, has_residuals_below_1e_38_and_holds_its_claims) {
+TEST(catalogue, has_residuals_below_1e_38_and_satisfies_its_claims) {
   for (const auto& name : method_names()) {
     const auto& c = find_certificate(name);
     EXPECT_TRUE(c.claims_hold) << name;
@@ -26,15 +26,15 @@ TEST(catalogue, has_residuals_below_1e_38_and_holds_its_claims) {
   }
 }
 
-TEST(catalogue, is_certified_in_a_few_seconds_of_processor_time) {
+TEST(catalogue, is_certified_in_a_few_seconds_of_cpu_time) {
   const std::clock_t start = std::clock();
   for (const auto& name : method_names()) certify(parse_method(catalogue_text(name), name));
-  // About 1 s; the limit leaves room for an unoptimised build. Not wall time: a busy machine is no fault of
-  // ours.
+  // About 1 s; the limit allows for an unoptimized build. CPU time, because other programs may
+  // load the machine.
   EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5.0);
 }
 
-TEST(catalogue, gives_every_thread_the_same_method) {
+TEST(catalogue, returns_the_same_method_to_every_thread) {
   std::vector<const method*> found(8, nullptr);
   std::vector<std::thread> threads;
   for (auto& place : found) threads.emplace_back([&place] { place = &find_method("ssprk-3-3"); });
@@ -42,7 +42,7 @@ TEST(catalogue, gives_every_thread_the_same_method) {
   for (const auto* m : found) EXPECT_EQ(m, &find_method("ssprk-3-3"));
 }
 
-/// Adds in an order of its own; on a common grid every partial sum is exact, so the order cannot matter.
+/// Adds in a different order; on a common grid every partial sum is exact, so the order does not matter.
 template <class Real>
 void expect_exact_rows(const method& m) {
   const auto form = m.coefficients<Real>();
@@ -60,8 +60,8 @@ void expect_exact_rows(const method& m) {
       for (const auto part : {&shu_osher_form<std::string>::P, &shu_osher_form<std::string>::W}) {
         const Real value = part == &shu_osher_form<std::string>::P ? form.P(i, j) : form.W(i, j);
         const mp_real wanted = coefficient_value((m.exact.*part)(i, j));
-        // The grid is epsilon/2: half of it for each weight, and the largest of a row takes what is left
-        // of 1.
+        // The grid is epsilon/2: each weight is off by at most half of it, and the largest of a row
+        // takes the remainder.
         const mp_real half = mp_real(std::numeric_limits<Real>::epsilon()) / 4;
         EXPECT_LE(abs(mp_real(value) - wanted), half * mp_real(i + 2)) << m.name << i << j;
         EXPECT_EQ(value == 0, wanted == 0) << m.name;
@@ -69,7 +69,7 @@ void expect_exact_rows(const method& m) {
   }
 }
 
-TEST(coefficients, have_rows_that_add_up_to_1_without_rounding) {
+TEST(coefficients, have_row_sums_of_exactly_1) {
   for (const auto& name : method_names()) {
     expect_exact_rows<double>(find_method(name));
     expect_exact_rows<long double>(find_method(name));
@@ -89,8 +89,8 @@ TEST(coefficients, off_the_grid_are_correctly_rounded) {
   }
 }
 
-TEST(coefficients, of_rows_that_nearly_add_up_to_1_leave_nothing_negative_for_the_first_stage) {
-  // Thirty weights, each rounded on its own: together they could exceed 1 by some units of the last place.
+TEST(coefficients, of_rows_that_nearly_sum_to_1_leave_no_negative_weight_for_u_n) {
+  // Thirty weights, each rounded separately: their sum could exceed 1 by several ulps.
   std::string p = "P = [[]", d = "d = [\"1\"", ddot = "ddot = [\"-1/2\"";
   for (int i = 1; i <= 30; ++i) {
     p += ", [";
@@ -109,8 +109,8 @@ TEST(coefficients, of_rows_that_nearly_add_up_to_1_leave_nothing_negative_for_th
   expect_exact_rows<long double>(m);
 }
 
-TEST(coefficients, do_not_round_to_more_than_1_where_almost_nothing_is_left) {
-  // Three thirds less 1e-20: a third rounds up on the grid, so the plain sum would be 1 + 2⁻⁵³.
+TEST(coefficients, do_not_round_to_a_sum_above_1) {
+  // Three thirds minus 1e-20: each third rounds up on the grid, so the plain sum would be 1 + 2⁻⁵³.
   const std::string third = "\"33333333333333333333/100000000000000000000\"";
   std::string text = catalogue_text("imdrk-1-2");
   const auto form = text.find("\n[shu_osher]");
@@ -123,16 +123,16 @@ TEST(coefficients, do_not_round_to_more_than_1_where_almost_nothing_is_left) {
   expect_exact_rows<long double>(m);
 }
 
-TEST(polishing, leaves_exact_methods_alone) {
+TEST(polishing, does_not_change_exact_methods) {
   for (const std::string name : {"imdrk-1-2", "imdrk-2-3", "md-imex-3-2"}) {
     const auto result = polish(find_method(name));
     EXPECT_EQ(result.largest_move, 0) << name;
   }
 }
 
-TEST(polishing, refuses_what_is_no_method_at_all) {
+TEST(polishing, rejects_inconsistent_coefficients) {
   method m = find_method("md-imex-6-3");
-  m.exact.D(0, 0) = "1";  // c_1 = 1 but ĉ_1 = 0 whatever the decimals are
+  m.exact.D(0, 0) = "1";  // c_1 = 1 but ĉ_1 = 0 for any decimals
   EXPECT_THROW(polish(m), numerical_error);
 }
 
@@ -143,13 +143,13 @@ matrix<mp_real> explicit_tableau(std::size_t s, const std::vector<std::vector<co
   return K;
 }
 
-TEST(monotonicity, radii_are_those_of_the_literature) {
+TEST(monotonicity, radii_agree_with_the_literature) {
   const mp_real zero(1e-50);
   const auto radius = [&](const matrix<mp_real>& K) {
     return monotonicity_radius(K, zero).convert_to<double>();
   };
-  // Forward Euler, 1; SSPRK(3,2), 2; SSPRK(4,3), 2 (Kraaijevanger 1991); the classical fourth-order method,
-  // 0.
+  // Forward Euler: 1; SSPRK(3,2): 2; SSPRK(4,3): 2 (Kraaijevanger 1991); the classical
+  // fourth-order method: 0.
   EXPECT_DOUBLE_EQ(radius(explicit_tableau(2, {{}, {"1"}})), 1.0);
   EXPECT_DOUBLE_EQ(radius(explicit_tableau(4, {{}, {"1/2"}, {"1/2", "1/2"}, {"1/3", "1/3", "1/3"}})), 2.0);
   EXPECT_DOUBLE_EQ(

@@ -1,5 +1,5 @@
-// Properties of trees, order conditions and conversions on random input, and methods of the literature whose
-// order is known.
+// Properties of trees, order conditions and conversions for random input, and of methods of the literature
+// with known order.
 #include "tableaux.hpp"
 
 #include <apsis/method/order_conditions.hpp>
@@ -15,7 +15,7 @@
 namespace apsis::test {
 namespace {
 
-TEST(trees, are_as_many_as_there_are) {
+TEST(trees, have_the_known_number_per_order) {
   // One colour: rooted trees, 1, 1, 2, 4, 9, 20, 48 (OEIS A000081); two colours: A000151.
   const std::vector<std::size_t> one = {1, 1, 2, 4, 9, 20, 48}, two = {2, 4, 14, 52, 214, 916};
   for (const auto& [colours, numbers_of] :
@@ -37,7 +37,7 @@ struct measured {
   double order = 1, density = 1;
 };
 
-/// Order and density of a printed tree, read from its brackets alone.
+/// Order and density of a tree, computed from the brackets of its name.
 measured measure(const std::string& name, std::size_t& at) {
   measured tree;
   ++at;
@@ -54,7 +54,7 @@ measured measure(const std::string& name, std::size_t& at) {
   return tree;
 }
 
-TEST(trees, have_the_order_and_density_that_their_names_show) {
+TEST(trees, have_the_order_and_density_of_their_names) {
   for (const auto& tree : rooted_trees(6, tree_colours::both)) {
     std::size_t at = 0;
     const auto read = measure(tree.name, at);
@@ -64,9 +64,9 @@ TEST(trees, have_the_order_and_density_that_their_names_show) {
   }
 }
 
-TEST(trees, have_densities_whose_number_of_orderings_is_the_factorial) {
-  // Σ over trees of order n of n!/(γ σ) = (n−1)!; without symmetries at hand: the tall tree has γ = n!, the
-  // bush n.
+TEST(trees, have_densities_between_those_of_the_bush_and_the_tall_tree) {
+  // Among the trees of order n, the tall tree has the largest density, γ = n!, and the bush the smallest,
+  // γ = n.
   double factorial = 1;
   for (int n = 1; n <= 6; ++n) {
     factorial *= n;
@@ -100,7 +100,7 @@ void set(matrix<double>& m, const std::vector<numbers>& rows) {
     for (std::size_t j = 0; j < rows[i].size(); ++j) m(i, j) = rows[i][j];
 }
 
-TEST(order, of_methods_of_the_literature_is_what_it_is_known_to_be) {
+TEST(order, of_methods_of_the_literature_is_the_known_one) {
   auto kutta = tableau(5);
   set(kutta.A_hat, {{}, {0.5}, {0, 0.5}, {0, 0, 1}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}});
   kutta.A = kutta.A_hat;
@@ -117,7 +117,7 @@ TEST(order, of_methods_of_the_literature_is_what_it_is_known_to_be) {
                              {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}});
   EXPECT_EQ(order_of(dormand_prince, tree_colours::F_only), 5);
 
-  // Two-derivative methods with one and two inner stages (Chan and Tsai, Numer. Algorithms 53, 2010).
+  // Two-derivative methods with one and two internal stages (Chan and Tsai, Numer. Algorithms 53, 2010).
   auto fourth = tableau(3);
   set(fourth.A, {{}, {0.5}, {1}});
   set(fourth.A_dot, {{}, {1.0 / 8}, {1.0 / 6, 1.0 / 3}});
@@ -128,7 +128,7 @@ TEST(order, of_methods_of_the_literature_is_what_it_is_known_to_be) {
   EXPECT_EQ(order_of(fifth, tree_colours::G_only), 5);
 }
 
-TEST(order_conditions, scale_with_the_step) {
+TEST(order_conditions, scale_with_the_step_length) {
   check_property("steps of length λ: (λÂ, λA, λ²Ȧ) has λ^|τ| times the weights", [] {
     const auto s = *rc::gen::inRange<std::size_t>(1, 6);
     const double lambda = *rc::gen::inRange(1, 40) / 16.0;
@@ -144,14 +144,14 @@ TEST(order_conditions, scale_with_the_step) {
     const auto before = elementary_weights(b, trees), after = elementary_weights(scaled, trees);
     for (std::size_t k = 0; k < trees.size(); ++k) {
       const double wanted = std::pow(lambda, trees[k].order) * before[k];
-      // Sums of up to 5⁵ products of numbers below 2.5⁵ may cancel: the bound is absolute in their size.
+      // Sums of up to 5⁵ products of numbers below 2.5⁵ may cancel: the bound is absolute.
       RC_ASSERT(std::abs(after[k] - wanted) <= 1e-10 * std::pow(1 + lambda, 5) * 100);
     }
   });
 }
 
-TEST(order_conditions, do_not_see_colours_where_both_tableaux_are_the_same) {
-  check_property("Â = A, Ȧ = 0: a tree and its one-coloured twin weigh the same", [] {
+TEST(order_conditions, do_not_depend_on_colours_if_both_tableaux_are_equal) {
+  check_property("Â = A, Ȧ = 0: a tree and its one-coloured twin have equal weights", [] {
     auto b = random_tableau(*rc::gen::inRange<std::size_t>(1, 7), *rc::gen::arbitrary<std::uint32_t>());
     b.A = b.A_hat;
     b.A_dot = matrix<double>(b.stages(), b.stages());
@@ -162,7 +162,7 @@ TEST(order_conditions, do_not_see_colours_where_both_tableaux_are_the_same) {
       std::string bare = trees[k].name;
       std::replace(bare.begin(), bare.end(), 'F', 'G');
       const auto [place, fresh] = seen[trees[k].density].emplace(bare, weights[k]);
-      // Names of twins may list children in another order, then they are compared among themselves.
+      // Twins may list children in a different order; they are then compared with each other.
       if (!fresh) RC_ASSERT(std::abs(place->second - weights[k]) < 1e-11);
     }
   });
@@ -187,7 +187,7 @@ TEST(conversion, to_butcher_and_back_is_the_identity) {
     }
     const auto again = to_shu_osher(to_butcher(m), R, m.r);
     for (std::size_t i = 0; i < s; ++i) {
-      // 60 digits, of which the inverse of R loses a few.
+      // 60 digits, minus a few lost in the inverse of R.
       RC_ASSERT(abs(again.ddot[i] - m.ddot[i]) < mp_real(1e-50));
       for (std::size_t j = 0; j <= i; ++j) {
         RC_ASSERT(abs(again.P(i, j) - m.P(i, j)) < mp_real(1e-50));
@@ -198,7 +198,7 @@ TEST(conversion, to_butcher_and_back_is_the_identity) {
   });
 }
 
-TEST(conversion, gives_the_stages_that_the_recursion_gives) {
+TEST(conversion, agrees_with_the_recursion_over_stages) {
   check_property("y' = αy + βy solved stage by stage equals the Butcher form", [] {
     const auto s = *rc::gen::inRange<std::size_t>(1, 7);
     noise draw(*rc::gen::arbitrary<std::uint32_t>());

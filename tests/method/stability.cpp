@@ -1,4 +1,5 @@
-// Linear stability against formulas derived by hand from the Shu–Osher form, and against the exponential.
+// Linear stability against formulas derived by hand from the Shu–Osher form, and against
+// the exponential function.
 #include <apsis/method/stability.hpp>
 
 #include "tableaux.hpp"
@@ -21,7 +22,7 @@ butcher_form<long double> implicit_part(const std::string& name) {
   return to_butcher(find_method(name).coefficients<long double>());
 }
 
-/// Any point of the plane with 1e-3 ≤ |z| ≤ 1e3.
+/// Returns a random point of the plane with 1e-3 ≤ |z| ≤ 1e3.
 complex random_point(std::uint64_t seed) {
   noise draw(seed);
   return std::polar(std::pow(10.0L, 3.0L * static_cast<long double>(draw())),
@@ -44,16 +45,17 @@ complex trapezoidal(complex z) {
 
 void expect_function(const std::string& name, complex (*wanted)(complex)) {
   const auto b = implicit_part(name);
-  check_property(name + ": R(z) is the rational function worked out by hand", [&] {
+  check_property(name + ": R(z) is the rational function derived by hand", [&] {
     const complex z = random_point(*rc::gen::arbitrary<std::uint32_t>());
     const complex exact = wanted(z);
-    // Rounding is enlarged near poles, by about |zR'/R| ≤ |z|² (1 + |R|), and by the coefficients (2⁻⁶⁴).
+    // Rounding errors are amplified near poles, by about |zR'/R| ≤ |z|² (1 + |R|), and by
+    // the coefficients (2⁻⁶⁴).
     const long double size = 1 + std::norm(z) * (1 + std::abs(exact));
     RC_ASSERT(std::abs(stability_function(b, z) - exact) <= 1e-17L * size * (1 + std::abs(exact)));
   });
 }
 
-TEST(stability, function_of_small_methods_is_the_rational_function_known) {
+TEST(stability, function_of_small_methods_is_the_known_rational_function) {
   expect_function("imdrk-1-2", taylor);
   expect_function("imdrk-2-3", third_order);
   expect_function("dirk-2-2", trapezoidal);
@@ -68,8 +70,8 @@ TEST(stability, function_approximates_the_exponential_to_the_order_of_the_method
       const auto error = [&](long double h) {
         return std::abs(stability_function(b, h * direction) - std::exp(h * direction));
       };
-      // h^{p+1} = 1e-12 is far above rounding, constants of 1e-4 included; the next power changes the slope
-      // by O(h).
+      // h^{p+1} = 1e-12 is far above rounding, even with constants of 1e-4; the next power changes the
+      // ratio by O(h).
       const long double h = std::pow(1e-12L, 1.0L / (m.claims.order + 1));
       const long double slope = std::log2(error(2 * h) / error(h));
       EXPECT_NEAR(static_cast<double>(slope), m.claims.order + 1, 0.1) << name << direction;
@@ -83,7 +85,7 @@ TEST(stability, poles_of_the_third_order_method_lie_at_the_roots_of_minus_6) {
   ASSERT_EQ(s.imaginary_poles.size(), 1U);
   EXPECT_DOUBLE_EQ(s.imaginary_poles[0], std::sqrt(6.0));
   for (const long double sign : {-1.0L, 1.0L}) {
-    // A simple pole: |R| is inverse to the distance.
+    // A simple pole: |R| is inversely proportional to the distance.
     const auto near_pole = [&](long double distance) {
       return std::abs(stability_function(b, complex(0, sign * std::sqrt(6.0L) * (1 + distance))));
     };
@@ -92,10 +94,10 @@ TEST(stability, poles_of_the_third_order_method_lie_at_the_roots_of_minus_6) {
   }
 }
 
-TEST(stability, every_method_of_the_paper_damps_stiff_modes_completely_and_without_sign_change) {
+TEST(stability, of_the_papers_methods_is_complete_damping_without_sign_change) {
   for (const std::string name : {"imdrk-1-2", "imdrk-2-3", "imdrk-5-4", "md-imex-3-2", "md-imex-6-3"}) {
     const auto& s = find_certificate(name).stability;
-    // At z = −1e12 the last stage divides by 1e11 or more, and everything before it is bounded by 1.
+    // At z = −1e12 the last stage divides by 1e11 or more, and all earlier stages are bounded by 1.
     EXPECT_LT(s.at_infinity, 1e-10) << name;
     // Convex combinations of u^n and of stages divided by numbers ≥ 1: between 0 and 1 on the whole axis.
     EXPECT_GE(s.smallest_on_negative_axis, 0.0) << name;
@@ -114,7 +116,7 @@ TEST(stability, comparators_do_not_damp_stiff_modes) {
 }
 
 /// Largest |R| on the ray at `degrees` from the negative axis, by forward substitution in the Butcher form:
-/// 500 radii per decade, then 200 more on both sides of each sample that is not below its neighbours.
+/// 500 radii per decade, and 200 more on both sides of each local maximum.
 long double largest_on_ray(const butcher_form<long double>& b, long double degrees) {
   const long double radians = degrees * std::numbers::pi_v<long double> / 180;
   const auto size = [&](long double decade) {
@@ -145,23 +147,23 @@ std::vector<std::string> methods_and_members() {
   return names;
 }
 
-TEST(stability, angle_of_every_method_is_safe_and_sharp_to_a_thousandth_of_a_degree) {
+TEST(stability, angle_of_every_method_is_a_sharp_lower_bound) {
   for (const auto& name : methods_and_members()) {
     if (find_method(name).kind == method_kind::explicit_only) continue;
     const double angle = find_certificate(name).stability.angle;
     const auto b = implicit_part(name);
-    // Poles between 60 and 90 degrees away enlarge rounding (10⁻¹⁹) by some thousands; chains of stages add
-    // up.
+    // Poles at 60 to 90 degrees amplify rounding errors (10⁻¹⁹) by a few thousand; long chains of
+    // stages accumulate them.
     EXPECT_LE(largest_on_ray(b, static_cast<long double>(angle)), 1 + 1e-13L) << name << " " << angle;
     if (angle == 90.0) continue;
-    // Smaller angles are safe too, and 0.001 degrees more are not.
+    // Smaller angles are stable too, and angles larger by 0.001 degrees are not.
     EXPECT_LE(largest_on_ray(b, 0.9L * static_cast<long double>(angle)), 1 + 1e-13L) << name << " " << angle;
     EXPECT_GT(largest_on_ray(b, static_cast<long double>(angle) + 1e-3L), 1.0L) << name << " " << angle;
   }
 }
 
-TEST(stability, angles_are_those_of_an_independent_audit) {
-  // Maxima of |R| in polynomials with 60 digits, to the digits given.
+TEST(stability, angles_agree_with_an_independent_computation) {
+  // Maxima of |R| from polynomials in 60 digits, to the digits given.
   EXPECT_NEAR(find_certificate("md-imex-14-4-accurate").stability.angle, 84.249, 6e-4);
   EXPECT_EQ(find_certificate("imdrk-1-2").stability.angle, 90.0);
 }
@@ -176,17 +178,17 @@ shu_osher_form<long double> one_stage(long double d, long double ddot) {
   return m;
 }
 
-TEST(stability, a_stage_is_as_stable_as_its_denominator_says) {
+TEST(stability, of_one_stage_follows_from_its_denominator) {
   // |1 − iyd + y²ḋ|² − 1 = y²(d² + 2ḋ) + y⁴ḋ²: nonnegative for all y if and only if d² ≥ −2ḋ.
   EXPECT_EQ(analyse_stability(one_stage(1, -0.5L)).angle, 90.0);
   EXPECT_EQ(analyse_stability(one_stage(1, 0)).angle, 90.0);
   EXPECT_LT(analyse_stability(one_stage(1, -0.5001L)).angle, 90.0);
   // d = 0: |1 + r² e^{-2iα}|² = 1 + 2r² cos 2α + r⁴, which is below 1 for small r as soon as α > 45 degrees.
-  // This R is no exp(z) + …: it starts flat, where a proof costs some 10⁻⁴ degrees.
+  // This R does not approximate exp(z): |R| is flat near 0, where a proof costs some 10⁻⁴ degrees.
   EXPECT_NEAR(analyse_stability(one_stage(0, -1)).angle, 45.0, 1e-3);
   EXPECT_LE(analyse_stability(one_stage(0, -1)).angle, 45.0);
-  // Poles on the negative axis, and left of the imaginary one: 1 + z + z² = 0 at 120 degrees from the
-  // positive.
+  // Poles on the negative axis, and left of the imaginary axis: 1 + z + z² = 0 at 120 degrees from
+  // the positive axis.
   EXPECT_EQ(analyse_stability(one_stage(-1, 0)).angle, 0.0);
   EXPECT_LE(analyse_stability(one_stage(-1, -1)).angle, 60.0);
   EXPECT_EQ(analyse_stability(one_stage(0, 1)).angle, 0.0);

@@ -14,7 +14,7 @@ namespace apsis::test {
 
 using numbers = std::vector<double>;
 
-/// Uniform numbers in (−1, 1), the same on every machine.
+/// Uniform random numbers in (−1, 1), reproducible on every platform.
 class noise {
  public:
   explicit noise(std::uint64_t seed) : state_(seed * 2654435761U + 88172645463325252U) {}
@@ -29,7 +29,7 @@ class noise {
   std::uint64_t state_;
 };
 
-/// A tableau with no structure but the triangles.
+/// A random tableau without structure other than triangularity.
 inline butcher_form<double> random_tableau(std::size_t s, std::uint64_t seed) {
   noise draw(seed);
   butcher_form<double> b{matrix<double>(s, s), matrix<double>(s, s), matrix<double>(s, s)};
@@ -42,14 +42,14 @@ inline butcher_form<double> random_tableau(std::size_t s, std::uint64_t seed) {
   return b;
 }
 
-/// The text of a file of the catalogue.
+/// Returns the text of a method file of the catalogue.
 inline std::string catalogue_text(const std::string& name) {
   for (const auto& file : embedded::methods())
     if (file.name == name) return std::string(file.text);
   return "";
 }
 
-/// A method file with what every file must have, for coefficients that are given in its last table.
+/// Returns a method file with the mandatory keys and the given table of coefficients.
 inline std::string method_text(const std::string& name, const std::string& kind, int order,
                                const std::string& coefficients) {
   return "name = \"" + name + "\"\ntitle = \"\"\ncitation = \"\"\nkind = \"" + kind +

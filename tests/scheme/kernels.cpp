@@ -1,4 +1,4 @@
-// Kernels of every instruction set against the formulas as they are in the literature, one number at a time.
+// Kernels of every instruction set against scalar implementations of the published formulas.
 #include <apsis/core/random_source.hpp>
 #include <apsis/exec/aligned.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
@@ -26,7 +26,7 @@ std::array<long double, 3> indicators(const stencil5& u) {
           13.0L / 12 * square(c - 2 * d + e) + 0.25L * square(3 * c - 4 * d + e)};
 }
 
-/// Value at the right edge with weights (linear weight) × g(k, β).
+/// Returns the value at the right edge with weights (linear weight) × g(k, β).
 long double right_edge(const stencil5& u, const std::function<long double(std::size_t)>& g) {
   const auto [a, b, c, d, e] = u;
   const std::array<long double, 3> linear = {0.1L, 0.6L, 0.3L};
@@ -40,7 +40,7 @@ long double right_edge(const stencil5& u, const std::function<long double(std::s
   return sum / weights;
 }
 
-/// What a kernel may give, which has the indicators with some rounding errors.
+/// Expected value and tolerance of a kernel, whose smoothness indicators have rounding errors.
 struct expected {
   double value, uncertainty;
 };
@@ -52,7 +52,7 @@ expected jiang_shu(const stencil5& u) {
   return {static_cast<double>(value), 0.0};
 }
 
-/// τ is a difference, in which the rounding of β₀ and β₂ may be all that is left.
+/// τ is a difference that may consist entirely of rounding errors of β₀ and β₂.
 expected borges(const stencil5& u) {
   const auto beta = indicators(u);
   const long double delta = 1e-200L + 1e-6L * u[2] * u[2];
@@ -63,7 +63,7 @@ expected borges(const stencil5& u) {
   return {static_cast<double>(with(tau)), static_cast<double>(std::abs(with(tau + lost) - with(tau)))};
 }
 
-/// Rows of a velocity distribution, its tails below 1e-150 included, disturbed, with zeros and single spikes.
+/// Rows of a velocity distribution with tails below 1e-150, perturbed, with zeros and isolated spikes.
 struct pencil {
   int width, cells, ghosts;
   aligned_vector<double> u;
@@ -87,7 +87,7 @@ pencil draw(int width, int cells, int ghosts, std::uint64_t seed) {
   return p;
 }
 
-/// Cells i−2 … i+2 of component k.
+/// Returns cells i−2 … i+2 of component k.
 stencil5 around(const pencil& p, int i, int k) {
   stencil5 u{};
   for (int j = -2; j <= 2; ++j)
@@ -101,8 +101,8 @@ stencil5 mirrored(stencil5 u) {
   return u;
 }
 
-/// A relative error of some rounding errors in β moves an edge by that much of the largest value around. The
-/// floor of β at 1e-40 of the largest is far below that.
+/// A few rounding errors in β change an edge by that fraction of the largest value in the stencil. The floor
+/// of β at 1e-40 of the largest is far below that.
 constexpr double rounding = 2e-14;
 
 void expect_edges(const std::string& name, expected (*formula)(const stencil5&), int width) {
@@ -132,7 +132,7 @@ void expect_edges(const std::string& name, expected (*formula)(const stencil5&),
 
 }  // namespace
 
-TEST(kernels, edges_are_those_of_the_literature_in_every_instruction_set) {
+TEST(kernels, edges_agree_with_the_literature_for_every_instruction_set) {
   for_each_instruction_set([] {
     for (const int width : {1, 3, 8, 40, 152}) {
       expect_edges("weno5-z", borges, width);
@@ -141,8 +141,8 @@ TEST(kernels, edges_are_those_of_the_literature_in_every_instruction_set) {
   });
 }
 
-/// Steps of one run use either; the limiter of fluxes sees the same edges as that of averages.
-TEST(kernels, the_plain_architecture_and_at_least_one_other_are_tested) {
+/// Both may be used in one run; the flux limiter uses the same edges as the limiter of averages.
+TEST(kernels, are_tested_for_the_baseline_and_at_least_one_other_instruction_set) {
   int sets = 0;
   for_each_instruction_set([&sets] { ++sets; });
   EXPECT_GE(sets, 2);

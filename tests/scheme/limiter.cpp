@@ -6,7 +6,7 @@
 #include <support/property.hpp>
 
 namespace {
-/// A nonnegative number of any size, zero included.
+/// Returns a nonnegative number of any magnitude, possibly zero.
 double any_average() {
   return *rc::gen::element(0.0, 1.0, 2.3) * std::pow(10.0, *rc::gen::inRange(-300, 30));
 }
@@ -15,7 +15,7 @@ double any_edge(double scale) {
 }
 }  // namespace
 
-TEST(limiter, makes_edges_and_the_value_between_them_nonnegative) {
+TEST(limiter, makes_edge_and_interior_values_nonnegative) {
   check_property("nonnegative", [] {
     const double c = any_average();
     double l = any_edge(c), r = any_edge(c);
@@ -27,8 +27,8 @@ TEST(limiter, makes_edges_and_the_value_between_them_nonnegative) {
   });
 }
 
-TEST(limiter, a_forward_euler_step_at_its_limit_has_no_negative_value_in_floating_point) {
-  // c − κ(out − in) with κ = 1/12 and in ≥ 0, whatever the rounding of the sum.
+TEST(limiter, keeps_a_forward_euler_step_at_its_limit_nonnegative_in_floating_point) {
+  // c − κ(out − in) with κ = 1/12 and in ≥ 0, for any rounding of the sum.
   check_property("update", [] {
     const double c = any_average();
     double l = any_edge(c), r = any_edge(c);
@@ -37,7 +37,7 @@ TEST(limiter, a_forward_euler_step_at_its_limit_has_no_negative_value_in_floatin
   });
 }
 
-TEST(limiter, leaves_harmless_edges_alone) {
+TEST(limiter, does_not_change_admissible_edges) {
   const double c = 1.0;
   double l = 0.8, r = 1.3;
   apsis::limiter::apply(&c, 1, &l, &r);
@@ -45,7 +45,7 @@ TEST(limiter, leaves_harmless_edges_alone) {
   EXPECT_EQ(r, 1.3);
 }
 
-TEST(limiter, flattens_a_cell_that_is_empty_or_negative) {
+TEST(limiter, flattens_empty_and_negative_cells) {
   for (const double c : {0.0, -1.0}) {
     double l = -0.5, r = 0.25;
     apsis::limiter::apply(&c, 1, &l, &r);

@@ -11,7 +11,7 @@ namespace {
 
 using apsis::reconstruction;
 
-/// Edge values of the middle cell of a few cells of width one row each.
+/// Edge values of the middle one of several cells with rows of width one.
 struct edges {
   double left, right;
 };
@@ -23,8 +23,8 @@ edges edges_of(const reconstruction& scheme, const std::vector<double>& cells) {
   return e;
 }
 
-/// Largest edge error for cell averages of f(x) = exp(sin 2πx) on n cells of [0, 1], where the exact averages
-/// come from a ten times finer Simpson rule (error below 1e-15 here).
+/// Returns the largest edge error for cell averages of f(x) = exp(sin 2πx) on n cells of [0, 1], where the
+/// exact averages come from a ten times finer Simpson rule (error below 1e-15 here).
 double edge_error(const reconstruction& scheme, int n) {
   const auto f = [](double x) { return std::exp(std::sin(2.0 * std::numbers::pi * x)); };
   const double h = 1.0 / n;
@@ -69,7 +69,7 @@ TEST(reconstruction, is_exact_for_constants_and_mirror_symmetric) {
       for (int i = 0; i < n; ++i) cells.push_back(*rc::gen::inRange(-1000, 1000) * 1e-3);
       const std::vector<double> mirrored(cells.rbegin(), cells.rend());
       const edges a = edges_of(*scheme, cells), b = edges_of(*scheme, mirrored);
-      // The sums run in another order: a few rounding errors of numbers of size one.
+      // The order of summation differs: a few rounding errors of numbers of size one.
       RC_ASSERT(std::abs(a.left - b.right) <= 1e-13);
       RC_ASSERT(std::abs(a.right - b.left) <= 1e-13);
       const edges c = edges_of(*scheme, std::vector<double>(static_cast<std::size_t>(n), 0.7));
@@ -79,7 +79,7 @@ TEST(reconstruction, is_exact_for_constants_and_mirror_symmetric) {
   }
 }
 
-TEST(reconstruction, tiny_data_fall_back_to_the_linear_weights) {
+TEST(reconstruction, uses_the_linear_weights_for_tiny_data) {
   // At 1e-150 every β underflows; the edge value must be that of the unlimited fifth-order polynomial,
   // (2a − 13b + 47c + 27d − 3e)/60, as the weights of smooth data give it.
   for (const char* name : {"weno5-z", "weno5-js"}) {
@@ -93,7 +93,7 @@ TEST(reconstruction, tiny_data_fall_back_to_the_linear_weights) {
   }
 }
 
-TEST(reconstruction, any_finite_data_give_finite_edges) {
+TEST(reconstruction, has_finite_edges_for_any_finite_data) {
   for (const auto* entry : apsis::reconstruction_entries()) {
     const auto scheme = entry->make();
     check_property(entry->name + " finite", [&] {

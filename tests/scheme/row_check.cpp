@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <support/instruction_sets.hpp>
 
-TEST(row_check, finds_the_smallest_the_negative_and_what_is_no_number_wherever_it_stands) {
+TEST(row_check, finds_minimum_negative_entries_and_nan_at_any_position) {
   const double infinity = std::numeric_limits<double>::infinity(),
                nan = std::numeric_limits<double>::quiet_NaN();
   for_each_instruction_set([&] {

@@ -29,8 +29,8 @@ class Browser:
         self.driver.quit()
 
     def show(self, page: Path, width: int) -> dict:
-        """Sizes in pixels: window, content, smallest letters, widest paragraph, and `drawn`, the smallest size of a picture
-        relative to its own; `broken` pictures."""
+        """Opens a page in a window of this width. Returns sizes in pixels: window, content, smallest letters, widest
+        paragraph, `drawn`, the smallest scale of a picture, and `broken`, the number of pictures that are not loaded."""
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                     {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600})
         self.console(), self.requests()
@@ -42,6 +42,6 @@ class Browser:
         return [entry["message"] for entry in self.driver.get_log("browser")]
 
     def requests(self) -> list[str]:
-        """Addresses that were asked for since the last call."""
+        """Addresses requested since the last call."""
         events = (json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance"))
         return [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]

@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-/// Methods of the catalogue by what their files say. Nothing is certified: these lists are made in every
-/// process that runs a single test.
+/// Returns the methods of the catalogue whose files satisfy a condition. Does not certify them, because every
+/// process that runs a single test builds these lists.
 template <class Condition>
 std::vector<std::string> methods_where(const Condition& condition) {
   std::vector<std::string> names;
@@ -20,7 +20,7 @@ std::vector<std::string> methods_where(const Condition& condition) {
   return names;
 }
 
-/// Methods with transport whose terms of size ε can be told from the coefficients.
+/// Returns the methods with transport whose O(ε) terms follow from the coefficients.
 inline std::vector<std::string> methods_with_an_intermediate_regime() {
   return methods_where([](const apsis::method& m) {
     return m.kind == apsis::method_kind::imex &&
@@ -28,7 +28,7 @@ inline std::vector<std::string> methods_with_an_intermediate_regime() {
   });
 }
 
-/// The name of a method as that of a test, which may not have dashes.
+/// Returns a method name as a test name, without dashes.
 inline std::string test_name(const testing::TestParamInfo<std::string>& method) {
   std::string name = method.param;
   std::replace(name.begin(), name.end(), '-', '_');

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-/// A folder of its own for one test, removed at its end.
+/// A temporary folder for one test, removed by the destructor.
 class test_folder {
  public:
   test_folder() {

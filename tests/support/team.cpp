@@ -1,5 +1,5 @@
-// Every test begins with a team of three: most set no number of threads, and one thread has no races.
-// Compiled into the tests that run under the thread sanitizer only.
+// Sets three threads before all tests: most tests set no number of threads, and one thread has no data races.
+// Compiled only into tests that run under the thread sanitizer.
 #include <apsis/exec/parallel.hpp>
 
 #include <gtest/gtest.h>

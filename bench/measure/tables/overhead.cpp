@@ -18,8 +18,8 @@ namespace {
 constexpr double epsilon = 1e-4, dt = 1e-3;
 constexpr std::size_t stages = 6;
 
-/// The paper's ODE model u₁' = u₂, u₂' = (1 + u₁²)(sin u₁ − u₂)/ε, with the stages of md-imex-6-3 written
-/// out.
+/// The ODE model of the paper, u₁' = u₂, u₂' = (1 + u₁²)(sin u₁ − u₂)/ε, with the stages of md-imex-6-3
+/// written out by hand.
 class by_hand {
  public:
   by_hand() {
@@ -74,7 +74,8 @@ auto ode_problem() {
       [](double u) { return 1.0 + u * u; }, epsilon);
 }
 
-/// `steps` steps from (2, 0), by `step`; the last state keeps them from being left out.
+/// Returns a job of `steps` steps from (2, 0) by `step`; it stores the last state, so that no step can
+/// be optimized away.
 template <class State, class Step>
 job steps_of(int steps, State u, std::shared_ptr<double> result, Step step) {
   return [steps, u, result, step] {
@@ -105,9 +106,8 @@ table measure(const settings& how) {
   table result;
   result.title = "Library overhead on a tiny problem";
   result.note =
-      "The paper's ODE model (two numbers, ε = 1e-4), md-imex-6-3: a step of the library, with its checks of "
-      "every stage, "
-      "against one written out by hand without any.";
+      "The ODE model of the paper (two unknowns, ε = 1e-4), md-imex-6-3: a step of the library, which "
+      "checks every stage, against a hand-written step without checks.";
   result.columns = {"who", "ns per step", "against by hand"};
   const std::vector<std::string> names = {"by hand", "stepper, std::array", "stepper, std::vector"};
   for (std::size_t k = 0; k < names.size(); ++k)
@@ -116,7 +116,7 @@ table measure(const settings& how) {
   return result;
 }
 
-const registered here({"overhead", "a step of two numbers against one by hand", measure});
+const registered here({"overhead", "a step of two unknowns against a hand-written one", measure});
 
 }  // namespace
 }  // namespace apsis::bench

@@ -1,5 +1,4 @@
-// Work and precision on the mixed-regime problem: Apsis, SUNDIALS and an explicit method, with the same
-// kernels.
+// Work–precision on the mixed-regime problem: Apsis, SUNDIALS and an explicit method, with the same kernels.
 #include "measure/table.hpp"
 #include "peers/mixed.hpp"
 #include "peers/sundials_mixed.hpp"
@@ -17,8 +16,8 @@ namespace {
 using namespace peers;
 using integrator = sundials_options::integrator;
 
-/// A run that takes as long is hopeless: the best ones need a fiftieth.
-double patience = 10.0;
+/// Time limit of a run in seconds; the best ones need a fiftieth of it.
+double time_limit = 10.0;
 
 void add_ours(contest& all, mixed_regime& what, const std::string& name, const std::vector<double>& factors) {
   const method& m = find_method(name);
@@ -26,18 +25,18 @@ void add_ours(contest& all, mixed_regime& what, const std::string& name, const s
     for (const bool graded : {false, true}) {
       const long steps = std::lround(static_cast<double>(what.positive_steps(m)) / factor);
       all.add({name, fmt::format("dt = {:g} r dt_FE{}", factor, graded ? ", graded start" : ""), true,
-               [&what, &m, steps, graded] { return what.run(m, steps, graded, patience); }});
+               [&what, &m, steps, graded] { return what.run(m, steps, graded, time_limit); }});
     }
 }
 
-/// Every pair of tolerances.
+/// All pairs of tolerances.
 struct ladder {
   std::vector<double> rtol, atol_by_rtol;
 };
 
 void add_sundials(contest& all, mixed_regime& what, const std::string& name, sundials_options how,
                   const std::vector<double>& nonlinear, const ladder& tolerances) {
-  how.seconds_allowed = patience;
+  how.seconds_allowed = time_limit;
   for (const double coefficient : nonlinear)
     for (const double share : tolerances.atol_by_rtol)
       for (const double rtol : tolerances.rtol) {
@@ -70,7 +69,7 @@ void add_arkode(contest& all, mixed_regime& what, const ladder& fine, const ladd
                  options(integrator::arkode, order, linear_solver::preconditioned, true), {0.1}, few);
     add_sundials(all, what, fmt::format("ARKODE {}, tuned", order),
                  options(integrator::arkode, order, linear_solver::projection_only, true), {0.1, 0.01}, fine);
-    // What T as an explicit part allows: the error control finds it by steps that fail.
+    // Step limit of T as the explicit part; error control alone finds it only through failed steps.
     auto limited = options(integrator::arkode, order, linear_solver::projection_only, true);
     limited.longest = 0.008;
     add_sundials(all, what, fmt::format("ARKODE {}, tuned", order), limited, {0.1}, {fine.rtol, {1e-4}});
@@ -96,13 +95,14 @@ void add_cvode(contest& all, mixed_regime& what, const ladder& fine) {
   }
 }
 
-/// Explicit Runge–Kutta steps at the largest stable dt: 2.51 times the smallest ε on the negative real axis.
+/// Returns the number of explicit Runge–Kutta steps at the largest stable dt: 2.51 times the smallest ε on
+/// the negative real axis.
 long explicit_steps(double end, double smallest_epsilon) {
   return static_cast<long>(std::ceil(end / (2.5 * smallest_epsilon)));
 }
 
-/// f of an explicit method with small steps; returns how far the solution of an entirely different method
-/// with a tight tolerance is away from it.
+/// Computes f by an explicit method with small steps; returns its distance from the solution of an entirely
+/// different method with a tight tolerance.
 double find_reference(mixed_regime& what, bool quick) {
   field exact, second;
   const auto& rk = find_method("ssprk-3-3");
@@ -121,23 +121,18 @@ double find_reference(mixed_regime& what, bool quick) {
 }
 
 const char* const note =
-    "CPU seconds of one thread, in brackets relative to the best Apsis method, that f of paper/bgk-mixed (40 "
-    "cells, 150 "
-    "velocities) takes to have a given relative error of time at t = {:g} (2-norm over all cells and "
-    "velocities), and the "
-    "smallest f after any step. Of each contestant the cheapest run that reaches the error, whatever its "
-    "setting; runs of "
-    "Apsis count only with f ≥ 0 throughout. All have the same T and Q. ARKODE: T explicit, Q/ε implicit; "
-    "tuned: implicit "
-    "right-hand side deduced, 20 nonlinear iterations, and the inverse of the linearised collision as "
-    "preconditioner of "
-    "GMRES or in its place. CVODE: BDF, tuned likewise. f ≥ 0: with their constraint. — : no run in {:g} s "
-    "reached the "
-    "error. The reference (explicit, small steps) is right to {:.1e}, by comparison with ARKODE.";
+    "CPU seconds of one thread for a given relative temporal error of f of paper/bgk-mixed (40 cells, 150 "
+    "velocities) at t = {:g} (2-norm over all cells and velocities), in brackets relative to the best "
+    "Apsis method, and the minimum of f after any step. For each contestant the cheapest run that reaches "
+    "the error, whatever its setting; runs of Apsis count only with f ≥ 0 throughout. All use the same T "
+    "and Q. ARKODE: T explicit, Q/ε implicit; tuned: implicit right-hand side deduced, 20 nonlinear "
+    "iterations, and the inverse of the linearized collision as preconditioner of GMRES or instead of it. "
+    "CVODE: BDF, tuned in the same way. f ≥ 0: with their constraint. —: no run reached the error in {:g} "
+    "s. The reference (explicit, small steps) is accurate to {:.1e} by comparison with ARKODE.";
 
 table measure(const settings& how) {
   const double end = how.quick ? 0.004 : 0.5;
-  if (how.quick) patience = 0.3;
+  if (how.quick) time_limit = 0.3;
   mixed_regime what(end);
   const double apart = find_reference(what, how.quick);
   contest all({1e-3, 3e-4, 1e-4, 1e-5});
@@ -157,7 +152,7 @@ table measure(const settings& how) {
   all.run(how.quick ? 0 : how.repeats, 3.0);
   table result;
   result.title = "Mixed-regime BGK: work and precision";
-  result.note = fmt::format(fmt::runtime(note), end, patience, apart);
+  result.note = fmt::format(fmt::runtime(note), end, time_limit, apart);
   result.columns = all.columns();
   result.rows = all.rows();
   for (auto& row : all.best_of_others()) result.rows.push_back(std::move(row));

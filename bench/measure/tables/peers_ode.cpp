@@ -1,4 +1,4 @@
-// Work and precision on the ODE model: Apsis, CVODE and ARKODE.
+// Work–precision on the ODE model: Apsis, CVODE and ARKODE.
 #include "measure/table.hpp"
 #include "peers/ode.hpp"
 
@@ -65,15 +65,12 @@ table measure(const settings& how) {
   table result;
   result.title = "ODE model: work and precision";
   result.note =
-      "CPU microseconds of a whole integration from t = 0 to 1, in brackets relative to the best Apsis "
-      "method, that the paper's ODE "
-      "model (data out of equilibrium) takes to have a given error |Δu1| + |Δu2| at t = 1. Of each "
-      "contestant the "
-      "cheapest run that reaches the error, whatever its setting (steps, start-up, tolerances, nonlinear "
-      "tolerance). CVODE: "
-      "BDF, dense; ARKODE: (u2, 0) explicit. Tuned: exact Jacobian, implicit right-hand side deduced. "
-      "Integrators are made "
-      "once and started anew. The reference is extrapolated in extended precision to 1e-13.";
+      "CPU microseconds of a whole integration from t = 0 to 1 of the ODE model of the paper (data out of "
+      "equilibrium) for a given error |Δu1| + |Δu2| at t = 1; in brackets relative to the best Apsis "
+      "method. For each contestant the cheapest run that reaches the error, whatever its setting (steps, "
+      "start-up, tolerances, nonlinear tolerance). CVODE: BDF, dense; ARKODE: (u2, 0) explicit. Tuned: "
+      "exact Jacobian, implicit right-hand side deduced. Integrators are created once and reinitialized. "
+      "The reference is extrapolated in extended precision to 1e-13.";
   auto& points = result.data["points"] = nlohmann::json::array();
   const auto values =
       how.quick ? std::vector<double>{1e-6} : std::vector<double>{1.0, 1e-2, 1e-4, 1e-6, 1e-10};

@@ -1,4 +1,4 @@
-// How much faster the library is than its formulas written down in plain loops.
+// Speed of the library relative to its formulas in plain loops.
 #include "measure/clock.hpp"
 #include "measure/table.hpp"
 #include "plain/bgk.hpp"
@@ -66,7 +66,7 @@ double relative_difference(const std::vector<double>& a, const std::vector<doubl
   return std::sqrt(difference / size);
 }
 
-/// The same run three times.
+/// The same run in three implementations.
 struct contest {
   explicit contest(const std::string& name)
       : config(case_with(name)),
@@ -100,7 +100,7 @@ struct contest {
   double dt, t = 0.0;
 };
 
-/// Both compute the same, or the comparison means nothing.
+/// Throws unless both agree; otherwise the comparison would be meaningless.
 double require_agreement(contest& both, int steps) {
   both.library(steps);
   both.formulas(steps);
@@ -115,15 +115,13 @@ table measure(const settings& how) {
   table result;
   result.title = "Library and plain loops, mixed-regime BGK";
   result.note =
-      "Milliseconds of one thread for a step of paper/bgk-mixed (40 cells, 150 velocities, finite volumes): "
-      "formulas "
-      "written down in loops (bench/plain), the library's step alone, and simulation::advance(), which also "
-      "checks every "
-      "step. The ratios are medians over the turns. `difference`: relative, in the 2-norm over f, of both "
-      "results after a few steps.";
+      "Milliseconds per step of paper/bgk-mixed on one thread (40 cells, 150 velocities, finite volumes): "
+      "plain loops (bench/plain), the step of the library alone, and simulation::advance(), which also "
+      "checks every step. Ratios are medians over the turns. `difference`: relative difference of both "
+      "results after a few steps, in the 2-norm over f.";
   result.columns = {"method",        "plain (ms)",    "library (ms)", "advance (ms)",
                     "plain/library", "plain/advance", "difference"};
-  // Short jobs and many turns: one disturbance spoils one turn.
+  // Short jobs and many turns: a disturbance affects one turn only.
   const int steps = how.quick ? 2 : 10, turns = how.quick ? 1 : 5 * how.repeats;
   for (const std::string name : {"md-imex-3-2", "md-imex-6-3"}) {
     contest all(name);
@@ -137,7 +135,7 @@ table measure(const settings& how) {
   return result;
 }
 
-const registered here({"plain", "library against its formulas in plain loops", measure});
+const registered here({"plain", "library against the same formulas in plain loops", measure});
 
 }  // namespace
 }  // namespace apsis::bench

@@ -12,8 +12,8 @@
 namespace apsis::bench {
 namespace {
 
-/// Cost of a point·stage in multiply–adds that the core would do meanwhile, so that a machine whose speed
-/// drifts from one size to the next is not seen.
+/// Cost of a point·stage in units of a multiply–add, measured at the same time to eliminate a drift of the
+/// clock rate from one size to the next.
 double cost_in_multiply_adds(mixed_step& run, int steps, int repeats, std::vector<double>& seconds) {
   constexpr double count = 4e7;
   std::vector<double> costs;
@@ -31,10 +31,9 @@ table measure(const settings& how) {
   table result;
   result.title = "Cost of a step against its size";
   result.note =
-      "Finite differences, md-imex-3-2, 150 velocities, one thread. In multiply–adds: the time of a "
-      "point·stage divided by "
-      "that of a multiply–add (of a vector's eight) measured beside it. Three fields of this size are in "
-      "use.";
+      "Finite differences, md-imex-3-2, 150 velocities, one thread. In multiply–adds: the time per "
+      "point·stage divided by the time per multiply–add (one of the eight of a vector), measured "
+      "alternately. Three fields of this size are in use.";
   result.columns = {"points",           "MB per field", "ms per step", "ns per point·stage",
                     "in multiply–adds", "against 10⁶"};
   const std::vector<double> sizes =
@@ -55,7 +54,7 @@ table measure(const settings& how) {
   return result;
 }
 
-const registered here({"scaling", "cost of a step from 1e4 to 1e8 points", measure});
+const registered here({"scaling", "cost of a step for 1e4 to 1e8 points", measure});
 
 }  // namespace
 }  // namespace apsis::bench

@@ -1,4 +1,4 @@
-// What subnormal numbers cost in the tails of a cold gas, and what flushing them to zero would save.
+// Cost of subnormal numbers in the tails of a cold gas, and the gain from flushing them to zero.
 #include "../clock.hpp"
 #include "../mixed_step.hpp"
 #include "../table.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 #if defined(__SSE2__)
 
-/// While it exists, subnormal results (FTZ) and operands (DAZ) of this thread are zero.
+/// Sets flush-to-zero (FTZ) and denormals-are-zero (DAZ) for this thread during its lifetime.
 class flush_to_zero {
  public:
   flush_to_zero() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
@@ -30,10 +30,10 @@ class flush_to_zero {
 };
 
 struct outcome {
-  double share, gain;  ///< subnormal values of the field, time as it is over time with flushing
+  double share, gain;  ///< share of subnormal values, and time without over time with flushing
 };
 
-/// Both start from the state in which the tails have filled with subnormal numbers.
+/// Both start from a state whose tails contain subnormal numbers.
 outcome compare(const std::string& formulation, int max, const settings& how) {
   const std::vector<std::string> grid = {fmt::format("velocity.max={}", max),
                                          fmt::format("velocity.points={}", 10 * max)};
@@ -55,9 +55,9 @@ table measure(const settings& how) {
   table result;
   result.title = "Subnormal numbers";
   result.note =
-      "Share of the values of f that are subnormal after some steps of the mixed-regime problem (40 cells, "
-      "spacing 0.2, md-imex-3-2, one thread), and the time of a step relative to one with flush-to-zero, "
-      "medians over the turns.";
+      "Share of subnormal values of f after some steps of the mixed-regime problem (40 cells, spacing 0.2, "
+      "md-imex-3-2, one thread), and the time of a step relative to a step with flush-to-zero, medians over "
+      "the turns.";
   result.columns = {"v_max", "finite volumes: subnormal", "time", "finite differences: subnormal", "time"};
   for (const int max : {15, 60, 120}) {
     const auto fv = compare("finite-volume", max, how), fd = compare("finite-difference", max, how);
@@ -78,7 +78,7 @@ table measure(const settings&) {
 
 #endif
 
-const registered here({"subnormal", "what flushing subnormal numbers to zero would save", measure});
+const registered here({"subnormal", "gain from flushing subnormal numbers to zero", measure});
 
 }  // namespace
 }  // namespace apsis::bench

@@ -13,9 +13,9 @@
 namespace apsis::bench {
 namespace {
 
-/// What the machine itself gives: multiply–adds in registers, which share nothing, on one thread and on two
-/// at once. All of `seconds` at a time, or in as many pieces as a step has passes over the field, after each
-/// of which the threads wait for each other.
+/// Ideal speedup of the machine: multiply–adds in registers, which share nothing, on one thread and on two
+/// threads simultaneously. They run for `seconds` without interruption, or in as many pieces as a step has
+/// passes over the field, with a barrier after each.
 double ideal(double seconds, int pieces, int repeats) {
   constexpr double sample = 2e7;
   const double count = seconds / seconds_of_multiply_adds(sample) * sample / pieces;
@@ -36,16 +36,16 @@ table measure(const settings& how) {
   table result;
   result.title = "Two threads against one";
   result.note =
-      "Ratio of wall times of the same steps, in turns. \"The machine\" is that ratio for multiply–adds in "
-      "registers, which share nothing: what the two cores give at the time. \"In steps\" likewise, but as "
-      "often as in these steps the threads wait for each other.";
+      "Ratio of wall times of the same steps, in turns. \"The machine\" is this ratio for multiply–adds in "
+      "registers, which share nothing: the ideal speedup at that moment. \"In steps\" is the same with as "
+      "many barriers as in these steps.";
   result.columns = {"formulation", "N",       "ms per step, 1 thread", "ms per step, 2 threads", "ratio",
                     "the machine", "in steps"};
   const std::vector<int> sizes = how.quick ? std::vector<int>{40} : std::vector<int>{40, 400, 4000};
   for (const char* formulation : {"finite-difference", "finite-volume"})
     for (const int cells : sizes) {
       mixed_step run(formulation, "md-imex-3-2", cells);
-      // Short jobs and many turns: one disturbance spoils one turn.
+      // Short jobs and many turns: a disturbance affects one turn only.
       const int steps = run.steps_in(how.quick ? 0.01 : 0.04), turns = how.quick ? 1 : 5 * how.repeats;
       const auto seconds = in_turns({[&] { run.take(steps); },
                                      [&] {
@@ -62,7 +62,7 @@ table measure(const settings& how) {
   return result;
 }
 
-const registered here({"threads", "two threads against one", measure});
+const registered here({"threads", "speedup of two threads", measure});
 
 }  // namespace
 }  // namespace apsis::bench

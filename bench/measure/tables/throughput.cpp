@@ -13,12 +13,12 @@
 namespace apsis::bench {
 namespace {
 
-/// Rates of all threads together, of one turn.
+/// Rates of one turn, summed over all threads.
 struct turn {
   double multiply_adds, triad, steps;
 };
 
-/// Seconds of the wall until `threads` threads have each done `job`, best of a few: a ceiling.
+/// Wall-clock seconds until all `threads` threads have done `job`, best of several attempts: a ceiling.
 double best_together(const job& what) {
   double best = 1e300;
   for (int attempt = 0; attempt < 3; ++attempt) {
@@ -33,7 +33,7 @@ turn measure_turn(mixed_step& run, int steps) {
   constexpr double count = 1e7;
   turn now{};
   now.multiply_adds = threads() * count / best_together([] { seconds_of_multiply_adds(count); });
-  // Every thread has its part of the field, and its own loops over it.
+  // Every thread sweeps its own part of the field.
   const std::size_t part = run.numbers() / static_cast<std::size_t>(threads());
   std::vector<double> rates(static_cast<std::size_t>(threads()));
   parallel_for(threads(), [&](int k) { rates[static_cast<std::size_t>(k)] = triad_bytes_per_second(part); });
@@ -74,13 +74,10 @@ table measure(const settings& how) {
   table result;
   result.title = fmt::format("Throughput, N = {} × 150 velocities, positivity limiter", cells);
   result.note =
-      "Point·stages per second of whole steps. Operations are arithmetic instructions on a number as the "
-      "formulas have them (a "
-      "multiply–add is one, as it is in the ceiling; so is a division), bytes those of fields that no cache "
-      "could save; each per "
-      "point·stage. Ceilings: multiply–adds in registers, and the triad on arrays as long as the field, on "
-      "as many threads, in "
-      "the same turn.";
+      "Point·stages per second of whole steps. Operations are arithmetic instructions per number (a "
+      "multiply–add counts as one, as in the ceiling, and so does a division), bytes the compulsory memory "
+      "traffic; both per point·stage. Ceilings: multiply–adds in registers, and the triad on arrays of the "
+      "length of the field, on as many threads, in the same turn.";
   result.columns = {"formulation", "method",           "threads",  "point·stages/s",        "operations",
                     "bytes",       "of multiply–adds", "of triad", "of the binding ceiling"};
   for (const int n : {1, 2})
@@ -93,7 +90,7 @@ table measure(const settings& how) {
   return result;
 }
 
-const registered here({"throughput", "steps against the ceilings of the machine", measure});
+const registered here({"throughput", "throughput of steps against the ceilings of the machine", measure});
 
 }  // namespace
 }  // namespace apsis::bench

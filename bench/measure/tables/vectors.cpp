@@ -1,4 +1,4 @@
-// What the vectors of the processor give: the same kernels, compiled for each instruction set.
+// Gain from the vector units of the processor: the same kernels, compiled for each instruction set.
 #include "../clock.hpp"
 #include "../mixed_step.hpp"
 #include "../table.hpp"
@@ -23,7 +23,7 @@ job with(std::int64_t instructions, job body) {
   };
 }
 
-/// Seconds of `body` with each of the instruction sets, seconds[set][turn].
+/// Measures seconds[set][turn] of `body` with each of the instruction sets.
 std::vector<std::vector<double>> with_each(const std::vector<std::int64_t>& sets, const job& body,
                                            int turns) {
   std::vector<job> jobs;
@@ -35,10 +35,9 @@ table measure(const settings& how) {
   table result;
   result.title = "The same kernels in each instruction set";
   result.note =
-      "How many times as fast a step of the mixed-regime problem (40 cells, 150 velocities, md-imex-3-2, one "
-      "thread) is as with one number at a time, medians over the turns; and so for multiply–adds in "
-      "registers, "
-      "which is what the vectors of this processor can give.";
+      "Speedup of a step of the mixed-regime problem (40 cells, 150 velocities, md-imex-3-2, one thread) "
+      "over scalar code, medians over the turns; for comparison the same of multiply–adds in registers, the "
+      "upper bound for the vector units of this processor.";
   result.columns = {"instruction set", "finite volumes", "finite differences", "multiply–adds"};
   const auto sets = hwy::SupportedAndGeneratedTargets();
   const int turns = how.quick ? 1 : 5 * how.repeats;
@@ -50,7 +49,7 @@ table measure(const settings& how) {
              fd = with_each(
                  sets, [&] { points.take(of_points); }, turns),
              fma = with_each(sets, [&] { seconds_of_multiply_adds(seconds * 2e9); }, turns);
-  const std::size_t one_at_a_time = sets.size() - 1;  // the best comes first
+  const std::size_t one_at_a_time = sets.size() - 1;  // sorted from best to worst
   const auto gain = [&](const std::vector<std::vector<double>>& all, std::size_t set) {
     return fmt::format("{:.2f}", median_ratio(all, one_at_a_time, set));
   };
@@ -59,7 +58,7 @@ table measure(const settings& how) {
   return result;
 }
 
-const registered here({"vectors", "what vectors of the processor give", measure});
+const registered here({"vectors", "gain from the vector units of the processor", measure});
 
 }  // namespace
 }  // namespace apsis::bench

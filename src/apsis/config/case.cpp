@@ -98,7 +98,7 @@ class resolver {
     for (const auto& candidate : valid)
       if (!table.empty() && candidate.rfind(table, 0) == 0) same_table.push_back(candidate);
     if (!same_table.empty()) return suggest(path, same_table);
-    const std::string near = nearest(path, valid);
+    const std::string near = nearest_word(path, valid);
     return near.empty() ? "see: apsis show case"
                         : fmt::format("did you mean '{}'? see: apsis show case", near);
   }

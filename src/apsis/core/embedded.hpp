@@ -5,15 +5,15 @@
 
 namespace apsis {
 
-/// A text file that is part of the library.
+/// A text file compiled into the library.
 struct embedded_text {
-  std::string_view name;  ///< path below its folder, without ending
-  std::string_view text;  ///< all of its bytes
+  std::string_view name;  ///< path relative to its folder, without extension
+  std::string_view text;  ///< contents
 };
 
 namespace embedded {
-std::vector<embedded_text> methods();  ///< every file of methods/
-std::vector<embedded_text> cases();    ///< every file of cases/
+std::vector<embedded_text> methods();  ///< returns every file of methods/
+std::vector<embedded_text> cases();    ///< returns every file of cases/
 }  // namespace embedded
 
 }  // namespace apsis

@@ -6,7 +6,7 @@
 
 namespace apsis {
 
-/// Exit codes of the program; one exception type for each kind of failure.
+/// Exit codes of the program, one for each exception type.
 enum class exit_code : int {
   success = 0,
   internal = 1,      ///< an error of Apsis itself
@@ -14,56 +14,56 @@ enum class exit_code : int {
   numerical = 3,     ///< numerical_error
   output = 4,        ///< io_error
   claim = 5,         ///< claim_error
-  interrupted = 130  ///< by a signal
+  interrupted = 130  ///< interrupted by a signal
 };
 
-/// Where in a text an input error stands; line and column count from 1, 0 means unknown.
+/// Position of an input error in a text; line and column count from 1, 0 means unknown.
 struct source_place {
-  std::string file;  ///< path, or what else a message calls the text; "" means unknown
+  std::string file;  ///< path, or another name of the text in messages; "" means unknown
   int line = 0;      ///< from 1
-  int column = 0;    ///< from 1; of no meaning without a line
+  int column = 0;    ///< from 1; ignored without a line
 };
 
-/// "file:line:column: " as far as it is known, "" if nothing is.
+/// Formats a position as "file:line:column: ", leaving out unknown parts; "" if everything is unknown.
 std::string to_string(const source_place& place);
 
-/// Base of all errors that Apsis throws on purpose. Message grammar: problem (reason); suggestion.
+/// Base class of all errors that Apsis throws deliberately. Messages read "problem (reason); suggestion."
 class error : public std::runtime_error {
  public:
-  /// `message` is what().
+  /// what() is `message`.
   error(exit_code code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  exit_code code() const { return code_; }  ///< with which the program ends
+  exit_code code() const { return code_; }  ///< exit code of the program
 
  private:
   exit_code code_;
 };
 
-/// A case file, method file, key or argument that cannot be used.
+/// An invalid case file, method file, key or argument.
 class input_error : public error {
  public:
-  /// Of input that has no place in a text.
+  /// Error in input that has no position in a text.
   explicit input_error(const std::string& message) : error(exit_code::input, message) {}
-  /// what() is `message` behind to_string(place).
+  /// what() is to_string(place) followed by `message`.
   input_error(const source_place& place, const std::string& message)
       : error(exit_code::input, to_string(place) + message) {}
 };
 
-/// Where a numerical failure happened; negative numbers and NaN mean "not known".
+/// Where a numerical failure occurred; negative numbers and NaN mean "unknown".
 struct failure_site {
   long step = -1;                                           ///< number of the step
-  double t = std::numeric_limits<double>::quiet_NaN();      ///< time that was reached (dimensionless)
+  double t = std::numeric_limits<double>::quiet_NaN();      ///< time reached (dimensionless)
   long cell = -1;                                           ///< from 0, in grid order
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< the number that should not be
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< the offending value
 };
 
-/// The computation cannot go on, or a promise made at the start was broken.
+/// The computation cannot continue, or violates a promise made at its start.
 class numerical_error : public error {
  public:
-  /// what() is `problem`, followed in brackets by what is known of the site.
+  /// what() is `problem` followed by the known parts of the site in brackets.
   explicit numerical_error(const std::string& problem, failure_site site = {});
-  const failure_site& site() const { return site_; }       ///< as far as it is known
+  const failure_site& site() const { return site_; }       ///< where it occurred, as far as known
   const std::string& problem() const { return problem_; }  ///< the message without the site
-  /// The same failure with step and time filled in (they are known only to the time loop).
+  /// Returns the same failure with step and time, which only the time loop knows.
   numerical_error at(long step, double t) const;
 
  private:
@@ -81,7 +81,7 @@ class io_error : public error {
 /// A method (or a result) does not have the properties that are claimed for it.
 class claim_error : public error {
  public:
-  /// `message` says what was claimed and what was found.
+  /// `message` states the claimed and the computed value.
   explicit claim_error(const std::string& message) : error(exit_code::claim, message) {}
 };
 

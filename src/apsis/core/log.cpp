@@ -12,8 +12,8 @@ namespace {
 
 std::atomic<level> lowest_shown{level::info};
 
-/// Whether standard error is a terminal that understands colours.
-bool in_colour() {
+/// Whether standard error is a terminal that supports colours.
+bool supports_colour() {
   static const bool answer = [] {
     const char* terminal = std::getenv("TERM");
     return isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb";
@@ -21,10 +21,10 @@ bool in_colour() {
   return answer;
 }
 
-/// One call of fwrite for the whole line, so that lines of several threads do not mix.
+/// Writes a line with one fwrite call, so that lines of several threads do not interleave.
 void write(std::string_view name, std::string_view colour, const std::string& message) {
   std::string line(name);
-  if (in_colour()) line = std::string(colour) + line + "\033[m";
+  if (supports_colour()) line = std::string(colour) + line + "\033[m";
   line += ": " + message + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }

@@ -2,21 +2,21 @@
 
 #include <string>
 
-/// Messages for a person, on standard error; standard output belongs to results.
+/// Messages to the user on standard error; standard output is reserved for results.
 namespace apsis::log {
 
-/// Which messages are shown.
+/// Verbosity.
 enum class level {
-  quiet,    ///< none
-  warning,  ///< warnings
-  info      ///< all
+  quiet,    ///< no messages
+  warning,  ///< warnings only
+  info      ///< all messages
 };
 
-/// For the whole process; level::info at the beginning.
+/// Sets the verbosity of the process; initially level::info.
 void set_level(level lowest);
-/// What the program does or has left behind.
+/// Reports what the program does or has written.
 void info(const std::string& message);
-/// What the user may not have meant; the program goes on.
+/// Reports a likely mistake; the program continues.
 void warning(const std::string& message);
 
 }  // namespace apsis::log

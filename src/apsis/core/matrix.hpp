@@ -5,25 +5,25 @@
 
 namespace apsis {
 
-/// A small dense row-major matrix for tableaux. No alignment requirement of its own, so that it may cross
-/// the boundary of the library whatever instruction set either side is compiled for.
+/// A small dense row-major matrix for tableaux. Not over-aligned, so that it can cross library boundaries
+/// whatever instruction sets both sides are compiled for.
 template <class Real>
 class matrix {
  public:
   matrix() = default;
-  /// Every entry is Real(): 0, or an empty text.
+  /// Value-initializes every entry: 0, or an empty string.
   matrix(std::size_t rows, std::size_t cols) : rows_(rows), cols_(cols), data_(rows * cols) {}
 
-  /// I of n rows.
+  /// Returns the n × n identity matrix.
   static matrix identity(std::size_t n) {
     matrix eye(n, n);
     for (std::size_t i = 0; i < n; ++i) eye(i, i) = Real(1);
     return eye;
   }
 
-  /// a_ij with i, j from 0, not checked.
+  /// Entry a_ij, with i, j from 0; indices are not checked.
   Real& operator()(std::size_t i, std::size_t j) { return data_[i * cols_ + j]; }
-  /// The same of a constant matrix.
+  /// Entry a_ij of a constant matrix.
   const Real& operator()(std::size_t i, std::size_t j) const { return data_[i * cols_ + j]; }
   std::size_t rows() const { return rows_; }  ///< number of rows
   std::size_t cols() const { return cols_; }  ///< number of columns
@@ -33,7 +33,7 @@ class matrix {
   std::vector<Real> data_;
 };
 
-/// The product ab; that a.cols() = b.rows() is not checked.
+/// Matrix product ab. Requires a.cols() = b.rows(), which is not checked.
 template <class Real>
 matrix<Real> operator*(const matrix<Real>& a, const matrix<Real>& b) {
   matrix<Real> c(a.rows(), b.cols());
@@ -43,7 +43,7 @@ matrix<Real> operator*(const matrix<Real>& a, const matrix<Real>& b) {
   return c;
 }
 
-/// The product ax; that a.cols() = x.size() is not checked.
+/// Matrix-vector product ax. Requires a.cols() = x.size(), which is not checked.
 template <class Real>
 std::vector<Real> operator*(const matrix<Real>& a, const std::vector<Real>& x) {
   std::vector<Real> y(a.rows(), Real(0));
@@ -52,7 +52,7 @@ std::vector<Real> operator*(const matrix<Real>& a, const std::vector<Real>& x) {
   return y;
 }
 
-/// Inverse of a lower triangular matrix with a nonzero diagonal, by forward substitution.
+/// Returns the inverse of a lower triangular matrix with nonzero diagonal, by forward substitution.
 template <class Real>
 matrix<Real> inverse_lower(const matrix<Real>& lower) {
   const std::size_t n = lower.rows();

@@ -6,22 +6,22 @@
 
 namespace apsis {
 
-/// Random numbers for experiments: the same on every machine, which the distributions of the standard library
-/// do not promise.
+/// Random numbers for experiments. Reproducible on every platform, unlike the distributions of
+/// the standard library.
 class random_source {
  public:
-  /// Equal seeds give equal numbers (64-bit Mersenne twister).
+  /// Seeds the 64-bit Mersenne twister; equal seeds give equal sequences.
   explicit random_source(std::uint64_t seed) : engine_(seed) {}
 
-  /// Uniform in [low, high).
+  /// Returns a number uniform in [low, high).
   double uniform(double low = 0.0, double high = 1.0) {
     return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
   }
-  /// 10^x with x uniform in [low, high).
+  /// Returns 10^x with x uniform in [low, high).
   double magnitude(double low, double high) { return std::pow(10.0, uniform(low, high)); }
-  /// An integer in [low, high).
+  /// Returns an integer uniform in [low, high).
   int integer(int low, int high) { return low + static_cast<int>(uniform() * (high - low)); }
-  /// True with probability 1/n, n ≥ 1.
+  /// Returns true with probability 1/n, n ≥ 1.
   bool one_in(int n) { return integer(0, n) == 0; }
 
  private:

@@ -11,7 +11,8 @@
 namespace apsis {
 namespace {
 
-std::size_t distance(const std::string& a, const std::string& b) {
+/// Damerau–Levenshtein distance with adjacent transpositions.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
   const std::size_t n = a.size(), m = b.size();
   std::vector<std::vector<std::size_t>> d(n + 1, std::vector<std::size_t>(m + 1));
   for (std::size_t i = 0; i <= n; ++i) d[i][0] = i;
@@ -32,8 +33,8 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-/// Both without the table, folder or dashes that they share: "time.foo" is no closer to "time.dt" than "foo"
-/// to "dt".
+/// Strips the table, folder or dashes that both words share: "time.foo" is no closer to "time.dt" than "foo"
+/// is to "dt".
 std::pair<std::string, std::string> without_common_prefix(const std::string& a, const std::string& b) {
   std::size_t common = 0;
   for (std::size_t k = 0; k < std::min(a.size(), b.size()) && a[k] == b[k]; ++k)
@@ -41,23 +42,23 @@ std::pair<std::string, std::string> without_common_prefix(const std::string& a, 
   return {a.substr(common), b.substr(common)};
 }
 
-/// At most every third letter of the longer word is wrong, or two neighbours are swapped.
-bool is_near(const std::string& a, const std::string& b, std::size_t d) {
+/// Whether at most a third of the letters of the longer word differ, or two neighbours are swapped.
+bool is_close(const std::string& a, const std::string& b, std::size_t d) {
   if (3 * d <= std::max(a.size(), b.size())) return true;
   return d == 1 && a.size() > 1 && std::is_permutation(a.begin(), a.end(), b.begin(), b.end());
 }
 
 }  // namespace
 
-std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
-  // Longer words cannot be a typing error of anything we know, and the table would grow with them.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
+  // Longer words are no typing errors of known ones, and the table grows with their length.
   if (word.size() > 64) return "";
   std::string best;
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   for (const auto& candidate : candidates) {
     const auto [mine, other] = without_common_prefix(in_lower_case(word), in_lower_case(candidate));
-    const std::size_t d = distance(mine, other);
-    if (d < best_distance && is_near(mine, other, d)) {
+    const std::size_t d = edit_distance(mine, other);
+    if (d < best_distance && is_close(mine, other, d)) {
       best_distance = d;
       best = candidate;
     }
@@ -66,8 +67,8 @@ std::string nearest(const std::string& word, const std::vector<std::string>& can
 }
 
 std::string suggest(const std::string& word, const std::vector<std::string>& candidates) {
-  const std::string near = nearest(word, candidates);
-  return (near.empty() ? std::string() : fmt::format("did you mean '{}'? ", near)) +
+  const std::string closest = nearest_word(word, candidates);
+  return (closest.empty() ? std::string() : fmt::format("did you mean '{}'? ", closest)) +
          fmt::format("valid: {}", fmt::join(candidates, ", "));
 }
 

@@ -14,7 +14,7 @@ std::string read_text_file(const std::string& path, std::size_t longest, const s
   std::string text(longest + 1, '\0');
   if (in) in.read(text.data(), static_cast<std::streamsize>(text.size()));
   std::error_code ignored;
-  // A file may open and fail later; what came until then is not its content.
+  // A read may fail after the file was opened; a partial content is not used.
   if (in.bad() || !in.is_open() || std::filesystem::is_directory(path, ignored))
     throw io_error(
         fmt::format("cannot read '{}' (it is a folder or not readable); give a readable {}", path, kind));

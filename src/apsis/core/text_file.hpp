@@ -5,12 +5,12 @@
 
 namespace apsis {
 
-/// The bytes of a file, at most `longest` + 1 of them, so that who parses them sees that a file is too long
-/// without reading all of it. Throws io_error ("… give a readable `kind`") if it cannot be read to its end,
-/// or is a folder.
+/// Reads a file, at most `longest` + 1 bytes of it, so that a parser can reject files that are too long
+/// without reading them entirely. Throws io_error ("… give a readable `kind`") if the file cannot be read to
+/// its end or is a folder.
 std::string read_text_file(const std::string& path, std::size_t longest, const std::string& kind);
 
-/// Writes a file with this content. Throws io_error, which ends in `suggestion`, unless all of it was taken.
+/// Writes a file. Throws io_error, whose message ends in `suggestion`, if not all of it could be written.
 void write_text_file(const std::string& path, const std::string& text,
                      const std::string& suggestion = "free some space or choose another place");
 

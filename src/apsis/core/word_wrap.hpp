@@ -7,8 +7,8 @@
 
 namespace apsis {
 
-/// The words of a text on lines of at most `width` bytes; a longer word has a line of its own. At least one
-/// line, which is empty for an empty text.
+/// Breaks a text into lines of at most `width` bytes; a longer word gets a line of its own. An empty text
+/// gives one empty line.
 std::vector<std::string> word_wrap(std::string_view text, std::size_t width);
 
 }  // namespace apsis

@@ -15,7 +15,7 @@ bool is_leaf(const rooted_tree& tree, colour root) {
   return tree.children.empty() && tree.root == root;
 }
 
-/// Whether some node T has a leaf Q, for which a leaf T gives the same weight where c = ĉ.
+/// Whether some node T has a leaf Q; a leaf T in its place gives the same elementary weight if c = ĉ.
 bool repeats_another(std::size_t tree, const std::vector<rooted_tree>& trees) {
   return std::any_of(trees[tree].children.begin(), trees[tree].children.end(), [&](int child) {
     const auto c = static_cast<std::size_t>(child);
@@ -29,7 +29,7 @@ int index_of(const std::vector<rooted_tree>& trees, const std::string& name) {
   return static_cast<int>(found - trees.begin());
 }
 
-/// Leaves out nodes that no condition needs.
+/// Removes nodes that no condition uses.
 condition_list needed(condition_list list) {
   std::vector<char> used(list.nodes.size(), 0);
   for (const auto& c : list.conditions)
@@ -65,7 +65,7 @@ design_condition tree_condition(const std::vector<rooted_tree>& trees, std::size
   return {trees[k].name, {{1.0, {static_cast<int>(k)}, stages - 1}}, 1.0 / trees[k].density};
 }
 
-/// What stages make of ζ: the place of the real part, the next one is the imaginary part.
+/// Adds a response of the stages at ζ; returns the index of its real part, which its imaginary part follows.
 int add_response(condition_list& list, series_node::kind what, std::complex<double> zeta) {
   list.nodes.push_back({what, {}, {}, zeta});
   list.nodes.push_back({series_node::kind::imaginary, {}, {}});
@@ -77,7 +77,7 @@ int add_transport(condition_list& list, int child) {
   return static_cast<int>(list.nodes.size()) - 1;
 }
 
-/// From 0.1 to 300.
+/// Returns logarithmically spaced radii from 0.1 to 300.
 std::vector<double> radii(int to_a_decade) {
   std::vector<double> all;
   for (int k = -to_a_decade; k <= 2.5 * to_a_decade; ++k)
@@ -89,7 +89,7 @@ std::vector<double> radii(int to_a_decade) {
 
 condition_list order_equations(method_kind kind, int order, std::size_t stages,
                                const std::vector<char>& transport, const std::vector<char>& relaxation) {
-  // The trees of order 2 serve the equations of stages.
+  // Trees of order 2 are needed for the stage equations.
   const auto trees = rooted_trees(std::max(order, 2), colours_of(kind));
   condition_list list{series_of(trees), {}};
   const bool equal_abscissae = kind == method_kind::imex && order >= 3;
@@ -133,7 +133,8 @@ condition_list band_terms(std::size_t stages) {
     const int moved = add_response(list, series_node::kind::moved, -z);
     const int start = add_response(list, series_node::kind::response, -z);
     const int of_moved = add_transport(list, moved), of_start = add_transport(list, start);
-    // κ = moved + κ_s start, κ_s = moved_s/(1 − start_s); flux(z) − 1 times (1 − start_s) is a polynomial.
+    // κ = moved + κ_s start, κ_s = moved_s/(1 − start_s); (flux(z) − 1)(1 − start_s) is a polynomial in
+    // the stage values.
     const double w = std::sqrt(1.0 / to_a_decade) / (z * -std::expm1(-z));
     list.conditions.push_back({fmt::format("flux at z = {:.3g}", z),
                                {{w, {of_moved}, last},
@@ -151,7 +152,7 @@ condition_list stability_limits(double degrees, std::size_t stages) {
   condition_list list;
   for (const double radius : radii(to_a_decade)) {
     const int re = add_response(list, series_node::kind::response, -std::polar(radius, -angle));
-    // Of order two and three |R|² − 1 is of size |ζ|⁴ on the imaginary axis.
+    // For orders 2 and 3, |R|² − 1 is O(|ζ|⁴) on the imaginary axis.
     const double w = std::pow(std::min(1.0, radius), -4.0);
     list.conditions.push_back({fmt::format("|R| at |z| = {:.3g}", radius),
                                {{w, {re, re}, stages - 1}, {w, {re + 1, re + 1}, stages - 1}},

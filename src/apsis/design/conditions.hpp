@@ -8,13 +8,12 @@
 
 namespace apsis {
 
-/// An equation between coefficients: Σ_t a_t Π_f y_f[stage_t] = target, with the stage vectors y of a list of
-/// nodes.
+/// A polynomial equation Σ_t a_t Π_f y_f[stage_t] = target in stage vectors y, which a list of nodes defines.
 struct design_condition {
-  /// a Π_f y_f[stage].
+  /// A term a Π_f y_f[stage].
   struct term {
     double factor;           ///< a
-    std::vector<int> nodes;  ///< places of the y_f in the list of nodes; a y may stand several times
+    std::vector<int> nodes;  ///< indices of the y_f in the list of nodes; repetitions are allowed
     std::size_t stage;       ///< counted from 0
   };
   std::string name;         ///< for reports: "F[G,G]" for a tree, "c = c_hat at stage 2"
@@ -22,56 +21,58 @@ struct design_condition {
   double target = 0.0;      ///< right-hand side, 1/γ(τ) for a tree
 };
 
-/// Equations and the stage vectors that they need.
+/// Equations and the stage vectors that enter them.
 struct condition_list {
-  std::vector<series_node> nodes;            ///< each behind those that it is made of
-  std::vector<design_condition> conditions;  ///< their terms refer to `nodes`
+  std::vector<series_node> nodes;            ///< sorted such that the arguments of a node precede it
+  std::vector<design_condition> conditions;  ///< with terms that refer to `nodes`
 };
 
-/// What is demanded of the terms of size ε where ε ≪ Δt (docs/plateaus.md).
+/// Conditions on the O(ε) terms for ε ≪ Δt (docs/plateaus.md).
 enum class regime_demand {
-  none,  ///< nothing
+  none,  ///< no condition
   slow,  ///< flux = last = 1: (N1) and (N2)
-  all    ///< layer = 1 too: (N3)
+  all    ///< in addition layer = 1: (N3)
 };
 
-/// The order conditions of a method of the paper's class, in a form that is regular at its solutions.
+/// Returns the order conditions of the paper's class in a form that is regular at its solutions.
 ///
-/// Transport: order ≥ 3 gives Σ b̂_i (c_i − ĉ_i)² = 0 with b̂ ≥ 0, so c = ĉ at each stage in `transport`; this
-/// is imposed, and of trees that differ only in leaves under a node T one is kept (15 of 20 conditions at
-/// order 3, 49 of 72 at order 4). Without transport: order ≥ 5 gives Σ b_i δ_i² = 0 with δ = Ac + ȧ − c²/2,
-/// so δ = 0 at each stage in `relaxation` (those with d > 0). The proofs are in docs/design.md.
+/// With transport, order ≥ 3 implies Σ b̂_i (c_i − ĉ_i)² = 0 with b̂ ≥ 0, so c = ĉ at each stage in
+/// `transport`; this is imposed, and one tree is kept of those that differ only in leaves under a node T
+/// (15 of 20 conditions at order 3, 49 of 72 at order 4). Without transport, order ≥ 5 implies Σ b_i
+/// δ_i² = 0 with δ = Ac + ȧ − c²/2, so δ = 0 at each stage in `relaxation` (those with d > 0). The
+/// proofs are in docs/design.md.
 condition_list order_equations(method_kind kind, int order, std::size_t stages,
                                const std::vector<char>& transport, const std::vector<char>& relaxation);
 
-/// (N1) to (N3) as far as demanded, added to a list.
+/// Adds those of the conditions (N1) to (N3) that are demanded.
 void add_regime_equations(condition_list& list, regime_demand demand, std::size_t stages);
 
-/// The residuals of the conditions of one order: what the error constant is made of.
+/// Returns the conditions of exactly this order, whose residuals form the error constant.
 condition_list error_terms(method_kind kind, int order, std::size_t stages);
 
-/// The error of the term of size ε where ε ~ Δt (docs/plateaus.md, the band): with z = CΔt/ε the 2-norm of
-/// the residuals is that of (flux(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}) over log₁₀ z, 0.1 ≤ z ≤ 300.
+/// Returns terms whose residuals measure the error of the O(ε) term where ε ~ Δt (docs/plateaus.md, the
+/// band): with z = CΔt/ε, their 2-norm is that of (flux(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}) over log₁₀ z,
+/// 0.1 ≤ z ≤ 300.
 condition_list band_terms(std::size_t stages);
 
-/// (|R(ζ)|² − 1)/min(1, |ζ|)⁴ on the ray at `degrees` from the negative axis: residuals that must not be
-/// positive for A(α) stability of the implicit part. 24 radii to a decade, 0.1 ≤ |ζ| ≤ 300.
+/// Returns (|R(ζ)|² − 1)/min(1, |ζ|)⁴ on the ray at angle `degrees` from the negative axis, which must be ≤ 0
+/// for A(α)-stability of the implicit part. 24 radii per decade, 0.1 ≤ |ζ| ≤ 300.
 condition_list stability_limits(double degrees, std::size_t stages);
 
-/// Values and gradients of a list of conditions for one set of coefficients at a time.
+/// Values and gradients of a list of conditions at a given set of coefficients.
 template <class Real>
 class condition_sweep {
  public:
-  /// `slow[i]`: stage i has ḋ_i = 0 by design, see stage_series.
+  /// `slow[i]` marks stages with ḋ_i = 0 by design, see stage_series.
   condition_sweep(const condition_list& list, const std::vector<char>& slow)
       : series_(list.nodes, slow), conditions_(list.conditions) {}
 
   /// Number of conditions.
   std::size_t size() const { return conditions_.size(); }
-  /// Computes the stage vectors of a method, which the other functions use.
+  /// Computes the stage vectors of a method, on which the other functions depend.
   void evaluate(const shu_osher_form<Real>& m) { series_.evaluate(m); }
 
-  /// Left-hand side minus target of condition k.
+  /// Returns the left-hand side minus target of condition k.
   Real residual(std::size_t k) const {
     Real sum(-conditions_[k].target);
     for (const auto& term : conditions_[k].terms) {
@@ -82,7 +83,7 @@ class condition_sweep {
     return sum;
   }
 
-  /// Adds weight times condition k to the sum whose gradient reverse() gives.
+  /// Adds weight times condition k to the sum that reverse() differentiates.
   void seed(std::size_t k, const Real& weight) {
     for (const auto& term : conditions_[k].terms)
       for (std::size_t f = 0; f < term.nodes.size(); ++f) {
@@ -93,7 +94,7 @@ class condition_sweep {
       }
   }
 
-  /// Adds the gradient of the seeded sum to `out`; the seeds are used up.
+  /// Adds the gradient of the seeded sum to `out` and clears the seeds.
   void reverse(shu_osher_form<Real>& out) { series_.reverse(out); }
 
  private:

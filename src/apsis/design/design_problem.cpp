@@ -13,7 +13,7 @@ condition_list equations_of(const zero_pattern& pattern, const design_demands& d
   return list;
 }
 
-/// Stages that relax without Q̇, whatever the values.
+/// Returns which stages relax without Q̇ by design.
 std::vector<char> slow_stages(const zero_pattern& pattern) {
   std::vector<char> slow(pattern.stages(), 0);
   for (std::size_t i = 0; i < slow.size(); ++i)
@@ -123,7 +123,7 @@ Real* design_problem::entry(shu_osher_form<Real>& m, const unknown& u) {
     case part::initial:
       break;
   }
-  return nullptr;  // 1 − Σ_j (p_ij + w_ij) in a form
+  return nullptr;  // in a form it is 1 − Σ_j (p_ij + w_ij)
 }
 
 template <class Real>

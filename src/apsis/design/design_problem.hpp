@@ -10,109 +10,113 @@
 
 namespace apsis {
 
-/// Which coefficients of a method may differ from zero.
+/// Zero pattern of a method: which coefficients may be nonzero.
 struct zero_pattern {
-  method_kind kind = method_kind::imex;  ///< which of T and Q the method has
-  matrix<char> P,                        ///< whether p_ij may; s × s, strictly lower triangular
-      W;                                 ///< whether w_ij may; s × s, strictly lower triangular
-  std::vector<char> d,                   ///< whether d_i may
-      ddot;                              ///< whether ḋ_i may
-  std::vector<char> initial;             ///< whether r_i may differ from zero; r_1 = 1 always
-  /// Number of stages, s.
+  method_kind kind = method_kind::imex;  ///< class of equations
+  matrix<char> P,                        ///< whether p_ij may be nonzero; s × s, strictly lower triangular
+      W;                                 ///< whether w_ij may be nonzero; s × s, strictly lower triangular
+  std::vector<char> d,                   ///< whether d_i may be nonzero
+      ddot;                              ///< whether ḋ_i may be nonzero
+  std::vector<char> initial;             ///< whether r_i may be nonzero; r_1 = 1 always
+  /// Returns the number s of stages.
   std::size_t stages() const { return d.size(); }
-  /// Stages whose T enters a later one.
+  /// Returns which stages have a T that enters a later stage.
   std::vector<char> transport() const;
 };
 
-/// All coefficients free; T is evaluated at the stages in `transport` only.
+/// Returns the pattern with all coefficients free, where T is evaluated only at the stages in `transport`.
 zero_pattern full_pattern(method_kind kind, const std::vector<char>& transport);
 
-/// What is asked of a method besides its pattern.
+/// Requirements on a method in addition to its pattern.
 struct design_demands {
   int order = 2;                               ///< order p
   double box = 2.0;                            ///< d_i ≤ box, |ḋ_i| ≤ box
   double margin = 1e-3;                        ///< d_i + |ḋ_i| ≥ margin: type A
   double least_r = 0.01;                       ///< r ≥ least_r (methods with transport)
   double largest_r = 64.0;                     ///< r ≤ largest_r
-  regime_demand regime = regime_demand::none;  ///< what is demanded of terms of size ε where ε ≪ Δt
+  regime_demand regime = regime_demand::none;  ///< conditions on the O(ε) terms for ε ≪ Δt
   double least_angle = 0.0;                    ///< α of A(α)-stability of the implicit part, in degrees
-  double least_pole = 0.0;                     ///< poles of stages with d = 0 are at ±i/√|ḋ|: 1/√|ḋ| at least
-  int most_buffers = 1000;  ///< state-sized buffers of a step; looked at once a method is found
-  /// Rows that are given, the first ones, and r with them: only later rows are unknown.
+  double least_pole = 0.0;                     ///< lower bound of 1/√|ḋ| for stages with d = 0, whose
+                                               ///< poles are ±i/√|ḋ|
+  int most_buffers = 1000;  ///< upper bound of state-sized buffers of a step; checked after the search
+  /// Prescribed first rows, together with r: only later rows are unknown.
   std::optional<shu_osher_form<double>> given_rows;
-  /// Where |R| ≤ 1 is asked for at some points, so that it holds between them on the ray of `least_angle`.
+  /// Returns the angle of the ray on which |R| ≤ 1 is imposed at discrete points, so that it holds everywhere
+  /// on the ray of `least_angle`.
   double aimed_angle() const;
-  /// Largest |ḋ| of a stage with or without d.
+  /// Returns the upper bound of |ḋ| of a stage with or without d.
   double largest_ddot(bool with_d) const;
 };
 
-/// The unknown coefficients of a method with the equations and bounds that they must satisfy:
+/// Unknown coefficients of a method with their equations and bounds:
 ///   x = (p_ij, w_ij, r_i, d_i, ḋ_i, r), lower ≤ x ≤ upper,
 ///   order conditions (and those of the intermediate regime) = 0,    r_i + Σ_j (p_ij + w_ij) = 1,
-///   d_i − ḋ_i ≥ margin,    |R|² − 1 ≤ 0 on a ray if an angle is demanded.
-/// Derivatives are exact: gradients by a reverse sweep, second derivatives by one over `tangent`. An object
-/// has its own work space: one for each thread. Dimensionless.
+///   d_i − ḋ_i ≥ margin,    |R|² − 1 ≤ 0 on a ray if an angle is required.
+/// Derivatives are exact: gradients by a reverse sweep, second derivatives by a reverse sweep over `tangent`.
+/// Objects have their own work space; use one per thread. Dimensionless.
 class design_problem {
  public:
-  /// Unknowns, bounds and equations of a pattern. `demands.given_rows` has no more rows than the
-  /// pattern.
+  /// Sets up unknowns, bounds and equations of a pattern. `demands.given_rows` must not have more rows
+  /// than the pattern.
   design_problem(zero_pattern pattern, const design_demands& demands);
 
-  const zero_pattern& pattern() const { return pattern_; }    ///< which coefficients are unknowns
-  const design_demands& demands() const { return demands_; }  ///< as given
+  const zero_pattern& pattern() const { return pattern_; }    ///< pattern of the unknowns
+  const design_demands& demands() const { return demands_; }  ///< requirements
   const Eigen::VectorXd& lower() const { return lower_; }     ///< x ≥ lower
-  const Eigen::VectorXd& upper() const { return upper_; }  ///< x ≤ upper; the same as lower() in given rows
-  Eigen::Index unknowns() const { return lower_.size(); }  ///< length of x
-  /// Number of equations: order conditions and the like; then the row sums.
+  const Eigen::VectorXd& upper() const { return upper_; }     ///< x ≤ upper; equals lower() in given rows
+  Eigen::Index unknowns() const { return lower_.size(); }     ///< length of x
+  /// Returns the number of equations: order and other conditions, followed by row sums.
   Eigen::Index equations() const {
     return static_cast<Eigen::Index>(conditions_.first.size() + rows_.size());
   }
-  /// Of equation k: a tree, "flux = 1", "weights of stage 3".
+  /// Returns the name of equation k: a tree, "flux = 1", "weights of stage 3".
   const std::string& equation_name(Eigen::Index k) const { return names_[static_cast<std::size_t>(k)]; }
-  /// Place of r in x, −1 for methods without transport.
+  /// Returns the index of r in x; −1 for methods without transport.
   Eigen::Index place_of_r() const { return r_place_; }
 
-  /// Inequalities Σ a_k x_k ≥ margin.
+  /// Linear inequality Σ a_k x_k ≥ least.
   struct inequality {
-    std::vector<std::pair<Eigen::Index, double>> terms;  ///< (k, a_k)
-    double least;                                        ///< the margin
+    std::vector<std::pair<Eigen::Index, double>> terms;  ///< pairs (k, a_k)
+    double least;                                        ///< lower bound
   };
-  /// d_i − ḋ_i ≥ margin of the stages where both are unknown; elsewhere a bound says it.
+  /// Returns d_i − ḋ_i ≥ margin for stages where both are unknown; for other stages it is a bound.
   const std::vector<inequality>& inequalities() const { return inequalities_; }
 
-  /// The method with these unknowns; r = 1 if r is none of them.
+  /// Returns the method with these unknowns; r = 1 if r is not an unknown.
   shu_osher_form<double> form(const Eigen::VectorXd& x) const;
-  /// The unknowns of a method of as many stages; what its pattern has besides is lost.
+  /// Returns the unknowns of a method with the same number of stages; coefficients outside the
+  /// pattern are dropped.
   Eigen::VectorXd unknowns_of(const shu_osher_form<double>& m) const;
 
-  /// Left-hand minus right-hand sides of all equations().
+  /// Returns left-hand minus right-hand sides of all equations().
   Eigen::VectorXd residuals(const Eigen::VectorXd& x);
-  /// Gradients of residuals(), equations() × unknowns().
+  /// Returns the Jacobian of residuals(), equations() × unknowns().
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& x);
 
-  /// Number of values that must not be positive: stability_limits(), if an angle is demanded.
+  /// Returns the number of stability limits, values that must be ≤ 0; 0 if no angle is required.
   Eigen::Index limits() const { return limits_ ? static_cast<Eigen::Index>(limits_->first.size()) : 0; }
-  /// The values that must not be positive; none without an angle.
+  /// Returns the values of stability_limits() at x; empty if no angle is required.
   Eigen::VectorXd limit_values(const Eigen::VectorXd& x);
-  /// Gradients of limit_values(), limits() × unknowns().
+  /// Returns the Jacobian of limit_values(), limits() × unknowns().
   Eigen::MatrixXd limit_jacobian(const Eigen::VectorXd& x);
 
-  /// What a method may be made small in.
+  /// Error measures that can be minimized.
   enum class measure {
     error,  ///< residuals of the next order, error_terms()
     band    ///< residuals of band_terms()
   };
-  /// ½ Σ of squared residuals, and its gradient if wanted.
+  /// Returns ½ Σ residuals², and optionally its gradient.
   double half_square(measure what, const Eigen::VectorXd& x, Eigen::VectorXd* gradient = nullptr);
 
-  /// Weights in a sum of second derivatives.
+  /// Weights of the terms of the Lagrangian.
   struct weights {
     Eigen::VectorXd equations,  ///< λ_k
         limits;                 ///< μ_l
     double error = 0.0,         ///< factor of half_square(measure::error, x)
         band = 0.0;             ///< factor of half_square(measure::band, x)
   };
-  /// Second derivatives of Σ_k λ_k residual_k + Σ_l μ_l limit_l + the weighted half squares.
+  /// Returns the Hessian of Σ_k λ_k residual_k + Σ_l μ_l limit_l + the weighted half squares,
+  /// unknowns() × unknowns().
   Eigen::MatrixXd hessian(const Eigen::VectorXd& x, const weights& given);
 
  private:
@@ -121,14 +125,14 @@ class design_problem {
     part what;
     std::size_t i, j;
   };
-  /// The place of an unknown in a form, or nullptr for r_i, which a form does not hold.
+  /// Returns the entry of an unknown in a form; nullptr for r_i, which a form does not store.
   template <class Real>
   static Real* entry(shu_osher_form<Real>& m, const unknown& u);
   template <class Real>
   shu_osher_form<Real> form_of(const std::vector<Real>& x) const;
   template <class Real>
   shu_osher_form<Real> empty_form() const;
-  /// Values and gradients, and the same with second derivatives.
+  /// Sweeps for values and gradients, and for second derivatives.
   struct sweeps {
     sweeps(const condition_list& list, const std::vector<char>& slow)
         : first(list, slow), second(list, slow) {}

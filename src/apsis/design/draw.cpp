@@ -9,7 +9,7 @@ namespace {
 
 using form_type = shu_osher_form<double>;
 
-/// Which of n things, m in all, at random.
+/// Draws a random subset of m out of n elements.
 std::vector<char> draw_subset(random_source& random, std::size_t n, std::size_t m) {
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), 0);
@@ -22,7 +22,7 @@ std::vector<char> draw_subset(random_source& random, std::size_t n, std::size_t 
   return chosen;
 }
 
-/// Stages of a given method whose T is evaluated.
+/// Returns which stages of a given method evaluate T.
 std::vector<char> transport_of(const form_type& m) {
   std::vector<char> used(m.stages(), 0);
   for (std::size_t i = 0; i < m.stages(); ++i)
@@ -39,8 +39,8 @@ bool is_fourth_order_imex(const design_task& task) {
   return task.kind == method_kind::imex && task.demands.order >= 4;
 }
 
-/// Stages whose T is evaluated. An explicit SSP method of order 4 needs five evaluations, and in all methods
-/// of order 4 that are known the first stage is one of them.
+/// Draws the stages that evaluate T. An explicit SSP method of order 4 needs five evaluations, and all known
+/// methods of order 4 evaluate T at the first stage.
 std::vector<char> draw_transport(const design_task& task, random_source& random) {
   const std::size_t s = task.stages;
   std::vector<char> transport(s, 0);
@@ -60,7 +60,7 @@ std::vector<char> draw_transport(const design_task& task, random_source& random)
   return transport;
 }
 
-/// Rows of few weights, as those of good methods are; `chained` ones are the stage before alone.
+/// Draws sparse rows, like those of good methods; `chained` rows use only the previous stage.
 void draw_weights(form_type& m, const zero_pattern& pattern, bool chained, random_source& random) {
   const auto weight = [&random] { return random.one_in(2) ? 0.0 : -std::log(1.0 - random.uniform()); };
   for (std::size_t i = 1; i < pattern.stages(); ++i) {
@@ -80,9 +80,9 @@ void draw_weights(form_type& m, const zero_pattern& pattern, bool chained, rando
   }
 }
 
-/// Two to four stages without T far ahead in time, most of them one behind the other, of which the others
-/// take little: with c up to five they raise the high moments and hardly the low ones. From other points of
-/// order 4 a search ends where r is at its lower bound, all d are small and residuals are 10⁻³.
+/// Draws two to four stages without T far ahead in time, mostly chained, with small weights in other stages:
+/// with c up to five they raise the high moments but hardly the low ones. From other initial points a search
+/// for order 4 ends with r at its lower bound, small d and residuals of 10⁻³.
 void draw_far_stages(form_type& m, const zero_pattern& pattern, double box, random_source& random) {
   const std::size_t s = pattern.stages();
   const auto transport = pattern.transport();
@@ -118,7 +118,7 @@ void draw_far_stages(form_type& m, const zero_pattern& pattern, double box, rand
   }
 }
 
-/// T at further stages, chosen at random.
+/// Evaluates T at `more` additional random stages.
 zero_pattern with_more_transport(zero_pattern pattern, std::vector<char> transport, std::size_t more,
                                  random_source& random) {
   std::vector<std::size_t> without;
@@ -156,7 +156,7 @@ zero_pattern draw_pattern(const design_task& task, random_source& random) {
   if (task.kind == method_kind::imex && task.demands.regime != regime_demand::none)
     for (std::size_t i = 0; i < s; ++i)
       if (i + 1 == s || random.one_in(2)) pattern.ddot[i] = 0;
-  // In all methods of order 5 that are known a third of the stages has d = 0, neither the first nor the last.
+  // In all known methods of order 5, a third of the stages has d = 0, neither the first nor the last.
   if (is_fifth_order_implicit(task) && s > 2) {
     const auto without_d = draw_subset(random, s - 2, s / 3);
     for (std::size_t i = 1; i + 1 < s; ++i) pattern.d[i] = static_cast<char>(without_d[i - 1] == 0);
@@ -179,7 +179,7 @@ Eigen::VectorXd draw_coefficients(const design_task& task, const design_problem&
   m.P = m.W = m.D = matrix<double>(s, s);
   m.ddot.assign(s, 0.0);
   draw_weights(m, pattern, fifth, random);
-  // Sizes up to the box; stages of order 2 have |ḋ| of the size d²/2.
+  // Magnitudes up to the box; stages of order 2 have |ḋ| of about d²/2.
   const double size =
       fifth ? random.uniform(0.2, 1.0) : random.uniform(0.3, 1.0) * std::min(task.demands.box, 4.0);
   for (std::size_t i = 0; i < s; ++i) {

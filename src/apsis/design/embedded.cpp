@@ -19,7 +19,7 @@ using mp_matrix = Eigen::Matrix<mp_real, Eigen::Dynamic, Eigen::Dynamic>;
 
 constexpr int digits = 45;
 
-/// Trees of T alone, of Q alone, and others.
+/// Trees of T alone, of Q alone, and all others.
 enum class tree_part { transport, relaxation, mixed };
 
 tree_part part_of(const std::vector<rooted_tree>& trees, const rooted_tree& tree) {
@@ -30,8 +30,8 @@ tree_part part_of(const std::vector<rooted_tree>& trees, const rooted_tree& tree
   return pure ? own : tree_part::mixed;
 }
 
-/// The linear conditions on an embedded row: A x = b for trees up to order q and the sum of the weights, and
-/// E x for those of order q + 1, whose 1/γ are t. Rows of E and t are divided by the ‖t‖ of their part.
+/// The linear conditions on an embedded row: A x = b for trees up to order q and for the sum of the weights,
+/// and E x for those of order q + 1, with t = 1/γ. Rows of E and t are divided by the ‖t‖ of their part.
 class embedded_program {
  public:
   embedded_program(const method& m, int order, embedded_cost cost)
@@ -69,7 +69,7 @@ class embedded_program {
 
   mp_matrix A, E;
   mp_vector b, t;
-  std::vector<tree_part> parts;  ///< of the rows of E
+  std::vector<tree_part> parts;  ///< part of each row of E
 
   std::vector<Eigen::Index> rows_of(tree_part group) const {
     std::vector<Eigen::Index> rows;
@@ -79,7 +79,7 @@ class embedded_program {
   }
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(unknowns_.size()); }
-  /// Places of d̃ and −d̃̇ in x, as far as they are unknown.
+  /// Returns the indices of d̃ and −d̃̇ in x, if they are unknowns.
   const std::vector<Eigen::Index>& implicit_places() const { return implicit_; }
 
   embedded_row row(const mp_vector& x, int order, std::string (*text)(const mp_real&)) const {
@@ -106,7 +106,7 @@ class embedded_program {
   };
 
   void choose_unknowns(method_kind kind, embedded_cost cost, bool keeps) {
-    const std::size_t last = form_.stages() - 1;  // u^{n+1}, which has no weight
+    const std::size_t last = form_.stages() - 1;  // u^{n+1}, which has weight 0
     for (std::size_t j = 0; j < last; ++j) unknowns_.push_back({part::P, j});
     const bool solved = cost == embedded_cost::one_solve;
     for (std::size_t j = 0; j < last && (solved || kind == method_kind::explicit_only); ++j) {
@@ -117,13 +117,13 @@ class embedded_program {
     unknowns_.push_back({part::initial, 0});
     if (!solved) return;
     for (const part what : {part::d, part::ddot}) {
-      if (keeps && what == part::ddot) continue;  // Q̇ loses the term of size ε
+      if (keeps && what == part::ddot) continue;  // Q̇ would drop the O(ε) term
       implicit_.push_back(size());
       unknowns_.push_back({what, 0});
     }
   }
 
-  /// Π of the stage vectors of `factors` at a stage, and of their 1/γ.
+  /// Products of the stage vectors of `factors` at a stage, and of their 1/γ.
   static mp_real at_stage(const stage_series<mp_real>& series, const std::vector<int>& factors,
                           std::size_t stage) {
     mp_real product(1);
@@ -163,7 +163,7 @@ class embedded_program {
   std::vector<Eigen::Index> implicit_;
 };
 
-/// A x above E x, the first with a weight: in 60 digits least squares then satisfy A x = b to weight⁻².
+/// Stacks weight · A x on top of E x: in 60 digits least squares then satisfy A x = b to weight⁻².
 std::pair<mp_matrix, mp_vector> weighted(const embedded_program& program, const mp_vector& b,
                                          const mp_vector& goal, const mp_real& weight) {
   mp_matrix rows(program.A.rows() + program.E.rows(), program.size());
@@ -173,10 +173,10 @@ std::pair<mp_matrix, mp_vector> weighted(const embedded_program& program, const 
   return {rows, right};
 }
 
-/// arg min ‖E x − goal‖² over A x = b, x ≥ least. Which x are on their bound is decided with a weight that
-/// leaves the rounding of the method's 45 digits below the gradients; with a larger one the others satisfy
-/// the equations to all digits.
-mp_vector nearest(const embedded_program& program, const mp_vector& goal, const mp_vector& least) {
+/// Returns arg min ‖E x − goal‖² over A x = b, x ≥ least. The active set is found with a weight for which
+/// rounding errors of the 45 digits of the method stay below the gradients; with a larger weight the free
+/// unknowns then satisfy the equations to all digits.
+mp_vector closest_solution(const embedded_program& program, const mp_vector& goal, const mp_vector& least) {
   const mp_vector b = program.b - program.A * least, rest = goal - program.E * least;
   const auto [rows, right] = weighted(program, b, rest, mp_real(1e10));
   mp_vector x = nonnegative_least_squares<mp_real>(rows, right, mp_real(1e-12));
@@ -189,7 +189,7 @@ mp_vector nearest(const embedded_program& program, const mp_vector& goal, const 
   return x + least;
 }
 
-/// A rational with a small denominator as such, else a decimal.
+/// Formats a rational of small denominator exactly, any other number as a decimal.
 std::string text_of(const mp_real& value) {
   if (abs(value) < mp_real(1e-40)) return "0";
   for (int q = 1; q <= 1000; ++q) {
@@ -203,26 +203,27 @@ std::string text_of(const mp_real& value) {
 
 struct candidate {
   mp_vector x;
-  mp_real nearest, misfit, seen;
+  mp_real nearest, distance, coverage;
 };
 
 std::optional<candidate> better(const std::optional<candidate>& a, const candidate& b) {
-  return a && a->misfit <= b.misfit ? a : std::optional(b);
+  return a && a->distance <= b.distance ? a : std::optional(b);
 }
 
-/// The better sign of θ, with d̃ or −d̃̇ held above the margin if they would both be below it.
+/// Returns the solution for the better sign of θ, with d̃ or −d̃̇ constrained to be above the margin if both
+/// would be below it.
 candidate best_of(const embedded_program& program, const embedded_task& task) {
   const auto& implicit = program.implicit_places();
   const auto solve = [&](const mp_real& theta, const mp_vector& least) {
     const mp_vector goal = (1 - theta) * program.t;
-    candidate c{nearest(program, goal, least), 0, 0, 0};
+    candidate c{closest_solution(program, goal, least), 0, 0, 0};
     c.nearest = (program.A * c.x - program.b).cwiseAbs().maxCoeff();
-    c.misfit = (program.E * c.x - goal).norm();
-    c.seen = 1 / abs(theta);
+    c.distance = (program.E * c.x - goal).norm();
+    c.coverage = 1 / abs(theta);
     const mp_vector estimate = program.t - program.E * c.x;
     for (const auto group : {tree_part::transport, tree_part::relaxation})
       if (const auto rows = program.rows_of(group); !rows.empty())
-        c.seen = std::min(c.seen, mp_real(estimate(rows).norm() / abs(theta)));
+        c.coverage = std::min(c.coverage, mp_real(estimate(rows).norm() / abs(theta)));
     return c;
   };
   std::optional<candidate> best;
@@ -244,16 +245,16 @@ candidate best_of(const embedded_program& program, const embedded_task& task) {
 
 void require_class(const method& m, const embedded_task& task) {
   const auto refuse = [&m](const std::string& why, const std::string& suggestion) {
-    throw input_error(fmt::format("method '{}' can have no embedded solution of this kind ({}); {}", m.name,
-                                  why, suggestion));
+    throw input_error(
+        fmt::format("method '{}' cannot have such an embedded solution ({}); {}", m.name, why, suggestion));
   };
   if (m.is_tableau()) refuse("Q of a stage enters a later one", "choose a method of the paper's class");
-  if (m.ends_with_update()) refuse("u^{n+1} is no stage", "choose a method of the paper's class");
+  if (m.ends_with_update()) refuse("u^{n+1} is not a stage", "choose a method of the paper's class");
   if (m.kind == method_kind::explicit_only && task.cost == embedded_cost::one_solve)
-    refuse("it is explicit and solves nothing", "ask for the cost \"nothing\"");
+    refuse("it is explicit and has no stage solves", "ask for the cost \"nothing\"");
   if (m.claims.order < 2) refuse("its order is 1", "choose a method of order 2 or more");
   if (task.order < 0 || task.order >= m.claims.order)
-    refuse(fmt::format("order {} is not below that of the method, {}", task.order, m.claims.order),
+    refuse(fmt::format("order {} is not below the order {} of the method", task.order, m.claims.order),
            "ask for a lower one");
 }
 
@@ -267,9 +268,9 @@ embedded_search find_embedded(const method& m, const embedded_task& task) {
   for (int q = highest; q >= lowest && !search.found; --q) {
     const embedded_program program(m, q, task.cost);
     const candidate best = best_of(program, task);
-    search.attempts.push_back({q, best.nearest.convert_to<double>(), best.seen.convert_to<double>()});
+    search.attempts.push_back({q, best.nearest.convert_to<double>(), best.coverage.convert_to<double>()});
     const bool solves = best.nearest < pow(mp_real(10), 3 - digits);
-    if (solves && best.seen >= task.useful) search.found = program.row(best.x, q, text_of);
+    if (solves && best.coverage >= task.least_coverage) search.found = program.row(best.x, q, text_of);
   }
   return search;
 }

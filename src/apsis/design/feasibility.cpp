@@ -8,8 +8,8 @@
 namespace apsis {
 namespace {
 
-/// Damped steps from one point: Jᵀ (J Jᵀ + damping)⁻¹ (−c) for the unknowns that are free; those that would
-/// cross a bound go onto it, and leave J Jᵀ one column at a time.
+/// Damped steps Jᵀ (J Jᵀ + damping)⁻¹ (−c) of the free unknowns; unknowns that would cross a bound are fixed
+/// on it and their columns removed from J Jᵀ.
 class bounded_steps {
  public:
   bounded_steps(const design_problem& problem, const Eigen::VectorXd& x, Eigen::MatrixXd jacobian,
@@ -52,8 +52,8 @@ class bounded_steps {
   Eigen::VectorXd c_, to_lower_, to_upper_;
 };
 
-/// Equations, and limits where they are passed.
-Eigen::VectorXd missing(design_problem& problem, const Eigen::VectorXd& x) {
+/// Returns the residuals of the equations, followed by violated limits.
+Eigen::VectorXd violations(design_problem& problem, const Eigen::VectorXd& x) {
   Eigen::VectorXd c = problem.residuals(x);
   if (problem.limits() == 0) return c;
   const auto equations = c.size();
@@ -62,7 +62,8 @@ Eigen::VectorXd missing(design_problem& problem, const Eigen::VectorXd& x) {
   return c;
 }
 
-Eigen::MatrixXd slopes(design_problem& problem, const Eigen::VectorXd& x, const Eigen::VectorXd& c) {
+Eigen::MatrixXd violation_jacobian(design_problem& problem, const Eigen::VectorXd& x,
+                                   const Eigen::VectorXd& c) {
   Eigen::MatrixXd J = problem.jacobian(x);
   if (problem.limits() == 0) return J;
   const auto equations = J.rows();
@@ -79,21 +80,21 @@ feasibility_result find_feasible(design_problem& problem, Eigen::VectorXd x, int
   constexpr double enough = 1e-11, exact = 1e-14;
   feasibility_result result;
   x = x.cwiseMax(problem.lower()).cwiseMin(problem.upper());
-  Eigen::VectorXd c = missing(problem, x);
+  Eigen::VectorXd c = violations(problem, x);
   double damping = 1e-2, slowest = c.norm();
   for (; result.iterations < most_iterations && c.lpNorm<Eigen::Infinity>() > exact; ++result.iterations) {
-    // Once in 25 iterations it must have come a tenth nearer.
+    // Require a reduction by a tenth in 25 iterations.
     if (result.iterations % 25 == 24) {
       if (c.norm() > 0.9 * slowest) break;
       slowest = c.norm();
     }
-    const bounded_steps steps(problem, x, slopes(problem, x, c), c);
+    const bounded_steps steps(problem, x, violation_jacobian(problem, x, c), c);
     bool moved = false;
     for (int attempt = 0; attempt < 12 && !moved; ++attempt) {
-      // A bound is met exactly, whatever x + (bound − x) rounds to.
+      // Project again: x + (bound − x) may differ from the bound by rounding.
       const Eigen::VectorXd trial =
           (x + steps.step(damping * c.squaredNorm())).cwiseMax(problem.lower()).cwiseMin(problem.upper());
-      const Eigen::VectorXd there = missing(problem, trial);
+      const Eigen::VectorXd there = violations(problem, trial);
       if (there.allFinite() && there.squaredNorm() < c.squaredNorm()) {
         damping = std::max(damping / 5.0, 1e-12);
         x = trial;

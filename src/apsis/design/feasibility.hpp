@@ -4,17 +4,18 @@
 
 namespace apsis {
 
-/// How a search for a point that satisfies the equations within the bounds ended.
+/// Result of find_feasible().
 struct feasibility_result {
-  Eigen::VectorXd x;      ///< where it ended, within the bounds
-  double residual = 0.0;  ///< largest |equation| there, and largest limit above 0
-  bool feasible = false;  ///< residual below 1e-11
-  int iterations = 0;     ///< steps that were taken or tried
+  Eigen::VectorXd x;      ///< final point, within the bounds
+  double residual = 0.0;  ///< largest |residual| and largest violated limit at x
+  bool feasible = false;  ///< whether the residual is at most 1e-11
+  int iterations = 0;     ///< number of iterations
 };
 
-/// Levenberg–Marquardt within bounds from x: each step is the smallest change that satisfies the linearised
-/// equations (damped), where unknowns that would leave their bounds are put on them and the step is computed
-/// again for the others. Ends when the equations hold, or when they no longer come nearer.
+/// Searches for a point that satisfies equations and bounds by a projected Levenberg–Marquardt method from
+/// x: each step is the smallest damped change that satisfies the linearized equations; unknowns that would
+/// leave their bounds are fixed there and the step is recomputed for the others. Stops when the equations
+/// hold or convergence stalls.
 feasibility_result find_feasible(design_problem& problem, Eigen::VectorXd x, int most_iterations = 300);
 
 }  // namespace apsis

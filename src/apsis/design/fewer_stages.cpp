@@ -11,15 +11,15 @@ namespace {
 
 using form_type = shu_osher_form<double>;
 
-/// What others give each stage but the last, which is the result.
-std::vector<double> weights_given_to_stages(const form_type& m) {
+/// Returns the weight of each stage in others, except for the last stage, which is the result.
+std::vector<double> weights_of_stages(const form_type& m) {
   std::vector<double> sums(m.stages() - 1, 0.0);
   for (std::size_t i = 0; i < m.stages(); ++i)
     for (std::size_t j = 0; j < i; ++j) sums[j] += m.P(i, j) + m.W(i, j);
   return sums;
 }
 
-form_type left_out(const form_type& m, std::size_t stage) {
+form_type without_stage(const form_type& m, std::size_t stage) {
   const std::size_t s = m.stages() - 1;
   const auto old = [stage](std::size_t i) { return i < stage ? i : i + 1; };
   form_type smaller;
@@ -46,9 +46,9 @@ design_problem problem_near(const design_task& task, const form_type& m) {
 std::optional<form_type> without_a_stage(const design_task& task, const form_type& m,
                                          const std::function<bool()>& stop,
                                          const std::function<void(std::size_t, double)>& report) {
-  // Below this a weight is zero to the tolerance of the optimiser.
+  // A weight below this is zero within the tolerance of the optimizer.
   constexpr double none = 1e-6;
-  const auto given = weights_given_to_stages(m);
+  const auto given = weights_of_stages(m);
   std::vector<std::size_t> order(given.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
@@ -63,15 +63,15 @@ std::optional<form_type> without_a_stage(const design_task& task, const form_typ
     column.ddot.assign(s, 0.0);
     const Eigen::VectorXd zero = problem.unknowns_of(column);
     for (std::size_t i = stage + 1; i < s; ++i) column.P(i, stage) = column.W(i, stage) = 1.0;
-    // r_i, which is 1 − Σ_j (p_ij + w_ij), is no weight of the stage.
+    // r_i = 1 − Σ_j (p_ij + w_ij) is not a weight of the stage.
     const program_goal goal{(problem.unknowns_of(column) - zero).cwiseMax(0.0)};
-    const auto solution = optimise(problem, goal, x, stop);
-    const double left = goal.linear.dot(solution.x);
-    if (report) report(stage, solution.residual < 1e-9 ? left : given[stage]);
-    if (!(solution.residual < 1e-9) || left > none) continue;
-    auto smaller = problem_near(task, left_out(problem.form(solution.x), stage));
+    const auto solution = optimize(problem, goal, x, stop);
+    const double residual_weight = goal.linear.dot(solution.x);
+    if (report) report(stage, solution.residual < 1e-9 ? residual_weight : given[stage]);
+    if (!(solution.residual < 1e-9) || residual_weight > none) continue;
+    auto smaller = problem_near(task, without_stage(problem.form(solution.x), stage));
     const auto feasible =
-        find_feasible(smaller, smaller.unknowns_of(left_out(problem.form(solution.x), stage)));
+        find_feasible(smaller, smaller.unknowns_of(without_stage(problem.form(solution.x), stage)));
     if (feasible.feasible) return smaller.form(feasible.x);
   }
   return std::nullopt;

@@ -11,14 +11,15 @@
 namespace apsis {
 namespace {
 
-/// Exact where the value is on a bound, as near as `near`; else a decimal long enough to be known as inexact.
+/// Formats a value within `near` of a bound as that bound, any other as a decimal long enough to
+/// count as inexact.
 std::string to_text(double value, double lower, double upper, double near) {
   for (const double bound : {lower, upper})
     if (std::abs(value - bound) <= near) return fmt::format("{}", bound == 0.0 ? 0.0 : bound);
   return fmt::format("{:.14f}", value);
 }
 
-std::vector<mp_real> missing(const design_task& task, const shu_osher_form<mp_real>& m) {
+std::vector<mp_real> additional_residuals(const design_task& task, const shu_osher_form<mp_real>& m) {
   std::vector<mp_real> equations;
   if (task.kind == method_kind::imex && task.demands.regime != regime_demand::none) {
     const auto terms = analyse_intermediate_regime(m);
@@ -40,9 +41,9 @@ std::vector<mp_real> missing(const design_task& task, const shu_osher_form<mp_re
   return equations;
 }
 
-/// Coefficients as near to a bound as `near` are put on it.
-method in_words(const design_task& task, const design_candidate& candidate, const std::string& name,
-                double near) {
+/// Converts a candidate to a method; coefficients within `near` of a bound are set to it.
+method rounded_method(const design_task& task, const design_candidate& candidate, const std::string& name,
+                      double near) {
   const auto text = [near](double value, double lower, double upper) {
     return to_text(value, lower, upper, near);
   };
@@ -79,20 +80,20 @@ method in_words(const design_task& task, const design_candidate& candidate, cons
 }  // namespace
 
 method to_method(const design_task& task, const design_candidate& candidate, const std::string& name) {
-  return in_words(task, candidate, name, 0.0);
+  return rounded_method(task, candidate, name, 0.0);
 }
 
 method to_polished_method(const design_task& task, const design_candidate& candidate, const std::string& name,
                           int digits) {
-  const auto equations = [&task](const shu_osher_form<mp_real>& m) { return missing(task, m); };
-  // With all coefficients near their bounds on them there may be too few left to move, and Newton's method
-  // goes elsewhere or nowhere. The equations hold to 1e-11 at the candidate.
+  const auto equations = [&task](const shu_osher_form<mp_real>& m) { return additional_residuals(task, m); };
+  // If all coefficients close to bounds are fixed, too few may be left for Newton's method, which then moves
+  // far or fails. At the candidate the equations hold to 1e-11.
   constexpr double far = 1e-6;
   method polished;
   bool good = false;
   for (const double near : {1e-9, 1e-12, 1e-7}) {
     try {
-      auto result = polish(in_words(task, candidate, name, near), digits, equations);
+      auto result = polish(rounded_method(task, candidate, name, near), digits, equations);
       good = result.largest_move < far;
       polished = std::move(result.polished);
     } catch (const numerical_error&) {

@@ -7,12 +7,13 @@
 
 namespace apsis {
 
-/// A found method as a method file says it, with the digits of double precision: zeros and coefficients on a
-/// bound are exact, the others decimals. Claims: the order that was asked for, and r.
+/// Converts a candidate to a method with the digits of double precision: zeros and coefficients on a bound
+/// are exact, all others decimals. Claims the order of the task, and r.
 method to_method(const design_task& task, const design_candidate& candidate, const std::string& name);
 
-/// The same polished to `digits` decimals, by Newton's method on its order conditions and whatever else was
-/// demanded, zeros and exact coefficients held (polish()). Throws numerical_error if that does not converge.
+/// Converts a candidate to a method polished to `digits` decimals by Newton's method on its order conditions
+/// and additional demands, with zeros and exact coefficients fixed (polish()). Throws numerical_error if that
+/// does not converge.
 method to_polished_method(const design_task& task, const design_candidate& candidate, const std::string& name,
                           int digits = 45);
 

@@ -14,8 +14,8 @@ namespace {
 using Ipopt::Index;
 using Ipopt::Number;
 
-// MUMPS, the linear solver below Ipopt, keeps global state: one thread at a time. It is let go while the
-// functions of a program are evaluated, which is where the time is.
+// MUMPS, the linear solver of Ipopt, keeps global state and must run on one thread at a time. The lock is
+// released while functions of a program are evaluated, which takes most of the time.
 std::mutex& solver_guard() {
   static std::mutex guard;
   return guard;
@@ -231,7 +231,7 @@ program_goal goal_of(const design_problem& problem, design_objective objective) 
   return goal;
 }
 
-program_result optimise(design_problem& problem, const program_goal& goal, const Eigen::VectorXd& x,
+program_result optimize(design_problem& problem, const program_goal& goal, const Eigen::VectorXd& x,
                         const std::function<bool()>& stop, int most_iterations) {
   program_result result;
   result.x = x;
@@ -243,7 +243,7 @@ program_result optimise(design_problem& problem, const program_goal& goal, const
   options->SetIntegerValue("max_iter", most_iterations);
   options->SetNumericValue("tol", 1e-9);
   options->SetNumericValue("constr_viol_tol", 1e-11);
-  // Signs are exact: bounds are neither relaxed nor left.
+  // Signs must be exact: bounds are neither relaxed nor violated.
   options->SetNumericValue("bound_relax_factor", 0.0);
   options->SetStringValue("mu_strategy", "adaptive");
   if (solver->Initialize() != Ipopt::Solve_Succeeded) {

@@ -6,9 +6,9 @@
 
 namespace apsis {
 
-/// The x ≥ 0 with the least ‖A x − b‖₂, by the active-set method of Lawson and Hanson (Solving Least Squares
-/// Problems, 1974, chapter 23): the columns whose x is positive are independent, so x has few entries.
-/// A: m × n, b: m. `zero`: a gradient up to this size is none.
+/// Returns the x ≥ 0 that minimizes ‖A x − b‖₂, by the active-set method of Lawson and Hanson (Solving Least
+/// Squares Problems, 1974, chapter 23). Columns with positive x are linearly independent, so x is sparse. A:
+/// m × n, b: m. Gradients up to `zero` count as zero.
 template <class Real>
 Eigen::Vector<Real, Eigen::Dynamic> nonnegative_least_squares(
     const Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>& A,
@@ -17,7 +17,7 @@ Eigen::Vector<Real, Eigen::Dynamic> nonnegative_least_squares(
   const Eigen::Index n = A.cols();
   std::vector<Eigen::Index> positive;
   vector x = vector::Zero(n);
-  // A column enters for good at most once in exact arithmetic; rounding may make it enter and leave for ever.
+  // In exact arithmetic the iteration is finite; with rounding a column may enter and leave repeatedly.
   for (Eigen::Index iteration = 0; iteration < 10 * n; ++iteration) {
     const vector gradient = A.transpose() * (b - A * x);
     Eigen::Index steepest = -1;
@@ -28,7 +28,7 @@ Eigen::Vector<Real, Eigen::Dynamic> nonnegative_least_squares(
     positive.push_back(steepest);
     while (!positive.empty()) {
       const vector best = A(Eigen::all, positive).colPivHouseholderQr().solve(b);
-      Real step(1);  // of the way from x to the best point without bounds
+      Real step(1);  // fraction of the way from x to the unconstrained minimum
       std::size_t blocking = positive.size();
       for (std::size_t k = 0; k < positive.size(); ++k) {
         const Real from = x(positive[k]), to = best(static_cast<Eigen::Index>(k));
@@ -41,7 +41,7 @@ Eigen::Vector<Real, Eigen::Dynamic> nonnegative_least_squares(
       for (std::size_t k = 0; k < positive.size(); ++k) {
         Real& value = x(positive[k]);
         value += step * (best(static_cast<Eigen::Index>(k)) - value);
-        // The one that blocks is zero, whatever its step rounds to; so every round takes one out.
+        // The blocking entry is zero, whatever its step rounds to, so every round removes an entry.
         if (k == blocking || value <= Real(0)) {
           value = Real(0);
         } else {

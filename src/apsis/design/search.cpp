@@ -36,7 +36,7 @@ bool is_acceptable(const design_task& task, const design_candidate& candidate) {
   const auto m = design_problem(candidate.pattern, task.demands).form(candidate.x);
   if (schedule(m).buffers() > task.demands.most_buffers) return false;
   if (task.kind == method_kind::explicit_only) return true;
-  // A d that is nearly zero leaves the pole nearly where it was.
+  // A tiny d hardly moves the pole.
   constexpr double nearly = 1e-3;
   for (std::size_t i = 0; i < m.stages(); ++i)
     if (m.D(i, i) < nearly && -m.ddot[i] * std::pow(task.demands.least_pole, 2.0) > 1.0) return false;
@@ -58,8 +58,8 @@ bool is_acceptable(const design_task& task, const design_candidate& candidate) {
 
 namespace {
 
-/// The same method with the r that its Butcher form allows: Â = R⁻¹ W/r stays if W grows with r and P gives
-/// what W takes, until an entry of P is zero.
+/// Returns the same method with the r of its Butcher form: Â = R⁻¹ W/r does not change if W grows with r at
+/// the expense of P, until an entry of P is zero.
 Eigen::VectorXd with_largest_r(const design_problem& problem, const Eigen::VectorXd& x) {
   auto m = problem.form(x);
   double growth = problem.upper()(problem.place_of_r()) / m.r;
@@ -75,8 +75,8 @@ Eigen::VectorXd with_largest_r(const design_problem& problem, const Eigen::Vecto
   return problem.unknowns_of(m);
 }
 
-/// Optimised from a point that satisfies the equations, without coefficients that are zero. An optimisation
-/// may end with an r below that of the Butcher form; it goes on from there.
+/// Optimizes from a feasible point and drops coefficients that are zero. The optimization may end with an r
+/// below that of the Butcher form and is then continued from there.
 design_candidate best_near(const design_task& task, design_problem& problem, Eigen::VectorXd x,
                            const std::function<bool()>& stop) {
   constexpr int most_rounds = 4;
@@ -85,7 +85,7 @@ design_candidate best_near(const design_task& task, design_problem& problem, Eig
       task.objective == design_objective::largest_r || task.objective == design_objective::efficiency;
   design_candidate found = drop_zeros(problem, x);
   for (int round = 0; round < most_rounds && (has_r || !for_r); ++round) {
-    const auto solution = optimise(problem, goal_of(problem, task.objective), x, stop);
+    const auto solution = optimize(problem, goal_of(problem, task.objective), x, stop);
     if (solution.residual < 1e-9) {
       auto better = drop_zeros(problem, solution.x);
       if (round == 0 || is_better(task, better, found)) found = std::move(better);
@@ -102,9 +102,9 @@ design_candidate best_near(const design_task& task, design_problem& problem, Eig
 
 }  // namespace
 
-std::optional<design_candidate> search_once(const design_task& task, int start, double& residual,
-                                            const std::function<bool()>& stop) {
-  // Seeds of neighbouring starts must not be neighbours.
+std::optional<design_candidate> run_search_start(const design_task& task, int start, double& residual,
+                                                 const std::function<bool()>& stop) {
+  // Hash the start number: seeds of consecutive starts must not be consecutive.
   random_source random(task.seed * 0x9E3779B97F4A7C15ULL +
                        static_cast<std::uint64_t>(start) * 0xD1B54A32D192ED03ULL);
   const auto pattern = draw_pattern(task, random);
@@ -118,14 +118,14 @@ std::optional<design_candidate> search_once(const design_task& task, int start, 
   return found;
 }
 
-design_progress search(const design_task& task, const design_search& how) {
+design_progress search_methods(const design_task& task, const design_search_options& options) {
   design_progress progress;
   std::mutex guard;
-  const auto stopped = [&how] { return how.stop && how.stop(); };
-  parallel_tasks(how.starts, [&](int start) {
+  const auto stopped = [&options] { return options.stop && options.stop(); };
+  parallel_tasks(options.starts, [&](int start) {
     if (stopped()) return;
     double residual = std::numeric_limits<double>::infinity();
-    const auto found = search_once(task, start, residual, stopped);
+    const auto found = run_search_start(task, start, residual, stopped);
     const std::lock_guard lock(guard);
     ++progress.starts;
     progress.best_residual = std::min(progress.best_residual, residual);
@@ -135,7 +135,7 @@ design_progress search(const design_task& task, const design_search& how) {
       improved = !progress.best || is_better(task, *found, *progress.best);
       if (improved) progress.best = found;
     }
-    if (how.report) how.report(progress, improved);
+    if (options.report) options.report(progress, improved);
   });
   return progress;
 }

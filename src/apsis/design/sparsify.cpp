@@ -33,7 +33,7 @@ struct place {
   }
 };
 
-/// All that may be left out, the smallest first. Where both d and ḋ of a stage would go, one stays.
+/// Returns all coefficients that may be removed, smallest first. Of d and ḋ of a stage, at least one is kept.
 std::vector<place> places_of(design_problem& problem, const Eigen::VectorXd& x) {
   const auto m = problem.form(x);
   const auto initial = initial_weights(m);
@@ -83,7 +83,7 @@ design_candidate sparsify(const design_task& task, design_candidate candidate, d
       design_problem smaller(pattern, task.demands);
       const auto feasible = find_feasible(smaller, smaller.unknowns_of(problem.form(candidate.x)));
       if (!feasible.feasible) continue;
-      const auto solution = optimise(smaller, goal_of(smaller, task.objective), feasible.x, stop);
+      const auto solution = optimize(smaller, goal_of(smaller, task.objective), feasible.x, stop);
       if (!(solution.residual < 1e-9)) continue;
       auto proposal = drop_zeros(smaller, solution.x);
       if (value_of(proposal, task.objective) < worst || !is_acceptable(task, proposal)) continue;

@@ -10,40 +10,41 @@
 
 namespace apsis {
 
-/// One stage vector y that a method defines, in terms of others (by their place in the list).
+/// Definition of a stage vector y in terms of others, given by their indices in the list.
 struct series_node {
-  /// What defines y.
+  /// Defining equation of y.
   enum class kind {
     transport,   ///< R y = (W/r) Π children: a tree with root T
     relaxation,  ///< R y = D Π children + Ḋ Σ_k (Π_{l≠k} children)(Π children of child k): a tree with root Q
-    kept,        ///< y_i = Σ_j w_ij/(r d_i) where ḋ_i = 0 and d_i > 0, else 0: χ of docs/plateaus.md
-    layer,       ///< y_i = r_i/d_i there, else 0: λ of docs/plateaus.md
+    kept,        ///< y_i = Σ_j w_ij/(r d_i) if ḋ_i = 0 and d_i > 0, else 0: χ of docs/plateaus.md
+    layer,       ///< y_i = r_i/d_i for the same stages, else 0: λ of docs/plateaus.md
     response,  ///< y_i = (Σ_j m_ij y_j + r_i)/(1 − ζ d_i − ζ² ḋ_i), M = P + W: R(ζ) at stage i of u' = ζu/Δt
-    moved,     ///< the same with −ζ Σ_j w_ij/r for r_i: κ of docs/plateaus.md where ζ = −z, but for the start
-    imaginary  ///< imaginary part of the node before, which is `response` or `moved`
+    moved,     ///< response with −ζ Σ_j w_ij/r in place of r_i: for ζ = −z, κ of docs/plateaus.md apart from
+               ///< its initial term
+    imaginary  ///< imaginary part of the previous node, which is `response` or `moved`
   };
-  kind what = kind::transport;  ///< what defines y
+  kind what = kind::transport;  ///< defining equation of y
   std::vector<int> children;    ///< the factors of Π children (nodes of kind transport and relaxation)
   std::vector<std::vector<int>> merged;  ///< the factors of each term of Ḋ (nodes of kind relaxation)
   std::complex<double> zeta = 0.0;       ///< ζ (nodes of kind response and moved)
 };
 
-/// The stage vectors of trees, in the same order (rooted_trees() puts children first).
+/// Returns the nodes of the stage vectors of trees, in the same order (rooted_trees() puts children first).
 std::vector<series_node> series_of(const std::vector<rooted_tree>& trees);
 
-/// Values of stage vectors of a method in Shu–Osher form with diagonal D, and by reverse sweep the exact
-/// gradient of any weighted sum of their entries in all coefficients P, W, d, ḋ, r. Over `tangent` instead of
-/// double the gradient carries its own derivatives, that is, second derivatives.
+/// Stage vectors of a method in Shu–Osher form with diagonal D, and by a reverse sweep the exact gradient of
+/// any weighted sum of their entries with respect to P, W, d, ḋ and r. Over `tangent` instead of double the
+/// gradient carries its own derivatives, that is, second derivatives.
 ///
-/// `slow[i]`: stage i has ḋ_i = 0 by design (not by value), so that χ and λ are smooth functions.
+/// `slow[i]` marks stages with ḋ_i = 0 by design (not by value), so that χ and λ are smooth functions.
 template <class Real>
 class stage_series {
  public:
-  /// Nodes stand behind those that they are made of; `slow` has one entry for each stage.
+  /// Arguments of a node must precede it; `slow` has one entry per stage.
   stage_series(std::span<const series_node> nodes, std::vector<char> slow)
       : nodes_(nodes.begin(), nodes.end()), slow_(std::move(slow)) {}
 
-  /// Computes all stage vectors of a method. Of D the diagonal counts.
+  /// Computes all stage vectors of a method. Only the diagonal of D is used.
   void evaluate(const shu_osher_form<Real>& m) {
     s_ = m.stages();
     r_ = m.r;
@@ -61,22 +62,22 @@ class stage_series {
     for (std::size_t n = 0; n < nodes_.size(); ++n) evaluate_node(n);
   }
 
-  /// y_stage of a node, after evaluate(); stages count from 0.
+  /// Returns entry `stage` (from 0) of a stage vector. Requires evaluate().
   const Real& value(int node, std::size_t stage) const {
     return y_[static_cast<std::size_t>(node) * s_ + stage];
   }
 
-  /// Adds weight · y_stage of the node to the sum whose gradient reverse() gives.
+  /// Adds weight · y_stage of the node to the sum that reverse() differentiates.
   void seed(int node, std::size_t stage, const Real& weight) {
     adjoint_[static_cast<std::size_t>(node) * s_ + stage] += weight;
     active_[static_cast<std::size_t>(node)] = 1;
   }
 
-  /// Adds the gradient of the seeded sum to `out` (P, W, diagonal of D, ddot, r); the seeds are used up.
+  /// Adds the gradient of the seeded sum to `out` (P, W, diagonal of D, ddot, r) and clears the seeds.
   void reverse(shu_osher_form<Real>& out) {
     for (std::size_t n = nodes_.size(); n-- > 0;)
       if (active_[n] != 0) reverse_node(n, out);
-    // W stands in V = W/r and in M.
+    // W enters V = W/r and M = P + W.
     for (std::size_t i = 0; i < s_; ++i)
       for (std::size_t j = 0; j < i; ++j) {
         Real& v = V_bar_[i * s_ + j];
@@ -107,7 +108,7 @@ class stage_series {
     active_.assign(nodes_.size(), 0);
   }
 
-  /// Π_{f in factors, f ≠ left_out} y_f at a stage; left_out by position.
+  /// Returns Π_{f in factors, f ≠ left_out} y_f at a stage; left_out is a position in `factors`.
   Real product(const std::vector<int>& factors, std::size_t stage, std::size_t left_out) const {
     Real p(1.0);
     for (std::size_t f = 0; f < factors.size(); ++f)
@@ -145,7 +146,7 @@ class stage_series {
     }
   }
 
-  /// With S/q = y and the adjoint A of y: that of S is S̄ = A q/|q|², that of q is −S̄ conj(y).
+  /// For y = S/q with adjoint A of y, the adjoint of S is S̄ = A q/|q|², and that of q is −S̄ conj(y).
   void reverse_response(std::size_t n, shu_osher_form<Real>& out) {
     const auto zeta = nodes_[n].zeta, square = zeta * zeta;
     const bool moved = nodes_[n].what == series_node::kind::moved;
@@ -268,7 +269,7 @@ class stage_series {
     for (const auto& factors : node.merged) spread(factors, h_bar_);
   }
 
-  /// Adjoints of the factors of a product.
+  /// Adds the adjoint of a product to its factors.
   void spread(const std::vector<int>& factors, const std::vector<Real>& bar) {
     for (std::size_t f = 0; f < factors.size(); ++f) {
       const auto child = static_cast<std::size_t>(factors[f]);

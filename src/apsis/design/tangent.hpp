@@ -5,15 +5,16 @@
 
 namespace apsis {
 
-/// A number with its derivatives in eight directions. One pass over an algorithm written for any `Real` gives
-/// its exact derivatives in eight unknowns at once; over a gradient, eight columns of the Hessian.
+/// A number with its derivatives in eight directions (forward-mode differentiation). One pass over an
+/// algorithm templated on `Real` gives exact derivatives in eight unknowns; over a gradient, eight columns
+/// of the Hessian.
 struct tangent {
   static constexpr std::size_t width = 8;  ///< number of directions
   double value = 0.0;                      ///< the number itself
   std::array<double, width> slope{};       ///< its derivative in each direction
 
   tangent() = default;
-  /// A constant: all derivatives are zero.
+  /// Constant with zero derivatives.
   tangent(double v) : value(v) {}  // NOLINT(google-explicit-constructor): a constant is a number
 
   /// @cond

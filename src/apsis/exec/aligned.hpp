@@ -7,16 +7,17 @@
 
 namespace apsis {
 
-/// One cache line, and the widest vector register; rows of a field start on such a boundary, so that the
-/// order of operations in a vectorised loop (and with it every rounding) does not depend on an address.
+/// Alignment in bytes: a cache line, and the widest vector register. Rows of a field start on such a
+/// boundary, so that the order of operations in a vectorized loop, and hence every rounding error, is
+/// independent of addresses.
 inline constexpr std::size_t alignment = 64;
 
-/// Memory that begins at a multiple of `alignment` bytes, as an allocator of the standard library. Throws
-/// std::bad_alloc. Any of them frees what another one gave.
+/// Standard allocator of memory aligned to `alignment` bytes. Throws std::bad_alloc. All
+/// instances are interchangeable.
 template <class T>
 struct aligned_allocator {
   /// @cond
-  // What the standard asks of an allocator.
+  // Requirements of the standard on allocators.
   using value_type = T;
   aligned_allocator() = default;
   template <class U>
@@ -29,8 +30,9 @@ struct aligned_allocator {
   /// @endcond
 };
 
-/// The same for a vector that does not touch its memory when it is made: elements have no value before one is
-/// given.
+/// Aligned allocator for vectors that must not touch their memory on construction: elements stay
+/// uninitialized until they are assigned, so that the first thread to write a page gets it into its
+/// memory (first touch).
 template <class T>
 struct untouched_allocator : aligned_allocator<T> {
   /// @cond
@@ -42,16 +44,14 @@ struct untouched_allocator : aligned_allocator<T> {
   struct rebind {
     using other = untouched_allocator<U>;
   };
-  /// @endcond
-  /// An element from its arguments; without arguments nothing is written (a page of memory belongs to
-  /// the thread that writes to it first).
+  /// Constructs an element from arguments; without arguments, writes nothing.
   template <class U, class... Args>
   void construct(U* p, Args&&... args) {
     if constexpr (sizeof...(Args) > 0) ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
   }
 };
 
-/// Numbers that begin at a multiple of `alignment` bytes.
+/// Vector whose data are aligned to `alignment` bytes.
 template <class T>
 using aligned_vector = std::vector<T, aligned_allocator<T>>;
 

@@ -25,15 +25,15 @@ void triad(const double* b, const double* c, double s, std::size_t count, double
 
 constexpr int chains = 16;
 
-/// One multiply–add on each number; written out by the pack expansion, so that all of them stay in registers
-/// whatever the compiler thinks of loops.
+/// One multiply–add on each number, unrolled by the pack expansion, so that all numbers stay in registers
+/// independently of the optimizer.
 template <class N, std::size_t... K>
 HWY_INLINE void advance(N (&x)[chains], N factor, N addend, std::index_sequence<K...>) {
   ((x[K] = fma(x[K], factor, addend)), ...);
 }
 
-/// `rounds` times `chains` multiply–adds that do not wait for each other; the sum, so that none may be left
-/// out.
+/// Executes `rounds` × `chains` multiply–adds in independent chains; returns the sum, so that none can
+/// be optimized away.
 double multiply_adds(long rounds) {
   using N = pack<wide>;
   const N factor(0.999999), addend(1e-6);
@@ -46,7 +46,7 @@ double multiply_adds(long rounds) {
   return hn::GetLane(hn::SumOfLanes(wide(), sum.v));
 }
 
-int multiply_adds_in_a_round() {
+int multiply_adds_per_round() {
   return chains * static_cast<int>(hn::Lanes(wide()));
 }
 
@@ -59,7 +59,7 @@ namespace {
 
 HWY_EXPORT(triad);
 HWY_EXPORT(multiply_adds);
-HWY_EXPORT(multiply_adds_in_a_round);
+HWY_EXPORT(multiply_adds_per_round);
 
 constexpr int attempts = 20;
 
@@ -80,7 +80,7 @@ double triad_bytes_per_second(std::size_t count) {
 }
 
 double seconds_of_multiply_adds(double count) {
-  const int each = HWY_DYNAMIC_DISPATCH(multiply_adds_in_a_round)();
+  const int each = HWY_DYNAMIC_DISPATCH(multiply_adds_per_round)();
   volatile double keep = 0.0;
   const double start = thread_seconds();
   keep = HWY_DYNAMIC_DISPATCH(multiply_adds)(static_cast<long>(count / each));

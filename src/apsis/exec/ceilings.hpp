@@ -4,17 +4,19 @@
 
 namespace apsis {
 
-/// What one core can do at best with the instruction set of the kernels, measured now (some tens of
-/// milliseconds). The best of some attempts: a ceiling is what the machine does when nobody disturbs it.
+/// Performance ceilings of one core with the instruction set of the kernels, measured on the spot (some
+/// tens of milliseconds). Each is the best of several attempts, because a ceiling is the performance of
+/// an undisturbed machine.
 
-/// Bytes per second of a ← b + s c on arrays of `count` doubles each, 24 bytes an element.
+/// Measures the memory bandwidth in bytes per second: a ← b + s c on arrays of `count` doubles each, 24
+/// bytes per element.
 double triad_bytes_per_second(std::size_t count);
 
-/// Multiply–adds per second on numbers in registers.
+/// Measures multiply–adds per second on numbers in registers.
 double multiply_adds_per_second();
 
-/// Seconds of CPU time of this thread for so many multiply–adds: a unit of time that follows the speed of a
-/// core that drifts.
+/// Measures the CPU seconds of this thread for `count` multiply–adds: a unit of time that follows the clock
+/// rate of a core.
 double seconds_of_multiply_adds(double count);
 
 }  // namespace apsis

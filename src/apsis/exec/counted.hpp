@@ -4,23 +4,22 @@
 
 namespace apsis {
 
-/// A number that counts what is done with it: formulas that are written for packs of numbers
-/// (exec/simd-inl.hpp) tell by it how many operations they are. An addition, multiplication, multiply–add,
-/// division, comparison, minimum, maximum and absolute value is one operation each: one instruction on a
-/// pack. Choosing between two numbers and moving them is none. Nothing is limited and nothing exceptional:
-/// branches that need a reason are not taken.
+/// A number that counts operations: kernels written for packs (exec/simd-inl.hpp) are instantiated with it to
+/// obtain their operation count. An addition, multiplication, multiply–add, division, comparison, minimum,
+/// maximum or absolute value counts as one operation, one instruction on a pack. Selections and moves do not
+/// count. Data-dependent branches are assumed not taken: nothing is limited and nothing is exceptional.
 class counted {
  public:
-  /// What a comparison gives; it carries nothing.
+  /// Result of a comparison, without content.
   struct mask {};
 
-  counted(double) {}                                  ///< constants cost nothing, and have no value here
+  counted(double) {}                                  ///< constants cost nothing; their values are ignored
   static counted load(const double*) { return 0.0; }  ///< reads nothing
   void store(double*) const {}                        ///< writes nothing
-  static bool any(mask) { return false; }             ///< no pack is exceptional …
-  static bool all(mask) { return true; }              ///< … and every number is as usual
+  static bool any(mask) { return false; }             ///< no exceptional numbers in a pack …
+  static bool all(mask) { return true; }              ///< … and every number is regular
 
-  /// Operations of body().
+  /// Returns the number of operations of body().
   template <class Body>
   static double operations_of(const Body& body) {
     const double before = operations_;
@@ -29,7 +28,7 @@ class counted {
   }
 
   /// @cond
-  // The operations of a pack.
+  // Interface of a pack.
   friend counted operator+(counted, counted) { return one(); }
   friend counted operator-(counted, counted) { return one(); }
   friend counted operator*(counted, counted) { return one(); }
@@ -56,20 +55,20 @@ class counted {
   inline static thread_local double operations_ = 0.0;
 };
 
-/// Walks along a pencil of counted numbers (scheme/walk-inl.hpp): nothing is read or written, wherever it is.
+/// A walk along a pencil (scheme/walk-inl.hpp) of counted numbers, which reads and writes nothing.
 struct counting_walk {
-  using number = counted;  ///< type of what is loaded and stored
-  /// Some number, at no cost.
+  using number = counted;  ///< type of loaded and stored numbers
+  /// Returns an arbitrary number at no cost.
   template <class... Where>
   counted load(const Where&...) const {
     return 0.0;
   }
-  /// The same of the downstream one of two rows.
+  /// Returns an arbitrary number, that of the downstream one of two rows, at no cost.
   template <class... Where>
   counted load_downstream(const Where&...) const {
     return 0.0;
   }
-  /// Nothing, at no cost.
+  /// Writes nothing, at no cost.
   template <class... Where>
   void store(const Where&...) const {}
 };

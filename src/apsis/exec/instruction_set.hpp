@@ -4,8 +4,8 @@
 
 namespace apsis {
 
-/// The instruction set that the kernels run with: the best that both they were compiled for and this
-/// processor has (names of Highway: "SSE2", "AVX2", "AVX3" for AVX-512, …).
+/// Returns the instruction set of the kernels: the best one that they are compiled for and this processor
+/// supports (names of Highway: "SSE2", "AVX2", "AVX3" for AVX-512, …).
 std::string kernel_instruction_set();
 
 }  // namespace apsis

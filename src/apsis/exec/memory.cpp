@@ -13,7 +13,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// The number behind `key` in a file of lines "key number"; `missing` if there is none.
+/// Returns the number that follows `key` in a file of lines "key number"; `missing` if there is none.
 double number_after(const fs::path& path, const std::string& key, double missing) {
   std::ifstream in(path);
   for (std::string word; in >> word;)
@@ -21,21 +21,21 @@ double number_after(const fs::path& path, const std::string& key, double missing
   return missing;
 }
 
-/// A file that holds one number; "max" and other words mean unlimited.
+/// Reads the number in a file; "max" and other words mean unlimited.
 double number_in(const fs::path& path) {
   std::ifstream in(path);
   double value = 0.0;
   return in >> value ? value : unknown;
 }
 
-/// What one control group leaves. The kernel gives the inactive part of the page cache back on demand.
+/// Memory left in one control group. The kernel reclaims the inactive part of the page cache on demand.
 double left_in_group(const fs::path& group, const char* limit, const char* used, const char* cache) {
   const double most = number_in(group / limit), now = number_in(group / used);
   if (most == unknown || now == unknown) return unknown;
   return most - now + number_after(group / "memory.stat", cache, 0.0);
 }
 
-/// The path of the group of this process: of version 2 with an empty `controller`.
+/// Returns the path of the control group of this process; of version 2 if `controller` is empty.
 std::string group_of_process(const fs::path& root, const std::string& controller) {
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {
@@ -46,8 +46,8 @@ std::string group_of_process(const fs::path& root, const std::string& controller
   return "/";
 }
 
-/// The tightest of a group and those above it. Inside a container the path may be one of the host; its own
-/// group is then the mount itself.
+/// Minimum over a control group and its ancestors. In a container the path may be that of the host; its own
+/// group is then the mount point itself.
 double left_in_groups(const fs::path& mount, const std::string& path, const char* limit, const char* used,
                       const char* cache) {
   double left = left_in_group(mount, limit, used, cache);

@@ -21,21 +21,22 @@ namespace {
 
 std::atomic<int> thread_count = 1;
 
-/// The team of the calling thread, made when it is needed. That of a parent process stays its own.
+/// Returns the team of the calling thread, created on demand. A forked process does not use the team
+/// of its parent.
 thread_team& team_of(int size) {
   thread_local std::unique_ptr<thread_team> team;
-  if (team && team->left_behind())
+  if (team && team->is_orphaned())
     static_cast<void>(team.release());  // NOLINT(bugprone-unused-return-value): of the parent process
   if (!team || team->size() != size) team = std::make_unique<thread_team>(size);
   return *team;
 }
 
-/// All numbers on this thread, which is then number 0.
+/// Runs all jobs on this thread, as thread 0.
 void run_alone(int n, numbered_job job) {
-  auto& here = place_of_this_thread();
+  auto& here = this_thread_position();
   struct restore {
-    place_in_region& here;
-    place_in_region before;
+    region_position& here;
+    region_position before;
     ~restore() { here = before; }
   } const after{here, here};
   here = {true, 0};
@@ -56,14 +57,14 @@ void set_threads(int n) {
 int requested_threads() {
   const char* const text = std::getenv("OMP_NUM_THREADS");
   if (text == nullptr || *text == '\0') return 0;
-  // A list has a number for each level of nested regions; the first is that of the outermost.
+  // A list has one number per nesting level of regions, the outermost first.
   const char* const end = text + std::strcspn(text, ",");
   int n = 0;
   const auto [stop, problem] = std::from_chars(text, end, n);
   if (problem == std::errc::result_out_of_range && *text != '-') return most_threads;
   if (problem == std::errc() && stop == end && n > 0) return std::min(n, most_threads);
   log::warning(fmt::format(
-      "OMP_NUM_THREADS = '{}' is ignored (it is not a positive number); give one, or unset it", text));
+      "OMP_NUM_THREADS = '{}' is ignored (it is not a positive integer); give one, or unset it", text));
   return 0;
 }
 
@@ -77,38 +78,38 @@ int threads() {
 }
 
 int threads_here() {
-  return place_of_this_thread().inside ? 1 : threads();
+  return this_thread_position().inside ? 1 : threads();
 }
 
 int thread_number() {
-  return place_of_this_thread().number;
+  return this_thread_position().number;
 }
 
 void run_parallel_for(int n, numbered_job body) {
   const int team = threads_here(), together = std::min(team, n);
   if (together <= 1) return run_alone(n, body);
   thread_team& all = team_of(team);
-  if (all.rests()) return run_alone(n, body);
+  if (all.backs_off()) return run_alone(n, body);
   all.run(n, together, body, thread_team::split::parts);
 }
 
 part_blocks::part_blocks(int n, int longest, int parts) : n_(n), parts_(std::max(1, parts)) {
   const int length = n_ / parts_ + (n_ % parts_ != 0 ? 1 : 0);
   whole_ = std::max(1, length / longest + (length % longest != 0 ? 1 : 0));
-  // To begin a block costs something, so that small ones are not cut.
+  // Starting a block has a cost, so that short ones are not split.
   const int last = length / whole_;
   pieces_ = parts_ == 1 || last < 32 ? 1 : last < 64 ? 2 : 4;
 }
 
 int part_blocks::begin(int block) const {
-  // In eighths of a whole block: a half, a quarter and two eighths are the last one.
+  // In eighths of a whole block: the last one is split into a half, a quarter and two eighths.
   static constexpr int eighths[] = {0, 4, 6, 7};
   const int part = block / per_part(), i = block % per_part();
   if (part == parts_) return n_;
   const int whole = std::min(i, whole_ - 1);
   const auto first = [this](int p) { return static_cast<int>(static_cast<long>(n_) * p / parts_); };
   const long cells = first(part + 1) - first(part);
-  // cells (8 whole + eighths)/(8 whole_), in an order in which no product leaves 64 bits.
+  // cells (8 whole + eighths)/(8 whole_), evaluated in an order in which no product exceeds 64 bits.
   return first(part) + static_cast<int>((cells * whole + cells * eighths[i - whole] / 8) / whole_);
 }
 

@@ -5,37 +5,37 @@
 
 namespace apsis {
 
-/// Most threads that can be set.
+/// Maximum number of threads.
 inline constexpr int most_threads = 256;
 
-/// Sets the number of threads that loops over cells use; 0 stands for all processors that this process may
-/// use. Throws input_error unless 0 ≤ n ≤ most_threads.
+/// Sets the number of threads of loops over cells; 0 stands for all processors available to this process.
+/// Throws input_error unless 0 ≤ n ≤ most_threads.
 void set_threads(int n);
-/// What OMP_NUM_THREADS asks for, at most most_threads; without it all processors that this process may use.
-/// A value that is no positive number counts as none, after a warning.
+/// Returns the value of OMP_NUM_THREADS, at most most_threads, or, if it is not set, the number of processors
+/// available to this process. A value that is not a positive integer is ignored with a warning.
 int default_threads();
-/// What OMP_NUM_THREADS asks for, as in default_threads(); 0 without it.
+/// Returns the value of OMP_NUM_THREADS as in default_threads(); 0 if it is not set.
 int requested_threads();
-/// The number that was set, 1 at the beginning.
+/// Returns the number of threads set; initially 1.
 int threads();
-/// The number that a loop begun here uses: 1 inside of another one.
+/// Returns the number of threads of a loop started here: 1 inside another loop.
 int threads_here();
-/// Which of them the calling thread is: 0 … threads_here() − 1 of the loop that runs, 0 outside of loops.
+/// Returns the index of the calling thread: 0 … threads_here() − 1 in a loop, 0 outside loops.
 int thread_number();
 
-/// Scratch space for every thread of a loop. It is made ready for all of them before the loop, so that which
-/// of them come, and when, does not decide how much memory is taken.
+/// Scratch space for every thread of a loop, prepared for all threads before the loop, so that memory use
+/// does not depend on which of them take part.
 template <class T>
 class per_thread {
  public:
-  /// Calls make_ready(scratch) for each thread that a loop begun here uses.
+  /// Calls make_ready(scratch) for each thread of a loop started here.
   template <class Function>
   void prepare(const Function& make_ready) {
     const auto count = static_cast<std::size_t>(threads_here());
     if (slots_.size() < count) slots_.resize(count);
     for (std::size_t p = 0; p < count; ++p) make_ready(slots_[p].value);
   }
-  /// That of the calling thread.
+  /// Returns the scratch space of the calling thread.
   T& here() { return slots_[static_cast<std::size_t>(thread_number())].value; }
 
  private:
@@ -45,42 +45,41 @@ class per_thread {
   std::vector<slot> slots_;
 };
 
-/// A call of what was written as a lambda, without the allocation that std::function may need.
+/// A reference to a lambda, without the allocation that std::function may need.
 struct numbered_job {
-  void (*call)(const void* body, int k);  ///< knows the type of the lambda
+  void (*call)(const void* body, int k);  ///< restores the type of the lambda
   const void* body;                       ///< the lambda; it must outlive the job
 
-  /// The job that calls body(k).
+  /// Returns a job that calls body(k).
   template <class Body>
   static numbered_job of(const Body& body) {
     return {[](const void* b, int k) { (*static_cast<const Body*>(b))(k); }, &body};
   }
-  void operator()(int k) const { call(body, k); }  ///< one call
+  void operator()(int k) const { call(body, k); }  ///< calls body(k)
 };
 /// Compiled part of parallel_for.
 void run_parallel_for(int n, numbered_job job);
 /// Compiled part of parallel_tasks.
 void run_parallel_tasks(int n, numbered_job job);
 
-/// Runs body(k) for k = 0 … n−1, in any order, on all threads; neighbouring k on the same one. Each k writes
-/// its own data, so results do not depend on the number of threads. An exception leaves once all have
-/// stopped; of several, the one of the smallest k is thrown.
+/// Runs body(k) for k = 0 … n−1 on all threads, in any order, neighbouring k on the same thread. Each k
+/// writes only its own data, so that results do not depend on the number of threads. An exception is rethrown
+/// after all threads have stopped; of several, that of the smallest k.
 template <class Body>
 void parallel_for(int n, const Body& body) {
   run_parallel_for(n, numbered_job::of(body));
 }
 
-/// 0 … n−1 cut into blocks of at most `longest`, in a part of equal length for each of `parts` threads. Parts
-/// of long blocks end with short ones, so that a thread that comes to the end of its own finds something
-/// small to help the others with.
+/// Splits 0 … n−1 into equal parts, one for each of `parts` threads, and each part into blocks of at most
+/// `longest`. The last blocks of a long part are short: block sizes taper for load balance.
 class part_blocks {
  public:
-  /// n ≥ 0 and longest ≥ 1; fewer than one part counts as one.
+  /// Requires n ≥ 0 and longest ≥ 1; fewer than one part counts as one.
   part_blocks(int n, int longest, int parts);
 
-  int count() const { return parts_ * per_part(); }      ///< blocks, some of which may be empty
-  int begin(int block) const;                            ///< begin(count()) is n
-  int end(int block) const { return begin(block + 1); }  ///< one behind the last number of the block
+  int count() const { return parts_ * per_part(); }      ///< number of blocks, including empty ones
+  int begin(int block) const;                            ///< first index of the block; begin(count()) is n
+  int end(int block) const { return begin(block + 1); }  ///< one past the last index of the block
 
  private:
   int per_part() const { return whole_ - 1 + pieces_; }
@@ -88,9 +87,9 @@ class part_blocks {
   int n_, parts_, whole_, pieces_;
 };
 
-/// Runs body(begin, end) for blocks of 0 … n−1 on all threads; see parallel_for. Whatever the length of the
-/// blocks, every thread has the same part of the range: loops over the cells of a field that use this find
-/// them in the caches of the core that wrote them.
+/// Runs body(begin, end) for blocks of 0 … n−1 on all threads; see parallel_for. Whatever the block length,
+/// every thread gets the same part of the range: subsequent loops over the cells of a field find them in the
+/// caches of the core that wrote them.
 template <class Body>
 void parallel_blocks(int n, int longest, const Body& body) {
   const part_blocks blocks(n, longest, threads());
@@ -100,8 +99,9 @@ void parallel_blocks(int n, int longest, const Body& body) {
   });
 }
 
-/// The same for jobs of different length (whole runs): a thread that is free takes the next k. Loops inside a
-/// job run on its own thread. Once a job has failed no new one begins.
+/// Runs body(k) for k = 0 … n−1 with dynamic scheduling, for jobs of different cost such as whole runs:
+/// an idle thread takes the next k. Loops inside a job run on its thread alone. After a failure no
+/// further job starts.
 template <class Body>
 void parallel_tasks(int n, const Body& body) {
   run_parallel_tasks(n, numbered_job::of(body));

@@ -28,7 +28,8 @@ std::string first_line(const std::filesystem::path& file) {
   return line;
 }
 
-/// The group of this process below /sys/fs/cgroup, such as "/user.slice"; "/" where it is not known.
+/// Returns the control group of this process relative to /sys/fs/cgroup, such as "/user.slice"; "/" if
+/// it is unknown.
 std::filesystem::path control_group() {
   std::ifstream in("/proc/self/cgroup");
   for (std::string line; std::getline(in, line);)
@@ -36,7 +37,7 @@ std::filesystem::path control_group() {
   return "/";
 }
 
-/// The least that the groups of this process grant; 0: no limit.
+/// Minimum quota over the control groups of this process; 0 means no limit.
 int processors_of_groups() {
   const std::filesystem::path root = "/sys/fs/cgroup";
   int least = 0;

@@ -4,12 +4,12 @@
 
 namespace apsis {
 
-/// Processors that this process may use: those of its affinity mask, or fewer where a control group grants
-/// less time than they have. At least 1.
+/// Returns the number of processors available to this process, at least 1: those of its affinity mask, or
+/// fewer if the CPU quota of a control group is smaller.
 int available_processors();
 
-/// Processors' worth of time that a line "quota period" of cpu.max grants (cgroup version 2), rounded up; 0
-/// where it sets no limit or cannot be read.
+/// Returns the number of processors that a line "quota period" of cpu.max (cgroup version 2) grants, rounded
+/// up; 0 if it sets no limit or cannot be parsed.
 int processors_of_quota(std::string_view cpu_max);
 
 }  // namespace apsis

@@ -8,55 +8,54 @@
 
 namespace apsis {
 
-/// The parts of a step of which a profile tells.
+/// Kernels timed by the profiler.
 enum class kernel {
   edges,       ///< reconstruction of edge values
-  fluxes,      ///< limiter of fluxes, T(u) and its multiples into the accumulators
-  multiples,   ///< multiples of u alone into the accumulators
-  points,      ///< values at the Gauss points of cell averages
+  fluxes,      ///< flux limiter, T(u), and adding its multiples to the accumulators
+  multiples,   ///< adding multiples of u alone to the accumulators
+  points,      ///< values at Gauss points from cell averages
   equilibria,  ///< moments and equilibria
-  relaxation,  ///< the convex combination with the equilibrium
-  monitor      ///< smallest value, conserved sums, entropy
+  relaxation,  ///< convex combination with the equilibrium
+  monitor      ///< minimum, conserved sums, entropy
 };
-/// Number of enumerators of kernel.
+/// Number of kernels.
 inline constexpr std::size_t kernel_count = static_cast<std::size_t>(kernel::monitor) + 1;
-/// As tables call it: "Gauss points".
+/// Returns the name of a kernel in tables, such as "Gauss points".
 const char* kernel_name(kernel which);
 
-/// What a kernel does for one number of the state.
+/// Work of a kernel per number of the state.
 struct work {
-  double operations = 0.0,  ///< as exec/counted.hpp counts them
-      bytes = 0.0;          ///< of fields that must go through memory, whatever stays in caches
+  double operations = 0.0,  ///< operation count (exec/counted.hpp)
+      bytes = 0.0;          ///< compulsory memory traffic
 };
 
-/// What a kernel did, summed over all threads.
+/// Work of a kernel, summed over all threads.
 struct work_done {
-  kernel which;    ///< whose sums these are
-  double seconds,  ///< of the clock
-      numbers,     ///< of the state that were treated, each time anew
+  kernel which;    ///< the kernel
+  double seconds,  ///< wall-clock time
+      numbers,     ///< numbers of the state processed, counted every time
       operations,  ///< numbers times work::operations
       bytes;       ///< numbers times work::bytes
 };
 
-/// Time and work of the kernels of this process while it is on. Off at the beginning, and then without a
-/// cost.
+/// Time and work of the kernels of this process while profiling is on. Initially off, without overhead.
 namespace profile {
 
-/// Sets all sums to 0, and on.
+/// Resets all sums and starts profiling.
 void start();
-/// Sets off; the sums remain.
+/// Stops profiling; the sums remain.
 void stop();
-/// Between start() and stop().
+/// Whether profiling is on.
 bool is_on();
-/// Kernels that did something, since start().
+/// Returns the sums of the kernels that ran since start().
 std::vector<work_done> read();
-/// Adds to the sums of a kernel, also while off. Any number of threads at once.
+/// Adds to the sums of a kernel, even while profiling is off. Thread-safe.
 void add(kernel which, double seconds, double numbers, const work& each);
 
-/// Times the rest of a block as `numbers` numbers treated by a kernel.
+/// Times the enclosing scope as one call of a kernel on `numbers` numbers.
 class section {
  public:
-  /// The time begins here, if the profile is on.
+  /// Starts the timer if profiling is on.
   section(kernel which, double numbers, const work& each)
       : on_(is_on()), which_(which), numbers_(numbers), each_(each) {
     if (on_) start_ = std::chrono::steady_clock::now();

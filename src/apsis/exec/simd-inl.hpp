@@ -3,9 +3,9 @@
 //   #define HWY_TARGET_INCLUDE "apsis/scheme/limiter.cpp"     (the file itself)
 //   #include <hwy/foreach_target.h>
 //   #include <apsis/exec/simd-inl.hpp>
-// which is why this header may be read several times. What the processor has is found out at run time
-// (Highway: HWY_EXPORT, HWY_DYNAMIC_DISPATCH), so a program that is built for the plain architecture is not
-// held to it.
+// which is why this header may be included several times. The instruction set is chosen at run time
+// (Highway: HWY_EXPORT, HWY_DYNAMIC_DISPATCH), so that a program built for the baseline architecture is not
+// limited to it.
 #if defined(APSIS_CORE_SIMD_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_CORE_SIMD_INL_HPP
 #undef APSIS_CORE_SIMD_INL_HPP
@@ -23,18 +23,18 @@ namespace apsis::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// What a lambda on packs is marked with: compiled for the instruction set, and into the loop that calls it.
+/// Attribute of lambdas on packs: compiled for the instruction set and inlined into the calling loop.
 #ifndef APSIS_PACKED
 #define APSIS_PACKED HWY_ATTR __attribute__((always_inline))
 #endif
 
-/// At most a cache line: rows of a field are padded to that (phase/field.hpp).
+/// Widest vector, at most a cache line; rows of a field are padded to it (phase/field.hpp).
 using wide = hn::CappedTag<double, 8>;
-/// One number, for the end of rows that are not padded.
+/// A single number, for the ends of rows that are not padded.
 using narrow = hn::CappedTag<double, 1>;
 
-/// A few doubles that are treated alike, so that formulas read as for one. Operations round as those on one
-/// double; fma(a, b, c) = ab + c rounds once where the instruction set has it.
+/// A vector of doubles with the operators of a double. Operations round like those on one double; fma(a, b,
+/// c) = ab + c rounds once where the instruction set has it.
 template <class D>
 struct pack {
   hn::Vec<D> v;
@@ -43,17 +43,17 @@ struct pack {
   HWY_INLINE pack(double from) : v(hn::Set(D(), from)) {}
   static HWY_INLINE pack load(const double* from) { return {hn::LoadU(D(), from)}; }
   HWY_INLINE void store(double* to) const { hn::StoreU(v, D(), to); }
-  /// The same in a register. A compiler that sees a loaded number used three times may load it three times,
-  /// which costs where loads are the bottleneck.
+  /// Returns the same values, kept in a register: a compiler may repeat a load for every use, which costs
+  /// time where loads are the bottleneck.
   HWY_INLINE pack loaded_once() const {
     pack copy = *this;
-#if HWY_ARCH_X86 && HWY_COMPILER_GCC_ACTUAL  // clang takes no such operand
+#if HWY_ARCH_X86 && HWY_COMPILER_GCC_ACTUAL  // clang rejects this operand
     asm("" : "+v"(copy.v.raw));
 #endif
     return copy;
   }
 
-  /// Whether a comparison holds for some, or for every number of a pack.
+  /// Whether a comparison holds for any number of a pack, or for all of them.
   template <class Mask>
   static HWY_INLINE bool any(Mask mask) {
     return !hn::AllFalse(D(), mask);
@@ -69,19 +69,19 @@ struct pack {
   friend HWY_INLINE pack operator/(pack a, pack b) { return {hn::Div(a.v, b.v)}; }
   friend HWY_INLINE pack operator-(pack a) { return {hn::Neg(a.v)}; }
   friend HWY_INLINE pack fma(pack a, pack b, pack c) { return {hn::MulAdd(a.v, b.v, c.v)}; }
-  /// c − ab.
+  /// Returns c − ab.
   friend HWY_INLINE pack negative_fma(pack a, pack b, pack c) { return {hn::NegMulAdd(a.v, b.v, c.v)}; }
   friend HWY_INLINE auto operator<(pack a, pack b) { return hn::Lt(a.v, b.v); }
   friend HWY_INLINE auto operator>(pack a, pack b) { return hn::Gt(a.v, b.v); }
 };
 
-/// Where the mask says so yes, else no.
+/// Selects `yes` where the mask is set, otherwise `no`.
 template <class D, class Mask>
 HWY_INLINE pack<D> select(Mask mask, pack<D> yes, pack<D> no) {
   return {hn::IfThenElse(mask, yes.v, no.v)};
 }
 
-/// Of a and b; b where one of them is no number.
+/// Minimum and maximum; b if either is NaN.
 template <class D>
 HWY_INLINE pack<D> smaller(pack<D> a, pack<D> b) {
   return select(a < b, a, b);
@@ -91,7 +91,8 @@ HWY_INLINE pack<D> larger(pack<D> a, pack<D> b) {
   return select(a > b, a, b);
 }
 
-/// 2^−e for a = 2^e m, 1 ≤ m < 2, a normal and below 2^1022: a division without its rounding, and its cost.
+/// Returns 2^−e for a = 2^e m, 1 ≤ m < 2, a normal and below 2^1022: scales like a division, without its
+/// rounding and cost.
 template <class D>
 HWY_INLINE pack<D> inverse_power_of_two(pack<D> a) {
   const hn::RebindToUnsigned<D> bits;
@@ -99,7 +100,7 @@ HWY_INLINE pack<D> inverse_power_of_two(pack<D> a) {
   return {hn::BitCast(D(), hn::Sub(hn::Set(bits, std::uint64_t{0x7fe0000000000000}), exponent))};
 }
 
-/// Of two numbers; anything where one of them is no number.
+/// Maximum and minimum; unspecified if either is NaN.
 template <class D>
 HWY_INLINE pack<D> maximum(pack<D> a, pack<D> b) {
   return {hn::Max(a.v, b.v)};
@@ -115,7 +116,7 @@ HWY_INLINE pack<D> absolute(pack<D> a) {
   return {hn::Abs(a.v)};
 }
 
-/// body(pack type, k) for all k of 0 … width−1, a pack at a time, the end one by one.
+/// Calls body(pack type, k) for k = 0 … width−1, one pack at a time and the remainder one by one.
 template <class Body>
 HWY_INLINE void for_packs(int width, const Body& body) {
   const int length = static_cast<int>(hn::Lanes(wide()));

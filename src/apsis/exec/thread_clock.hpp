@@ -2,8 +2,8 @@
 
 namespace apsis {
 
-/// CPU seconds of the calling thread: what sequential work costs does not depend on what else the machine
-/// does.
+/// Returns the CPU seconds of the calling thread, which for sequential work do not depend on the load
+/// of the machine.
 double thread_seconds();
 
 }  // namespace apsis

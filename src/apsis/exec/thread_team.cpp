@@ -22,10 +22,10 @@ namespace {
 
 std::atomic<long> forks_of_this_process = 0;
 
-/// Counts the forks that lead to this process.
+/// Counts the forks in the ancestry of this process.
 void watch_forks() {
   static const int watched = pthread_atfork(nullptr, nullptr, [] { ++forks_of_this_process; });
-  static_cast<void>(watched);  // where it fails, a child computes with one thread's speed
+  static_cast<void>(watched);  // if it fails, a child process runs at the speed of one thread
 }
 
 void pause_processor() {
@@ -38,7 +38,8 @@ void pause_processor() {
 
 using microseconds = std::chrono::microseconds;
 
-/// Waits until done() for at most `limit` without giving the processor away; what done() said last.
+/// Spins until done() or for at most `limit`, without yielding the processor; returns the last
+/// value of done().
 template <class Done>
 bool spin_until(const Done& done, microseconds limit) {
   if (done()) return true;
@@ -53,7 +54,7 @@ bool spin_until(const Done& done, microseconds limit) {
   return done();
 }
 
-/// The exception of the smallest k, to be thrown when all threads have stopped.
+/// The exception of the smallest k, to be rethrown after all threads have stopped.
 class first_failure {
  public:
   void guard(int k, numbered_job job) {
@@ -69,7 +70,7 @@ class first_failure {
     }
   }
   bool any() const { return any_; }
-  /// Throws what was caught, and forgets it.
+  /// Rethrows and clears the exception, if there is one.
   void rethrow() {
     if (!any_) return;
     any_ = false;
@@ -84,38 +85,38 @@ class first_failure {
   std::atomic<bool> any_ = false;
 };
 
-/// Numbers that are left of the part of one thread; on a cache line of its own.
+/// Jobs left in the part of one thread, on a cache line of its own.
 struct alignas(64) remaining {
   std::atomic<int> next = 0;
-  std::atomic<bool> owned = false;  ///< its thread has come
+  std::atomic<bool> owned = false;  ///< its thread has started on it
   int end = 0;
 
   bool any() const { return next.load(std::memory_order_relaxed) < end; }
 };
 
-/// Where a worker is called; on a cache line of its own.
+/// Mailbox through which a worker is notified, on a cache line of its own.
 struct alignas(64) seat {
   static constexpr int leave = -1;
-  std::atomic<int> region = 0;  ///< number of the region it should come to
+  std::atomic<int> region = 0;  ///< number of the region to join, or `leave`
 };
 
 }  // namespace
 
-/// Lives until the last worker has left, however late that is.
+/// State shared with the workers; lives until the last of them has left.
 struct thread_team::shared {
   explicit shared(int workers) : seats(std::make_unique<seat[]>(static_cast<std::size_t>(workers) + 1)) {}
 
-  // A region is open while its numbers are handed out. Its data stay as they are while anybody is inside.
+  // A region is open while its jobs are handed out. Its data do not change while any worker is inside.
   static constexpr int open = 1 << 30;
-  alignas(64) std::atomic<int> inside = 0;  ///< workers that have come, plus `open`
+  alignas(64) std::atomic<int> inside = 0;  ///< workers inside, plus `open`
 
   numbered_job job{};
   split how = split::parts;
   int n = 0, threads = 1;
   std::array<remaining, most_threads> parts;
   first_failure failure;
-  std::unique_ptr<seat[]> seats;  ///< of workers 1, 2, …; that of the caller is not used
-  microseconds patience{0};       ///< for which a thread spins before it sleeps
+  std::unique_ptr<seat[]> seats;  ///< of workers 1, 2, …; that of the caller is unused
+  microseconds spin_limit{0};     ///< time that a thread spins before it sleeps
 
   bool enter() {
     int now = inside.load(std::memory_order_relaxed);
@@ -124,11 +125,11 @@ struct thread_team::shared {
     return false;
   }
   void go_out() {
-    // The caller may be asleep once the region is closed.
+    // The caller may be sleeping once the region is closed.
     if (inside.fetch_sub(1, std::memory_order_release) == 1) inside.notify_all();
   }
 
-  /// Numbers of the part that this thread took.
+  /// Runs jobs of a part and returns how many.
   int take(remaining& part, int end) {
     int taken = 0;
     while (part.next.load(std::memory_order_relaxed) < end) {
@@ -143,9 +144,9 @@ struct thread_team::shared {
   int work(int own) {
     if (how == split::one_by_one) return take(parts[0], n);
     if (own >= threads) return 0;
-    // Every thread does its own part first, whose memory is near to it, and then helps the others: processors
-    // may be of different speed, or do something else for a while. The last number of a part is left to its
-    // own thread where that has come, or else short parts would wander between the caches.
+    // Every thread runs its own part first, whose memory is close to it, and then steals from the others:
+    // processors may differ in speed or be preempted. The last job of a part is left to its owner if that has
+    // started, otherwise short parts would migrate between caches.
     parts[static_cast<std::size_t>(own)].owned.store(true, std::memory_order_relaxed);
     int taken = 0;
     for (int p = 0; p < threads; ++p) {
@@ -156,7 +157,7 @@ struct thread_team::shared {
     return taken;
   }
 
-  /// Takes what owners that do not run have left.
+  /// Runs jobs of owners that are not running.
   int work_of_others() {
     constexpr microseconds until_owner_comes(2);
     const auto nothing_left = [this] {
@@ -172,50 +173,50 @@ struct thread_team::shared {
     return taken;
   }
 
-  /// Closes the region and waits for the workers that hold a number.
+  /// Closes the region and waits for the workers that hold a job.
   void close() {
     inside.fetch_and(~open, std::memory_order_relaxed);
     const auto alone = [this] { return inside.load(std::memory_order_acquire) == 0; };
-    if (spin_until(alone, patience)) return;
+    if (spin_until(alone, spin_limit)) return;
     for (int now = inside.load(std::memory_order_acquire); now != 0;
          now = inside.load(std::memory_order_acquire))
       inside.wait(now, std::memory_order_acquire);
   }
 };
 
-place_in_region& place_of_this_thread() {
-  thread_local place_in_region here;
+region_position& this_thread_position() {
+  thread_local region_position here;
   return here;
 }
 
 thread_team::thread_team(int size)
     : size_(size), forks_(forks_of_this_process), shared_(std::make_shared<shared>(size - 1)) {
   watch_forks();
-  // Spinning is of use only to threads that run at the same time.
-  if (size <= available_processors()) shared_->patience = microseconds(50);
-  // Signals are for the threads of the user.
+  // Spinning pays only for threads that run simultaneously.
+  if (size <= available_processors()) shared_->spin_limit = microseconds(50);
+  // Workers block all signals, which belong to the threads of the user.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   try {
     for (; workers_ < size - 1; ++workers_) std::thread(serve, shared_, workers_ + 1).detach();
   } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch)
-    // The caller does the work of those that could not be started.
+    // The caller does the work of threads that could not be started.
   }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-void waiting_account::add(const times& at, int own, int n) {
+void team_overhead::add(const times& at, int own, int n) {
   using seconds = std::chrono::duration<double>;
-  // Debts below the limit are the price of waking workers up; a rest of 12 debts makes the loss one in 13 at
-  // most.
-  constexpr double limit = 2e-4, rest_per_debt = 12.0;
-  if (own == 0) return;  // the others did it all
+  // Debts below the limit are the price of waking workers; backing off for 12 debts bounds the loss to one
+  // part in 13.
+  constexpr double limit = 2e-4, backoff_per_debt = 12.0;
+  if (own == 0) return;  // the workers did everything
   const double alone = seconds(at.worked - at.called).count() * n / own;
   debt_ = std::max(debt_ + seconds(at.ended - at.begun).count() - alone, -limit);
   if (debt_ <= limit) return;
-  rest_until_ = at.ended + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                               seconds(rest_per_debt * debt_));
+  backoff_until_ = at.ended + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                  seconds(backoff_per_debt * debt_));
   debt_ = 0.0;
 }
 
@@ -227,17 +228,17 @@ thread_team::~thread_team() {
   }
 }
 
-bool thread_team::left_behind() const {
+bool thread_team::is_orphaned() const {
   return forks_ != forks_of_this_process;
 }
 
 void thread_team::serve(const std::shared_ptr<shared>& with, int number) {
-  place_of_this_thread() = {true, number};
+  this_thread_position() = {true, number};
   auto& call = with->seats[static_cast<std::size_t>(number)].region;
   int last = 0;
   for (;;) {
     const auto called = [&] { return call.load(std::memory_order_acquire) != last; };
-    if (!spin_until(called, with->patience)) call.wait(last, std::memory_order_acquire);
+    if (!spin_until(called, with->spin_limit)) call.wait(last, std::memory_order_acquire);
     last = call.load(std::memory_order_acquire);
     if (last == seat::leave) return;
     if (!with->enter()) continue;
@@ -268,14 +269,14 @@ void thread_team::run(int n, int threads, numbered_job job, split how) {
     call.store(next, std::memory_order_release);
     call.notify_one();
   }
-  auto& here = place_of_this_thread();
+  auto& here = this_thread_position();
   here = {true, 0};
   const auto called = std::chrono::steady_clock::now();
   const int own = all.work(0) + all.work_of_others();
   const auto worked = std::chrono::steady_clock::now();
   all.close();
   here = {};
-  if (how == split::parts) account_.add({begun, called, worked, std::chrono::steady_clock::now()}, own, n);
+  if (how == split::parts) overhead_.add({begun, called, worked, std::chrono::steady_clock::now()}, own, n);
   all.failure.rethrow();
 }
 

@@ -7,67 +7,68 @@
 
 namespace apsis {
 
-/// Where a thread stands among those of a parallel region.
-struct place_in_region {
-  bool inside = false;  ///< of a region: loops then run on this thread alone
-  int number = 0;       ///< 0 for the caller, and outside of regions
+/// Position of a thread in a parallel region.
+struct region_position {
+  bool inside = false;  ///< whether in a region, where loops run on this thread alone
+  int number = 0;       ///< index; 0 for the caller and outside regions
 };
-/// That of the calling thread.
-place_in_region& place_of_this_thread();
+/// Returns the position of the calling thread.
+region_position& this_thread_position();
 
-/// What regions cost, against an estimate of what the caller alone would have needed, and when it had better
-/// work alone for a while: a worker that the machine stopped while it held a number is waited for.
-class waiting_account {
+/// Compares the cost of parallel regions with an estimated sequential cost and decides when the caller should
+/// run regions alone for a while: a worker preempted while it holds a job delays the whole region.
+class team_overhead {
  public:
-  /// Times of a region.
+  /// Timestamps of a region.
   struct times {
-    std::chrono::steady_clock::time_point begun,  ///< before workers were called
-        called,                                   ///< before the caller's own work
-        worked,                                   ///< after it
-        ended;                                    ///< when all had finished
+    std::chrono::steady_clock::time_point begun,  ///< before the workers are notified
+        called,                                   ///< before the caller's share
+        worked,                                   ///< after the caller's share
+        ended;                                    ///< when all threads have finished
   };
 
-  /// Notes a region of which the caller did `own` of n numbers.
+  /// Records a region in which the caller ran `own` of n jobs.
   void add(const times& at, int own, int n);
-  /// Whether the debts of before are still to be worked off.
-  bool rests(std::chrono::steady_clock::time_point now) const { return now < rest_until_; }
-  /// The same without a look at the clock where there was never a debt.
-  bool rests() const {
-    return rest_until_ != std::chrono::steady_clock::time_point() && rests(std::chrono::steady_clock::now());
+  /// Whether regions should run on the caller alone at time `now`.
+  bool backs_off(std::chrono::steady_clock::time_point now) const { return now < backoff_until_; }
+  /// The same for the current time; reads no clock unless a debt has ever been incurred.
+  bool backs_off() const {
+    return backoff_until_ != std::chrono::steady_clock::time_point() &&
+           backs_off(std::chrono::steady_clock::now());
   }
 
  private:
-  double debt_ = 0.0;  ///< in seconds; below 0 a credit
-  std::chrono::steady_clock::time_point rest_until_{};
+  double debt_ = 0.0;  ///< time lost to waiting, in seconds; negative means time saved
+  std::chrono::steady_clock::time_point backoff_until_{};
 };
 
-/// The threads of one caller: itself and workers that wait for it between parallel regions. A worker that the
-/// machine does not run is not waited for: the caller does its work, and at the end of a region waits only
-/// for those that hold a part of it.
+/// The threads of one caller: itself and workers that wait between parallel regions. A preempted worker
+/// is not waited for: the caller takes over its jobs and at the end of a region waits only for workers
+/// that hold one.
 class thread_team {
  public:
-  /// How the numbers 0 … n−1 of a region reach the threads.
+  /// Distribution of the jobs 0 … n−1 of a region over the threads.
   enum class split {
-    parts,      ///< each thread has a part of neighbouring numbers and then helps the others
-    one_by_one  ///< who is free takes the next number; none is begun after a failure
+    parts,      ///< each thread runs a contiguous part and then steals from the others
+    one_by_one  ///< an idle thread takes the next job; none starts after a failure
   };
 
-  /// Starts size − 1 workers, or as many as the system grants.
+  /// Starts size − 1 workers, or as many as the system allows.
   explicit thread_team(int size);
-  /// Sends the workers away, without waiting for them.
+  /// Dismisses the workers without waiting for them.
   ~thread_team();
   thread_team(const thread_team&) = delete;
   thread_team& operator=(const thread_team&) = delete;
 
-  int size() const { return size_; }  ///< threads asked for, the caller included
-  /// Whether this process was forked since: the workers are then the parent's.
-  bool left_behind() const;
+  int size() const { return size_; }  ///< number of threads requested, including the caller
+  /// Whether this process was forked from the one that started the workers.
+  bool is_orphaned() const;
 
-  /// Whether the workers have lately cost more time than they saved.
-  bool rests() const { return account_.rests(); }
+  /// Whether the workers have recently cost more time than they saved.
+  bool backs_off() const { return overhead_.backs_off(); }
 
-  /// Runs the job for all numbers with at most `threads` threads; throws the exception of the smallest one
-  /// that failed.
+  /// Runs job(k) for k = 0 … n−1 with at most `threads` threads; rethrows the exception of the smallest
+  /// k that failed.
   void run(int n, int threads, numbered_job job, split how);
 
  private:
@@ -77,7 +78,7 @@ class thread_team {
   int size_, workers_ = 0;
   long forks_;
   std::shared_ptr<shared> shared_;
-  waiting_account account_;
+  team_overhead overhead_;
 };
 
 }  // namespace apsis

@@ -12,18 +12,18 @@
 
 namespace apsis {
 
-/// A state that is a row of numbers: std::vector, std::array, an Eigen vector, a class with size() and [].
+/// An array of numbers as a state: std::vector, std::array, an Eigen vector, or a class with size() and [].
 template <class State>
 concept array_state = std::copyable<State> && requires(State& u, const State& c) {
   { c.size() } -> std::integral;
   { u[c.size()] } -> std::convertible_to<long double>;
 };
 
-/// The type of the numbers of an array_state.
+/// Number type of an array_state.
 template <array_state State>
 using state_real = std::remove_cvref_t<decltype(std::declval<State&>()[std::declval<const State&>().size()])>;
 
-/// A system without the part that stands here: u' = Q(u) as newton_problem{no_transport{}, G}.
+/// Placeholder for T = 0: u' = Q(u) is newton_problem{no_transport{}, G}.
 struct no_transport {
   /// out ← 0.
   template <class Real, class State>
@@ -33,8 +33,8 @@ struct no_transport {
   }
 };
 
-/// acc ← (fresh ? 0 : acc) + α u + β f for every target, where f = evaluate() is asked for at most once, and
-/// not at all if every β is 0. evaluate() returns a reference to a state as long as u.
+/// For every target, sets acc ← (fresh ? 0 : acc) + α u + β f, where f = evaluate() is evaluated at most
+/// once, and not at all if every β is 0. evaluate() returns a reference to a state of the size of u.
 template <array_state State, class Evaluate>
 void accumulate(std::span<const target<State, state_real<State>>> targets, const State& u,
                 const Evaluate& evaluate) {
@@ -45,7 +45,7 @@ void accumulate(std::span<const target<State, state_real<State>>> targets, const
     if (f == nullptr && to.beta != real(0)) f = &evaluate();
   for (const auto& to : targets) {
     State& acc = *to.acc;
-    // Without a choice for each number, a state of two of them costs no more than by hand.
+    // Branches outside the loops keep small states as fast as hand-written code.
     if (f == nullptr || to.beta == real(0)) {
       for (size_type i = 0; i < u.size(); ++i) acc[i] = to.combine(real(acc[i]), real(u[i]), real(0));
     } else if (to.fresh) {
@@ -56,7 +56,7 @@ void accumulate(std::span<const target<State, state_real<State>>> targets, const
   }
 }
 
-/// Whether every number is 0; NaN is not.
+/// Whether every number is 0 (NaN counts as nonzero).
 template <class Row>
 bool is_zero(const Row& row) {
   using size_type = decltype(row.size());
@@ -65,7 +65,7 @@ bool is_zero(const Row& row) {
   return true;
 }
 
-/// What require_finite throws; apart from it, so that the check itself is a few instructions.
+/// Cold path of require_finite, kept out of line so that the check itself is a few instructions.
 template <class Row>
 [[noreturn, gnu::noinline, gnu::cold]] void throw_not_finite(const Row& row, const char* what) {
   using size_type = decltype(row.size());
@@ -77,12 +77,12 @@ template <class Row>
                         {-1, std::nan(""), -1, static_cast<double>(row[i])});
 }
 
-/// Throws numerical_error with index and value at the first number that is not finite.
+/// Throws numerical_error with index and value of the first number that is not finite.
 template <class Row>
 inline void require_finite(const Row& row, const char* what) {
   using size_type = decltype(row.size());
   using real = state_real<Row>;
-  // x − x is 0 or NaN: no branch but one for the whole row.
+  // x − x is 0 or NaN: one branch for the whole row.
   real none(0);
   for (size_type i = 0; i < row.size(); ++i) none += row[i] - row[i];
   if (!(none == real(0))) throw_not_finite(row, what);

@@ -23,7 +23,7 @@ using nested_dual = boost::math::differentiation::autodiff_fvar<Real, 1, 1>;
 template <class Real, class G>
 class vector_field {
  public:
-  /// g(u, out) as above.
+  /// Stores g(u, out) as above.
   explicit vector_field(G g) : g_(std::move(g)) {}
 
   /// out ← G(u).
@@ -49,7 +49,7 @@ class vector_field {
     jacobian_product(u, x, jx);
     const std::size_t n = u.size();
     const nested_dual<Real> t(Real(0), true);              // the inner variable
-    const nested_dual<Real> s(dual<Real>(Real(0), true));  // a dual becomes the outer variable
+    const nested_dual<Real> s(dual<Real>(Real(0), true));  // a dual number becomes the outer variable
     const nested_dual<Real> st = s * t;
     in2_.resize(n);
     out2_.resize(n);

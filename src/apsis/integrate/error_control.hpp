@@ -11,64 +11,63 @@
 
 namespace apsis {
 
-/// Step size from an estimate of the error, such that it stays below a tolerance. A step is rejected if its
-/// error err is larger; then, and after a step that was good,
+/// Step-size controller: keeps the estimated error err of a step below a tolerance. A step is rejected if err
+/// > tol; after a rejected step and after an accepted one, respectively,
 ///   Δt ← 0.9 Δt (tol/err)^{1/k},      Δt ← 0.9 Δt (tol/err)^{0.7/k} (err_{n−1}/tol)^{0.4/k},
-/// by a factor from 0.2 to 5, and no longer right after a rejection. err ~ Δt^k: k is the order of the
-/// embedded solution and one. The second is Gustafsson's proportional–integral controller: where stability or
-/// a limit of the step keeps err small or rough, it does not swing as the first would (Hairer, Wanner,
-/// Solving Ordinary Differential Equations II, section IV.2; Söderlind, ACM Trans. Math. Softw. 29 (2003)
-/// 1–26).
+/// by a factor between 0.2 and 5, and no increase right after a rejection. err ~ Δt^k: k is the order of the
+/// embedded solution plus one. The second formula is Gustafsson's proportional–integral controller, which
+/// does not oscillate where stability or a step limit keeps err small or irregular (Hairer, Wanner, Solving
+/// Ordinary Differential Equations II, section IV.2; Söderlind, ACM Trans. Math. Softw. 29 (2003) 1–26).
 template <class Real>
 class step_controller {
  public:
-  /// All that changes on the way, so that a restart goes on to the same last digit.
+  /// State of the controller in a checkpoint; a restart from it is bitwise identical.
   struct progress {
-    Real proposed = std::numeric_limits<Real>::infinity();  ///< longest next step
-    Real previous = Real(1);                                ///< err/tol of the last good step, ≥ 1e-4
-    bool holds = false;                                     ///< the last step was rejected
-    long rejected = 0;                                      ///< number of steps that were
+    Real proposed = std::numeric_limits<Real>::infinity();  ///< proposed length of the next step
+    Real previous = Real(1);                                ///< err/tol of the last accepted step, ≥ 1e-4
+    bool after_rejection = false;                           ///< whether the last step was rejected
+    long rejected = 0;                                      ///< number of rejected steps
   };
 
-  /// `tolerance` in the unit of the errors, `order` that of the embedded solution, k − 1. Throws input_error
-  /// unless the tolerance is a positive number.
+  /// `tolerance` has the unit of the errors, `order` is that of the embedded solution, k − 1. Throws
+  /// input_error unless the tolerance is positive and finite.
   step_controller(Real tolerance, int order) : tolerance_(tolerance), order_(order) {
     if (!(tolerance > Real(0)) || !(tolerance < std::numeric_limits<Real>::infinity()))
       throw input_error("the tolerance is not a positive number; give one above 0");
   }
 
-  /// What errors are compared with.
+  /// Returns tolerance and order.
   error_target<Real> target() const { return {tolerance_, order_}; }
-  /// The length that the next step should have at most; +infinity at first.
+  /// Returns the proposed length of the next step; initially +infinity.
   Real proposed() const { return now_.proposed; }
-  /// A first step of this length; without effect once there has been one.
+  /// Sets the length of the first step; no effect once a step has been proposed.
   void start_with(Real dt) {
     if (!(now_.proposed < std::numeric_limits<Real>::infinity())) now_.proposed = dt;
   }
-  long rejected() const { return now_.rejected; }  ///< number of steps that were not good
+  long rejected() const { return now_.rejected; }  ///< number of rejected steps
 
-  /// Whether a step of length dt with this estimated error is good; what is proposed changes.
+  /// Accepts or rejects a step of length dt with this estimated error, and updates the proposed step.
   bool accepts(Real dt, Real error) {
     using std::pow;
     const Real k(order_ + 1), ratio = error / tolerance_;
     const bool good = ratio <= Real(1);
     if (good) {
-      const Real now = std::max(ratio, Real(1e-4));  // an error of nothing says nothing
+      const Real now = std::max(ratio, Real(1e-4));  // bounds the growth for tiny errors
       const Real factor = Real(0.9) * pow(now, Real(-0.7) / k) * pow(now_.previous, Real(0.4) / k);
-      now_.proposed = dt * std::clamp(factor, Real(0.2), now_.holds ? Real(1) : Real(5));
+      now_.proposed = dt * std::clamp(factor, Real(0.2), now_.after_rejection ? Real(1) : Real(5));
       now_.previous = now;
     } else {
-      const bool number = ratio < std::numeric_limits<Real>::infinity();
-      const Real factor = number ? Real(0.9) * pow(ratio, Real(-1) / k) : Real(0);
+      const bool is_number = ratio < std::numeric_limits<Real>::infinity();
+      const Real factor = is_number ? Real(0.9) * pow(ratio, Real(-1) / k) : Real(0);
       now_.proposed = dt * std::max(factor, Real(0.2));
       ++now_.rejected;
     }
-    now_.holds = !good;
+    now_.after_rejection = !good;
     return good;
   }
 
-  progress save() const { return now_; }                ///< for a checkpoint
-  void resume(const progress& saved) { now_ = saved; }  ///< goes to where an earlier run stopped
+  progress save() const { return now_; }                ///< returns the state for a checkpoint
+  void resume(const progress& saved) { now_ = saved; }  ///< restores the state of an earlier run
 
  private:
   Real tolerance_;
@@ -76,10 +75,10 @@ class step_controller {
   progress now_;
 };
 
-/// One step that the controller accepts, of length `limit` at most: u ← u^{n+1}, and its length is returned.
-/// distance(u, v) is a norm of u − v, the caller's; the error is `estimate` of it. A step that ends with a
-/// numerical_error is rejected like one whose error is infinite; the error is thrown once steps are too small
-/// to advance time, and u is then u^n.
+/// Takes one accepted step of length `limit` at most: u ← u^{n+1}; returns its length. distance(u, v) is a
+/// norm of u − v chosen by the caller, and `estimate` computes the error in it. A step that fails with a
+/// numerical_error is rejected like one with infinite error; once steps are too small to advance time, that
+/// numerical_error is thrown and u is still u^n.
 template <problem P, class Distance>
 typename P::real step_within_tolerance(stepper<P>& method_stepper,
                                        const time_marcher<typename P::real>& march,
@@ -111,9 +110,9 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
   }
 }
 
-/// Sets the first step of a controller that has none: first_step_length(), and with startup::graded at most
-/// ε/(4C), so that the initial layer is resolved as far as the tolerance asks. `longest`: of any step. Throws
-/// input_error for a graded start of a problem without relaxation_time.
+/// Sets the first step of a controller without a proposed step: first_step_length(), and with startup::graded
+/// at most ε/(4C), so that the initial layer is resolved to the tolerance. `longest` limits every step.
+/// Throws input_error for a graded start of a problem without relaxation_time.
 template <problem P, class Distance>
 void start_control(P& p, typename P::real t, const typename P::state& u, typename P::real longest,
                    startup how, step_controller<typename P::real>& control, const Distance& distance) {
@@ -124,9 +123,10 @@ void start_control(P& p, typename P::real t, const typename P::state& u, typenam
   control.start_with(dt);
 }
 
-/// integrate() with steps as long as `control` finds good; the rule says how long they may be at most, a
-/// given dt too, and step_rule::unlimited() leaves it to the tolerance. The first step is that of
-/// start_control() where the controller has none. The stepper computes solutions::result_and_embedded.
+/// Integrates u from t0 to t1 like integrate(), with steps chosen by `control`; the rule, including a
+/// given dt, is an upper limit, and step_rule::unlimited() sets none. start_control() sets the first step
+/// of a controller without one. The stepper must compute solutions::result_and_embedded. Throws like
+/// integrate() and step_within_tolerance().
 template <problem P, class Distance, class Observer = no_observer>
 integration_result<typename P::real> integrate_to_tolerance(stepper<P>& method_stepper, typename P::state& u,
                                                             typename P::real t0, typename P::real t1,

@@ -1,4 +1,4 @@
-// GCC takes the deliberately undefined register of its AVX-512 intrinsics, as Eigen uses them, for a mistake.
+// GCC warns about the deliberately undefined register of its AVX-512 intrinsics, which Eigen uses.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -18,7 +18,7 @@
 
 namespace apsis::detail {
 
-/// R'(v) as Eigen's iterative solvers want it: something that can be multiplied by a vector.
+/// R'(v) as a matrix-free operator for the iterative solvers of Eigen.
 template <class Real>
 class newton_operator;
 
@@ -101,7 +101,7 @@ using square = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 template <class Real>
 constexpr Real singular_below = Real(45) * std::numeric_limits<Real>::epsilon();
 
-/// The maximum norm: squares of what is left of a decayed solution would underflow.
+/// Maximum norm: the squares in a Euclidean norm of a decayed solution would underflow.
 template <class Real>
 Real largest(const column<Real>& x) {
   return x.template lpNorm<Eigen::Infinity>();
@@ -116,16 +116,16 @@ Real largest(const column<Real>& x) {
       measure, iteration));
 }
 
-/// A Newton step, and the size that rounding alone gives to R(v).
+/// A Newton step, and the size of R(v) due to rounding alone.
 template <class Real>
 struct newton_step {
   column<Real> delta;
   Real noise;
-  std::function<column<Real>(const column<Real>&)> correct;  ///< r ↦ −R'(v)⁻¹ r; empty if that is not at hand
+  std::function<column<Real>(const column<Real>&)> correct;  ///< r ↦ −R'(v)⁻¹ r; empty if not available
 };
 
 /// Solves R'(v) Δ = −r by LU. Rows and columns are scaled by the terms of R' before they cancel, so that the
-/// test for singularity sees cancellation and neither stiffness nor units.
+/// test for singularity measures cancellation and neither stiffness nor units.
 template <class Real>
 newton_step<Real> dense_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
                              int iteration) {
@@ -158,7 +158,7 @@ newton_step<Real> dense_step(stage_equation<Real>& equation, const column<Real>&
   return {correct(r), noise, correct};
 }
 
-/// The same by GMRES; the linear system needs only a few digits, Newton's method repeats it.
+/// Solves R'(v) Δ = −r by GMRES, to a few digits only, because Newton's method repeats it.
 template <class Real>
 newton_step<Real> krylov_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
                               int iteration) {
@@ -167,7 +167,7 @@ newton_step<Real> krylov_step(stage_equation<Real>& equation, const column<Real>
   gmres.set_restart(60);
   gmres.setMaxIterations(600);
   gmres.setTolerance(Real(1e-6));
-  // The right-hand side is brought to size 1: GMRES squares it, and small residuals would underflow.
+  // Scale the right-hand side to size 1: GMRES squares it, and small residuals would underflow.
   const Real size = largest<Real>(r);
   const column<Real> step = gmres.solve(-r / size) * size;
   column<Real> y(v.size()), z(v.size());
@@ -218,7 +218,7 @@ class newton {
     return r.allFinite() ? largest<Real>(r) : std::numeric_limits<Real>::infinity();
   }
 
-  /// One Newton step with backtracking; false when v is a root to round-off.
+  /// Takes one Newton step with backtracking; returns false when v is a root to round-off.
   bool iterate() {
     if (++iteration_ > options_.max_iterations) fail_to_converge();
     const bool dense =
@@ -228,15 +228,15 @@ class newton {
                                                : krylov_step<Real>(equation_, v_, r_, iteration_);
     const Real size = largest<Real>(v_);
     step_ = largest<Real>(delta) / (size > Real(0) ? size : Real(1));
-    // Near a root a full step reduces R quadratically; once that ends, what is left is rounding.
+    // Near a root a full step reduces R quadratically; when that ends, the remainder is rounding.
     const bool near = step_ <= std::sqrt(std::numeric_limits<Real>::epsilon()) || norm_ <= Real(32) * noise;
     for (Real t(1); t >= Real(0x1p-40); t /= Real(2)) {
       trial_ = v_ + t * delta;
       const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));
       if (inside_ && !admissible) continue;
       const Real norm = evaluate(trial_, trial_r_);
-      // Where G is stiff, a step along its slow manifold leaves it by O(Δ²), which R magnifies by (Δt/ε)² and
-      // the next step takes back: progress is seen in the next step, with the same R'.
+      // If G is stiff, a step along its slow manifold leaves the manifold by O(Δ²), which R amplifies by
+      // (Δt/ε)² and the next step corrects: progress shows in the next step with the same R'.
       const bool natural = !near && correct && norm < std::numeric_limits<Real>::infinity() &&
                            largest<Real>(correct(trial_r_)) <= (Real(1) - t / Real(2)) * largest<Real>(delta);
       if (natural || norm <= (Real(1) - Real(1e-4) * t) * norm_) {

@@ -10,29 +10,31 @@
 
 namespace apsis {
 
-/// The first step as it is, or cut into steps that double and resolve the initial layer of data out of
-/// equilibrium (graded_start): for methods that violate (N3) of docs/plateaus.md.
+/// Treatment of the first step: unchanged, or divided into graded steps that resolve the initial layer of
+/// data out of equilibrium (graded_start), for methods that violate (N3) of docs/plateaus.md.
 enum class startup { none, graded };
 
-/// How long a step is: a given dt, or Δt = safety · r · Δt_FE (safety ≤ 1 keeps what forward Euler keeps).
+/// Step-size rule: a given dt, or Δt = safety · r · Δt_FE (safety ≤ 1 preserves what
+/// forward Euler preserves).
 template <class Real>
 struct step_rule {
-  std::optional<Real> dt;         ///< the given length; the other rule without one
-  Real safety = Real(1);          ///< of no meaning where dt is given
-  startup start = startup::none;  ///< of the first step
+  std::optional<Real> dt;         ///< the given step; without it the SSP rule applies
+  Real safety = Real(1);          ///< ignored if dt is given
+  startup start = startup::none;  ///< treatment of the first step
 
-  /// Steps of length dt.
+  /// Returns the rule of steps of length dt.
   static step_rule fixed(Real dt) { return {dt, Real(1), startup::none}; }
-  /// Steps of safety · r · Δt_FE. For methods with an SSP coefficient (stepper::ssp_coefficient()).
+  /// Returns the rule Δt = safety · r · Δt_FE, for methods with an
+  /// SSP coefficient (stepper::require_ssp_coefficient()).
   static step_rule ssp(Real safety = Real(1)) { return {std::nullopt, safety, startup::none}; }
-  /// Steps of any length, for integrate_to_tolerance().
+  /// Returns the rule of unlimited steps, for integrate_to_tolerance().
   static step_rule unlimited() { return fixed(std::numeric_limits<Real>::infinity()); }
-  /// The same with another start.
-  step_rule with(startup how) const { return {dt, safety, how}; }
+  /// Returns the same rule with the given start-up.
+  step_rule with(startup first) const { return {dt, safety, first}; }
 };
 
-/// The largest whole k ≥ 0 with k · every ≤ t, where the product is the rounded one: a time that was set to
-/// k · every counts as reached. 0 where t < every.
+/// Returns the largest integer k ≥ 0 with fl(k · every) ≤ t, so that a time set to k · every counts as
+/// reached; 0 if t < every.
 template <class Real>
 long multiples_until(Real t, Real every) {
   using std::floor;
@@ -43,27 +45,27 @@ long multiples_until(Real t, Real every) {
   return k;
 }
 
-/// Time from t0 to t1 in steps. With a given dt times are t0 + n dt (no accumulation of rounding); a dt that
-/// does not divide t1 − t0 (to 1e-12) is reduced until it does, see adjusted(). Without one, the last step is
-/// shortened to meet t1, and steps are shortened to meet the times of stop_every(). An interval of length
-/// zero has no steps. A start-up puts times between the first two and changes no other, unless the rule
-/// shortens steps on the way.
+/// Divides the time from t0 to t1 into steps. With a given dt, times are t0 + n dt (no accumulation of
+/// rounding errors); a dt that does not divide t1 − t0 to within 1e-12 is reduced until it does, see
+/// adjusted(). Otherwise the last step is shortened to end at t1, and steps are shortened to end at the times
+/// of stop_every(). An interval of length zero has no steps. A graded start-up divides the first step and
+/// changes no later time, unless the rule shortens steps during it.
 template <class Real>
 class time_marcher {
  public:
-  /// All that changes on the way, so that a restart goes on to the same last digit.
+  /// State of the marcher in a checkpoint; a restart from it is bitwise identical.
   struct progress {
     long step,                      ///< steps taken
-        since_anchor;               ///< of them of length anchor_dt at the end
+        since_anchor;               ///< steps of length anchor_dt since `anchor`
     Real t,                         ///< time reached
-        anchor,                     ///< time from which on steps have the length anchor_dt
-        anchor_dt;                  ///< −1 before the first step, and where dt was given
-    long startup_steps = 0,         ///< into which the first step is cut
-        startup_done = 0;           ///< of them
-    Real startup_length = Real(0);  ///< of the first step before it was cut
+        anchor,                     ///< time since which all steps have the length anchor_dt
+        anchor_dt;                  ///< −1 before the first step and for a given dt
+    long startup_steps = 0,         ///< number of steps that replace the first one
+        startup_done = 0;           ///< number of these that are done
+    Real startup_length = Real(0);  ///< length of the first step before it was divided
   };
 
-  /// Throws input_error unless t0 ≤ t1 are finite and dt > 0.
+  /// Throws input_error unless t0 ≤ t1 are finite, dt > 0 is finite, and the interval has at most 1e15 steps.
   time_marcher(Real t0, Real t1, std::optional<Real> dt = std::nullopt)
       : t0_(t0), t1_(t1), t_(t0), fixed_(dt) {
     using std::isfinite, std::abs, std::ceil, std::round;
@@ -82,15 +84,15 @@ class time_marcher {
     count_ = static_cast<long>(divides ? nearest : ceil(ratio));
     if (count_ > 0) {
       adjusted_ = !divides;
-      // A dt that divides up to rounding is kept, so that steps do not depend on where the interval ends.
+      // Keep a dt that divides the interval up to rounding, so that steps do not depend on t1.
       if (abs(nearest * *dt - length) > Real(4) * std::numeric_limits<Real>::epsilon() * length)
         fixed_ = length / Real(count_);
     }
   }
 
-  /// Some step ends at every time k · every in the interval, to the last digit (k = 1, 2, …; 0 ends the
-  /// wish). A given dt must divide `every` to 1e-12: input_error otherwise. The last two steps before such a
-  /// time are of equal length where one alone would be a sliver.
+  /// Makes a step end exactly at every time k · every in the interval (k = 1, 2, …); every = 0 removes the
+  /// stops. If the step before such a time would be a sliver, the last two steps have equal length. Throws
+  /// input_error if `every` is negative or NaN, or if a given dt does not divide it to within 1e-12.
   void stop_every(Real every) {
     using std::abs, std::round;
     if (!(every >= Real(0))) throw input_error("times to stop at are negative or NaN; give an interval ≥ 0");
@@ -103,36 +105,37 @@ class time_marcher {
     every_ = every;
   }
 
-  /// Cuts the first step, whose length the rule `proposed`, into steps that double from relaxation_time/4 on;
-  /// both as long as the interval at most. Nothing happens after the first step, or where there is none.
+  /// Divides the first step, of the length `proposed` by the rule, into steps that double, starting from
+  /// relaxation_time/4; both are limited by the interval. Has no effect after the first step, or if there
+  /// is no step.
   void start_up(Real proposed, Real relaxation_time) {
     if (n_ > 0 || done()) return;
     startup_length_ = next(proposed);
     startup_steps_ = graded_levels(startup_length_, Real(relaxation_time / 4)) + 1;
   }
-  /// The next step is one of those.
+  /// Whether the next step is part of the start-up.
   bool starting() const { return startup_done_ < startup_steps_; }
-  /// Their number; 1 if the first step is short enough, 0 without start-up. A rule that shortens steps on the
-  /// way ends the start-up.
+  /// Returns the number of start-up steps: 1 if the first step is short enough, 0 without start-up. The
+  /// start-up ends early if the rule shortens its steps.
   long startup_steps() const { return startup_steps_; }
-  /// The steps after this one, if all are as long as `full`; the start-up counts with its own.
+  /// Returns the number of steps left if all have the length `full`; start-up steps keep their lengths.
   long steps_left(Real full) const {
     using std::ceil;
     const Real from = starting() ? t0_ + startup_length_ : t_;
     return startup_steps_ - startup_done_ + static_cast<long>(ceil((t1_ - from) / full - Real(1e-9)));
   }
 
-  /// The end t1 is reached.
+  /// Whether t1 is reached.
   bool done() const { return fixed_ ? whole_steps() >= count_ : !(t_ < t1_); }
   Real t() const { return t_; }     ///< time reached
   long step() const { return n_; }  ///< steps taken
-  /// The given dt did not divide the interval.
+  /// Whether the given dt did not divide the interval and was reduced.
   bool adjusted() const { return adjusted_; }
-  /// The given dt after adjustment.
+  /// Returns the given dt after adjustment.
   std::optional<Real> fixed_dt() const { return fixed_; }
 
-  /// The length of the next step, where `proposed` is what the rule allows (ignored if dt was given).
-  /// Throws input_error if nothing limits it, numerical_error if it does not advance time.
+  /// Returns the length of the next step; `proposed` is the limit by the rule (ignored if dt was given).
+  /// Throws input_error if the step is unlimited, numerical_error if it does not advance time.
   Real next(Real proposed) const {
     using std::isinf;
     if (starting() && (fixed_ || startup_step() <= proposed)) return startup_step();
@@ -155,17 +158,17 @@ class time_marcher {
     return proposed;
   }
 
-  /// Whether the next step would be another one, in its length or its end, if t1 were later: a run that may
-  /// be continued to a later t1 is saved before it.
+  /// Whether length or end of the next step depend on t1: a run that may be extended to a later t1 is
+  /// saved before it.
   bool shaped_by_end(Real proposed) const {
     if (done()) return false;
     time_marcher longer = *this, here = *this;
     if (fixed_) {
-      // t0 + n dt may differ from t1 by rounding.
+      // The last time is t1, which may differ from t0 + n dt by rounding.
       if (whole_steps() + 1 < count_ || starting()) return false;
       longer.count_ = count_ + 1;
     }
-    // Late enough for no step to meet it.
+    // Late enough not to affect the next step.
     longer.t1_ = t1_ + Real(4) * (proposed + (t1_ - t_) + every_);
     const Real dt = next(proposed);
     if (longer.next(proposed) != dt) return true;
@@ -174,14 +177,14 @@ class time_marcher {
     return here.t_ != longer.t_;
   }
 
-  /// A step of the length dt that next() gave has been taken.
+  /// Records a step of the length dt that next() returned.
   void advance(Real dt) {
     const Real stop = next_stop();
     move(dt);
-    meet(stop);
+    snap_to(stop);
   }
 
-  /// Goes to where an earlier run stopped.
+  /// Restores the state of an earlier run.
   void resume(const progress& saved) {
     n_ = saved.step;
     t_ = saved.t;
@@ -192,7 +195,7 @@ class time_marcher {
     startup_done_ = saved.startup_done;
     startup_length_ = saved.startup_length;
   }
-  /// For a checkpoint.
+  /// Returns the state for a checkpoint.
   progress save() const {
     return {n_, since_anchor_, t_, anchor_, anchor_dt_, startup_steps_, startup_done_, startup_length_};
   }
@@ -204,7 +207,7 @@ class time_marcher {
       ++startup_done_;
       t_ = t0_ + halved(startup_length_, startup_steps_ - startup_done_);
       if (starting()) return;
-      // From here on as after one step of the whole length.
+      // The last start-up step completes one step of full length.
       t_ = t0_;
       dt = startup_length_;
     } else {
@@ -214,7 +217,7 @@ class time_marcher {
       t_ = whole_steps() >= count_ ? t1_ : t0_ + Real(whole_steps()) * *fixed_;
       return;
     }
-    // While dt stays the same, t is a multiple of it from where it began to be so.
+    // While dt does not change, t is the anchor plus a multiple of dt.
     if (dt != anchor_dt_) {
       anchor_ = t_;
       anchor_dt_ = dt;
@@ -222,11 +225,11 @@ class time_marcher {
     }
     ++since_anchor_;
     t_ = anchor_ + Real(since_anchor_) * anchor_dt_;
-    // What rounding of t leaves is not a step.
+    // A remainder of the size of rounding errors is not a step.
     if (t_ >= t1_ || t1_ - t_ <= rounding(t1_)) t_ = t1_;
   }
-  /// t is set to the time that a step was to end at.
-  void meet(Real stop) {
+  /// Sets t to the stop that the step was to end at.
+  void snap_to(Real stop) {
     using std::abs;
     if (!(stop > Real(0)) || t_ == t1_) return;
     if (fixed_ ? abs(stop - t_) <= Real(2e-12) * stop && abs(stop - t_) < *fixed_ / Real(4)
@@ -237,7 +240,7 @@ class time_marcher {
     using std::abs;
     return Real(8) * std::numeric_limits<Real>::epsilon() * (abs(t) + abs(t0_));
   }
-  /// The next time to stop at before t1; 0 if there is none.
+  /// Returns the next stop before t1; 0 if there is none.
   Real next_stop() const {
     if (!(every_ > Real(0))) return Real(0);
     const Real stop = Real(multiples_until(t_, every_) + 1) * every_;
@@ -245,7 +248,7 @@ class time_marcher {
   }
 
   Real startup_step() const { return graded_step(startup_length_, startup_steps_ - 1, startup_done_); }
-  /// Steps of full length that are done; the start-up is one of them.
+  /// Returns the number of completed steps of full length; the start-up counts as one.
   long whole_steps() const {
     if (startup_steps_ == 0) return n_;
     return starting() ? 0 : n_ - (startup_steps_ - 1);
@@ -262,24 +265,24 @@ class time_marcher {
   bool adjusted_ = false;
 };
 
-/// What an integration did.
+/// Summary of an integration.
 template <class Real>
 struct integration_result {
-  Real t;              ///< time reached: t1, or where the observer ended it
-  long steps;          ///< number of steps, those of a start-up included
+  Real t;              ///< time reached: t1, or the time at which the observer stopped
+  long steps;          ///< number of steps, including start-up steps
   Real dt;             ///< longest step; 0 if there was none
-  long startup_steps;  ///< that took the place of the first; 0 without start-up
+  long startup_steps;  ///< number of start-up steps; 0 without start-up
 };
 
-/// Observer that sees nothing.
+/// Observer that does nothing.
 struct no_observer {
-  /// Nothing.
+  /// Does nothing.
   template <class... Args>
   void operator()(Args&&...) const {}
 };
 
-/// What the rule allows a step from u at t. Throws input_error if the rule is ssp() and the method has no SSP
-/// coefficient.
+/// Returns the longest step from u at t by the rule. Throws input_error if the rule is ssp() and the method
+/// has no SSP coefficient.
 template <problem P>
 typename P::real rule_limit(stepper<P>& method_stepper, const step_rule<typename P::real>& rule,
                             typename P::real t, const typename P::state& u) {
@@ -288,7 +291,7 @@ typename P::real rule_limit(stepper<P>& method_stepper, const step_rule<typename
          method_stepper.target_problem().forward_euler_step(t, u);
 }
 
-/// Width ε/C of the initial layer of u. Throws input_error if the problem has no relaxation_time.
+/// Returns the width ε/C of the initial layer of u. Throws input_error if the problem has no relaxation_time.
 template <problem P>
 typename P::real initial_layer(P& p, typename P::real t, const typename P::state& u) {
   if constexpr (problem_with_relaxation_time<P>) {
@@ -296,12 +299,12 @@ typename P::real initial_layer(P& p, typename P::real t, const typename P::state
   } else {
     throw input_error(
         "a graded start needs the width of the initial layer (the problem has no relaxation_time(t, u)); "
-        "offer it, or start without");
+        "define it, or start without grading");
   }
 }
 
-/// Integrates u along `march`; take(march, limit, u) takes one step within what the rule allows and returns
-/// its length, without moving the marcher.
+/// Integrates u along `march`; take(march, limit, u) takes one step of length `limit` at most and returns its
+/// length, without advancing the marcher.
 template <problem P, class Take, class Observer>
 integration_result<typename P::real> integrate_with(const Take& take, stepper<P>& method_stepper,
                                                     time_marcher<typename P::real> march,
@@ -335,9 +338,9 @@ integration_result<typename P::real> integrate_with(const Take& take, stepper<P>
 }
 
 /// Integrates u from t0 to t1. observer(step, t, dt, u) is called for the initial state (step 0, dt 0) and
-/// after every step; if it returns bool, false ends the integration. A numerical_error leaves with step and
-/// time; u is then the last good state. A graded start-up needs a problem_with_relaxation_time: input_error
-/// otherwise.
+/// after every step; if it returns a bool, false ends the integration. Throws numerical_error with step and
+/// time if a step fails, u then being the last accepted state; input_error if the rule cannot be applied, or
+/// for a graded start-up of a problem without relaxation_time.
 template <problem P, class Observer = no_observer>
 integration_result<typename P::real> integrate(stepper<P>& method_stepper, typename P::state& u,
                                                typename P::real t0, typename P::real t1,

@@ -14,39 +14,40 @@
 
 namespace apsis {
 
-/// u' = F(t, u) + G(u) for any smooth G: G' and Ġ = G'G come from automatic differentiation and the stage
-/// v = u + a G(v) + b Ġ(v) from a guarded Newton method (guarded_newton.hpp). F is explicit, G implicit; all
+/// u' = F(t, u) + G(u) for any smooth G: G' and Ġ = G'G come from automatic differentiation and the stage v =
+/// u + a G(v) + b Ġ(v) from a guarded Newton method (guarded_newton.hpp). F is explicit, G implicit; all
 /// quantities are dimensionless. The functions, with N = u.size():
-///   f(t, u, out)   out ← F(t, u) on states; no_transport{} where there is none
+///   f(t, u, out)   out ← F(t, u) on states; no_transport{} if F = 0
 ///   g(u, out)      out ← G(u) for any scalar type, on std::span of N numbers:
 ///                  [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; }
 /// newton_problem{f, g} has the state std::vector<double>, make_newton_problem<State>(f, g) any other.
 ///
 /// A stage with d = 0 and ḋ < 0 is singular where Δt λ = ±i/√|ḋ| for an eigenvalue λ of G'. That cannot
-/// happen for real negative spectra (relaxation); for any other G it is detected and reported.
+/// happen for real negative spectra (relaxation); for other G it is detected and reported.
 template <class F, class G, array_state State = std::vector<double>>
 class newton_problem {
  public:
-  using state = State;             ///< what u is
-  using real = state_real<State>;  ///< its numbers
+  using state = State;             ///< type of u
+  using real = state_real<State>;  ///< number type of u
 
-  /// f and g as above.
+  /// Stores f and g as above.
   newton_problem(F f, G g, newton_options options = {})
       : f_(std::move(f)), equation_(std::move(g)), options_(options) {}
 
-  /// Δt_FE(t, u) of F for the property to be kept; without it nothing limits the step.
+  /// Sets Δt_FE(t, u) of F for the property to be preserved; without it the step is unlimited.
   newton_problem& with_forward_euler_step(std::function<real(real, const State&)> step) {
     forward_euler_ = std::move(step);
     return *this;
   }
 
-  /// The set Newton's iterates do not leave, e.g. positive states; stages outside it are errors.
+  /// Sets the admissible set, e.g. positive states, which Newton iterates do not leave; a stage outside it
+  /// is an error.
   newton_problem& with_admissible(std::function<bool(std::span<const real>)> admissible) {
     equation_.admissible_set = std::move(admissible);
     return *this;
   }
 
-  /// As `problem` demands it, with T = F.
+  /// Required by `problem`, with T = F.
   void add_transport(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       work_ = u;
@@ -55,7 +56,7 @@ class newton_problem {
     });
   }
 
-  /// As `problem_with_explicit_collision` demands it, with Q = G.
+  /// Required by `problem_with_explicit_collision`, with Q = G.
   void add_collision(real, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       load(u);
@@ -66,14 +67,15 @@ class newton_problem {
     });
   }
 
-  /// u ← v. Throws numerical_error as guarded_newton does; u is then unchanged.
+  /// Sets u ← v. Throws numerical_error as guarded_newton does, or if u is not finite or not admissible; u
+  /// is then unchanged.
   void solve_collision(real, real a, real b, State& u) {
     load(u);
     if (a == real(0) && b == real(0)) {
       require_finite(u, "a stage");
       if (!equation_.admissible(v_))
         throw numerical_error(
-            "a stage is not admissible (the method or the time step does not keep it so); "
+            "a stage is not admissible (the method or the time step does not preserve admissibility); "
             "reduce the time step, or use an SSP method");
       return;
     }
@@ -84,7 +86,7 @@ class newton_problem {
     unload(v_, u);
   }
 
-  /// As `problem_with_transport_check` demands it; evaluates F.
+  /// Required by `problem_with_transport_check`; evaluates F.
   bool has_transport(real t, const State& u) {
     if constexpr (std::is_same_v<F, no_transport>) {
       return false;
@@ -95,12 +97,12 @@ class newton_problem {
     }
   }
 
-  /// Δt_FE of F; +infinity unless it was given.
+  /// Returns Δt_FE of F; +infinity unless set.
   real forward_euler_step(real t, const State& u) const {
     return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();
   }
 
-  /// How the last stage was solved.
+  /// Report on the last stage solve.
   const newton_report& report() const { return report_; }
 
  private:
@@ -171,7 +173,7 @@ template <class F, class G>
 newton_problem(F, G, newton_options) -> newton_problem<F, G>;
 /// @endcond
 
-/// The same for a state other than std::vector<double>.
+/// Makes a newton_problem with a state other than std::vector<double>.
 template <array_state State, class F, class G>
 auto make_newton_problem(F f, G g, newton_options options = {}) {
   return newton_problem<F, G, State>(std::move(f), std::move(g), options);

@@ -5,29 +5,30 @@
 
 namespace apsis {
 
-/// One accumulator of add_transport: acc ← (fresh ? 0 : acc) + α u + β T(t, u).
-/// A target may be u itself only if no target of the same call has β ≠ 0.
+/// One accumulator of add_transport: acc ← (fresh ? 0 : acc) + α u + β T(t, u). `acc` may alias u only if no
+/// target of the same call has β ≠ 0.
 template <class State, class Real>
 struct target {
-  State* acc;  ///< what is added to
-  Real alpha;  ///< of u
-  Real beta;   ///< of T(t, u), a multiple of Δt
-  bool fresh;  ///< the old content of acc means nothing (it may even be NaN)
+  State* acc;  ///< the accumulator
+  Real alpha;  ///< coefficient of u
+  Real beta;   ///< coefficient of T(t, u), a multiple of Δt
+  bool fresh;  ///< acc is overwritten: its old content is undefined (possibly NaN)
 
-  /// The new value of one element of acc from its old value and the same element of u and T(u).
+  /// Returns the new value of an element of acc, given its old value and the same element of u and T(u).
   template <class V>
   V combine(const V& old, const V& u, const V& transport) const {
     return fresh ? V(alpha * u + beta * transport) : V(old + (alpha * u + beta * transport));
   }
 };
 
-/// What the integrator needs to know about u' = T(t, u) + Q(u). Two verbs make a scheme; ε, the mesh and the
-/// model stay hidden behind them. `State` must be copyable and swappable; no arithmetic is required.
+/// Interface of a problem u' = T(t, u) + Q(u) to the integrator. Two functions suffice for a time step; they
+/// hide ε, the mesh and the model. `state` must be copyable and swappable; it needs no arithmetic.
 ///
 ///   add_transport(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u); T is
 ///                                  evaluated once, and not at all if every β is 0
 ///   solve_collision(t, a, b, u)    in place: u ← v with v = u + a Q(v) + b Q̇(v), a ≥ 0, b ≤ 0
-///   forward_euler_step(t, u)       Δt_FE of T for the property to be kept; +infinity if T sets no limit
+///   forward_euler_step(t, u)       forward Euler step Δt_FE of T for the property to be preserved; +infinity
+///   if T sets no limit
 template <class P>
 concept problem = requires(P p, const typename P::state& u, typename P::state& v, typename P::real x,
                            std::span<const target<typename P::state, typename P::real>> targets) {
@@ -38,7 +39,7 @@ concept problem = requires(P p, const typename P::state& u, typename P::state& v
   { p.forward_euler_step(x, u) } -> std::convertible_to<typename P::real>;
 };
 
-/// A problem that can also evaluate Q, for methods with a stage where Q enters explicitly:
+/// A problem that also evaluates Q, for methods in which Q enters a stage explicitly:
 ///   add_collision(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)
 template <class P>
 concept problem_with_explicit_collision =
@@ -47,16 +48,16 @@ concept problem_with_explicit_collision =
       p.add_collision(x, u, targets);
     };
 
-/// A problem that says whether it has transport, so that methods without T are refused:
-///   has_transport(t, u)   T(t, u) ≠ 0
+/// A problem that reports whether it has transport, so that implicit-only methods are rejected:
+///   has_transport(t, u)   whether T(t, u) ≠ 0
 template <class P>
 concept problem_with_transport_check =
     problem<P> && requires(P p, const typename P::state& u, typename P::real x) {
       { p.has_transport(x, u) } -> std::convertible_to<bool>;
     };
 
-/// A stage solve to be done as soon as add_transport has completed its target u: the arguments of
-/// solve_collision.
+/// A stage solve that is due as soon as add_transport has completed its target u: the
+/// arguments of solve_collision.
 template <class State, class Real>
 struct due_collision {
   Real t,    ///< time of the stage
@@ -65,7 +66,7 @@ struct due_collision {
   State* u;  ///< explicit part of the stage, replaced by its solution
 };
 
-/// A problem that can do both in one pass over memory:
+/// A problem that fuses add_transport and solve_collision into one pass over memory:
 ///   add_transport_and_solve(t, u, targets, due)   add_transport(t, u, targets), then
 ///       solve_collision(due.t, due.a, due.b, *due.u), with bitwise equal results
 template <class P>
@@ -76,9 +77,8 @@ concept problem_with_fused_stages =
       p.add_transport_and_solve(x, u, targets, due);
     };
 
-/// A problem that knows how wide its initial layer is, for a graded start:
-///   relaxation_time(t, u)   smallest ε/C > 0 of the state; +infinity if nothing relaxes, or all at once (ε =
-///   0)
+/// A problem that knows the width of its initial layer, for a graded start:
+///   relaxation_time(t, u)   smallest ε/C > 0 of the state; +infinity if nothing relaxes or ε = 0
 template <class P>
 concept problem_with_relaxation_time =
     problem<P> && requires(P p, const typename P::state& u, typename P::real x) {

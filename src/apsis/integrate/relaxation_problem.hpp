@@ -20,26 +20,26 @@
 
 namespace apsis {
 
-/// u' = T(t, u) + C(ω) (E(ω) − u)/ε with conserved moments ω = ℛu, ℛE(ω) = ω (paper, Properties 3–5): the
-/// simplest way in. Every stage v = u + a Q(v) + b Q̇(v) is a convex combination of u and E, in closed form,
-/// because Q̇ = −(C/ε) Q and ω does not change:  v = (u + μE)/(1 + μ), μ = a C/ε + |b| (C/ε)². It is
-/// nonnegative wherever u and E are, in floating point too, and for ε = 0 it is E.
+/// u' = T(t, u) + C(ω) (E(ω) − u)/ε with conserved moments ω = ℛu, ℛE(ω) = ω (paper, Properties 3–5), the
+/// simplest problem to define. Every stage v = u + a Q(v) + b Q̇(v) is a convex combination of u and E, in
+/// closed form, because Q̇ = −(C/ε) Q and ω does not change: v = (u + μE)/(1 + μ), μ = a C/ε + |b| (C/ε)². It
+/// is nonnegative wherever u and E are, in floating point too, and equals E for ε = 0.
 ///
-/// The first two stage solves check ℛE(ω) = ω, to 1e-8 of the largest moment, where ω is a number or a range
-/// of numbers: an E that does not keep the moments ends the step with an input_error.
+/// The first two stage solves check ℛE(ω) = ω to 1e-8 of the largest moment if ω is a number or a range of
+/// numbers: an E that does not have the moments ω ends the step with an input_error.
 ///
 /// All quantities are dimensionless. The functions, with N = u.size():
-///   transport(t, u, out)   out ← T(t, u), N numbers; `out` comes with N numbers of any content
-///   moments(u)             ω of any type, a number or a struct
-///   equilibrium(ω, out)    out ← E(ω), likewise
+///   transport(t, u, out)   out ← T(t, u); `out` has size N and undefined content
+///   moments(u)             ω, of any type (a number, a range, a struct)
+///   equilibrium(ω, out)    out ← E(ω); `out` has size N and undefined content
 ///   rate(ω)                C(ω) ≥ 0
 /// relaxation_problem{…} has the state std::vector<double>, make_relaxation_problem<State>(…) any other.
 template <class Transport, class Moments, class Equilibrium, class Rate,
           array_state State = std::vector<double>>
 class relaxation_problem {
  public:
-  using state = State;             ///< what u is
-  using real = state_real<State>;  ///< its numbers
+  using state = State;             ///< type of u
+  using real = state_real<State>;  ///< number type of u
 
   /// Throws input_error unless ε ≥ 0 is finite.
   relaxation_problem(Transport transport, Moments moments, Equilibrium equilibrium, Rate rate, real epsilon)
@@ -52,43 +52,44 @@ class relaxation_problem {
       throw input_error("epsilon is negative or not finite; give epsilon ≥ 0 (0 is the limit scheme)");
   }
 
-  /// Δt_FE(t, u) of the transport for the property to be kept; without it nothing limits the step.
+  /// Sets Δt_FE(t, u) of the transport for the property to be preserved; without it the step is unlimited.
   relaxation_problem& with_forward_euler_step(std::function<real(real, const State&)> step) {
     forward_euler_ = std::move(step);
     return *this;
   }
 
-  /// Every stage value must satisfy this, or the step ends with a numerical_error.
+  /// Sets a predicate that every stage must satisfy; otherwise the step throws a numerical_error.
   relaxation_problem& with_admissible(std::function<bool(const State&)> admissible) {
     admissible_ = std::move(admissible);
     return *this;
   }
 
-  /// As `problem` demands it.
+  /// Required by `problem`.
   void add_transport(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
-      give_size_of(u);
+      match_size(u);
       transport_(t, u, work_);
       return work_;
     });
   }
 
-  /// u ← v. Throws numerical_error if u or v is not finite or not admissible, or the rate is not one.
+  /// Sets u ← v. Throws numerical_error if u or v is not finite or not admissible, or if the rate is negative
+  /// or not finite.
   void solve_collision(real, real a, real b, State& u) {
     if (a != real(0) || b != real(0)) {
       const auto weights = relax_weights(a, b, relaxation(u), epsilon_);
       using size_type = decltype(u.size());
       for (size_type i = 0; i < u.size(); ++i) u[i] = weights.stay * u[i] + weights.relax * work_[i];
     }
-    require_finite(u, "a stage");  // so is then its explicit part: neither weight makes a number of NaN
+    require_finite(u, "a stage");  // implies a finite explicit part: neither weight turns a NaN into a number
     if (admissible_ && !admissible_(u))
       throw numerical_error(
-          "a stage is not admissible (the method or the time step does not keep it so); "
+          "a stage is not admissible (the method or the time step does not preserve admissibility); "
           "use Δt ≤ r Δt_FE with an SSP method");
   }
 
-  /// As `problem_with_explicit_collision` demands it. Throws input_error for ε = 0, where Q is not defined
-  /// off equilibrium.
+  /// Required by `problem_with_explicit_collision`. Throws input_error for ε = 0, where Q is not
+  /// defined off equilibrium.
   void add_collision(real, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       if (epsilon_ == real(0))
@@ -102,23 +103,24 @@ class relaxation_problem {
     });
   }
 
-  /// Δt_FE of the transport; +infinity unless it was given.
+  /// Returns Δt_FE of the transport; +infinity unless set.
   real forward_euler_step(real t, const State& u) const {
     return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();
   }
 
-  /// As `problem_with_transport_check` demands it; evaluates T.
+  /// Required by `problem_with_transport_check`; evaluates T.
   bool has_transport(real t, const State& u) {
     if constexpr (std::is_same_v<Transport, no_transport>) {
       return false;
     } else {
-      give_size_of(u);
+      match_size(u);
       transport_(t, u, work_);
       return !is_zero(work_);
     }
   }
 
-  /// ε/C; +infinity where nothing relaxes, and for ε = 0, where there is no layer to be resolved.
+  /// Required by `problem_with_relaxation_time`: ε/C; +infinity if nothing relaxes, and for ε = 0, where
+  /// there is no layer to resolve.
   real relaxation_time(real, const State& u) const {
     const real rate = checked_rate(moments_(u));
     return rate > real(0) && epsilon_ > real(0) ? epsilon_ / rate : std::numeric_limits<real>::infinity();
@@ -138,7 +140,7 @@ class relaxation_problem {
     return rate;
   }
 
-  void give_size_of(const State& u) {
+  void match_size(const State& u) {
     if (work_.size() != u.size()) work_ = u;
   }
 
@@ -146,7 +148,7 @@ class relaxation_problem {
   real relaxation(const State& u) {
     const auto omega = moments_(u);
     const real rate = checked_rate(omega);
-    give_size_of(u);
+    match_size(u);
     equilibrium_(omega, work_);
     if (unchecked_ > 0) {
       --unchecked_;
@@ -158,7 +160,7 @@ class relaxation_problem {
     return rate;
   }
 
-  /// Whether ω is a number, a range of numbers, or anything else, which is not checked.
+  /// Checks the moments if ω is a number or a range of numbers; any other type is not checked.
   template <class Omega>
   static void check_moments(const Omega& omega, const Omega& kept, real size) {
     if constexpr (std::is_convertible_v<Omega, real>) {
@@ -180,15 +182,14 @@ class relaxation_problem {
     }
   }
 
-  /// Rounding of sums over N numbers stays far below 1e-8 of ω, or, where ω cancels, 1e-12 of `size` = Σ|E|;
-  /// a wrong formula for E does not.
+  /// Rounding errors of sums over N numbers stay far below 1e-8 of ω or, where ω cancels, 1e-12 of `size` =
+  /// Σ|E|; a wrong formula for E does not.
   static void require_kept(real defect, real largest, real size) {
     if (defect <= real(1e-8) * largest || defect <= real(1e-12) * size || !(largest > real(0))) return;
     char text[32];
     std::snprintf(text, sizeof text, "%.2g", static_cast<double>(defect / largest));
-    throw input_error(
-        "the equilibrium does not have the moments that it is given (R E(w) differs from w by " +
-        std::string(text) + " of the largest); correct equilibrium or moments");
+    throw input_error("the equilibrium does not have the given moments (R E(w) differs from w by " +
+                      std::string(text) + " of the largest); correct the equilibrium or the moments");
   }
 
   Transport transport_;
@@ -199,7 +200,7 @@ class relaxation_problem {
   std::function<real(real, const State&)> forward_euler_;
   std::function<bool(const State&)> admissible_;
   State work_{};
-  int unchecked_ = 2;  ///< evaluations of E that are still checked
+  int unchecked_ = 2;  ///< number of evaluations of E still to be checked
 };
 
 /// @cond
@@ -208,7 +209,7 @@ relaxation_problem(Transport, Moments, Equilibrium, Rate, double)
     -> relaxation_problem<Transport, Moments, Equilibrium, Rate>;
 /// @endcond
 
-/// The same for a state other than std::vector<double>; throws as the constructor does.
+/// Makes a relaxation_problem with a state other than std::vector<double>; throws like the constructor.
 template <array_state State, class Transport, class Moments, class Equilibrium, class Rate>
 auto make_relaxation_problem(Transport transport, Moments moments, Equilibrium equilibrium, Rate rate,
                              state_real<State> epsilon) {

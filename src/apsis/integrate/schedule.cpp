@@ -6,16 +6,16 @@
 
 namespace apsis {
 
-/// Which coefficients are not zero; indices 0 … s with 0 for u^n.
+/// Zero pattern of the coefficients; indices 0 … s with 0 for u^n.
 struct schedule::pattern {
   int stages = 0;                 ///< rows
-  int result = 0;                 ///< the row of u^{n+1}: the last one, or that before an embedded solution
+  int result = 0;                 ///< row of u^{n+1}: the last one, or the one before the embedded solution
   matrix<char> weight;            ///< u_j enters u_k
   matrix<char> transport;         ///< T(u_j) enters u_k
   matrix<char> collision;         ///< Q(u_j) enters u_k, k > j
   std::vector<char> solve;        ///< stage k has an implicit part
   std::vector<char> recoverable;  ///< Δt d_kk Q(u_k) = u_k − explicit part
-  std::vector<char> is_initial;   ///< u_k = u^n, nothing to compute
+  std::vector<char> is_initial;   ///< u_k = u^n
 };
 
 class schedule::builder {
@@ -74,20 +74,21 @@ class schedule::builder {
   }
   bool needed_after(int j, int except) const { return needed_by(p_.stages, j, except); }
 
-  /// Gives accumulator k a buffer and brings in the multiples of u^n and of known stages that were waiting.
+  /// Assigns a buffer to accumulator k and adds the pending multiples of u^n and of known stages.
   void open(int k) {
     if (buffer_[index(k)] >= 0) return;
     bool fresh = true;
-    for (int j = 1; j < known_; ++j) {  // a stage that dies hands over its buffer
+    for (int j = 1; j < known_; ++j) {  // a stage with no further use hands over its buffer
       const bool waits = weighs(k, j) && !done(k, j) && buffer_[index(j)] > 0;
-      // If only an embedded solution needs it, it comes first all the same, so that the sum is not another.
+      // A stage that only the embedded solution still needs comes first as well, so that the order of the sum
+      // does not change.
       const int last = k <= p_.result ? p_.result : p_.stages;
       if (!waits || carries_transport(k, j) || carries_collision(k, j) || needed_by(last, j, k)) continue;
-      const bool dies = !needed_after(j, k);
-      buffer_[index(k)] = dies ? buffer_[index(j)] : acquire();
+      const bool is_last_use = !needed_after(j, k);
+      buffer_[index(k)] = is_last_use ? buffer_[index(j)] : acquire();
       emit(action::add_transport, j, {{k, buffer_[index(k)], {term::weight}, true}});
       done(k, j) = 1;
-      if (dies) buffer_[index(j)] = -1;
+      if (is_last_use) buffer_[index(j)] = -1;
       fresh = false;
       break;
     }
@@ -113,7 +114,7 @@ class schedule::builder {
     buffer_[index(j)] = -1;
   }
 
-  /// The collision of stage k; off-diagonal multiples of Q(u_k) need its explicit part first.
+  /// Schedules the solve of stage k; off-diagonal multiples of Q(u_k) need its explicit part first.
   void solve(int k) {
     if (p_.recoverable[index(k)]) {
       std::vector<contribution> before;
@@ -129,7 +130,7 @@ class schedule::builder {
     ++out_.solves_;
   }
 
-  /// T(u_k), and multiples of u_k, to every accumulator that is or must now be open.
+  /// Adds T(u_k) and multiples of u_k to every accumulator that is open or must be opened now.
   void spread(int k) {
     std::vector<contribution> to, collisions;
     bool transport = false;
@@ -166,11 +167,11 @@ class schedule::builder {
 
   const pattern& p_;
   schedule& out_;
-  std::vector<int> buffer_;  // of stage or accumulator, −1 none
+  std::vector<int> buffer_;  // buffer of each stage or accumulator, −1 for none
   matrix<char> done_;
   std::vector<bool> in_use_;
-  int known_ = 1;           // stages below are known
-  int pending_fresh_ = -1;  // opened, nothing written to it yet
+  int known_ = 1;           // stages below this index are known
+  int pending_fresh_ = -1;  // accumulator that is open but not yet written to
 };
 
 template <class Real>

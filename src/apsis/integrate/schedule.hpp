@@ -7,56 +7,60 @@
 
 namespace apsis {
 
-/// The order in which a step of a method is carried out, made once from the zero pattern of its Shu–Osher
-/// form, so that no T(u_j) is ever stored and as few state-sized buffers as possible are alive.
+/// Execution order of a step, derived once from the zero pattern of the Shu–Osher form, such that no T(u_j)
+/// is ever stored and as few state-sized buffers as possible are in use.
 ///
 /// Scatter form: as soon as u_j is known, T(u_j) is evaluated once and added to the accumulator of every
-/// later stage that uses it. A multiple p_kj u_j alone does not open an accumulator: it waits until stage k
-/// is opened by some T(u_i) (or by its own turn), and then the buffer of a u_j that nobody else waits for
-/// becomes the accumulator. u^n is kept until the step is complete: a step that fails leaves it untouched.
+/// later stage that uses it. A multiple p_kj u_j alone does not open an accumulator: it waits until some
+/// T(u_i) opens that of stage k (or until stage k itself is due), and then the buffer of a u_j with no
+/// other use becomes the accumulator. u^n is kept until the step is complete, so that a failed step
+/// leaves it unchanged.
 class schedule {
  public:
-  /// What a contribution from stage j (0 is u^n) to accumulator k multiplies.
+  /// Coefficients of a contribution from stage j (0 is u^n) to accumulator k.
   enum class term {
     weight,          ///< α = r_k (j = 0) or p_kj + w_kj, β = Δt w_kj / r on T(u_j)
-    minus_explicit,  ///< α = −d_kj/d_jj on the explicit part of u_j, before its collision …
+    minus_explicit,  ///< α = −d_kj/d_jj on the explicit part of u_j, before its stage solve …
     plus_solved,     ///< … and α = +d_kj/d_jj after it: together Δt d_kj Q(u_j)
-    collision        ///< β = Δt d_kj on Q(u_j), evaluated
+    collision        ///< β = Δt d_kj on Q(u_j), which is evaluated
   };
-  /// α u_j + β T(u_j) (or β Q(u_j)) to one accumulator.
+  /// Adds α u_j + β T(u_j) (or β Q(u_j)) to one accumulator.
   struct contribution {
     int stage;                ///< k
-    int buffer;               ///< of accumulator k
-    std::vector<term> terms;  ///< whose sums α and β are
-    bool fresh;               ///< first contribution to k
+    int buffer;               ///< buffer of accumulator k
+    std::vector<term> terms;  ///< terms whose sums are α and β
+    bool fresh;               ///< whether it is the first contribution to k
   };
-  /// Functions of a problem; see `problem` and `problem_with_explicit_collision`.
+  /// Functions of a problem, see `problem` and `problem_with_explicit_collision`.
   enum class action { add_transport, add_collision, solve_collision };
-  /// One call of such a function, for stage j.
+  /// A call of such a function for stage j.
   struct instruction {
     action what;                   ///< the function
     int stage;                     ///< j; 0 is u^n
-    int buffer;                    ///< that holds u_j (or its explicit part)
-    std::vector<contribution> to;  ///< none where stage j is solved
+    int buffer;                    ///< buffer of u_j (or its explicit part)
+    std::vector<contribution> to;  ///< empty for a stage solve
   };
 
-  /// `embedded`: the last row of m is an embedded solution, and u^{n+1} the row before it. The stages are
-  /// then made by the same sums in the same order as without it; what the row costs is counted with the
-  /// others.
+  /// Builds the schedule. With `embedded`, the last row of m is an embedded solution and u^{n+1} the row
+  /// before it; the stages are then computed by the same sums in the same order as without it, and the counts
+  /// below include the additional row.
   template <class Real>
   explicit schedule(const shu_osher_form<Real>& m, bool embedded = false);
 
-  /// In the order in which they are carried out.
+  /// Returns the instructions in execution order.
   const std::vector<instruction>& instructions() const { return instructions_; }
-  /// State-sized buffers that a step needs, u^n (buffer 0) included.
+  /// Returns the number of state-sized buffers of a step, including u^n (buffer 0).
   int buffers() const { return buffers_; }
-  /// Of u^{n+1}.
+  /// Returns the buffer of u^{n+1}.
   int result_buffer() const { return result_; }
-  /// Of the embedded solution; −1 if there is none.
+  /// Returns the buffer of the embedded solution; −1 if there is none.
   int embedded_buffer() const { return embedded_; }
-  int transport_evaluations() const { return transports_; }  ///< of T per step
-  int collision_evaluations() const { return collisions_; }  ///< of Q per step, those in solves not counted
-  int implicit_solves() const { return solves_; }            ///< per step
+  int transport_evaluations() const { return transports_; }  ///< evaluations of T per step
+  int collision_evaluations() const {
+    return collisions_;
+  }                                                ///< explicit evaluations of Q stage
+                                                   ///< solves per step
+  int implicit_solves() const { return solves_; }  ///< per step
 
  private:
   struct pattern;

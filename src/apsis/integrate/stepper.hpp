@@ -13,35 +13,35 @@
 
 namespace apsis {
 
-/// What a stepper computes in a step: u^{n+1}, or the embedded solution of the method besides.
+/// Solutions computed in a step: u^{n+1}, optionally with the embedded solution.
 enum class solutions { result, result_and_embedded };
 
-/// Both solutions of a step; valid until the next step, attempt or accept of the stepper that made it.
+/// Both solutions of a step; valid until the next step(), attempt() or accept() of the stepper.
 template <class State>
 struct attempted_step {
   const State &result,  ///< u^{n+1}
       &embedded;        ///< ũ
 };
 
-/// One step of any method on any problem: carries out the method's schedule. The method is data; nothing here
-/// knows its name. Buffers are allocated at the first step as copies of the state.
+/// Advances any problem by one step of any method, executing the schedule of the method. Buffers are
+/// allocated at the first step as copies of the state.
 template <problem P>
 class stepper {
  public:
-  using state = typename P::state;  ///< what u is
-  using real = typename P::real;    ///< type of times and coefficients
+  using state = typename P::state;  ///< type of u
+  using real = typename P::real;    ///< type of time and coefficients
 
-  /// The method is copied, the problem is not and must outlive the stepper. A step of a method that is
-  /// implicit only throws input_error if the problem says that T(t, u) ≠ 0 (problem_with_transport_check).
-  /// Throws input_error if the method evaluates Q explicitly and the problem cannot, or if it has no embedded
-  /// solution and one is asked for.
+  /// Copies the method and stores a reference to the problem, which must outlive the stepper. Throws
+  /// input_error if the method evaluates Q explicitly and the problem cannot, or if an embedded solution is
+  /// requested that the method does not have. A step of an implicit-only method throws input_error if the
+  /// problem has transport (problem_with_transport_check).
   stepper(const method& m, P& p, solutions which = solutions::result)
       : stepper(which == solutions::result ? m.coefficients<real>()
                                            : require_embedded_row(m).with_embedded_row().coefficients<real>(),
                 m.kind, p, m.name, which) {}
 
-  /// The same from coefficients that are in no file (a method under design, an optimiser), the last row being
-  /// the embedded solution where it is to be computed.
+  /// The same for coefficients that are not in a file (a method under design); with result_and_embedded, the
+  /// last row is the embedded solution.
   stepper(shu_osher_form<real> coefficients, method_kind kind, P& p, const std::string& name = "method",
           solutions which = solutions::result)
       : problem_(p),
@@ -52,8 +52,8 @@ class stepper {
         initial_(initial_weights(m_)),
         convex_(is_convex(m_, kind, m_.stages() - (which == solutions::result_and_embedded ? 1 : 0))) {
     const auto butcher = to_butcher(m_);
-    // Time is a component of u with derivative 1, integrated by T where there is one (then Q̇ has no ∂_t
-    // part).
+    // Abscissae: time is a component of u with derivative 1, integrated as part of T if there is one (then Q̇
+    // has no ∂_t term).
     const auto& a = kind == method_kind::implicit_only ? butcher.A : butcher.A_hat;
     for (std::size_t i = 0; i < m_.stages(); ++i) {
       real c(0);
@@ -68,28 +68,28 @@ class stepper {
     }
   }
 
-  /// u ← u^{n+1} from u = u^n at time t. Strong guarantee: if a stage fails, u is still u^n.
+  /// Advances u = u^n at time t to u^{n+1}. Strong exception guarantee: if a stage throws, u is still u^n.
   void step(real t, real dt, state& u) {
     carry_out(t, dt, u);
     accept(u);
   }
 
-  /// u^{n+1} and the embedded solution of a step from u = u^n, which stays as it is: accept(u) takes the
-  /// step, the next attempt forgets it. Only with solutions::result_and_embedded.
+  /// Computes u^{n+1} and the embedded solution from u = u^n, which does not change: accept(u) takes the
+  /// step, the next attempt discards it. Requires solutions::result_and_embedded.
   attempted_step<state> attempt(real t, real dt, state& u) {
     carry_out(t, dt, u);
     return {buffer(plan_.result_buffer(), u), buffer(plan_.embedded_buffer(), u)};
   }
-  /// u ← u^{n+1} of the last attempt, which was made from this u.
+  /// Sets u to the u^{n+1} of the last attempt, which was made from the same u.
   void accept(state& u) {
     using std::swap;
     if (plan_.result_buffer() > 0) swap(u, buffer(plan_.result_buffer(), u));
   }
 
-  /// r of the Shu–Osher form: Δt ≤ r Δt_FE keeps what forward Euler steps of T keep. Where no form is convex
-  /// (the certificate says SSP coefficient 0) it is 1 and promises nothing.
+  /// Returns r of the Shu–Osher form: steps Δt ≤ r Δt_FE preserve what forward Euler steps of T preserve. If
+  /// no form is convex (the SSP coefficient is 0), r is 1 and guarantees nothing.
   real r() const { return m_.r; }
-  /// The same. Throws input_error where no form is convex, so that there is no such step length.
+  /// Returns r. Throws input_error if no form is convex, because then no step length is SSP.
   real require_ssp_coefficient() const {
     if (!convex_)
       throw input_error(
@@ -98,23 +98,23 @@ class stepper {
           "dt, or choose a method with an SSP coefficient");
     return m_.r;
   }
-  const schedule& plan() const { return plan_; }  ///< of a step
-  P& target_problem() { return problem_; }        ///< that of the constructor
+  const schedule& plan() const { return plan_; }  ///< schedule of a step
+  P& target_problem() { return problem_; }        ///< the problem passed to the constructor
 
  private:
   using action = schedule::action;
 
-  /// An instruction of the schedule for one dt and one place of u.
+  /// An instruction of the schedule for a given dt and address of u.
   struct prepared {
     action what;
     state* source;
-    real delay;              ///< of the stage: its time is t + delay
-    real a, b;               ///< of a collision
-    std::size_t begin, end;  ///< range of its targets in targets_
-    bool due;  ///< the next instruction is the collision of a target, and the problem can do both at once
+    real delay;              ///< stage time minus t
+    real a, b;               ///< coefficients of a stage solve
+    std::size_t begin, end;  ///< range in targets_
+    bool due;  ///< the next instruction solves the stage of a target, and the problem can fuse both
   };
 
-  /// A method that is implicit only leaves T out.
+  /// Implicit-only methods ignore T.
   void require_no_transport(real t, const state& u) {
     if constexpr (problem_with_transport_check<P>) {
       if (kind_ == method_kind::implicit_only && problem_.has_transport(t, u))
@@ -164,7 +164,7 @@ class stepper {
     return {t + now.delay, now.a, now.b, now.source};
   }
 
-  /// All coefficients that depend on dt: most runs have one dt, and one u.
+  /// Computes all coefficients that depend on dt; most runs have a single dt and a single u.
   void prepare(real dt, state& u) {
     prepared_.clear();
     targets_.clear();
@@ -186,7 +186,7 @@ class stepper {
     prepared_buffers_ = buffers_.data();
   }
 
-  /// Whether the stage solve `next` is that of a target of `now`.
+  /// Whether the stage solve `next` belongs to a target of `now`.
   bool completes(const prepared& now, const prepared& next) const {
     if (now.what != action::add_transport || next.what != action::solve_collision) return false;
     const auto to = targets_of(now);

@@ -8,17 +8,18 @@
 
 namespace apsis {
 
-/// What to expect of a run to a tolerance, from data that are brought to equilibrium first.
+/// Forecast for a run to a tolerance, from data that are first brought to equilibrium.
 template <class Real>
 struct tolerance_forecast {
-  Real dt;     ///< length of the steps that the tolerance allows there
-  Real error;  ///< of the terms of size ε at the end, in the unit of the tolerance; 0 where nothing relaxes,
-               ///< or dt resolves every ε/C well
+  Real dt;     ///< step length that the tolerance allows
+  Real error;  ///< error of the O(ε) terms at the end, in the unit of the tolerance; 0 if nothing relaxes or
+               ///< dt resolves every ε/C
 };
 
 namespace forecast {
 
-/// The step of a fresh controller from u that neither grows nor is rejected; at most `longest`.
+/// Returns the step length at which a new controller settles at u, neither growing nor rejecting;
+/// at most `longest`.
 template <problem P, class Distance>
 typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, typename P::state& u,
                               typename P::real longest, const error_target<typename P::real>& target,
@@ -29,7 +30,7 @@ typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, ty
   step_controller<real> control(target.tolerance, target.order);
   start_control(p, t, u, longest, startup::none, control, distance);
   real dt(0);
-  for (int k = 0; k < 30; ++k) {  // a factor of 5 each: from 1e-20 to 1
+  for (int k = 0; k < 30; ++k) {  // factors of 5 cover 1e-20 to 1
     dt = std::min(longest, control.proposed());
     const bool rejected_before = control.rejected() > 0;
     real error(0);
@@ -44,17 +45,17 @@ typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, ty
   return dt;
 }
 
-/// Size of the terms of size ε: D (z/(1+z))³ and D z³/(1+z)⁴, where D is the deviation from equilibrium
-/// that transport keeps up and z = CΔt/ε, each cell with its own.
+/// Size of the O(ε) terms: D (z/(1+z))³ and D z³/(1+z)⁴, where D is the deviation from equilibrium that
+/// transport sustains and z = CΔt/ε in each cell.
 template <class Real>
 struct deviations {
   Real plateau,  ///< D (z/(1+z))³, relative to u
       band;      ///< D z³/(1+z)⁴, relative to u
-  Real change;   ///< of u in the step
+  Real change;   ///< relative change of u in the step
 };
 
-/// Of a step dt of implicit–explicit Euler from the equilibrium `u`, whose solve is repeated: u + dt T(u) is
-/// off equilibrium by zD, and each solve divides that by 1 + z.
+/// Computes the deviations from a step dt of implicit–explicit Euler from the equilibrium `u` with repeated
+/// solves: u + dt T(u) is off equilibrium by zD, and each solve divides that by 1 + z.
 template <problem P, class Distance>
 deviations<typename P::real> find_deviations(P& p, typename P::real t, const typename P::state& u,
                                              typename P::real dt, const Distance& distance) {
@@ -73,7 +74,7 @@ deviations<typename P::real> find_deviations(P& p, typename P::real t, const typ
     add(now, of_plateau[k], real(0), plateau, k == 0);
     add(now, of_band[k], real(0), band, k == 0);
   }
-  // distance(u, u − x) for norms that are relative to their first argument.
+  // Form distance(u, u − x) for norms that are relative to their first argument.
   const real size = distance(u, zero);
   const real change = distance(now, u) / distance(now, zero);
   add(u, real(1), real(0), plateau, false);
@@ -83,9 +84,10 @@ deviations<typename P::real> find_deviations(P& p, typename P::real t, const typ
 
 }  // namespace forecast
 
-/// Of a run of length `interval` from u with steps of `longest` at most. `bounds` are those of the method.
-/// The error is what plateau_bounds leave of the deviation from equilibrium, once in u and once for what it
-/// does to the moments in a time in which they change by their own size, or the interval if that is shorter.
+/// Forecasts a run of length `interval` from u at time t with steps of at most `longest`; `bounds` are those
+/// of the method. The error is the part of the deviation from equilibrium that plateau_bounds leave, once in
+/// u and once through the moments, over the time in which they change by their own size, or the interval if
+/// that is shorter. If a step fails, returns what is known so far.
 template <problem P, class Distance>
 tolerance_forecast<typename P::real> forecast_tolerance(stepper<P>& method_stepper, typename P::real t,
                                                         const typename P::state& u, typename P::real interval,
@@ -103,19 +105,19 @@ tolerance_forecast<typename P::real> forecast_tolerance(stepper<P>& method_stepp
   try {
     if (relaxes) p.solve_collision(t, real(1e100), real(0), from);
     const auto equilibrium = from;
-    if (relaxes) {  // and on to the manifold on which the solution is after its layer
+    if (relaxes) {  // a tiny step moves it to the slow manifold
       const auto& tried = method_stepper.attempt(t, longest * real(1e-5), from);
       from = tried.result;
     }
     found.dt = forecast::settled_step(method_stepper, t, from, longest, target, distance);
-    // Steps far below the relaxation time keep the terms of size ε by their order.
+    // Steps far below the relaxation time resolve the O(ε) terms to their order.
     if (!relaxes || found.dt < relaxation / 32) return found;
     const auto [plateau, band, change] = forecast::find_deviations(p, t, equilibrium, found.dt, distance);
     const real moved = std::min(real(1), change * std::max(real(1), interval / found.dt));
     found.error = (real(bounds.last) + moved * real(bounds.flux)) * plateau +
                   (real(bounds.last_band) + moved * real(bounds.flux_band)) * band;
   } catch (const numerical_error&) {
-    return found;  // the run will say what is wrong with the data
+    return found;  // the run itself will report invalid data
   }
   return found;
 }

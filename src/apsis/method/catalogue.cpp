@@ -23,7 +23,7 @@ struct entry {
   certificate certified;
 };
 
-/// Whether both have the same kind and coefficients, however written; an embedded solution may be new.
+/// Whether two methods have the same kind and coefficients, however written; embedded rows are not compared.
 bool is_same(const method& a, const method& b) {
   const auto x = a.coefficients<mp_real>(), y = b.coefficients<mp_real>();
   const auto equal = [](const matrix<mp_real>& one, const matrix<mp_real>& other) {
@@ -43,13 +43,13 @@ method parse_catalogue_method(std::string_view name) {
   return make_member(*find_family(name), name);
 }
 
-/// Throws input_error if a file gives a method the name of another one.
+/// Throws input_error if the name of a method from a file belongs to another method.
 void require_own_name(const method& m, const std::string& path) {
   if (const auto problem = taken_name(m); !problem.empty())
     throw input_error(source_place{path, 0, 0}, problem);
 }
 
-/// From the file of the catalogue or by its family.
+/// Makes a method of the catalogue or a member of a family. Throws input_error if there is none of this name.
 method make_named_method(std::string_view name) {
   for (const auto& file : embedded::methods())
     if (file.name == name) return parse_method(file.text, "methods/" + std::string(file.name) + ".toml");
@@ -60,9 +60,9 @@ method make_named_method(std::string_view name) {
   throw input_error("unknown method '" + text + "'; " + suggest(text, known));
 }
 
-/// Parsed and certified at the first request, then kept. A file of the user is kept by its path and its text,
-/// so that a changed file is certified again; entries of earlier texts stay, because callers hold references
-/// to them.
+/// Parses and certifies a method on first use and caches it. A method file is cached by path and contents,
+/// so that a changed file is certified again; entries of earlier contents stay, because callers hold
+/// references to them.
 const entry& find_entry(const std::string& name) {
   static std::mutex guard;
   static std::map<std::pair<std::string, std::string>, std::unique_ptr<entry>> known;
@@ -101,7 +101,7 @@ const method& require_embedded_row(const method& m) {
   std::vector<std::string> names;
   for (const auto& file : embedded::methods())
     if (parse_method(file.text, std::string(file.name)).embedded) names.emplace_back(file.name);
-  throw input_error(fmt::format("method '{}' has no embedded solution; choose one that has ({})", m.name,
+  throw input_error(fmt::format("method '{}' has no embedded solution; choose one that has one: {}", m.name,
                                 fmt::join(names, ", ")));
 }
 
@@ -120,9 +120,8 @@ std::string taken_name(const method& m) {
                        m.name, family->pattern);
   if (is_same(m, parse_catalogue_method(m.name))) return "";
   return fmt::format(
-      "the name '{}' is that of another method (the catalogue has it with other coefficients, and results "
-      "are "
-      "filed under the name); choose another name",
+      "the name '{}' is taken (the catalogue has it with other coefficients, and results are filed under the "
+      "name); choose another name",
       m.name);
 }
 

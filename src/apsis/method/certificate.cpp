@@ -16,7 +16,8 @@ std::string short_text(const mp_real& x) {
   return x.str(12);
 }
 
-/// What a residual may be: a few units of the last digit that the coefficients carry.
+/// Returns the largest admissible residual: 1000 units in the last decimal of the coefficients, 1e-50 if
+/// they are exact.
 mp_real tolerance_of(int digits) {
   return digits > 0 ? pow(mp_real(10), 3 - digits) : mp_real(1e-50);
 }
@@ -78,7 +79,7 @@ void find_structure(const method& m, const shu_osher_form<mp_real>& form, const 
   bool all_implicit = true, later_implicit = true;
   for (std::size_t i = 0; i < form.stages(); ++i) {
     c.explicit_evaluations += any_in_column(b.A_hat, i) ? 1 : 0;
-    if (!c.gsa && i + 1 == form.stages()) break;  // the update is no stage
+    if (!c.gsa && i + 1 == form.stages()) break;  // the update is not a stage
     const bool implicit = c.kind != method_kind::explicit_only && (form.D(i, i) != 0 || form.ddot[i] != 0);
     c.implicit_solves += implicit ? 1 : 0;
     all_implicit = all_implicit && implicit;
@@ -112,9 +113,9 @@ void check_order_claim(const method& m, certificate& c) {
                                      mp_real(condition.value - condition.wanted).str(3)));
 }
 
-/// Whether a claimed number is the one found. A claim is as good as its last digit; an exact one as the
-/// radius is found: what counts as nonnegative down to −tolerance moves it by a multiple of that, the
-/// multiple being a product of a few coefficients.
+/// Whether a claimed number agrees with the computed one: to two units of its last decimal or, if it is
+/// exact, to the accuracy of the radius. Counting values down to −tolerance as nonnegative shifts the radius
+/// by a multiple of the tolerance, a product of a few coefficients.
 bool agrees(const std::string& claimed, const mp_real& found, const mp_real& tolerance) {
   const int digits = decimals(claimed);
   const mp_real allowed = digits > 0 ? 2 * pow(mp_real(10), -digits) : 1000 * tolerance;
@@ -171,7 +172,8 @@ void check_structure_claims(const method& m, certificate& c) {
         *m.claims.l_stable, c.stability.angle, c.stability.at_infinity));
 }
 
-/// r of the file is what the step rule uses, and its weights must be convex with it.
+/// Checks that r of the file, which the step-size rule uses, is an SSP coefficient and that the weights of
+/// the form are convex.
 void check_form(const method& m, const shu_osher_form<mp_real>& form, const mp_real& tolerance,
                 certificate& c) {
   if (!c.bounded || c.ssp_coefficient == 0) return;
@@ -200,7 +202,7 @@ void check_form(const method& m, const shu_osher_form<mp_real>& form, const mp_r
   }
 }
 
-/// Cosine between the residuals of order p and 1/γ, without sign.
+/// Returns |cosine| of the angle between the residuals of order p and 1/γ.
 mp_real alignment_of(const butcher_form<mp_real>& b, int p, method_kind kind) {
   const auto trees = rooted_trees(p, colours_of(kind));
   const auto weights = elementary_weights(b, trees);
@@ -215,7 +217,7 @@ mp_real alignment_of(const butcher_form<mp_real>& b, int p, method_kind kind) {
   return residuals == 0 ? mp_real(0) : mp_real(abs(along) / sqrt(residuals * exact));
 }
 
-/// An embedded solution is there for what it keeps, so its row must be convex.
+/// Checks that the row of the embedded solution is convex, so that ũ preserves what the stages preserve.
 void check_embedded_signs(const shu_osher_form<mp_real>& form, const mp_real& tolerance, certificate& c) {
   const std::size_t last = form.stages() - 1;
   const auto check = [&](const std::string& what, const mp_real& value, const mp_real& least) {
@@ -261,7 +263,8 @@ void find_embedded_solution(const method& m, certificate& c) {
   c.embedded = e;
   if (m.embedded->order >= m.claims.order)
     c.failures.push_back(
-        fmt::format("embedded.order = {} is not below that of the method, {}: nothing could be estimated",
+        fmt::format("embedded.order = {} is not below the order {} of the method, so that the error could "
+                    "not be estimated",
                     m.embedded->order, m.claims.order));
   if (e.order > m.embedded->order) {
     c.failures.push_back(fmt::format("embedded.order = {} but the embedded solution has order {}",

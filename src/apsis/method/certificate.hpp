@@ -10,17 +10,17 @@
 
 namespace apsis {
 
-/// An order condition that does not hold.
+/// An order condition that a method violates.
 struct failed_condition {
   std::string tree;  ///< "G[F]"
-  int order = 0;     ///< for which it is needed: the first that the method does not have
+  int order = 0;     ///< order of the tree: one above the order of the method
   mp_real value,     ///< φ(τ), left-hand side
       wanted;        ///< 1/γ(τ)
 };
 
 /// Linear stability of the implicit part, y' = λy: R(z) = e_s·(I − zA − z²Ȧ)⁻¹e, z = λΔt.
 struct implicit_stability {
-  std::vector<double> imaginary_poles;   ///< 1/√|ḋ| of stages with d = 0: poles at ± i times this
+  std::vector<double> imaginary_poles;   ///< 1/√|ḋ| of stages with d = 0: poles at ±i times this value
   double largest_on_negative_axis = 0;   ///< sup |R(x)|, x < 0
   double smallest_on_negative_axis = 0;  ///< inf R(x), x < 0; ≥ 0 means no sign change
   double at_infinity = 0;                ///< |R(−∞)|
@@ -28,69 +28,72 @@ struct implicit_stability {
   bool l_stable = false;                 ///< A-stable and R(−∞) = 0
 };
 
-/// What can be said of an embedded solution ũ, the last row of with_embedded_row().
+/// Certificate of an embedded solution ũ, the last row of with_embedded_row().
 struct embedded_certificate {
   int order = 0;           ///< q, by the order conditions of all rows
-  int conditions = 0;      ///< number of conditions up to it
-  mp_real order_residual;  ///< largest residual of them
+  int conditions = 0;      ///< number of conditions up to order q
+  mp_real order_residual;  ///< largest residual of these conditions
   mp_real estimate;      ///< 2-norm of φ̃(τ) − 1/γ(τ) over all trees τ of order q + 1: the size of u^{n+1} − ũ
-  mp_real alignment;     ///< cosine between these residuals and 1/γ(τ), without sign: 1 if u^{n+1} − ũ is a
+  mp_real alignment;     ///< |cosine| of the angle between these residuals and 1/γ(τ): 1 if u^{n+1} − ũ is a
                          ///< multiple of the Taylor term of order q + 1
-  bool relaxes = false;  ///< it has an implicit part, so that ε → 0 projects it to equilibrium
-  std::optional<mp_real> last;   ///< its term of size ε in parts of the exact one (intermediate_regime::last)
-  int explicit_evaluations = 0;  ///< of T at stages where u^{n+1} needs none
-  int implicit_solves = 0;       ///< 0 or 1
+  bool relaxes = false;  ///< has an implicit part, so that ε → 0 projects ũ to equilibrium
+  std::optional<mp_real> last;   ///< its O(ε) term relative to the exact one (intermediate_regime::last)
+  int explicit_evaluations = 0;  ///< additional evaluations of T, at stages where u^{n+1} needs none
+  int implicit_solves = 0;       ///< additional stage solves: 0 or 1
 };
 
-/// All that can be said of a method from its coefficients alone.
+/// Certificate of a method: its properties, derived from the coefficients alone.
 struct certificate {
-  std::string name;                      ///< of the method
-  method_kind kind = method_kind::imex;  ///< says which order conditions count
-  int order = 0;                         ///< by the order conditions; 6 is the highest that is looked for
+  std::string name;                      ///< name of the method
+  method_kind kind = method_kind::imex;  ///< determines which order conditions apply
+  int order = 0;                         ///< order p by the order conditions, at most 6
   mp_real order_residual;                ///< largest residual of the conditions up to `order`
-  std::vector<failed_condition> next;    ///< conditions of order + 1 that fail
-  int conditions = 0;                    ///< number of conditions up to `order`
-  mp_real error_constant;                ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order + 1
+  std::vector<failed_condition> next;    ///< violated conditions of order p + 1
+  int conditions = 0;                    ///< number of conditions up to order p
+  mp_real error_constant;                ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order p + 1
 
-  bool unconditional = false;   ///< SSP without a bound from Q
-  bool bounded = true;          ///< the explicit part sets a bound Δt ≤ r Δt_FE
-  mp_real ssp_coefficient = 0;  ///< r, from the Butcher form alone; of no meaning if !bounded
-  mp_real radius_of_implicit_part =
-      0;                        ///< classical radius of A, where Q satisfies a forward Euler condition
-  mp_real explicit_radius = 0;  ///< classical radius of Â: the SSP coefficient of the explicit part by itself
-  std::string limiting_entry;   ///< what forbids a larger r, or any
+  bool unconditional = false;           ///< SSP without a step bound from Q
+  bool bounded = true;                  ///< the explicit part sets a bound Δt ≤ r Δt_FE
+  mp_real ssp_coefficient = 0;          ///< r, from the Butcher form alone; undefined if !bounded
+  mp_real radius_of_implicit_part = 0;  ///< radius of absolute monotonicity of A: relevant where Q satisfies
+                                        ///< a forward Euler condition
+  mp_real explicit_radius = 0;          ///< radius of absolute monotonicity of Â: SSP coefficient of the
+                                        ///< explicit part alone
+  std::string limiting_entry;           ///< entry that limits r, or rules out every r > 0
 
-  std::string type;              ///< "A", "ARS", "CK", "explicit" or "none"; an update is no stage
-  bool gsa = true;               ///< u^{n+1} = u_s, not an update without implicit part
+  std::string type;              ///< "A", "ARS", "CK", "explicit" or "none"; a final update does not count
+                                 ///< as a stage
+  bool gsa = true;               ///< globally stiffly accurate: u^{n+1} = u_s rather than an explicit update
   bool ap = false;               ///< asymptotic preserving for any initial data
-  std::string ap_data;           ///< "any data", "consistent data" or "none"; "(moments only)" without GSA:
-                                 ///< then u^{n+1} itself is not projected to equilibrium
+  std::string ap_data;           ///< "any data", "consistent data" or "none"; "(moments only)" if not GSA,
+                                 ///< because then u^{n+1} itself is not projected to equilibrium
   int explicit_evaluations = 0;  ///< of T per step, n_F
   int implicit_solves = 0;       ///< stages with d_i ≠ 0 or ḋ_i ≠ 0
-  implicit_stability stability;  ///< not for explicit methods
+  implicit_stability stability;  ///< default values for explicit methods
 
-  // Terms of size ε for ε ≪ Δt (docs/plateaus.md); of IMEX methods only.
-  intermediate_regime<mp_real> regime;  ///< the numbers; of no meaning if !regime.applies
-  intermediate_band band;               ///< where ε ~ Δt
-  bool keeps_slow_terms = false;  ///< (N1), (N2): right for data near equilibrium; for BGK the viscosity
-  bool keeps_layer = false;       ///< (N3): the integral of an initial layer too
-  /// "all" if it keeps both, "slow", or "none".
+  // O(ε) terms for ε ≪ Δt (docs/plateaus.md); IMEX methods only.
+  intermediate_regime<mp_real> regime;  ///< coefficients of these terms; undefined if !regime.applies
+  intermediate_band band;               ///< error where ε ~ Δt
+  bool keeps_slow_terms = false;  ///< (N1), (N2): exact for data near equilibrium; for BGK, the viscosity
+  bool keeps_layer = false;       ///< (N3): the integral over an initial layer is exact, too
+  /// Returns "all" if both flags are set, "slow" if only keeps_slow_terms is, otherwise "none".
   std::string keeps() const;
 
-  std::optional<embedded_certificate> embedded;  ///< of methods that have such a row
+  std::optional<embedded_certificate> embedded;  ///< present for methods with an embedded row
 
-  bool claims_hold = false;           ///< there are no failures
-  std::vector<std::string> failures;  ///< condition, its value and its tree
+  bool claims_hold = false;           ///< whether `failures` is empty
+  std::vector<std::string> failures;  ///< one line per failed claim: condition, value, tree
 };
 
-/// Certifies a method in 60 digits (numerical tolerance: that of its digits).
+/// Certifies a method in arithmetic of 60 digits. Tolerance: 10^{3−n} for coefficients of n decimals, 1e-50
+/// for exact ones.
 certificate certify(const method& m);
 
-/// The certificate of a method by its name, of a changed file a new one. Throws as find_method, but returns
-/// the certificate of a method whose claims do not hold.
+/// Returns the certificate of the method called `name`; a method file that has changed is certified again.
+/// Throws like find_method, except that a method whose claims fail gets its certificate returned.
 const certificate& find_certificate(const std::string& name);
 
-/// Throws claim_error that lists the failures, if there are any.
+/// Throws a claim_error that lists the failures of `c`, if there are any.
 void require_claims(const certificate& c);
 
 }  // namespace apsis

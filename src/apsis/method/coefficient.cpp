@@ -10,7 +10,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Reads digits from position i on; the number of digits read.
+/// Advances i past the digits that begin there and returns their number.
 std::size_t digits(const std::string& text, std::size_t& i) {
   const std::size_t start = i;
   while (i < text.size() && is_digit(text[i])) ++i;
@@ -58,7 +58,7 @@ int decimals(const std::string& text) {
   if (point == std::string::npos) return 0;
   std::size_t i = point + 1;
   const auto count = static_cast<int>(digits(text, i));
-  constexpr int shortest = 12;  // "0.25" is a quarter, not a number known to two digits
+  constexpr int shortest = 12;  // "0.25" means exactly 1/4, not a number known to two digits
   return count >= shortest ? count : 0;
 }
 

@@ -6,14 +6,15 @@
 
 namespace apsis {
 
-/// Whether a text is a coefficient: an exact rational "p/q" or a decimal "-0.25", "1.5e-3".
+/// Whether a string is a valid coefficient: an exact rational "p/q" or a decimal such as "-0.25" or "1.5e-3",
+/// of at most 200 characters.
 bool is_coefficient(const std::string& text);
 
-/// Its value to the precision of mp_real; only for texts that are coefficients.
+/// Returns the value of a valid coefficient to the precision of mp_real.
 mp_real coefficient_value(const std::string& text);
 
-/// Significant decimals after the point of a long decimal (12 or more), 0 for rationals and short decimals,
-/// which are exact. The precision that can be expected of the order conditions.
+/// Returns the number of decimals of a long decimal (12 or more), which bounds the precision to expect of the
+/// order conditions; 0 for rationals and short decimals, which are exact.
 int decimals(const std::string& text);
 
 }  // namespace apsis

@@ -22,7 +22,7 @@ matrix<mp_real> values(const matrix<std::string>& texts) {
   return m;
 }
 
-/// The most decimals of any coefficient; 0 if all are exact.
+/// Returns the largest number of decimals of any coefficient; 0 if all are exact.
 int decimals_of(const butcher_form<std::string>& b) {
   int digits = 0;
   for (std::size_t i = 0; i < b.stages(); ++i)
@@ -51,23 +51,23 @@ std::optional<shu_osher_form<mp_real>> convex_form(const butcher_form<mp_real>& 
   return std::nullopt;
 }
 
-/// A coefficient that was computed, to as many decimals as the file carries.
-std::string written(const mp_real& value, int digits) {
+/// Formats a computed coefficient with as many decimals as the file has.
+std::string to_decimals(const mp_real& value, int digits) {
   return abs(value) < mp_real(1e-48) ? "0" : value.str(digits, std::ios_base::fixed);
 }
 
-shu_osher_form<std::string> written(const shu_osher_form<mp_real>& form, method_kind kind, int digits) {
+shu_osher_form<std::string> to_decimals(const shu_osher_form<mp_real>& form, method_kind kind, int digits) {
   const std::size_t s = form.stages();
   shu_osher_form<std::string> e;
   e.P = e.W = e.D = zeros(s);
-  e.r = written(form.r, digits);
+  e.r = to_decimals(form.r, digits);
   for (std::size_t i = 0; i < s; ++i) {
-    e.ddot.push_back(written(form.ddot[i], digits));
+    e.ddot.push_back(to_decimals(form.ddot[i], digits));
     for (std::size_t j = 0; j < i; ++j) {
-      e.P(i, j) = written(form.P(i, j), digits);
-      e.W(i, j) = written(form.W(i, j), digits);
+      e.P(i, j) = to_decimals(form.P(i, j), digits);
+      e.W(i, j) = to_decimals(form.W(i, j), digits);
     }
-    if (kind != method_kind::explicit_only) e.D(i, i) = written(form.D(i, i), digits);
+    if (kind != method_kind::explicit_only) e.D(i, i) = to_decimals(form.D(i, i), digits);
   }
   return e;
 }
@@ -77,7 +77,7 @@ std::string negative(const std::string& text) {
   return text[0] == '-' ? text.substr(1) : "-" + (text[0] == '+' ? text.substr(1) : text);
 }
 
-/// R = I; nothing if Ȧ is not diagonal.
+/// Returns the form with R = I, or nothing if Ȧ is not diagonal.
 std::optional<shu_osher_form<std::string>> increments(const butcher_form<std::string>& b, method_kind kind) {
   const std::size_t s = b.stages();
   shu_osher_form<std::string> e;
@@ -104,7 +104,7 @@ std::optional<shu_osher_form<std::string>> exact_shu_osher(const butcher_form<st
   const butcher_form<mp_real> numbers{
       values(b.A_hat), values(kind == method_kind::explicit_only ? b.A_hat : b.A), values(b.A_dot)};
   if (const auto convex = convex_form(numbers, kind, zero, reason))
-    return written(*convex, kind, digits > 0 ? std::min(digits, 50) : 50);
+    return to_decimals(*convex, kind, digits > 0 ? std::min(digits, 50) : 50);
   return increments(b, kind);
 }
 

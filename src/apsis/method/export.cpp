@@ -16,7 +16,7 @@ bool is_zero(const std::string& text) {
   return coefficient_value(text) == 0;
 }
 
-/// A text in quotes, with what TOML would read otherwise escaped.
+/// Returns a TOML basic string with special characters escaped.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -39,14 +39,14 @@ std::string list(const std::vector<std::string>& values) {
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
-/// The first entries of a row.
+/// Returns the first `count` entries of row i.
 std::vector<std::string> entries(const matrix<std::string>& m, std::size_t i, std::size_t count) {
   std::vector<std::string> row;
   for (std::size_t j = 0; j < count; ++j) row.push_back(m(i, j));
   return row;
 }
 
-/// Rows of a lower triangular matrix, without or with its diagonal.
+/// Formats the rows of a lower triangular matrix; `diagonal` is 1 to include the diagonal and 0 to omit it.
 std::string triangle(const matrix<std::string>& m, std::size_t diagonal, std::size_t rows) {
   std::string out = "[\n";
   for (std::size_t i = 0; i < rows; ++i) out += "  " + list(entries(m, i, i + diagonal)) + ",\n";
@@ -57,7 +57,7 @@ bool has_derivative(const method& m) {
   return !std::all_of(m.exact.ddot.begin(), m.exact.ddot.end(), is_zero);
 }
 
-/// Ȧ where it is diagonal.
+/// Returns Ȧ of a method for which it is diagonal.
 matrix<std::string> derivative_of(const method& m) {
   matrix<std::string> a(m.stages(), m.stages());
   for (std::size_t i = 0; i < m.stages(); ++i)
@@ -65,7 +65,7 @@ matrix<std::string> derivative_of(const method& m) {
   return a;
 }
 
-/// [butcher] of a method whose Shu–Osher form is its tableau (R = I: W = Â, D = A).
+/// Formats the table [butcher] of a method whose Shu–Osher form is its tableau (R = I: W = Â, D = A).
 std::string butcher_table(const method& m) {
   const bool update = m.ends_with_update();
   const std::size_t rows = update ? m.stages() - 1 : m.stages();
@@ -97,7 +97,7 @@ std::string embedded_table(const embedded_row& row, method_kind kind) {
   return out;
 }
 
-/// A number as LaTeX: "\frac{1}{2}", "0.25".
+/// Formats a number as LaTeX: "\frac{1}{2}", "0.25".
 std::string number(const std::string& text, int digits) {
   const auto slash = text.find('/');
   if (is_zero(text)) return "0";
@@ -107,7 +107,7 @@ std::string number(const std::string& text, int digits) {
                      text.substr(slash + 1));
 }
 
-/// "name = (rows × cols array)" with entries of a function of row and column.
+/// Formats "name = (rows × cols array)" with the entries entry(row, column).
 std::string array(const std::string& name, std::size_t rows, std::size_t cols,
                   const std::function<std::string(std::size_t, std::size_t)>& entry) {
   std::string out = fmt::format("{} &= \\left(\\begin{{array}}{{{}}}\n", name, std::string(cols, 'r'));
@@ -119,7 +119,7 @@ std::string array(const std::string& name, std::size_t rows, std::size_t cols,
   return out + "\\end{array}\\right)";
 }
 
-/// p̃, w̃, d̃ and d̃̇ as rows of their own.
+/// Formats p̃, w̃, d̃ and d̃̇, one line each.
 std::vector<std::string> embedded_parts(const embedded_row& row, method_kind kind, int digits) {
   const auto of = [digits](const std::vector<std::string>& values) {
     return [&values, digits](std::size_t, std::size_t j) { return number(values[j], digits); };

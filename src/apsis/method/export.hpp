@@ -6,12 +6,12 @@
 
 namespace apsis {
 
-/// The file of a method: parse_method() of it gives the same method, coefficient for coefficient.
+/// Returns the method file of `m`: parse_method() restores every coefficient exactly.
 std::string to_toml(const method& m);
 
-/// The method as a LaTeX display: Shu–Osher matrices (or the tableau A of a method without one) with exact
-/// rationals as fractions and decimals of `digits` significant digits; then the embedded row, if there is
-/// one.
+/// Returns the method as a LaTeX display: the Shu–Osher matrices (or the tableau A of a method without a
+/// Shu–Osher form), exact rationals as fractions and decimals with `digits` significant digits, followed by
+/// the embedded row, if there is one.
 std::string to_latex(const method& m, int digits = 15);
 
 }  // namespace apsis

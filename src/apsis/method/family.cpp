@@ -6,7 +6,7 @@
 namespace apsis {
 namespace {
 
-/// Where the letter for the number of stages stands: "…-S-…".
+/// Position of the letter S in the pattern "…-S-…".
 std::size_t place_of_stages(const family_entry& family) {
   return family.pattern.find("-S-") + 1;
 }
@@ -15,16 +15,16 @@ std::string_view before(const family_entry& family) {
   return std::string_view(family.pattern).substr(0, place_of_stages(family));
 }
 
-std::string_view behind(const family_entry& family) {
+std::string_view after(const family_entry& family) {
   return std::string_view(family.pattern).substr(place_of_stages(family) + 1);
 }
 
 bool has_pattern(const family_entry& family, std::string_view name) {
-  return name.size() > before(family).size() + behind(family).size() && name.starts_with(before(family)) &&
-         name.ends_with(behind(family));
+  return name.size() > before(family).size() + after(family).size() && name.starts_with(before(family)) &&
+         name.ends_with(after(family));
 }
 
-/// S of a member, 0 of any other name. One spelling each: no sign, no leading zero.
+/// Returns S of a member, 0 for any other name. Each S has one spelling: no sign, no leading zero.
 std::size_t stages_of(const family_entry& family, std::string_view name) {
   if (!has_pattern(family, name)) return 0;
   for (std::size_t stages = family.lowest; stages <= family.highest; ++stages)
@@ -41,7 +41,7 @@ const family_entry* find_family(std::string_view name) {
 }
 
 std::string member_name(const family_entry& family, std::size_t stages) {
-  return fmt::format("{}{}{}", before(family), stages, behind(family));
+  return fmt::format("{}{}{}", before(family), stages, after(family));
 }
 
 std::string missing_member(const family_entry& family, std::string_view name) {

@@ -7,14 +7,14 @@
 
 namespace apsis {
 
-/// p/q in lowest terms as a coefficient, q > 0: "-1/8", "2".
+/// Returns p/q in lowest terms as a coefficient, q > 0: "-1/8", "2".
 inline std::string fraction(long p, long q) {
   const long divisor = std::gcd(p, q);
   const std::string numerator = std::to_string(p / divisor);
   return q == divisor ? numerator : numerator + "/" + std::to_string(q / divisor);
 }
 
-/// A form of s stages in which nothing stands yet.
+/// Returns a form of s stages with all coefficients zero.
 inline shu_osher_form<std::string> empty_form(std::size_t s, const std::string& r) {
   shu_osher_form<std::string> form{matrix<std::string>(s, s), matrix<std::string>(s, s),
                                    matrix<std::string>(s, s), std::vector<std::string>(s, "0"), r};

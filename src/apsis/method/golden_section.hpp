@@ -2,15 +2,15 @@
 
 namespace apsis {
 
-/// A place and the value there.
+/// Location and value of an extremum.
 template <class Real>
 struct extremum {
-  Real at{},    ///< argument
-      value{};  ///< of the function there
+  Real at{},    ///< location
+      value{};  ///< value of the function at this location
 };
 
-/// The maximum of f between low and high where f has only one there, else some local maximum; the best of all
-/// values seen. Each of `steps` values makes the bracket shorter by the golden ratio, 0.618.
+/// Returns the maximum of f in [low, high] if f is unimodal there, otherwise some local maximum: the best of
+/// all values evaluated. Each of the `steps` evaluations shortens the bracket by the golden ratio, 0.618.
 template <class Real, class Function>
 extremum<Real> golden_section(const Function& f, Real low, Real high, int steps) {
   const Real ratio = static_cast<Real>(0.618033988749894848204586834365638118L);

@@ -10,38 +10,42 @@
 
 namespace apsis {
 
-/// What a method of type A or ARS makes of the terms of size ε of u' = T(u) + C(E(ω) − u)/ε, ω = ℛu, when
-/// ε ≪ Δt (docs/plateaus.md). The exact solution differs from equilibrium by D = E(ω) − u, of size ε, stage i
-/// by χ_i D. To leading order in ε and Δt the numerical ω obeys
+/// O(ε) terms of a method of type A or ARS applied to u' = T(u) + C(E(ω) − u)/ε, ω = ℛu, for ε ≪ Δt
+/// (docs/plateaus.md). The exact solution deviates from equilibrium by D = E(ω) − u, of size ε; stage i
+/// deviates by χ_i D. To leading order in ε and Δt the numerical ω obeys
 ///   ω_t = ℛT(E) − flux · ℛT′(E) D,    exact: flux = 1,
-/// its initial layer moves it by `layer` times what the exact layer does, and the result has the deviation
-/// last · D. The O(ε) part of the error vanishes for data near equilibrium if flux = last = 1, and for any
-/// data if layer = 1. Of the next terms, of size εΔt, each number belongs to one elementary differential of
-/// f = ℛT(E), g = E′f − T(E) and Ψ = ℛT′(E)/C. Dimensionless.
+/// its initial layer shifts it by `layer` times the shift due to the exact layer, and the result deviates
+/// from equilibrium by last · D. The O(ε) part of the error vanishes for data near equilibrium if flux =
+/// last = 1, and for any data if, in addition, layer = 1. The remaining members are the coefficients of
+/// the terms of size εΔt; each belongs to one elementary differential of f = ℛT(E), g = E′f − T(E) and Ψ
+/// = ℛT′(E)/C. Dimensionless.
 template <class Real>
 struct intermediate_regime {
-  bool applies = false;  ///< every stage has d ≠ 0 or ḋ ≠ 0, or is u^n itself
+  bool applies = false;  ///< whether every stage has d ≠ 0 or ḋ ≠ 0, or is u^n itself
   std::vector<Real>
       kept;      ///< χ_i = (Σ_j w_ij/r − Σ_{j<i} d_ij χ_j)/d_ii; 0 where ḋ_i ≠ 0; χ_s where u_i = u^n
   Real flux{};   ///< Σ_i b̂_i χ_i
   Real last{};   ///< χ_s
-  Real layer{};  ///< Σ_i b̂_i λ_i, λ_i like χ_i with r_i for Σ_j w_ij/r; infinite where u^n is a stage
+  Real layer{};  ///< Σ_i b̂_i λ_i, λ_i defined like χ_i with r_i in place of Σ_j w_ij/r; infinite where u^n
+                 ///< is a stage
 
-  Real flux_place{};      ///< Σ b̂_i ĉ_i χ_i, of (Ψ′f) g; exact: 1/2
-  Real flux_slope{};      ///< Σ b̂_i χ′_i, of Ψ g′f, χ′ like χ from RÂĉ; exact: 1/2
-  Real flux_curvature{};  ///< Σ b̂_i χ″_i, of Ψ E″(f, f) with its part of g′f, χ″ from Rĉ²/2; exact: 1/2
-  Real flux_carried{};    ///< Σ b̂_i â_ij χ_j, of f′Ψ g; exact: 1/2
-  Real last_slope{};      ///< χ′_s, of g′f; exact: 1
-  Real last_curvature{};  ///< χ″_s, of E″(f, f); exact: 1
-  Real layer_place{};     ///< Σ b̂_i ĉ_i λ_i, of (Ψ′f) D₀; exact: 0
-  Real layer_carried{};   ///< Σ b̂_i â_ij λ_j, of f′Ψ D₀; exact: 1
+  Real flux_place{};      ///< Σ b̂_i ĉ_i χ_i, coefficient of (Ψ′f) g; exact: 1/2
+  Real flux_slope{};      ///< Σ b̂_i χ′_i, coefficient of Ψ g′f, χ′ defined like χ with RÂĉ; exact: 1/2
+  Real flux_curvature{};  ///< Σ b̂_i χ″_i, coefficient of Ψ E″(f, f), including its part of g′f, χ″ with
+                          ///< Rĉ²/2; exact: 1/2
+  Real flux_carried{};    ///< Σ b̂_i â_ij χ_j, coefficient of f′Ψ g; exact: 1/2
+  Real last_slope{};      ///< χ′_s, coefficient of g′f; exact: 1
+  Real last_curvature{};  ///< χ″_s, coefficient of E″(f, f); exact: 1
+  Real layer_place{};     ///< Σ b̂_i ĉ_i λ_i, coefficient of (Ψ′f) D₀; exact: 0
+  Real layer_carried{};   ///< Σ b̂_i â_ij λ_j, coefficient of f′Ψ D₀; exact: 1
 };
 
-/// Solves Σ_{j≤i} d_ij x_j = source_i for the stages with ḋ_i = 0 when z = CΔt/ε → ∞; where ḋ_i ≠ 0, x_i = 0.
+/// Solves the stage equations in the limit z = CΔt/ε → ∞: Σ_{j≤i} d_ij x_j = source_i for stages with ḋ_i =
+/// 0, and x_i = 0 where ḋ_i ≠ 0.
 template <class Real>
 class relaxed_stages {
  public:
-  /// Keeps a reference to m.
+  /// Stores a reference to m, which must outlive this object.
   explicit relaxed_stages(const shu_osher_form<Real>& m) : m_(m) {
     const auto initial = initial_weights(m);
     for (std::size_t i = 0; i < m.stages(); ++i) {
@@ -58,12 +62,13 @@ class relaxed_stages {
     solvable_ = of_start_.back() != Real(1);
   }
 
-  /// False where a stage is neither relaxed nor u^n, or the last one is u^n.
+  /// Whether every stage is relaxed or u^n itself, and the last one is not u^n.
   bool solvable() const { return solvable_; }
-  /// Some stage is u^n itself.
+  /// Whether some stage is u^n itself.
   bool has_start() const { return has_start_; }
 
-  /// A stage that is u^n itself has x_s − shift: the last stage of the step before, seen from this one.
+  /// Returns x. A stage that is u^n itself has the value x_s − shift, that of the last stage of
+  /// the previous step.
   std::vector<Real> operator()(const std::vector<Real>& source, const Real& shift) const {
     auto x = solve(source, Real(0));
     const Real start = (x.back() - shift) / (Real(1) - of_start_.back());
@@ -90,7 +95,8 @@ class relaxed_stages {
   bool has_start_ = false, solvable_ = true;
 };
 
-/// From the Shu–Osher form. Where u^n itself is a stage, it has the D of the last stage of the step before.
+/// Computes the coefficients from the Shu–Osher form. A stage that is u^n itself has the deviation D of the
+/// last stage of the previous step. If the regime does not apply, only `applies` is set.
 template <class Real>
 intermediate_regime<Real> analyse_intermediate_regime(const shu_osher_form<Real>& m) {
   intermediate_regime<Real> out;
@@ -134,17 +140,18 @@ intermediate_regime<Real> analyse_intermediate_regime(const shu_osher_form<Real>
   return out;
 }
 
-/// flux and last of intermediate_regime at a finite z = CΔt/ε.
+/// flux and last of intermediate_regime at finite z = CΔt/ε.
 template <class Real>
 struct finite_rate {
   Real flux{},  ///< Σ b̂_i κ_i(z)
       last{};   ///< κ_s(z)
 };
 
-/// Stage i keeps κ_i(z) of the exact deviation, where
+/// Computes flux and last at finite z > 0, for methods of any type. Stage i deviates from equilibrium by
+/// κ_i(z) times the exact deviation, where
 ///   (I + zA − z²Ȧ) κ = z ĉ + κ_s e,    flux(z) = Σ b̂_i κ_i,    last(z) = κ_s;
-/// with z fixed and Δt → 0 the numerical ω obeys ω_t = ℛT(E) − flux(z) ℛT′(E) D. They tend to 1 as z → 0 and
-/// to those of intermediate_regime as z → ∞. For methods of any type; z > 0.
+/// for Δt → 0 with z fixed, the numerical ω obeys ω_t = ℛT(E) − flux(z) ℛT′(E) D. Both tend to 1 as z → 0 and
+/// to the values of intermediate_regime as z → ∞.
 template <class Real>
 finite_rate<Real> at_finite_rate(const butcher_form<Real>& b, const Real& z) {
   const std::size_t s = b.stages();
@@ -167,14 +174,15 @@ finite_rate<Real> at_finite_rate(const butcher_form<Real>& b, const Real& z) {
   return out;
 }
 
-/// Largest |flux(z) − 1|/z: where ε is neither small nor large against Δt, and Δt → 0 with it, the error of
-/// the O(ε) term is this times Δt at the worst ε/C = Δt/at.
+/// Maximum of |flux(z) − 1|/z over z. Where ε is neither small nor large compared with Δt, and Δt → 0 with
+/// it, the error of the O(ε) term is at most `error`·Δt, and attains it for ε/C = Δt/at.
 struct intermediate_band {
   double error = 0.0,  ///< max |flux(z) − 1|/z
-      at = 0.0;        ///< z of the maximum
+      at = 0.0;        ///< location z of the maximum
 };
 
-/// Over 10⁻³ ≤ z ≤ 10⁵: of forty values to a decade each that is not below its neighbours, refined.
+/// Maximizes over 10⁻³ ≤ z ≤ 10⁵: samples at 40 points per decade and refines every local maximum by golden
+/// section. Returns a NaN error where flux(z) is NaN.
 template <class Real>
 intermediate_band find_intermediate_band(const butcher_form<Real>& b) {
   constexpr int per_decade = 40, first = -3 * per_decade, last = 5 * per_decade;

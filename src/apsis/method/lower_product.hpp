@@ -4,7 +4,8 @@
 
 namespace apsis {
 
-/// a b of two lower triangular matrices: a sixth of the products, fewer where a has zeros.
+/// Returns the product ab of two lower triangular matrices with a sixth of the operations of a full product,
+/// and fewer where a has zeros. Dimensions are not checked.
 template <class Real>
 matrix<Real> lower_product(const matrix<Real>& a, const matrix<Real>& b) {
   matrix<Real> c(a.rows(), b.cols());
@@ -16,7 +17,7 @@ matrix<Real> lower_product(const matrix<Real>& a, const matrix<Real>& b) {
   return c;
 }
 
-/// a x of a lower triangular matrix.
+/// Returns the product ax with a lower triangular matrix a. Dimensions are not checked.
 template <class Real>
 std::vector<Real> lower_product(const matrix<Real>& a, const std::vector<Real>& x) {
   std::vector<Real> y(a.rows(), Real(0));

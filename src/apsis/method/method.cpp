@@ -67,16 +67,16 @@ method method::with_embedded_row() const {
 
 int method::precision() const {
   int most = 0;
-  const auto see = [&most](const std::string& text) { most = std::max(most, decimals(text)); };
+  const auto consider = [&most](const std::string& text) { most = std::max(most, decimals(text)); };
   for (std::size_t i = 0; i < stages(); ++i) {
-    see(exact.ddot[i]);
+    consider(exact.ddot[i]);
     for (std::size_t j = 0; j <= i; ++j) {
-      see(exact.P(i, j));
-      see(exact.W(i, j));
-      see(exact.D(i, j));
+      consider(exact.P(i, j));
+      consider(exact.W(i, j));
+      consider(exact.D(i, j));
     }
   }
-  see(exact.r);
+  consider(exact.r);
   return most;
 }
 
@@ -91,7 +91,7 @@ Real convert(const mp_real& x) {
   }
 }
 
-/// A weight on the grid of the last place of numbers in [½, 1).
+/// Rounds a weight to the grid of spacing 2^−digits, that of numbers in [½, 1).
 template <class Real>
 Real on_grid(const mp_real& x) {
   if constexpr (std::is_same_v<Real, mp_real>) {
@@ -102,8 +102,8 @@ Real on_grid(const mp_real& x) {
   }
 }
 
-/// Sets the weights of row i of P and W; if exactly nothing is left for u^n, nothing is left in Real
-/// either, and never less than nothing.
+/// Sets the weights of row i of P and W such that the weight left for u^n is exactly 0 in Real if it is
+/// exactly 0, and never negative.
 template <class Real>
 void set_row(const shu_osher_form<std::string>& exact, std::size_t i, const mp_real& nothing,
              shu_osher_form<Real>& m) {
@@ -133,7 +133,7 @@ template <class Real>
 shu_osher_form<Real> method::coefficients() const {
   const std::size_t s = stages();
   const int digits = precision();
-  // A row of decimals sums to 1 as far as its digits go.
+  // Decimal weights sum to 1 only to the accuracy of their digits.
   const mp_real nothing = digits > 0 ? mp_real(10) * pow(mp_real(10), -digits) : mp_real(1e-50);
   shu_osher_form<Real> m;
   m.P = m.W = m.D = matrix<Real>(s, s);

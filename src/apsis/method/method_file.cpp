@@ -25,7 +25,7 @@ source_place place_of(const toml::node& node, const std::string& file) {
   return {file, static_cast<int>(begin.line), static_cast<int>(begin.column)};
 }
 
-/// A table of the file whose keys are all known.
+/// A TOML table; the constructor throws input_error if it has an unknown key.
 class section {
  public:
   section(const toml::table& table, std::string file, std::string name, const std::vector<std::string>& keys)
@@ -52,7 +52,7 @@ class section {
   std::string text(const std::string& key) const {
     const toml::node& node = need(key);
     const auto value = node.value<std::string>();
-    if (!node.is_string() || !value) wrong(node, key, "a text in quotes");
+    if (!node.is_string() || !value) wrong(node, key, "a string in quotes");
     if (value->size() > longest_text)
       throw input_error(place_of(node, file_), fmt::format("{} is too long ({} characters, at most {})",
                                                            quoted(key), value->size(), longest_text));
@@ -91,8 +91,8 @@ class section {
 
   std::vector<std::string> vector(const std::string& key) const { return row(need(key), key); }
 
-  /// Lower triangular rows into m; row i has i − 1 + diagonal entries, or as many as stages with zeros at the
-  /// end.
+  /// Reads the rows of a lower triangular matrix into m; row i has i − 1 + diagonal entries, or one per stage
+  /// with trailing zeros.
   void triangle(const std::string& key, std::size_t diagonal, matrix<std::string>& m) const {
     const toml::node& node = need(key);
     const toml::array* rows = node.as_array();
@@ -149,10 +149,11 @@ class section {
     if (!node.is_string() || !value)
       wrong(node, key, "a coefficient in quotes (\"1/2\" or \"0.25\", so that no digit is lost)");
     if (!is_coefficient(*value))
-      throw input_error(place_of(node, file_),
-                        fmt::format("'{}' is no coefficient (for {}); write an exact rational \"p/q\" or a "
-                                    "decimal of at most 200 characters",
-                                    value->substr(0, 40), quoted(key)));
+      throw input_error(
+          place_of(node, file_),
+          fmt::format("'{}' is not a coefficient (for {}); write an exact rational \"p/q\" or a "
+                      "decimal of at most 200 characters",
+                      value->substr(0, 40), quoted(key)));
     return *value;
   }
 
@@ -239,7 +240,7 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   for (std::size_t i = 0; i < s; ++i) e.D(i, i) = d[i];
 }
 
-/// [embedded]: a row of the Shu–Osher form, with T and implicit part as far as the method has them.
+/// Reads [embedded], a row of the Shu–Osher form with the explicit and implicit parts that the method has.
 void read_embedded(const toml::table& table, const std::string& file, method& m) {
   std::vector<std::string> keys = {"order", "origin", "P"};
   if (m.kind != method_kind::implicit_only) keys.emplace_back("W");
@@ -262,7 +263,7 @@ void read_embedded(const toml::table& table, const std::string& file, method& m)
   m.embedded = row;
 }
 
-/// The rows of `key` and, below them, the update `weights` of a method whose u^{n+1} is not its last stage.
+/// Reads the rows of `key` and, if u^{n+1} is not the last stage, appends the row `weights` of the update.
 matrix<std::string> read_tableau(const section& form, const std::string& key, const std::string& weights,
                                  std::size_t diagonal, std::size_t s, bool update) {
   auto stages = zeros(s);
@@ -279,7 +280,7 @@ matrix<std::string> read_tableau(const section& form, const std::string& key, co
   return all;
 }
 
-/// Whether u^{n+1} is the last stage, so that its weights say nothing new.
+/// Whether the weights of the update repeat the last stage, so that u^{n+1} is that stage.
 bool repeats_last_stage(const butcher_form<std::string>& b) {
   const std::size_t last = b.stages() - 1;
   for (const auto* part : {&b.A_hat, &b.A, &b.A_dot})
@@ -288,7 +289,7 @@ bool repeats_last_stage(const butcher_form<std::string>& b) {
   return true;
 }
 
-/// Butcher form, with the convex form derived from it where there is one.
+/// Reads the Butcher form and derives the convex form, if there is one.
 void read_butcher(const toml::table& table, const std::string& file, method& m) {
   const bool is_explicit = m.kind == method_kind::explicit_only;
   std::vector<std::string> keys;
@@ -345,7 +346,8 @@ method parse_method(std::string_view text, const std::string& file) {
   m.claims = read_claims(root, file);
   if (top.has("shu_osher") == top.has("butcher"))
     throw input_error(source_place{file, 1, 1},
-                      "exactly one of the tables [shu_osher] and [butcher] must be there");
+                      "the coefficients are missing or given twice (a method has either [shu_osher] or "
+                      "[butcher]); give one of them");
   if (top.has("shu_osher")) {
     read_shu_osher(need_table(root, "shu_osher", file), file, m);
   } else {

@@ -7,16 +7,16 @@
 
 namespace apsis {
 
-/// The text of a method file; of one larger than 1 MiB one byte more than that, which parse_method refuses.
-/// Throws input_error if it does not exist, io_error if it cannot be read.
+/// Returns the text of a method file. A file larger than 1 MiB is truncated to 1 MiB + 1 byte, which
+/// parse_method rejects. Throws input_error if the file does not exist, io_error if it cannot be read.
 std::string read_method_text(const std::string& path);
 
-/// Whether a name means a file of the user: it ends in ".toml".
+/// Whether a method name is the path of a method file, that is, ends in ".toml".
 bool is_method_file(std::string_view name);
 
-/// Why a method from a file cannot have its name, with a suggestion; "" if it can. Refused are names with the
-/// pattern of a family that has no such member, and those of a catalogue method or member of a family whose
-/// coefficients differ: results of the two could not be told apart.
+/// Returns why a method from a file cannot use its name, with a suggestion; "" if it can. Rejected are names
+/// that match the pattern of a family without being a member, and names of a catalogue method or family
+/// member with different coefficients, because results are filed under the name.
 std::string taken_name(const method& m);
 
 }  // namespace apsis

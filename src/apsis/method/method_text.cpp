@@ -14,12 +14,14 @@
 namespace apsis {
 namespace {
 
-constexpr std::size_t longest_file = 1 << 20;  ///< bytes; the largest method of 64 stages has a fifth of it
-constexpr std::size_t most_key_parts = 8;      ///< a method file has keys of one part
-constexpr std::size_t most_nested = 8;         ///< and lists of lists
+constexpr std::size_t longest_file = 1 << 20;  ///< bytes; the largest method of 64 stages needs a
+                                               ///< fifth of that
+constexpr std::size_t most_key_parts = 8;      ///< keys of a method file have one part
+constexpr std::size_t most_nested = 8;         ///< its values are lists of lists at most
 
-/// The byte behind the text in quotes that begins at `begin`; of one that does not end, the end of its line.
-std::size_t behind_quotes(std::string_view text, std::size_t begin) {
+/// Returns the position after the quoted string that begins at `begin`; the end of its line if the string
+/// is not terminated.
+std::size_t after_quotes(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string_view three = text.substr(begin, 3);
   const bool many_lines = three == std::string(3, quote);
@@ -38,7 +40,8 @@ std::size_t behind_quotes(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// Outside of texts and comments a '.' either divides the parts of a key or is in a number, which has one.
+/// Outside strings and comments, a '.' either separates the parts of a key or is the point of a number, which
+/// has only one.
 void check_depth(std::string_view text, const std::string& file) {
   std::size_t parts = 1, nested = 0;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -47,7 +50,7 @@ void check_depth(std::string_view text, const std::string& file) {
       at = std::min(text.find('\n', at), text.size());
       parts = 1;
     } else if (c == '"' || c == '\'') {
-      at = behind_quotes(text, at) - 1;
+      at = after_quotes(text, at) - 1;
     } else if (c == '[' || c == '{') {
       parts = 1;
       if (++nested > most_nested)
@@ -78,8 +81,8 @@ bool is_letter_or_digit(char c) {
 void check_method_text(std::string_view text, const std::string& file) {
   if (text.size() > longest_file)
     throw input_error(place_at(text, longest_file, file),
-                      fmt::format("the file is larger than {} bytes (no method file is); is it the file you "
-                                  "meant?",
+                      fmt::format("the file is larger than {} bytes (a method file never is); is it the "
+                                  "file you meant?",
                                   longest_file));
   check_depth(text, file);
 }

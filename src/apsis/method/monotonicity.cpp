@@ -21,8 +21,8 @@ std::string entry(const char* what, std::size_t i, std::size_t j, const mp_real&
   return fmt::format("{}_{},{} = {:.6g}", what, i + 1, j + 1, value.convert_to<double>());
 }
 
-/// R⁻¹ from the columns of A or Ȧ; stages that are u^n get unit columns. Empty, with the reason, if the
-/// matrices are no multiples of one another.
+/// Computes R⁻¹ from the columns of A or Ȧ; stages that are u^n get unit columns. Returns nothing, and the
+/// reason, if corresponding columns of A and Ȧ are not proportional.
 std::optional<matrix<mp_real>> inverse_stage_matrix(const butcher_form<mp_real>& b,
                                                     const std::vector<bool>& merged, const mp_real& zero,
                                                     std::string& reason) {
@@ -52,7 +52,8 @@ std::optional<matrix<mp_real>> inverse_stage_matrix(const butcher_form<mp_real>&
   return inverse;
 }
 
-/// Q(u^n) through a merged stage cannot be part of an implicit step.
+/// Returns the entry through which Q of a merged stage, that is Q(u^n), enters; such a term is not part of
+/// an implicit step.
 std::optional<std::string> explicit_collision(const butcher_form<mp_real>& b, const std::vector<bool>& merged,
                                               const mp_real& zero) {
   for (std::size_t j = 0; j < b.stages(); ++j)
@@ -100,7 +101,8 @@ ssp_analysis analyse_imex(const butcher_form<mp_real>& b, const mp_real& zero) {
       return result;
     }
   }
-  // What limits r: a weight −R_ij (of u^n: the row sum, for a merged stage) carries the Euler step r K_ij.
+  // Limits on r: the weight −R_ij (for a merged stage, the row sum, weight of u^n) must carry the Euler
+  // step r K_ij.
   result.exists = result.unconditional = true;
   result.bounded = false;
   for (std::size_t i = 0; i < s; ++i) {
@@ -132,7 +134,7 @@ std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, cons
   auto R = inverse_lower(*inverse);
   const auto first = std::find(merged.begin(), merged.end(), true);
   if (first == merged.end()) return R;
-  // The weight of u^n goes to the stage that is u^n, whose T carries the Euler steps.
+  // Assign the weight of u^n to the stage that is u^n, whose T enters the Euler steps.
   const auto stage = static_cast<std::size_t>(first - merged.begin());
   for (std::size_t i = stage + 1; i < b.stages(); ++i) {
     if (merged[i]) continue;

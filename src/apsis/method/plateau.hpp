@@ -9,16 +9,16 @@ namespace apsis {
 
 /// Bounds of |last(z) − 1| and |flux(z) − 1| (at_finite_rate) for z = CΔt/ε ≥ 1:
 ///   |last(z) − 1| ≤ last (z/(1+z))³ + last_band z³/(1+z)⁴,    flux likewise.
-/// The first term is the plateau of a method, the second what is left where ε ~ Δt (docs/plateaus.md).
+/// The first term is the plateau of a method, the second the remainder where ε ~ Δt (docs/plateaus.md).
 struct plateau_bounds {
-  double last = 0.0,    ///< of the deviation from equilibrium in u^{n+1}, where ε ≪ Δt
-      last_band = 0.0,  ///< where ε ~ Δt
-      flux = 0.0,       ///< of the deviation that transport sees, where ε ≪ Δt
-      flux_band = 0.0;  ///< where ε ~ Δt
+  double last = 0.0,    ///< relative error of the deviation from equilibrium in u^{n+1}, where ε ≪ Δt
+      last_band = 0.0,  ///< the same where ε ~ Δt
+      flux = 0.0,       ///< relative error of the deviation that enters the transport, where ε ≪ Δt
+      flux_band = 0.0;  ///< the same where ε ~ Δt
 };
 
-/// Over 1 ≤ z ≤ 10⁵, twenty values to a decade; the first terms are the values at 10⁵. +infinity where the
-/// stages have no solution.
+/// Computes the bounds from 20 samples per decade of 1 ≤ z ≤ 10⁵; the first terms are the values at z = 10⁵.
+/// +infinity if the stage equations have no solution.
 template <class Real>
 plateau_bounds find_plateau_bounds(const butcher_form<Real>& b) {
   const auto defects = [&b](double z) {

@@ -21,7 +21,7 @@ mp_real dot(const mp_vector& a, const mp_vector& b) {
   return sum;
 }
 
-/// The coefficients that may move, as pointers into a form, and the equations they must satisfy.
+/// The free coefficients, as pointers into a form, and the equations that they must satisfy.
 class coefficient_system {
  public:
   coefficient_system(method& m, const polish_conditions& more)
@@ -50,7 +50,8 @@ class coefficient_system {
   mp_real& value(std::size_t k) { return *values_[k]; }
   std::string& text(std::size_t k) { return *texts_[k]; }
 
-  /// Order conditions, full rows, c = ĉ where T counts (order 3 and up), and what was asked for besides.
+  /// Residuals of the order conditions, of full rows, of c = ĉ where T contributes (order 3 and higher), and
+  /// of the additional conditions.
   mp_vector residuals() const {
     const auto b = to_butcher(form_);
     auto equations = elementary_weights(b, trees_);
@@ -68,8 +69,8 @@ class coefficient_system {
     return equations;
   }
 
-  /// Gradients of all equations, by differences: in 60 digits a step of 1e-28 leaves an error of about 1e-28,
-  /// which only slows Newton's method from quadratic to a factor of 1e-28 per step.
+  /// Gradients of all equations by finite differences: in 60 digits a step of 1e-28 has an error of about
+  /// 1e-28, which merely turns the quadratic convergence of Newton's method into a factor of 1e-28 per step.
   std::vector<mp_vector> gradients() {
     const mp_real step(1e-28);
     const auto base = residuals();
@@ -99,8 +100,8 @@ class coefficient_system {
   std::vector<rooted_tree> trees_;
 };
 
-/// Equations whose gradients are independent, by Gram–Schmidt with the largest remainder first; the printed
-/// digits leave dependent ones a remainder of about 1e-14.
+/// Selects equations with linearly independent gradients by Gram–Schmidt with pivoting on the largest
+/// remainder; the printed digits leave dependent equations a remainder of about 1e-14.
 std::vector<std::size_t> independent(const std::vector<mp_vector>& gradients) {
   std::vector<std::size_t> chosen;
   auto rest = gradients;
@@ -127,7 +128,7 @@ std::vector<std::size_t> independent(const std::vector<mp_vector>& gradients) {
   return chosen;
 }
 
-/// Solves the symmetric positive definite system a x = b by elimination.
+/// Solves the symmetric positive definite system ax = b by Gaussian elimination.
 mp_vector solve(std::vector<mp_vector> a, mp_vector b) {
   const std::size_t n = b.size();
   for (std::size_t p = 0; p < n; ++p)
@@ -143,7 +144,7 @@ mp_vector solve(std::vector<mp_vector> a, mp_vector b) {
   return b;
 }
 
-/// NaN if there is one: std::max would drop it.
+/// Maximum norm; NaN if any entry is, which std::max would drop.
 mp_real largest_of(const mp_vector& v) {
   mp_real largest(0);
   for (const auto& x : v) {
@@ -153,7 +154,7 @@ mp_real largest_of(const mp_vector& v) {
   return largest;
 }
 
-/// The solution d of J d = right with the least Σ w_k d_k²: d = S Jᵀ (J S Jᵀ)⁻¹ right, S = diag(1/w).
+/// Returns the solution d of J d = right that minimizes Σ w_k d_k²: d = S Jᵀ (J S Jᵀ)⁻¹ right, S = diag(1/w).
 mp_vector least_change(const std::vector<mp_vector>& J, const mp_vector& right, const mp_vector& scale,
                        mp_vector* multipliers_out = nullptr) {
   const std::size_t n = J.size();
@@ -169,11 +170,10 @@ mp_vector least_change(const std::vector<mp_vector>& J, const mp_vector& right, 
   return d;
 }
 
-/// Scales for which the least change is small in every coefficient, not only in the sum: Lawson's iteration
-/// gives coefficients that move much a larger weight.
-///
-/// `bound`: no solution of J d = right has max |d| below it, because y·right = (Jᵀy)·d ≤ Σ|Jᵀy| max|d| for
-/// every y.
+/// Returns scales for which the minimal change is small in every coefficient, not only in the sum: Lawson's
+/// iteration increases the weight of coefficients that move far.
+/// `bound`: no solution of J d = right has max |d| below it, because y·right = (Jᵀy)·d ≤ Σ|Jᵀy| max|d|
+/// for every y.
 mp_vector even_scales(const std::vector<mp_vector>& J, const mp_vector& right, mp_real& bound) {
   const std::size_t n = J.empty() ? 0 : J.front().size();
   mp_vector weight(n, mp_real(1)), best_scale(n, mp_real(1));
@@ -197,7 +197,7 @@ mp_vector even_scales(const std::vector<mp_vector>& J, const mp_vector& right, m
       weight[k] *= abs(d[k]) / largest + mp_real(1e-12);
       sum += weight[k];
     }
-    // Weights stay within a range in which the normal equations are well conditioned.
+    // Keep the weights in a range in which the normal equations are well conditioned.
     for (auto& w : weight) w = std::max(mp_real(w * mp_real(n) / sum), mp_real(1e-14));
   }
   return best_scale;

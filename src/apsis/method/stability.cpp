@@ -13,7 +13,8 @@ namespace apsis {
 
 std::complex<long double> stability_function(const butcher_form<long double>& b,
                                              std::complex<long double> z) {
-  // Written out: products of complex numbers that look for infinities take most of the time of a certificate.
+  // Real arithmetic: std::complex products check for infinities, which would dominate the time
+  // of a certificate.
   using complex = std::complex<long double>;
   const long double x = z.real(), y = z.imag(), x2 = x * x - y * y, y2 = 2 * x * y;
   std::vector<complex> stages(b.stages());
@@ -40,8 +41,8 @@ complex times(complex a, complex b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-/// R(z) from the entries of the Shu–Osher form that are not zero; of a family with s stages these are O(s),
-/// of its Butcher form O(s²).
+/// R(z) from the nonzero entries of the Shu–Osher form: O(s) for the families, whose Butcher
+/// forms have O(s²).
 class sparse_function {
  public:
   explicit sparse_function(const shu_osher_form<long double>& m) {
@@ -88,13 +89,13 @@ class sparse_function {
 
 constexpr int samples = 480;
 
-/// Radii from 1e-4 to 1e8, evenly in the logarithm, k not necessarily whole.
+/// Logarithmically spaced radii from 1e-4 to 1e8; k need not be an integer.
 long double radius(long double k) {
   return std::pow(10.0L, -4.0L + 12.0L * k / samples);
 }
 
-/// Largest value of f(radius(k)): the largest sample and the maxima next to all samples that are not below
-/// both neighbours, by golden section.
+/// Returns the maximum of f(radius(k)): the largest sample, and golden-section maxima around all samples that
+/// are not below their neighbours.
 template <class Function>
 long double maximum_over_radii(const Function& f) {
   std::vector<long double> values;
@@ -102,7 +103,7 @@ long double maximum_over_radii(const Function& f) {
   long double largest = *std::max_element(values.begin(), values.end());
   for (std::size_t k = 1; k + 1 < values.size(); ++k) {
     if (!(values[k] >= values[k - 1] && values[k] >= values[k + 1])) continue;
-    constexpr int steps = 40;  // 0.618⁴⁰ = 4·10⁻⁹ of the bracket, and maxima are flat
+    constexpr int steps = 40;  // 0.618⁴⁰ = 4·10⁻⁹ of the bracket, sufficient because maxima are flat
     const auto place = static_cast<long double>(k);
     largest = std::max(
         largest,
@@ -116,10 +117,10 @@ complex direction(long double degrees) {
   return {-std::cos(radians), -std::sin(radians)};
 }
 
-/// Rounding, and the flat start |R| = 1 + O(z^{p+1}) near 0.
+/// Allowance for rounding and for |R| = 1 + O(z^{p+1}) near 0.
 constexpr long double stable = 1.0L + 1e-10L;
 
-/// Whether |R| ≤ 1 wherever one looks on the ray at `degrees` from the negative axis.
+/// Whether |R| ≤ 1 at all samples of the ray at angle `degrees` from the negative axis.
 bool seems_stable(const sparse_function& R, long double degrees) {
   const auto u = direction(degrees);
   const auto size = [&](long double r) {
@@ -129,8 +130,8 @@ bool seems_stable(const sparse_function& R, long double degrees) {
   return maximum_over_radii(size) <= stable;
 }
 
-/// Angle between the negative axis and the nearest pole 1 − zd − z²ḋ = 0 of a stage in Re z < 0, in degrees;
-/// 90 without one, as it is for d ≥ 0 ≥ ḋ.
+/// Returns the angle in degrees between the negative axis and the closest pole 1 − zd − z²ḋ = 0 of a stage in
+/// Re z < 0; 90 if there is none, which d ≥ 0 ≥ ḋ guarantees.
 long double angle_of_poles(const shu_osher_form<long double>& m) {
   long double angle = 90;
   const auto pole = [&angle](std::complex<long double> z) {
@@ -151,8 +152,9 @@ long double angle_of_poles(const shu_osher_form<long double>& m) {
   return angle;
 }
 
-/// The angle, found by steps of 5 degrees and bisection, then rounded down until it is proved. Inside a
-/// sector without poles |R| is largest on its boundary, so that one ray speaks for the sector.
+/// Returns the angle of A(α)-stability: found in steps of 5 degrees and by bisection, then rounded down
+/// until it is proved. Inside a sector without poles |R| attains its maximum on the boundary, so that
+/// one ray suffices.
 double sector(const shu_osher_form<long double>& m, const sparse_function& R) {
   constexpr long double stride = 5, unit = 1e-4L;
   const long double most = angle_of_poles(m);
@@ -175,8 +177,8 @@ double sector(const shu_osher_form<long double>& m, const sparse_function& R) {
   return 0.0;
 }
 
-/// The implicit part alone: an update that repeats an earlier stage as far as Q goes, as b = e_s·A does in
-/// methods whose b̂ is another row, is that stage.
+/// Returns the implicit part alone. An update whose Q weights repeat an earlier stage, as b = e_s·A does in
+/// methods whose b̂ differs, is identified with that stage.
 shu_osher_form<long double> implicit_part(const shu_osher_form<long double>& m) {
   const auto b = to_butcher(m);
   const std::size_t last = m.stages() - 1;
@@ -209,7 +211,7 @@ implicit_stability analyse_stability(const shu_osher_form<long double>& method) 
   const sparse_function R(m);
   const auto on_axis = [&R](long double r) { return R(-r).real(); };
   const long double smallest = -maximum_over_radii([&](long double r) { return -on_axis(r); });
-  // sup |R(x)| is at least that for x → 0.
+  // sup |R(x)| is at least its limit 1 for x → 0.
   s.largest_on_negative_axis = static_cast<double>(
       std::max(1.0L, maximum_over_radii([&](long double r) { return std::abs(on_axis(r)); })));
   s.smallest_on_negative_axis = static_cast<double>(smallest);

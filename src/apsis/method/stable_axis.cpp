@@ -26,7 +26,8 @@ struct fraction {
   polynomial numerator, denominator;
 };
 
-/// R(z), not reduced: the numerators of all stages over the product of the denominators up to the last one.
+/// Returns R(z) without cancelling common factors: the numerator of the last stage over the product
+/// of all denominators.
 fraction stability_fraction(const shu_osher_form<long double>& m) {
   const auto initial = initial_weights(m);
   polynomial denominator = {mp_real(1)};
@@ -59,7 +60,7 @@ polynomial square_on_imaginary_axis(const polynomial& p) {
   return out;
 }
 
-/// The same with all terms positive: the size of what cancels in each coefficient.
+/// The same with absolute values of all terms: a scale for the cancellation in each coefficient.
 polynomial terms_on_imaginary_axis(const polynomial& p) {
   polynomial a, b;
   for (std::size_t k = 0; k < p.size(); ++k) (k % 2 == 0 ? a : b).push_back(abs(p[k]));
@@ -68,7 +69,7 @@ polynomial terms_on_imaginary_axis(const polynomial& p) {
   return out;
 }
 
-/// Coefficients in the Bernstein basis of [0, 1].
+/// Converts to the Bernstein basis of [0, 1].
 polynomial bernstein(const polynomial& p) {
   polynomial out = p;
   const std::size_t n = p.size() - 1;
@@ -82,7 +83,8 @@ polynomial bernstein(const polynomial& p) {
   return out;
 }
 
-/// Whether the polynomial with these Bernstein coefficients is proved to be ≥ 0 on its interval.
+/// Whether the polynomial with these Bernstein coefficients is proved to be ≥ 0 on its interval, by bisection
+/// up to `depth` levels.
 bool is_nonnegative(polynomial b, int depth) {
   if (std::all_of(b.begin(), b.end(), [](const mp_real& x) { return x >= 0; })) return true;
   if (depth == 0 || b.front() < 0 || b.back() < 0) return false;

@@ -13,12 +13,12 @@ namespace {
 using real = long double;
 using complex = std::complex<real>;
 
-/// Products of complex numbers without the search for infinities, which would take most of the time.
+/// Complex product without the check for infinities of std::complex, which would dominate the run time.
 complex times(complex a, complex b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-/// |a| where its square neither overflows nor underflows.
+/// |a|, provided that its square neither overflows nor underflows.
 real modulus(complex a) {
   return std::sqrt(std::norm(a));
 }
@@ -42,14 +42,14 @@ disc operator*(const disc& a, const disc& b) {
           modulus(a.middle) * b.radius + modulus(b.middle) * a.radius + a.radius * b.radius};
 }
 
-/// The image of a disc that does not contain 0 under 1/z, which is a disc; an infinite one otherwise.
+/// Image of a disc under 1/z: a disc, of infinite radius if the argument contains 0.
 disc inverse(const disc& a) {
   const real power = std::norm(a.middle) - a.radius * a.radius;
   if (!(power > 0)) return {0, std::numeric_limits<real>::infinity()};
   return {std::conj(a.middle) / power, a.radius / power};
 }
 
-/// A function of t on an interval, and its derivative.
+/// Enclosures of a function of t and of its derivative on an interval.
 struct enclosure {
   disc value, slope;
 };
@@ -82,7 +82,7 @@ enclosure quadratic(complex c0, complex c1, complex c2, real middle, real half) 
           {slope, 2 * half * modulus(c2)}};
 }
 
-/// R on the ray as a function of t = |z| or of t = 1/|z|, by forward substitution in the Shu–Osher form: its
+/// R on the ray as a function of t = |z| or t = 1/|z|, by forward substitution in the Shu–Osher form, whose
 /// convex combinations do not cancel, so that the discs stay small.
 class ray {
  public:
@@ -125,7 +125,7 @@ class ray {
     real weight;
   };
 
-  /// What a stage takes of earlier ones, y_j: Σ (p + w) y_j with u^n, Σ d_ij y_j, and z times that.
+  /// Contributions of earlier stages y_j: Σ (p + w) y_j including u^n, Σ d_ij y_j, and z times the latter.
   struct source {
     enclosure convex, coupled, collision;
     bool is_coupled;
@@ -160,7 +160,7 @@ class ray {
     return sum * inverse(far_denominator(i, middle, half));
   }
 
-  /// z y_i, bounded for z → ∞ unless stage i is explicit.
+  /// z y_i, which is bounded for z → ∞ unless stage i is explicit.
   enclosure far_collision(std::size_t i, const source& from, real middle, real half) const {
     const enclosure sum = from.is_coupled ? from.convex + from.collision : from.convex;
     if (!is_implicit(i)) return constant(direction_) * inverse(quadratic(0, 1, 0, middle, half)) * sum;
@@ -173,7 +173,7 @@ class ray {
   complex direction_;
   std::vector<real> initial_;
   std::vector<entry> mixed_, coupled_;  ///< row by row
-  bool has_update_ = false;             ///< a stage without implicit part takes Q of earlier ones
+  bool has_update_ = false;             ///< Q of earlier stages enters a stage without implicit part
   std::vector<enclosure> values_, collisions_;
 };
 
@@ -194,7 +194,7 @@ bool is_stable_part(ray& R, bool far) {
     real begin, length;
   };
   std::vector<interval> left = {{0, 1}};
-  constexpr int most = 200'000;  // members of families with 64 stages take some thousands
+  constexpr int most = 200'000;  // family members with 64 stages need a few thousand
   for (int taken = 0; !left.empty(); ++taken) {
     if (taken == most) return false;
     const auto [begin, length] = left.back();
@@ -206,7 +206,7 @@ bool is_stable_part(ray& R, bool far) {
     if (std::isfinite(range.value.radius) && std::isfinite(range.slope.radius)) {
       const auto [slope, spread] = slope_of_square(range);
       if (value + half * (std::abs(slope) + spread) <= 1 + allowance) continue;
-      // |R| = 1 at t = 0 and falls; where t = 0 means z = ∞, R there is part of the range.
+      // |R| = 1 at t = 0 and decreases; for `far`, t = 0 is z = ∞, where R is checked separately.
       if (begin == 0 && slope + spread <= 0) {
         if (!far || std::norm(R(0, 0, far).value.middle) <= 1 + allowance) continue;
       }

@@ -11,9 +11,9 @@ namespace apsis {
 /// (paper, eq. IMEXRKButcher). All matrices are s × s and lower triangular, Â strictly. Dimensionless.
 template <class Real>
 struct butcher_form {
-  matrix<Real> A_hat,                              ///< Â, of T
-      A,                                           ///< of Q
-      A_dot;                                       ///< Ȧ, of Q̇
+  matrix<Real> A_hat,                              ///< Â, coefficients of T
+      A,                                           ///< coefficients of Q
+      A_dot;                                       ///< Ȧ, coefficients of Q̇
   std::size_t stages() const { return A.rows(); }  ///< s
 };
 
@@ -28,21 +28,21 @@ struct shu_osher_form {
       W,                                              ///< weights w_ij of forward Euler steps of length Δt/r
       D;                                              ///< d_ij
   std::vector<Real> ddot;                             ///< ḋ_i
-  Real r{};                                           ///< of a convex form at most the SSP coefficient
+  Real r{};                                           ///< at most the SSP coefficient if the form is convex
   std::size_t stages() const { return ddot.size(); }  ///< s
 };
 
-/// Row sums of R = I − P − W, the weights r_i of u^n.
+/// Returns the row sums of R = I − P − W, the weights r_i of u^n.
 template <class Real>
 std::vector<Real> initial_weights(const shu_osher_form<Real>& m);
 
-/// Â = R⁻¹W/r, A = R⁻¹D, Ȧ = R⁻¹Ḋ.
+/// Returns the Butcher form Â = R⁻¹W/r, A = R⁻¹D, Ȧ = R⁻¹Ḋ.
 template <class Real>
 butcher_form<Real> to_butcher(const shu_osher_form<Real>& m);
 
-/// The way back for a given unit lower triangular R and r > 0: W = rRÂ, D = RA, ḋ = diag(RȦ), P = I − R − W.
-/// The result stands for the same method if RȦ is diagonal; certify() finds the R that the paper's class
-/// requires.
+/// Returns the Shu–Osher form for given unit lower triangular R and r > 0: W = rRÂ, D = RA, ḋ = diag(RȦ), P
+/// = I − R − W. It represents the same method if RȦ is diagonal; stage_matrix() finds the R that the
+/// paper's class requires.
 template <class Real>
 shu_osher_form<Real> to_shu_osher(const butcher_form<Real>& b, const matrix<Real>& R, const Real& r);
 

@@ -19,7 +19,7 @@ rooted_tree make_tree(colour root, const std::vector<int>& children, const std::
   return tree;
 }
 
-/// Appends every sorted list of trees (indices ≥ first) with `nodes` nodes in all.
+/// Appends every sorted list of trees (indices ≥ first) with `nodes` nodes in total.
 void forests(int nodes, int first, const std::vector<rooted_tree>& known, std::vector<int>& list,
              std::vector<std::vector<int>>& found) {
   if (nodes == 0) {

@@ -8,21 +8,21 @@ namespace apsis {
 /// Colour of a node: F for the explicit operator T, G for the implicit operator Q.
 enum class colour { F, G };
 
-/// A rooted tree with coloured nodes. Children are indices into the list that it belongs to, sorted; equal
-/// subtrees stand as often as they occur.
+/// A rooted tree with coloured nodes. Children are sorted indices into the list that contains the tree; equal
+/// subtrees are repeated.
 struct rooted_tree {
-  colour root = colour::F;    ///< of the root
+  colour root = colour::F;    ///< colour of the root
   std::vector<int> children;  ///< τ_1 … τ_m of τ = [τ_1 … τ_m]
   int order = 1;              ///< number of nodes
   double density = 1.0;       ///< γ(τ) = |τ| Π γ(τ_k), an integer
   std::string name;           ///< "G[F,G[F]]"
 };
 
-/// Colours that the nodes of a list of trees have.
+/// Node colours of a list of trees.
 enum class tree_colours { F_only, G_only, both };
 
-/// Every tree of order 1 … `order`, by order; every child stands before its parents. Numbers of trees per
-/// order: 2, 4, 14, 52, 214, … with two colours, 1, 1, 2, 4, 9, … with one.
+/// Returns every tree of order 1 … `order`, sorted by order, children before their parents. Numbers of trees
+/// per order: 2, 4, 14, 52, 214, … with two colours, 1, 1, 2, 4, 9, … with one.
 std::vector<rooted_tree> rooted_trees(int order, tree_colours colours);
 
 }  // namespace apsis

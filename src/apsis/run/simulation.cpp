@@ -294,7 +294,7 @@ saved_run simulation::save() const {
     const auto control = impl_->control->save();
     saved.proposed_dt = control.proposed;
     saved.previous_error = control.previous;
-    saved.step_holds = control.holds;
+    saved.step_holds = control.after_rejection;
   }
   saved.so_far = summary();
   saved.initial = impl_->first;

@@ -2,10 +2,10 @@
 
 namespace apsis {
 
-/// What the unknowns of a cell are.
+/// Meaning of the unknowns of a cell.
 enum class formulation {
-  finite_volume,     ///< averages over the cell
-  finite_difference  ///< values at its centre
+  finite_volume,     ///< cell averages
+  finite_difference  ///< point values at cell centres
 };
 
 }  // namespace apsis

@@ -1,4 +1,4 @@
-// The formulas of limiter.hpp for packs of numbers.
+// The formulas of limiter.hpp for packs.
 #if defined(APSIS_SPACE_LIMITER_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_SPACE_LIMITER_INL_HPP
 #undef APSIS_SPACE_LIMITER_INL_HPP
@@ -16,7 +16,7 @@ using apsis::limiter::absolute_margin;
 using apsis::limiter::end_weight;
 using apsis::limiter::relative_margin;
 
-/// Not negative, and 0 instead of NaN.
+/// Returns max(x, 0), and 0 for NaN.
 template <class N>
 HWY_INLINE N nonnegative(N x) {
   return select(x > N(0.0), x, N(0.0));
@@ -38,7 +38,7 @@ HWY_INLINE N interior(N c, N l, N r) {
   return (c - end_weight * (l + r)) * (1.0 / (1.0 - 2.0 * end_weight));
 }
 
-/// limiter::harmless_fraction in two parts, since the corrections of most cells do no harm.
+/// limiter::harmless_fraction in two parts, because the corrections of most cells need no limiting.
 template <class N>
 class harm_bound {
  public:
@@ -48,7 +48,7 @@ class harm_bound {
                          N(0.0))),
         harm_(nonnegative(a_out) + nonnegative(-a_in)) {}
 
-  /// Some component has a fraction below 1.
+  /// Whether some component has a fraction below 1.
   HWY_INLINE bool exceeded() const { return N::any(harm_ > allowed_); }
   HWY_INLINE N fraction() const { return nonnegative(select(harm_ > allowed_, allowed_ / harm_, N(1.0))); }
 

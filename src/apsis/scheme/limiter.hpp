@@ -7,51 +7,52 @@ namespace apsis {
 /// step of upwind transport with Δt ≤ ŵ₁ Δx/v keeps the average nonnegative.
 namespace limiter {
 
-/// ŵ₁, the weight of each of the two edges.
+/// Quadrature weight ŵ₁ of each edge.
 inline constexpr double end_weight = 1.0 / 12.0;
 
-/// Values are kept above this fraction of the average (or of K_i) instead of above 0: the rounding of the
-/// update is a few 1e-16 of the average, so the result stays positive. The order of accuracy is unaffected.
+/// Values are kept above this fraction of the average (or of K) instead of above 0: rounding errors of the
+/// update are a few 1e-16 of the average, so the result stays positive. The order of accuracy is unaffected.
 inline constexpr double relative_margin = 1e-13;
 
-/// Absolute part of the margin, for values near the smallest normal number 2.2e-308, whose rounding error is
-/// absolute (half of 4.9e-324): averages below it get first-order upwind fluxes, which round safely
-/// (docs/space.md, "Rounding").
+/// Absolute part of the margin, for values close to the smallest normal number 2.2e-308, whose rounding error
+/// is absolute (half of 4.9e-324): averages below it get first-order upwind fluxes, which stay nonnegative
+/// under rounding (docs/space.md, "Rounding").
 inline constexpr double absolute_margin = 1e-290;
 
-/// The lower bound of the limited values in a cell of average c ≥ 0: relative_margin·c + absolute_margin, and
-/// c itself where that is larger than c. For c < 0 it is c.
+/// Returns the lower bound of the limited values in a cell of average c: relative_margin·c + absolute_margin,
+/// but at most c.
 inline double lower_bound(double c) {
   const double bound = relative_margin * c + absolute_margin;
   return bound < c ? bound : c;
 }
 
-/// θ ∈ [0, 1] such that c + θ(m − c) ≥ lower_bound(c), where m ≤ c is the smallest value to be limited.
-/// 0 for NaN and for c ≤ absolute_margin (if m < c).
+/// Returns θ ∈ [0, 1] such that c + θ(m − c) ≥ lower_bound(c), where m ≤ c is the smallest value to be
+/// limited. 0 for NaN and for c ≤ absolute_margin (if m < c).
 inline double scaling(double c, double m) {
   const double bound = lower_bound(c);
   const double theta = m < bound ? (c - bound) / (c - m) : 1.0;
   return theta > 0.0 ? theta : 0.0;
 }
 
-/// The value ξ* that the average implies between the edges.
+/// Returns the value ξ* that average c and edge values l, r imply between the edges.
 inline double interior(double c, double l, double r) {
   return (c - end_weight * (l + r)) * (1.0 / (1.0 - 2.0 * end_weight));
 }
 
-/// left, right (rows of `width` edge values of one cell) move towards the averages c.
+/// Limits the edge values `left` and `right` of a cell (rows of `width` numbers) by scaling them towards
+/// the averages c.
 void apply(const double* c, int width, double* left, double* right);
 
-/// Point values: their flux function is not nonnegative where the solution touches zero (near a minimum
-/// it is lower by Δx² u''/24), so edges must not be cut at zero. Instead the fluxes into and out of a cell
-/// are limited together, between first-order upwind and the high-order edge (as in Xu, Math. Comp. 83, 2014,
-/// or Zalesak, JCP 31, 1979). In the direction of motion, with the values u_up, u ≥ 0 and the corrections A =
-/// edge − donor of the inflow and the outflow: the fraction ϑ ∈ [0, 1] of the corrections that harm this
-/// cell, such that
+/// Limits fluxes of point values. Their flux function may be negative where the solution touches zero (near a
+/// minimum it is lower by Δx² u''/24), so edge values must not be cut off at zero. Instead the fluxes into
+/// and out of a cell are limited together, between first-order upwind and the high-order edge (as in Xu,
+/// Math. Comp. 83, 2014, or Zalesak, JCP 31, 1979). In the direction of motion, with the values u_up, u ≥ 0
+/// and the corrections A = edge − donor of inflow and outflow, returns the fraction ϑ ∈ [0, 1] of the
+/// corrections that decrease u, such that
 ///   u − κ (u + ϑ A_out⁺ − u_up + ϑ A_in⁻) ≥ κ absolute_margin,  κ = end_weight,
-/// where K = (1 − κ)u + κ u_up allows it; ϑ = 0 where K is smaller than the margin.
+/// if K = (1 − κ)u + κ u_up allows it; ϑ = 0 if K is below the margin.
 inline double harmless_fraction(double u_up, double u, double a_in, double a_out) {
-  // Both sides divided by κ, since κ A may underflow to 0.
+  // Both sides are divided by κ, because κ A may underflow to 0.
   const double kept = (1.0 / end_weight - 1.0) * u + u_up;
   const double harm = (a_out > 0.0 ? a_out : 0.0) - (a_in < 0.0 ? a_in : 0.0);
   const double left = (1.0 - relative_margin) * kept - absolute_margin;

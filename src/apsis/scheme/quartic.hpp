@@ -4,19 +4,20 @@
 
 namespace apsis {
 
-/// The quartic on one cell (ξ ∈ [−½, ½]) through the edge values L, R whose averages on the cell and its two
-/// neighbours are c, m, p; three-point Gauss–Legendre is exact on it, so the weighted mean of the Gauss
-/// values is c. Written in the differences from c: flat data are reproduced without rounding, and no step
-/// drifts.
+/// Quartic on a cell (ξ ∈ [−½, ½]) with edge values L, R and averages c, m, p over the cell and its left and
+/// right neighbours. Three-point Gauss–Legendre integrates it exactly, so the weighted mean of the Gauss
+/// values is c. Expressed in differences from c, so that constant data are reproduced without rounding and
+/// no step drifts.
 struct quartic {
   double c,  ///< average
-      d0,    ///< deviation from it at the centre
+      d0,    ///< value minus average at the centre
       d1,    ///< coefficient of ξ
-      d2,    ///< of ξ²
-      d3,    ///< of ξ³
-      d4;    ///< of ξ⁴
+      d2,    ///< coefficient of ξ²
+      d3,    ///< coefficient of ξ³
+      d4;    ///< coefficient of ξ⁴
 
-  /// From the averages of the left neighbour, the cell and the right one, and the edge values L and R.
+  /// Builds the quartic from the averages of the left neighbour, the cell and the right neighbour, and the
+  /// edge values L and R.
   quartic(double m, double average, double p, double l, double r) : c(average) {
     const double edges = (l - c) + (r - c), slope = r - l;
     const double neighbours = (m - c) + (p - c), rise = p - m;
@@ -27,9 +28,9 @@ struct quartic {
     d4 = -2.5 * edges + 5.0 / 12.0 * neighbours;
   }
 
-  /// Value minus average.
+  /// Returns the value at ξ minus the average.
   double deviation(double xi) const { return d0 + xi * (d1 + xi * (d2 + xi * (d3 + xi * d4))); }
-  /// Value at ξ.
+  /// Returns the value at ξ.
   double operator()(double xi) const { return c + deviation(xi); }
 };
 
@@ -38,7 +39,7 @@ struct gauss3 {
   static constexpr int points = 3;                                   ///< number of nodes
   static constexpr double outer = 0.38729833462074168852;            ///< √(3/5)/2
   static constexpr std::array<double, 3> xi = {-outer, 0.0, outer};  ///< nodes
-  /// Weights; their sum is 1 without rounding.
+  /// Weights, which sum to exactly 1 in floating point.
   static constexpr std::array<double, 3> weight = {5.0 / 18.0, 1.0 - 2.0 * (5.0 / 18.0), 5.0 / 18.0};
 };
 

@@ -17,7 +17,7 @@ row_extremes extremes(const double* row, int n) {
   const wide lanes;
   using N = pack<wide>;
   const int length = static_cast<int>(hn::Lanes(lanes));
-  // Infinity where the row has no number for it; the sum of x − x is NaN as soon as one x is not finite.
+  // The initial minimum is +infinity; the sum of x − x is NaN as soon as one x is not finite.
   N lowest(std::numeric_limits<double>::infinity()), none(0.0), negative(0.0);
   int k = 0;
   for (; k + length <= n; k += length) {

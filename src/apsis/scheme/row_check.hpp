@@ -2,13 +2,13 @@
 
 namespace apsis {
 
-/// What a monitor asks of a row of numbers.
+/// Minimum and number of negative entries of a row.
 struct row_extremes {
-  double lowest;  ///< the smallest; NaN if any number is not finite
-  long negative;  ///< how many are below 0
+  double lowest;  ///< minimum; NaN if any number is not finite
+  long negative;  ///< number of entries below 0
 };
 
-/// For the instruction set of this processor. n ≥ 1.
+/// Computes the extremes of a row of n ≥ 1 numbers with the instruction set of this processor.
 row_extremes find_extremes(const double* row, int n);
 
 }  // namespace apsis

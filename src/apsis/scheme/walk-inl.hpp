@@ -1,4 +1,4 @@
-// Walks along a pencil in the direction of motion, so that upwind formulas are written once.
+// Walks along a pencil in the direction of motion, so that upwind formulas are written only once.
 #if defined(APSIS_SPACE_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_SPACE_WALK_INL_HPP
 #undef APSIS_SPACE_WALK_INL_HPP
@@ -15,9 +15,9 @@ namespace apsis::HWY_NAMESPACE {
 
 enum class course { forward, backward, either };
 
-/// Cells 0 … count−1 of a pencil for one pack of components. Cell j of the walk is cell j of the pencil where
-/// the components move forward, cell count−1−j where they move backward; so cell j−1 of the walk is always
-/// upstream. A pack with components of both kinds reads both cells.
+/// Iterates over cells 0 … count−1 of a pencil for one pack of components. Cell j of the walk is cell j of
+/// the pencil for components that move forward, cell count−1−j for those that move backward, so cell j−1 of
+/// the walk is always upstream. A pack with components of both kinds reads both cells.
 template <course C, class D>
 class walk {
  public:
@@ -25,25 +25,25 @@ class walk {
 
   HWY_INLINE walk(int count, int k, const double* forward) : last_(count - 1), k_(k), forward_(forward) {}
 
-  /// rows[i] is the row of cell i of the pencil.
+  /// Loads from rows[i], the row of cell i of the pencil.
   HWY_INLINE number load(const double* const* rows, int j) const {
     if constexpr (C == course::forward) return number::load(rows[j] + k_);
     if constexpr (C == course::backward) return number::load(rows[last_ - j] + k_);
     return select(ahead(), number::load(rows[j] + k_), number::load(rows[last_ - j] + k_));
   }
-  /// Asks memory for the row of cell j, or of the last one before it. No further: rows behind the end may be
-  /// another core's.
+  /// Prefetches the row of cell j or, past the end, of the last cell: rows beyond the end may belong
+  /// to another core.
   HWY_INLINE void prefetch(const double* const* rows, int j) const {
     if constexpr (C != course::backward) hwy::Prefetch(rows[j < last_ ? j : last_] + k_);
     if constexpr (C != course::forward) hwy::Prefetch(rows[j < last_ ? last_ - j : 0] + k_);
   }
-  /// Rows at equal distances, from that of cell 0 of the pencil on.
+  /// Loads from equally spaced rows, starting with that of cell 0 of the pencil.
   HWY_INLINE number load(const double* row, std::ptrdiff_t pitch, int j) const {
     if constexpr (C == course::forward) return number::load(row + j * pitch + k_);
     if constexpr (C == course::backward) return number::load(row + (last_ - j) * pitch + k_);
     return select(ahead(), number::load(row + j * pitch + k_), number::load(row + (last_ - j) * pitch + k_));
   }
-  /// Of two rows, that which is downstream in the cell: `right` where components move forward.
+  /// Loads from the downstream one of two rows: `right` where components move forward.
   HWY_INLINE number load_downstream(const double* left, const double* right, std::ptrdiff_t pitch,
                                     int j) const {
     if constexpr (C == course::forward) return load(right, pitch, j);
@@ -69,8 +69,8 @@ class walk {
   const double* forward_;
 };
 
-/// body(walk, k) for every pack of `width` components; forward[k] is 1 where a component moves forward, else
-/// 0.
+/// Calls body(walk, k) for every pack of `width` components; forward[k] is 1 where a component moves
+/// forward, else 0.
 template <class Body>
 HWY_INLINE void for_walks(const double* forward, int count, int width, const Body& body) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {

@@ -12,20 +12,20 @@ HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE::weno5 {
 
 /// Fifth-order WENO edge values of a cell from the cells i−2 … i+2. Three third-order candidates at each edge
-/// are weighted by (linear weight) × g_k, where g_k depends on the indicators of smoothness β_k (Jiang & Shu,
-/// JCP 126, 1996). Right edge: linear weights (1, 6, 3)/10; left edge by mirror symmetry. Everything is
-/// written with first and second differences, which neighbouring cells share, and the edge as the cell's own
-/// value and a deviation.
+/// have the weights (linear weight) × g_k, where g_k depends on the smoothness indicators β_k (Jiang & Shu,
+/// JCP 126, 1996). Right edge: linear weights (1, 6, 3)/10; left edge by mirror symmetry. All formulas use
+/// first and second differences, which neighbouring cells share, and represent an edge value as the value of
+/// the cell plus a deviation.
 
-/// u_{i−1} − 2u_i + u_{i+1}, and 13/3 of its square.
+/// Second difference u_{i−1} − 2u_i + u_{i+1}, and 13/3 of its square.
 template <class N>
 struct bend {
   N second, square;
   HWY_INLINE bend(N before, N after) : second(after - before), square(N(13.0 / 3.0) * second * second) {}
 };
 
-/// What the formulas need of the cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} −
-/// u_i, and the second differences at i−1, i and i+1.
+/// Stencil of cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} − u_i, and the second
+/// differences at i−1, i and i+1.
 template <class N>
 class window {
  public:
@@ -41,7 +41,7 @@ class window {
         next_(d),
         last_(e) {}
 
-  /// One cell on; `value` is u_{i+2} of the new cell i.
+  /// Moves the stencil by one cell; `value` is u_{i+2} of the new cell i.
   HWY_INLINE void advance(N value) {
     here = next_;
     next_ = last_;
@@ -62,7 +62,7 @@ class window {
   N next_, last_;
 };
 
-/// 4β_k.
+/// Smoothness indicators times four, 4β_k.
 template <class N>
 struct smoothness {
   N s0, s1, s2;
@@ -75,9 +75,9 @@ HWY_INLINE smoothness<N> indicators(const window<N>& u) {
   return {fma(y0, y0, u.bend0.square), fma(y1, y1, u.bend1.square), fma(y2, y2, u.bend2.square)};
 }
 
-/// 4(β_k + δ) times the power of two that brings the largest of them to about 1, and kept above 1e-40:
-/// products of six of these neither overflow nor underflow, whatever the size of the data. Where the data are
-/// so small that only δ is left, all three are equal.
+/// Scales 4(β_k + δ) by the power of two that makes the largest about 1, with a lower bound of 1e-40:
+/// products of six of them neither overflow nor underflow, whatever the size of the data. For data so small
+/// that only δ remains, all three are equal.
 template <class N>
 HWY_INLINE smoothness<N> scale(const smoothness<N>& s, N delta) {
   const N by = inverse_power_of_two(maximum(maximum(s.s1, s.s2), s.s0) + delta),
@@ -85,13 +85,13 @@ HWY_INLINE smoothness<N> scale(const smoothness<N>& s, N delta) {
   return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least)};
 }
 
-/// What the edges of a cell need of its window.
+/// Terms of a stencil from which the edges of its cell are computed.
 template <class Weights, class N>
-struct measured {
+struct edge_terms {
   N here, before, after, three_before, three_after, second0, second1, second2;
   smoothness<N> y;
 
-  HWY_INLINE measured(const window<N>& u)
+  HWY_INLINE edge_terms(const window<N>& u)
       : here(u.here),
         before(u.before),
         after(u.after),
@@ -103,20 +103,21 @@ struct measured {
         y(scale(indicators(u), Weights::delta(u.here))) {}
 };
 
-/// g_k > 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over one common denominator.
+/// Factors g_k > 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over
+/// a common denominator.
 template <class N>
 struct factors {
   N g0, g1, g2;
 };
 
-/// An edge but for the division, u + numerator/denominator: twice the candidates minus u_i are r₀, q₁/3 and
-/// q₂/3, and their weights g₀, 6g₁ and 3g₂.
+/// Right edge u + numerator/denominator before the division: twice the candidates minus u_i are r₀, q₁/3 and
+/// q₂/3, with weights g₀, 6g₁ and 3g₂.
 template <class N>
 struct right_fraction {
   N here, numerator, denominator;
 
   template <class Weights>
-  HWY_INLINE right_fraction(const measured<Weights, N>& u)
+  HWY_INLINE right_fraction(const edge_terms<Weights, N>& u)
       : here(u.here), numerator(u.here), denominator(u.here) {
     const auto g = Weights::factors(u.y);
     const N r0 = fma(N(2.0 / 3.0), u.second0, u.before), q1 = u.three_after - u.second1,
@@ -129,13 +130,14 @@ struct right_fraction {
   HWY_INLINE N edge() const { return here + numerator / (denominator + denominator); }
 };
 
-/// Both edges with one division; the left one from the mirrored cells, its numerator with the opposite sign.
+/// Both edges with a single division; the left one is that of the mirrored cells, its numerator with
+/// the opposite sign.
 template <class N>
 struct both_fractions {
   N here, right, right_sum, left, left_sum;
 
   template <class Weights>
-  HWY_INLINE both_fractions(const measured<Weights, N>& u)
+  HWY_INLINE both_fractions(const edge_terms<Weights, N>& u)
       : here(u.here), right(u.here), right_sum(u.here), left(u.here), left_sum(u.here) {
     const auto g = Weights::factors(u.y);
     const N r0 = fma(N(2.0 / 3.0), u.second0, u.before), q1 = u.three_after - u.second1,
@@ -157,20 +159,20 @@ struct both_fractions {
   }
 };
 
-/// Calls put(fraction, j) for cells 0 … count−1 of the walk. The formulas of a cell are one long chain,
-/// longer than a processor looks ahead; so they are cut in three, and those of three cells are under way at a
-/// time. Rows of neighbouring cells are too far apart for the processor to guess which comes next: it is told
-/// as many cells ahead as memory is slow.
+/// Calls put(fraction, j) for cells 0 … count−1 of the walk. The formulas of a cell form a dependency chain
+/// longer than the out-of-order window of a processor; they are split into three parts, and those of three
+/// cells are interleaved to hide latency. Rows of neighbouring cells are too far apart for the hardware
+/// prefetcher, so rows are prefetched `cells_ahead` cells in advance.
 template <class Weights, template <class> class Fraction, class Walk, class Put>
 HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Put& put) {
   using N = typename Walk::number;
   window<N> u(way.load(rows, -2), way.load(rows, -1), way.load(rows, 0), way.load(rows, 1),
               way.load(rows, 2));
-  measured<Weights, N> newest(u);
+  edge_terms<Weights, N> newest(u);
   Fraction<N> waiting(newest);
   if (count > 1) {
     u.advance(way.load(rows, 3));
-    newest = measured<Weights, N>(u);
+    newest = edge_terms<Weights, N>(u);
   }
   constexpr int cells_ahead = 16;
   for (int j = 2; j < count; ++j) {
@@ -178,7 +180,7 @@ HWY_INLINE void along(const Walk& way, const double* const* rows, int count, con
     put(waiting, j - 2);
     waiting = Fraction<N>(newest);
     u.advance(way.load(rows, j + 2));
-    newest = measured<Weights, N>(u);
+    newest = edge_terms<Weights, N>(u);
   }
   if (count > 1) {
     put(waiting, count - 2);
@@ -187,7 +189,8 @@ HWY_INLINE void along(const Walk& way, const double* const* rows, int count, con
   put(waiting, count - 1);
 }
 
-/// Applies `Weights::factors(window) → factors` along a pencil; see reconstruction::edges for the arguments.
+/// Computes both edges along a pencil with the weights of `Weights`; see reconstruction::edges
+/// for the arguments.
 template <class Weights>
 HWY_INLINE void sweep_edges(const double* const* rows, int count, int width, double* left, double* right) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
@@ -202,7 +205,7 @@ HWY_INLINE void sweep_edges(const double* const* rows, int count, int width, dou
   });
 }
 
-/// The same for reconstruction::outflow_edges.
+/// Computes outflow edges; see reconstruction::outflow_edges for the arguments.
 template <class Weights>
 HWY_INLINE void sweep_outflow(const double* const* rows, int count, int width, const double* forward,
                               double* edge) {
@@ -213,7 +216,7 @@ HWY_INLINE void sweep_outflow(const double* const* rows, int count, int width, c
   });
 }
 
-/// Operations for one number of a long pencil.
+/// Counts the operations per number of a long pencil.
 template <class Weights>
 double count_operations(bool both) {
   const counted x(0.0);
@@ -222,14 +225,14 @@ double count_operations(bool both) {
     counted left(0.0), right(0.0);
     u.advance(x);
     if (both) {
-      both_fractions<counted>(measured<Weights, counted>(u)).edges(left, right);
+      both_fractions<counted>(edge_terms<Weights, counted>(u)).edges(left, right);
     } else {
-      right_fraction<counted>(measured<Weights, counted>(u)).edge();
+      right_fraction<counted>(edge_terms<Weights, counted>(u)).edge();
     }
   });
 }
 
-/// The same, counted once; see reconstruction::operations.
+/// Returns the operation count, computed once; see reconstruction::operations.
 template <class Weights>
 double operations(bool both) {
   static const double of_one = count_operations<Weights>(false), of_both = count_operations<Weights>(true);

@@ -1,12 +1,12 @@
-// n = S − 1 evaluations of T in a chain, r = n − 1, the largest that n evaluations can have at second order.
-// docs/methods.md proves order and signs, and that no other method has this n_F and this r with S stages.
+// Chain of n = S − 1 evaluations of T with r = n − 1, the largest r that n evaluations can have at second
+// order. docs/methods.md proves order and signs, and that no other method has this n_F and r with S stages.
 #include <apsis/method/family_parts.hpp>
 #include <apsis/method/family_registry.hpp>
 
 namespace apsis {
 namespace {
 
-/// Of the free ḋ those that are third order where T = 0, spread evenly over the chain.
+/// The free ḋ make the method third order where T = 0 and are spread evenly over the chain.
 method make(std::size_t stages) {
   const long n = static_cast<long>(stages) - 1;
   const std::size_t last = stages - 1;

@@ -1,13 +1,12 @@
-// n = S − 2 evaluations of T, r = n − 1, and exact in the terms of size ε for ε ≪ Δt. Derivation:
-// docs/plateaus.md.
+// n = S − 2 evaluations of T, r = n − 1, with exact O(ε) terms for ε ≪ Δt. Derivation: docs/plateaus.md.
 #include <apsis/method/family_parts.hpp>
 #include <apsis/method/family_registry.hpp>
 
 namespace apsis {
 namespace {
 
-/// Order 2 leaves ḋ_2 + (n−1) ḋ_{n+1} = −(n² − 3n + 4)/n². Two equal parts are within 2 % of the least error
-/// constant for every n, and for n = 3 the method is md-imex-5-2.
+/// Order 2 leaves one condition, ḋ_2 + (n−1) ḋ_{n+1} = −(n² − 3n + 4)/n². Two equal parts are within 2 % of
+/// the smallest error constant for every n, and n = 3 gives md-imex-5-2.
 method make(std::size_t stages) {
   const long n = static_cast<long>(stages) - 2;
   const std::size_t last = stages - 1;
@@ -15,8 +14,7 @@ method make(std::size_t stages) {
   m.title = "second-order SSP multi-derivative IMEX method without O(epsilon) plateaus";
   m.citation = "Apsis, docs/plateaus.md";
   m.origin =
-      "Closed form: the optimal explicit second-order method, with one relaxed stage that waits beside the "
-      "chain.";
+      "Closed form: the optimal explicit second-order method, with one relaxed stage beside the chain.";
   m.purpose = "no O(epsilon) plateau";
   m.kind = method_kind::imex;
   m.claims.order = 2;

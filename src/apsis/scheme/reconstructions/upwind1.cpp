@@ -6,7 +6,7 @@
 namespace apsis {
 namespace {
 
-/// Both edges are the cell's own value: with upwind fluxes the first-order upwind scheme, monotone and
+/// Both edges equal the value of the cell: with upwind fluxes, the first-order upwind scheme, monotone and
 /// entropy-decaying up to CFL 1.
 class upwind1 final : public reconstruction {
  public:
@@ -30,7 +30,7 @@ class upwind1 final : public reconstruction {
 
 extern const reconstruction_entry reconstruction_upwind1;
 const reconstruction_entry reconstruction_upwind1 = {
-    "upwind1", "first order upwind: monotone, positive and entropy-decaying to CFL 1",
+    "upwind1", "first-order upwind: monotone, positive and entropy-decaying up to CFL 1",
     "Courant, Isaacson, Rees (1952)",
     []() -> std::unique_ptr<reconstruction> { return std::make_unique<upwind1>(); }};
 

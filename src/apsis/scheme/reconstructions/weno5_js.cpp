@@ -7,8 +7,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-/// g_k = 1/(β_k + 1e-6)² (Jiang & Shu, JCP 126, 1996). The 1e-6 is theirs and has the unit of the data
-/// squared.
+/// g_k = 1/(β_k + 1e-6)² (Jiang & Shu, JCP 126, 1996). The constant 1e-6 is that of the reference and has the
+/// unit of the data squared.
 struct weights_js {
   template <class N>
   static HWY_INLINE N delta(N) {
@@ -61,7 +61,7 @@ class weno5_js final : public reconstruction {
 
 extern const reconstruction_entry reconstruction_weno5_js;
 const reconstruction_entry reconstruction_weno5_js = {
-    "weno5-js", "fifth order WENO with the weights of Jiang and Shu", "Jiang, Shu, JCP 126 (1996) 202-228",
+    "weno5-js", "fifth-order WENO with the weights of Jiang and Shu", "Jiang, Shu, JCP 126 (1996) 202-228",
     []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_js>(); }};
 
 }  // namespace apsis

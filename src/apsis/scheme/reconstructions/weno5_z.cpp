@@ -8,10 +8,10 @@ HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
 /// g_k = 1 + (τ/(β_k + δ))², τ = |β₀ − β₂| (Borges, Carmona, Costa & Don, JCP 227, 2008, with power 2, which
-/// keeps fifth order at smooth extrema).
+/// preserves fifth order at smooth extrema).
 struct weights_z {
-  /// Relative to the data, so that the scheme does not change with their scale: variations below a thousandth
-  /// of the value count as smooth, also where the first two derivatives vanish together.
+  /// δ is relative to the data, so that the scheme is scale-invariant: variations below a thousandth of the
+  /// value count as smooth, even where the first two derivatives vanish together.
   template <class N>
   static HWY_INLINE N delta(N u) {
     return fma(4e-6 * u, u, N(4e-200));
@@ -65,7 +65,7 @@ class weno5_z final : public reconstruction {
 
 extern const reconstruction_entry reconstruction_weno5_z;
 const reconstruction_entry reconstruction_weno5_z = {
-    "weno5-z", "fifth order WENO with Z weights: full order at smooth extrema",
+    "weno5-z", "fifth-order WENO with Z weights: full order at smooth extrema",
     "Borges, Carmona, Costa, Don, JCP 227 (2008) 3191-3211",
     []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_z>(); }};
 

@@ -39,8 +39,8 @@ fourier_solution limit_solution(const case_config& config, int points, int steps
   const initial_data& data = data_of(config, equation);
   std::vector<double> u(static_cast<std::size_t>(equation.components()));
   return {*system,
-          setup.has_space() ? config.space.domain[0] : 0.0,
-          setup.has_space() ? config.space.domain[1] : 1.0,
+          setup.has_space() ? config.space.domain[0][0] : 0.0,
+          setup.has_space() ? config.space.domain[0][1] : 1.0,
           points,
           [&](double x, std::span<double> omega) {
             data.point_value({x}, u);
@@ -86,7 +86,7 @@ riemann_comparison compare_with_riemann_solution(const case_config& config, cons
     relaxation_of(setup).moments(f.data(), omega);
     return broadwell_riemann::state{omega[0], omega[1]};
   };
-  const broadwell_riemann exact(state_at(config.space.domain[0]), state_at(config.space.domain[1]));
+  const broadwell_riemann exact(state_at(config.space.domain[0][0]), state_at(config.space.domain[0][1]));
   const outcome run = compute_limit(config, control);
 
   riemann_comparison result;

@@ -52,8 +52,8 @@ mixed_regime::mixed_regime(double end)
       setup_(config_),
       problem_(setup_.make_problem()),
       initial_(setup_.initial_state()) {
-  const auto& [from, to] = config_.space.domain;
-  const double dx = (to - from) / config_.space.cells;
+  const auto& [from, to] = config_.space.domain.front();
+  const double dx = (to - from) / config_.space.cells.front();
   const expression formula(config_.model.epsilon);
   for (const double centre : setup_.centres()) {
     double mean = 0.0;

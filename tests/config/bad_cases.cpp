@@ -116,10 +116,12 @@ const std::vector<bad_case> all = {
      "it must be finite and not negative"},
     {"epsilon_syntax", "epsilon = 1e-2", "epsilon = \"1 + + *x\"", "3:", "cannot be used"},
     {"epsilon_unknown_name", "epsilon = 1e-2", "epsilon = \"1 + y\"", "3:16", "unknown name 'y'"},
-    {"epsilon_list", "epsilon = 1e-2", "epsilon = [1, 2]", "3:1", "a number or a formula in x is needed"},
-    {"domain_reversed", "[0.0, 2.0]", "[2.0, 0.0]", "7:1", "not left < right"},
-    {"domain_of_three", "[0.0, 2.0]", "[0.0, 1.0, 2.0]", "7:1", "a pair of numbers is needed"},
-    {"domain_of_texts", "[0.0, 2.0]", "[\"a\", \"b\"]", "7:1", "a pair of numbers is needed"},
+    {"epsilon_list", "epsilon = 1e-2", "epsilon = [1, 2]", "3:1", "a number or a formula in x, y, z is needed"},
+    {"domain_reversed", "[0.0, 2.0]", "[2.0, 0.0]", "7:1", "not lower < upper"},
+    {"domain_of_three", "[0.0, 2.0]", "[0.0, 1.0, 2.0]", "7:1",
+     "a pair of numbers or a list of up to 3 pairs is needed"},
+    {"domain_of_texts", "[0.0, 2.0]", "[\"a\", \"b\"]", "7:1",
+     "a pair of numbers or a list of up to 3 pairs is needed"},
     {"domain_nan", "[0.0, 2.0]", "[nan, 2.0]", "7:1", "must be finite"},
     {"domain_too_far", "[0.0, 2.0]", "[1e20, 1.0000000000000002e20]", "7:1", "cannot be told apart"},
     {"too_many_snapshots", "every = 0.1", "every = 1e-9", "17:1", "snapshots"},
@@ -173,6 +175,28 @@ TEST(bad_case, keys_that_the_model_does_not_use_are_errors) {
               StartsWith("c.toml:6:1: key 'time.cfl' is not used (model 'decay' has no space)"));
   EXPECT_THAT(error_of(ode + "dt = 0.1\n[velocity]\nmax = 1.0\n"),
               StartsWith("c.toml:8:1: key 'velocity.max'"));
+}
+
+TEST(bad_case, a_mesh_has_the_dimensions_of_its_model) {
+  const auto with = [](const std::string& key, const std::string& value) {
+    return error_of(
+        "[model]\nname = \"broadwell\"\n[space]\ncells = 20\ndomain = [0.0, 1.0]\n[time]\nmethod = "
+        "\"md-imex-3-2\"\nend = 1.0\ncfl = 0.5\n",
+        {key + "=" + value});
+  };
+  // Lists of one are what a line has always been.
+  EXPECT_EQ(with("space.cells", "[30]"), "accepted");
+  EXPECT_EQ(with("space.domain", "[[0.0, 2.0]]"), "accepted");
+  EXPECT_THAT(with("space.cells", "[30, 20]"),
+              HasSubstr("'space.cells' has 2 numbers (model 'broadwell' has 1 space dimension); give 1"));
+  EXPECT_THAT(with("space.domain", "[[0.0, 2.0], [0.0, 1.0]]"),
+              HasSubstr("'space.domain' has 2 intervals (model 'broadwell' has 1 space dimension); give 1"));
+  EXPECT_THAT(with("space.cells", "[]"), HasSubstr("an integer or a list of up to 3 integers is needed"));
+  EXPECT_THAT(with("space.cells", "[1, 2, 3, 4]"), HasSubstr("a list of up to 3 integers is needed"));
+  EXPECT_THAT(with("space.cells", "[30, 0]"), HasSubstr("it must be at least 1"));
+  EXPECT_THAT(with("space.cells", "[30, \"a\"]"), HasSubstr("an integer is needed"));
+  EXPECT_THAT(with("space.domain", "[[0.0, 1.0], [0.0]]"), HasSubstr("a list of up to 3 pairs is needed"));
+  EXPECT_THAT(with("model.epsilon", "1 + y"), HasSubstr("unknown name 'y'"));
 }
 
 TEST(bad_case, a_formula_in_x_needs_space) {
@@ -243,7 +267,7 @@ TEST(bad_case, overrides_report_themselves_as_their_place) {
       {"space.cells=nan", "must be finite"},
       {"space.cells=-inf", "must be finite"},
       {"space.cells=\"40\"", "is the text '40' (an integer is needed)"},
-      {"space.cells=[40]", "is a list of 1 (an integer is needed)"},
+      {"space.cells=[[40]]", "is a list of 1 (an integer is needed)"},
       {"space.cells=true", "is a boolean (an integer is needed)"},
       {"space.cells=", "the value is empty (nothing stands behind '='); write for example 100"},
       {"space.cells=40 # fine", "the value is followed by '#'"},
@@ -312,8 +336,8 @@ TEST(bad_case, integers_may_be_written_as_any_whole_number) {
     for (const std::string key :
          {"space.cells", "velocity.points", "output.stride", "output.checkpoint_every"})
       EXPECT_EQ(error_of(good, {key + "=" + value}), "accepted") << key << value;
-  EXPECT_EQ(apsis::parse_case(good, "c.toml", {"space.cells=1e1"}).space.cells, 10);
-  EXPECT_EQ(apsis::parse_case(good, "c.toml", {" space.cells = 1.2e2 "}).space.cells, 120);
+  EXPECT_EQ(apsis::parse_case(good, "c.toml", {"space.cells=1e1"}).space.cells, std::vector<int>{10});
+  EXPECT_EQ(apsis::parse_case(good, "c.toml", {" space.cells = 1.2e2 "}).space.cells, std::vector<int>{120});
 }
 
 TEST(bad_case, a_step_rule_with_spaces_replaces_that_of_the_file_too) {

@@ -27,10 +27,10 @@ TEST(cases, the_mixed_regime_case_is_the_one_of_the_paper) {
   const case_config c = load_case("paper/bgk-mixed");
   EXPECT_EQ(c.model.name, "bgk");
   EXPECT_EQ(c.model.initial, "mixed-v");
-  EXPECT_EQ(c.space.cells, 40);
-  EXPECT_EQ(c.space.domain, (std::array<double, 2>{0.0, 2.0}));
+  EXPECT_EQ(c.space.cells, std::vector<int>{40});
+  EXPECT_EQ(c.space.domain, (std::vector<apsis::interval>{{0.0, 2.0}}));
   EXPECT_EQ(c.space.formulation, formulation::finite_volume);
-  EXPECT_EQ(c.space.limiter, "positivity");
+  EXPECT_EQ(c.space.limiter, apsis::limiter_choice::positivity);
   EXPECT_EQ(c.velocity.points, 150);
   EXPECT_EQ(c.velocity.max, 15.0);
   EXPECT_EQ(c.time.end, 0.5);
@@ -38,7 +38,7 @@ TEST(cases, the_mixed_regime_case_is_the_one_of_the_paper) {
   EXPECT_FALSE(c.time.dt || c.time.safety);
   // The reference takes steps of about 7e-6 on 80 cells.
   const case_config reference = load_case("paper/bgk-mixed-reference");
-  EXPECT_EQ(reference.space.cells, 80);
+  EXPECT_EQ(reference.space.cells, std::vector<int>{80});
   EXPECT_NEAR(*reference.time.cfl * (2.0 / 80) / 15.0, 7e-6, 1e-7);
 }
 
@@ -46,10 +46,10 @@ TEST(cases, overrides_take_the_place_of_the_file) {
   const case_config c =
       load_case("paper/bgk-mixed", {"space.cells=80", "time.method=ssprk-2-2", "title=a \"b\" \\c",
                                     "space.domain=[-1, 1]", "output.fields=[\"rho\"]", "time.dt=1e-4"});
-  EXPECT_EQ(c.space.cells, 80);
+  EXPECT_EQ(c.space.cells, std::vector<int>{80});
   EXPECT_EQ(c.time.method, "ssprk-2-2");
   EXPECT_EQ(c.title, "a \"b\" \\c");
-  EXPECT_EQ(c.space.domain, (std::array<double, 2>{-1.0, 1.0}));
+  EXPECT_EQ(c.space.domain, (std::vector<apsis::interval>{{-1.0, 1.0}}));
   EXPECT_EQ(c.output.fields, std::vector<std::string>{"rho"});
   // A step rule on the command line replaces the one in the file.
   EXPECT_EQ(*c.time.dt, 1e-4);
@@ -89,8 +89,8 @@ RC_GTEST_PROP(cases, resolved_text_keeps_every_bit_of_random_values, ()) {
   c.time.cfl = *positive;
   c.time.end = *positive;
   c.velocity.max = *positive;
-  c.space.domain = {-*positive, *positive};
-  c.space.cells = *rc::gen::inRange(1, 1000);
+  c.space.domain = {{-*positive, *positive}};
+  c.space.cells = {*rc::gen::inRange(1, 1000)};
   c.title = *rc::gen::container<std::string>(rc::gen::inRange<char>(1, 126));
   const case_config again = parse_case(to_toml(c), "again");
   RC_ASSERT(again.time.cfl == c.time.cfl);
@@ -101,10 +101,30 @@ RC_GTEST_PROP(cases, resolved_text_keeps_every_bit_of_random_values, ()) {
   RC_ASSERT(again.title == c.title);
 }
 
+TEST(cases, a_list_of_one_number_of_cells_or_one_interval_is_written_as_on_a_line) {
+  const std::string text = to_toml(load_case("paper/bgk-mixed"));
+  const case_config plain = parse_case(text, "c.toml", {"space.cells=33", "space.domain=[0.0, 3.0]"});
+  const case_config listed = parse_case(text, "c.toml", {"space.cells=[33]", "space.domain=[[0.0, 3.0]]"});
+  EXPECT_EQ(to_toml(plain), to_toml(listed));
+  EXPECT_THAT(to_toml(plain), HasSubstr("cells = 33\ndomain = [0.0, 3.0]\n"));
+}
+
+TEST(cases, cells_and_domain_of_several_dimensions_make_a_mesh) {
+  case_config c;
+  c.space.cells = {4, 5, 6};
+  c.space.domain = {{0.0, 4.0}, {-1.0, 1.0}, {0.0, 3.0}};
+  const apsis::grid mesh = make_mesh(c);
+  EXPECT_EQ(mesh.dimensions(), 3);
+  EXPECT_EQ(mesh.size(), 120);
+  EXPECT_EQ(mesh.centre(0), (apsis::position{0.5, -0.8, 0.25}));
+  EXPECT_EQ(make_boundaries(c).size(), 3U);
+  EXPECT_THAT(to_toml(c), HasSubstr("cells = [4, 5, 6]\ndomain = [[0.0, 4.0], [-1.0, 1.0], [0.0, 3.0]]\n"));
+}
+
 TEST(cases, each_end_may_have_a_boundary_of_its_own) {
   const std::string text = to_toml(load_case("paper/bgk-mixed"));
   const auto kinds = [](const case_config& c) {
-    const auto faces = make_boundaries(c);
+    const auto faces = make_boundaries(c).front();
     return std::pair{faces[0]->periodic(), faces[1]->periodic()};
   };
   EXPECT_EQ(kinds(parse_case(text, "c.toml")), std::pair(true, true));

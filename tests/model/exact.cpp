@@ -14,7 +14,7 @@ namespace {
 
 std::unique_ptr<apsis::model> make(const apsis::model_entry& entry) {
   apsis::model_config config = apsis::default_config(entry);
-  config.velocity = {8.0, 40, "auto"};
+  config.velocity = {8.0, 40, apsis::equilibrium_choice::automatic};
   return entry.make(config);
 }
 

@@ -1,5 +1,6 @@
 #include <apsis/model/expression.hpp>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <string>
@@ -91,7 +92,7 @@ TEST(expression, refuses_values_that_are_no_knudsen_number) {
 }
 
 TEST(expression, takes_another_variable_and_negative_values_where_asked) {
-  const apsis::formula_kind flux{"u", false};
+  const apsis::formula_kind flux{{"u"}, false};
   const expression f("u^2/2 - 1", {"file", 3, 10}, flux);
   EXPECT_DOUBLE_EQ(f.evaluate(1.0), -0.5);
   EXPECT_FALSE(f.is_constant());
@@ -108,8 +109,30 @@ TEST(expression, takes_another_variable_and_negative_values_where_asked) {
   }
 }
 
+TEST(expression, is_a_formula_in_the_coordinates_of_the_space_it_is_used_in) {
+  const expression plane("x + 10*y", {"file", 3, 10}, apsis::formula_of_position(2));
+  const std::array<double, 3> at = {0.25, 0.5, 7.0};
+  EXPECT_DOUBLE_EQ(plane.evaluate(at), 5.25);
+  const expression space("x*y*z", {}, apsis::formula_of_position(3));
+  EXPECT_DOUBLE_EQ(space.value(at), 0.875);
+  EXPECT_FALSE(space.is_constant());
+  try {
+    expression("x + z", {"file", 3, 10}, apsis::formula_of_position(2));
+    FAIL();
+  } catch (const input_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("file:3:14: "));
+    EXPECT_THAT(e.what(), HasSubstr("unknown name 'z'"));
+  }
+  try {
+    static_cast<void>(expression("y - 1", {}, apsis::formula_of_position(2)).evaluate(at));
+    FAIL();
+  } catch (const input_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("is -0.5 at x = 0.25, y = 0.5"));
+  }
+}
+
 TEST(expression, is_evaluated_by_many_threads_at_once) {
-  const expression f("sin(u)/2 + u^3 - (u > 0.5 ? exp(-u) : 2*u)", {}, {"u", false});
+  const expression f("sin(u)/2 + u^3 - (u > 0.5 ? exp(-u) : 2*u)", {}, {{"u"}, false});
   const auto exact = [](double u) { return std::sin(u) / 2 + u * u * u - (u > 0.5 ? std::exp(-u) : 2 * u); };
   // More threads than the expression keeps machines for, all in the same formula for a while.
   std::atomic<int> wrong{0};

@@ -25,7 +25,7 @@ std::vector<named_model> relaxation_models() {
   std::vector<named_model> all;
   for (const auto* entry : apsis::model_entries()) {
     apsis::model_config config = apsis::default_config(*entry);
-    config.velocity = {8.0, 40, "auto"};
+    config.velocity = {8.0, 40, apsis::equilibrium_choice::automatic};
     auto made = entry->make(config);
     const auto* relaxation = dynamic_cast<const relaxation_model*>(made.get());
     if (relaxation != nullptr) all.push_back({entry, std::move(made), relaxation});
@@ -140,7 +140,7 @@ TEST(models, bgk_says_how_its_velocity_grid_must_change) {
   const auto complaint = [](double max, int points) {
     apsis::model_config config;
     config.parameters = {{"velocity_dimensions", 1.0}};
-    config.velocity = {max, points, "auto"};
+    config.velocity = {max, points, apsis::equilibrium_choice::automatic};
     const auto m = apsis::find_model("bgk")->make(config);
     std::vector<double> u(static_cast<std::size_t>(m->components()));
     m->initial()[0].point_value({0.3}, u);

@@ -13,12 +13,12 @@ inline apsis::case_config mixed(const std::string& data, const std::string& meth
   c.model.parameters = {{"velocity_dimensions", 1.0}};
   c.model.epsilon = "1e-5 + tanh(1 - 11*(x - 1)) + tanh(1 + 11*(x - 1))";
   c.model.initial = data;
-  c.space.cells = 40;
-  c.space.domain = {0.0, 2.0};
+  c.space.cells = {40};
+  c.space.domain = {{0.0, 2.0}};
   c.space.formulation = how;
   c.space.reconstruction = "weno5-z";
-  c.space.limiter = "positivity";
-  c.velocity = {15.0, 150, "auto"};
+  c.space.limiter = apsis::limiter_choice::positivity;
+  c.velocity = {15.0, 150, apsis::equilibrium_choice::automatic};
   c.time.method = method;
   c.time.end = 0.5;
   c.time.cfl = 1.0 / 24.0;
@@ -28,8 +28,8 @@ inline apsis::case_config mixed(const std::string& data, const std::string& meth
 /// A coarse velocity grid, so that a step costs little.
 inline apsis::case_config small(const std::string& method, apsis::formulation how) {
   apsis::case_config c = mixed("mixed-v", method, how);
-  c.space.cells = 20;
-  c.velocity = {9.0, 36, "auto"};
+  c.space.cells = {20};
+  c.velocity = {9.0, 36, apsis::equilibrium_choice::automatic};
   c.time.end = 0.05;
   return c;
 }

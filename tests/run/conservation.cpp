@@ -18,8 +18,8 @@ namespace {
 apsis::case_config in_dimensions(int dimensions, int points, double v_max) {
   auto c = mixed("mixed-v", "md-imex-6-3", formulation::finite_volume);
   c.model.parameters["velocity_dimensions"] = dimensions;
-  c.velocity = {v_max, points, "auto"};
-  c.space.cells = 10;
+  c.velocity = {v_max, points, apsis::equilibrium_choice::automatic};
+  c.space.cells = {10};
   return c;
 }
 
@@ -120,7 +120,7 @@ TEST(conservation, slow_holds_on_the_grids_where_a_fixed_bound_did_not) {
         run_of{1, 150, 15.0, "md-imex-chain-64-2", "0", 200}}) {
     auto c = in_dimensions(r.dimensions, r.points, r.v_max);
     if (r.epsilon != std::string("mixed")) c.model.epsilon = r.epsilon;
-    c.space.cells = 20;
+    c.space.cells = {20};
     c.time.method = r.method;
     c.time.end = 1.0;
     apsis::simulation run(c);

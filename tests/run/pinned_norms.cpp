@@ -55,7 +55,7 @@ std::vector<std::string> small_version(const std::string& name) {
   std::vector<std::string> overrides;
   // Enough for the widest stencil and for the jumps of the data to be several cells apart.
   if (whole.places.contains("space.cells"))
-    overrides.push_back(fmt::format("space.cells={}", std::min(whole.space.cells, 24)));
+    overrides.push_back(fmt::format("space.cells={}", std::min(whole.space.cells.front(), 24)));
   // Δv = 1/2: the equilibria of temperatures near 1 are resolved.
   if (whole.places.contains("velocity.points"))
     overrides.push_back(

@@ -23,8 +23,8 @@ bool is_convex(const apsis::method& m) {
 
 apsis::case_config wide(const std::string& method, formulation how, double max, int points) {
   auto c = mixed("mixed-v", method, how);
-  c.space.cells = 20;
-  c.velocity = {max, points, "auto"};
+  c.space.cells = {20};
+  c.velocity = {max, points, apsis::equilibrium_choice::automatic};
   c.time.cfl.reset();
   c.time.safety = 1.0;
   return c;

@@ -37,7 +37,7 @@ TEST(promises, beyond_the_limit_nothing_is_promised_and_values_do_become_negativ
   // the cell. An error of any kind fails the test: the run is over before a temperature is negative.
   auto c = small("md-imex-3-2", formulation::finite_difference);
   c.space.reconstruction = "upwind1";
-  c.space.limiter = "none";
+  c.space.limiter = apsis::limiter_choice::none;
   c.model.epsilon = "1e12";
   c.time.cfl.reset();
   c.time.safety = 2.5;
@@ -80,10 +80,10 @@ TEST(promises, are_decided_from_the_configuration) {
   auto c = small("md-imex-3-2", formulation::finite_volume);
   EXPECT_TRUE(apsis::simulation(c).promises().positivity);
   EXPECT_FALSE(apsis::simulation(c).promises().entropy);
-  c.space.limiter = "none";
+  c.space.limiter = apsis::limiter_choice::none;
   EXPECT_FALSE(apsis::simulation(c).promises().positivity);
   EXPECT_TRUE(apsis::simulation(c).promises().conservation);
-  c.space.limiter = "positivity";
+  c.space.limiter = apsis::limiter_choice::positivity;
   c.time.cfl = 0.2;  // 2.4 times the limit 1/12
   EXPECT_FALSE(apsis::simulation(c).promises().positivity);
 }
@@ -104,7 +104,7 @@ TEST(promises, momentum_across_the_pencil_is_conserved_though_it_is_zero) {
     for (const auto how : both) {
       auto c = small("md-imex-6-3", how);
       c.model.parameters["velocity_dimensions"] = dimensions;
-      c.velocity = {8.0, 14, "discrete"};
+      c.velocity = {8.0, 14, apsis::equilibrium_choice::discrete};
       c.time.end = 0.01;
       EXPECT_LE(finished(c).conservation_defect, 1e-12) << dimensions;
     }
@@ -131,7 +131,7 @@ TEST(promises, a_broken_one_ends_the_run_with_step_and_value) {
 TEST(promises, a_formula_that_misses_the_moments_promises_no_conservation_and_says_so) {
   // Δv is close to √T, and 9 is not many of them.
   auto c = small("md-imex-3-2", formulation::finite_difference);
-  c.velocity = {9.0, 22, "formula"};
+  c.velocity = {9.0, 22, apsis::equilibrium_choice::formula};
   c.model.epsilon = "1e-3";
   testing::internal::CaptureStderr();
   apsis::simulation run(c);
@@ -149,10 +149,10 @@ TEST(promises, a_formula_that_misses_the_moments_promises_no_conservation_and_sa
   EXPECT_FALSE(apsis::simulation(upwind).promises().entropy);
 
   // The discrete Maxwellian keeps the promise on the same grid, and the formula on that of the paper.
-  c.velocity.equilibrium = "discrete";
+  c.velocity.equilibrium = apsis::equilibrium_choice::discrete;
   EXPECT_TRUE(apsis::simulation(c).promises().conservation);
   EXPECT_LE(finished(c).conservation_defect, 1e-12);
-  c.velocity = {15.0, 150, "formula"};
+  c.velocity = {15.0, 150, apsis::equilibrium_choice::formula};
   testing::internal::CaptureStderr();
   EXPECT_TRUE(apsis::simulation(c).promises().conservation);
   EXPECT_EQ(testing::internal::GetCapturedStderr().find("warning"), std::string::npos);
@@ -189,7 +189,7 @@ TEST(simulation, goes_on_from_a_saved_run_to_the_same_last_bit) {
   EXPECT_EQ(whole.last().entropy_change, second.last().entropy_change);
   EXPECT_EQ(whole.summary().min_value, second.summary().min_value);
   auto other = c;
-  other.space.cells = 21;
+  other.space.cells = {21};
   apsis::simulation different(other);
   try {
     different.restore(first.save());
@@ -230,7 +230,7 @@ TEST(simulation, refuses_before_the_first_step_what_cannot_work) {
   c.velocity.points = 6;
   EXPECT_NE(complaint(c).find("velocity.points = 6 is too few"), std::string::npos) << complaint(c);
   c = base;
-  c.space.cells = 4;
+  c.space.cells = {4};
   EXPECT_NE(complaint(c).find("smaller than the stencil"), std::string::npos) << complaint(c);
   c = base;
   c.time.method = "imdrk-2-3";
@@ -266,12 +266,12 @@ TEST(simulation, free_flight_is_fifth_order_with_and_without_limiter) {
   // Almost without collisions; differences between meshes of 40, 80 and 160 cells. The time step shrinks as
   // Δx^{5/3}, so that third order in time does not hide fifth order in space.
   for (const auto how : both) {
-    for (const char* limiter : {"none", "positivity"}) {
+    for (const auto limiter : {apsis::limiter_choice::none, apsis::limiter_choice::positivity}) {
       const auto solution = [&](int n) {
         auto c = small("ssprk-3-3", how);
         c.model.initial = "accuracy";
         c.model.epsilon = "1e12";
-        c.space.cells = n;
+        c.space.cells = {n};
         c.space.limiter = limiter;
         c.velocity.points = 24;
         c.time.cfl = 0.2 * std::pow(40.0 / n, 2.0 / 3.0);
@@ -298,7 +298,7 @@ TEST(simulation, free_flight_is_fifth_order_with_and_without_limiter) {
         return sum / static_cast<double>(a.x.size());
       };
       EXPECT_GT(std::log2(difference(coarse, middle) / difference(middle, fine)), 4.7)
-          << static_cast<int>(how) << limiter;
+          << static_cast<int>(how) << choice_name(limiter);
     }
   }
 }

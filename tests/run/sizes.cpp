@@ -71,9 +71,9 @@ TEST(sizes, a_row_of_a_million_velocities_is_transported) {
   // Columns of a row are numbered times vectors of it: 32 768 times 131 072 here.
   auto c = small("ssprk-3-3", apsis::formulation::finite_difference);
   c.model.epsilon = "1e12";
-  c.space.cells = 7;
-  c.space.limiter = "none";
-  c.velocity = {9.0, 1 << 20, "formula"};
+  c.space.cells = {7};
+  c.space.limiter = apsis::limiter_choice::none;
+  c.velocity = {9.0, 1 << 20, apsis::equilibrium_choice::formula};
   c.time.end = 1e-5;
   c.time.cfl.reset();
   c.time.dt = 1e-5;

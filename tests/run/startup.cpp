@@ -67,7 +67,7 @@ TEST(startup, restarts_in_its_middle_to_the_last_digit) {
   for (const char* rule : {"cfl", "safety"}) {
     auto c = small("md-imex-4-2", apsis::formulation::finite_difference);
     c.model.epsilon = "1e-6 + x";
-    c.time.startup = "graded";
+    c.time.startup = apsis::startup_choice::graded;
     c.time.end = 0.01;
     c.time.cfl.reset();
     (rule[0] == 'c' ? c.time.cfl : c.time.safety) = rule[0] == 'c' ? 0.3 : 1.0;
@@ -78,7 +78,7 @@ TEST(startup, restarts_in_its_middle_to_the_last_digit) {
 TEST(startup, follows_the_smallest_epsilon_of_the_mesh_and_keeps_the_promises) {
   for (const auto how : {apsis::formulation::finite_volume, apsis::formulation::finite_difference}) {
     auto c = small("md-imex-4-2", how);
-    c.time.startup = "graded";
+    c.time.startup = apsis::startup_choice::graded;
     c.time.cfl.reset();
     c.time.safety = 1.0;
     const auto steps = [&](const std::string& epsilon) {
@@ -119,5 +119,6 @@ TEST(startup, is_refused_where_it_means_nothing) {
   EXPECT_EQ(complaint([] { return ode("ssprk-3-3", "1e-2", "none"); }), "");
   EXPECT_THAT(complaint([] { return apsis::load_case("paper/decay", {"time.startup=graded"}); }),
               HasSubstr("has no meaning for model 'decay' (its relaxation time is not known)"));
-  EXPECT_EQ(apsis::load_case("paper/ode", {"time.startup=graded"}).time.startup, "graded");
+  EXPECT_EQ(apsis::load_case("paper/ode", {"time.startup=graded"}).time.startup,
+            apsis::startup_choice::graded);
 }

@@ -46,9 +46,9 @@ TEST(threads_for, a_case_are_those_of_the_environment_or_fit_its_size) {
   EXPECT_EQ(apsis::threads_for(c), apsis::most_threads);
   const environment none(nullptr);
   EXPECT_EQ(apsis::threads_for(c), 1);
-  c.space.cells = 40000;
+  c.space.cells = {40000};
   EXPECT_EQ(apsis::threads_for(c), apsis::default_threads());
-  c.space.cells = 20;
+  c.space.cells = {20};
   c.model.parameters["velocity_dimensions"] = 3;  // 36³ velocities
   EXPECT_EQ(apsis::threads_for(c), apsis::default_threads());
 }

@@ -23,8 +23,8 @@ outcome on_mesh(formulation how, int cells, const std::function<double(double le
   outcome o;
   o.config = load_case("paper/bgk-accuracy");
   o.config.space.formulation = how;
-  o.config.space.cells = cells;
-  o.config.space.domain = {0.0, 2.0};
+  o.config.space.cells = {cells};
+  o.config.space.domain = {{0.0, 2.0}};
   o.cells = cells;
   o.components = 2;
   o.cell_volume = 2.0 / cells;
@@ -169,6 +169,6 @@ TEST(meshes, that_cannot_be_compared_are_refused) {
   EXPECT_EQ(message(points(20, one), points(30, one)), "accepted");
   EXPECT_THAT(message(averages(10), points(20, one)), HasSubstr("space.formulation"));
   auto elsewhere = averages(20);
-  elsewhere.config.space.domain = {0.0, 1.0};
+  elsewhere.config.space.domain = {{0.0, 1.0}};
   EXPECT_THAT(message(averages(10), elsewhere), HasSubstr("space.domain"));
 }

@@ -18,7 +18,7 @@ const conserved_fields& reference(const std::string& data) {
   const auto found = known.find(data);
   if (found != known.end()) return found->second;
   auto c = mixed(data, "ssprk-2-2", formulation::finite_volume);
-  c.space.cells = 80;
+  c.space.cells = {80};
   c.time.cfl = 1.0 / 240.0;
   set_threads(0);
   simulation run(c);
@@ -68,7 +68,7 @@ TEST(claims, C24_values_of_an_independent_code) {
         {1.70625, .6695, .4401, 1.9419}}}};
   for (const auto& [data, rows] : printed) {
     auto c = mixed(data, "md-imex-3-2", formulation::finite_difference);
-    c.space.cells = 160;
+    c.space.cells = {160};
     c.time.cfl = 1.0 / 12.0;
     simulation run(c);
     finish(run);

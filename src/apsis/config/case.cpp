@@ -120,11 +120,12 @@ class resolver {
 
   std::string example(const case_key& key) const {
     const std::string name = key.path.substr(key.path.find('.') + 1);
-    if (key.choices != nullptr) {
+    if (key.choices) {
       const auto names = key.choices(config_);
       return fmt::format("{} = \"{}\"", name, names.empty() ? "" : names.front());
     }
-    return fmt::format("{} = {}", name, key.type == key_type::integer ? "100" : "1.0");
+    return fmt::format("{} = {}", name,
+                       key.type == key_type::integer || key.type == key_type::integers ? "100" : "1.0");
   }
 
   void take_parameters() {
@@ -181,19 +182,12 @@ class resolver {
   }
 
   void check_mesh() const {
-    const auto [left, right] = config_.space.domain;
-    const raw_value* raw = find("space.domain");
-    const double width = right - left;
-    if (raw != nullptr && !(width > 0.0))
-      refuse(*raw, "space.domain", fmt::format("[{}, {}] is not left < right", left, right),
-             "give the left end first");
-    const double scale = std::max(std::abs(left), std::abs(right));
-    if (raw != nullptr && (!std::isfinite(width) || width / config_.space.cells < 1e-12 * scale))
-      refuse(*raw, "space.domain",
-             fmt::format("cells of [{}, {}] cannot be told apart in double precision", left, right),
-             "give a domain nearer to 0 or fewer cells");
+    check_dimensions();
+    for (std::size_t k = 0; k < config_.space.domain.size(); ++k)
+      check_interval(config_.space.domain[k], config_.space.cells[k]);
     check_faces();
-    const double points = static_cast<double>(config_.space.cells) * std::max(1, config_.velocity.points);
+    double points = std::max(1, config_.velocity.points);
+    for (const int cells : config_.space.cells) points *= cells;
     if (points > 2e9)
       refuse(*find("space.cells"), "space.cells",
              fmt::format("with velocity.points = {} that is {:.3g} unknowns, at most 2e9 are possible",
@@ -201,29 +195,66 @@ class resolver {
              "give fewer cells or velocities");
   }
 
-  void check_faces() const {
-    const auto faces = make_boundaries(config_);
-    if (faces[0]->periodic() == faces[1]->periodic()) return;
-    const char* own = config_.faces.left ? "boundary.left.kind" : "boundary.right.kind";
-    refuse(*find(own), own, "only one of the two ends is periodic",
-           "write space.boundary = \"periodic\" alone, or give both ends another kind");
+  /// One number of cells and one interval for each dimension of the model.
+  void check_dimensions() const {
+    const auto wanted = static_cast<std::size_t>(make_model(config_)->space_dimensions());
+    const auto check = [&](const std::string& path, std::size_t given, const char* what) {
+      if (given == wanted) return;
+      const raw_value* raw = find(path);
+      throw input_error(raw != nullptr ? raw->place : table_place(path),
+                        fmt::format("'{}' has {} {} (model '{}' has {} space dimension{}); give {}", path,
+                                    given, what, model_->name, wanted, wanted == 1 ? "" : "s", wanted));
+    };
+    check("space.cells", config_.space.cells.size(), "numbers");
+    check("space.domain", config_.space.domain.size(), "intervals");
   }
 
-  // At cell centres and edges, as far as a thousand points go; the run evaluates it where it needs it.
+  void check_interval(const interval& ends, int cells) const {
+    const auto [lower, upper] = ends;
+    const raw_value* raw = find("space.domain");
+    const double width = upper - lower;
+    if (raw != nullptr && !(width > 0.0))
+      refuse(*raw, "space.domain", fmt::format("[{}, {}] is not lower < upper", lower, upper),
+             "give the lower end first");
+    const double scale = std::max(std::abs(lower), std::abs(upper));
+    if (raw != nullptr && (!std::isfinite(width) || width / cells < 1e-12 * scale))
+      refuse(*raw, "space.domain",
+             fmt::format("cells of [{}, {}] cannot be told apart in double precision", lower, upper),
+             "give a domain nearer to 0 or fewer cells");
+  }
+
+  void check_faces() const {
+    const auto sides = make_boundaries(config_);
+    for (const auto& [lower, upper] : sides) {
+      if (lower->periodic() == upper->periodic()) continue;
+      const char* own = config_.faces.left ? "boundary.left.kind" : "boundary.right.kind";
+      refuse(*find(own), own, "only one of the two ends is periodic",
+             "write space.boundary = \"periodic\" alone, or give both ends another kind");
+    }
+  }
+
+  // At centres and edges of cells along the diagonal, up to a thousand points; the run checks every cell.
   void check_epsilon() const {
     const raw_value* raw = find("model.epsilon");
     source_place place = raw != nullptr ? raw->value_place : source_place{file_, 1, 1};
     // A formula begins behind its quotation mark; other text has no columns to point to.
     if (raw != nullptr && place.column > 0) ++place.column;
-    const expression formula(config_.model.epsilon, place);
-    if (!formula.is_constant() && !has_space(*model_))
+    const bool on_mesh = has_space(*model_);
+    const auto dimensions = on_mesh ? config_.space.domain.size() : 0;
+    const expression formula(config_.model.epsilon, place, formula_of_position(static_cast<int>(dimensions)));
+    if (!formula.is_constant() && !on_mesh)
       throw input_error(
           place,
           fmt::format("'model.epsilon' depends on x (model '{}' has no space); give a number", model_->name));
-    const auto [left, right] = config_.space.domain;
-    const int points = has_space(*model_) ? std::min(2 * config_.space.cells, 1000) : 0;
-    for (int k = 0; k <= points; ++k)
-      formula.evaluate(points == 0 ? 0.0 : left + (right - left) * k / points);
+    const int points = on_mesh ? std::min(2 * config_.space.cells.front(), 1000) : 0;
+    for (int k = 0; k <= points; ++k) {
+      position x{};
+      for (std::size_t d = 0; d < dimensions; ++d) {
+        const auto [lower, upper] = config_.space.domain[d];
+        x[d] = points == 0 ? 0.0 : lower + (upper - lower) * k / points;
+      }
+      formula.evaluate(x);
+    }
   }
 
   void check_fields() const {
@@ -324,9 +355,23 @@ std::unique_ptr<model> make_model(const case_config& config) {
   return entry->make(parts);
 }
 
-domain::faces make_boundaries(const case_config& config) {
-  return {make_boundary(config.faces.left.value_or(config.space.boundary)),
-          make_boundary(config.faces.right.value_or(config.space.boundary))};
+grid make_mesh(const case_config& config) {
+  std::array<int, 3> cells = {1, 1, 1};
+  std::array<double, 3> lower{}, upper = {1.0, 1.0, 1.0};
+  for (std::size_t k = 0; k < config.space.cells.size() && k < 3; ++k) {
+    cells[k] = config.space.cells[k];
+    lower[k] = config.space.domain.at(k)[0];
+    upper[k] = config.space.domain.at(k)[1];
+  }
+  return {static_cast<int>(config.space.cells.size()), cells, lower, upper};
+}
+
+std::vector<domain::faces> make_boundaries(const case_config& config) {
+  const auto common = make_boundary(config.space.boundary);
+  std::vector<domain::faces> sides(config.space.cells.size(), {common, common});
+  if (config.faces.left) sides.front()[0] = make_boundary(*config.faces.left);
+  if (config.faces.right) sides.front()[1] = make_boundary(*config.faces.right);
+  return sides;
 }
 
 std::vector<std::string> case_names() {

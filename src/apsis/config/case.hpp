@@ -1,9 +1,9 @@
 #pragma once
 
+#include <apsis/config/choices.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/phase/domain.hpp>
-#include <apsis/scheme/formulation.hpp>
 
 #include <array>
 #include <map>
@@ -23,18 +23,18 @@ struct case_config {
   /// Table [model].
   struct {
     std::string name;
-    std::string epsilon = "1";  ///< a number or an expression in x; dimensionless Knudsen number, ≥ 0
+    std::string epsilon = "1";  ///< a number or a formula in x, y, z; dimensionless Knudsen number, ≥ 0
     std::string initial;        ///< name of one of the model's initial data; "" takes its first
     std::map<std::string, double> parameters;  ///< of the model; what is not there has its default
     std::map<std::string, std::string> texts;  ///< likewise
   } model;
   /// Table [space], of models with space.
   struct {
-    int cells = 40;
-    std::array<double, 2> domain = {0.0, 1.0};
+    std::vector<int> cells = {40};                             ///< in every direction
+    std::vector<std::array<double, 2>> domain = {{0.0, 1.0}};  ///< lower and upper end in every direction
     apsis::formulation formulation = apsis::formulation::finite_volume;
     std::string reconstruction = "weno5-z";
-    std::string limiter = "none";       ///< "none" | "positivity"
+    limiter_choice limiter = limiter_choice::none;
     std::string boundary = "periodic";  ///< kind of every face without one of its own
   } space;
   /// Tables [boundary.left] and [boundary.right], of models with space.
@@ -45,26 +45,26 @@ struct case_config {
   struct {
     double max = 0.0;
     int points = 0;
-    std::string equilibrium = "auto";  ///< "auto" | "formula" | "discrete"
+    equilibrium_choice equilibrium = equilibrium_choice::automatic;
   } velocity;
   /// Table [time].
   struct {
     std::string method;
     double end = 0.0;
     std::optional<double> dt, cfl, safety;  ///< exactly one is set
-    std::string startup = "none";           ///< "none" | "graded"
-    std::optional<double> tolerance;        ///< of a step; dt, cfl or safety then says how long one may be
+    startup_choice startup = startup_choice::none;
+    std::optional<double> tolerance;  ///< of a step; dt, cfl or safety then says how long one may be
   } time;
   /// Table [output].
   struct {
-    double every = 0.0;                ///< time between snapshots; 0: only the end
-    std::vector<std::string> fields;   ///< of the snapshot; empty: all of the model
-    std::string distribution = "end";  ///< "none" | "end" | "snapshots"
-    int stride = 1;                    ///< cells from one to the next in snapshots of the distribution
-    std::string precision = "double";  ///< of these: "double" | "single"
-    int checkpoint_every = 0;          ///< steps; 0: not by steps
-    double checkpoint_minutes = 10.0;  ///< 0: not by time
-    int history_rows = 100000;         ///< most rows of the history
+    double every = 0.0;               ///< time between snapshots; 0: only the end
+    std::vector<std::string> fields;  ///< of the snapshot; empty: all of the model
+    distribution_choice distribution = distribution_choice::end;
+    int stride = 1;  ///< cells from one to the next in snapshots of the distribution
+    precision_choice precision = precision_choice::double_precision;  ///< of snapshots of the distribution
+    int checkpoint_every = 0;                                         ///< steps; 0: not by steps
+    double checkpoint_minutes = 10.0;                                 ///< 0: not by time
+    int history_rows = 100000;                                        ///< most rows of the history
   } output;
 };
 
@@ -82,8 +82,11 @@ case_config load_case(const std::string& name_or_path, const std::vector<std::st
 /// The model of the case with its parameters. Throws input_error if there is no such model.
 std::unique_ptr<model> make_model(const case_config& config);
 
-/// The boundaries at the left and the right end. Throws input_error if there is no such kind.
-domain::faces make_boundaries(const case_config& config);
+/// The mesh of the table [space]. Throws input_error as grid does.
+grid make_mesh(const case_config& config);
+
+/// The boundaries at both ends of every direction. Throws input_error if there is no such kind.
+std::vector<domain::faces> make_boundaries(const case_config& config);
 
 /// Names of the built-in cases, sorted.
 std::vector<std::string> case_names();

@@ -40,8 +40,15 @@ struct to_toml_visitor {
     for (const auto& item : x) items.push_back(quoted(item));
     return fmt::format("[{}]", fmt::join(items, ", "));
   }
-  std::string operator()(const std::array<double, 2>& x) const {
-    return fmt::format("[{}, {}]", number_text(x[0]), number_text(x[1]));
+  // A list of one item stands for the item.
+  std::string operator()(const std::vector<long>& x) const {
+    return x.size() == 1 ? (*this)(x.front()) : fmt::format("[{}]", fmt::join(x, ", "));
+  }
+  std::string operator()(const std::vector<interval>& x) const {
+    std::vector<std::string> items;
+    for (const auto& [lower, upper] : x)
+      items.push_back(fmt::format("[{}, {}]", number_text(lower), number_text(upper)));
+    return items.size() == 1 ? items.front() : fmt::format("[{}]", fmt::join(items, ", "));
   }
 };
 
@@ -95,7 +102,7 @@ std::string key_text(const case_key& key) {
   std::string out = fmt::format("  {} ({})\n", name_of(key.path), facts);
   out += indented(key.doc);
   // The names of initial data belong to a model and stand there.
-  if (key.choices != nullptr && key.path != "model.initial")
+  if (key.choices && key.path != "model.initial")
     out += indented(fmt::format("one of: {}", fmt::join(key.choices(case_config{}), ", ")));
   return out;
 }

@@ -4,6 +4,8 @@
 #include <apsis/model/model_registry.hpp>
 
 #include <array>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -11,18 +13,22 @@
 
 namespace apsis {
 
-/// Value of a key: nothing, integer, number, text, list of texts, or a pair of numbers.
-using case_value =
-    std::variant<std::monostate, long, double, std::string, std::vector<std::string>, std::array<double, 2>>;
+/// An interval of space, [lower, upper].
+using interval = std::array<double, 2>;
+
+/// Value of a key, and nothing where an optional key is not set.
+using case_value = std::variant<std::monostate, long, double, std::string, std::vector<std::string>,
+                                std::vector<long>, std::vector<interval>>;
 
 /// Which values a key takes.
 enum class key_type {
-  integer,     ///< long
-  number,      ///< double; an integer of TOML too
-  text,        ///< std::string
-  formula,     ///< std::string: a formula in x, or a number, written as text
-  text_list,   ///< std::vector<std::string>
-  number_pair  ///< std::array<double, 2>
+  integer,    ///< long
+  number,     ///< double; an integer of TOML too
+  text,       ///< std::string
+  formula,    ///< std::string: a formula in x, y, z, or a number, written as text
+  text_list,  ///< std::vector<std::string>
+  integers,   ///< std::vector<long>: one for each direction; one alone is written without brackets
+  intervals   ///< std::vector<interval>: one for each direction; one alone is written without outer brackets
 };
 
 /// Which models a key belongs to; a key that the model does not use is an error, not ignored.
@@ -32,22 +38,24 @@ enum class key_scope {
   velocity  ///< those with a velocity grid
 };
 
-/// One key of a case file. The table of all keys drives reading, writing and documentation.
+/// One key of a case file. The table of all keys (case_keys.cpp) drives reading, writing and documentation.
 struct case_key {
-  std::string path;      ///< "space.cells"
-  key_type type;         ///< which alternative of case_value it has
-  key_scope scope;       ///< models that use it
-  bool required;         ///< else the default is that of case_config
-  std::string unit;      ///< "dimensionless", "steps", …; "" where it is no number
-  double lowest,         ///< smallest allowed number; −∞ allows all
-      highest;           ///< largest allowed number, ∞ likewise
-  bool lowest_excluded;  ///< only numbers above `lowest`
-  std::vector<std::string> (*choices)(const case_config&);  ///< valid names; nullptr: any text
-  std::string doc;                                          ///< meaning, as `apsis show case` prints it
-  void (*store)(case_config&, const case_value&);           ///< puts a checked value in its place
-  case_value (*load)(const case_config&);                   ///< monostate where an optional key is not set
-  /// Whether a name is valid besides `choices`: "" if it is, why not if it is meant to be, nothing otherwise.
-  std::optional<std::string> (*also)(const std::string& name) = nullptr;
+  std::string path = "";                ///< "space.cells"
+  key_type type = key_type::text;       ///< which alternative of case_value it has
+  key_scope scope = key_scope::always;  ///< models that use it
+  bool required = false;                ///< else the default is that of case_config
+  std::string unit = "";                ///< "dimensionless", "steps", …; "" for text
+  double lowest = -infinite,            ///< smallest allowed number
+      highest = infinite;               ///< largest allowed number
+  bool lowest_excluded = false;         ///< only numbers above `lowest`
+  std::function<std::vector<std::string>(const case_config&)> choices = {};  ///< valid names; empty: any text
+  std::string doc = "";  ///< meaning, as `apsis show case` prints it
+  std::function<void(case_config&, const case_value&)> store = {};  ///< assigns a checked value
+  std::function<case_value(const case_config&)> load = {};  ///< monostate where an optional key is not set
+  /// Whether a name outside `choices` is valid: "" if it is, why not if it is meant to be, nothing otherwise.
+  std::function<std::optional<std::string>(const std::string& name)> also = {};
+
+  static constexpr double infinite = std::numeric_limits<double>::infinity();  ///< no limit
 };
 
 /// Every key except the parameters of the models, in the order in which they are read and written.

@@ -23,8 +23,10 @@ std::string type_advice(key_type type) {
       return "write for example 1e-3 or \"1e-3 + x^2\"";
     case key_type::text_list:
       return "write for example [\"rho\", \"u\"]";
-    case key_type::number_pair:
-      return "write for example [0.0, 2.0]";
+    case key_type::integers:
+      return "write for example 100, or [100, 50] in two dimensions";
+    case key_type::intervals:
+      return "write for example [0.0, 2.0], or [[0.0, 2.0], [0.0, 1.0]] in two dimensions";
   }
   return "";
 }
@@ -77,11 +79,11 @@ double number(const case_key& key, const raw_value& raw, const std::string& path
 }
 
 void check_choice(const case_key& key, const raw_value& raw, const case_config& so_far) {
-  if (key.choices == nullptr) return;
+  if (!key.choices) return;
   const auto names = key.choices(so_far);
   const auto& name = std::get<std::string>(raw.value);
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
-  const auto why_not = key.also == nullptr ? std::nullopt : key.also(name);
+  const auto why_not = !key.also ? std::nullopt : key.also(name);
   if (!why_not) refuse(raw, key.path, "there is no such name", suggest(name, names));
   if (!why_not->empty()) refuse(raw, key.path, *why_not, "change S");
 }
@@ -105,12 +107,38 @@ std::vector<std::string> texts(const case_key& key, const raw_value& raw) {
   return out;
 }
 
-std::array<double, 2> pair(const case_key& key, const raw_value& raw) {
+/// Items of a list with one item for each direction, of which there are at most three.
+const raw_value::list* directions(const case_key& key, const raw_value& raw) {
+  const auto* items = std::get_if<raw_value::list>(&raw.value);
+  if (items != nullptr && (items->empty() || items->size() > 3))
+    refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+  return items;
+}
+
+std::vector<long> integers(const case_key& key, const raw_value& raw) {
+  const auto* items = directions(key, raw);
+  if (items == nullptr) return {integer(key, raw)};
+  std::vector<long> out;
+  for (const auto& item : *items) out.push_back(integer(key, item));
+  return out;
+}
+
+interval one_interval(const case_key& key, const raw_value& raw) {
   const auto* items = std::get_if<raw_value::list>(&raw.value);
   if (items == nullptr || items->size() != 2)
     refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
   return {finite_number((*items)[0], key.path, type_text(key.type)),
           finite_number((*items)[1], key.path, type_text(key.type))};
+}
+
+std::vector<interval> intervals(const case_key& key, const raw_value& raw) {
+  const auto* items = std::get_if<raw_value::list>(&raw.value);
+  const bool nested =
+      items != nullptr && !items->empty() && std::holds_alternative<raw_value::list>(items->front().value);
+  if (!nested) return {one_interval(key, raw)};
+  std::vector<interval> out;
+  for (const auto& item : *directions(key, raw)) out.push_back(one_interval(key, item));
+  return out;
 }
 
 }  // namespace
@@ -125,7 +153,7 @@ std::string to_text(const model_text& text, const raw_value& raw) {
   source_place place = raw.value_place;
   if (place.column > 0) ++place.column;  // behind the quotation mark
   try {
-    const expression formula(*value, place, {text.variable, false});
+    const expression formula(*value, place, formula_kind{{text.variable}, false});
   } catch (const input_error&) {
     // A word, perhaps misspelled, is not helped by what is wrong with it as a formula.
     const auto in_word = [](char c) {
@@ -153,8 +181,10 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
       return formula(key, raw);
     case key_type::text_list:
       return texts(key, raw);
-    case key_type::number_pair:
-      return pair(key, raw);
+    case key_type::integers:
+      return integers(key, raw);
+    case key_type::intervals:
+      return intervals(key, raw);
   }
   return {};
 }

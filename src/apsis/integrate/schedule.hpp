@@ -58,8 +58,8 @@ class schedule {
   int transport_evaluations() const { return transports_; }  ///< evaluations of T per step
   int collision_evaluations() const {
     return collisions_;
-  }                                                ///< explicit evaluations of Q stage
-                                                   ///< solves per step
+  }  ///< explicit evaluations of Q stage
+     ///< solves per step
   int implicit_solves() const { return solves_; }  ///< per step
 
  private:

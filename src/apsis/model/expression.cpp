@@ -10,20 +10,23 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <muParser.h>
 
 namespace apsis {
 
 namespace {
 
-std::vector<std::string> known_names(const std::string& variable) {
-  return {variable, "pi",   "e",   "sin", "cos",   "tan",  "asin", "acos", "atan", "sinh",
-          "cosh",   "tanh", "exp", "log", "log10", "sqrt", "abs",  "min",  "max"};
+std::vector<std::string> known_names(std::vector<std::string> variables) {
+  for (const char* name : {"pi", "e", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh",
+                           "exp", "log", "log10", "sqrt", "abs", "min", "max"})
+    variables.emplace_back(name);
+  return variables;
 }
 
 // muParser ships its own list of functions, some of which changed meaning between versions (log); this one is
 // ours.
-void define_language(mu::Parser& parser, const std::string& variable, double* x) {
+void define_language(mu::Parser& parser) {
   parser.ClearFun();
   parser.ClearConst();
   parser.ClearInfixOprt();
@@ -51,7 +54,6 @@ void define_language(mu::Parser& parser, const std::string& variable, double* x)
   parser.DefineFun("max", binary(std::fmax));
   parser.DefineConst("pi", std::numbers::pi);
   parser.DefineConst("e", std::numbers::e);
-  parser.DefineVar(variable, x);
 }
 
 source_place shifted(source_place place, std::size_t by) {
@@ -88,12 +90,12 @@ std::string excerpt(const std::string& text, std::size_t at) {
                                                     excerpt(text, at), why, at + 1, advice));
 }
 
-void check_characters(const std::string& text, const source_place& place, const std::string& variable) {
+void check_characters(const std::string& text, const source_place& place, const formula_kind& kind) {
   if (text.find_first_not_of(" \t") == std::string::npos)
     throw input_error(
         place,
         fmt::format("expression is empty (a number or a formula in {} is needed); write for example 1e-3",
-                    variable));
+                    fmt::join(kind.variables, ", ")));
   if (text.size() > expression::longest)
     throw input_error(place, fmt::format("expression has {} characters (at most {} are read); shorten it",
                                          text.size(), expression::longest));
@@ -140,50 +142,59 @@ std::string explain(const mu::ParserError& e) {
   }
 }
 
-/// A parser and its variable. The parser keeps the address of x and scratch space, so one thread at a time.
-struct machine {
-  double x = 0.0;
-  mu::Parser parser;
+/// A parser with storage for its variables. It keeps their addresses and scratch memory: one thread at a
+/// time.
+class variable_parser {
+ public:
+  variable_parser(const std::string& text, const std::vector<std::string>& variables)
+      : values_(variables.size()) {
+    define_language(parser_);
+    for (std::size_t k = 0; k < variables.size(); ++k) parser_.DefineVar(variables[k], &values_[k]);
+    parser_.SetExpr(text);
+  }
 
-  machine(const std::string& text, const std::string& variable) {
-    define_language(parser, variable, &x);
-    parser.SetExpr(text);
+  double evaluate(std::span<const double> variables) {
+    std::copy_n(variables.begin(), values_.size(), values_.begin());
+    return parser_.Eval();
   }
-  double run(double at) {
-    x = at;
-    return parser.Eval();
-  }
+  const mu::Parser& parser() const { return parser_; }
+
+ private:
+  std::vector<double> values_;
+  mu::Parser parser_;
 };
 
-/// Machines for one formula, each in the hands of one thread at a time. A thread comes back to the same slot,
-/// so nobody waits unless there are more threads than slots.
-class machine_shed {
+/// Parsers of one formula, each used by one thread at a time. A thread returns to the same slot, so that
+/// nobody waits unless there are more threads than slots (a lock around a single parser costs two threads a
+/// factor of 10, see bench/micro/expression.cpp).
+class parser_pool {
  public:
-  machine_shed(const std::string& text, const std::string& variable) : text_(text), variable_(variable) {
-    slots_.front().own = std::make_unique<machine>(text, variable);
+  parser_pool(const std::string& text, const std::vector<std::string>& variables)
+      : text_(text), variables_(variables) {
+    slots_.front().parser = std::make_unique<variable_parser>(text, variables);
   }
 
-  /// For the constructor of an expression, which is alone.
-  mu::Parser& first() { return slots_.front().own->parser; }
+  /// The first parser, for the constructor of an expression.
+  variable_parser& first() { return *slots_.front().parser; }
 
-  double run(double x) {
-    slot& mine = take();
+  double evaluate(std::span<const double> variables) {
+    slot& mine = acquire();
     const release_at_exit release{mine};
-    if (!mine.own) mine.own = std::make_unique<machine>(text_, variable_);
-    return mine.own->run(x);
+    if (!mine.parser) mine.parser = std::make_unique<variable_parser>(text_, variables_);
+    return mine.parser->evaluate(variables);
   }
 
  private:
-  struct alignas(64) slot {  // threads side by side do not share a cache line
+  struct alignas(64) slot {  // no two threads share a cache line
     std::atomic_flag taken = ATOMIC_FLAG_INIT;
-    std::unique_ptr<machine> own;
+    std::unique_ptr<variable_parser> parser;
   };
   struct release_at_exit {
     slot& held;
     ~release_at_exit() { held.taken.clear(std::memory_order_release); }
   };
 
-  slot& take() {
+  slot& acquire() {
     static std::atomic<std::size_t> threads_seen{0};
     thread_local const std::size_t home = threads_seen++;
     for (std::size_t k = home;; ++k) {
@@ -192,27 +203,40 @@ class machine_shed {
     }
   }
 
-  std::string text_, variable_;
+  std::string text_;
+  std::vector<std::string> variables_;
   std::array<slot, 64> slots_;
 };
 
+std::string values_text(const std::vector<std::string>& names, std::span<const double> values) {
+  std::vector<std::string> parts;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    parts.push_back(fmt::format("{} = {:.10g}", names[k], values[k]));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 }  // namespace
+
+formula_kind formula_of_position(int dimensions, bool nonnegative) {
+  const std::vector<std::string> all = {"x", "y", "z"};
+  return {{all.begin(), all.begin() + std::clamp(dimensions, 1, 3)}, nonnegative};
+}
 
 struct expression::impl {
   impl(const std::string& words, source_place where, formula_kind what)
-      : text(words), place(std::move(where)), kind(std::move(what)), machines(text, kind.variable) {}
+      : text(words), place(std::move(where)), kind(std::move(what)), parsers(text, kind.variables) {}
 
   std::string text;
   source_place place;
   formula_kind kind;
-  machine_shed machines;
+  parser_pool parsers;
 };
 
 expression::expression(const std::string& text, const source_place& place, const formula_kind& kind) {
-  check_characters(text, place, kind.variable);
+  check_characters(text, place, kind);
   try {
     impl_ = std::make_unique<impl>(text, place, kind);
-    impl_->machines.first().Eval();
+    impl_->parsers.first().evaluate(std::vector<double>(kind.variables.size()));
   } catch (const mu::ParserError& e) {
     const bool unknown = e.GetCode() == mu::ecUNASSIGNABLE_TOKEN;
     // muParser reports the end of some tokens and the start of others; an unknown name is found again in the
@@ -221,9 +245,9 @@ expression::expression(const std::string& text, const source_place& place, const
     if (unknown && text.rfind(e.GetToken(), at) != std::string::npos) at = text.rfind(e.GetToken(), at);
     at = std::min(at, text.size() - 1);
     fail(text, place, at, explain(e),
-         unknown ? suggest(e.GetToken(), known_names(kind.variable)) : "check the formula");
+         unknown ? suggest(e.GetToken(), known_names(kind.variables)) : "check the formula");
   }
-  if (impl_->machines.first().GetNumResults() != 1)
+  if (impl_->parsers.first().parser().GetNumResults() != 1)
     fail(text, place, text.find(','), "a comma outside a function", "write one formula");
 }
 
@@ -231,23 +255,22 @@ expression::~expression() = default;
 expression::expression(expression&&) noexcept = default;
 expression& expression::operator=(expression&&) noexcept = default;
 
-double expression::value(double x) const {
+double expression::value(std::span<const double> variables) const {
   try {
-    return impl_->machines.run(x);
+    return impl_->parsers.evaluate(variables);
   } catch (const mu::ParserError& e) {
     fail(impl_->text, impl_->place, 0, e.GetMsg(), "check the formula");
   }
 }
 
-double expression::evaluate(double x) const {
-  const double result = value(x);
+double expression::evaluate(std::span<const double> variables) const {
+  const double result = value(variables);
   if (!std::isfinite(result) || (impl_->kind.nonnegative && result < 0.0))
     throw input_error(
         impl_->place,
-        fmt::format(
-            "expression '{}' is {} at {} = {:.10g} (it must be finite{}); change the formula or the domain",
-            excerpt(impl_->text, 0), result, impl_->kind.variable, x,
-            impl_->kind.nonnegative ? " and not negative" : ""));
+        fmt::format("expression '{}' is {} at {} (it must be finite{}); change the formula or the domain",
+                    excerpt(impl_->text, 0), result, values_text(impl_->kind.variables, variables),
+                    impl_->kind.nonnegative ? " and not negative" : ""));
   return result;
 }
 
@@ -256,7 +279,7 @@ const std::string& expression::text() const {
 }
 
 bool expression::is_constant() const {
-  return impl_->machines.first().GetUsedVar().empty();
+  return impl_->parsers.first().parser().GetUsedVar().empty();
 }
 
 }  // namespace apsis

@@ -28,11 +28,18 @@ struct model_text {
   std::string doc;       ///< meaning
 };
 
+/// How a kinetic model computes its discrete equilibrium.
+enum class equilibrium_choice {
+  automatic,  ///< the formula where its discrete moments are exact, else `discrete`
+  formula,    ///< the Maxwellian at the grid points
+  discrete    ///< the minimizer of the entropy with the discrete moments
+};
+
 /// Velocity grid of a kinetic model: `points` midpoints on [−max, max] per velocity dimension.
 struct velocity_config {
-  double max = 0.0;                  ///< v_max > 0 (dimensionless)
-  int points = 0;                    ///< at least 4
-  std::string equilibrium = "auto";  ///< "auto" | "formula" | "discrete"
+  double max = 0.0;  ///< v_max > 0 (dimensionless)
+  int points = 0;    ///< at least 4
+  equilibrium_choice equilibrium = equilibrium_choice::automatic;
 };
 
 /// All that a model is made from.

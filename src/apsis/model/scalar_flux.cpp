@@ -16,7 +16,7 @@ scalar_flux::scalar_flux(const std::string& text, double slope, double viscosity
   const auto found = std::find(names().begin(), names().end(), text);
   kind_ = static_cast<kind>(found - names().begin());  // behind the last name: a formula
   if (kind_ == kind::formula)
-    formula_ = std::make_unique<expression>(text, source_place{}, formula_kind{"u", false});
+    formula_ = std::make_unique<expression>(text, source_place{}, formula_kind{{"u"}, false});
 }
 
 double scalar_flux::operator()(double u) const {

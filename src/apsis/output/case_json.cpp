@@ -9,6 +9,13 @@ namespace {
 
 struct to_json_visitor {
   nlohmann::ordered_json operator()(std::monostate) const { return nullptr; }
+  // A list of one item stands for the item.
+  nlohmann::ordered_json operator()(const std::vector<long>& x) const {
+    return x.size() == 1 ? nlohmann::ordered_json(x.front()) : nlohmann::ordered_json(x);
+  }
+  nlohmann::ordered_json operator()(const std::vector<interval>& x) const {
+    return x.size() == 1 ? nlohmann::ordered_json(x.front()) : nlohmann::ordered_json(x);
+  }
   template <class T>
   nlohmann::ordered_json operator()(const T& x) const {
     return x;

@@ -25,7 +25,7 @@ std::string in_units(double bytes) {
 }  // namespace
 
 void check_memory(const case_config& config, const run_setup& setup, int copies) {
-  const double cells = setup.has_space() ? config.space.cells : 1.0;
+  const double cells = setup.has_space() ? make_mesh(config).size() : 1.0;
   const int components = setup.equation->components(), buffers = buffers_of(setup);
   const double state = cells * sizeof(double);
   const double snapshots = 1.0 + (config.output.every > 0.0 ? config.time.end / config.output.every : 0.0);

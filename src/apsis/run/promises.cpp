@@ -26,7 +26,7 @@ namespace {
 
 bool takes_formula(const run_setup& setup) {
   const auto& velocity = setup.config().velocity;
-  return velocity.points > 0 && velocity.equilibrium == "formula";
+  return velocity.points > 0 && velocity.equilibrium == equilibrium_choice::formula;
 }
 
 [[noreturn]] void broken(const std::string& promise, const step_record& last, double value) {

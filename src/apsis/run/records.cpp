@@ -202,7 +202,7 @@ solution make_solution(const simulation& run, const run_records& records) {
   s.step = run.step();
   s.cells = static_cast<std::uint64_t>(run.cells());
   s.components = static_cast<std::uint64_t>(run.components());
-  if (run.config().output.distribution != "none") s.f = run.state();
+  if (run.config().output.distribution != distribution_choice::none) s.f = run.state();
   s.velocities = run.velocities();
   s.epsilon = run.epsilon();
   s.fields = records.fields();

@@ -23,7 +23,8 @@ namespace {
 const char* const snapshots = "snapshots";
 
 precision stored_precision(const case_config& config) {
-  return config.output.precision == "single" ? precision::float32 : precision::float64;
+  return config.output.precision == precision_choice::single_precision ? precision::float32
+                                                                       : precision::float64;
 }
 
 std::vector<distribution_file> distribution_files(const result_folder& folder) {
@@ -90,7 +91,7 @@ int threads_for(const case_config& config) {
   const auto dimensions = config.model.parameters.find("velocity_dimensions");
   const double velocities = std::pow(std::max(config.velocity.points, 1),
                                      dimensions == config.model.parameters.end() ? 1.0 : dimensions->second);
-  return velocities * config.space.cells < large ? 1 : default_threads();
+  return velocities * make_mesh(config).size() < large ? 1 : default_threads();
 }
 
 run_session::run_session(case_config configured, session_options options)
@@ -109,7 +110,7 @@ run_session::run_session(case_config configured, session_options options)
     write_distribution_snapshot();
   if (!folder_ && config.output.checkpoint_every > 0)
     log::warning("no checkpoints are written (output.checkpoint_every needs a folder); give one with --out");
-  if (config.output.distribution == "snapshots" && !(folder_ && config.output.every > 0.0))
+  if (config.output.distribution == distribution_choice::snapshots && !(folder_ && config.output.every > 0.0))
     log::warning(
         "no snapshots of f are written (output.distribution = \"snapshots\" needs output.every and a "
         "folder); "
@@ -168,7 +169,7 @@ void run_session::take_snapshot() {
 
 void run_session::write_distribution_snapshot() {
   const auto& output = simulation_.config().output;
-  if (!folder_ || output.distribution != "snapshots") return;
+  if (!folder_ || output.distribution != distribution_choice::snapshots) return;
   const distribution_snapshot now = make_distribution_snapshot(simulation_, output.stride);
   folder_->add_to_series(snapshots, fmt::format("f-{:09}.h5", now.step), [&](const std::string& path) {
     write_distribution(path, now, stored_precision(simulation_.config()));
@@ -177,7 +178,7 @@ void run_session::write_distribution_snapshot() {
 
 /// Those that were taken before the checkpoint.
 void run_session::resume_snapshots(const std::string& checkpoint) {
-  if (simulation_.config().output.distribution != "snapshots") return;
+  if (simulation_.config().output.distribution != distribution_choice::snapshots) return;
   folder_->resume_series(snapshots, std::filesystem::path(checkpoint).parent_path(),
                          [this](const std::string& path) {
                            return hdf5_file::open(path).read_attribute("t") <= simulation_.t();
@@ -267,7 +268,7 @@ void run_session::save_failure(const std::string& message) {
   // Good results of an earlier run are not given up for those of a failed one.
   if (std::filesystem::exists(folder_->path() / result_folder::manifest)) {
     result_folder beside(folder_->path() / "failed");
-    if (simulation_.config().output.distribution == "snapshots")
+    if (simulation_.config().output.distribution == distribution_choice::snapshots)
       beside.resume_series(snapshots, folder_->path(), [](const std::string&) { return true; });
     write_results(beside, run_end::failed, message);
     log::warning(fmt::format("the results so far are in '{}' (the folder holds an earlier run)",

@@ -64,13 +64,13 @@ void run_setup::build_space() {
   const auto& space = config_.space;
   const reconstruction_entry* scheme = find_reconstruction(space.reconstruction);
   if (scheme == nullptr) throw input_error("unknown reconstruction '" + space.reconstruction + "'");
-  const auto faces = make_boundaries(config_);
-  builder_.on(grid::line(space.cells, space.domain[0], space.domain[1]))
-      .with_boundary({0, false}, faces[0])
-      .with_boundary({0, true}, faces[1])
-      .with_unknowns(space.formulation);
+  builder_.on(make_mesh(config_)).with_unknowns(space.formulation);
+  const auto sides = make_boundaries(config_);
+  for (int direction = 0; direction < static_cast<int>(sides.size()); ++direction)
+    for (const bool upper : {false, true})
+      builder_.with_boundary({direction, upper}, sides[static_cast<std::size_t>(direction)][upper ? 1 : 0]);
   at_key(config_, "space.limiter", [&] {
-    if (space.limiter == "positivity") builder_.with_positivity_limiter();
+    if (space.limiter == limiter_choice::positivity) builder_.with_positivity_limiter();
   });
   at_key(config_, "space.cells", [&] { builder_.with_reconstruction(scheme->make()); });
 }
@@ -78,8 +78,9 @@ void run_setup::build_space() {
 void run_setup::set_epsilon() {
   const auto place = config_.places.find("model.epsilon");
   const auto formula = std::make_shared<const expression>(
-      config_.model.epsilon, place == config_.places.end() ? source_place{} : place->second);
-  builder_.with_epsilon([formula](const position& x) { return formula->evaluate(x[0]); });
+      config_.model.epsilon, place == config_.places.end() ? source_place{} : place->second,
+      formula_of_position(equation->space_dimensions()));
+  builder_.with_epsilon([formula](const position& x) { return formula->evaluate(x); });
 }
 
 void run_setup::check_method() {

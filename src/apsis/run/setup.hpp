@@ -54,7 +54,7 @@ class run_setup {
   /// Δx/v_max, so that Δt = cfl · this.
   double cfl_length() const;
   /// Whether the first step is cut into steps that resolve the initial layer (time.startup).
-  bool has_graded_start() const { return config_.time.startup == "graded"; }
+  bool has_graded_start() const { return config_.time.startup == startup_choice::graded; }
 
   /// Largest defect of an invariant, Σ|ℛE(ℛu) − ℛu| over all cells relative to its scale; 0 for models that
   /// do not relax to an equilibrium.

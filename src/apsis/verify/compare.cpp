@@ -119,7 +119,7 @@ void check_meshes(const case_config& run, const case_config& reference) {
   if (run.space.domain != reference.space.domain) not_comparable("space.domain", "they have no common mesh");
   if (run.space.formulation != reference.space.formulation)
     not_comparable("space.formulation", "one has cell averages, the other point values");
-  const int cells = run.space.cells, fine = reference.space.cells;
+  const int cells = make_mesh(run).size(), fine = make_mesh(reference).size();
   const bool averaged = run.space.formulation == formulation::finite_volume;
   if (fine < cells || (averaged && fine % cells != 0))
     throw input_error(
@@ -161,7 +161,7 @@ std::vector<double> on_mesh_of(const outcome& run, const outcome& finer) {
   if (run.cells == finer.cells) return finer.state;
   if (run.config.space.formulation == formulation::finite_volume)
     return averages{static_cast<std::size_t>(finer.cells / run.cells), components}(finer.state);
-  const bool periodic = make_boundaries(run.config)[0]->periodic();
+  const bool periodic = make_boundaries(run.config).front()[0]->periodic();
   return interpolation(finer.cells, run.cells, periodic)(finer.state, components);
 }
 

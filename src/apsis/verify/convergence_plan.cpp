@@ -98,7 +98,7 @@ class planner {
         config.time.dt
             ? *config.time.dt
             : (config.time.cfl ? *config.time.cfl : config.time.safety.value_or(1.0)) * setup.cfl_length();
-    const double cells = setup.has_space() ? config.space.cells : 1.0;
+    const double cells = setup.has_space() ? make_mesh(config).size() : 1.0;
     return config.time.end / step * cells * setup.equation->components() *
            static_cast<double>(setup.integrator().stages());
   }
@@ -251,7 +251,7 @@ class planner {
         if (const double value = number_of(from, key); value > 0.0)
           changes.push_back(fmt::format("{}={:.17g}", key, value / 8.0));
     } else {
-      changes.push_back(fmt::format("space.cells={}", 3L * from.space.cells));
+      changes.push_back(fmt::format("space.cells={}", 3L * from.space.cells.front()));
       if (from.time.dt) changes.push_back(fmt::format("time.dt={:.17g}", *from.time.dt / 3.0));
     }
     return layered(settings_of_.at(base), changes);

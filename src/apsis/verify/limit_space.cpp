@@ -17,7 +17,7 @@ constexpr int halo = 2;
 
 domain space_of(const case_config& config, bool has_space) {
   if (!has_space) return domain::point();
-  const grid mesh = grid::line(config.space.cells, config.space.domain[0], config.space.domain[1]);
+  const grid mesh = make_mesh(config);
   return {mesh, {make_boundaries(config)}};
 }
 
@@ -47,7 +47,8 @@ limit_space::limit_space(const case_config& config, const relaxation_model& equa
   const bool volumes = config.space.formulation == formulation::finite_volume;
   const bool first_order = scheme_->order() == 1;
   averages_ = volumes && !first_order;
-  if (config.space.limiter == "positivity" && !first_order) (volumes ? limit_edges_ : limit_fluxes_) = true;
+  if (config.space.limiter == limiter_choice::positivity && !first_order)
+    (volumes ? limit_edges_ : limit_fluxes_) = true;
 }
 
 field limit_space::moments(const field& u) const {

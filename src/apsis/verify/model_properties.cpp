@@ -64,7 +64,7 @@ std::vector<made_model> all_models() {
   std::vector<made_model> all;
   for (const auto* entry : model_entries()) {
     model_config config = default_config(*entry);
-    config.velocity = {8.0, 40, "auto"};
+    config.velocity = {8.0, 40, equilibrium_choice::automatic};
     auto made = entry->make(config);
     const auto* relaxation = dynamic_cast<const relaxation_model*>(made.get());
     all.push_back({entry, std::move(made), relaxation});

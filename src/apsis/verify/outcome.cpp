@@ -18,8 +18,7 @@ outcome compute(const case_config& config, const study_control& control) {
   out.components = run.components();
   out.state = run.state();
   out.exact = run.exact_state();
-  if (run.has_space())
-    out.cell_volume = (config.space.domain[1] - config.space.domain[0]) / config.space.cells;
+  if (run.has_space()) out.cell_volume = make_mesh(config).cell_volume();
   if (config.velocity.points > 0) {
     // One velocity cell; components are all nodes of a grid with the same number per dimension.
     const double dimensions = std::round(std::log(out.components) / std::log(config.velocity.points));

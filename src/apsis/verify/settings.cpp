@@ -57,16 +57,18 @@ double number_of(const case_config& config, const std::string& key) {
     const case_value value = entry.load(config);
     if (const auto* integer = std::get_if<long>(&value)) return static_cast<double>(*integer);
     if (const auto* number = std::get_if<double>(&value)) return *number;
+    if (const auto* list = std::get_if<std::vector<long>>(&value))
+      return list->size() == 1 ? static_cast<double>(list->front()) : not_a_number;
     if (entry.type != key_type::formula) break;
-    const expression formula(std::get<std::string>(value));
-    return !formula.is_constant() ? not_a_number : formula.evaluate(0.0);
+    const expression formula(std::get<std::string>(value), {}, formula_of_position(3));
+    return !formula.is_constant() ? not_a_number : formula.evaluate(position{});
   }
   return not_a_number;
 }
 
 double resolution(const case_config& config, const std::string& key) {
   const double value = number_of(config, key);
-  if (key == "space.cells") return (config.space.domain[1] - config.space.domain[0]) / value;
+  if (key == "space.cells") return (config.space.domain.front()[1] - config.space.domain.front()[0]) / value;
   if (key == "velocity.points") return 2.0 * config.velocity.max / value;
   return value;
 }

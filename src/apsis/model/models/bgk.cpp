@@ -12,8 +12,6 @@
 namespace apsis {
 namespace {
 
-enum class equilibrium_choice { automatic, formula, discrete };
-
 /// f_t + v·∇_x f = (M[f] − f)/ε on a velocity grid (paper, eq. BGK): ω = (ρ, ρu, 𝓔), E = M, C = 1. One space
 /// dimension, d velocity dimensions. Dimensionless.
 class bgk_model final : public relaxation_model {
@@ -21,9 +19,7 @@ class bgk_model final : public relaxation_model {
   explicit bgk_model(const model_config& config)
       : grid_(static_cast<int>(config.parameters.at("velocity_dimensions")), config.velocity.points,
               config.velocity.max),
-        choice_(config.velocity.equilibrium == "formula"    ? equilibrium_choice::formula
-                : config.velocity.equilibrium == "discrete" ? equilibrium_choice::discrete
-                                                            : equilibrium_choice::automatic) {
+        choice_(config.velocity.equilibrium) {
     make_initial_data();
   }
 

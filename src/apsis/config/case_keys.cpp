@@ -1,0 +1,285 @@
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/case_schema.hpp>
+#include <apsis/method/family_registry.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/method/method_file.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
+
+#include <type_traits>
+#include <utility>
+
+namespace apsis {
+namespace {
+
+/// Names of the entries of a registry, as the choices of a key.
+template <class Entries>
+auto names_in(Entries (*entries)()) {
+  return [entries](const case_config&) {
+    std::vector<std::string> names;
+    for (const auto* entry : entries()) names.push_back(entry->name);
+    return names;
+  };
+}
+
+std::vector<std::string> initial_choices(const case_config& c) {
+  const model_entry* entry = find_model(c.model.name);
+  return entry != nullptr ? initial_names(*entry) : std::vector<std::string>{};
+}
+
+/// A member of a family, or a method file; an invalid file throws with its own place.
+std::optional<std::string> check_method_outside_catalogue(const std::string& name) {
+  if (is_method_file(name)) {
+    find_method(name);
+    return "";
+  }
+  const family_entry* family = find_family(name);
+  if (family == nullptr) return std::nullopt;
+  return missing_member(*family, name);
+}
+
+/// How a member of case_config is stored in a case_value.
+template <class Member>
+struct conversion;
+
+template <class Same>
+struct plain_conversion {
+  static case_value to(const Same& member) { return member; }
+  static void from(const case_value& value, Same& member) { member = std::get<Same>(value); }
+};
+template <>
+struct conversion<double> : plain_conversion<double> {
+  static constexpr key_type type = key_type::number;
+};
+template <>
+struct conversion<std::string> : plain_conversion<std::string> {
+  static constexpr key_type type = key_type::text;
+};
+template <>
+struct conversion<std::vector<std::string>> : plain_conversion<std::vector<std::string>> {
+  static constexpr key_type type = key_type::text_list;
+};
+template <>
+struct conversion<std::vector<interval>> : plain_conversion<std::vector<interval>> {
+  static constexpr key_type type = key_type::intervals;
+};
+template <>
+struct conversion<int> {
+  static constexpr key_type type = key_type::integer;
+  static case_value to(int member) { return long{member}; }
+  static void from(const case_value& value, int& member) { member = static_cast<int>(std::get<long>(value)); }
+};
+template <>
+struct conversion<std::vector<int>> {
+  static constexpr key_type type = key_type::integers;
+  static case_value to(const std::vector<int>& member) {
+    return std::vector<long>(member.begin(), member.end());
+  }
+  static void from(const case_value& value, std::vector<int>& member) {
+    member.clear();
+    for (const long item : std::get<std::vector<long>>(value)) member.push_back(static_cast<int>(item));
+  }
+};
+template <class Member>
+struct conversion<std::optional<Member>> {
+  static constexpr key_type type = conversion<Member>::type;
+  static case_value to(const std::optional<Member>& member) {
+    return member ? conversion<Member>::to(*member) : case_value();
+  }
+  static void from(const case_value& value, std::optional<Member>& member) {
+    conversion<Member>::from(value, member.emplace());
+  }
+};
+template <class Choice>
+  requires std::is_enum_v<Choice>
+struct conversion<Choice> {
+  static constexpr key_type type = key_type::text;
+  static case_value to(Choice member) { return std::string(choice_name(member)); }
+  static void from(const case_value& value, Choice& member) {
+    const auto& names = choice_names<Choice>;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (std::get<std::string>(value) == names[k]) member = static_cast<Choice>(k);
+  }
+};
+
+/// The key whose value is the member that at(case_config) refers to; its type is that of the member.
+template <class At>
+case_key key(std::string path, At at, case_key facts) {
+  using member = std::remove_cvref_t<decltype(at(std::declval<case_config&>()))>;
+  facts.path = std::move(path);
+  if (facts.type != key_type::formula) facts.type = conversion<member>::type;
+  facts.store = [at](case_config& c, const case_value& value) { conversion<member>::from(value, at(c)); };
+  facts.load = [at](const case_config& c) { return conversion<member>::to(at(c)); };
+  if constexpr (std::is_enum_v<member>)
+    facts.choices = [](const case_config&) {
+      return std::vector<std::string>(choice_names<member>.begin(), choice_names<member>.end());
+    };
+  const bool numeric = facts.type == key_type::integer || facts.type == key_type::number ||
+                       facts.type == key_type::formula || facts.type == key_type::integers ||
+                       facts.type == key_type::intervals;
+  if (numeric && facts.unit.empty()) facts.unit = "dimensionless";
+  return facts;
+}
+
+std::vector<case_key> model_keys() {
+  return {key("title", [](auto& c) -> auto& { return c.title; },
+              {.doc = "One line that says what the case shows."}),
+          key("model.name", [](auto& c) -> auto& { return c.model.name; },
+              {.required = true, .choices = names_in(model_entries), .doc = "The equation."}),
+          key("model.epsilon", [](auto& c) -> auto& { return c.model.epsilon; },
+              {.type = key_type::formula,
+               .lowest = 0.0,
+               .doc = "Knudsen number (relaxation time): a number, or a formula in the coordinates x, y, z "
+                      "as text. 0 is the limit system."}),
+          key("model.initial", [](auto& c) -> auto& { return c.model.initial; },
+              {.choices = initial_choices,
+               .doc = "Name of one of the model's initial data; the first of the model where not given."})};
+}
+
+std::vector<case_key> space_keys() {
+  return {
+      key("space.cells", [](auto& c) -> auto& { return c.space.cells; },
+          {.scope = key_scope::space,
+           .required = true,
+           .lowest = 1,
+           .highest = 10'000'000,
+           .doc = "Number of cells of equal size; in several dimensions a list, one number for each "
+                  "direction."}),
+      key("space.domain", [](auto& c) -> auto& { return c.space.domain; },
+          {.scope = key_scope::space,
+           .doc = "Lower and upper end of the domain, [lower, upper] with lower < upper; in several "
+                  "dimensions a list of such pairs."}),
+      key("space.formulation", [](auto& c) -> auto& { return c.space.formulation; },
+          {.scope = key_scope::space,
+           .doc = "Unknowns are cell averages (finite-volume; collisions at Gauss points of the cell) or "
+                  "point values (finite-difference; collisions pointwise, about a third of the cost)."}),
+      key("space.reconstruction", [](auto& c) -> auto& { return c.space.reconstruction; },
+          {.scope = key_scope::space,
+           .choices = names_in(reconstruction_entries),
+           .doc = "Reconstruction scheme."}),
+      key("space.limiter", [](auto& c) -> auto& { return c.space.limiter; },
+          {.scope = key_scope::space,
+           .doc = "positivity: scale the reconstruction of each cell towards its average so that nonnegative "
+                  "data stay nonnegative for steps up to the method's SSP coefficient times dx/(12 v_max)."}),
+      key("space.boundary", [](auto& c) -> auto& { return c.space.boundary; },
+          {.scope = key_scope::space,
+           .choices = names_in(boundary_entries),
+           .doc = "Boundary condition at every end of the domain: periodic, or outflow, which repeats the "
+                  "last cell inside (conservation and entropy decay are then not promised)."}),
+      key("boundary.left.kind", [](auto& c) -> auto& { return c.faces.left; },
+          {.scope = key_scope::space,
+           .choices = names_in(boundary_entries),
+           .doc = "Boundary condition at the lower end in x, where it differs from space.boundary. Table "
+                  "[boundary.left]."}),
+      key("boundary.right.kind", [](auto& c) -> auto& { return c.faces.right; },
+          {.scope = key_scope::space,
+           .choices = names_in(boundary_entries),
+           .doc = "Boundary condition at the upper end in x, where it differs from space.boundary. Table "
+                  "[boundary.right]."}),
+      key("velocity.max", [](auto& c) -> auto& { return c.velocity.max; },
+          {.scope = key_scope::velocity,
+           .required = true,
+           .lowest = 0.0,
+           .highest = 1e6,
+           .lowest_excluded = true,
+           .doc = "The velocity grid covers [-max, max]; it must hold the tails of the data."}),
+      key("velocity.points", [](auto& c) -> auto& { return c.velocity.points; },
+          {.scope = key_scope::velocity,
+           .required = true,
+           .lowest = 4,
+           .highest = 100'000,
+           .doc = "Number of velocities per dimension (midpoints of equal intervals)."}),
+      key("velocity.equilibrium", [](auto& c) -> auto& { return c.velocity.equilibrium; },
+          {.scope = key_scope::velocity,
+           .doc = "Maxwellian by its formula, or with the discrete moments matched (conservative on any "
+                  "grid); auto measures which is needed."})};
+}
+
+std::vector<case_key> time_keys() {
+  return {key("time.method", [](auto& c) -> auto& { return c.time.method; },
+              {.required = true,
+               .choices = [](const case_config&) { return method_names(); },
+               .doc = "The time integrator, by its name in the catalogue, a member of a family (apsis list "
+                      "families) such as md-imex-chain-7-2, or a method file of yours (FILE.toml, relative "
+                      "to where the program runs).",
+               .also = check_method_outside_catalogue}),
+          key("time.end", [](auto& c) -> auto& { return c.time.end; },
+              {.required = true, .lowest = 0.0, .doc = "Final time; the start is t = 0."}),
+          key("time.dt", [](auto& c) -> auto& { return c.time.dt; },
+              {.lowest = 0.0,
+               .lowest_excluded = true,
+               .doc = "Step size. Exactly one of dt, cfl and safety is given."}),
+          key("time.cfl", [](auto& c) -> auto& { return c.time.cfl; },
+              {.scope = key_scope::space,
+               .lowest = 0.0,
+               .lowest_excluded = true,
+               .doc = "Step size as dt = cfl * dx / v_max. Exactly one of dt, cfl and safety is given."}),
+          key("time.safety", [](auto& c) -> auto& { return c.time.safety; },
+              {.scope = key_scope::space,
+               .lowest = 0.0,
+               .lowest_excluded = true,
+               .doc = "Step size as dt = safety * r * dt_FE with the SSP coefficient r of the method and the "
+                      "forward Euler step dt_FE of the transport; positivity is guaranteed up to 1. Exactly "
+                      "one of dt, cfl and safety is given."}),
+          key("time.startup", [](auto& c) -> auto& { return c.time.startup; },
+              {.doc = "graded: the first step is split into steps that double, starting with a quarter of "
+                      "the smallest epsilon/C, so that the initial layer of data out of equilibrium is "
+                      "resolved; for methods whose layer is not 1 (apsis check). About log2(4 C dt/epsilon) "
+                      "more steps, none for epsilon = 0."}),
+          key("time.tolerance", [](auto& c) -> auto& { return c.time.tolerance; },
+              {.lowest = 0.0,
+               .lowest_excluded = true,
+               .doc = "Tolerance on the estimated error of each step, which is the 2-norm of the difference "
+                      "to the method's embedded solution relative to that of the state; errors off "
+                      "equilibrium, which relax, count less in steps shorter than the tolerance asks for "
+                      "(docs/methods.md). dt, cfl or safety then limits the step; startup = graded starts in "
+                      "the initial layer. For methods with an embedded solution (apsis list methods)."})};
+}
+
+std::vector<case_key> output_keys() {
+  return {
+      key("output.every", [](auto& c) -> auto& { return c.output.every; },
+          {.lowest = 0.0, .doc = "Time between snapshots of the fields; 0 keeps the final state only."}),
+      key("output.fields", [](auto& c) -> auto& { return c.output.fields; },
+          {.doc = "Names of the macroscopic fields to write; empty writes all of the model."}),
+      key("output.distribution", [](auto& c) -> auto& { return c.output.distribution; },
+          {.doc = "Where the unknowns themselves (f) are written: nowhere, at the end into solution.h5, or "
+                  "also for every snapshot, into files of their own in snapshots/."}),
+      key("output.stride", [](auto& c) -> auto& { return c.output.stride; },
+          {.unit = "cells",
+           .lowest = 1,
+           .highest = 10'000'000,
+           .doc = "Snapshots of f contain every stride-th cell, beginning with the first."}),
+      key("output.precision", [](auto& c) -> auto& { return c.output.precision; },
+          {.doc = "Precision of snapshots of f. In single precision numbers have 7 digits and are 0 below "
+                  "1e-45. The end and checkpoints have every digit."}),
+      key("output.checkpoint_every", [](auto& c) -> auto& { return c.output.checkpoint_every; },
+          {.unit = "steps",
+           .lowest = 0,
+           .highest = 1'000'000'000,
+           .doc =
+               "Steps between checkpoints; 0 writes none by steps. An interrupted run always leaves one."}),
+      key("output.checkpoint_minutes", [](auto& c) -> auto& { return c.output.checkpoint_minutes; },
+          {.unit = "minutes",
+           .lowest = 0.0,
+           .doc = "Minutes of wall time between checkpoints; 0 writes none by time."}),
+      key("output.history_rows", [](auto& c) -> auto& { return c.output.history_rows; },
+          {.unit = "rows",
+           .lowest = 100,
+           .highest = 10'000'000,
+           .doc = "Most rows of the history. A run of more steps keeps every 2nd, 4th, 8th, … step, the last "
+                  "one, and the steps at which a column is smallest or largest."})};
+}
+
+}  // namespace
+
+const std::vector<case_key>& case_schema() {
+  static const std::vector<case_key> schema = [] {
+    std::vector<case_key> all;
+    for (auto* group : {model_keys, space_keys, time_keys, output_keys})
+      for (case_key& one : group()) all.push_back(std::move(one));
+    return all;
+  }();
+  return schema;
+}
+
+}  // namespace apsis

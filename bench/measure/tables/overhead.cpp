@@ -85,7 +85,7 @@ job steps_of(int steps, State u, std::shared_ptr<double> result, Step step) {
   };
 }
 
-table measure(const settings& how) {
+result_table measure(const settings& how) {
   const int steps = how.quick ? 1000 : 200'000;
   const auto result_by_hand = std::make_shared<double>(0.0),
              result_of_library = std::make_shared<double>(0.0);
@@ -103,7 +103,7 @@ table measure(const settings& how) {
       how.repeats);
   if (std::abs(*result_by_hand - *result_of_library) > 1e-9)
     throw std::runtime_error("the two solutions differ");
-  table result;
+  result_table result;
   result.title = "Library overhead on a tiny problem";
   result.note =
       "The ODE model of the paper (two unknowns, ε = 1e-4), md-imex-6-3: a step of the library, which "

@@ -130,7 +130,7 @@ const char* const note =
     "CVODE: BDF, tuned in the same way. f ≥ 0: with their constraint. —: no run reached the error in {:g} "
     "s. The reference (explicit, small steps) is accurate to {:.1e} by comparison with ARKODE.";
 
-table measure(const settings& how) {
+result_table measure(const settings& how) {
   const double end = how.quick ? 0.004 : 0.5;
   if (how.quick) time_limit = 0.3;
   mixed_regime what(end);
@@ -150,7 +150,7 @@ table measure(const settings& how) {
              return what.run(find_method("ssprk-3-3"), explicit_steps(end, 1e-5), false, 1e3);
            }});
   all.run(how.quick ? 0 : how.repeats, 3.0);
-  table result;
+  result_table result;
   result.title = "Mixed-regime BGK: work and precision";
   result.note = fmt::format(fmt::runtime(note), end, time_limit, apart);
   result.columns = all.columns();

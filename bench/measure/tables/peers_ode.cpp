@@ -61,8 +61,8 @@ contest race(const ode_task& task, bool quick) {
   return all;
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& how) {
+  result_table result;
   result.title = "ODE model: work and precision";
   result.note =
       "CPU microseconds of a whole integration from t = 0 to 1 of the ODE model of the paper (data out of "

@@ -111,8 +111,8 @@ double require_agreement(contest& both, int steps) {
   return difference;
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& how) {
+  result_table result;
   result.title = "Library and plain loops, mixed-regime BGK";
   result.note =
       "Milliseconds per step of paper/bgk-mixed on one thread (40 cells, 150 velocities, finite volumes): "

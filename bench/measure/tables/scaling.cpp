@@ -27,8 +27,8 @@ double cost_in_multiply_adds(mixed_step& run, int steps, int repeats, std::vecto
   return median(costs);
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& how) {
+  result_table result;
   result.title = "Cost of a step against its size";
   result.note =
       "Finite differences, md-imex-3-2, 150 velocities, one thread. In multiply–adds: the time per "

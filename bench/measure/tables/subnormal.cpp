@@ -51,8 +51,8 @@ outcome compare(const std::string& formulation, int max, const settings& how) {
   return {plain.subnormal_share(), median_ratio(seconds, 0, 1)};
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& how) {
+  result_table result;
   result.title = "Subnormal numbers";
   result.note =
       "Share of subnormal values of f after some steps of the mixed-regime problem (40 cells, spacing 0.2, "
@@ -69,8 +69,8 @@ table measure(const settings& how) {
 
 #else
 
-table measure(const settings&) {
-  table result;
+result_table measure(const settings&) {
+  result_table result;
   result.title = "Subnormal numbers";
   result.note = "Measured on x86 only, whose control register can flush them to zero.";
   return result;

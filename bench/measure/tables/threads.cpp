@@ -32,8 +32,8 @@ std::string two_digits(double x) {
   return fmt::format("{:.2f}", x);
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& how) {
+  result_table result;
   result.title = "Two threads against one";
   result.note =
       "Ratio of wall times of the same steps, in turns. \"The machine\" is this ratio for multiply–adds in "

@@ -69,9 +69,9 @@ std::vector<nlohmann::json> row_of(const std::string& formulation, const std::st
           fmt::format("{:.0f} %", 100.0 * median(binding))};
 }
 
-table measure(const settings& how) {
+result_table measure(const settings& how) {
   const int cells = how.quick ? 50 : 1000;
-  table result;
+  result_table result;
   result.title = fmt::format("Throughput, N = {} × 150 velocities, positivity limiter", cells);
   result.note =
       "Point·stages per second of whole steps. Operations are arithmetic instructions per number (a "

@@ -31,8 +31,8 @@ std::vector<std::vector<double>> with_each(const std::vector<std::int64_t>& sets
   return in_turns(jobs, turns);
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& how) {
+  result_table result;
   result.title = "The same kernels in each instruction set";
   result.note =
       "Speedup of a step of the mixed-regime problem (40 cells, 150 velocities, md-imex-3-2, one thread) "

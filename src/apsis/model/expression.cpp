@@ -157,9 +157,9 @@ struct machine {
 
 /// Machines for one formula, each in the hands of one thread at a time. A thread comes back to the same slot,
 /// so nobody waits unless there are more threads than slots.
-class machine_shed {
+class parser_pool {
  public:
-  machine_shed(const std::string& text, const std::string& variable) : text_(text), variable_(variable) {
+  parser_pool(const std::string& text, const std::string& variable) : text_(text), variable_(variable) {
     slots_.front().own = std::make_unique<machine>(text, variable);
   }
 
@@ -205,7 +205,7 @@ struct expression::impl {
   std::string text;
   source_place place;
   formula_kind kind;
-  machine_shed machines;
+  parser_pool machines;
 };
 
 expression::expression(const std::string& text, const source_place& place, const formula_kind& kind) {

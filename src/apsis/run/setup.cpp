@@ -156,11 +156,11 @@ field run_setup::initial_state() const {
   const auto& value = data().point_value;
   field u = builder_.sample([&](const position& x, std::span<double> at) { value(x[0], at); }, data().jumps);
   for (int cell = 0; cell < u.cells(); ++cell) {
-    const misfit found = equation->unfit(u.row(cell));
+    const unsupported_initial_data found = equation->check_supported(u.row(cell));
     if (!found.problem.empty()) refuse(config_, found.key, fmt::format("{} [cell {}]", found.problem, cell));
   }
   const auto [lowest, highest] = extremes_of_fields(*equation, u);
-  const misfit found = equation->unfit_range(lowest.data(), highest.data());
+  const unsupported_initial_data found = equation->check_supported_range(lowest.data(), highest.data());
   if (!found.problem.empty()) refuse(config_, found.key, found.problem);
   return u;
 }

@@ -28,7 +28,7 @@ std::string summary_text(const simulation& run, run_end end) {
     line("conservation defect", fmt::format("{:.2e} (relative)", s.conservation_defect));
   if (!std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));
-  if (!find_model(c.model.name)->has_space) {
+  if (!has_space(*find_model(c.model.name))) {
     std::string values;
     for (const double x : run.state()) values += fmt::format("{}{:.17g}", values.empty() ? "" : "  ", x);
     line("solution", values);

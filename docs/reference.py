@@ -106,7 +106,6 @@ def models(program: Program) -> str:
         text += f"## {m['name']}\n\n`{m['description']}`\n\n" + facts({
             "source": plain(m["source"]),
             "tables of a case": ", ".join(f"`[{t}]`" for t in ("model", "space", "velocity", "time", "output") if m.get(t, True)),
-            "takes `model.epsilon`": "yes" if m["epsilon"] else "no",
             "initial data": ", ".join(f"`{name}`" for name in m["initial"])})
         rows = [[f"`{p['name']}`", f"number, {p['lowest']:g} to {p['highest']:g}", f"`{p['default']:g}`", plain(p["doc"])]
                 for p in m["parameters"]]

@@ -43,7 +43,7 @@ fourier_solution limit_solution(const case_config& config, int points, int steps
           setup.has_space() ? config.space.domain[1] : 1.0,
           points,
           [&](double x, std::span<double> omega) {
-            data.point_value(x, u);
+            data.point_value({x}, u);
             equation.moments(u.data(), omega.data());
           },
           config.time.end,
@@ -81,7 +81,7 @@ riemann_comparison compare_with_riemann_solution(const case_config& config, cons
         "no Riemann problem of the Broadwell model (the data need exactly one jump); choose riemann-1 or 2");
   const auto state_at = [&](double x) {
     std::vector<double> f(3);
-    data.point_value(x, f);
+    data.point_value({x}, f);
     double omega[2];
     relaxation_of(setup).moments(f.data(), omega);
     return broadwell_riemann::state{omega[0], omega[1]};

@@ -61,10 +61,9 @@ json models() {
     all.push_back({{"name", m->name},
                    {"description", m->description},
                    {"source", m->source},
-                   {"space", m->has_space},
-                   {"velocity", m->has_velocity},
-                   {"epsilon", m->has_epsilon},
-                   {"initial", m->initial},
+                   {"space", has_space(*m)},
+                   {"velocity", m->has_velocity_grid},
+                   {"initial", initial_names(*m)},
                    {"parameters", parameters},
                    {"texts", texts}});
   }

@@ -16,7 +16,7 @@ namespace {
 std::vector<double> disturbed_data(const model& m, random_source& random) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const int data = random.integer(0, static_cast<int>(m.initial().size()));
-  m.initial()[static_cast<std::size_t>(data)].point_value(random.uniform(0, 2), u);
+  m.initial()[static_cast<std::size_t>(data)].point_value({random.uniform(0, 2)}, u);
   for (double& value : u) value *= random.uniform(0.1, 1.9);
   if (m.positive())
     for (double& value : u) value = std::abs(value);

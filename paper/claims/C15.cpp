@@ -15,7 +15,7 @@ namespace {
 std::vector<double> nonnegative_data(const model& m, random_source& random) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const int data = random.integer(0, static_cast<int>(m.initial().size()));
-  m.initial()[static_cast<std::size_t>(data)].point_value(random.uniform(0, 2), u);
+  m.initial()[static_cast<std::size_t>(data)].point_value({random.uniform(0, 2)}, u);
   for (double& value : u) value = random.one_in(5) ? 0.0 : std::abs(value) * random.magnitude(-4, 4);
   return u;
 }

@@ -81,7 +81,7 @@ py::dict result_of(const run_session& session, run_end end) {
   out["x"] = to_array(run.has_space() ? run.fields().x : std::vector<double>());
   out["v"] = to_array(run.velocities());
   out["epsilon"] =
-      to_array(find_model(run.config().model.name)->has_epsilon ? run.epsilon() : std::vector<double>());
+      to_array(run.epsilon());
   out["history"] = columns_of(session.records().history());
   const auto& fields = session.records().fields();
   std::vector<double> times;

@@ -134,7 +134,7 @@ const std::vector<bad_case> all = {
     {"open_string", "\"bgk\"", "\"bgk", "2:", "not valid TOML"},
     {"control_character", "\"bgk\"", "\"b\x01k\"", "2:", "not valid TOML"},
     {"not_utf8", "\"bgk\"", "\"b\xffk\"", "2:", "not valid TOML"},
-    {"keys_of_another_model", "name = \"bgk\"", "name = \"decay\"", "3:1", "model 'decay' has no epsilon"},
+    {"keys_of_another_model", "name = \"bgk\"", "name = \"decay\"", "6:1", "model 'decay' has no space"},
 };
 
 }  // namespace

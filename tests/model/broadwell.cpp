@@ -96,7 +96,7 @@ TEST(broadwell, data_of_the_riemann_problems_have_the_published_moments) {
     const auto found = std::find_if(m.initial().begin(), m.initial().end(),
                                     [name](const auto& data) { return data.name == name; });
     std::vector<double> f(3), values(6);
-    found->point_value(x, f);
+    found->point_value({x}, f);
     m.macroscopic(f.data(), values.data());
     values.resize(3);
     return values;

@@ -38,8 +38,8 @@ TEST(exact_solution, begins_at_its_data) {
       check_property(entry->name + ", " + data.name, [&] {
         std::vector<double> u(static_cast<std::size_t>(m->components())), v = u;
         const double x = *rc::gen::inRange(-2000, 2000) * 1e-3;
-        data.point_value(x, u);
-        data.exact(0.0, x, v);
+        data.point_value({x}, u);
+        data.exact(0.0, {x}, v);
         RC_ASSERT(u == v);
       });
     }
@@ -54,9 +54,9 @@ TEST(exact_solution, of_the_decay_satisfies_its_equation) {
   check_property("u' = Q(u)", [&] {
     const double t = *rc::gen::inRange(1, 2000) * 1e-3, h = 1e-4 * t;
     std::vector<double> before(1), now(1), after(1);
-    exact(t - h, 0.0, before);
-    exact(t, 0.0, now);
-    exact(t + h, 0.0, after);
+    exact(t - h, {}, before);
+    exact(t, {}, now);
+    exact(t + h, {}, after);
     const double derivative = (after[0] - before[0]) / (2.0 * h), q = collision(general, now)[0];
     // The central difference is good to h²u'''/6 ≤ (h/t)² of u', plus its rounding of about 1e-16 / 1e-4.
     RC_ASSERT(std::abs(derivative - q) <= 1e-7 * std::abs(q));

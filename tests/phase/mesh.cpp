@@ -60,3 +60,28 @@ TEST(quartic, meets_its_five_conditions_and_gauss_integrates_it) {
     RC_ASSERT(std::abs(gauss - c) < rounding);
   });
 }
+
+TEST(grid, a_block_has_the_coordinates_of_the_whole_to_the_last_bit) {
+  const apsis::grid whole(3, {7, 5, 6}, {-1.0, 0.3, 0.0}, {1.0, 1.7, 1e3});
+  const auto part = whole.block({2, 1, 3}, {4, 3, 2}).block({1, 0, 1}, {2, 3, 1});
+  EXPECT_EQ(part.size(), 2 * 3 * 1);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(part.global_cells(k), whole.cells(k));
+    EXPECT_EQ(part.spacing(k), whole.spacing(k));
+  }
+  EXPECT_EQ(part.first(0), 3);
+  EXPECT_EQ(part.first(2), 4);
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int of_whole = ((i + 3) * 5 + j + 1) * 6 + 4;
+      EXPECT_EQ(part.centre(i * 3 + j), whole.centre(of_whole));
+    }
+}
+
+TEST(grid, a_block_lies_inside) {
+  const auto line = apsis::grid::line(8, 0.0, 1.0);
+  for (const auto& [first, cells] :
+       {std::pair{-1, 2}, {0, 0}, {7, 2}, {0, 9}, {1, std::numeric_limits<int>::max()}})
+    EXPECT_THROW(static_cast<void>(line.block({first, 0, 0}, {cells, 1, 1})), apsis::input_error) << first;
+  EXPECT_EQ(line.block({7, 0, 0}, {1, 1, 1}).centre(0, 0), line.centre(7, 0));
+}

@@ -30,9 +30,9 @@ namespace {
 /// Ten steps of a small mesh.
 std::string small_case(const model_entry& model, const std::string& method, const std::string& more) {
   std::string text = "[model]\nname = \"" + model.name + "\"\n";
-  if (model.has_epsilon) text += "epsilon = 1e-3\n";
-  if (model.has_space) text += "[space]\ncells = 10\ndomain = [0.0, 2.0]\n";
-  if (model.has_velocity) text += "[velocity]\nmax = 9.0\npoints = 36\n";
+  if (prototype(model).has_relaxation_time()) text += "epsilon = 1e-3\n";
+  if (has_space(model)) text += "[space]\ncells = 10\ndomain = [0.0, 2.0]\n";
+  if (model.has_velocity_grid) text += "[velocity]\nmax = 9.0\npoints = 36\n";
   text += "[time]\nmethod = \"" + method + "\"\ndt = 0.005\nend = 0.05\n" + more;
   return text + "[output]\nevery = 0.011\n";
 }

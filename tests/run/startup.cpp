@@ -118,6 +118,6 @@ TEST(startup, is_refused_where_it_means_nothing) {
               HasSubstr("did you mean 'graded'?"));
   EXPECT_EQ(complaint([] { return ode("ssprk-3-3", "1e-2", "none"); }), "");
   EXPECT_THAT(complaint([] { return apsis::load_case("paper/decay", {"time.startup=graded"}); }),
-              HasSubstr("key 'time.startup' is not used (model 'decay' has no epsilon)"));
+              HasSubstr("has no meaning for model 'decay' (its relaxation time is not known)"));
   EXPECT_EQ(apsis::load_case("paper/ode", {"time.startup=graded"}).time.startup, "graded");
 }

@@ -35,8 +35,8 @@ std::vector<double> at_centres(const grid& mesh, double (*f)(double)) {
 field smooth(const apsis::relaxation_model& m, const grid& mesh, bool averages) {
   std::vector<double> row(static_cast<std::size_t>(m.components()));
   return sample(mesh, m.components(), averages, [&](double x, int k) {
-    if (k == 0) m.initial()[2].point_value(x, row);
-    m.initial()[2].point_value(x, row);
+    if (k == 0) m.initial()[2].point_value({x}, row);
+    m.initial()[2].point_value({x}, row);
     return row[static_cast<std::size_t>(k)];
   });
 }
@@ -71,7 +71,7 @@ TEST(collision, averages_are_fifth_order_against_the_exact_average_of_relaxed_po
     q->solve(0.0, a, 0.0, u);
     std::vector<double> row(static_cast<std::size_t>(m->components())), e = row, omega(3);
     const field exact = sample(mesh, m->components(), true, [&](double x, int k) {
-      m->initial()[2].point_value(x, row);
+      m->initial()[2].point_value({x}, row);
       m->moments(row.data(), omega.data());
       m->equilibrium(omega.data(), e.data());
       const double mu = a / smooth_epsilon(x);

@@ -4,9 +4,10 @@
 
 #include <apsis/core/random_source.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/model/relaxation_rows.hpp>
 #include <apsis/scheme/limiter.hpp>
 #include <apsis/scheme/quartic.hpp>
-#include <apsis/semidiscrete/relaxation_rows.hpp>
+#include <apsis/semidiscrete/collision_rows.hpp>
 
 #include <array>
 
@@ -141,8 +142,8 @@ TEST(kernels, gauss_values_are_those_of_the_quartic_in_every_instruction_set) {
       const field u = adversarial(5, width, 7);
       std::vector<double> points(static_cast<std::size_t>(3 * width));
       for (const bool limited : {false, true}) {
-        apsis::relaxation::gauss_values({u.row(0), u.row(1), u.row(2), u.row(3), u.row(4)}, limited, width,
-                                        points.data());
+        apsis::collision_rows::gauss_values({u.row(0), u.row(1), u.row(2), u.row(3), u.row(4)}, limited,
+                                            width, points.data());
         for (int k = 0; k < width; ++k) {
           const double c = u.row(1)[k];
           const apsis::quartic q(u.row(0)[k], c, u.row(2)[k], u.row(3)[k], u.row(4)[k]);
@@ -179,7 +180,7 @@ TEST(kernels, convex_combinations_of_rows_in_every_instruction_set) {
       apsis::relaxation::combine(0.25, 0.75, u.row(1), width, v.row(0));
       const std::array<apsis::relaxation::weighted_rows, 3> rows = {
           {{0.1, 0.2, u.row(0), u.row(1)}, {0.15, 0.25, u.row(2), u.row(3)}, {0.0, 0.3, u.row(4), u.row(5)}}};
-      apsis::relaxation::average(rows.data(), width, v.row(1));
+      apsis::relaxation::mean(rows, width, v.row(1));
       for (int k = 0; k < width; ++k) {
         const auto at = [&](int row) { return static_cast<long double>(u.row(row)[k]); };
         const auto combined = static_cast<double>(0.25L * at(0) + 0.75L * at(1));

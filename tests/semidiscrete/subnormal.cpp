@@ -2,9 +2,10 @@
 #include "bgk_case.hpp"
 
 #include <apsis/core/random_source.hpp>
+#include <apsis/model/relaxation_rows.hpp>
 #include <apsis/scheme/limiter.hpp>
 #include <apsis/scheme/quartic.hpp>
-#include <apsis/semidiscrete/relaxation_rows.hpp>
+#include <apsis/semidiscrete/collision_rows.hpp>
 
 #include <support/instruction_sets.hpp>
 
@@ -94,8 +95,8 @@ TEST(subnormal, limited_values_at_gauss_points_are_nonnegative_and_keep_their_me
     std::vector<double> points(3 * width);
     for (int round = 0; round < 4000; ++round) {
       const field u = tiny_rows(5, width, random);
-      apsis::relaxation::gauss_values({u.row(0), u.row(1), u.row(2), u.row(3), u.row(4)}, true, width,
-                                      points.data());
+      apsis::collision_rows::gauss_values({u.row(0), u.row(1), u.row(2), u.row(3), u.row(4)}, true, width,
+                                          points.data());
       for (int k = 0; k < width; ++k) {
         const double c = u.row(1)[k];
         double mean = 0.0;
@@ -125,8 +126,10 @@ TEST(subnormal, an_explicit_relaxation_takes_no_more_than_there_is) {
       const double strength = std::pow(10.0, random.uniform(-3.0, 9.0));
       const double beta = apsis::rounding_allowance * alpha * (1.0 - of_transport) / strength;
       const std::vector<apsis::upwind::row_target> to = {{acc.row(0), width, 0.0, beta, false}};
-      const apsis::relaxation::strong_rows point{strength, u.row(0), u.row(1)};
-      apsis::relaxation::add_collision({&point, 1}, u.row(0), width, to);
+      std::array<double, width> q{};
+      apsis::relaxation::change(strength, u.row(1), u.row(0), width, q.data());
+      const apsis::collision_rows::weighted_row point{1.0, q.data()};
+      apsis::collision_rows::add({&point, 1}, u.row(0), width, to);
       for (int k = 0; k < width; ++k) ASSERT_GE(acc.row(0)[k], 0.0) << round << " " << k;
     }
   });

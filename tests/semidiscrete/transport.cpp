@@ -148,9 +148,9 @@ class plane_advection final : public apsis::relaxation_model {
  public:
   int components() const override { return 3; }
   int space_dimensions() const override { return 2; }
-  std::span<const double> speeds(int direction) const override {
-    static const std::vector<double> x = {1.0, -0.5, 0.0}, y = {0.5, 0.0, -2.0};
-    return direction == 0 ? x : y;
+  const apsis::velocity_set& velocities() const override {
+    static const apsis::velocity_set three({{1.0, -0.5, 0.0}, {0.5, 0.0, -2.0}}, {1.0, 1.0, 1.0});
+    return three;
   }
   int moment_count() const override { return 1; }
   void moments(const double* u, double* omega) const override { omega[0] = u[0] + u[1] + u[2]; }

@@ -17,7 +17,7 @@ namespace {
 std::vector<double> random_state(const apsis::model& m) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const auto& data = m.initial()[*rc::gen::inRange<std::size_t>(0, m.initial().size())];
-  data.point_value(*rc::gen::inRange(0, 2000) * 1e-3, u);
+  data.point_value({*rc::gen::inRange(0, 2000) * 1e-3}, u);
   for (double& value : u) value *= 1.0 + 0.9e-3 * *rc::gen::inRange(-1000, 1001);
   if (m.positive())
     for (double& value : u) value = std::abs(value);

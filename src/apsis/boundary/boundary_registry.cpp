@@ -22,9 +22,9 @@ std::shared_ptr<const boundary> make_boundary(const std::string& name) {
                                 suggest(name, boundary_names())));
 }
 
-domain make_domain(const grid& mesh, const std::string& name) {
+domain make_domain(const phase_space& space, const std::string& name) {
   const auto side = make_boundary(name);
-  return {mesh, std::vector<domain::faces>(static_cast<std::size_t>(mesh.dimensions()), {side, side})};
+  return {space, std::vector<domain::faces>(static_cast<std::size_t>(space.mesh.dimensions()), {side, side})};
 }
 
 }  // namespace apsis

@@ -25,7 +25,7 @@ std::vector<std::string> boundary_names();
 /// The boundary of that name. Throws input_error with the nearest name if there is none.
 std::shared_ptr<const boundary> make_boundary(const std::string& name);
 
-/// A mesh with the same kind of boundary at every face. Throws input_error as make_boundary() does.
-domain make_domain(const grid& mesh, const std::string& name);
+/// A phase space with the same kind of boundary at every face. Throws input_error as make_boundary() does.
+domain make_domain(const phase_space& space, const std::string& name);
 
 }  // namespace apsis

@@ -30,8 +30,7 @@ class resolver {
     find_the_model();
     check_known();
     for (const case_key& key : case_schema()) take(key);
-    if (config_.model.initial.empty() && !model_->initial.empty())
-      config_.model.initial = model_->initial.front();
+    if (config_.model.initial.empty()) config_.model.initial = initial_names(*model_).front();
     take_parameters();
     check_together();
     return config_;
@@ -89,14 +88,7 @@ class resolver {
   }
 
   static std::string unused_because(key_scope scope) {
-    switch (scope) {
-      case key_scope::space:
-        return "has no space";
-      case key_scope::velocity:
-        return "has no velocity grid";
-      default:
-        return "has no epsilon";
-    }
+    return scope == key_scope::space ? "has no space" : "has no velocity grid";
   }
 
   // The list of valid keys is that of the table: the whole list is what `apsis show case` is for.
@@ -158,8 +150,8 @@ class resolver {
 
   void check_together() const {
     check_step_rule();
-    if (model_->has_space) check_mesh();
-    if (model_->has_epsilon) check_epsilon();
+    if (has_space(*model_)) check_mesh();
+    check_epsilon();
     check_fields();
     const double snapshots = config_.output.every > 0.0 ? config_.time.end / config_.output.every : 0.0;
     if (snapshots > 1e5)
@@ -171,7 +163,7 @@ class resolver {
     std::vector<std::string> given, valid;
     for (const auto& key : step_keys()) {
       if (find(key) != nullptr) given.push_back(key);
-      if (model_->has_space || key == "time.dt") valid.push_back(key);
+      if (has_space(*model_) || key == "time.dt") valid.push_back(key);
     }
     if (given.empty())
       throw input_error(table_place("time.dt"),
@@ -224,12 +216,12 @@ class resolver {
     // A formula begins behind its quotation mark; other text has no columns to point to.
     if (raw != nullptr && place.column > 0) ++place.column;
     const expression formula(config_.model.epsilon, place);
-    if (!formula.is_constant() && !model_->has_space)
+    if (!formula.is_constant() && !has_space(*model_))
       throw input_error(
           place,
           fmt::format("'model.epsilon' depends on x (model '{}' has no space); give a number", model_->name));
     const auto [left, right] = config_.space.domain;
-    const int points = model_->has_space ? std::min(2 * config_.space.cells, 1000) : 0;
+    const int points = has_space(*model_) ? std::min(2 * config_.space.cells, 1000) : 0;
     for (int k = 0; k <= points; ++k)
       formula.evaluate(points == 0 ? 0.0 : left + (right - left) * k / points);
   }

@@ -62,8 +62,6 @@ std::string scope_text(key_scope scope) {
       return "models with space";
     case key_scope::velocity:
       return "models with a velocity grid";
-    case key_scope::epsilon:
-      return "models with epsilon";
   }
   return "";
 }
@@ -105,8 +103,8 @@ std::string key_text(const case_key& key) {
 std::string describe(const model_entry& model) {
   std::string out = fmt::format("  {}: {}\n", model.name, model.description);
   std::string tables =
-      model.has_space ? (model.has_velocity ? "space, velocity" : "space") : "none but time, output";
-  out += fmt::format("      tables: {}; initial data: {}\n", tables, fmt::join(model.initial, ", "));
+      has_space(model) ? (model.has_velocity_grid ? "space, velocity" : "space") : "none but time, output";
+  out += fmt::format("      tables: {}; initial data: {}\n", tables, fmt::join(initial_names(model), ", "));
   for (const model_parameter& p : model.parameters)
     out += indented(
         fmt::format("{} (number, {} to {}, default {}): {}", p.name, p.lowest, p.highest, p.value, p.doc));

@@ -25,7 +25,7 @@ std::vector<std::string> model_choices(const case_config&) {
 
 std::vector<std::string> initial_choices(const case_config& c) {
   const model_entry* entry = find_model(c.model.name);
-  return entry != nullptr ? entry->initial : std::vector<std::string>{};
+  return entry != nullptr ? initial_names(*entry) : std::vector<std::string>{};
 }
 
 std::vector<std::string> reconstruction_choices(const case_config&) {
@@ -106,7 +106,7 @@ std::vector<case_key> make_schema() {
        [](const c& o) { return v(o.title); }},
       {"model.name", text, key_scope::always, true, "", 0, 0, false, model_choices, "The equation.",
        [](c& o, const v& x) { o.model.name = text_of(x); }, [](const c& o) { return v(o.model.name); }},
-      {"model.epsilon", key_type::formula, key_scope::epsilon, false, none, 0, unlimited, false, nullptr,
+      {"model.epsilon", key_type::formula, key_scope::always, false, none, 0, unlimited, false, nullptr,
        "Knudsen number (relaxation time): a number, or a formula in x as text. 0 is the limit system.",
        [](c& o, const v& x) { o.model.epsilon = text_of(x); }, [](const c& o) { return v(o.model.epsilon); }},
       {"model.initial", text, key_scope::always, false, "", 0, 0, false, initial_choices,
@@ -184,7 +184,7 @@ std::vector<case_key> make_schema() {
        "given.",
        [](c& o, const v& x) { o.time.safety = number_of(x); },
        [](const c& o) { return optional_number(o.time.safety); }},
-      {"time.startup", text, key_scope::epsilon, false, "", 0, 0, false, startup_choices,
+      {"time.startup", text, key_scope::always, false, "", 0, 0, false, startup_choices,
        "graded: the first step is cut into steps that double, from a quarter of the smallest epsilon/C on, "
        "so "
        "that the initial layer of data out of equilibrium is resolved; for methods whose layer is not 1 "
@@ -261,11 +261,9 @@ bool applies(const case_key& key, const model_entry& model) {
     case key_scope::always:
       return true;
     case key_scope::space:
-      return model.has_space;
+      return has_space(model);
     case key_scope::velocity:
-      return model.has_velocity;
-    case key_scope::epsilon:
-      return model.has_epsilon;
+      return model.has_velocity_grid;
   }
   return false;
 }

@@ -27,10 +27,9 @@ enum class key_type {
 
 /// Which models a key belongs to; a key that the model does not use is an error, not ignored.
 enum class key_scope {
-  always,    ///< all
-  space,     ///< those with has_space
-  velocity,  ///< those with has_velocity
-  epsilon    ///< those with has_epsilon
+  always,   ///< all
+  space,    ///< those with space
+  velocity  ///< those with a velocity grid
 };
 
 /// One key of a case file. The table of all keys drives reading, writing and documentation.

@@ -6,8 +6,10 @@
 
 namespace apsis {
 
-/// Q(u) without the structure of a relaxation: the stage equation v = u + a Q(v) + b Q̇(v) is solved by
-/// Newton's method, with Q' and Q̇ = Q'Q by automatic differentiation.
+/// Q(u) without the structure of a relaxation: the stage equation v = u + a Q(v)/ε + b Q̇(v)/ε² is solved by
+/// guarded Newton iterations, with Q' and Q̇ = Q'Q by automatic differentiation
+/// (integrate/newton_problem.hpp). There is no solution for ε = 0, where 1/ε² overflows, or where the stage
+/// is singular.
 class general_model : public model {
  public:
   /// A number with two independent first derivatives: ∂/∂s, ∂/∂t and ∂²/∂s∂t.
@@ -17,6 +19,7 @@ class general_model : public model {
   virtual void collision(const number* u, number* q) const = 0;
   /// Whether a row may be the solution of a stage (Newton iterates stay inside).
   virtual bool admissible(const double* u) const = 0;
+  std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const final;
 };
 
 }  // namespace apsis

@@ -38,17 +38,19 @@ velocity_grid::velocity_grid(int dimensions, int points, double max)
   for (int k = 0; k < dimensions; ++k) size_ *= points;
   weight_ = std::pow(spacing_, dimensions);
   const auto total = static_cast<std::size_t>(size_);
-  components_.assign(static_cast<std::size_t>(dimensions), aligned_vector<double>(total));
+  std::vector<aligned_vector<double>> components(static_cast<std::size_t>(dimensions),
+                                                 aligned_vector<double>(total));
   half_square_.assign(total, 0.0);
   for (std::size_t j = 0; j < total; ++j) {
     std::size_t rest = j;
     for (int k = dimensions - 1; k >= 0; --k) {
       const double v = line_[rest % n];
-      components_[static_cast<std::size_t>(k)][j] = v;
+      components[static_cast<std::size_t>(k)][j] = v;
       half_square_[j] += 0.5 * v * v;
       rest /= n;
     }
   }
+  set_ = velocity_set(std::move(components), std::vector<double>(total, weight_));
 }
 
 namespace {

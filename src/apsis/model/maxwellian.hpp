@@ -1,9 +1,11 @@
 #pragma once
 
 #include <apsis/exec/aligned.hpp>
+#include <apsis/phase/velocity_set.hpp>
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +30,9 @@ class velocity_grid {
   /// ½v² of the points of one direction.
   const aligned_vector<double>& line_half_square() const { return line_half_square_; }
   /// Component k of the velocity of every grid point.
-  const aligned_vector<double>& component(int k) const { return components_[static_cast<std::size_t>(k)]; }
+  std::span<const double> component(int k) const { return set_.speeds(k); }
+  /// The grid points with weights Δv^d.
+  const velocity_set& set() const { return set_; }
   /// ½|v|² of every grid point.
   const aligned_vector<double>& half_square() const { return half_square_; }
 
@@ -36,7 +40,7 @@ class velocity_grid {
   int dimensions_, points_, size_ = 1;
   double max_, spacing_, weight_;
   aligned_vector<double> line_, line_half_square_, half_square_;
-  std::vector<aligned_vector<double>> components_;
+  velocity_set set_;
 };
 
 /// The state that moments ω = (ρ, ρu_1 … ρu_d, 𝓔) with 𝓔 = ½ρ|u|² + (d/2)ρT stand for. Dimensionless.

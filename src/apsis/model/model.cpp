@@ -1,19 +1,20 @@
 #include <apsis/model/model_registry.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
 
 namespace apsis {
 
-std::span<const double> model::speeds(int) const {
-  return {};
+const velocity_set& model::velocities() const {
+  static const velocity_set none;
+  return none;
 }
 
 double model::reference_speed(int direction) const {
-  double fastest = 0.0;
-  for (const double v : speeds(direction)) fastest = std::max(fastest, std::abs(v));
-  return fastest;
+  return velocities().largest_speed(direction);
 }
 
 void model::source(const double*, double* s) const {
@@ -50,7 +51,23 @@ model_config default_config(const model_entry& entry) {
   model_config config;
   for (const auto& p : entry.parameters) config.parameters[p.name] = p.value;
   for (const auto& t : entry.texts) config.texts[t.name] = t.value;
+  if (entry.has_velocity_grid) config.velocity = {.max = 8.0, .points = 16};
   return config;
+}
+
+const model& prototype(const model_entry& entry) {
+  static std::mutex mutex;
+  static std::map<const model_entry*, std::unique_ptr<model>> made;
+  const std::lock_guard lock(mutex);
+  auto& equation = made[&entry];
+  if (!equation) equation = entry.make(default_config(entry));
+  return *equation;
+}
+
+std::vector<std::string> initial_names(const model_entry& entry) {
+  std::vector<std::string> names;
+  for (const auto& data : prototype(entry).initial()) names.push_back(data.name);
+  return names;
 }
 
 const model_entry* find_model(const std::string& name) {

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <apsis/model/point_collision.hpp>
+#include <apsis/phase/position.hpp>
+#include <apsis/phase/velocity_set.hpp>
+
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,11 +23,11 @@ struct field_name {
 struct initial_data {
   std::string name;         ///< value of the key model.initial
   std::string description;  ///< one line with the formula
-  /// u ← all components at x; at a jump, those of its right side.
-  std::function<void(double x, std::span<double> u)> point_value;
+  /// u ← all components at x; at a jump, those of the side of larger coordinates.
+  std::function<void(const position& x, std::span<double> u)> point_value;
   /// u ← the solution at t and x, which is smooth; empty if no formula is known.
-  std::function<void(double t, double x, std::span<double> u)> exact = {};
-  std::vector<double> jumps = {};  ///< where the data are discontinuous, in increasing order
+  std::function<void(double t, const position& x, std::span<double> u)> exact = {};
+  std::vector<double> jumps = {};  ///< where data on a line are discontinuous, in increasing order
 };
 
 /// Data that a model cannot hold.
@@ -41,8 +46,10 @@ class model {
   virtual int components() const = 0;
   /// 0 for an ordinary differential equation.
   virtual int space_dimensions() const = 0;
+  /// The velocities that transport the components; none without space.
+  virtual const velocity_set& velocities() const;
   /// Transport speed of every component along a direction; empty without space.
-  virtual std::span<const double> speeds(int direction) const;
+  std::span<const double> speeds(int direction) const { return velocities().speeds(direction); }
   /// v of the CFL number v Δt/Δx along a direction: the largest |speed| where a model says nothing else; 0
   /// without space.
   virtual double reference_speed(int direction) const;
@@ -51,6 +58,12 @@ class model {
   virtual bool has_source() const { return false; }
   /// s ← S(u), the explicit local source, part of the operator T. Where there is none: 0.
   virtual void source(const double* u, double* s) const;
+
+  /// The solver of collisions at points, with scratch memory for one thread and batches within `limits`. The
+  /// model must outlive it.
+  virtual std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const = 0;
+  /// Whether make_collision() knows the relaxation time ε/C.
+  virtual bool has_relaxation_time() const { return false; }
 
   /// Whether negative components have no meaning (then positivity can be promised).
   virtual bool positive() const { return false; }
@@ -99,6 +112,8 @@ class relaxation_model : public model {
   virtual int equilibria(const double* omega, int rows, double* e, std::ptrdiff_t pitch) const;
   /// C(ω) > 0.
   virtual double rate(const double* omega) const = 0;
+  std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const final;
+  bool has_relaxation_time() const final { return true; }
   /// For messages: "temperature -0.3 is not positive".
   virtual std::string why_inadmissible(const double* omega) const = 0;
   /// Operations (exec/counted.hpp) of ℛu and E(ω) together for each component; 0: not counted.

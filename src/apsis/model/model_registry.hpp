@@ -9,7 +9,7 @@
 
 namespace apsis {
 
-/// A number that a model can be given in its case file.
+/// A number that a case file can give a model.
 struct model_parameter {
   std::string name;      ///< key in the table [model]
   double value;          ///< default
@@ -19,13 +19,13 @@ struct model_parameter {
   bool integer = false;  ///< only whole numbers have a meaning
 };
 
-/// A text that a model can be given in its case file: one of its names, or a formula.
+/// A string option of a model: one of several names, or a formula.
 struct model_text {
   std::string name;                  ///< key in the table [model]
   std::string value;                 ///< default
   std::vector<std::string> choices;  ///< names with a meaning of their own
-  std::string variable;              ///< what a formula is written in, any finite value; "": names only
-  std::string doc;                   ///< meaning
+  std::string variable;  ///< variable of a formula, which may take any finite value; "": names only
+  std::string doc;       ///< meaning
 };
 
 /// Velocity grid of a kinetic model: `points` midpoints on [−max, max] per velocity dimension.
@@ -39,25 +39,33 @@ struct velocity_config {
 struct model_config {
   std::map<std::string, double> parameters;  ///< complete: defaults filled in
   std::map<std::string, std::string> texts;  ///< likewise; each a choice or a formula that can be read
-  velocity_config velocity;                  ///< only where the entry has_velocity
+  velocity_config velocity;                  ///< only where the entry has_velocity_grid
 };
 
 /// One equation of the registry: a file of model/models/ defines `extern const model_entry model_<file>`.
 struct model_entry {
-  std::string name;                         ///< value of the key model.name
-  std::string description;                  ///< one line with the equation
-  std::string source;                       ///< citation
-  bool has_space;                           ///< needs the table [space]
-  bool has_velocity;                        ///< needs the table [velocity]
-  bool has_epsilon;                         ///< takes the key model.epsilon
-  std::vector<model_parameter> parameters;  ///< in the order in which they are documented
-  std::vector<std::string> initial;         ///< names of its initial data, default first
+  std::string name;                              ///< value of the key model.name
+  std::string description;                       ///< one line with the equation
+  std::string source;                            ///< citation
+  bool has_velocity_grid = false;                ///< made from the table [velocity]
+  std::vector<model_parameter> parameters = {};  ///< in the order in which they are documented
+  std::vector<model_text> texts = {};            ///< in the order in which they are documented
   /// Throws input_error where the velocity grid or a formula cannot be used.
-  std::unique_ptr<model> (*make)(const model_config&);
-  std::vector<model_text> texts = {};  ///< in the same order
+  std::unique_ptr<model> (*make)(const model_config&) = nullptr;
 };
 
-/// What the model is made from if its case file says nothing; the velocity grid is left to the caller.
+/// The model with its defaults, on a small velocity grid where it has one: to ask what it has. Made once.
+const model& prototype(const model_entry& entry);
+
+/// Whether the model needs the table [space].
+inline bool has_space(const model_entry& entry) {
+  return prototype(entry).space_dimensions() > 0;
+}
+
+/// Names of its initial data, the default first.
+std::vector<std::string> initial_names(const model_entry& entry);
+
+/// Default parameters; where the model has a velocity grid, 16 points on [−8, 8].
 model_config default_config(const model_entry& entry);
 
 /// Every model, sorted by name (generated).

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <apsis/phase/grid.hpp>
+#include <apsis/phase/position.hpp>
+#include <apsis/phase/velocity_set.hpp>
 
 #include <optional>
 #include <span>
@@ -17,8 +18,9 @@ struct face {
 struct pencil_end {
   std::span<const double* const> inside;  ///< of all cells of the pencil, counted inwards from the face
   std::span<double* const> ghosts;        ///< to be filled, counted outwards from the face
-  int components = 0;                     ///< numbers of a row
-  position at{};                          ///< where the pencil meets the face
+  const velocity_set& velocities;         ///< of the numbers of a row
+  int components;                         ///< numbers of a row
+  position at;                            ///< where the pencil meets the face
 };
 
 /// What lies beyond a face of the domain. Transport and collision see it through ghost rows only.

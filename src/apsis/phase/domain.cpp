@@ -18,8 +18,9 @@ std::size_t at(int k) {
 
 }  // namespace
 
-domain::domain(const grid& mesh, std::vector<faces> sides)
-    : mesh_(mesh), sides_(std::move(sides)), ghosts_(sides_.size()) {
+domain::domain(phase_space space, std::vector<faces> sides)
+    : space_(std::move(space)), sides_(std::move(sides)), ghosts_(sides_.size()) {
+  const grid& mesh = space_.mesh;
   if (sides_.size() != at(mesh.dimensions()))
     throw input_error(fmt::format("{} pairs of boundaries (the mesh has {} dimensions); give one for each",
                                   sides_.size(), mesh.dimensions()));
@@ -30,7 +31,7 @@ domain::domain(const grid& mesh, std::vector<faces> sides)
           k + 1));
 }
 
-domain::domain() : mesh_(grid::line(1, 0.0, 1.0)) {}
+domain::domain() : space_(grid::line(1, 0.0, 1.0)) {}
 
 domain domain::point() {
   return {};
@@ -58,7 +59,7 @@ bool domain::closed() const {
 }
 
 bool domain::repeats(const face& where) const {
-  return side(where).repeated_cell(0, mesh_.cells(where.direction)).has_value();
+  return side(where).repeated_cell(0, mesh().cells(where.direction)).has_value();
 }
 
 void domain::reserve(int components, int width) {
@@ -67,32 +68,33 @@ void domain::reserve(int components, int width) {
       const face where{direction, upper};
       field& rows = ghosts(where);
       if (repeats(where) || (rows.components() == components && width_ >= width)) continue;
-      rows = field(mesh_.pencils(direction) * std::max(width, width_), components);
+      rows = field(mesh().pencils(direction) * std::max(width, width_), components);
     }
   width_ = std::max(width, width_);
 }
 
 /// Where a pencil meets a face.
 position domain::meeting_point(const face& where, int pencil) const {
-  position x = mesh_.centre(mesh_.first_cell(where.direction, pencil));
+  position x = mesh().centre(mesh().first_cell(where.direction, pencil));
   double& along = x[at(where.direction)];
-  along -= 0.5 * mesh_.spacing(where.direction);
-  if (where.upper) along += mesh_.spacing(where.direction) * mesh_.cells(where.direction);
+  along -= 0.5 * mesh().spacing(where.direction);
+  if (where.upper) along += mesh().spacing(where.direction) * mesh().cells(where.direction);
   return x;
 }
 
 void domain::fill_face(const face& where, double t, const field& u) {
-  const int n = mesh_.cells(where.direction), stride = mesh_.stride(where.direction);
+  const int n = mesh().cells(where.direction), stride = mesh().stride(where.direction);
   field& rows = ghosts(where);
   constexpr int pencils_at_once = 16;
-  parallel_blocks(mesh_.pencils(where.direction), pencils_at_once, [&](int begin, int end) {
+  parallel_blocks(mesh().pencils(where.direction), pencils_at_once, [&](int begin, int end) {
     std::vector<const double*> inside(at(n));
     std::vector<double*> beyond(at(width_));
     for (int pencil = begin; pencil < end; ++pencil) {
-      const int first = mesh_.first_cell(where.direction, pencil);
+      const int first = mesh().first_cell(where.direction, pencil);
       for (int k = 0; k < n; ++k) inside[at(k)] = u.row(first + (where.upper ? n - 1 - k : k) * stride);
       for (int g = 0; g < width_; ++g) beyond[at(g)] = rows.row(pencil * width_ + g);
-      side(where).fill(where, t, {inside, beyond, u.components(), meeting_point(where, pencil)});
+      side(where).fill(where, t,
+                       {inside, beyond, space_.velocities, u.components(), meeting_point(where, pencil)});
     }
   });
 }
@@ -104,18 +106,18 @@ void domain::fill_ghosts(double t, const field& u) {
 }
 
 const double* domain::ghost_row(const field& u, const face& where, int pencil, int ghost) const {
-  const int n = mesh_.cells(where.direction);
+  const int n = mesh().cells(where.direction);
   if (const auto cell = side(where).repeated_cell(ghost, n)) {
     const int i = where.upper ? n - 1 - *cell : *cell;
-    return u.row(mesh_.first_cell(where.direction, pencil) + i * mesh_.stride(where.direction));
+    return u.row(mesh().first_cell(where.direction, pencil) + i * mesh().stride(where.direction));
   }
   return ghosts(where).row(pencil * width_ + ghost);
 }
 
 void domain::pencil_rows(const field& u, int direction, int pencil, int begin, int end,
                          std::vector<const double*>& rows) const {
-  const int n = mesh_.cells(direction), first = mesh_.first_cell(direction, pencil),
-            stride = mesh_.stride(direction);
+  const int n = mesh().cells(direction), first = mesh().first_cell(direction, pencil),
+            stride = mesh().stride(direction);
   rows.resize(at(end - begin));
   for (int i = begin; i < std::min(end, 0); ++i)
     rows[at(i - begin)] = ghost_row(u, {direction, false}, pencil, -1 - i);

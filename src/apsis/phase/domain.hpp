@@ -2,7 +2,7 @@
 
 #include <apsis/phase/boundary.hpp>
 #include <apsis/phase/field.hpp>
-#include <apsis/phase/grid.hpp>
+#include <apsis/phase/phase_space.hpp>
 
 #include <array>
 #include <memory>
@@ -17,14 +17,16 @@ class domain {
   /// Lower and upper face of a direction.
   using faces = std::array<std::shared_ptr<const boundary>, 2>;
 
-  /// One pair of faces for each direction of the mesh. Throws input_error where only one of the two faces of
-  /// a direction is periodic.
-  domain(const grid& mesh, std::vector<faces> sides);
+  /// One pair of boundaries for each direction of the mesh. Throws input_error where only one of the two
+  /// faces of a direction is periodic.
+  domain(phase_space space, std::vector<faces> sides);
   /// A single cell without faces, for equations without space.
   static domain point();
 
+  /// The cells inside, and the velocities.
+  const phase_space& space() const { return space_; }
   /// The cells inside.
-  const grid& mesh() const { return mesh_; }
+  const grid& mesh() const { return space_.mesh; }
   /// Whether the faces of the direction continue each other.
   bool periodic(int direction) const;
   /// Whether no invariant enters or leaves through any face.
@@ -51,7 +53,7 @@ class domain {
   void fill_face(const face& where, double t, const field& u);
   position meeting_point(const face& where, int pencil) const;
 
-  grid mesh_;
+  phase_space space_;
   std::vector<faces> sides_;
   std::vector<std::array<field, 2>> ghosts_;  ///< [direction][upper], rows [pencil][ghost]
   int width_ = 0;

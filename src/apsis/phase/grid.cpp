@@ -7,7 +7,7 @@
 namespace apsis {
 
 grid::grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower, std::array<double, 3> upper)
-    : dimensions_(dimensions), cells_{1, 1, 1}, lower_{}, spacing_{1.0, 1.0, 1.0} {
+    : dimensions_(dimensions), cells_{1, 1, 1}, first_{}, lower_{}, spacing_{1.0, 1.0, 1.0} {
   if (dimensions < 1 || dimensions > 3)
     throw input_error(fmt::format("{} space dimensions (1, 2 or 3 exist)", dimensions));
   for (int k = 0; k < dimensions; ++k) {
@@ -22,6 +22,21 @@ grid::grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower
     spacing_[at(k)] = length / cells[at(k)];
   }
   check_size();
+  global_ = cells_;
+}
+
+grid grid::block(std::array<int, 3> first, std::array<int, 3> cells) const {
+  grid part = *this;
+  for (int k = 0; k < 3; ++k) {
+    const int begin = first[at(k)], count = cells[at(k)];
+    if (begin < 0 || count < 1 || begin > cells_[at(k)] - count)
+      throw input_error(
+          fmt::format("a block of {} cells from cell {} on (direction {} has {} cells); give one inside",
+                      count, begin, k + 1, cells_[at(k)]));
+    part.cells_[at(k)] = count;
+    part.first_[at(k)] = first_[at(k)] + begin;
+  }
+  return part;
 }
 
 void grid::check_size() const {
@@ -39,7 +54,7 @@ double grid::cell_volume() const {
 
 double grid::centre(int cell, int direction) const {
   const int i = cell / stride(direction) % cells(direction);
-  return lower_[at(direction)] + spacing(direction) * (i + 0.5);
+  return lower_[at(direction)] + spacing(direction) * (first(direction) + i + 0.5);
 }
 
 position grid::centre(int cell) const {

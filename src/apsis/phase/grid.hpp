@@ -1,17 +1,16 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
+#include <apsis/phase/position.hpp>
 
 #include <array>
 #include <cstddef>
 
 namespace apsis {
 
-/// A point of space; coordinates beyond the dimensions of the mesh are 0.
-using position = std::array<double, 3>;
-
 /// Uniform cells on a box in D = 1, 2 or 3 dimensions, the last direction fastest. Unused directions have one
-/// cell. Dimensionless lengths.
+/// cell. A grid may be a block of a larger one, whose cells it shares bit for bit: cell numbers are local,
+/// coordinates are those of the global grid. Dimensionless lengths.
 class grid {
  public:
   /// Most cells of a mesh: with those beyond its ends their numbers are ints.
@@ -23,11 +22,17 @@ class grid {
   /// The interval [a, b].
   static grid line(int cells, double a, double b) { return grid(1, {cells, 1, 1}, {a, 0, 0}, {b, 1, 1}); }
 
-  int dimensions() const { return dimensions_; }                           ///< D
-  int cells(int direction) const { return cells_[at(direction)]; }         ///< along a direction 0, 1 or 2
-  int size() const { return cells_[0] * cells_[1] * cells_[2]; }           ///< number of all cells
-  double spacing(int direction) const { return spacing_[at(direction)]; }  ///< Δx along a direction
-  double cell_volume() const;                                              ///< product of the D spacings
+  /// The block of `cells` cells that begins at cell `first` of this grid, in each direction. Throws
+  /// input_error unless it has cells and lies inside.
+  grid block(std::array<int, 3> first, std::array<int, 3> cells) const;
+
+  int dimensions() const { return dimensions_; }                            ///< D
+  int cells(int direction) const { return cells_[at(direction)]; }          ///< along a direction 0, 1 or 2
+  int size() const { return cells_[0] * cells_[1] * cells_[2]; }            ///< number of all cells
+  int global_cells(int direction) const { return global_[at(direction)]; }  ///< of the grid it is a block of
+  int first(int direction) const { return first_[at(direction)]; }          ///< global number of local cell 0
+  double spacing(int direction) const { return spacing_[at(direction)]; }   ///< Δx along a direction
+  double cell_volume() const;                                               ///< product of the D spacings
   /// Centre of cell number `cell` along `direction`.
   double centre(int cell, int direction) const;
   /// Centre of cell number `cell`.
@@ -45,7 +50,7 @@ class grid {
   static std::size_t at(int direction) { return static_cast<std::size_t>(direction); }
 
   int dimensions_;
-  std::array<int, 3> cells_;
+  std::array<int, 3> cells_, global_, first_;
   std::array<double, 3> lower_, spacing_;
 };
 

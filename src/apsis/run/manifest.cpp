@@ -22,7 +22,7 @@ json numbers(const simulation& run) {
               {"dt", s.dt},
               {"t", s.t},
               {"wall_s", s.wall_s}};
-  if (!find_model(run.config().model.name)->has_space) out["state"] = run.state();
+  if (!has_space(*find_model(run.config().model.name))) out["state"] = run.state();
   out["min_value"] = s.min_value;
   out["negative_values"] = s.negative_values;
   out["conservation_defect"] = s.conservation_defect;

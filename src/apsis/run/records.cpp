@@ -37,7 +37,7 @@ step_record from_row(const std::vector<double>& row) {
 }
 
 bool has_space(const simulation& run) {
-  return find_model(run.config().model.name)->has_space;
+  return has_space(*find_model(run.config().model.name));
 }
 
 // Counters travel as doubles, which hold them exactly up to 2^53; a damaged one must not overflow.
@@ -204,7 +204,7 @@ solution make_solution(const simulation& run, const run_records& records) {
   s.components = static_cast<std::uint64_t>(run.components());
   if (run.config().output.distribution != "none") s.f = run.state();
   s.velocities = run.velocities();
-  if (find_model(run.config().model.name)->has_epsilon) s.epsilon = run.epsilon();
+  s.epsilon = run.epsilon();
   s.fields = records.fields();
   return s;
 }

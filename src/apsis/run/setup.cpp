@@ -108,7 +108,7 @@ void run_setup::check_startup() const {
         fmt::format("time.startup = \"graded\" has no meaning for method '{}' (it is explicit: steps that do "
                     "not resolve the layer are unstable later too); remove it or choose an IMEX method",
                     method_->name));
-  if (dynamic_cast<const relaxation_model*>(equation.get()) == nullptr)
+  if (!equation->has_relaxation_time())
     refuse(config_, "time.startup",
            fmt::format("time.startup = \"graded\" has no meaning for model '{}' (its relaxation time is not "
                        "known); remove it",
@@ -153,8 +153,7 @@ const initial_data& run_setup::data() const {
 }
 
 field run_setup::initial_state() const {
-  const auto& value = data().point_value;
-  field u = builder_.sample([&](const position& x, std::span<double> at) { value(x[0], at); }, data().jumps);
+  field u = builder_.sample(data().point_value, data().jumps);
   for (int cell = 0; cell < u.cells(); ++cell) {
     const unsupported_initial_data found = equation->check_supported(u.row(cell));
     if (!found.problem.empty()) refuse(config_, found.key, fmt::format("{} [cell {}]", found.problem, cell));
@@ -168,7 +167,7 @@ field run_setup::initial_state() const {
 std::optional<field> run_setup::exact_state(double t) const {
   const auto& exact = data().exact;
   if (!exact) return std::nullopt;
-  return builder_.sample([&](const position& x, std::span<double> u) { exact(t, x[0], u); });
+  return builder_.sample([&](const position& x, std::span<double> u) { exact(t, x, u); });
 }
 
 double run_setup::cfl_length() const {

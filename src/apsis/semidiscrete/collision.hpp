@@ -10,14 +10,13 @@
 
 namespace apsis {
 
-/// The collision operator Q(u)/ε of a relaxation model on a mesh.
+/// The collision operator Q(u)/ε of a model on a mesh.
 class collision {
  public:
   virtual ~collision() = default;
 
   /// In place u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², a = Δt d ≥ 0, b = Δt² ḋ ≤ 0, t the time of the stage.
-  /// Nonnegative rows stay so.
-  /// Throws numerical_error with the cell where the moments have no equilibrium.
+  /// A relaxation keeps nonnegative rows so. Throws numerical_error with the cell where there is no solution.
   virtual void solve(double t, double a, double b, field& u) = 0;
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε. Throws numerical_error where ε = 0.
@@ -40,18 +39,15 @@ class cellwise_collision : public collision {
   virtual void solve_cells(double a, double b, field& u, int begin, int end) = 0;
 };
 
-/// Point values: the stage solve of every point is closed form,
-///   v = (u + μ E(ω))/(1 + μ), ω = ℛu, μ = aC/ε + |b|(C/ε)²   (paper, proof of Proposition AP).
-/// `epsilon` per cell. `limited`: the transport keeps nonnegative data so, which is for messages only.
-std::unique_ptr<collision> make_pointwise_collision(const relaxation_model& equation,
-                                                    std::vector<double> epsilon, bool limited = false);
+/// Point values: every cell on its own. `epsilon` per cell. `keeps_sign` as in model::make_collision().
+std::unique_ptr<collision> make_pointwise_collision(const model& equation, std::vector<double> epsilon,
+                                                    bool keeps_sign = false);
 
-/// Cell averages in one space dimension: the same at the three Gauss–Legendre points of every cell, on the
-/// quartic through the reconstructed edges and the neighbouring averages, with ω from the (limited) values at
-/// the point; the new average is the weighted mean. Conserves exactly although ε varies inside the cell.
+/// Cell averages in one space dimension: stages are solved at the three Gauss–Legendre points of every cell,
+/// on the quartic through the reconstructed edges and the neighbouring averages, with the (limited) values
+/// there; the new average is the weighted mean. Conserves exactly although ε varies inside the cell.
 /// `epsilon` holds three values per cell, in the order of the points.
-std::unique_ptr<collision> make_cell_average_collision(const relaxation_model& equation,
-                                                       std::shared_ptr<domain> space, stencil how,
-                                                       std::vector<double> epsilon);
+std::unique_ptr<collision> make_cell_average_collision(const model& equation, std::shared_ptr<domain> space,
+                                                       stencil how, std::vector<double> epsilon);
 
 }  // namespace apsis

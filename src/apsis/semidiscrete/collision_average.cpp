@@ -1,11 +1,12 @@
+#include <apsis/core/errors.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/scheme/quartic.hpp>
 #include <apsis/semidiscrete/collision.hpp>
-#include <apsis/semidiscrete/local_relaxation.hpp>
-#include <apsis/semidiscrete/relaxation_rows.hpp>
+#include <apsis/semidiscrete/collision_rows.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -16,7 +17,7 @@ namespace {
 
 class cell_average_collision final : public collision {
  public:
-  cell_average_collision(const relaxation_model& equation, std::shared_ptr<domain> space, stencil how,
+  cell_average_collision(const model& equation, std::shared_ptr<domain> space, stencil how,
                          std::vector<double> epsilon)
       : equation_(equation), space_(std::move(space)), how_(std::move(how)), epsilon_(std::move(epsilon)) {
     space_->reserve(equation.components(), how_.scheme->ghost_width());
@@ -25,128 +26,121 @@ class cell_average_collision final : public collision {
   void solve(double t, double a, double b, field& u) override {
     if (result_.cells() != u.cells() || result_.components() != u.components())
       result_ = field(u.cells(), u.components());
-    for_blocks(t, u, [&](int begin, int cells, const double* points, local_relaxation& local) {
-      const auto pitch = static_cast<std::ptrdiff_t>(u.stride());
-      const profile::section timed(kernel::relaxation, static_cast<double>(cells) * u.stride(),
-                                   {relaxation::operations_of_average, sizeof(double)});
-      local.find_weights(a, b, epsilon_.data() + static_cast<std::ptrdiff_t>(begin) * gauss3::points,
-                         cells * gauss3::points);
-      for (int i = 0; i < cells; ++i) {
-        relaxation::weighted_rows rows[gauss3::points];
-        for (int q = 0; q < gauss3::points; ++q) {
-          const int p = i * gauss3::points + q;
-          const auto weights = local.weights(p);
-          const double w = gauss3::weight[static_cast<std::size_t>(q)];
-          rows[q] = {w * weights.stay, w * weights.relax, points + p * pitch, local.equilibrium(p)};
-        }
-        relaxation::average(rows, u.stride(), result_.row(begin + i));
-      }
+    for_batches(t, u, [&](const point_batch& at, scratch& own) {
+      own.local->solve_stage_means(a, b, at, own.points.data(), gauss3::weight, result_.row(at.first_cell));
     });
     std::swap(u, result_);  // neighbours need the old averages, so the new ones are made beside them
   }
 
   void add_collision(double t, const field& u, std::span<const target<field, double>> targets) override {
-    rows_.prepare([&](auto& rows) { rows.reserve(targets.size()); });
-    for_blocks(t, u, [&](int begin, int cells, const double* points, const local_relaxation& local) {
-      auto& rows = rows_.here();
-      for (int i = 0; i < cells; ++i) {
-        relaxation::strong_rows at[gauss3::points];
-        for (int q = 0; q < gauss3::points; ++q) {
-          const int p = i * gauss3::points + q;
-          const double w = gauss3::weight[static_cast<std::size_t>(q)];
-          at[q] = {w * local.strength(p, epsilon_at(begin + i, q), begin + i),
-                   points + static_cast<std::ptrdiff_t>(p) * u.stride(), local.equilibrium(p)};
-        }
-        upwind::rows_of(targets, begin + i, rows);
-        relaxation::add_collision(at, u.row(begin + i), u.stride(), rows);
+    const std::size_t length = static_cast<std::size_t>(cells_per_batch(u)) * gauss3::points;
+    scratch_.prepare([&](auto& own) {
+      own.rates.resize(length * static_cast<std::size_t>(u.stride()));
+      own.rows.reserve(targets.size());
+    });
+    for_batches(t, u, [&](const point_batch& at, scratch& own) {
+      own.local->evaluate(at, own.points.data(), own.rates.data());
+      std::array<collision_rows::weighted_row, gauss3::points> points;
+      const double* rates = own.rates.data();
+      for (int cell = at.first_cell; cell < at.first_cell + at.count / gauss3::points; ++cell) {
+        for (std::size_t q = 0; q < points.size(); ++q, rates += u.stride())
+          points[q] = {gauss3::weight[q], rates};
+        upwind::rows_of(targets, cell, own.rows);
+        collision_rows::add(points, u.row(cell), u.stride(), own.rows);
       }
     });
   }
 
   /// With the rate of the averages; the rates at the Gauss points differ by the accuracy of the scheme.
   double forward_euler_step(const field& u) const override {
-    local_relaxation local;
-    local.attach(equation_, 1);
-    double fastest = 0.0;
-    for (int cell = 0; cell < u.cells(); ++cell)
-      for (int q = 0; q < gauss3::points; ++q)
-        fastest = std::max(fastest, local.rate(u.row(cell)) / epsilon_at(cell, q));
-    return 1.0 / fastest;
+    return smallest(u, &point_collision::forward_euler_step);
   }
 
   double relaxation_time(const field& u) const override {
-    local_relaxation local;
-    local.attach(equation_, 1);
-    double shortest = std::numeric_limits<double>::infinity();
-    for (int cell = 0; cell < u.cells(); ++cell)
-      for (int q = 0; q < gauss3::points; ++q)
-        shortest = std::min(shortest, local.relaxation_time(u.row(cell), epsilon_at(cell, q)));
-    return shortest;
+    return smallest(u, &point_collision::relaxation_time);
   }
 
  private:
-  double epsilon_at(int cell, int q) const {
-    return epsilon_[static_cast<std::size_t>(cell) * gauss3::points + static_cast<std::size_t>(q)];
+  struct scratch {
+    pencil_block block;
+    aligned_vector<double> points,  ///< values at Gauss points of a batch
+        rates;                      ///< Q/ε there
+    std::unique_ptr<point_collision> local;
+    std::vector<upwind::row_target> rows;
+  };
+
+  bool limited() const { return how_.positivity != limiter_kind::none; }
+  static int cells_per_batch(const field& u) {
+    return std::max(1, points_per_batch(u.stride()) / gauss3::points);
   }
 
-  /// body(first cell, number of cells, rows of the values at their Gauss points, the equilibria there).
-  template <class Body>
-  void for_blocks(double t, const field& u, Body body) {
-    space_->fill_ghosts(t, u);
-    const int at_once = std::max(1, points_at_once(u.stride()) / gauss3::points);
-    const int longest = collision_block_length(u.stride());
+  double smallest(const field& u, double (point_collision::*time)(const double*, double)) const {
+    const auto local = equation_.make_collision({1, u.stride(), limited()});
+    double result = std::numeric_limits<double>::infinity();
+    const double* epsilon = epsilon_.data();
+    for (int cell = 0; cell < u.cells(); ++cell)
+      for (int q = 0; q < gauss3::points; ++q, ++epsilon)
+        result = std::min(result, ((*local).*time)(u.row(cell), *epsilon));
+    return result;
+  }
+
+  void prepare(const field& u) {
+    const int points = cells_per_batch(u) * gauss3::points;
     scratch_.prepare([&](auto& own) {
-      own.block.reserve(how_, std::min(longest, u.cells()), 0, u.stride());
-      own.local.attach(equation_, at_once * gauss3::points, how_.positivity != limiter_kind::none);
-      own.points.resize(static_cast<std::size_t>(at_once * gauss3::points) *
-                        static_cast<std::size_t>(u.stride()));
+      own.block.reserve(how_, std::min(collision_block_length(u.stride()), u.cells()), 0, u.stride());
+      own.points.resize(static_cast<std::size_t>(points) * static_cast<std::size_t>(u.stride()));
+      if (!own.local) own.local = equation_.make_collision({points, u.stride(), limited()});
     });
-    parallel_blocks(u.cells(), longest, [&](int begin, int end) {
-      auto& [block, points, local] = scratch_.here();
+  }
+
+  /// body(batch of Gauss points of whole cells, scratch with the values there).
+  template <class Body>
+  void for_batches(double t, const field& u, const Body& body) {
+    space_->fill_ghosts(t, u);
+    prepare(u);
+    const int length = cells_per_batch(u);
+    parallel_blocks(u.cells(), collision_block_length(u.stride()), [&](int begin, int end) {
+      auto& own = scratch_.here();
       {
         const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(),
                                      {how_.scheme->operations(true), sizeof(double)});
-        block.load(u, *space_, how_, 0, 0, begin, end, 0);
+        own.block.load(u, *space_, how_, 0, 0, begin, end, 0);
       }
-      for (int i = begin; i < end; i += at_once) {
-        const int cells = std::min(at_once, end - i);
-        find_points(block, i, cells, u.stride(), points.data());
-        local.find_equilibria(points.data(), u.stride(), cells * gauss3::points, i, gauss3::points);
-        body(i, cells, points.data(), local);
+      for (int i = begin; i < end; i += length) {
+        const int cells = std::min(length, end - i);
+        find_points(own.block, i, cells, u.stride(), own.points.data());
+        body({.count = cells * gauss3::points,
+              .pitch = u.stride(),
+              .epsilon = epsilon_.data() + static_cast<std::ptrdiff_t>(i) * gauss3::points,
+              .first_cell = i,
+              .points_per_cell = gauss3::points},
+             own);
       }
     });
   }
 
   void find_points(pencil_block& block, int begin, int cells, int stride, double* points) const {
-    const bool limited = how_.positivity != limiter_kind::none;
     const profile::section timed(kernel::points, static_cast<double>(cells) * stride,
-                                 {relaxation::operations_of_points(limited), 0.0});
+                                 {collision_rows::operations_of_points(limited()), 0.0});
     for (int i = begin; i < begin + cells;
          ++i, points += static_cast<std::ptrdiff_t>(gauss3::points) * stride)
-      relaxation::gauss_values(
+      collision_rows::gauss_values(
           {block.row(i - 1), block.row(i), block.row(i + 1), block.left_edge(i), block.right_edge(i)},
-          limited, stride, points);
+          limited(), stride, points);
   }
 
-  const relaxation_model& equation_;
+  const model& equation_;
   std::shared_ptr<domain> space_;
   stencil how_;
   std::vector<double> epsilon_;
   field result_;
-  struct scratch {
-    pencil_block block;
-    aligned_vector<double> points;
-    local_relaxation local;
-  };
   per_thread<scratch> scratch_;
-  per_thread<std::vector<upwind::row_target>> rows_;
 };
 
 }  // namespace
 
-std::unique_ptr<collision> make_cell_average_collision(const relaxation_model& equation,
-                                                       std::shared_ptr<domain> space, stencil how,
-                                                       std::vector<double> epsilon) {
+std::unique_ptr<collision> make_cell_average_collision(const model& equation, std::shared_ptr<domain> space,
+                                                       stencil how, std::vector<double> epsilon) {
   if (space->mesh().dimensions() != 1)
     throw input_error(
         "the finite volume formulation collides at the Gauss points of intervals and knows one space "

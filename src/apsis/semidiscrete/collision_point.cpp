@@ -1,8 +1,6 @@
 #include <apsis/exec/parallel.hpp>
-#include <apsis/exec/profile.hpp>
 #include <apsis/semidiscrete/collision.hpp>
-#include <apsis/semidiscrete/local_relaxation.hpp>
-#include <apsis/semidiscrete/relaxation_rows.hpp>
+#include <apsis/semidiscrete/collision_rows.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -14,94 +12,89 @@ namespace {
 
 class pointwise_collision final : public cellwise_collision {
  public:
-  pointwise_collision(const relaxation_model& equation, std::vector<double> epsilon, bool limited)
-      : equation_(equation), epsilon_(std::move(epsilon)), limited_(limited) {}
+  pointwise_collision(const model& equation, std::vector<double> epsilon, bool keeps_sign)
+      : equation_(equation), epsilon_(std::move(epsilon)), keeps_sign_(keeps_sign) {}
 
   void solve(double, double a, double b, field& u) override {
     prepare(u);
-    parallel_blocks(u.cells(), points_at_once(u.stride()),
-                    [&](int begin, int end) { relax(a, b, u, begin, end - begin, 2.0 * sizeof(double)); });
+    parallel_blocks(u.cells(), points_per_batch(u.stride()), [&](int begin, int end) {
+      scratch_.here().local->solve_stage(a, b, batch(u, begin, end), u.row(begin));
+    });
   }
 
-  void prepare(const field& u) override { prepare_points(u.stride()); }
+  void prepare(const field& u) override {
+    const int points = points_per_batch(u.stride());
+    scratch_.prepare([&](auto& own) {
+      if (!own.local) own.local = equation_.make_collision({points, u.stride(), keeps_sign_});
+    });
+  }
 
   void solve_cells(double a, double b, field& u, int begin, int end) override {
-    const int length = points_at_once(u.stride());
-    // Rows that were just written are in the cache.
-    for (int first = begin; first < end; first += length)
-      relax(a, b, u, first, std::min(end - first, length), 0.0);
+    const int length = points_per_batch(u.stride());
+    for (int first = begin; first < end; first += length) {
+      auto points = batch(u, first, std::min(end, first + length));
+      points.cached = true;
+      scratch_.here().local->solve_stage(a, b, points, u.row(first));
+    }
   }
 
   void add_collision(double, const field& u, std::span<const target<field, double>> targets) override {
     prepare(u);
-    rows_.prepare([&](auto& rows) { rows.reserve(targets.size()); });
-    parallel_blocks(u.cells(), points_at_once(u.stride()), [&](int begin, int end) {
-      const auto& local = equilibria_of(u, begin, end - begin);
-      auto& rows = rows_.here();
+    const int length = points_per_batch(u.stride());
+    scratch_.prepare([&](auto& own) {
+      own.rates.resize(static_cast<std::size_t>(length) * static_cast<std::size_t>(u.stride()));
+      own.rows.reserve(targets.size());
+    });
+    parallel_blocks(u.cells(), length, [&](int begin, int end) {
+      auto& own = scratch_.here();
+      own.local->evaluate(batch(u, begin, end), u.row(begin), own.rates.data());
       for (int cell = begin; cell < end; ++cell) {
-        upwind::rows_of(targets, cell, rows);
-        const relaxation::strong_rows point{local.strength(cell - begin, epsilon_at(cell), cell), u.row(cell),
-                                            local.equilibrium(cell - begin)};
-        relaxation::add_collision({&point, 1}, u.row(cell), u.stride(), rows);
+        const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(cell - begin) * u.stride();
+        const collision_rows::weighted_row point{1.0, own.rates.data() + offset};
+        upwind::rows_of(targets, cell, own.rows);
+        collision_rows::add({&point, 1}, u.row(cell), u.stride(), own.rows);
       }
     });
   }
 
   double forward_euler_step(const field& u) const override {
-    local_relaxation local;
-    local.attach(equation_, 1);
-    double fastest = 0.0;
-    for (int cell = 0; cell < u.cells(); ++cell)
-      fastest = std::max(fastest, local.rate(u.row(cell)) / epsilon_at(cell));
-    return 1.0 / fastest;
+    return smallest(u, &point_collision::forward_euler_step);
   }
 
   double relaxation_time(const field& u) const override {
-    local_relaxation local;
-    local.attach(equation_, 1);
-    double shortest = std::numeric_limits<double>::infinity();
-    for (int cell = 0; cell < u.cells(); ++cell)
-      shortest = std::min(shortest, local.relaxation_time(u.row(cell), epsilon_at(cell)));
-    return shortest;
+    return smallest(u, &point_collision::relaxation_time);
   }
 
  private:
-  double epsilon_at(int cell) const { return epsilon_[static_cast<std::size_t>(cell)]; }
-
-  void prepare_points(int stride) {
-    local_.prepare([&](auto& local) { local.attach(equation_, points_at_once(stride), limited_); });
+  point_batch batch(const field& u, int begin, int end) const {
+    return {
+        .count = end - begin, .pitch = u.stride(), .epsilon = epsilon_.data() + begin, .first_cell = begin};
   }
 
-  void relax(double a, double b, field& u, int begin, int cells, double bytes) {
-    auto& local = equilibria_of(u, begin, cells);
-    const profile::section timed(kernel::relaxation, static_cast<double>(cells) * u.stride(),
-                                 {relaxation::operations_of_combine, bytes});
-    local.find_weights(a, b, epsilon_.data() + begin, cells);
-    for (int p = 0; p < cells; ++p) {
-      const auto weights = local.weights(p);
-      relaxation::combine(weights.stay, weights.relax, local.equilibrium(p), u.stride(), u.row(begin + p));
-    }
+  double smallest(const field& u, double (point_collision::*time)(const double*, double)) const {
+    const auto local = equation_.make_collision({1, u.stride(), keeps_sign_});
+    double result = std::numeric_limits<double>::infinity();
+    for (int cell = 0; cell < u.cells(); ++cell)
+      result = std::min(result, ((*local).*time)(u.row(cell), epsilon_[static_cast<std::size_t>(cell)]));
+    return result;
   }
 
-  /// In scratch space of this thread, until the next call.
-  local_relaxation& equilibria_of(const field& u, int begin, int cells) {
-    auto& local = local_.here();
-    local.find_equilibria(u.row(begin), u.stride(), cells, begin);
-    return local;
-  }
-
-  const relaxation_model& equation_;
+  const model& equation_;
   std::vector<double> epsilon_;
-  per_thread<local_relaxation> local_;
-  per_thread<std::vector<upwind::row_target>> rows_;
-  bool limited_;
+  bool keeps_sign_;
+  struct scratch {
+    std::unique_ptr<point_collision> local;
+    aligned_vector<double> rates;  ///< Q/ε of a batch
+    std::vector<upwind::row_target> rows;
+  };
+  per_thread<scratch> scratch_;
 };
 
 }  // namespace
 
-std::unique_ptr<collision> make_pointwise_collision(const relaxation_model& equation,
-                                                    std::vector<double> epsilon, bool limited) {
-  return std::make_unique<pointwise_collision>(equation, std::move(epsilon), limited);
+std::unique_ptr<collision> make_pointwise_collision(const model& equation, std::vector<double> epsilon,
+                                                    bool keeps_sign) {
+  return std::make_unique<pointwise_collision>(equation, std::move(epsilon), keeps_sign);
 }
 
 }  // namespace apsis

@@ -3,7 +3,6 @@
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/scheme/quartic.hpp>
-#include <apsis/semidiscrete/newton_collision.hpp>
 
 #include <cmath>
 #include <utility>
@@ -103,7 +102,7 @@ stencil problem_builder::complete_stencil() const {
 }
 
 domain problem_builder::space() const {
-  return has_space() ? domain(mesh_, sides_) : domain::point();
+  return has_space() ? domain({mesh_, equation_->velocities()}, sides_) : domain::point();
 }
 
 /// In every cell at the points `offsets` · Δx from its centre, along the first direction.
@@ -127,11 +126,8 @@ std::vector<double> problem_builder::epsilon_at_centres() const {
 }
 
 std::unique_ptr<collision> problem_builder::make_collision(const std::shared_ptr<domain>& space) const {
-  if (const auto* general = dynamic_cast<const general_model*>(equation_))
-    return make_newton_collision(*general);
-  const auto& relaxation = dynamic_cast<const relaxation_model&>(*equation_);
-  if (pointwise()) return make_pointwise_collision(relaxation, epsilon_at_centres(), keeps_sign());
-  return make_cell_average_collision(relaxation, space, complete_stencil(), epsilon_at(gauss3::xi));
+  if (pointwise()) return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign());
+  return make_cell_average_collision(*equation_, space, complete_stencil(), epsilon_at(gauss3::xi));
 }
 
 std::unique_ptr<semidiscrete_problem> problem_builder::build() const {

@@ -30,7 +30,7 @@ double smallest(const field& u) {
 case_config small_case(const std::string& model, const std::string& method, double epsilon, int cells,
                        const std::vector<std::string>& overrides) {
   const model_entry* entry = find_model(model);
-  const bool grid = entry != nullptr && entry->has_velocity;
+  const bool grid = entry != nullptr && entry->has_velocity_grid;
   const std::string text = fmt::format(
       "title = \"small\"\n[model]\nname = \"{}\"\nepsilon = {:.17g}\n"
       "[space]\ncells = {}\ndomain = [0.0, 2.0]\n{}[time]\nmethod = \"{}\"\nend = 1.0\ndt = 1.0\n",
@@ -66,7 +66,7 @@ kept_property<field> positivity() {
 std::vector<std::string> all_entropy_models() {
   std::vector<std::string> names;
   for (const auto& m : all_models())
-    if (m.entry->has_space && m.equation->has_entropy()) names.push_back(m.entry->name);
+    if (has_space(*m.entry) && m.equation->has_entropy()) names.push_back(m.entry->name);
   return names;
 }
 

@@ -182,7 +182,7 @@ class planner {
   void choose_reference() {
     how_ = study_.reference.how;
     const std::string model = plan_.runs.front().model.name;
-    const bool has_space = find_model(model)->has_space;
+    const bool on_mesh = has_space(*find_model(model));
     if (how_ == kind::automatic) {
       how_ = all_exact() ? kind::exact : kind::next;
       if (how_ == kind::next && !resolves_)
@@ -200,7 +200,7 @@ class planner {
       throw input_error(
           "reference 'next' needs a finer run (no mesh or step is refined); vary space.cells or a step, or "
           "choose another reference");
-    if (how_ == kind::space_time && !has_space)
+    if (how_ == kind::space_time && !on_mesh)
       throw input_error(
           fmt::format("reference 'space+time' needs a mesh (model '{}' has no space); choose time", model));
     plan_.measured = how_ == kind::next ? "difference" : "error";

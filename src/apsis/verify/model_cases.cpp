@@ -18,11 +18,11 @@ case_config small_case(const std::string& model, const std::vector<std::string>&
   if (entry == nullptr) throw input_error("unknown model '" + model + "'");
   std::string text = fmt::format("[model]\nname = \"{}\"\n", model);
   double dt = 1.0 / 32.0;
-  if (entry->has_space) {
+  if (has_space(*entry)) {
     text += fmt::format("[space]\ncells = {}\ndomain = [0.0, {:.1f}]\n", cells, length);
-    dt = 0.5 * length / cells / (entry->has_velocity ? velocity_max : 1.0);
+    dt = 0.5 * length / cells / (entry->has_velocity_grid ? velocity_max : 1.0);
   }
-  if (entry->has_velocity) text += fmt::format("[velocity]\nmax = {:.1f}\npoints = 60\n", velocity_max);
+  if (entry->has_velocity_grid) text += fmt::format("[velocity]\nmax = {:.1f}\npoints = 60\n", velocity_max);
   text += fmt::format("[time]\nmethod = \"md-imex-6-3\"\ndt = {:.17g}\nend = {:.17g}\n", dt, steps * dt);
   return parse_case(text, "small case of model " + model, overrides);
 }
@@ -35,7 +35,7 @@ std::vector<std::string> relaxation_model_names() {
 }
 
 std::vector<std::string> formulation_names(const std::string& model) {
-  if (!find_model(model)->has_space) return {""};
+  if (!has_space(*find_model(model))) return {""};
   return {"finite-volume", "finite-difference"};
 }
 

@@ -2,7 +2,6 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/extremes.hpp>
-#include <apsis/semidiscrete/newton_collision.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -86,14 +85,12 @@ relaxation_defects defects_of(const relaxation_model& m, const std::vector<doubl
 }
 
 std::vector<double> backward_euler_on_collision(const model& m, const std::vector<double>& u, double lambda) {
-  const auto* general = dynamic_cast<const general_model*>(&m);
-  const auto q = general != nullptr
-                     ? make_newton_collision(*general)
-                     : make_pointwise_collision(dynamic_cast<const relaxation_model&>(m), {1.0});
-  field point(1, m.components());
-  std::copy(u.begin(), u.end(), point.row(0));
-  q->solve(0.0, lambda, 0.0, point);
-  return {point.row(0), point.row(0) + m.components()};
+  const double epsilon = 1.0;
+  const std::ptrdiff_t pitch = m.components();
+  std::vector<double> v = u;
+  m.make_collision({.points = 1, .pitch = pitch})
+      ->solve_stage(lambda, 0.0, {.count = 1, .pitch = pitch, .epsilon = &epsilon}, v.data());
+  return v;
 }
 
 }  // namespace apsis

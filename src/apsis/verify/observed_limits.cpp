@@ -106,7 +106,7 @@ experiment entropy(const method& m, const std::string& model, const std::vector<
 experiment positive_weno(const method& m, const made_model& model, const std::string& form,
                          const std::vector<double>& epsilons) {
   // The published column for averages was measured with these data (docs/strong-stability.md).
-  const bool tame = model.entry->has_velocity && form == "finite-volume";
+  const bool tame = model.entry->has_velocity_grid && form == "finite-volume";
   return {model.entry->name + ", WENO5 with limiter, " + form, "positivity", epsilons,
           [&m, name = model.entry->name, form, tame](double epsilon, double promised) {
             case_problem problem(small_case(name, stand_in(m.kind), epsilon, 12,
@@ -142,7 +142,7 @@ std::vector<experiment> experiments_for(const method& m) {
       advection(m, "positivity", stays_inside<row>("positivity", negative_part(), 1e-13)), words(m, staged),
       permutations(m, staged)};
   for (const auto& model : all_models()) {
-    if (!model.entry->has_space) continue;
+    if (!has_space(*model.entry)) continue;
     if (model.equation->has_entropy()) all.push_back(entropy(m, model.entry->name, stiff));
     if (model.equation->positive())
       for (const char* form : {"finite-volume", "finite-difference"})

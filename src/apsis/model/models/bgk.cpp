@@ -29,7 +29,7 @@ class bgk_model final : public relaxation_model {
 
   int components() const override { return grid_.size(); }
   int space_dimensions() const override { return 1; }
-  std::span<const double> speeds(int direction) const override { return grid_.component(direction); }
+  const velocity_set& velocities() const override { return grid_.set(); }
   /// The end of the velocity grid, half an interval beyond its last point.
   double reference_speed(int) const override { return grid_.max(); }
   bool positive() const override { return true; }
@@ -197,10 +197,11 @@ class bgk_model final : public relaxation_model {
     using std::numbers::pi;
     const auto add = [this](const char* name, const char* description, double a, double b, double k_rho,
                             double k_T) {
-      initial_.push_back({name, description, [this, a, b, k_rho, k_T](double x, std::span<double> f) {
-                            two_beams(a, b, 1.0 + 0.2 * std::sin(k_rho * pi * x),
-                                      1.0 / (1.0 + 0.2 * std::sin(k_T * pi * x)), f);
-                          }});
+      initial_.push_back(
+          {name, description, [this, a, b, k_rho, k_T](const position& x, std::span<double> f) {
+             two_beams(a, b, 1.0 + 0.2 * std::sin(k_rho * pi * x[0]),
+                       1.0 / (1.0 + 0.2 * std::sin(k_T * pi * x[0])), f);
+           }});
     };
     add("mixed-v", "0.5 M[r,1,T] + 0.3 M[r,-1/2,T], r = 1 + 0.2 sin(pi x), T = 1/(1 + 0.2 sin(2 pi x))", 0.5,
         0.3, 1.0, 2.0);
@@ -212,11 +213,13 @@ class bgk_model final : public relaxation_model {
     initial_.push_back(
         {"expansion",
          "M[r,0,1/4], r = 1 for 1/2 <= x < 3/2 and 1e-300 elsewhere: a cold gas in empty space",
-         [this](double x, std::span<double> f) { expansion(x >= 0.5 && x < 1.5 ? 1.0 : 1e-300, f); },
+         [this](const position& x, std::span<double> f) {
+           expansion(x[0] >= 0.5 && x[0] < 1.5 ? 1.0 : 1e-300, f);
+         },
          {},
          {0.5, 1.5}});
     initial_.push_back({"accuracy-consistent", "the Maxwellian with the moments of 'accuracy'",
-                        [this, accuracy](double x, std::span<double> f) {
+                        [this, accuracy](const position& x, std::span<double> f) {
                           double omega[5];
                           accuracy(x, f);
                           moments(f.data(), omega);
@@ -233,14 +236,18 @@ class bgk_model final : public relaxation_model {
 
 extern const model_entry model_bgk;
 const model_entry model_bgk = {
-    "bgk",
-    "f_t + v f_x = (M[f] - f)/epsilon on a velocity grid",
-    "Bhatnagar, Gross, Krook (1954); Gottlieb, Grant, Hu, Shu, BGK model",
-    true,
-    true,
-    true,
-    {{"velocity_dimensions", 1.0, 1.0, 3.0, "number of velocity dimensions (an integer)", true}},
-    {"mixed-v", "mixed-s", "accuracy", "expansion", "accuracy-consistent"},
-    [](const model_config& config) -> std::unique_ptr<model> { return std::make_unique<bgk_model>(config); }};
+    .name = "bgk",
+    .description = "f_t + v f_x = (M[f] - f)/epsilon on a velocity grid",
+    .source = "Bhatnagar, Gross, Krook (1954); Gottlieb, Grant, Hu, Shu, BGK model",
+    .has_velocity_grid = true,
+    .parameters = {{.name = "velocity_dimensions",
+                    .value = 1.0,
+                    .lowest = 1.0,
+                    .highest = 3.0,
+                    .doc = "number of velocity dimensions (an integer)",
+                    .integer = true}},
+    .make = [](const model_config& config) -> std::unique_ptr<model> {
+      return std::make_unique<bgk_model>(config);
+    }};
 
 }  // namespace apsis

@@ -23,7 +23,7 @@ class broadwell_model final : public relaxation_model {
 
   int components() const override { return 3; }
   int space_dimensions() const override { return 1; }
-  std::span<const double> speeds(int) const override { return speeds_; }
+  const velocity_set& velocities() const override { return velocities_; }
   bool positive() const override { return true; }
 
   int moment_count() const override { return 2; }
@@ -90,8 +90,9 @@ class broadwell_model final : public relaxation_model {
     f[2] = 0.5 * (w.z - w.m);
   }
 
-  static void smooth(double x, std::span<double> f) {
+  static void smooth(const position& at, std::span<double> f) {
     using std::numbers::pi;
+    const double x = at[0];
     f[0] = 1.0 + 0.2 * std::exp(0.3 * std::sin(pi * x));
     f[1] = 1.0 / (1.0 + 0.3 * std::sin(pi * x));
     f[2] = std::exp(0.2 * std::cos(2.0 * pi * x));
@@ -99,11 +100,12 @@ class broadwell_model final : public relaxation_model {
 
   void add_riemann(const char* name, const char* description, double jump, const broadwell_moments& left,
                    const broadwell_moments& right) {
-    initial_.push_back({name,
-                        description,
-                        [=](double x, std::span<double> f) { from_moments(x < jump ? left : right, f); },
-                        {},
-                        {jump}});
+    initial_.push_back(
+        {name,
+         description,
+         [=](const position& x, std::span<double> f) { from_moments(x[0] < jump ? left : right, f); },
+         {},
+         {jump}});
   }
 
   void make_initial_data() {
@@ -112,13 +114,13 @@ class broadwell_model final : public relaxation_model {
          "f = (1 + 0.2 exp(0.3 sin(pi x)), 1/(1 + 0.3 sin(pi x)), exp(0.2 cos(2 pi x))), out of "
          "equilibrium (paper)",
          smooth});
-    initial_.push_back(
-        {"smooth-consistent", "the local equilibrium of 'smooth'", [this](double x, std::span<double> f) {
-           std::array<double, 2> omega{};
-           smooth(x, f);
-           moments(f.data(), omega.data());
-           equilibrium(omega.data(), f.data());
-         }});
+    initial_.push_back({"smooth-consistent", "the local equilibrium of 'smooth'",
+                        [this](const position& x, std::span<double> f) {
+                          std::array<double, 2> omega{};
+                          smooth(x, f);
+                          moments(f.data(), omega.data());
+                          equilibrium(omega.data(), f.data());
+                        }});
     add_riemann("riemann-1",
                 "(rho, m, z) = (2, 1, 1) | (1, 0.13962, 1) at x = 0.2: one shock as epsilon -> 0", 0.2,
                 {2.0, 1.0, 1.0}, {1.0, 0.13962, 1.0});
@@ -126,7 +128,8 @@ class broadwell_model final : public relaxation_model {
                 0.0, {1.0, 0.0, 1.0}, {0.2, 0.0, 1.0});
   }
 
-  static constexpr std::array<double, 3> speeds_ = {1.0, 0.0, -1.0};
+  /// Two of the four species of the planar gas rest in this direction.
+  velocity_set velocities_{{{1.0, 0.0, -1.0}}, {1.0, 2.0, 1.0}};
   std::vector<initial_data> initial_;
 };
 
@@ -134,14 +137,11 @@ class broadwell_model final : public relaxation_model {
 
 extern const model_entry model_broadwell;
 const model_entry model_broadwell = {
-    "broadwell",
-    "f+_t + f+_x = q/epsilon, f0_t = -q/epsilon, f-_t - f-_x = q/epsilon, q = f0^2 - f+ f-",
-    "Broadwell (1964); Caflisch, Jin, Russo, SIAM J. Numer. Anal. 34 (1997); Gottlieb, Grant, Hu, Shu",
-    true,
-    false,
-    true,
-    {},
-    {"smooth", "smooth-consistent", "riemann-1", "riemann-2"},
-    [](const model_config&) -> std::unique_ptr<model> { return std::make_unique<broadwell_model>(); }};
+    .name = "broadwell",
+    .description = "f+_t + f+_x = q/epsilon, f0_t = -q/epsilon, f-_t - f-_x = q/epsilon, q = f0^2 - f+ f-",
+    .source = "Broadwell (1964); Caflisch, Jin, Russo, SIAM J. Numer. Anal. 34 (1997); Gottlieb et al.",
+    .make = [](const model_config&) -> std::unique_ptr<model> {
+      return std::make_unique<broadwell_model>();
+    }};
 
 }  // namespace apsis

@@ -13,9 +13,10 @@ class decay_model final : public general_model {
   explicit decay_model(const model_config& config) : rate_(config.parameters.at("rate")) {
     const double start = config.parameters.at("u0");
     const double k = rate_;
-    initial_ = {
-        {"start", "u(0) = u0", [start](double, std::span<double> u) { u[0] = start; },
-         [start, k](double t, double, std::span<double> u) { u[0] = start / (1.0 + k * start * t); }}};
+    initial_ = {{"start", "u(0) = u0", [start](const position&, std::span<double> u) { u[0] = start; },
+                 [start, k](double t, const position&, std::span<double> u) {
+                   u[0] = start / (1.0 + k * start * t);
+                 }}};
   }
 
   int components() const override { return 1; }
@@ -40,15 +41,13 @@ class decay_model final : public general_model {
 
 extern const model_entry model_decay;
 const model_entry model_decay = {
-    "decay",
-    "u' = -k u^2, solved by Newton's method with automatic derivatives",
-    "Gottlieb, Grant, Hu, Shu, numerical tests of the implicit methods",
-    false,
-    false,
-    false,
-    {{"rate", 10.0, 0.0, 1e300, "k (dimensionless)"}, {"u0", 10.0, 0.0, 1e300, "u(0) (dimensionless)"}},
-    {"start"},
-    [](const model_config& config) -> std::unique_ptr<model> {
+    .name = "decay",
+    .description = "u' = -k u^2/epsilon, solved by Newton's method with automatic derivatives",
+    .source = "Gottlieb, Grant, Hu, Shu, numerical tests of the implicit methods",
+    .parameters =
+        {{.name = "rate", .value = 10.0, .lowest = 0.0, .highest = 1e300, .doc = "k (dimensionless)"},
+         {.name = "u0", .value = 10.0, .lowest = 0.0, .highest = 1e300, .doc = "u(0) (dimensionless)"}},
+    .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<decay_model>(config);
     }};
 

@@ -14,7 +14,7 @@ class ode_model final : public relaxation_model {
   /// The data "given" are (u1, u2).
   ode_model(double u1, double u2) {
     const auto add = [this](const char* name, const char* description, double first, double second) {
-      initial_.push_back({name, description, [first, second](double, std::span<double> u) {
+      initial_.push_back({name, description, [first, second](const position&, std::span<double> u) {
                             u[0] = first;
                             u[1] = second;
                           }});
@@ -63,18 +63,22 @@ class ode_model final : public relaxation_model {
 }  // namespace
 
 extern const model_entry model_ode;
-const model_entry model_ode = {"ode",
-                               "u1' = u2, u2' = (1 + u1^2)(sin u1 - u2)/epsilon",
-                               "Gottlieb, Grant, Hu, Shu: SSP multi-derivative IMEX Runge-Kutta, ODE model",
-                               false,
-                               false,
-                               true,
-                               {{"u1", 2.0, -1e6, 1e6, "u1(0) of the data 'given' (dimensionless)"},
-                                {"u2", 0.0, -1e6, 1e6, "u2(0) of the data 'given' (dimensionless)"}},
-                               {"inconsistent", "equilibrium", "given"},
-                               [](const model_config& config) -> std::unique_ptr<model> {
-                                 return std::make_unique<ode_model>(config.parameters.at("u1"),
-                                                                    config.parameters.at("u2"));
-                               }};
+const model_entry model_ode = {
+    .name = "ode",
+    .description = "u1' = u2, u2' = (1 + u1^2)(sin u1 - u2)/epsilon",
+    .source = "Gottlieb, Grant, Hu, Shu: SSP multi-derivative IMEX Runge-Kutta, ODE model",
+    .parameters = {{.name = "u1",
+                    .value = 2.0,
+                    .lowest = -1e6,
+                    .highest = 1e6,
+                    .doc = "u1(0) of the data 'given' (dimensionless)"},
+                   {.name = "u2",
+                    .value = 0.0,
+                    .lowest = -1e6,
+                    .highest = 1e6,
+                    .doc = "u2(0) of the data 'given' (dimensionless)"}},
+    .make = [](const model_config& config) -> std::unique_ptr<model> {
+      return std::make_unique<ode_model>(config.parameters.at("u1"), config.parameters.at("u2"));
+    }};
 
 }  // namespace apsis

@@ -19,14 +19,14 @@ class relaxation_system final : public relaxation_model {
       : a_(config.parameters.at("speed")),
         flux_(config.texts.at("flux"), config.parameters.at("slope"),
               config.parameters.at("viscosity_ratio")),
-        speeds_{a_, -a_} {
+        velocities_({{a_, -a_}}, {1.0, 1.0}) {
     make_initial_data(config.parameters.at("left"), config.parameters.at("right"),
                       config.parameters.at("jump"));
   }
 
   int components() const override { return 2; }
   int space_dimensions() const override { return 1; }
-  std::span<const double> speeds(int) const override { return speeds_; }
+  const velocity_set& velocities() const override { return velocities_; }
 
   int moment_count() const override { return 1; }
   void moments(const double* f, double* omega) const override { omega[0] = f[0] + f[1]; }
@@ -86,16 +86,17 @@ class relaxation_system final : public relaxation_model {
     using std::numbers::pi;
     const auto wave = [](double x) { return 0.4 + 0.3 * std::sin(pi * x); };
     initial_.push_back({"smooth", "u1 = 0.4 + 0.3 sin(pi x), u2 = 0.2 cos(pi x), out of equilibrium",
-                        [this, wave](double x, std::span<double> f) {
-                          from_fields(wave(x), 0.2 * std::cos(pi * x), f.data());
+                        [this, wave](const position& x, std::span<double> f) {
+                          from_fields(wave(x[0]), 0.2 * std::cos(pi * x[0]), f.data());
                         }});
-    initial_.push_back(
-        {"smooth-consistent", "u1 = 0.4 + 0.3 sin(pi x), u2 = F(u1)",
-         [this, wave](double x, std::span<double> f) { from_fields(wave(x), flux_(wave(x)), f.data()); }});
+    initial_.push_back({"smooth-consistent", "u1 = 0.4 + 0.3 sin(pi x), u2 = F(u1)",
+                        [this, wave](const position& x, std::span<double> f) {
+                          from_fields(wave(x[0]), flux_(wave(x[0])), f.data());
+                        }});
     initial_.push_back({"riemann",
                         "u1 = left for x < jump, else right; u2 = F(u1)",
-                        [this, left, right, jump](double x, std::span<double> f) {
-                          const double u1 = x < jump ? left : right;
+                        [this, left, right, jump](const position& x, std::span<double> f) {
+                          const double u1 = x[0] < jump ? left : right;
                           from_fields(u1, flux_(u1), f.data());
                         },
                         {},
@@ -104,7 +105,7 @@ class relaxation_system final : public relaxation_model {
 
   double a_;
   scalar_flux flux_;
-  std::array<double, 2> speeds_;
+  velocity_set velocities_;
   std::vector<initial_data> initial_;
 };
 
@@ -112,23 +113,46 @@ class relaxation_system final : public relaxation_model {
 
 extern const model_entry model_relaxation;
 const model_entry model_relaxation = {
-    "relaxation",
-    "u1_t + u2_x = 0, u2_t + a^2 u1_x = (F(u1) - u2)/epsilon",
-    "Jin, Xin (1995); Gottlieb, Grant, Hu, Shu, hyperbolic relaxation system",
-    true,
-    false,
-    true,
-    {{"speed", 1.0, 1e-6, 1e6, "a, the speed of the waves; |F'| <= a is required on the range of the data"},
-     {"slope", 0.5, -1e6, 1e6, "b of the flux 'linear', F = b u (dimensionless)"},
-     {"viscosity_ratio", 0.5, 1e-6, 1e6,
-      "M of the flux 'buckley-leverett', F = u^2/(u^2 + M (1 - u)^2) (dimensionless)"},
-     {"left", 1.0, -1e6, 1e6, "u1 left of the jump of the data 'riemann' (dimensionless)"},
-     {"right", 0.0, -1e6, 1e6, "u1 right of it (dimensionless)"},
-     {"jump", 0.0, -1e6, 1e6, "x of the jump (dimensionless)"}},
-    {"smooth", "smooth-consistent", "riemann"},
-    [](const model_config& config) -> std::unique_ptr<model> {
+    .name = "relaxation",
+    .description = "u1_t + u2_x = 0, u2_t + a^2 u1_x = (F(u1) - u2)/epsilon",
+    .source = "Jin, Xin (1995); Gottlieb, Grant, Hu, Shu, hyperbolic relaxation system",
+    .parameters = {{.name = "speed",
+                    .value = 1.0,
+                    .lowest = 1e-6,
+                    .highest = 1e6,
+                    .doc = "a, the speed of the waves; |F'| <= a is required on the range of the data"},
+                   {.name = "slope",
+                    .value = 0.5,
+                    .lowest = -1e6,
+                    .highest = 1e6,
+                    .doc = "b of the flux 'linear', F = b u (dimensionless)"},
+                   {.name = "viscosity_ratio",
+                    .value = 0.5,
+                    .lowest = 1e-6,
+                    .highest = 1e6,
+                    .doc = "M of the flux 'buckley-leverett', F = u^2/(u^2 + M (1 - u)^2) (dimensionless)"},
+                   {.name = "left",
+                    .value = 1.0,
+                    .lowest = -1e6,
+                    .highest = 1e6,
+                    .doc = "u1 left of the jump of the data 'riemann' (dimensionless)"},
+                   {.name = "right",
+                    .value = 0.0,
+                    .lowest = -1e6,
+                    .highest = 1e6,
+                    .doc = "u1 right of it (dimensionless)"},
+                   {.name = "jump",
+                    .value = 0.0,
+                    .lowest = -1e6,
+                    .highest = 1e6,
+                    .doc = "x of the jump (dimensionless)"}},
+    .texts = {{.name = "flux",
+               .value = "burgers",
+               .choices = scalar_flux::names(),
+               .variable = "u",
+               .doc = "F(u); 'burgers' is u^2/2"}},
+    .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<relaxation_system>(config);
-    },
-    {{"flux", "burgers", scalar_flux::names(), "u", "F(u); 'burgers' is u^2/2"}}};
+    }};
 
 }  // namespace apsis

@@ -1,8 +1,8 @@
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "apsis/semidiscrete/relaxation_rows.cpp"
+#define HWY_TARGET_INCLUDE "apsis/semidiscrete/collision_rows.cpp"
 #include <hwy/foreach_target.h>
 
-#include <apsis/semidiscrete/relaxation_rows.hpp>
+#include <apsis/semidiscrete/collision_rows.hpp>
 
 #include <apsis/exec/counted.hpp>
 #include <apsis/scheme/limiter-inl.hpp>
@@ -11,31 +11,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-void combine(double stay, double relax, const double* e, int width, double* u) {
-  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
-    using N = pack<decltype(lanes)>;
-    fma(N(stay), N::load(u + k), N(relax) * N::load(e + k)).store(u + k);
-  });
-}
-
-void average(const relaxation::weighted_rows of_points[3], int width, double* average) {
-  // A copy, which the compiler knows to stay as it is when the average is stored.
-  const relaxation::weighted_rows points[3] = {of_points[0], of_points[1], of_points[2]};
-  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
-    using N = pack<decltype(lanes)>;
-    N sum(0.0);
-    for (const auto& point : points)
-      sum = fma(N(point.stay), N::load(point.u + k), fma(N(point.relax), N::load(point.e + k), sum));
-    sum.store(average + k);
-  });
-}
-
-void add_collision(std::span<const relaxation::strong_rows> points, const double* u, int width,
-                   std::span<const upwind::row_target> targets) {
+void add(std::span<const collision_rows::weighted_row> points, const double* u, int width,
+         std::span<const upwind::row_target> targets) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     N change(0.0);
-    for (const auto& p : points) change = fma(N(p.strength), N::load(p.e + k) - N::load(p.u + k), change);
+    for (const auto& p : points) change = fma(N(p.weight), N::load(p.q + k), change);
     const N here = N::load(u + k);
     for (const auto& to : targets) {
       // An increment below the margin is dropped: its rounding error, half of 4.9e-324, may exceed what it
@@ -82,7 +63,7 @@ HWY_INLINE gauss_points<N> quartic_values(N before, N c, N after, N l, N r) {
 }
 
 template <bool Limited>
-HWY_INLINE void quartics(relaxation::quartic_rows cell, int width, double* points) {
+HWY_INLINE void quartics(collision_rows::quartic_rows cell, int width, double* points) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     const auto [g0, g1, g2] =
@@ -105,7 +86,7 @@ double operations_of_points(bool limited) {
   });
 }
 
-void gauss_values(const relaxation::quartic_rows& cell, bool limited, int width, double* points) {
+void gauss_values(const collision_rows::quartic_rows& cell, bool limited, int width, double* points) {
   if (limited) {
     quartics<true>(cell, width, points);
   } else {
@@ -119,25 +100,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace apsis {
 namespace {
-HWY_EXPORT(combine);
-HWY_EXPORT(average);
-HWY_EXPORT(add_collision);
+HWY_EXPORT(add);
 HWY_EXPORT(gauss_values);
 }  // namespace
 
-namespace relaxation {
+namespace collision_rows {
 
-void combine(double stay, double relax, const double* e, int width, double* u) {
-  HWY_DYNAMIC_DISPATCH(combine)(stay, relax, e, width, u);
-}
-
-void average(const weighted_rows points[3], int width, double* average) {
-  HWY_DYNAMIC_DISPATCH(average)(points, width, average);
-}
-
-void add_collision(std::span<const strong_rows> points, const double* u, int width,
-                   std::span<const upwind::row_target> targets) {
-  HWY_DYNAMIC_DISPATCH(add_collision)(points, u, width, targets);
+void add(std::span<const weighted_row> points, const double* u, int width,
+         std::span<const upwind::row_target> targets) {
+  HWY_DYNAMIC_DISPATCH(add)(points, u, width, targets);
 }
 
 double operations_of_points(bool limited) {
@@ -150,6 +121,6 @@ void gauss_values(const quartic_rows& cell, bool limited, int width, double* poi
   HWY_DYNAMIC_DISPATCH(gauss_values)(cell, limited, width, points);
 }
 
-}  // namespace relaxation
+}  // namespace collision_rows
 }  // namespace apsis
 #endif

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace apsis {
+
+/// A batch of points at which a collision is evaluated: rows of components() numbers, `pitch` numbers apart.
+struct point_batch {
+  int count = 0;                    ///< number of points
+  std::ptrdiff_t pitch = 0;         ///< from one row to the next; numbers beyond the components are padding
+  const double* epsilon = nullptr;  ///< ε ≥ 0 at each point
+  int first_cell = 0;               ///< cell of the first point, for error messages
+  int points_per_cell = 1;          ///< consecutive points that share a cell, for error messages
+  bool cached = false;              ///< the rows were just written, which the profiler counts as no traffic
+};
+
+/// What a point_collision has to be ready for.
+struct batch_limits {
+  int points = 1;            ///< most points of a batch
+  std::ptrdiff_t pitch = 0;  ///< of its rows, at least the number of components
+  /// Steps within r Δt_FE keep nonnegative data so, which decides what error messages suggest.
+  bool keeps_sign = false;
+};
+
+/// The collision Q(u)/ε of a model at points of space: the stage solve that every method here is built on,
+/// and Q/ε itself. An object owns the scratch memory of one thread; model::make_collision() returns a new
+/// one. All quantities are dimensionless.
+class point_collision {
+ public:
+  virtual ~point_collision() = default;
+
+  /// In place, for the row of every point: u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², where Q̇ = Q'Q, a ≥ 0 and
+  /// b ≤ 0. Throws numerical_error with the cell where there is no solution.
+  virtual void solve_stage(double a, double b, const point_batch& at, double* u) = 0;
+  /// Solves the stage at every point and returns weighted means over weights.size() consecutive points:
+  /// means ← Σ_q weights_q v_q, one row for each group, at the same pitch. The rows u are overwritten.
+  virtual void solve_stage_means(double a, double b, const point_batch& at, double* u,
+                                 std::span<const double> weights, double* means);
+  /// q ← Q(u)/ε for every point, at the same pitch. Throws numerical_error where ε = 0 or Q does not exist.
+  virtual void evaluate(const point_batch& at, const double* u, double* q) = 0;
+
+  /// Largest Δt for which u + Δt Q(u)/ε keeps what the collision keeps (for a relaxation ε/C); 0 where none
+  /// is known.
+  virtual double forward_euler_step(const double* u, double epsilon);
+  /// Thickness in time of the initial layer, ε/C; +infinity where it is unknown or ε = 0.
+  virtual double relaxation_time(const double* u, double epsilon);
+};
+
+/// Points in a batch of rows of `width` numbers, such that the rows and as many rows of scratch memory fit
+/// into half of a first-level cache of 32 KiB.
+inline int points_per_batch(int width) {
+  return std::clamp(1024 / std::max(width, 1), 2, 64);
+}
+
+}  // namespace apsis

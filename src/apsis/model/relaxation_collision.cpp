@@ -1,0 +1,152 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/core/relaxation_weights.hpp>
+#include <apsis/exec/aligned.hpp>
+#include <apsis/exec/profile.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/model/relaxation_rows.hpp>
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace apsis {
+namespace {
+
+/// Stages have the closed form v = (u + μ E(ω))/(1 + μ), ω = ℛu, μ = aC/ε + |b|(C/ε)² (paper, proof of
+/// Proposition AP). All points of a batch pass one step (moments, equilibria, weights, combination) before
+/// the next begins: each step is a chain of dependent operations, and points are interleaved to hide its
+/// latency.
+class relaxation_collision final : public point_collision {
+ public:
+  relaxation_collision(const relaxation_model& equation, const batch_limits& limits)
+      : equation_(equation),
+        keeps_sign_(limits.keeps_sign),
+        moments_(equation.moment_count()),
+        pitch_(limits.pitch) {
+    const auto points = static_cast<std::size_t>(limits.points);
+    omega_.resize(points * static_cast<std::size_t>(moments_));
+    // Padding stays zero, like that of the rows of a field.
+    equilibria_.assign(points * static_cast<std::size_t>(pitch_), 0.0);
+    for (auto* numbers : {&rates_, &stay_, &relax_}) numbers->resize(points);
+    rows_.reserve(points);
+  }
+
+  void solve_stage(double a, double b, const point_batch& at, double* u) override {
+    find_equilibria(at, u);
+    const profile::section timed(kernel::relaxation, numbers(at),
+                                 {relaxation::operations_of_combine, at.cached ? 0.0 : 2.0 * sizeof(double)});
+    find_weights(a, b, at);
+    for (int p = 0; p < at.count; ++p) {
+      const auto k = static_cast<std::size_t>(p);
+      relaxation::combine(stay_[k], relax_[k], equilibrium(p), width(at), u + p * at.pitch);
+    }
+  }
+
+  void solve_stage_means(double a, double b, const point_batch& at, double* u,
+                         std::span<const double> weights, double* means) override {
+    find_equilibria(at, u);
+    const profile::section timed(kernel::relaxation, numbers(at) / static_cast<double>(weights.size()),
+                                 {relaxation::operations_of_mean(weights.size()), sizeof(double)});
+    find_weights(a, b, at);
+    const int per_group = static_cast<int>(weights.size());
+    rows_.resize(weights.size());
+    for (int first = 0; first < at.count; first += per_group, means += at.pitch) {
+      for (int q = 0; q < per_group; ++q) {
+        const auto k = static_cast<std::size_t>(first + q);
+        const double weight = weights[static_cast<std::size_t>(q)];
+        rows_[static_cast<std::size_t>(q)] = {weight * stay_[k], weight * relax_[k],
+                                              u + (first + q) * at.pitch, equilibrium(first + q)};
+      }
+      relaxation::mean(rows_, width(at), means);
+    }
+  }
+
+  void evaluate(const point_batch& at, const double* u, double* q) override {
+    find_equilibria(at, u);
+    for (int p = 0; p < at.count; ++p)
+      relaxation::change(strength(p, at), equilibrium(p), u + p * at.pitch, width(at), q + p * at.pitch);
+  }
+
+  double forward_euler_step(const double* u, double epsilon) override { return epsilon / rate(u); }
+
+  double relaxation_time(const double* u, double epsilon) override {
+    const double thickness = epsilon / rate(u);
+    return thickness > 0.0 ? thickness : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+  static int width(const point_batch& at) { return static_cast<int>(at.pitch); }
+  static double numbers(const point_batch& at) {
+    return static_cast<double>(at.count) * static_cast<double>(at.pitch);
+  }
+  static long cell(int p, const point_batch& at) { return at.first_cell + p / at.points_per_cell; }
+
+  /// E(ℛu) of every point.
+  void find_equilibria(const point_batch& at, const double* u) {
+    const profile::section timed(kernel::equilibria, numbers(at),
+                                 {equation_.operations_of_equilibrium(), 0.0});
+    equation_.moments_of_rows(u, at.pitch, at.count, omega(0));
+    const int p = equation_.equilibria(omega(0), at.count, equilibria_.data(), pitch_);
+    if (p < at.count)
+      throw numerical_error(
+          "no local equilibrium (" + equation_.why_inadmissible(omega(p)) + "); " + advice(),
+          {-1, unknown, cell(p, at), *omega(p)});
+  }
+
+  void find_weights(double a, double b, const point_batch& at) {
+    const int points = at.count;
+    const double* epsilon = at.epsilon;
+    double *rates = rates_.data(), *stay = stay_.data(), *relax = relax_.data();
+    for (int p = 0; p < points; ++p) rates[p] = equation_.rate(omega(p));
+#pragma omp simd
+    for (int p = 0; p < points; ++p) {
+      const auto weights = relax_weights(a, b, rates[p], epsilon[p]);
+      stay[p] = weights.stay;
+      relax[p] = weights.relax;
+    }
+  }
+
+  /// C/ε.
+  double strength(int p, const point_batch& at) const {
+    if (!(at.epsilon[p] > 0.0))
+      throw numerical_error(
+          "Q/epsilon does not exist for epsilon = 0 (the method evaluates it explicitly); choose an "
+          "implicit or IMEX method",
+          {-1, unknown, cell(p, at), at.epsilon[p]});
+    return equation_.rate(omega(p)) / at.epsilon[p];
+  }
+
+  double rate(const double* u) {
+    equation_.moments(u, omega(0));
+    return equation_.rate(omega(0));
+  }
+
+  /// Moments of nonnegative rows have an equilibrium.
+  const char* advice() const {
+    if (!equation_.positive()) return "use a smaller step";
+    return keeps_sign_
+               ? "use steps within r dt_FE (time.safety = 1, and a method with r > 0), which keep all "
+                 "values nonnegative"
+               : "use the positivity limiter or a smaller step";
+  }
+
+  double* omega(int p) { return omega_.data() + p * moments_; }
+  const double* omega(int p) const { return omega_.data() + p * moments_; }
+  const double* equilibrium(int p) const { return equilibria_.data() + p * pitch_; }
+
+  const relaxation_model& equation_;
+  bool keeps_sign_;
+  std::ptrdiff_t moments_, pitch_;
+  aligned_vector<double> omega_, equilibria_, rates_, stay_, relax_;
+  std::vector<relaxation::weighted_rows> rows_;
+};
+
+}  // namespace
+
+std::unique_ptr<point_collision> relaxation_model::make_collision(const batch_limits& limits) const {
+  return std::make_unique<relaxation_collision>(*this, limits);
+}
+
+}  // namespace apsis

@@ -1,0 +1,81 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/model/relaxation_rows.cpp"
+#include <hwy/foreach_target.h>
+
+#include <apsis/model/relaxation_rows.hpp>
+
+#include <apsis/exec/simd-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+void combine(double stay, double relax, const double* e, int width, double* u) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    fma(N(stay), N::load(u + k), N(relax) * N::load(e + k)).store(u + k);
+  });
+}
+
+void mean_of_three(const relaxation::weighted_rows* of_points, int width, double* mean) {
+  // A copy, so that the compiler knows that storing the mean does not change it.
+  const relaxation::weighted_rows points[3] = {of_points[0], of_points[1], of_points[2]};
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    N sum(0.0);
+    for (const auto& point : points)
+      sum = fma(N(point.stay), N::load(point.u + k), fma(N(point.relax), N::load(point.e + k), sum));
+    sum.store(mean + k);
+  });
+}
+
+void mean_of_any(const relaxation::weighted_rows* points, int count, int width, double* mean) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    N sum(0.0);
+    for (int p = 0; p < count; ++p)
+      sum = fma(N(points[p].stay), N::load(points[p].u + k),
+                fma(N(points[p].relax), N::load(points[p].e + k), sum));
+    sum.store(mean + k);
+  });
+}
+
+void change(double strength, const double* e, const double* u, int width, double* q) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    (N(strength) * (N::load(e + k) - N::load(u + k))).store(q + k);
+  });
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace apsis {
+namespace {
+HWY_EXPORT(combine);
+HWY_EXPORT(mean_of_three);
+HWY_EXPORT(mean_of_any);
+HWY_EXPORT(change);
+}  // namespace
+
+namespace relaxation {
+
+void combine(double stay, double relax, const double* e, int width, double* u) {
+  HWY_DYNAMIC_DISPATCH(combine)(stay, relax, e, width, u);
+}
+
+void mean(std::span<const weighted_rows> points, int width, double* mean) {
+  if (points.size() == 3) {
+    HWY_DYNAMIC_DISPATCH(mean_of_three)(points.data(), width, mean);
+  } else {
+    HWY_DYNAMIC_DISPATCH(mean_of_any)(points.data(), static_cast<int>(points.size()), width, mean);
+  }
+}
+
+void change(double strength, const double* e, const double* u, int width, double* q) {
+  HWY_DYNAMIC_DISPATCH(change)(strength, e, u, width, q);
+}
+
+}  // namespace relaxation
+}  // namespace apsis
+#endif

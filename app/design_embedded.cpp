@@ -29,11 +29,11 @@ embedded_task task_of(const embedded_options& given, const method& m) {
   return task;
 }
 
-std::string text_of(const embedded_attempt& tried, double useful) {
-  if (tried.nearest < 1e-15)  // the row of u^{n+1} always is a solution
-    return fmt::format("order {}: sees {:.2g} of the error, {:.2g} is asked for", tried.order,
-                       tried.coverage < 1e-12 ? 0.0 : tried.coverage, useful);
-  return fmt::format("order {}: nearest residual {:.1e}", tried.order, tried.nearest);
+std::string text_of(const embedded_attempt& tried, double least_coverage) {
+  if (tried.residual < 1e-15)  // the row of u^{n+1} is always a solution
+    return fmt::format("order {}: coverage {:.2g} of the error, at least {:.2g} needed", tried.order,
+                       tried.coverage < 1e-12 ? 0.0 : tried.coverage, least_coverage);
+  return fmt::format("order {}: nearest residual {:.1e}", tried.order, tried.residual);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ finding slopes_near(const std::string& what, const std::vector<convergence_row>&
   double farthest = rows.size() > count ? order : std::numeric_limits<double>::quiet_NaN();
   for (std::size_t k = rows.size() - std::min(count, rows.size()); k < rows.size(); ++k)
     if (!(std::abs(rows[k].rate - order) <= std::abs(farthest - order))) farthest = rows[k].rate;
-  return near(what, farthest, order, tolerance);
+  return close_to(what, farthest, order, tolerance);
 }
 
 finding no_failures(const convergence_table& table) {

@@ -14,14 +14,14 @@ std::vector<finding> certificate_findings(const std::string& method, int order) 
 std::vector<finding> unconditional_findings(const std::string& method, int order) {
   auto findings = certificate_findings(method, order);
   findings.push_back(
-      holds("unconditionally SSP: R e, P, D ≥ 0 and Ḋ ≤ 0", find_certificate(method).unconditional));
+      is_true("unconditionally SSP: R e, P, D ≥ 0 and Ḋ ≤ 0", find_certificate(method).unconditional));
   return findings;
 }
 
 std::vector<finding> coefficient_findings(const std::string& method, int order, double r, double tolerance) {
   auto findings = certificate_findings(method, order);
-  findings.push_back(near("SSP coefficient r from the Butcher form alone",
-                          static_cast<double>(find_certificate(method).ssp_coefficient), r, tolerance));
+  findings.push_back(close_to("SSP coefficient r from the Butcher form alone",
+                              static_cast<double>(find_certificate(method).ssp_coefficient), r, tolerance));
   return findings;
 }
 

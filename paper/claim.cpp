@@ -17,14 +17,14 @@ finding at_most(std::string what, double value, double bound) {
 finding at_least(std::string what, double value, double bound) {
   return {std::move(what), value, fmt::format("at least {:.4g}", bound), value >= bound};
 }
-finding near(std::string what, double value, double target, double tolerance) {
+finding close_to(std::string what, double value, double target, double tolerance) {
   return {std::move(what), value, fmt::format("{:.15g} ± {:.2g}", target, tolerance),
           std::abs(value - target) <= tolerance};
 }
 finding exactly(std::string what, long value, long wanted) {
   return {std::move(what), static_cast<double>(value), fmt::format("{}", wanted), value == wanted};
 }
-finding holds(std::string what, bool value) {
+finding is_true(std::string what, bool value) {
   return {std::move(what), value ? 1.0 : 0.0, "true", value};
 }
 

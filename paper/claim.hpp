@@ -22,11 +22,11 @@ finding at_most(std::string what, double value, double bound);
 /// value ≥ bound.
 finding at_least(std::string what, double value, double bound);
 /// |value − target| ≤ tolerance.
-finding near(std::string what, double value, double target, double tolerance);
+finding close_to(std::string what, double value, double target, double tolerance);
 /// value = wanted.
 finding exactly(std::string what, long value, long wanted);
 /// Something that is true or false; a figure of 1 or 0.
-finding holds(std::string what, bool value);
+finding is_true(std::string what, bool value);
 
 /// What came out of checking a claim.
 struct claim_result {

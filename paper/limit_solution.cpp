@@ -24,7 +24,7 @@ const initial_data& data_of(const case_config& config, const model& equation) {
 
 outcome compute_limit(case_config config, const study_control& control) {
   config.model.epsilon = "0";
-  return compute(config, control);
+  return compute_outcome(config, control);
 }
 
 }  // namespace

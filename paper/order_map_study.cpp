@@ -43,11 +43,11 @@ void add_order_maps(const std::string& id, const study_control& control, claim_r
       if (m.method != papers[0] && m.method != papers[1]) continue;
       const std::string name = model + ", " + m.method;
       result.findings.push_back(
-          near(name + ": order at eps = 1, smallest steps", m.fine_slope(0), m.order, 0.15));
+          close_to(name + ": order at eps = 1, smallest steps", m.fine_slope(0), m.order, 0.15));
       // Down to where the plateau, up to ε itself, takes over.
       const std::size_t last = m.epsilon.size() - 1;
-      result.findings.push_back(near(name + ": order at eps = 1e-8 above the plateau",
-                                     m.coarse_slope(last, 3 * m.epsilon[last]), m.order, 0.25));
+      result.findings.push_back(close_to(name + ": order at eps = 1e-8 above the plateau",
+                                         m.coarse_slope(last, 3 * m.epsilon[last]), m.order, 0.25));
       result.findings.push_back(
           at_most(name + ": smallest order between", m.smallest_slope(), order_map::tolerated_loss));
     }

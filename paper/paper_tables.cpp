@@ -105,7 +105,7 @@ std::vector<printed_tableau> make_tableaux() {
             {6, 6, -0.205134529930013}}}};
 }
 
-double distance(const matrix<double>& m, const std::vector<printed_entry>& printed) {
+double largest_difference(const matrix<double>& m, const std::vector<printed_entry>& printed) {
   double largest = 0.0;
   for (std::size_t i = 0; i < m.rows(); ++i)
     for (std::size_t j = 0; j < m.cols(); ++j) {
@@ -175,8 +175,8 @@ const printed_tableau& printed_butcher_form(const std::string& method) {
 double distance_to_print(const std::string& method) {
   const auto& printed = printed_butcher_form(method);
   const auto form = to_butcher(find_method(method).coefficients<double>());
-  return maximum({distance(form.A_hat, printed.A_hat), distance(form.A, printed.A),
-                  distance(form.A_dot, printed.A_dot)});
+  return maximum({largest_difference(form.A_hat, printed.A_hat), largest_difference(form.A, printed.A),
+                  largest_difference(form.A_dot, printed.A_dot)});
 }
 
 butcher_form<double> random_tableau(std::size_t stages, std::uint64_t seed) {

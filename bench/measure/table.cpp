@@ -39,7 +39,7 @@ std::vector<entry> entries() {
   return list;
 }
 
-std::string markdown(const table& what) {
+std::string markdown(const result_table& what) {
   std::string text =
       fmt::format("**{}**\n\n{}\n\n| {} |\n|", what.title, what.note, fmt::join(what.columns, " | "));
   for (std::size_t k = 0; k < what.columns.size(); ++k) text += "---|";
@@ -52,7 +52,7 @@ std::string markdown(const table& what) {
   return text;
 }
 
-nlohmann::json to_json(const table& what) {
+nlohmann::json to_json(const result_table& what) {
   return {{"title", what.title},
           {"note", what.note},
           {"columns", what.columns},

@@ -14,7 +14,7 @@ struct settings {
 };
 
 /// A table of results; a cell is a number or a string.
-struct table {
+struct result_table {
   std::string title;
   std::string note;  ///< what was measured, units, and how to read the numbers
   std::vector<std::string> columns;
@@ -26,7 +26,7 @@ struct table {
 ///   const registered here({"name", "what it answers", measure});
 struct entry {
   std::string name, description;
-  table (*measure)(const settings&);
+  result_table (*measure)(const settings&);
 };
 
 class registered {
@@ -38,8 +38,8 @@ class registered {
 std::vector<entry> entries();
 
 /// Formats a table as Markdown.
-std::string markdown(const table& what);
-nlohmann::json to_json(const table& what);
+std::string markdown(const result_table& what);
+nlohmann::json to_json(const result_table& what);
 
 /// Returns processor, caches, cores, compiler, flags, instruction set of the kernels, version and date.
 nlohmann::json machine();

@@ -37,8 +37,8 @@ class contest {
     any_sign      ///< all runs count
   };
 
-  explicit contest(std::vector<double> errors, rule how = rule::nonnegative)
-      : errors_(std::move(errors)), rule_(how) {}
+  explicit contest(std::vector<double> errors, rule which = rule::nonnegative)
+      : errors_(std::move(errors)), rule_(which) {}
 
   void add(attempt one) { attempts_.push_back(std::move(one)); }
 

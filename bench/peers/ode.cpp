@@ -105,9 +105,9 @@ void require(int flag, const char* what) {
 /// An integrator of SUNDIALS with its resources.
 class sundials_ode {
  public:
-  sundials_ode(double epsilon, const sundials_ode_options& how)
+  sundials_ode(double epsilon, const sundials_ode_options& options)
       : epsilon_(epsilon),
-        how_(how),
+        options_(options),
         y_(N_VNew_Serial(2, context_.get())),
         constraints_(N_VNew_Serial(2, context_.get())),
         matrix_(SUNDenseMatrix(2, 2, context_.get())),
@@ -148,10 +148,12 @@ class sundials_ode {
   ode_state<double> value() const { return {NV_Ith_S(y_.get(), 0), NV_Ith_S(y_.get(), 1)}; }
 
  private:
-  bool is_cvode() const { return how_.which == integrator::cvode; }
-  ARKRhsFn explicit_part() const { return how_.which == integrator::arkode_imex ? explicit_side : nullptr; }
+  bool is_cvode() const { return options_.which == integrator::cvode; }
+  ARKRhsFn explicit_part() const {
+    return options_.which == integrator::arkode_imex ? explicit_side : nullptr;
+  }
   ARKRhsFn implicit_part() const {
-    return how_.which == integrator::arkode_imex ? implicit_side : both_sides;
+    return options_.which == integrator::arkode_imex ? implicit_side : both_sides;
   }
 
   void start() {
@@ -175,34 +177,35 @@ class sundials_ode {
     require(CVodeSetErrFile(memory_, nullptr), "CVodeSetErrFile");
     require(CVodeInit(memory_, both_sides, 0.0, y_.get()), "CVodeInit");
     require(CVodeSetUserData(memory_, &epsilon_), "CVodeSetUserData");
-    require(CVodeSStolerances(memory_, how_.rtol, how_.atol), "CVodeSStolerances");
+    require(CVodeSStolerances(memory_, options_.rtol, options_.atol), "CVodeSStolerances");
     require(CVodeSetMaxNumSteps(memory_, most_steps), "CVodeSetMaxNumSteps");
     require(CVodeSetLinearSolver(memory_, linear_, matrix_), "CVodeSetLinearSolver");
-    if (how_.tuned) require(CVodeSetJacFn(memory_, whole_jacobian), "CVodeSetJacFn");
-    if (how_.nonlinear > 0.0)
-      require(CVodeSetNonlinConvCoef(memory_, how_.nonlinear), "CVodeSetNonlinConvCoef");
-    if (how_.constrained) require(CVodeSetConstraints(memory_, constraints_.get()), "CVodeSetConstraints");
+    if (options_.tuned) require(CVodeSetJacFn(memory_, whole_jacobian), "CVodeSetJacFn");
+    if (options_.nonlinear > 0.0)
+      require(CVodeSetNonlinConvCoef(memory_, options_.nonlinear), "CVodeSetNonlinConvCoef");
+    if (options_.constrained)
+      require(CVodeSetConstraints(memory_, constraints_.get()), "CVodeSetConstraints");
   }
 
   void set_up_arkode() {
     memory_ = ARKStepCreate(explicit_part(), implicit_part(), 0.0, y_.get(), context_.get());
     require(ARKStepSetErrFile(memory_, nullptr), "ARKStepSetErrFile");
     require(ARKStepSetUserData(memory_, &epsilon_), "ARKStepSetUserData");
-    require(ARKStepSStolerances(memory_, how_.rtol, how_.atol), "ARKStepSStolerances");
-    require(ARKStepSetOrder(memory_, how_.order), "ARKStepSetOrder");
+    require(ARKStepSStolerances(memory_, options_.rtol, options_.atol), "ARKStepSStolerances");
+    require(ARKStepSetOrder(memory_, options_.order), "ARKStepSetOrder");
     require(ARKStepSetMaxNumSteps(memory_, most_steps), "ARKStepSetMaxNumSteps");
     require(ARKStepSetLinearSolver(memory_, linear_, matrix_), "ARKStepSetLinearSolver");
-    if (!how_.tuned) return;
-    const bool imex = how_.which == integrator::arkode_imex;
+    if (!options_.tuned) return;
+    const bool imex = options_.which == integrator::arkode_imex;
     require(ARKStepSetJacFn(memory_, imex ? implicit_jacobian : whole_jacobian), "ARKStepSetJacFn");
     require(ARKStepSetDeduceImplicitRhs(memory_, SUNTRUE), "ARKStepSetDeduceImplicitRhs");
-    if (how_.nonlinear > 0.0)
-      require(ARKStepSetNonlinConvCoef(memory_, how_.nonlinear), "ARKStepSetNonlinConvCoef");
+    if (options_.nonlinear > 0.0)
+      require(ARKStepSetNonlinConvCoef(memory_, options_.nonlinear), "ARKStepSetNonlinConvCoef");
   }
 
   static constexpr long most_steps = 20000;  ///< limit on the number of steps
   double epsilon_;
-  sundials_ode_options how_;
+  sundials_ode_options options_;
   owned_context context_ = make_context();
   owned_vector y_, constraints_;
   SUNMatrix matrix_;
@@ -212,8 +215,8 @@ class sundials_ode {
 
 }  // namespace
 
-outcome run_sundials_ode(const ode_task& task, const sundials_ode_options& how) {
-  sundials_ode run(task.epsilon, how);
+outcome run_sundials_ode(const ode_task& task, const sundials_ode_options& options) {
+  sundials_ode run(task.epsilon, options);
   outcome measured;
   if (!run.integrate_monitored(measured)) {
     measured.failure = "failed";

@@ -34,6 +34,6 @@ struct sundials_ode_options {
 };
 
 /// Runs SUNDIALS with a dense linear solver; memory is allocated once and the integrator reinitialized.
-outcome run_sundials_ode(const ode_task& task, const sundials_ode_options& how);
+outcome run_sundials_ode(const ode_task& task, const sundials_ode_options& options);
 
 }  // namespace apsis::bench::peers

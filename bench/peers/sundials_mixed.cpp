@@ -84,11 +84,11 @@ struct workspace {
   void* memory = nullptr;
   bool is_arkode;
 
-  workspace(const field& initial, const sundials_options& how)
+  workspace(const field& initial, const sundials_options& options)
       : y(make_field_vector(initial, sundials.get())),
         constraints(N_VClone(y.get())),
-        linear(make_linear_solver(how.linear, y.get(), sundials.get())),
-        is_arkode(how.which == sundials_options::integrator::arkode) {
+        linear(make_linear_solver(options.linear, y.get(), sundials.get())),
+        is_arkode(options.which == sundials_options::integrator::arkode) {
     N_VConst(1.0, constraints.get());
   }
   workspace(const workspace&) = delete;
@@ -101,57 +101,61 @@ struct workspace {
 
 constexpr long many = 100000000;
 
-void set_up_arkode(workspace& work, system_of_equations& equations, double end, const sundials_options& how) {
+void set_up_arkode(workspace& work, system_of_equations& equations, double end,
+                   const sundials_options& options) {
   void* memory = work.memory =
       ARKStepCreate(transport_side, collision_side, 0.0, work.y.get(), work.sundials.get());
   require(ARKStepSetErrFile(memory, nullptr), "ARKStepSetErrFile");
   require(ARKStepSetUserData(memory, &equations), "ARKStepSetUserData");
-  require(ARKStepSStolerances(memory, how.rtol, how.atol), "ARKStepSStolerances");
-  require(ARKStepSetOrder(memory, how.order), "ARKStepSetOrder");
+  require(ARKStepSStolerances(memory, options.rtol, options.atol), "ARKStepSStolerances");
+  require(ARKStepSetOrder(memory, options.order), "ARKStepSetOrder");
   require(ARKStepSetMaxNumSteps(memory, many), "ARKStepSetMaxNumSteps");
   require(ARKStepSetStopTime(memory, end), "ARKStepSetStopTime");
   require(ARKStepSetLinearSolver(memory, work.linear, nullptr), "ARKStepSetLinearSolver");
-  if (how.linear != linear_solver::spgmr)
+  if (options.linear != linear_solver::spgmr)
     require(ARKStepSetPreconditioner(memory, prepare_inverse, apply_inverse), "ARKStepSetPreconditioner");
-  if (how.tuned) {
+  if (options.tuned) {
     require(ARKStepSetDeduceImplicitRhs(memory, SUNTRUE), "ARKStepSetDeduceImplicitRhs");
     require(ARKStepSetMaxNonlinIters(memory, 20), "ARKStepSetMaxNonlinIters");
   }
-  if (how.longest > 0.0) require(ARKStepSetMaxStep(memory, how.longest), "ARKStepSetMaxStep");
-  if (how.nonlinear > 0.0)
-    require(ARKStepSetNonlinConvCoef(memory, how.nonlinear), "ARKStepSetNonlinConvCoef");
-  if (how.constrained) {
+  if (options.longest > 0.0) require(ARKStepSetMaxStep(memory, options.longest), "ARKStepSetMaxStep");
+  if (options.nonlinear > 0.0)
+    require(ARKStepSetNonlinConvCoef(memory, options.nonlinear), "ARKStepSetNonlinConvCoef");
+  if (options.constrained) {
     require(ARKStepSetConstraints(memory, work.constraints.get()), "ARKStepSetConstraints");
     require(ARKStepSetMaxNumConstrFails(memory, 100), "ARKStepSetMaxNumConstrFails");
   }
 }
 
-void set_up_cvode(workspace& work, system_of_equations& equations, double end, const sundials_options& how) {
+void set_up_cvode(workspace& work, system_of_equations& equations, double end,
+                  const sundials_options& options) {
   void* memory = work.memory = CVodeCreate(CV_BDF, work.sundials.get());
   require(CVodeSetErrFile(memory, nullptr), "CVodeSetErrFile");
   require(CVodeInit(memory, both_sides, 0.0, work.y.get()), "CVodeInit");
   require(CVodeSetUserData(memory, &equations), "CVodeSetUserData");
-  require(CVodeSStolerances(memory, how.rtol, how.atol), "CVodeSStolerances");
+  require(CVodeSStolerances(memory, options.rtol, options.atol), "CVodeSStolerances");
   require(CVodeSetMaxNumSteps(memory, many), "CVodeSetMaxNumSteps");
   require(CVodeSetStopTime(memory, end), "CVodeSetStopTime");
   require(CVodeSetLinearSolver(memory, work.linear, nullptr), "CVodeSetLinearSolver");
-  if (how.linear != linear_solver::spgmr)
+  if (options.linear != linear_solver::spgmr)
     require(CVodeSetPreconditioner(memory, prepare_inverse, apply_inverse), "CVodeSetPreconditioner");
-  if (how.tuned) require(CVodeSetMaxNonlinIters(memory, 20), "CVodeSetMaxNonlinIters");
-  if (how.nonlinear > 0.0) require(CVodeSetNonlinConvCoef(memory, how.nonlinear), "CVodeSetNonlinConvCoef");
-  if (how.constrained) require(CVodeSetConstraints(memory, work.constraints.get()), "CVodeSetConstraints");
+  if (options.tuned) require(CVodeSetMaxNonlinIters(memory, 20), "CVodeSetMaxNonlinIters");
+  if (options.nonlinear > 0.0)
+    require(CVodeSetNonlinConvCoef(memory, options.nonlinear), "CVodeSetNonlinConvCoef");
+  if (options.constrained)
+    require(CVodeSetConstraints(memory, work.constraints.get()), "CVodeSetConstraints");
 }
 
 }  // namespace
 
-outcome run_sundials(mixed_regime& what, const sundials_options& how, field* result) {
+outcome run_sundials(mixed_regime& what, const sundials_options& options, field* result) {
   system_of_equations equations{what.problem(), projection(what.equation(), what.rates())};
-  workspace work(what.initial(), how);
+  workspace work(what.initial(), options);
   if (work.is_arkode)
-    set_up_arkode(work, equations, what.end(), how);
+    set_up_arkode(work, equations, what.end(), options);
   else
-    set_up_cvode(work, equations, what.end(), how);
-  run_monitor timer(how.seconds_allowed);
+    set_up_cvode(work, equations, what.end(), options);
+  run_monitor timer(options.seconds_allowed);
   const field& u = field_of(work.y.get());
   double t = 0.0;
   std::string failure;

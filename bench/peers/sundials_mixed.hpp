@@ -24,6 +24,6 @@ struct sundials_options {
 };
 
 /// Runs ARKODE (adaptive, T explicit, Q/ε implicit) or CVODE (BDF, both implicit).
-outcome run_sundials(mixed_regime& what, const sundials_options& how, field* result = nullptr);
+outcome run_sundials(mixed_regime& what, const sundials_options& options, field* result = nullptr);
 
 }  // namespace apsis::bench::peers

@@ -50,9 +50,9 @@ constexpr double gauss_weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 
 }  // namespace
 
-bgk::bgk(mesh space, method how)
+bgk::bgk(mesh space, method scheme)
     : mesh_(std::move(space)),
-      method_(std::move(how)),
+      method_(std::move(scheme)),
       velocities_(static_cast<int>(mesh_.v.size())),
       dv_(mesh_.v[1] - mesh_.v[0]) {
   const auto s = static_cast<std::size_t>(method_.stages);

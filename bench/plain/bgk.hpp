@@ -26,7 +26,7 @@ class bgk {
     std::vector<double> epsilon;  ///< three per cell, at the Gauss points from left to right
   };
 
-  bgk(mesh space, method how);
+  bgk(mesh space, method scheme);
 
   /// Advances f[cell · velocities + j] by one step.
   void step(double dt, std::vector<double>& f);

@@ -8,7 +8,7 @@ claim_result check(const study_control&) {
   claim_result result;
   result.findings = unconditional_findings("imdrk-1-2", 2);
   const auto& stability = find_certificate("imdrk-1-2").stability;
-  result.findings.push_back(near("angle of A(α)-stability, degrees", stability.angle, 90.0, 0.0));
+  result.findings.push_back(close_to("angle of A(α)-stability, degrees", stability.angle, 90.0, 0.0));
   result.findings.push_back(at_least("smallest value of R(z) = 1/(1 - z + z²/2) on the negative axis",
                                      stability.smallest_on_negative_axis, 0.0));
   return result;

@@ -1,9 +1,9 @@
 #include <apsis/method/certificate.hpp>
-#include <paper/claim.hpp>
 
 #include <tuple>
 
 #include <fmt/format.h>
+#include <paper/claim.hpp>
 
 namespace apsis {
 namespace {
@@ -13,8 +13,8 @@ claim_result check(const study_control&) {
   for (const auto& [name, solves, evaluations] :
        {std::tuple{"md-imex-3-2", 3, 2}, std::tuple{"md-imex-6-3", 6, 3}}) {
     const certificate& c = find_certificate(name);
-    result.findings.push_back(holds(fmt::format("{} is of type A", name), c.type == "A"));
-    result.findings.push_back(holds(fmt::format("{} is GSA: u^(n+1) = u_s", name), c.gsa));
+    result.findings.push_back(is_true(fmt::format("{} is of type A", name), c.type == "A"));
+    result.findings.push_back(is_true(fmt::format("{} is GSA: u^(n+1) = u_s", name), c.gsa));
     result.findings.push_back(
         exactly(fmt::format("implicit solves per step of {}", name), c.implicit_solves, solves));
     result.findings.push_back(exactly(fmt::format("transport evaluations per step of {}", name),

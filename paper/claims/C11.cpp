@@ -18,10 +18,10 @@ double positivity_limit(const std::string& method) {
 claim_result check(const study_control&) {
   claim_result result;
   // A stage passes through zero there, and its sign is decided by rounding: 1e-12 is generous.
-  result.findings = {near("largest step of dirk-2-2 that keeps every stage positive",
-                          positivity_limit("dirk-2-2"), 1.0 / 50, 1e-12),
-                     near("largest step of dirk-4-3 that keeps every stage positive",
-                          positivity_limit("dirk-4-3"), 1.0 / 75, 1e-12)};
+  result.findings = {close_to("largest step of dirk-2-2 that keeps every stage positive",
+                              positivity_limit("dirk-2-2"), 1.0 / 50, 1e-12),
+                     close_to("largest step of dirk-4-3 that keeps every stage positive",
+                              positivity_limit("dirk-4-3"), 1.0 / 75, 1e-12)};
   result.remarks = {
       "The first implicit stage of both methods starts from u^n + a dt G(u^n) = 10 - 1000 a dt, with a = 1/2 "
       "and 3/4: it changes sign at dt = 1/50 and 1/75."};

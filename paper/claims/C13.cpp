@@ -1,11 +1,10 @@
-#include <paper/claim.hpp>
-#include <paper/square_decay.hpp>
-
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
+#include <paper/claim.hpp>
+#include <paper/square_decay.hpp>
 
 namespace apsis {
 namespace {
@@ -43,8 +42,8 @@ claim_result check(const study_control& control) {
     }
     p.curves.push_back(std::move(c));
     // At the last step the observed orders still approach the design order, from within 0.07 of it.
-    result.findings.push_back(
-        near(fmt::format("{}: order between 8192 and 16384 steps", name), order(m, levels - 1), design, 0.1));
+    result.findings.push_back(close_to(fmt::format("{}: order between 8192 and 16384 steps", name),
+                                       order(m, levels - 1), design, 0.1));
   }
   result.tables.push_back(std::move(table));
   result.pictures.push_back({"C13-orders",

@@ -1,7 +1,5 @@
 #include <apsis/core/extremes.hpp>
 #include <apsis/method/certificate.hpp>
-#include <paper/claim.hpp>
-#include <paper/limit_convergence.hpp>
 #include <apsis/verify/limit_distance.hpp>
 #include <apsis/verify/model_cases.hpp>
 
@@ -11,6 +9,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <paper/claim.hpp>
+#include <paper/limit_convergence.hpp>
 
 namespace apsis {
 namespace {
@@ -162,8 +162,8 @@ void judge_rates(claim_result& result) {
     const auto table = limit_distance(pointwise_case("broadwell", method, 1.0), geometric(1e-3, 1e-6, 7),
                                       limit_start::equilibrium);
     result.findings.push_back(
-        near(fmt::format("broadwell, {}, data in equilibrium: slope of the distance of ω", method),
-             table.slope(&limit_row::moments_end, round_off).value_or(NAN), rate, 0.1));
+        close_to(fmt::format("broadwell, {}, data in equilibrium: slope of the distance of ω", method),
+                 table.slope(&limit_row::moments_end, round_off).value_or(NAN), rate, 0.1));
   }
 }
 
@@ -190,7 +190,7 @@ void first_stage_failure(const std::string& model, const std::string& method, in
   result.findings.push_back(
       at_least(name + ": distance of ω for ε → 0, data off equilibrium", plateau[0], 1e-4));
   result.findings.push_back(
-      near(name + ": its order in Δt, first step", std::log2(plateau[1] / plateau[2]), 1.0, 0.1));
+      close_to(name + ": its order in Δt, first step", std::log2(plateau[1] / plateau[2]), 1.0, 0.1));
   result.findings.push_back(at_most(name + ": the same, data in equilibrium",
                                     consistent.floor(&limit_row::moments_end), round_off));
 }

@@ -1,13 +1,13 @@
 #include <apsis/core/extremes.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/verify/case_problem.hpp>
-#include <paper/claim.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
+#include <paper/claim.hpp>
 
 namespace apsis {
 namespace {
@@ -57,7 +57,7 @@ double increase_from_hostile_data(const combination& c) {
   case_problem problem(upwind_case(c, 12));
   stepper march(problem.setup.integrator(), *problem.equations);
   double worst = -std::numeric_limits<double>::infinity();
-  for (field u : hostile_data(problem, 10, 1e-8, false)) {
+  for (field u : adversarial_states(problem, 10, 1e-8, false)) {
     const double dt = march.r() * problem.equations->forward_euler_step(0.0, u);
     double before = entropy_of(problem.setup, u);
     for (int n = 0; n < steps; ++n) {
@@ -136,7 +136,7 @@ claim_result check(const study_control& control) {
     run[k] = increase_in_run(all[k], control);
     hostile[k] = increase_from_hostile_data(all[k]);
     case_problem problem(upwind_case(all[k], 12));
-    const auto data = hostile_data(problem, 6, 1e-8, false);
+    const auto data = adversarial_states(problem, 6, 1e-8, false);
     limit[k] = largest_step(problem.setup.integrator(), *problem.equations, std::span<const field>(data),
                             entropy_decay(problem.setup), {.steps = 3, .rung = 1.25, .accuracy = 1e-3})
                    .kept;

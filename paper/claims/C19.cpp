@@ -101,10 +101,10 @@ claim_result check(const study_control& control) {
   for (const auto& m : measure(control)) {
     // The third order method meets its plateau, 0.3 ε, at ε = 1e-10 and Δt = 1/512, and rounding at ε = 1.
     const bool second = m.order == 2;
-    result.findings.push_back(
-        near(m.name + ": order at eps = 1", second ? m.slope(1, 7, 13) : m.slope(1, 6, 12), m.order, 0.1));
-    result.findings.push_back(near(m.name + ": order at eps = 1e-10",
-                                   second ? m.slope(1e-10, 4, 12) : m.slope(1e-10, 3, 8), m.order, 0.1));
+    result.findings.push_back(close_to(m.name + ": order at eps = 1",
+                                       second ? m.slope(1, 7, 13) : m.slope(1, 6, 12), m.order, 0.1));
+    result.findings.push_back(close_to(m.name + ": order at eps = 1e-10",
+                                       second ? m.slope(1e-10, 4, 12) : m.slope(1e-10, 3, 8), m.order, 0.1));
     for (const double epsilon : {1e-3, 1e-4})
       result.findings.push_back(
           at_most(fmt::format("{}: order from dt = 1/64 to 1/1024 at eps = {:g}", m.name, epsilon),
@@ -112,7 +112,7 @@ claim_result check(const study_control& control) {
     // ε ≪ Δt, and Δt^p far below ε.
     const double middle = m.at(1e-5, 11) / 1e-5, fine = m.at(1e-6, 13) / 1e-6;
     result.findings.push_back(
-        near(m.name + ": error/eps on the plateau of 1e-5 over that of 1e-6", middle / fine, 1, 0.3));
+        close_to(m.name + ": error/eps on the plateau of 1e-5 over that of 1e-6", middle / fine, 1, 0.3));
     result.pictures.push_back(figure(m));
     result.tables.push_back(slopes(m));
   }

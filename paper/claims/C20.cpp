@@ -1,10 +1,9 @@
-#include <paper/claim.hpp>
-#include <paper/ode_study.hpp>
-
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
+#include <paper/claim.hpp>
+#include <paper/ode_study.hpp>
 
 namespace apsis {
 namespace {
@@ -52,8 +51,8 @@ claim_result check(const study_control& control) {
     const auto name = std::string(m.method);
     result.findings.push_back(at_most(name + ": order of the error on the plateau",
                                       halving_slope(part(errors, m.plateau, m.plateau + 2)), 0.5));
-    result.findings.push_back(near(name + ": order of the change from dt to dt/2",
-                                   halving_slope(part(changes, m.from, m.to - 1)), m.order, 0.15));
+    result.findings.push_back(close_to(name + ": order of the change from dt to dt/2",
+                                       halving_slope(part(changes, m.from, m.to - 1)), m.order, 0.15));
     result.tables.push_back(std::move(table));
     panel p{"", "Δt (dimensionless)", "|Δu1| + |Δu2| at t = 1 (dimensionless)", true, true, {},
             {}, {m.order * 1.0}};

@@ -1,4 +1,3 @@
-#include <paper/claim.hpp>
 #include <apsis/verify/conserved_fields.hpp>
 #include <apsis/verify/outcome.hpp>
 
@@ -6,6 +5,7 @@
 #include <array>
 
 #include <fmt/format.h>
+#include <paper/claim.hpp>
 
 namespace apsis {
 namespace {
@@ -52,10 +52,10 @@ picture draw(const outcome& second, const outcome& third, const outcome& referen
 
 claim_result check(const study_control& control) {
   control.report(0.0, "second and third order on 40 cells");
-  const outcome second = compute("paper/bgk-mixed", {"time.method=md-imex-3-2"}, control);
-  const outcome third = compute("paper/bgk-mixed", {"time.method=md-imex-6-3"}, control);
+  const outcome second = compute_outcome("paper/bgk-mixed", {"time.method=md-imex-3-2"}, control);
+  const outcome third = compute_outcome("paper/bgk-mixed", {"time.method=md-imex-6-3"}, control);
   control.report(0.1, "explicit reference, 72000 steps");
-  const outcome reference = compute("paper/bgk-mixed-reference", {}, control);
+  const outcome reference = compute_outcome("paper/bgk-mixed-reference", {}, control);
 
   claim_result result;
   add_promises(result, "second order", second);

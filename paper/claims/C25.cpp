@@ -1,13 +1,13 @@
 #include <apsis/core/extremes.hpp>
 #include <apsis/core/random_source.hpp>
 #include <apsis/method/tableau.hpp>
-#include <paper/claim.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include <fmt/format.h>
+#include <paper/claim.hpp>
 
 namespace apsis {
 namespace {
@@ -61,8 +61,8 @@ std::size_t parameter_count(std::size_t s) {
 
 /// The largest value that a random search finds: steps of adapted length from the best so far, from several
 /// starts.
-double search(std::size_t s, random_source& random,
-              const std::function<double(const shu_osher_form<double>&)>& value) {
+double maximize_at_random(std::size_t s, random_source& random,
+                          const std::function<double(const shu_osher_form<double>&)>& value) {
   double best = -1e300;
   for (int start = 0; start < 4; ++start) {
     std::vector<double> here(parameter_count(s));
@@ -174,9 +174,9 @@ claim_result check(const study_control& control) {
     const auto s = static_cast<std::size_t>(job) / 2 + 1;
     random_source random(static_cast<std::uint64_t>(100 + job));
     if (job % 2 == 0) {
-      reached[s - 1] = search(s, random, largest_difference);
+      reached[s - 1] = maximize_at_random(s, random, largest_difference);
     } else {
-      residual[s - 1] = -search(s, random, order_two_residual);
+      residual[s - 1] = -maximize_at_random(s, random, order_two_residual);
     }
   });
   add_searches(reached, residual, result);

@@ -2,14 +2,14 @@
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/method/certificate.hpp>
-#include <paper/claim.hpp>
-#include <paper/square_decay.hpp>
 
 #include <array>
 #include <cmath>
 
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
 #include <fmt/format.h>
+#include <paper/claim.hpp>
+#include <paper/square_decay.hpp>
 
 namespace apsis {
 namespace {
@@ -51,7 +51,7 @@ claim_result check(const study_control& control) {
   result.findings = {
       exactly("order from rooted trees", c.order, 5), exactly("conditions", c.conditions, 17),
       at_most("largest residual of the order conditions", static_cast<double>(c.order_residual), 1e-38),
-      holds("unconditionally SSP: R e ≥ 0, P ≥ 0, D ≥ 0, Ḋ ≤ 0", c.unconditional),
+      is_true("unconditionally SSP: R e ≥ 0, P ≥ 0, D ≥ 0, Ḋ ≤ 0", c.unconditional),
       exactly("stages", static_cast<long>(find_method(name).stages()), 9)};
 
   std::array<std::array<double, levels>, std::size(problems)> errors{};
@@ -72,8 +72,8 @@ claim_result check(const study_control& control) {
     }
     plot.curves.push_back(std::move(drawn));
     result.tables.push_back(std::move(table));
-    result.findings.push_back(near(fmt::format("observed order, {}, last halving", problems[p].what),
-                                   std::log2(errors[p][levels - 2] / errors[p][levels - 1]), 5.0, 0.15));
+    result.findings.push_back(close_to(fmt::format("observed order, {}, last halving", problems[p].what),
+                                       std::log2(errors[p][levels - 2] / errors[p][levels - 1]), 5.0, 0.15));
   }
   result.pictures.push_back({"C26-order",
                              "a fifth-order unconditionally SSP implicit method",

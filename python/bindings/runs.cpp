@@ -49,7 +49,7 @@ class attendant {
   bool stopped_ = false;
 };
 
-py::dict columns_of(const table& rows) {
+py::dict columns_of(const numeric_table& rows) {
   py::dict columns;
   for (std::size_t k = 0; k < rows.columns.size(); ++k) {
     std::vector<double> column;

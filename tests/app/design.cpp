@@ -174,9 +174,9 @@ TEST(design, says_why_there_is_no_embedded_solution) {
   };
   refused({"md-imex-3-2", "--cost", "nothing"}, 3,
           "(order 1: nearest residual 4.0e-01); try --cost one-solve");
-  refused({"imdrk-7-4", "--order", "3"}, 3, "order 3: sees 0 of the error, 0.15 is asked for");
+  refused({"imdrk-7-4", "--order", "3"}, 3, "order 3: coverage 0 of the error, at least 0.15 needed");
   refused({"ars-443"}, 2, "Q of a stage enters a later one");
-  refused({"ssprk-3-3"}, 2, "it is explicit and solves nothing");
+  refused({"ssprk-3-3"}, 2, "it is explicit and has no stage solves");
   refused({"forward-backward-euler"}, 2, "its order is 1");
   refused({"md-imex-3-3"}, 2, "did you mean 'md-imex-3-2'?");
   refused({"md-imex-3-2", "--order", "2"}, 2, "--order 2 is out of range (from 1 to 1");

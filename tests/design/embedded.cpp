@@ -111,7 +111,7 @@ TEST(embedded_solution, has_a_cost_if_all_earlier_abscissae_are_below_1) {
   for (const char* name : {"md-imex-3-2", "imdrk-3-3", "md-imex-5-2"}) {
     const auto search = search_for(name, 0, embedded_cost::nothing);
     EXPECT_FALSE(search.found) << name;
-    for (const auto& tried : search.attempts) EXPECT_GT(tried.nearest, 0.1) << name << " " << tried.order;
+    for (const auto& tried : search.attempts) EXPECT_GT(tried.residual, 0.1) << name << " " << tried.order;
     EXPECT_EQ(search.attempts.size(), static_cast<std::size_t>(find_method(name).claims.order - 1));
   }
 }
@@ -131,19 +131,19 @@ TEST(embedded_solution, costs_nothing_if_abscissae_lie_on_both_sides_of_1) {
 }
 
 TEST(embedded_solution, does_not_exist_if_only_the_method_itself_has_the_order) {
-  // The row of u^{n+1} satisfies the equations but estimates nothing; `nearest` shows the rounding of
+  // The row of u^{n+1} satisfies the equations but estimates nothing; `residual` shows the rounding of
   // its 45 digits.
   for (const char* name : {"imdrk-7-4", "md-imex-16-4-large-r"}) {
     const auto search = search_for(name, 3);
     EXPECT_FALSE(search.found) << name;
     ASSERT_EQ(search.attempts.size(), 1U);
-    EXPECT_LT(search.attempts[0].nearest, 1e-15) << name;
-    EXPECT_LT(search.attempts[0].seen, 1e-15) << name;
+    EXPECT_LT(search.attempts[0].residual, 1e-15) << name;
+    EXPECT_LT(search.attempts[0].coverage, 1e-15) << name;
   }
   // md-imex-6-3 has other solutions, but with little coverage in the limit.
   const auto search = search_for("md-imex-6-3", 2);
   EXPECT_FALSE(search.found);
-  EXPECT_GT(search.attempts[0].seen, 0.001);
+  EXPECT_GT(search.attempts[0].coverage, 0.001);
 }
 
 TEST(embedded_solution, respects_the_margin) {

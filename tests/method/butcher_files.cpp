@@ -160,7 +160,7 @@ TEST(butcher_files, with_an_invalid_update_are_rejected_with_its_position) {
               AllOf(StartsWith("x:12:5: "), HasSubstr("repeats the last stage")));
   EXPECT_THAT(refusal(start + midpoint_update + "b_dot = [\"0\", \"0\"]\n"),
               HasSubstr("missing key 'A_dot'"));
-  EXPECT_THAT(refusal(start + "b_hat = \"1\"\nb = [\"0\", \"1\"]\n"), HasSubstr("not a list"));
+  EXPECT_THAT(refusal(start + "b_hat = \"1\"\nb = [\"0\", \"1\"]\n"), HasSubstr("wrong type; give a list"));
   EXPECT_THAT(refusal(head("explicit", 2, "1") + "A_hat = [[]]\nb_hat = [\"1\"]\nb = [\"1\"]\n"),
               HasSubstr("unknown key 'b'"));
   std::string many = "A_hat = [";

@@ -16,8 +16,8 @@
 namespace apsis::test {
 namespace {
 
-// Lines: 1 name, 2 title, 3 citation, 4 kind, 6 [claims], 7 order, 9 [shu_osher], 10 r, 11 P, 12 W, 13 d, 14
-// ddot.
+// Lines: 1 name, 2 title, 3 citation, 4 kind, 6 [claims], 7 order, 9 [shu_osher], 10 r, 11 P, 12 W,
+// 13 d, 14 ddot.
 const std::string good = R"(name = "x"
 title = "t"
 citation = "c"

@@ -144,7 +144,7 @@ TEST(models, bgk_says_how_its_velocity_grid_must_change) {
     const auto m = apsis::find_model("bgk")->make(config);
     std::vector<double> u(static_cast<std::size_t>(m->components()));
     m->initial()[0].point_value({0.3}, u);
-    return m->unfit(u.data()).problem;
+    return m->check_supported(u.data()).problem;
   };
   EXPECT_EQ(complaint(15.0, 150), "");
   EXPECT_NE(complaint(2.0, 40).find("velocity.max = 2 is too small"), std::string::npos)

@@ -26,7 +26,7 @@ const apsis::relaxation_model& as_relaxation(const apsis::model& m) {
 
 std::string complaint(const std::string& flux, double speed, double low, double high) {
   const double lowest[] = {low, 0.0}, highest[] = {high, 0.0};
-  const auto found = make(flux, speed)->unfit_range(lowest, highest);
+  const auto found = make(flux, speed)->check_supported_range(lowest, highest);
   return found.key.empty() ? "" : found.key + ": " + found.problem;
 }
 

@@ -14,8 +14,8 @@ TEST(findings, hold_only_within_their_bounds) {
   EXPECT_FALSE(at_most("x", std::nextafter(1.0, 2.0), 1.0).holds);
   EXPECT_TRUE(at_least("x", 1.0, 1.0).holds);
   EXPECT_FALSE(at_least("x", std::nextafter(1.0, 0.0), 1.0).holds);
-  EXPECT_TRUE(near("x", 2.9, 3.0, 0.15).holds);
-  EXPECT_FALSE(near("x", 2.8, 3.0, 0.15).holds);
+  EXPECT_TRUE(close_to("x", 2.9, 3.0, 0.15).holds);
+  EXPECT_FALSE(close_to("x", 2.8, 3.0, 0.15).holds);
   EXPECT_FALSE(exactly("x", 2, 3).holds);
 }
 
@@ -23,15 +23,15 @@ TEST(findings, never_hold_for_nan) {
   const double nan = std::nan("");
   EXPECT_FALSE(at_most("x", nan, 1.0).holds);
   EXPECT_FALSE(at_least("x", nan, 1.0).holds);
-  EXPECT_FALSE(near("x", nan, 1.0, 1.0).holds);
+  EXPECT_FALSE(close_to("x", nan, 1.0, 1.0).holds);
 }
 
 TEST(findings, a_claim_without_a_finding_does_not_hold) {
   claim_result result;
   EXPECT_FALSE(result.all_hold());
-  result.findings.push_back(holds("x", true));
+  result.findings.push_back(is_true("x", true));
   EXPECT_TRUE(result.all_hold());
-  result.findings.push_back(holds("y", false));
+  result.findings.push_back(is_true("y", false));
   EXPECT_FALSE(result.all_hold());
 }
 

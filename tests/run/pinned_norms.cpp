@@ -138,7 +138,7 @@ void write_pinned(const std::map<std::string, case_norms>& all) {
   EXPECT_TRUE(out.flush()) << "cannot write " << APSIS_PINNED_NORMS;
 }
 
-const std::string how_to_pin =
+const std::string pinning_hint =
     "if the change is meant, pin the norms again (APSIS_PIN_NORMS=1 test_run "
     "--gtest_filter='*pinned_norms*') and commit "
     "tests/run/pinned_norms.txt";
@@ -157,10 +157,10 @@ TEST_P(pinned_norms, of_the_small_version_are_those_of_the_file) {
     write_pinned(pinned);
     return;
   }
-  ASSERT_TRUE(pinned.contains(GetParam())) << "no norms of case '" << GetParam() << "'; " << how_to_pin;
+  ASSERT_TRUE(pinned.contains(GetParam())) << "no norms of case '" << GetParam() << "'; " << pinning_hint;
   for_each_instruction_set([&] {
     EXPECT_EQ(difference(pinned[GetParam()], computed(GetParam(), small_version(GetParam()))), "")
-        << how_to_pin;
+        << pinning_hint;
   });
 }
 
@@ -174,7 +174,7 @@ TEST(the_file_of_pinned_norms, holds_no_case_that_is_gone) {
   const auto names = case_names();
   for (const auto& [name, quantities] : read_pinned())
     EXPECT_TRUE(std::find(names.begin(), names.end(), name) != names.end())
-        << "'" << name << "' is no built-in case; " << how_to_pin;
+        << "'" << name << "' is no built-in case; " << pinning_hint;
 }
 
 TEST(the_comparison_with_pinned_norms, sees_a_domain_longer_by_a_part_in_two_million) {

@@ -12,7 +12,7 @@
 /// What a run computed and recorded.
 struct outcome {
   std::vector<double> state;
-  apsis::table history;
+  apsis::numeric_table history;
   apsis::field_series fields;
 };
 

@@ -140,12 +140,12 @@ TEST(norms, are_weighted_with_cell_and_velocity) {
   b[2] = 4.0;
   for (std::size_t k = 1; k < 8; k += 2) b[k] = 2.0;
   // One difference of 3, with V = (2/4)·(1/2).
-  EXPECT_DOUBLE_EQ(distance(a, b, error_norm::l1), 3.0 * 0.25);
-  EXPECT_DOUBLE_EQ(distance(a, b, error_norm::l2), std::sqrt(9.0 * 0.25));
-  EXPECT_DOUBLE_EQ(distance(a, b, error_norm::linf), 3.0);
+  EXPECT_DOUBLE_EQ(difference_norm(a, b, error_norm::l1), 3.0 * 0.25);
+  EXPECT_DOUBLE_EQ(difference_norm(a, b, error_norm::l2), std::sqrt(9.0 * 0.25));
+  EXPECT_DOUBLE_EQ(difference_norm(a, b, error_norm::linf), 3.0);
   b[5] = std::nan("");
   for (const auto norm : {error_norm::l1, error_norm::l2, error_norm::linf})
-    EXPECT_TRUE(std::isnan(distance(a, b, norm)));
+    EXPECT_TRUE(std::isnan(difference_norm(a, b, norm)));
 }
 
 TEST(norms, have_names) {

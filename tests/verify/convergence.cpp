@@ -65,7 +65,7 @@ TEST(convergence, against_the_exact_solution_shows_orders_2_3_and_4) {
 TEST(convergence, measures_the_error_of_the_very_run) {
   const auto table = converge(decay("imdrk-2-3", "1/8,1/16"));
   const auto run =
-      compute("paper/decay", {"model.rate=1", "model.u0=1", "time.method=imdrk-2-3", "time.dt=1/16"});
+      compute_outcome("paper/decay", {"model.rate=1", "model.u0=1", "time.method=imdrk-2-3", "time.dt=1/16"});
   const auto& row = table.blocks.at(0).rows.at(1);
   EXPECT_EQ(row.error, std::abs(run.state.at(0) - 1.0 / 3.0));
   EXPECT_EQ(row.steps, 32);

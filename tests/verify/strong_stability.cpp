@@ -131,7 +131,7 @@ TEST(strong_stability, forward_euler_steps_of_the_problems_are_sharp) {
   EXPECT_NEAR(largest_forward_euler_step(ring, std::span<const row>(rows), tv).kept, 1.0, bisection);
   case_problem weno(small_case("broadwell", "md-imex-3-2", 1.0, 12,
                                {"space.limiter=positivity", "space.formulation=finite-difference"}));
-  const auto data = hostile_data(weno, 10, 1e-8, true);
+  const auto data = adversarial_states(weno, 10, 1e-8, true);
   EXPECT_NEAR(largest_forward_euler_step(*weno.equations, std::span<const field>(data), positivity()).kept,
               1.0, bisection);
 }

@@ -85,8 +85,8 @@ job steps_of(int steps, State u, std::shared_ptr<double> result, Step step) {
   };
 }
 
-table measure(const settings& how) {
-  const int steps = how.quick ? 1000 : 200'000;
+result_table measure(const settings& options) {
+  const int steps = options.quick ? 1000 : 200'000;
   const auto result_by_hand = std::make_shared<double>(0.0),
              result_of_library = std::make_shared<double>(0.0);
   using pair = std::array<double, 2>;
@@ -100,10 +100,10 @@ table measure(const settings& how) {
        steps_of(steps, pair{2.0, 0.0}, result_of_library, [&](pair& u) { of_pairs.step(0.0, dt, u); }),
        steps_of(steps, std::vector<double>{2.0, 0.0}, result_of_library,
                 [&](std::vector<double>& u) { of_vectors.step(0.0, dt, u); })},
-      how.repeats);
+      options.repeats);
   if (std::abs(*result_by_hand - *result_of_library) > 1e-9)
     throw std::runtime_error("the two solutions differ");
-  table result;
+  result_table result;
   result.title = "Library overhead on a tiny problem";
   result.note =
       "The ODE model of the paper (two unknowns, ε = 1e-4), md-imex-6-3: a step of the library, which "

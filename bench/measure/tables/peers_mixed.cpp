@@ -34,63 +34,65 @@ struct ladder {
   std::vector<double> rtol, atol_by_rtol;
 };
 
-void add_sundials(contest& all, mixed_regime& what, const std::string& name, sundials_options how,
+void add_sundials(contest& all, mixed_regime& what, const std::string& name, sundials_options options,
                   const std::vector<double>& nonlinear, const ladder& tolerances) {
-  how.seconds_allowed = time_limit;
+  options.seconds_allowed = time_limit;
   for (const double coefficient : nonlinear)
     for (const double share : tolerances.atol_by_rtol)
       for (const double rtol : tolerances.rtol) {
-        how.nonlinear = coefficient;
-        how.rtol = rtol;
-        how.atol = share * rtol;
+        options.nonlinear = coefficient;
+        options.rtol = rtol;
+        options.atol = share * rtol;
         std::string more = coefficient > 0.0 ? fmt::format(", nonlinear coefficient {:g}", coefficient) : "";
-        if (how.longest > 0.0) more += fmt::format(", dt ≤ {:g}", how.longest);
-        all.add({name, fmt::format("rtol {:g}, atol {:g}{}", how.rtol, how.atol, more), false,
-                 [&what, how] { return run_sundials(what, how); }});
+        if (options.longest > 0.0) more += fmt::format(", dt ≤ {:g}", options.longest);
+        all.add({name, fmt::format("rtol {:g}, atol {:g}{}", options.rtol, options.atol, more), false,
+                 [&what, options] { return run_sundials(what, options); }});
       }
 }
 
-sundials_options options(integrator which, int order, linear_solver linear, bool tuned,
-                         bool constrained = false) {
-  sundials_options how;
-  how.which = which;
-  how.order = order;
-  how.linear = linear;
-  how.tuned = tuned;
-  how.constrained = constrained;
-  return how;
+sundials_options make_options(integrator which, int order, linear_solver linear, bool tuned,
+                              bool constrained = false) {
+  sundials_options options;
+  options.which = which;
+  options.order = order;
+  options.linear = linear;
+  options.tuned = tuned;
+  options.constrained = constrained;
+  return options;
 }
 
 void add_arkode(contest& all, mixed_regime& what, const ladder& fine, const ladder& few) {
   for (const int order : {3, 4}) {
     add_sundials(all, what, fmt::format("ARKODE {}, defaults", order),
-                 options(integrator::arkode, order, linear_solver::spgmr, false), {0.0}, {{1e-3}, {1e-3}});
+                 make_options(integrator::arkode, order, linear_solver::spgmr, false), {0.0},
+                 {{1e-3}, {1e-3}});
     add_sundials(all, what, fmt::format("ARKODE {}, tuned, GMRES", order),
-                 options(integrator::arkode, order, linear_solver::preconditioned, true), {0.1}, few);
+                 make_options(integrator::arkode, order, linear_solver::preconditioned, true), {0.1}, few);
     add_sundials(all, what, fmt::format("ARKODE {}, tuned", order),
-                 options(integrator::arkode, order, linear_solver::projection_only, true), {0.1, 0.01}, fine);
+                 make_options(integrator::arkode, order, linear_solver::projection_only, true), {0.1, 0.01},
+                 fine);
     // Step limit of T as the explicit part; error control alone finds it only through failed steps.
-    auto limited = options(integrator::arkode, order, linear_solver::projection_only, true);
+    auto limited = make_options(integrator::arkode, order, linear_solver::projection_only, true);
     limited.longest = 0.008;
     add_sundials(all, what, fmt::format("ARKODE {}, tuned", order), limited, {0.1}, {fine.rtol, {1e-4}});
     add_sundials(all, what, fmt::format("ARKODE {}, tuned, f ≥ 0", order),
-                 options(integrator::arkode, order, linear_solver::projection_only, true, true), {0.1},
+                 make_options(integrator::arkode, order, linear_solver::projection_only, true, true), {0.1},
                  {few.rtol, {1e-4}});
   }
   add_sundials(all, what, "ARKODE 5, tuned",
-               options(integrator::arkode, 5, linear_solver::projection_only, true), {0.01}, fine);
+               make_options(integrator::arkode, 5, linear_solver::projection_only, true), {0.01}, fine);
 }
 
 void add_cvode(contest& all, mixed_regime& what, const ladder& fine) {
-  add_sundials(all, what, "CVODE, defaults", options(integrator::cvode, 5, linear_solver::spgmr, false),
+  add_sundials(all, what, "CVODE, defaults", make_options(integrator::cvode, 5, linear_solver::spgmr, false),
                {0.0}, {{1e-3}, {1e-3}});
   for (const bool constrained : {false, true}) {
     const char* more = constrained ? ", f ≥ 0" : "";
     add_sundials(all, what, fmt::format("CVODE, tuned, GMRES{}", more),
-                 options(integrator::cvode, 5, linear_solver::preconditioned, false, constrained),
+                 make_options(integrator::cvode, 5, linear_solver::preconditioned, false, constrained),
                  {0.1, 0.01}, fine);
     add_sundials(all, what, fmt::format("CVODE, tuned{}", more),
-                 options(integrator::cvode, 5, linear_solver::projection_only, true, constrained), {0.1},
+                 make_options(integrator::cvode, 5, linear_solver::projection_only, true, constrained), {0.1},
                  fine);
   }
 }
@@ -107,7 +109,7 @@ double find_reference(mixed_regime& what, bool quick) {
   field exact, second;
   const auto& rk = find_method("ssprk-3-3");
   what.run(rk, explicit_steps(what.end(), 0.8e-5), false, 1e3, &exact);
-  auto tight = options(integrator::arkode, 4, linear_solver::projection_only, true);
+  auto tight = make_options(integrator::arkode, 4, linear_solver::projection_only, true);
   tight.nonlinear = 0.01;
   tight.rtol = quick ? 1e-5 : 1e-6;
   tight.atol = 1e-4 * tight.rtol;
@@ -130,27 +132,27 @@ const char* const note =
     "CVODE: BDF, tuned in the same way. f ≥ 0: with their constraint. —: no run reached the error in {:g} "
     "s. The reference (explicit, small steps) is accurate to {:.1e} by comparison with ARKODE.";
 
-table measure(const settings& how) {
-  const double end = how.quick ? 0.004 : 0.5;
-  if (how.quick) time_limit = 0.3;
+result_table measure(const settings& options) {
+  const double end = options.quick ? 0.004 : 0.5;
+  if (options.quick) time_limit = 0.3;
   mixed_regime what(end);
-  const double apart = find_reference(what, how.quick);
+  const double apart = find_reference(what, options.quick);
   contest all({1e-3, 3e-4, 1e-4, 1e-5});
   const std::vector<double> factors =
-      how.quick ? std::vector<double>{4} : std::vector<double>{16, 14, 12, 10, 8, 6, 4, 2, 1};
+      options.quick ? std::vector<double>{4} : std::vector<double>{16, 14, 12, 10, 8, 6, 4, 2, 1};
   for (const char* name :
        {"md-imex-3-2", "md-imex-6-3", "md-imex-5-2", "md-imex-6-2-mixed", "md-imex-8-3", "md-imex-8-3-mixed"})
     add_ours(all, what, name, factors);
-  if (!how.quick) add_ours(all, what, "md-imex-8-3-mixed", {0.8, 0.65, 0.5});
-  const ladder few = how.quick ? ladder{{1e-3}, {1e-3}} : ladder{{1e-2, 1e-3, 1e-4}, {1e-3, 1e-4}};
-  const ladder fine = how.quick ? few : ladder{{1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, {1e-3, 1e-4}};
+  if (!options.quick) add_ours(all, what, "md-imex-8-3-mixed", {0.8, 0.65, 0.5});
+  const ladder few = options.quick ? ladder{{1e-3}, {1e-3}} : ladder{{1e-2, 1e-3, 1e-4}, {1e-3, 1e-4}};
+  const ladder fine = options.quick ? few : ladder{{1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, {1e-3, 1e-4}};
   add_arkode(all, what, fine, few);
   add_cvode(all, what, fine);
   all.add({"SSP-RK3", "largest stable dt", false, [&what, end] {
              return what.run(find_method("ssprk-3-3"), explicit_steps(end, 1e-5), false, 1e3);
            }});
-  all.run(how.quick ? 0 : how.repeats, 3.0);
-  table result;
+  all.run(options.quick ? 0 : options.repeats, 3.0);
+  result_table result;
   result.title = "Mixed-regime BGK: work and precision";
   result.note = fmt::format(fmt::runtime(note), end, time_limit, apart);
   result.columns = all.columns();

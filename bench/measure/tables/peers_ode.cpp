@@ -26,18 +26,18 @@ void add_ours(contest& all, const ode_task& task, const std::string& name, long 
   }
 }
 
-void add_sundials(contest& all, const ode_task& task, const std::string& name, sundials_ode_options how,
+void add_sundials(contest& all, const ode_task& task, const std::string& name, sundials_ode_options options,
                   const std::vector<double>& nonlinear, double tightest) {
   for (const double coefficient : nonlinear)
     for (const double share : {1.0, 1e-2})
-      for (double rtol = 1e-2; rtol > 0.99 * tightest; rtol *= how.constrained ? 0.1 : 0.316227766) {
-        how.nonlinear = coefficient;
-        how.rtol = rtol;
-        how.atol = share * rtol;
+      for (double rtol = 1e-2; rtol > 0.99 * tightest; rtol *= options.constrained ? 0.1 : 0.316227766) {
+        options.nonlinear = coefficient;
+        options.rtol = rtol;
+        options.atol = share * rtol;
         all.add({name,
-                 fmt::format("rtol {:.2g}, atol {:.2g}, nonlinear coefficient {:g}", how.rtol, how.atol,
-                             coefficient),
-                 false, [&task, how] { return run_sundials_ode(task, how); }});
+                 fmt::format("rtol {:.2g}, atol {:.2g}, nonlinear coefficient {:g}", options.rtol,
+                             options.atol, coefficient),
+                 false, [&task, options] { return run_sundials_ode(task, options); }});
       }
 }
 
@@ -61,8 +61,8 @@ contest race(const ode_task& task, bool quick) {
   return all;
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& options) {
+  result_table result;
   result.title = "ODE model: work and precision";
   result.note =
       "CPU microseconds of a whole integration from t = 0 to 1 of the ODE model of the paper (data out of "
@@ -73,11 +73,11 @@ table measure(const settings& how) {
       "The reference is extrapolated in extended precision to 1e-13.";
   auto& points = result.data["points"] = nlohmann::json::array();
   const auto values =
-      how.quick ? std::vector<double>{1e-6} : std::vector<double>{1.0, 1e-2, 1e-4, 1e-6, 1e-10};
+      options.quick ? std::vector<double>{1e-6} : std::vector<double>{1.0, 1e-2, 1e-4, 1e-6, 1e-10};
   for (const double epsilon : values) {
     const ode_task task{epsilon, ode_reference(epsilon)};
-    contest all = race(task, how.quick);
-    all.run(how.quick ? 0 : how.repeats, 1.0);
+    contest all = race(task, options.quick);
+    all.run(options.quick ? 0 : options.repeats, 1.0);
     if (result.columns.empty()) {
       result.columns = all.columns();
       result.columns.insert(result.columns.begin(), "ε");

@@ -111,8 +111,8 @@ double require_agreement(contest& both, int steps) {
   return difference;
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& options) {
+  result_table result;
   result.title = "Library and plain loops, mixed-regime BGK";
   result.note =
       "Milliseconds per step of paper/bgk-mixed on one thread (40 cells, 150 velocities, finite volumes): "
@@ -122,10 +122,10 @@ table measure(const settings& how) {
   result.columns = {"method",        "plain (ms)",    "library (ms)", "advance (ms)",
                     "plain/library", "plain/advance", "difference"};
   // Short jobs and many turns: a disturbance affects one turn only.
-  const int steps = how.quick ? 2 : 10, turns = how.quick ? 1 : 5 * how.repeats;
+  const int steps = options.quick ? 2 : 10, turns = options.quick ? 1 : 5 * options.repeats;
   for (const std::string name : {"md-imex-3-2", "md-imex-6-3"}) {
     contest all(name);
-    const double difference = require_agreement(all, how.quick ? 5 : 20);
+    const double difference = require_agreement(all, options.quick ? 5 : 20);
     const auto seconds = in_turns(
         {[&] { all.formulas(steps); }, [&] { all.library(steps); }, [&] { all.simulated(steps); }}, turns);
     const auto milliseconds = [&](std::size_t job) { return 1e3 * median(seconds[job]) / steps; };

@@ -27,8 +27,8 @@ double cost_in_multiply_adds(mixed_step& run, int steps, int repeats, std::vecto
   return median(costs);
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& options) {
+  result_table result;
   result.title = "Cost of a step against its size";
   result.note =
       "Finite differences, md-imex-3-2, 150 velocities, one thread. In multiply–adds: the time per "
@@ -37,13 +37,13 @@ table measure(const settings& how) {
   result.columns = {"points",           "MB per field", "ms per step", "ns per point·stage",
                     "in multiply–adds", "against 10⁶"};
   const std::vector<double> sizes =
-      how.quick ? std::vector<double>{1e4} : std::vector<double>{1e4, 1e5, 1e6, 1e7, 1e8};
+      options.quick ? std::vector<double>{1e4} : std::vector<double>{1e4, 1e5, 1e6, 1e7, 1e8};
   std::vector<double> costs;
   for (const double points : sizes) {
     mixed_step run("finite-difference", "md-imex-3-2", static_cast<int>(points / 150.0 + 0.5));
     std::vector<double> seconds;
-    const int steps = run.steps_in(how.quick ? 0.01 : 0.1);
-    costs.push_back(cost_in_multiply_adds(run, steps, how.repeats, seconds));
+    const int steps = run.steps_in(options.quick ? 0.01 : 0.1);
+    costs.push_back(cost_in_multiply_adds(run, steps, options.repeats, seconds));
     result.rows.push_back({fmt::format("{:.0e}", points),
                            fmt::format("{:.3g}", 8e-6 * static_cast<double>(run.numbers())),
                            1e3 * median(seconds), 1e9 * median(seconds) / run.point_stages(), costs.back()});

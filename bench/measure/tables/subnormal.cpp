@@ -34,14 +34,14 @@ struct outcome {
 };
 
 /// Both start from a state whose tails contain subnormal numbers.
-outcome compare(const std::string& formulation, int max, const settings& how) {
+outcome compare(const std::string& formulation, int max, const settings& options) {
   const std::vector<std::string> grid = {fmt::format("velocity.max={}", max),
                                          fmt::format("velocity.points={}", 10 * max)};
   mixed_step plain(formulation, "md-imex-3-2", 40, grid), flushed(formulation, "md-imex-3-2", 40, grid);
-  const int warm_up = how.quick ? 2 : 100, turns = how.quick ? 1 : 5 * how.repeats;
+  const int warm_up = options.quick ? 2 : 100, turns = options.quick ? 1 : 5 * options.repeats;
   plain.take(warm_up);
   flushed.take(warm_up);
-  const int steps = plain.steps_in(how.quick ? 0.002 : 0.02);
+  const int steps = plain.steps_in(options.quick ? 0.002 : 0.02);
   const auto seconds = in_turns({[&] { plain.take(steps); },
                                  [&] {
                                    const flush_to_zero now;
@@ -51,8 +51,8 @@ outcome compare(const std::string& formulation, int max, const settings& how) {
   return {plain.subnormal_share(), median_ratio(seconds, 0, 1)};
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& options) {
+  result_table result;
   result.title = "Subnormal numbers";
   result.note =
       "Share of subnormal values of f after some steps of the mixed-regime problem (40 cells, spacing 0.2, "
@@ -60,7 +60,7 @@ table measure(const settings& how) {
       "the turns.";
   result.columns = {"v_max", "finite volumes: subnormal", "time", "finite differences: subnormal", "time"};
   for (const int max : {15, 60, 120}) {
-    const auto fv = compare("finite-volume", max, how), fd = compare("finite-difference", max, how);
+    const auto fv = compare("finite-volume", max, options), fd = compare("finite-difference", max, options);
     result.rows.push_back({max, fmt::format("{:.1f} %", 100.0 * fv.share), fmt::format("{:.2f}", fv.gain),
                            fmt::format("{:.1f} %", 100.0 * fd.share), fmt::format("{:.2f}", fd.gain)});
   }
@@ -69,8 +69,8 @@ table measure(const settings& how) {
 
 #else
 
-table measure(const settings&) {
-  table result;
+result_table measure(const settings&) {
+  result_table result;
   result.title = "Subnormal numbers";
   result.note = "Measured on x86 only, whose control register can flush them to zero.";
   return result;

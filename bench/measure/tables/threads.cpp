@@ -32,8 +32,8 @@ std::string two_digits(double x) {
   return fmt::format("{:.2f}", x);
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& options) {
+  result_table result;
   result.title = "Two threads against one";
   result.note =
       "Ratio of wall times of the same steps, in turns. \"The machine\" is this ratio for multiply–adds in "
@@ -41,12 +41,13 @@ table measure(const settings& how) {
       "many barriers as in these steps.";
   result.columns = {"formulation", "N",       "ms per step, 1 thread", "ms per step, 2 threads", "ratio",
                     "the machine", "in steps"};
-  const std::vector<int> sizes = how.quick ? std::vector<int>{40} : std::vector<int>{40, 400, 4000};
+  const std::vector<int> sizes = options.quick ? std::vector<int>{40} : std::vector<int>{40, 400, 4000};
   for (const char* formulation : {"finite-difference", "finite-volume"})
     for (const int cells : sizes) {
       mixed_step run(formulation, "md-imex-3-2", cells);
       // Short jobs and many turns: a disturbance affects one turn only.
-      const int steps = run.steps_in(how.quick ? 0.01 : 0.04), turns = how.quick ? 1 : 5 * how.repeats;
+      const int steps = run.steps_in(options.quick ? 0.01 : 0.04),
+                turns = options.quick ? 1 : 5 * options.repeats;
       const auto seconds = in_turns({[&] { run.take(steps); },
                                      [&] {
                                        set_threads(2);

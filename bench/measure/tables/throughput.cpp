@@ -45,12 +45,12 @@ turn measure_turn(mixed_step& run, int steps) {
 }
 
 std::vector<nlohmann::json> row_of(const std::string& formulation, const std::string& method, int cells,
-                                   const settings& how) {
+                                   const settings& options) {
   mixed_step run(formulation, method, cells);
   const auto each = run.count_work();
-  const int steps = run.steps_in(how.quick ? 0.01 : 0.2);
+  const int steps = run.steps_in(options.quick ? 0.01 : 0.2);
   std::vector<double> speed, of_operations, of_bytes, binding;
-  for (int k = 0; k < how.repeats; ++k) {
+  for (int k = 0; k < options.repeats; ++k) {
     const turn now = measure_turn(run, steps);
     speed.push_back(now.steps * run.point_stages());
     of_operations.push_back(now.steps * each.operations / now.multiply_adds);
@@ -69,9 +69,9 @@ std::vector<nlohmann::json> row_of(const std::string& formulation, const std::st
           fmt::format("{:.0f} %", 100.0 * median(binding))};
 }
 
-table measure(const settings& how) {
-  const int cells = how.quick ? 50 : 1000;
-  table result;
+result_table measure(const settings& options) {
+  const int cells = options.quick ? 50 : 1000;
+  result_table result;
   result.title = fmt::format("Throughput, N = {} × 150 velocities, positivity limiter", cells);
   result.note =
       "Point·stages per second of whole steps. Operations are arithmetic instructions per number (a "
@@ -84,7 +84,7 @@ table measure(const settings& how) {
     for (const char* formulation : {"finite-difference", "finite-volume"})
       for (const char* method : {"md-imex-3-2", "md-imex-6-3"}) {
         set_threads(n);
-        result.rows.push_back(row_of(formulation, method, cells, how));
+        result.rows.push_back(row_of(formulation, method, cells, options));
       }
   set_threads(1);
   return result;

@@ -31,8 +31,8 @@ std::vector<std::vector<double>> with_each(const std::vector<std::int64_t>& sets
   return in_turns(jobs, turns);
 }
 
-table measure(const settings& how) {
-  table result;
+result_table measure(const settings& options) {
+  result_table result;
   result.title = "The same kernels in each instruction set";
   result.note =
       "Speedup of a step of the mixed-regime problem (40 cells, 150 velocities, md-imex-3-2, one thread) "
@@ -40,8 +40,8 @@ table measure(const settings& how) {
       "upper bound for the vector units of this processor.";
   result.columns = {"instruction set", "finite volumes", "finite differences", "multiply–adds"};
   const auto sets = hwy::SupportedAndGeneratedTargets();
-  const int turns = how.quick ? 1 : 5 * how.repeats;
-  const double seconds = how.quick ? 0.002 : 0.02;
+  const int turns = options.quick ? 1 : 5 * options.repeats;
+  const double seconds = options.quick ? 0.002 : 0.02;
   mixed_step averages("finite-volume", "md-imex-3-2", 40), points("finite-difference", "md-imex-3-2", 40);
   const int of_averages = averages.steps_in(seconds), of_points = points.steps_in(seconds);
   const auto fv = with_each(

@@ -203,7 +203,7 @@ std::string text_of(const mp_real& value) {
 
 struct candidate {
   mp_vector x;
-  mp_real nearest, distance, coverage;
+  mp_real residual, distance, coverage;
 };
 
 std::optional<candidate> better(const std::optional<candidate>& a, const candidate& b) {
@@ -217,7 +217,7 @@ candidate best_of(const embedded_program& program, const embedded_task& task) {
   const auto solve = [&](const mp_real& theta, const mp_vector& least) {
     const mp_vector goal = (1 - theta) * program.t;
     candidate c{closest_solution(program, goal, least), 0, 0, 0};
-    c.nearest = (program.A * c.x - program.b).cwiseAbs().maxCoeff();
+    c.residual = (program.A * c.x - program.b).cwiseAbs().maxCoeff();
     c.distance = (program.E * c.x - goal).norm();
     c.coverage = 1 / abs(theta);
     const mp_vector estimate = program.t - program.E * c.x;
@@ -268,8 +268,8 @@ embedded_search find_embedded(const method& m, const embedded_task& task) {
   for (int q = highest; q >= lowest && !search.found; --q) {
     const embedded_program program(m, q, task.cost);
     const candidate best = best_of(program, task);
-    search.attempts.push_back({q, best.nearest.convert_to<double>(), best.coverage.convert_to<double>()});
-    const bool solves = best.nearest < pow(mp_real(10), 3 - digits);
+    search.attempts.push_back({q, best.residual.convert_to<double>(), best.coverage.convert_to<double>()});
+    const bool solves = best.residual < pow(mp_real(10), 3 - digits);
     if (solves && best.coverage >= task.least_coverage) search.found = program.row(best.x, q, text_of);
   }
   return search;

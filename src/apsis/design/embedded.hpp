@@ -26,7 +26,7 @@ struct embedded_task {
 /// Result of the search at one order.
 struct embedded_attempt {
   int order = 0;  ///< order q
-  double nearest =
+  double residual =
       0.0;  ///< largest |residual| at the closest point with x ≥ 0; rounding error if there is a solution
   /// ‖t − E x‖/(θ ‖t‖) over the trees of T alone or over those of Q alone, whichever is smaller: the
   /// part of the estimate that is left in the limit ε → 0, and for relaxation without transport. 0

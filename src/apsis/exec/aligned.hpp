@@ -44,6 +44,7 @@ struct untouched_allocator : aligned_allocator<T> {
   struct rebind {
     using other = untouched_allocator<U>;
   };
+  /// @endcond
   /// Constructs an element from arguments; without arguments, writes nothing.
   template <class U, class... Args>
   void construct(U* p, Args&&... args) {

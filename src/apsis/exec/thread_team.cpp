@@ -111,7 +111,7 @@ struct thread_team::shared {
   alignas(64) std::atomic<int> inside = 0;  ///< workers inside, plus `open`
 
   numbered_job job{};
-  split how = split::parts;
+  split mode = split::parts;
   int n = 0, threads = 1;
   std::array<remaining, most_threads> parts;
   first_failure failure;
@@ -134,7 +134,7 @@ struct thread_team::shared {
     int taken = 0;
     while (part.next.load(std::memory_order_relaxed) < end) {
       const int k = part.next.fetch_add(1, std::memory_order_relaxed);
-      if (k >= part.end || (how == split::one_by_one && failure.any())) break;
+      if (k >= part.end || (mode == split::one_by_one && failure.any())) break;
       failure.guard(k, job);
       ++taken;
     }
@@ -142,7 +142,7 @@ struct thread_team::shared {
   }
 
   int work(int own) {
-    if (how == split::one_by_one) return take(parts[0], n);
+    if (mode == split::one_by_one) return take(parts[0], n);
     if (own >= threads) return 0;
     // Every thread runs its own part first, whose memory is close to it, and then steals from the others:
     // processors may differ in speed or be preempted. The last job of a part is left to its owner if that has
@@ -165,7 +165,7 @@ struct thread_team::shared {
                           [](const auto& part) { return part.any(); });
     };
     int taken = 0;
-    if (how == split::parts && !spin_until(nothing_left, until_owner_comes))
+    if (mode == split::parts && !spin_until(nothing_left, until_owner_comes))
       for (int p = 0; p < threads; ++p) {
         auto& part = parts[static_cast<std::size_t>(p)];
         taken += take(part, part.end);
@@ -247,14 +247,14 @@ void thread_team::serve(const std::shared_ptr<shared>& with, int number) {
   }
 }
 
-void thread_team::run(int n, int threads, numbered_job job, split how) {
+void thread_team::run(int n, int threads, numbered_job job, split mode) {
   const auto begun = std::chrono::steady_clock::now();
   auto& all = *shared_;
   all.job = job;
-  all.how = how;
+  all.mode = mode;
   all.n = n;
   all.threads = threads;
-  const int parts = how == split::parts ? threads : 1;
+  const int parts = mode == split::parts ? threads : 1;
   const auto first = [&](int part) { return static_cast<int>(static_cast<long>(n) * part / parts); };
   for (int p = 0; p < parts; ++p) {
     auto& part = all.parts[static_cast<std::size_t>(p)];
@@ -276,7 +276,7 @@ void thread_team::run(int n, int threads, numbered_job job, split how) {
   const auto worked = std::chrono::steady_clock::now();
   all.close();
   here = {};
-  if (how == split::parts) overhead_.add({begun, called, worked, std::chrono::steady_clock::now()}, own, n);
+  if (mode == split::parts) overhead_.add({begun, called, worked, std::chrono::steady_clock::now()}, own, n);
   all.failure.rethrow();
 }
 

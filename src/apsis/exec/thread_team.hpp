@@ -69,7 +69,7 @@ class thread_team {
 
   /// Runs job(k) for k = 0 … n−1 with at most `threads` threads; rethrows the exception of the smallest
   /// k that failed.
-  void run(int n, int threads, numbered_job job, split how);
+  void run(int n, int threads, numbered_job job, split mode);
 
  private:
   struct shared;

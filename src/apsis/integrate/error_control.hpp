@@ -115,11 +115,11 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
 /// Throws input_error for a graded start of a problem without relaxation_time.
 template <problem P, class Distance>
 void start_control(P& p, typename P::real t, const typename P::state& u, typename P::real longest,
-                   startup how, step_controller<typename P::real>& control, const Distance& distance) {
+                   startup first, step_controller<typename P::real>& control, const Distance& distance) {
   using real = typename P::real;
   if (control.proposed() < std::numeric_limits<real>::infinity()) return;
   real dt = first_step_length(p, t, u, longest, control.target(), distance);
-  if (how == startup::graded) dt = std::min(dt, real(initial_layer(p, t, u) / 4));
+  if (first == startup::graded) dt = std::min(dt, real(initial_layer(p, t, u) / 4));
   control.start_with(dt);
 }
 

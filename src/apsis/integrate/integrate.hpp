@@ -152,8 +152,8 @@ class time_marcher {
     if (rest < proposed) return rest;
     if (!(t_ + proposed > t_))
       throw numerical_error(
-          "the time step does not advance time (it is not positive, or smaller than the "
-          "rounding of t)",
+          "the time step does not advance time (it is not positive, or smaller than the rounding of t); "
+          "check the forward Euler step and the tolerance",
           {n_ + 1, static_cast<double>(t_), -1, static_cast<double>(proposed)});
     return proposed;
   }

@@ -55,12 +55,12 @@ class schedule {
   int result_buffer() const { return result_; }
   /// Returns the buffer of the embedded solution; −1 if there is none.
   int embedded_buffer() const { return embedded_; }
-  int transport_evaluations() const { return transports_; }  ///< evaluations of T per step
-  int collision_evaluations() const {
-    return collisions_;
-  }  ///< explicit evaluations of Q stage
-     ///< solves per step
-  int implicit_solves() const { return solves_; }  ///< per step
+  /// Returns the number of evaluations of T per step.
+  int transport_evaluations() const { return transports_; }
+  /// Returns the number of explicit evaluations of Q per step.
+  int collision_evaluations() const { return collisions_; }
+  /// Returns the number of stage solves per step.
+  int implicit_solves() const { return solves_; }
 
  private:
   struct pattern;

@@ -45,7 +45,8 @@ class section {
   const toml::node& need(const std::string& key) const {
     const toml::node* node = table_.get(key);
     if (node == nullptr)
-      throw input_error(place_of(table_, file_), fmt::format("missing key '{}'{}", key, inside()));
+      throw input_error(place_of(table_, file_),
+                        fmt::format("missing key '{}'{} (it is required); add it", key, inside()));
     return *node;
   }
 
@@ -54,8 +55,9 @@ class section {
     const auto value = node.value<std::string>();
     if (!node.is_string() || !value) wrong(node, key, "a string in quotes");
     if (value->size() > longest_text)
-      throw input_error(place_of(node, file_), fmt::format("{} is too long ({} characters, at most {})",
-                                                           quoted(key), value->size(), longest_text));
+      throw input_error(place_of(node, file_),
+                        fmt::format("{} is too long ({} characters, at most {}); shorten it", quoted(key),
+                                    value->size(), longest_text));
     return *value;
   }
 
@@ -64,8 +66,9 @@ class section {
     const auto value = node.value<std::int64_t>();
     if (!node.is_integer() || !value) wrong(node, key, "an integer");
     if (*value < lowest || *value > highest)
-      throw input_error(place_of(node, file_), fmt::format("{} = {} is out of range (from {} to {})",
-                                                           quoted(key), *value, lowest, highest));
+      throw input_error(place_of(node, file_),
+                        fmt::format("{} = {} is out of range (from {} to {}); give a number in this range",
+                                    quoted(key), *value, lowest, highest));
     return static_cast<int>(*value);
   }
 
@@ -82,8 +85,9 @@ class section {
     const toml::array* array = node.as_array();
     if (array == nullptr) wrong(node, what, "a list of coefficients such as [\"1/2\", \"0\"]");
     if (array->size() > most_stages)
-      throw input_error(place_of(node, file_), fmt::format("{} has {} entries (at most {} stages)",
-                                                           quoted(what), array->size(), most_stages));
+      throw input_error(place_of(node, file_),
+                        fmt::format("{} has {} entries (a method has at most {} stages); leave some out",
+                                    quoted(what), array->size(), most_stages));
     std::vector<std::string> values;
     for (const toml::node& entry : *array) values.push_back(coefficient_of(entry, what));
     return values;
@@ -98,16 +102,17 @@ class section {
     const toml::array* rows = node.as_array();
     if (rows == nullptr) wrong(node, key, "a list of rows");
     if (rows->size() != m.rows())
-      throw input_error(place_of(node, file_), fmt::format("{} has {} rows (the method has {} stages)",
-                                                           quoted(key), rows->size(), m.rows()));
+      throw input_error(place_of(node, file_),
+                        fmt::format("{} has {} rows (the method has {} stages); give one row per stage",
+                                    quoted(key), rows->size(), m.rows()));
     for (std::size_t i = 0; i < m.rows(); ++i) {
       const toml::node& line = *rows->get(i);
       const auto values = row(line, key);
       const std::size_t expected = i + diagonal;
       if (values.size() != expected && values.size() != m.rows())
         throw input_error(place_of(line, file_),
-                          fmt::format("row {} of {} has {} entries (lower triangular: give {})", i + 1,
-                                      quoted(key), values.size(), expected));
+                          fmt::format("row {} of {} has {} entries (the matrix is lower triangular); give {}",
+                                      i + 1, quoted(key), values.size(), expected));
       for (std::size_t j = 0; j < values.size(); ++j) {
         if (j < expected) {
           m(i, j) = values[j];
@@ -126,7 +131,8 @@ class section {
     const toml::array* rows = node.as_array();
     if (rows == nullptr || rows->empty() || rows->size() > most_stages)
       throw input_error(place_of(node, file_),
-                        fmt::format("{} is not a list of 1 to {} stages", quoted(key), most_stages));
+                        fmt::format("{} is not a list of 1 to {} stages; give one row per stage", quoted(key),
+                                    most_stages));
     return rows->size();
   }
 
@@ -141,7 +147,8 @@ class section {
   }
 
   [[noreturn]] void wrong(const toml::node& node, const std::string& key, const std::string& expected) const {
-    throw input_error(place_of(node, file_), fmt::format("{} is not {}", quoted(key), expected));
+    throw input_error(place_of(node, file_),
+                      fmt::format("{} has the wrong type; give {}", quoted(key), expected));
   }
 
   std::string coefficient_of(const toml::node& node, const std::string& key) const {
@@ -163,9 +170,11 @@ class section {
 
 const toml::table& need_table(const toml::table& root, const std::string& key, const std::string& file) {
   const toml::node* node = root.get(key);
-  if (node == nullptr) throw input_error(source_place{file, 1, 1}, fmt::format("missing table [{}]", key));
+  if (node == nullptr)
+    throw input_error(source_place{file, 1, 1},
+                      fmt::format("missing table [{}] (it is required); add it", key));
   if (node->as_table() == nullptr)
-    throw input_error(place_of(*node, file), fmt::format("'{}' is not a table", key));
+    throw input_error(place_of(*node, file), fmt::format("'{}' is not a table; give one", key));
   return *node->as_table();
 }
 
@@ -192,8 +201,9 @@ method_claims read_claims(const toml::table& root, const std::string& file) {
   if (table.has("ssp_coefficient")) {
     claims.ssp_coefficient = table.text("ssp_coefficient");
     if (*claims.ssp_coefficient != "unconditional" && !is_coefficient(*claims.ssp_coefficient))
-      table.fail("ssp_coefficient",
-                 "'claims.ssp_coefficient' is neither a number in quotes nor \"unconditional\"");
+      table.fail(
+          "ssp_coefficient",
+          "'claims.ssp_coefficient' is neither a number in quotes nor \"unconditional\"; give one of them");
   }
   if (table.has("explicit_radius")) claims.explicit_radius = table.coefficient("explicit_radius");
   if (table.has("l_stable")) claims.l_stable = table.boolean("l_stable");
@@ -229,14 +239,16 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   if (m.kind != method_kind::implicit_only) {
     form.triangle("W", 0, e.W);
     e.r = form.coefficient("r");
-    if (!(coefficient_value(e.r) > 0)) form.fail("r", "'shu_osher.r' is not positive");
+    if (!(coefficient_value(e.r) > 0)) form.fail("r", "'shu_osher.r' is not positive; give r > 0");
   }
   if (is_explicit) return;
   const auto d = form.vector("d");
   e.ddot = form.vector("ddot");
   for (const auto& [key, size] : {std::pair{"d", d.size()}, std::pair{"ddot", e.ddot.size()}})
     if (size != s)
-      form.fail(key, fmt::format("'shu_osher.{}' has {} entries (the method has {} stages)", key, size, s));
+      form.fail(key,
+                fmt::format("'shu_osher.{}' has {} entries (the method has {} stages); give one per stage",
+                            key, size, s));
   for (std::size_t i = 0; i < s; ++i) e.D(i, i) = d[i];
 }
 
@@ -252,8 +264,9 @@ void read_embedded(const toml::table& table, const std::string& file, method& m)
   const auto weights = [&](const std::string& key) {
     auto values = form.vector(key);
     if (values.size() != m.stages())
-      form.fail(key, fmt::format("'embedded.{}' has {} entries (the method has {} stages)", key,
-                                 values.size(), m.stages()));
+      form.fail(
+          key, fmt::format("'embedded.{}' has {} entries (the method has {} stages); give one per stage", key,
+                           values.size(), m.stages()));
     return values;
   };
   row.P = weights("P");
@@ -275,7 +288,8 @@ matrix<std::string> read_tableau(const section& form, const std::string& key, co
   const auto b = form.vector(weights);
   if (b.size() != s)
     form.fail(weights,
-              fmt::format("'butcher.{}' has {} entries (the method has {} stages)", weights, b.size(), s));
+              fmt::format("'butcher.{}' has {} entries (the method has {} stages); give one per stage",
+                          weights, b.size(), s));
   for (std::size_t j = 0; j < s; ++j) all(s, j) = b[j];
   return all;
 }
@@ -300,7 +314,8 @@ void read_butcher(const toml::table& table, const std::string& file, method& m) 
   const std::size_t s = form.row_count(first);
   const bool update = form.has("b_hat") || form.has("b") || form.has("b_dot");
   if (update && s == most_stages)
-    form.fail(first, fmt::format("{} stages and an update are too many (at most {} rows)", s, most_stages));
+    form.fail(first, fmt::format("{} stages and an update are too many (at most {} rows); give fewer stages",
+                                 s, most_stages));
   const std::size_t rows = update ? s + 1 : s;
   butcher_form<std::string> b{zeros(rows), zeros(rows), zeros(rows)};
   if (m.kind != method_kind::implicit_only) b.A_hat = read_tableau(form, "A_hat", "b_hat", 0, s, update);
@@ -330,7 +345,7 @@ method parse_method(std::string_view text, const std::string& file) {
   } catch (const toml::parse_error& failure) {
     const auto& at = failure.source().begin;
     throw input_error({file, static_cast<int>(at.line), static_cast<int>(at.column)},
-                      "not TOML (" + std::string(failure.description()) + ")");
+                      "not TOML (" + std::string(failure.description()) + "); correct the syntax");
   }
   method m;
   const section top(root, file, "",

@@ -29,11 +29,11 @@ void model::invariant_scales(const double* densities, double* scales) const {
   for (std::size_t k = 0; k < invariants().size(); ++k) scales[k] = std::abs(densities[k]);
 }
 
-misfit model::unfit(const double*) const {
+unsupported_initial_data model::check_supported(const double*) const {
   return {};
 }
 
-misfit model::unfit_range(const double*, const double*) const {
+unsupported_initial_data model::check_supported_range(const double*, const double*) const {
   return {};
 }
 

@@ -31,7 +31,7 @@ struct initial_data {
 };
 
 /// Data that a model cannot hold.
-struct misfit {
+struct unsupported_initial_data {
   std::string key,  ///< of the case, that must change; "" if all is well
       problem;      ///< message; "" if all is well
 };
@@ -90,9 +90,9 @@ class model {
   virtual const std::vector<initial_data>& initial() const = 0;
 
   /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could.
-  virtual misfit unfit(const double* u) const;
+  virtual unsupported_initial_data check_supported(const double* u) const;
   /// Likewise for data whose macroscopic fields lie between these extremes.
-  virtual misfit unfit_range(const double* lowest, const double* highest) const;
+  virtual unsupported_initial_data check_supported_range(const double* lowest, const double* highest) const;
 };
 
 /// Q(u) = C(ω)(E(ω) − u) with ω = ℛu and ℛQ = 0 (paper, Properties 3–5): every stage is solved in closed

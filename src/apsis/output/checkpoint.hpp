@@ -18,7 +18,7 @@ struct checkpoint {
       components = 0;                     ///< unknowns of a cell
   std::vector<double> state;              ///< [cells][components]
   std::map<std::string, double> numbers;  ///< time, counters and totals, by name
-  table history;                          ///< from the initial state to the last step
+  numeric_table history;                  ///< from the initial state to the last step
   field_series fields;                    ///< snapshots so far
 
   /// A number that must be there. Throws io_error.

@@ -2,9 +2,9 @@
 
 namespace apsis {
 
-table to_table(const field_series& fields) {
+numeric_table to_table(const field_series& fields) {
   const bool several = fields.snapshots.size() > 1;
-  table out;
+  numeric_table out;
   if (several) out.columns.emplace_back("t");
   if (!fields.x.empty()) out.columns.emplace_back("x");
   out.columns.insert(out.columns.end(), fields.names.begin(), fields.names.end());

@@ -22,6 +22,6 @@ struct field_series {
 };
 
 /// One row per cell: (t,) x, fields; the column t only where there are several snapshots.
-table to_table(const field_series& fields);
+numeric_table to_table(const field_series& fields);
 
 }  // namespace apsis

@@ -8,7 +8,7 @@ namespace apsis {
 history::history(std::vector<std::string> columns, std::size_t most_rows)
     : history({std::move(columns), {}}, 1, most_rows) {}
 
-history::history(table rows, long stride, std::size_t most_rows)
+history::history(numeric_table rows, long stride, std::size_t most_rows)
     : rows_(std::move(rows)), stride_(stride), most_rows_(most_rows), extremes_(rows_.columns.size()) {
   for (std::size_t row = 0; row < rows_.rows.size(); ++row) note_extremes(row);
 }

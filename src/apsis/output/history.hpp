@@ -21,13 +21,13 @@ class history {
   /// two.
   history(std::vector<std::string> columns, std::size_t most_rows);
   /// Continues with the rows and the stride of a checkpoint.
-  history(table rows, long stride, std::size_t most_rows);
+  history(numeric_table rows, long stride, std::size_t most_rows);
 
   /// Adds the row of the next step; its first number is the number of the step.
   void add(std::vector<double> row);
 
   /// The rows that are kept, in the order of the steps.
-  const table& rows() const { return rows_; }
+  const numeric_table& rows() const { return rows_; }
   /// Steps from one regular row to the next; 1 while every row is kept.
   long stride() const { return stride_; }
 
@@ -44,7 +44,7 @@ class history {
   bool is_extreme(std::size_t row) const;
   void thin();
 
-  table rows_;
+  numeric_table rows_;
   long stride_ = 1;
   std::size_t most_rows_;
   std::vector<extremes> extremes_;

@@ -30,7 +30,7 @@ constexpr const char* advice = "choose another folder with --out or free some sp
 }
 
 /// Names live in the folder, which has to reach the disk like a file.
-void see_names_through(const fs::path& folder) {
+void sync_folder(const fs::path& folder) {
   const int id = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (id < 0) return;  // some file systems know no such thing
   fsync(id);
@@ -100,7 +100,7 @@ void result_folder::publish(const std::string& name, const std::function<void(co
   std::error_code problem;
   fs::rename(temporary(name), path_ / name, problem);
   if (problem) cannot("write", path_ / name, problem.message());
-  see_names_through(path_);
+  sync_folder(path_);
   prepared_.erase(std::find(prepared_.begin(), prepared_.end(), name));
   keep_ = true;
 }
@@ -197,7 +197,7 @@ void result_folder::commit() {
     if (problem) cannot("write", path_ / name, problem.message());
     keep_ = true;
   }
-  see_names_through(path_);
+  sync_folder(path_);
   prepared_.clear();
 }
 

@@ -8,7 +8,7 @@
 
 namespace apsis {
 
-std::string to_csv(const table& t, const std::vector<std::string_view>& integers) {
+std::string to_csv(const numeric_table& t, const std::vector<std::string_view>& integers) {
   fmt::memory_buffer out;
   fmt::format_to(std::back_inserter(out), "{}\n", fmt::join(t.columns, ","));
   std::vector<bool> whole;

@@ -24,7 +24,7 @@ class run_records {
   /// Columns step, t, dt, min_value, negative_values, conservation_NAME of every invariant, entropy,
   /// entropy_change; a row for the initial state and every step, at most output.history_rows of them (see
   /// apsis::history).
-  const table& history() const { return history_.rows(); }
+  const numeric_table& history() const { return history_.rows(); }
   /// Steps from one regular row of the history to the next.
   long history_stride() const { return history_.stride(); }
   /// The snapshots so far.

@@ -156,11 +156,11 @@ const initial_data& run_setup::data() const {
 field run_setup::initial_state() const {
   field u = builder_.sample(data().point_value, data().jumps);
   for (int cell = 0; cell < u.cells(); ++cell) {
-    const misfit found = equation->unfit(u.row(cell));
+    const unsupported_initial_data found = equation->check_supported(u.row(cell));
     if (!found.problem.empty()) refuse(config_, found.key, fmt::format("{} [cell {}]", found.problem, cell));
   }
   const auto [lowest, highest] = extremes_of_fields(*equation, u);
-  const misfit found = equation->unfit_range(lowest.data(), highest.data());
+  const unsupported_initial_data found = equation->check_supported_range(lowest.data(), highest.data());
   if (!found.problem.empty()) refuse(config_, found.key, found.problem);
   return u;
 }

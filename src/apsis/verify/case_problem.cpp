@@ -38,7 +38,7 @@ case_config small_case(const std::string& model, const std::string& method, doub
   return parse_case(text, "small case of " + model, overrides);
 }
 
-std::vector<field> hostile_data(case_problem& problem, int random, double vacuum, bool zeros) {
+std::vector<field> adversarial_states(case_problem& problem, int random, double vacuum, bool zeros) {
   const field start = problem.setup.initial_state();
   field equilibrium = start;
   problem.equations->solve_collision(0.0, std::numeric_limits<double>::max(), 0.0, equilibrium);

@@ -27,7 +27,7 @@ case_config small_case(const std::string& model, const std::string& method, doub
 /// whose cells, at random, every unknown is disturbed by a factor from 0.01 to 1, or all of them by the
 /// factor `vacuum`, or the cell is in equilibrium; with `zeros`, a tenth of the disturbed unknowns is exactly
 /// 0.
-std::vector<field> hostile_data(case_problem& problem, int random, double vacuum, bool zeros);
+std::vector<field> adversarial_states(case_problem& problem, int random, double vacuum, bool zeros);
 
 /// Names of the models with space and an entropy.
 std::vector<std::string> all_entropy_models();

@@ -165,8 +165,8 @@ std::vector<double> on_mesh_of(const outcome& run, const outcome& finer) {
   return interpolation(finer.cells, run.cells, periodic)(finer.state, components);
 }
 
-double distance(const outcome& run, const std::vector<double>& state, error_norm norm,
-                const std::string& quantity) {
+double difference_norm(const outcome& run, const std::vector<double>& state, error_norm norm,
+                       const std::string& quantity) {
   if (quantity.empty()) {
     if (state.size() != run.state.size()) not_comparable("velocity", "their states have different sizes");
     return norm_of(run.state, state, run.cell_volume * run.component_weight, norm);
@@ -175,10 +175,11 @@ double distance(const outcome& run, const std::vector<double>& state, error_norm
                  run.cell_volume, norm);
 }
 
-double distance(const outcome& run, const outcome& finer, error_norm norm, const std::string& quantity) {
+double difference_norm(const outcome& run, const outcome& finer, error_norm norm,
+                       const std::string& quantity) {
   check_comparable(run.config, finer.config, quantity);
   const auto state = on_mesh_of(run, finer);
-  if (quantity.empty()) return distance(run, state, norm);
+  if (quantity.empty()) return difference_norm(run, state, norm);
   return norm_of(field_of(run.config, run.state, quantity), field_of(finer.config, state, quantity),
                  run.cell_volume, norm);
 }

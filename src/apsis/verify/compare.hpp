@@ -34,11 +34,12 @@ std::vector<double> on_mesh_of(const outcome& run, const outcome& finer);
 
 /// Norm of the difference of a run and a state on its mesh; of a macroscopic field if `quantity` names one
 /// (computed from the state on the mesh of the run). Dimensionless. NaN where a value is no number.
-double distance(const outcome& run, const std::vector<double>& state, error_norm norm,
-                const std::string& quantity = "");
+double difference_norm(const outcome& run, const std::vector<double>& state, error_norm norm,
+                       const std::string& quantity = "");
 
-/// The same between two runs: distance(run, on_mesh_of(run, finer), …); a macroscopic field may be compared
-/// across velocity grids.
-double distance(const outcome& run, const outcome& finer, error_norm norm, const std::string& quantity = "");
+/// The same between two runs: difference_norm(run, on_mesh_of(run, finer), …); a macroscopic field may be
+/// compared across velocity grids.
+double difference_norm(const outcome& run, const outcome& finer, error_norm norm,
+                       const std::string& quantity = "");
 
 }  // namespace apsis

@@ -47,9 +47,9 @@ struct convergence::impl {
   void measure(const convergence_plan::row& planned, const outcome& result, convergence_row& row) const {
     const auto other = static_cast<std::size_t>(planned.reference);
     if (planned.reference < 0) {
-      row.error = distance(result, result.exact, study.norm, study.quantity);
+      row.error = difference_norm(result, result.exact, study.norm, study.quantity);
     } else if (results[other]) {
-      row.error = distance(result, *results[other], study.norm, study.quantity);
+      row.error = difference_norm(result, *results[other], study.norm, study.quantity);
     } else {
       row.problem = failures[other].empty() ? "its reference was not computed"
                                             : fmt::format("its reference failed: {}", failures[other]);
@@ -113,7 +113,7 @@ void convergence::run(const study_control& control) {
   run_all(by_work, fmt::format("{} runs", order.size()), static_cast<int>(order.size()), [&](int job) {
     const std::size_t k = order[static_cast<std::size_t>(job)];
     try {
-      all.results[k] = compute(all.plan.runs[k], stop_only);
+      all.results[k] = compute_outcome(all.plan.runs[k], stop_only);
     } catch (const numerical_error& failure) {
       all.failures[k] = failure.what();
     }

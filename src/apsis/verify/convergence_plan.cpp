@@ -80,7 +80,7 @@ class planner {
   /// Index of the run with these settings, a new one unless the same was planned before.
   std::size_t run_of(const texts& settings) {
     case_config config = resolve(settings);
-    const auto [place, is_new] = known_.emplace(essence(config), plan_.runs.size());
+    const auto [place, is_new] = known_.emplace(numerical_identity(config), plan_.runs.size());
     if (is_new) {
       const run_setup setup(config);
       // Both throw what would else be found only when the run begins: data that the meshes cannot hold, and a
@@ -271,7 +271,7 @@ class planner {
   const convergence_study& study_;
   std::string text_;
   convergence_plan plan_;
-  std::map<std::string, std::size_t> known_;  ///< essence of a run → its index
+  std::map<std::string, std::size_t> known_;  ///< numerical identity of a run → its index
   std::map<std::size_t, texts> settings_of_;  ///< of the runs of the grid
   std::vector<point> grid_;
   kind how_ = kind::automatic;

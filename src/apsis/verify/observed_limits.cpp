@@ -96,7 +96,7 @@ experiment entropy(const method& m, const std::string& model, const std::vector<
   return {model + ", first-order upwind", "entropy", epsilons, [&m, model](double epsilon, double promised) {
             case_problem problem(
                 small_case(model, stand_in(m.kind), epsilon, 12, {"space.reconstruction=upwind1"}));
-            const auto data = hostile_data(problem, 6, 1e-8, false);
+            const auto data = adversarial_states(problem, 6, 1e-8, false);
             return largest_step(m, *problem.equations, std::span<const field>(data),
                                 entropy_decay(problem.setup),
                                 {.steps = 3, .rung = 1.25, .accuracy = 1e-3, .promised = promised});
@@ -111,7 +111,7 @@ experiment positive_weno(const method& m, const made_model& model, const std::st
           [&m, name = model.entry->name, form, tame](double epsilon, double promised) {
             case_problem problem(small_case(name, stand_in(m.kind), epsilon, 12,
                                             {"space.limiter=positivity", "space.formulation=" + form}));
-            const auto data = hostile_data(problem, 6, tame ? 0.3 : 1e-8, !tame);
+            const auto data = adversarial_states(problem, 6, tame ? 0.3 : 1e-8, !tame);
             return largest_step(m, *problem.equations, std::span<const field>(data), positivity(),
                                 {.steps = 2, .rung = 1.25, .accuracy = 1e-3, .promised = promised});
           }};

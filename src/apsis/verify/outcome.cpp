@@ -4,7 +4,7 @@
 
 namespace apsis {
 
-outcome compute(const case_config& config, const study_control& control) {
+outcome compute_outcome(const case_config& config, const study_control& control) {
   simulation run(config);
   while (!run.finished()) {
     control.check();
@@ -27,9 +27,9 @@ outcome compute(const case_config& config, const study_control& control) {
   return out;
 }
 
-outcome compute(const std::string& name, const std::vector<std::string>& overrides,
-                const study_control& control) {
-  return compute(load_case(name, overrides), control);
+outcome compute_outcome(const std::string& name, const std::vector<std::string>& overrides,
+                        const study_control& control) {
+  return compute_outcome(load_case(name, overrides), control);
 }
 
 }  // namespace apsis

@@ -22,10 +22,10 @@ struct outcome {
 };
 
 /// Runs a case to its end. Throws what a simulation throws, and study_interrupted between steps.
-outcome compute(const case_config& config, const study_control& control = {});
+outcome compute_outcome(const case_config& config, const study_control& control = {});
 
 /// The built-in case or file with overrides "key=value", computed.
-outcome compute(const std::string& name, const std::vector<std::string>& overrides,
-                const study_control& control = {});
+outcome compute_outcome(const std::string& name, const std::vector<std::string>& overrides,
+                        const study_control& control = {});
 
 }  // namespace apsis

@@ -40,7 +40,7 @@ texts layered(const texts& lower, const texts& upper) {
   return out;
 }
 
-std::string essence(case_config config) {
+std::string numerical_identity(case_config config) {
   config.title.clear();
   config.output = {};
   // 1/4 and 0.25 are the same.

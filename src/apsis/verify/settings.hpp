@@ -20,7 +20,7 @@ std::vector<std::string> layered(const std::vector<std::string>& lower,
                                  const std::vector<std::string>& upper);
 
 /// A text of all that decides the numbers of a run: two cases with the same one compute the same.
-std::string essence(case_config config);
+std::string numerical_identity(case_config config);
 
 /// The number that a key has in a case; NaN where it is none (text, a formula in x, a key that is not set).
 double number_of(const case_config& config, const std::string& key);

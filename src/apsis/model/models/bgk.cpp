@@ -120,7 +120,7 @@ class bgk_model final : public relaxation_model {
 
   const std::vector<initial_data>& initial() const override { return initial_; }
 
-  misfit unfit(const double* f) const override {
+  unsupported_initial_data check_supported(const double* f) const override {
     double omega[5];
     moments(f, omega);
     const fluid_state s = to_fluid_state(omega, grid_.dimensions());

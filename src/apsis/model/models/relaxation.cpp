@@ -55,7 +55,7 @@ class relaxation_system final : public relaxation_model {
 
   /// The subcharacteristic condition |F'| ≤ a (Liu, Comm. Math. Phys. 108, 1987), without which the limit
   /// ε → 0 is unstable.
-  misfit unfit_range(const double* lowest, const double* highest) const override {
+  unsupported_initial_data check_supported_range(const double* lowest, const double* highest) const override {
     const auto wave = flux_.fastest(lowest[0], highest[0]);
     if (!std::isfinite(wave.speed))
       return {"model.flux", fmt::format("model.flux = \"{}\" cannot be used (it has no finite slope at u = "

@@ -30,7 +30,7 @@ std::string message_of(const apsis::case_config& c, double defect, int steps) {
     for (int step = 0; step < steps; ++step) {
       run.advance();
       auto saved = run.save();
-      for (double& value : saved.state) value *= 1.0 + defect;
+      for (double& value : saved.unknowns) value *= 1.0 + defect;
       run.restore(saved);
     }
   } catch (const apsis::numerical_error& failure) {
@@ -87,7 +87,7 @@ TEST(conservation, a_defect_of_a_single_late_step_is_found) {
   apsis::simulation run(c);
   for (int step = 0; step < 300; ++step) run.advance();
   auto saved = run.save();
-  for (double& value : saved.state) value *= 1.0 + 1e-13;
+  for (double& value : saved.unknowns) value *= 1.0 + 1e-13;
   run.restore(saved);
   try {
     run.advance();

@@ -74,7 +74,7 @@ one_step step_of(const model_entry& entry, const case_config& c, bool with_zeros
   return result;
 }
 
-std::string step_rule(const model_entry& entry) {
+std::string step_key_for(const model_entry& entry) {
   if (!has_space(entry)) return "dt = 0.0625";
   return is_positive(entry) ? "safety = 1.0" : "cfl = 0.5";
 }
@@ -115,7 +115,7 @@ TEST(every_model, conserves_its_invariants_through_a_step) {
     ++asked;
     check_property(entry->name, [&] {
       const auto c =
-          case_of(*entry, random_method(*entry), step_rule(*entry), random_overrides(*entry, positive));
+          case_of(*entry, random_method(*entry), step_key_for(*entry), random_overrides(*entry, positive));
       const one_step step = step_of(*entry, c, false);
       RC_ASSERT(step.after.conservation_defect.size() == make_model(c)->invariants().size());
       // Twelve cells, six stages, sums over 36 velocities: a few dozen roundings of 1e-16.
@@ -130,7 +130,7 @@ TEST(every_model, stays_nonnegative_through_a_step_where_that_has_a_meaning) {
     if (!is_positive(*entry)) continue;
     check_property(entry->name, [&] {
       const auto c =
-          case_of(*entry, random_method(*entry), step_rule(*entry), random_overrides(*entry, true));
+          case_of(*entry, random_method(*entry), step_key_for(*entry), random_overrides(*entry, true));
       const one_step step = step_of(*entry, c, true);
       RC_ASSERT(step.before.negative_values == 0);
       RC_ASSERT(step.after.negative_values == 0);
@@ -149,7 +149,7 @@ TEST(every_model, loses_entropy_in_a_step_of_first_order_upwind) {
       overrides.emplace_back("space.reconstruction=upwind1");
       // Mixing by transport hides a little growth by collisions, so half of the states are uniform.
       const bool uniform = *rc::gen::arbitrary<bool>();
-      const auto c = case_of(*entry, random_method(*entry), step_rule(*entry), overrides);
+      const auto c = case_of(*entry, random_method(*entry), step_key_for(*entry), overrides);
       const one_step step = step_of(*entry, c, true, uniform);
       // A nonlinear sum of twelve rows; random rows are far from equilibrium, so usually it loses percents.
       RC_ASSERT(step.after.entropy_change <= 1e-14 * (1.0 + std::abs(step.before.entropy)));

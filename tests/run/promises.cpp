@@ -115,7 +115,7 @@ TEST(promises, a_broken_one_ends_the_run_with_step_and_value) {
   apsis::simulation run(c);
   run.advance();
   auto saved = run.save();
-  for (double& value : saved.state) value *= 1.0 + 1e-9;  // mass from nowhere
+  for (double& value : saved.unknowns) value *= 1.0 + 1e-9;  // mass from nowhere
   run.restore(saved);
   try {
     finish(run);

@@ -76,7 +76,7 @@ TEST(vacuum, rows_of_zeros_of_subnormal_numbers_and_of_one_velocity_stop_no_run)
     auto saved = run.save();
     const auto width = static_cast<std::size_t>(run.components());
     const auto value = [&](std::size_t cell, std::size_t k) -> double& {
-      return saved.state[cell * width + k];
+      return saved.unknowns[cell * width + k];
     };
     for (std::size_t k = 0; k < width; ++k) {
       value(0, k) = value(1, k) = 0.0;

@@ -27,6 +27,15 @@ class step_controller {
     Real previous = Real(1);                                ///< err/tol of the last accepted step, ≥ 1e-4
     bool after_rejection = false;                           ///< whether the last step was rejected
     long rejected = 0;                                      ///< number of rejected steps
+
+    /// Calls visit(name, member) for every member of `self`.
+    template <class Self, class Visitor>
+    static void visit_members(Self& self, Visitor&& visit) {
+      visit("proposed", self.proposed);
+      visit("previous", self.previous);
+      visit("after_rejection", self.after_rejection);
+      visit("rejected", self.rejected);
+    }
   };
 
   /// `tolerance` has the unit of the errors, `order` is that of the embedded solution, k − 1. Throws

@@ -55,14 +55,27 @@ class time_marcher {
  public:
   /// State of the marcher in a checkpoint; a restart from it is bitwise identical.
   struct progress {
-    long step,                      ///< steps taken
-        since_anchor;               ///< steps of length anchor_dt since `anchor`
-    Real t,                         ///< time reached
-        anchor,                     ///< time since which all steps have the length anchor_dt
-        anchor_dt;                  ///< −1 before the first step and for a given dt
+    long step = 0,                  ///< steps taken
+        since_anchor = 0;           ///< steps of length anchor_dt since `anchor`
+    Real t{},                       ///< time reached
+        anchor{},                   ///< time since which all steps have the length anchor_dt
+        anchor_dt{};                ///< −1 before the first step and for a given dt
     long startup_steps = 0,         ///< number of steps that replace the first one
         startup_done = 0;           ///< number of these that are done
     Real startup_length = Real(0);  ///< length of the first step before it was divided
+
+    /// Calls visit(name, member) for every member of `self`.
+    template <class Self, class Visitor>
+    static void visit_members(Self& self, Visitor&& visit) {
+      visit("step", self.step);
+      visit("since_anchor", self.since_anchor);
+      visit("t", self.t);
+      visit("anchor", self.anchor);
+      visit("anchor_dt", self.anchor_dt);
+      visit("startup_steps", self.startup_steps);
+      visit("startup_done", self.startup_done);
+      visit("startup_length", self.startup_length);
+    }
   };
 
   /// Throws input_error unless t0 ≤ t1 are finite, dt > 0 is finite, and the interval has at most 1e15 steps.

@@ -165,8 +165,8 @@ class variable_parser {
 };
 
 /// Parsers of one formula, each used by one thread at a time. A thread returns to the same slot, so that
-/// nobody waits unless there are more threads than slots (a lock around a single parser costs two threads a
-/// factor of 10, see bench/micro/expression.cpp).
+/// nobody waits unless there are more threads than slots (a lock around a single parser makes two threads 6
+/// times as slow, bench/micro/expression.cpp).
 class parser_pool {
  public:
   parser_pool(const std::string& text, const std::vector<std::string>& variables)

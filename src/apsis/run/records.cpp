@@ -9,51 +9,105 @@
 namespace apsis {
 namespace {
 
-constexpr std::size_t columns_before_defects = 5, columns_after_defects = 2;
+/// Appends the numbers of a record to a row.
+struct row_writer {
+  std::vector<double>& row;
 
-std::vector<double> to_row(const step_record& r) {
-  std::vector<double> row = {static_cast<double>(r.step), r.t, r.dt, r.min_value,
-                             static_cast<double>(r.negative_values)};
-  row.insert(row.end(), r.conservation_defect.begin(), r.conservation_defect.end());
-  row.push_back(r.entropy);
-  row.push_back(r.entropy_change);
+  void operator()(const char*, long x) const { row.push_back(static_cast<double>(x)); }
+  void operator()(const char*, double x) const { row.push_back(x); }
+  void operator()(const char*, const std::vector<double>& x) const {
+    row.insert(row.end(), x.begin(), x.end());
+  }
+};
+
+/// Appends the names of the columns of a record; those of a vector are NAME_INVARIANT.
+struct column_writer {
+  const std::vector<std::string>& invariants;
+  std::vector<std::string>& columns;
+
+  template <class Number>
+  void operator()(const char* name, const Number&) const {
+    columns.emplace_back(name);
+  }
+  void operator()(const char* name, const std::vector<double>&) const {
+    for (const auto& invariant : invariants) columns.push_back(name + ("_" + invariant));
+  }
+};
+
+/// Reads the numbers of a record from a row; a vector takes what the other members leave.
+class row_reader {
+ public:
+  row_reader(const std::vector<double>& row, std::size_t scalars) : row_(row), scalars_(scalars) {
+    if (row.size() < scalars)
+      throw io_error(
+          "the history of the checkpoint has too few columns (damaged file); give another checkpoint");
+  }
+
+  void operator()(const char*, long& x) { x = static_cast<long>(row_[at_++]); }
+  void operator()(const char*, double& x) { x = row_[at_++]; }
+  void operator()(const char*, std::vector<double>& x) {
+    const auto begin = row_.begin() + static_cast<std::ptrdiff_t>(at_);
+    const std::size_t length = row_.size() - scalars_;
+    x.assign(begin, begin + static_cast<std::ptrdiff_t>(length));
+    at_ += length;
+  }
+
+ private:
+  const std::vector<double>& row_;
+  std::size_t scalars_, at_ = 0;
+};
+
+std::vector<double> to_row(const step_record& record) {
+  std::vector<double> row;
+  step_record::visit_members(record, row_writer{row});
   return row;
 }
 
 step_record from_row(const std::vector<double>& row) {
-  if (row.size() < columns_before_defects + columns_after_defects)
-    throw io_error(
-        "the history of the checkpoint has too few columns (damaged file); give another checkpoint");
-  step_record r;
-  r.step = static_cast<long>(row[0]);
-  r.t = row[1];
-  r.dt = row[2];
-  r.min_value = row[3];
-  r.negative_values = static_cast<long>(row[4]);
-  r.conservation_defect.assign(row.begin() + columns_before_defects, row.end() - columns_after_defects);
-  r.entropy = row[row.size() - 2];
-  r.entropy_change = row[row.size() - 1];
-  return r;
+  step_record record;
+  row_reader reader(row, to_row(record).size());
+  step_record::visit_members(record, reader);
+  return record;
 }
 
 bool has_space(const simulation& run) {
   return has_space(*find_model(run.config().model.name));
 }
 
-// Counters travel as doubles, which hold them exactly up to 2^53; a damaged one must not overflow.
-long count(const checkpoint& c, const std::string& name) {
-  const double x = c.number(name);
-  if (!(x >= 0.0 && x <= 9007199254740992.0))
-    throw io_error("the checkpoint has a wrong number '" + name +
-                   "' (damaged file); give another checkpoint");
-  return static_cast<long>(x);
+[[noreturn]] void refuse_number(const std::string& name) {
+  throw io_error("the checkpoint has a wrong number '" + name + "' (damaged file); give another checkpoint");
 }
 
+/// Stores numbers in a checkpoint under the names "GROUP.MEMBER".
+struct number_writer {
+  std::string group;
+  checkpoint& to;
+
+  template <class Number>
+  void operator()(const char* name, const Number& x) const {
+    to.numbers[group + "." + name] = static_cast<double>(x);
+  }
+};
+
+/// Reads them. Counters travel as doubles, which hold them exactly up to 2^53; a damaged one must not
+/// overflow.
+struct number_reader {
+  std::string group;
+  const checkpoint& from;
+
+  void operator()(const char* name, double& x) const { x = from.number(group + "." + name); }
+  void operator()(const char* name, long& x) const {
+    const double number = from.number(group + "." + name);
+    if (!(number >= 0.0 && number <= 9007199254740992.0)) refuse_number(group + "." + name);
+    x = static_cast<long>(number);
+  }
+  void operator()(const char* name, bool& x) const { x = from.number(group + "." + name) > 0.0; }
+};
+
 std::vector<std::string> history_columns(const simulation& run) {
-  std::vector<std::string> columns = {"step", "t", "dt", "min_value", "negative_values"};
-  for (const auto& invariant : run.invariants()) columns.push_back("conservation_" + invariant);
-  columns.emplace_back("entropy");
-  columns.emplace_back("entropy_change");
+  const std::vector<std::string> invariants = run.invariants();
+  std::vector<std::string> columns;
+  step_record::visit_members(run.initial_record(), column_writer{invariants, columns});
   return columns;
 }
 
@@ -62,10 +116,9 @@ std::size_t most_rows(const simulation& run) {
 }
 
 long stride_of(const checkpoint& c) {
-  const long stride = count(c, "history_stride");
-  if (stride < 1)
-    throw io_error(
-        "the checkpoint has a wrong number 'history_stride' (damaged file); give another checkpoint");
+  long stride = 0;
+  number_reader{"history", c}("stride", stride);
+  if (stride < 1) refuse_number("history.stride");
   return stride;
 }
 
@@ -113,67 +166,31 @@ void run_records::add_snapshot(const simulation& run) {
 }
 
 checkpoint make_checkpoint(const simulation& run, const run_records& records) {
-  saved_run saved = run.save();
+  run_state saved = run.save();
   checkpoint c;
   c.case_text = to_toml(run.config());
   c.commit = commit();
   c.cells = static_cast<std::uint64_t>(run.cells());
   c.components = static_cast<std::uint64_t>(run.components());
-  c.state = std::move(saved.state);
-  c.numbers = {{"step", static_cast<double>(saved.step)},
-               {"since_anchor", static_cast<double>(saved.since_anchor)},
-               {"t", saved.t},
-               {"anchor", saved.anchor},
-               {"anchor_dt", saved.anchor_dt},
-               {"startup_steps", static_cast<double>(saved.startup_steps)},
-               {"startup_done", static_cast<double>(saved.startup_done)},
-               {"startup_length", saved.startup_length},
-               {"largest_dt", saved.so_far.dt},
-               {"wall_s", saved.so_far.wall_s},
-               {"min_value", saved.so_far.min_value},
-               {"negative_values", static_cast<double>(saved.so_far.negative_values)},
-               {"conservation_defect", saved.so_far.conservation_defect},
-               {"max_entropy_increase", saved.so_far.max_entropy_increase},
-               {"history_stride", static_cast<double>(records.history_stride())}};
-  if (run.config().time.tolerance) {
-    c.numbers["proposed_dt"] = saved.proposed_dt;
-    c.numbers["previous_error"] = saved.previous_error;
-    c.numbers["step_holds"] = saved.step_holds ? 1.0 : 0.0;
-    c.numbers["rejected_steps"] = static_cast<double>(saved.so_far.rejected_steps);
-  }
+  c.state = std::move(saved.unknowns);
+  run_state::visit_records(saved, [&c](const char* group, const auto& record) {
+    record.visit_members(record, number_writer{group, c});
+  });
+  number_writer{"history", c}("stride", records.history_stride());
   c.history = records.history();
   c.fields = records.fields();
   return c;
 }
 
-saved_run to_saved_run(const checkpoint& c) {
-  saved_run saved;
-  saved.state = c.state;
-  saved.step = count(c, "step");
-  saved.since_anchor = count(c, "since_anchor");
-  saved.t = c.number("t");
-  saved.anchor = c.number("anchor");
-  saved.anchor_dt = c.number("anchor_dt");
-  saved.startup_steps = count(c, "startup_steps");
-  saved.startup_done = count(c, "startup_done");
-  saved.startup_length = c.number("startup_length");
-  if (saved.startup_steps > 64 || saved.startup_done > saved.startup_steps)
+run_state to_run_state(const checkpoint& c) {
+  run_state saved;
+  saved.unknowns = c.state;
+  if (c.numbers.contains("control.proposed")) saved.control.emplace();  // of a run with a tolerance
+  run_state::visit_records(saved, [&c](const char* group, auto& record) {
+    record.visit_members(record, number_reader{group, c});
+  });
+  if (saved.march.startup_steps > 64 || saved.march.startup_done > saved.march.startup_steps)
     throw io_error("the checkpoint has a wrong start-up (damaged file); give another checkpoint");
-  if (c.numbers.count("proposed_dt") > 0) {  // of runs that keep a tolerance
-    saved.proposed_dt = c.number("proposed_dt");
-    saved.previous_error = c.number("previous_error");
-    saved.step_holds = count(c, "step_holds") > 0;
-    saved.so_far.rejected_steps = count(c, "rejected_steps");
-  }
-  saved.so_far.steps = saved.step;
-  saved.so_far.t = saved.t;
-  saved.so_far.dt = c.number("largest_dt");
-  saved.so_far.wall_s = c.number("wall_s");
-  saved.so_far.min_value = c.number("min_value");
-  saved.so_far.negative_values = count(c, "negative_values");
-  saved.so_far.conservation_defect = c.number("conservation_defect");
-  saved.so_far.max_entropy_increase = c.number("max_entropy_increase");
-  saved.so_far.phase_points = static_cast<long>(c.cells * c.components);
   saved.initial = from_row(c.history.rows.front());
   saved.last = from_row(c.history.rows.back());
   return saved;

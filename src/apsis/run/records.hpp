@@ -37,11 +37,11 @@ class run_records {
   field_series fields_;
 };
 
-/// What to_saved_run() and run_records need to go on, and the case.
+/// The case, and what to_run_state() and run_records continue from.
 checkpoint make_checkpoint(const simulation& run, const run_records& records);
 
-/// The part of a checkpoint that a simulation goes on from. Throws io_error where something is missing.
-saved_run to_saved_run(const checkpoint& c);
+/// The part of a checkpoint that a simulation continues from. Throws io_error where something is missing.
+run_state to_run_state(const checkpoint& c);
 
 /// Of every `stride`-th cell.
 distribution_snapshot make_distribution_snapshot(const simulation& run, int stride);

@@ -131,10 +131,10 @@ void run_session::resume(const std::string& path) {
     throw input_error(fmt::format(
         "'{}' holds {} x {} unknowns (the case has {} x {}); restart with the case it was written for", path,
         saved.cells, saved.components, simulation_.cells(), simulation_.components()));
-  const saved_run state = to_saved_run(saved);
-  if (!(state.t < simulation_.config().time.end))
+  const run_state state = to_run_state(saved);
+  if (!(state.march.t < simulation_.config().time.end))
     throw input_error(fmt::format("'{}' is already at t = {} (time.end is {}); give a later time.end", path,
-                                  state.t, simulation_.config().time.end));
+                                  state.march.t, simulation_.config().time.end));
   simulation_.restore(state);
   records_ = std::make_unique<run_records>(simulation_, saved);
 }

@@ -278,46 +278,29 @@ std::vector<double> simulation::epsilon() const {
   return impl_->setup.epsilon_at_centres();
 }
 
-saved_run simulation::save() const {
-  const auto march = impl_->march.save();
-  saved_run saved;
-  saved.state = state();
-  saved.step = march.step;
-  saved.since_anchor = march.since_anchor;
-  saved.t = march.t;
-  saved.anchor = march.anchor;
-  saved.anchor_dt = march.anchor_dt;
-  saved.startup_steps = march.startup_steps;
-  saved.startup_done = march.startup_done;
-  saved.startup_length = march.startup_length;
-  if (impl_->control) {
-    const auto control = impl_->control->save();
-    saved.proposed_dt = control.proposed;
-    saved.previous_error = control.previous;
-    saved.step_holds = control.after_rejection;
-  }
-  saved.so_far = summary();
+run_state simulation::save() const {
+  run_state saved;
+  saved.unknowns = state();
+  saved.march = impl_->march.save();
+  if (impl_->control) saved.control = impl_->control->save();
+  saved.totals = summary();
   saved.initial = impl_->first;
   saved.last = impl_->last;
   return saved;
 }
 
-void simulation::restore(const saved_run& saved) {
-  if (saved.state.size() != static_cast<std::size_t>(cells()) * static_cast<std::size_t>(components()))
+void simulation::restore(const run_state& saved) {
+  if (saved.unknowns.size() != static_cast<std::size_t>(cells()) * static_cast<std::size_t>(components()))
     throw input_error(
         "the saved state has another size than the case (it belongs to another case); restart with the case "
         "it was written for");
   for (int cell = 0; cell < cells(); ++cell)
-    std::copy_n(saved.state.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
+    std::copy_n(saved.unknowns.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
                 impl_->state.row(cell));
   // Before the first step there is nothing but what the case says.
-  if (saved.step > 0)
-    impl_->march.resume({saved.step, saved.since_anchor, saved.t, saved.anchor, saved.anchor_dt,
-                         saved.startup_steps, saved.startup_done, saved.startup_length});
-  if (impl_->control)
-    impl_->control->resume(
-        {saved.proposed_dt, saved.previous_error, saved.step_holds, saved.so_far.rejected_steps});
-  impl_->totals = saved.so_far;
+  if (saved.march.step > 0) impl_->march.resume(saved.march);
+  if (impl_->control && saved.control) impl_->control->resume(*saved.control);
+  impl_->totals = saved.totals;
   impl_->first = saved.initial;
   impl_->last = saved.last;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/run/run_state.hpp>
 
 #include <functional>
 #include <limits>
@@ -10,62 +11,12 @@
 
 namespace apsis {
 
-/// What was checked after a step; one row of history.csv. Dimensionless.
-struct step_record {
-  long step = 0;                            ///< number of the step, 0 for the initial state
-  double t = 0.0,                           ///< time at its end
-      dt = 0.0;                             ///< its length
-  double min_value = 0.0;                   ///< smallest unknown of the state
-  long negative_values = 0;                 ///< number of unknowns < 0
-  std::vector<double> conservation_defect;  ///< per invariant: |I − I₀| / scale of I₀
-  double entropy = 0.0;                     ///< NaN where the model has none, or an unknown is < 0
-  double entropy_change = 0.0;              ///< S^{n+1} − S^n; NaN where there is no S, and at the start
-};
-
 /// What a run promises because its configuration entails it. A broken promise ends the run (exit code 3).
 struct run_promises {
   bool positivity = false;    ///< nonnegative data, limiter (or first-order upwind), Δt ≤ r Δt_FE
   bool conservation = false;  ///< there are invariants, no open ends, and Q is implicit or Δt ≤ r Δt_FE
   bool entropy = false;       ///< the same with first-order upwind and a periodic boundary
   std::string text() const;   ///< one line for the log
-};
-
-/// Everything about a finished (or interrupted) run.
-struct run_summary {
-  long steps = 0;            ///< steps done
-  long startup_steps = 0;    ///< steps that took the place of the first; 0 without start-up
-  long rejected_steps = 0;   ///< whose estimated error was above the tolerance; not among the steps
-  double dt = 0.0,           ///< longest step
-      t = 0.0,               ///< time reached
-      wall_s = 0.0;          ///< wall time of the steps in seconds, those before a restart included
-  double cpu_s = 0.0;        ///< CPU time of the calling thread in steps, since the start or the last restart
-  double min_value = 0.0;    ///< over all steps, the initial state included
-  long negative_values = 0;  ///< sum over all steps
-  double conservation_defect = 0.0;   ///< largest of any invariant and step
-  double max_entropy_increase = 0.0;  ///< largest entropy_change; 0 if none was positive
-  long phase_points = 0;              ///< cells × components
-  double point_stages_per_s = 0.0;  ///< phase_points · stages per second of wall time, also of rejected steps
-};
-
-/// A run between two steps, for checkpoints.
-struct saved_run {
-  std::vector<double> state;  ///< [cells][components]
-  // See time_marcher::progress.
-  long step = 0,                ///< steps done
-      since_anchor = 0;         ///< steps since `anchor`
-  double t = 0.0,               ///< time
-      anchor = 0.0,             ///< t = anchor + since_anchor · anchor_dt
-      anchor_dt = 0.0;          ///< length of the steps since `anchor`
-  long startup_steps = 0,       ///< in place of the first step; 0 without start-up
-      startup_done = 0;         ///< start-up steps done
-  double startup_length = 0.0;  ///< length of all start-up steps together
-  // See step_controller::progress; as at the start where no tolerance is kept.
-  double proposed_dt = std::numeric_limits<double>::infinity(),  ///< longest that the next step should be
-      previous_error = 1.0;  ///< estimate over tolerance of the last good step
-  bool step_holds = false;   ///< the last attempt was rejected, so the step does not grow
-  run_summary so_far;        ///< totals of all steps
-  step_record initial,       ///< record of the initial state
-      last;                  ///< record of the last step
 };
 
 /// Macroscopic fields on the mesh at one time: values[field][cell].
@@ -119,9 +70,10 @@ class simulation {
   std::vector<double> epsilon() const;     ///< at the cell centres
 
   /// Everything that a restart needs to go on to the same last digit.
-  saved_run save() const;
-  /// Goes on from where `saved` was taken; the case must be the same. Throws input_error if the sizes differ.
-  void restore(const saved_run& saved);
+  run_state save() const;
+  /// Continues from where `saved` was taken; the case must be the same. Throws input_error if the sizes
+  /// differ.
+  void restore(const run_state& saved);
   const step_record& initial_record() const;  ///< of the initial state
 
  private:

@@ -34,8 +34,8 @@ struct snapshots {
 simulation begin(case_config config, double epsilon, const std::vector<double>& state) {
   config.model.epsilon = fmt::format("{:.17g}", epsilon);
   simulation run(std::move(config));
-  saved_run start = run.save();
-  start.state = state;
+  run_state start = run.save();
+  start.unknowns = state;
   run.restore(start);
   return run;
 }

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <apsis/integrate/error_control.hpp>
+#include <apsis/integrate/integrate.hpp>
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace apsis {
+
+/// The checks after a step; one row of history.csv. Dimensionless.
+struct step_record {
+  long step = 0;                            ///< number of the step, 0 for the initial state
+  double t = 0.0,                           ///< time at its end
+      dt = 0.0;                             ///< its length
+  double min_value = 0.0;                   ///< smallest unknown of the state
+  long negative_values = 0;                 ///< number of unknowns < 0
+  std::vector<double> conservation_defect;  ///< |I − I₀| / scale of I₀ for each invariant
+  double entropy = 0.0;                     ///< NaN where the model has none, or an unknown is < 0
+  double entropy_change = 0.0;              ///< S^{n+1} − S^n; NaN without entropy, and at the start
+
+  /// Calls visit(name, member) for every member of `self`, in the order of the columns of the history.
+  template <class Self, class Visitor>
+  static void visit_members(Self& self, Visitor&& visit) {
+    visit("step", self.step);
+    visit("t", self.t);
+    visit("dt", self.dt);
+    visit("min_value", self.min_value);
+    visit("negative_values", self.negative_values);
+    visit("conservation", self.conservation_defect);
+    visit("entropy", self.entropy);
+    visit("entropy_change", self.entropy_change);
+  }
+};
+
+/// Totals of a run, finished or not.
+struct run_summary {
+  long steps = 0;                     ///< steps taken
+  long startup_steps = 0;             ///< steps that replaced the first one; 0 without graded start-up
+  long rejected_steps = 0;            ///< whose estimated error exceeded the tolerance; not among the steps
+  double dt = 0.0,                    ///< longest step
+      t = 0.0,                        ///< time reached
+      wall_s = 0.0;                   ///< wall time of the steps in seconds, including those before a restart
+  double min_value = 0.0;             ///< over all steps, including the initial state
+  long negative_values = 0;           ///< sum over all steps
+  double conservation_defect = 0.0;   ///< largest of any invariant and step
+  double max_entropy_increase = 0.0;  ///< largest entropy_change; 0 if none was positive
+  long phase_points = 0;              ///< cells × components
+  double point_stages_per_s = 0.0;    ///< phase_points · stages per second of wall time, with rejected steps
+  double cpu_s = 0.0;  ///< CPU time of the calling thread in steps since the start or the last restart
+
+  /// Calls visit(name, member) for every member of `self` that belongs to the result, in the order of the
+  /// manifest. cpu_s is a property of the process.
+  template <class Self, class Visitor>
+  static void visit_members(Self& self, Visitor&& visit) {
+    visit("steps", self.steps);
+    visit("startup_steps", self.startup_steps);
+    visit("rejected_steps", self.rejected_steps);
+    visit("dt", self.dt);
+    visit("t", self.t);
+    visit("wall_s", self.wall_s);
+    visit("min_value", self.min_value);
+    visit("negative_values", self.negative_values);
+    visit("conservation_defect", self.conservation_defect);
+    visit("max_entropy_increase", self.max_entropy_increase);
+    visit("phase_points", self.phase_points);
+    visit("point_stages_per_s", self.point_stages_per_s);
+  }
+};
+
+/// A run between two steps: what a checkpoint saves and a restart continues from. A number that is added to
+/// one of the records, and to its visit_members(), is saved, restored, reported in the manifest and, of
+/// step_record, written to the history.
+struct run_state {
+  std::vector<double> unknowns;                              ///< [cells][components]
+  time_marcher<double>::progress march;                      ///< position in time
+  std::optional<step_controller<double>::progress> control;  ///< step control; nothing without tolerance
+  run_summary totals;                                        ///< of all steps so far
+  step_record initial,                                       ///< record of the initial state
+      last;                                                  ///< record of the last step
+
+  /// Calls visit(group, record) for every record of numbers that a checkpoint keeps: those of steps are rows
+  /// of the history.
+  template <class Self, class Visitor>
+  static void visit_records(Self& self, Visitor&& visit) {
+    visit("march", self.march);
+    if (self.control) visit("control", *self.control);
+    visit("totals", self.totals);
+  }
+};
+
+}  // namespace apsis

@@ -80,8 +80,7 @@ py::dict result_of(const run_session& session, run_end end) {
   out["f"] = to_array(run.state(), {run.cells(), run.components()});
   out["x"] = to_array(run.has_space() ? run.fields().x : std::vector<double>());
   out["v"] = to_array(run.velocities());
-  out["epsilon"] =
-      to_array(run.epsilon());
+  out["epsilon"] = to_array(run.epsilon());
   out["history"] = columns_of(session.records().history());
   const auto& fields = session.records().fields();
   std::vector<double> times;

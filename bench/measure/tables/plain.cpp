@@ -43,7 +43,8 @@ plain::method plain_method(const method& m) {
 plain::bgk::mesh plain_mesh(const case_config& config, const run_setup& setup) {
   const auto v = setup.equation->speeds(0);
   const auto& [from, to] = config.space.domain.front();
-  plain::bgk::mesh mesh{config.space.cells.front(), (to - from) / config.space.cells.front(), {v.begin(), v.end()}, {}};
+  plain::bgk::mesh mesh{
+      config.space.cells.front(), (to - from) / config.space.cells.front(), {v.begin(), v.end()}, {}};
   const expression formula(config.model.epsilon);
   for (const double centre : setup.centres())
     for (const double xi : gauss3::xi) mesh.epsilon.push_back(formula.evaluate(centre + xi * mesh.dx));

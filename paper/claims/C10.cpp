@@ -3,8 +3,6 @@
 #include <apsis/core/random_source.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/integrate/stepper.hpp>
-#include <paper/claim.hpp>
-#include <paper/square_decay.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +12,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <paper/claim.hpp>
+#include <paper/square_decay.hpp>
 
 namespace apsis {
 namespace {
@@ -161,10 +161,13 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C10;
 const claim_entry claim_C10 = {
-    "C10", "Numerical results, the implicit methods on u' = -10 u^2; theorem on implicit methods",
-    "the implicit methods keep u' = -10 u^2, u(0) = 10 positive for every step",
-    "every stage and step looked at for x; beyond: random dissipative G with random convex functionals, for "
-    "every implicit method of the catalogue that is unconditionally SSP",
-    check};
+    .id = "C10",
+    .section = "Numerical results, the implicit methods on u' = -10 u^2; theorem on implicit methods",
+    .statement = "the implicit methods keep u' = -10 u^2, u(0) = 10 positive for every step",
+    .how =
+        "every stage and step looked at for x; beyond: random dissipative G with random convex functionals, "
+        "for "
+        "every implicit method of the catalogue that is unconditionally SSP",
+    .check = check};
 
 }  // namespace apsis

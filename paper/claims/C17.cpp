@@ -260,11 +260,15 @@ claim_result check(const study_control& control) {
 }  // namespace
 
 extern const claim_entry claim_C17;
-const claim_entry claim_C17 = {"C17", "Properties of the numerical scheme, asymptotic preservation",
-                               "at fixed Δt, as ε → 0, the scheme becomes the explicit Runge–Kutta method on "
-                               "the limit system, for every model and from any data",
-                               "runs against the limit scheme, written without the operators and the stepper "
-                               "of a run; the limit scheme against the limit systems written out by hand",
-                               check};
+const claim_entry claim_C17 = {
+    .id = "C17",
+    .section = "Properties of the numerical scheme, asymptotic preservation",
+    .statement =
+        "at fixed Δt, as ε → 0, the scheme becomes the explicit Runge–Kutta method on "
+        "the limit system, for every model and from any data",
+    .how =
+        "runs against the limit scheme, written without the operators and the stepper "
+        "of a run; the limit scheme against the limit systems written out by hand",
+    .check = check};
 
 }  // namespace apsis

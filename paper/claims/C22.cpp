@@ -1,10 +1,10 @@
 #include <apsis/core/extremes.hpp>
-#include <paper/accuracy_figure.hpp>
 
 #include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
+#include <paper/accuracy_figure.hpp>
 
 namespace apsis {
 namespace {
@@ -79,12 +79,14 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C22;
 const claim_entry claim_C22 = {
-    "C22",
-    "The Broadwell model",
-    "both methods have their design order for ε = 1 and in the limit, from inconsistent data, and lose it "
-    "between",
-    "the paper's runs: finite volumes, Δt = Δx/2, L² difference to the next finer mesh at t = 0.1",
-    check,
-    true};
+    .id = "C22",
+    .section = "The Broadwell model",
+    .statement =
+        "both methods have their design order for ε = 1 and in the limit, from inconsistent data, and lose "
+        "it "
+        "between",
+    .how = "the paper's runs: finite volumes, Δt = Δx/2, L² difference to the next finer mesh at t = 0.1",
+    .check = check,
+    .slow = true};
 
 }  // namespace apsis

@@ -24,8 +24,10 @@ Progress = Callable[[int, int, float, float], Any]
 class Result:
     """What a run computed. Arrays are not copied.
 
-    f[cell, component] is the state at the end, x the cell centres, v the speeds of the components, epsilon the Knudsen number at
-    the centres (empty where the model has none). fields[name][k, cell] are the macroscopic fields at the times t[k], the last
+    f[cell, component] is the state at the end, x the cell centres, v[component] the speeds of the components, epsilon the Knudsen
+    number at the centres (empty where the model has none). With two or three velocity dimensions v[component, dimension] are
+    the velocities, v_weights[component] their quadrature weights, so that f @ v_weights is the density; where they are a tensor
+    product, axes["v_x"], … are its nodes and marginals["v_x"][cell, node], … f integrated over the other components. fields[name][k, cell] are the macroscopic fields at the times t[k], the last
     of which is the end, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
     the run ended."""
 
@@ -39,6 +41,9 @@ class Result:
     history: dict[str, Array]
     summary: dict[str, Any]
     labels: dict[str, str] = field(default_factory=dict)
+    v_weights: Array = field(default_factory=lambda: np.zeros(0))
+    axes: dict[str, Array] = field(default_factory=dict)
+    marginals: dict[str, Array] = field(default_factory=dict)
 
     @property
     def title(self) -> str:
@@ -60,12 +65,15 @@ class Result:
                            "fields": ", ".join(self.fields)})
 
     def plot(self, kind: str = "fields") -> Any:
-        """A Matplotlib figure: "fields" over x or t, "distribution" f(x, v), or "history". Raises InputError where there is nothing to draw."""
-        from .plot.results import RunResult, figures  # needs Matplotlib, which runs do not
-        arrays = {name: value for name, value in (("f", self.f), ("x", self.x), ("v", self.v), ("epsilon", self.epsilon)) if value.size}
+        """A Matplotlib figure: "fields" over x or t, "distribution" f(x, v) or, with several velocity dimensions, its marginal over
+        v_x, or "history". Raises InputError where there is nothing to draw."""
+        from .plot.results import figures  # needs Matplotlib, which runs do not
+        from .plot.run_result import RunResult
+        every = {"f": self.f, "x": self.x, "v": self.v, "v_weights": self.v_weights, "epsilon": self.epsilon, **self.axes}
+        arrays = {name: value for name, value in every.items() if value.size}
         last = {name: values[-1] for name, values in self.fields.items()}
         stored = RunResult(Path("run"), {"case": self.summary.get("case", {})}, last, {**self.fields, "t": self.t}, arrays, self.history,
-                           self.labels, "")
+                           self.labels, "", self.marginals)
         made = figures(stored)
         if kind not in made:
             raise InputError(f"there is no picture '{kind}' of this result; valid: {', '.join(made) or 'none'}")
@@ -77,10 +85,11 @@ class Result:
             return False
         def same(a: Mapping[str, Array], b: Mapping[str, Array]) -> bool:
             return a.keys() == b.keys() and all(np.array_equal(a[name], b[name], equal_nan=True) for name in a)
-        arrays = ("f", "x", "v", "epsilon", "t")
+        arrays = ("f", "x", "v", "v_weights", "epsilon", "t")
         return (self.state == other.state and self.summary.get("case") == other.summary.get("case")
                 and same({name: getattr(self, name) for name in arrays}, {name: getattr(other, name) for name in arrays})
-                and same(self.fields, other.fields) and same(self.history, other.history))
+                and same(self.fields, other.fields) and same(self.history, other.history)
+                and same(self.axes, other.axes) and same(self.marginals, other.marginals))
 
 
 def cases() -> list[str]:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..plot.results import read_json
+from ..plot.run_result import read_json
 from ..plot.style import PictureError, whole_file
 from . import claims, run, study
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ..plot.pictures import draw
-from ..plot.results import read_json, read_json_list
+from ..plot.run_result import read_json, read_json_list
 from . import page
 from .page import number, table, text
 

@@ -1,4 +1,4 @@
-"""Kinetic and relaxation problems on a mesh, made without a case file."""
+"""Kinetic and relaxation problems on a mesh, built without a case file."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,7 +18,7 @@ Interval = Sequence[float]
 class KineticProblem:
     """u_t + Σ_k ∂_k(v_k u) = S(u) + Q(u)/ε for a model of the catalogue (apsis.models()) on a mesh.
 
-    It is built by the same C++ builder as the runs of cases. A state is an array [cells, components]. All quantities are
+    It uses the same C++ builder as runs of cases. A state is an array [cells, components]. All quantities are
     dimensionless.
 
         problem = apsis.KineticProblem("bgk", cells=40, domain=(0, 2), velocities=(15, 150), epsilon=lambda x: 1e-3 + x * x)
@@ -36,7 +36,7 @@ class KineticProblem:
     reconstruction, equilibrium   as in a case file
     positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE
 
-    Raises InputError where these do not fit together."""
+    Raises InputError if these are inconsistent."""
 
     def __init__(self, model: str, *, cells: int | Sequence[int] = (), domain: Interval | Sequence[Interval] = (),
                  velocities: tuple[float, int] | None = None, epsilon: float | Callable[..., float] = 1.0,
@@ -58,7 +58,7 @@ class KineticProblem:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Of a state: cells, components."""
+        """Shape of a state: (cells, components)."""
         cells, components = self._core.shape()
         return cells, components
 
@@ -78,11 +78,11 @@ class KineticProblem:
         return self._core.epsilon()
 
     def sample(self, initial: str | Callable[..., ArrayLike], jumps: Sequence[float] = ()) -> Array:
-        """Cell averages or point values of initial data.
+        """Returns cell averages or point values of initial data.
 
         `initial` is a name of the model's data, or a function of the coordinates of a point that returns all components;
         averages are exact to rounding where it is smooth between the `jumps` (in increasing order, on a line).
-        Raises InputError where the discrete model does not support the data."""
+        Raises InputError if the discrete model does not support the data."""
         if isinstance(initial, str):
             return self._core.sample_named(initial)
         if not callable(initial):
@@ -90,23 +90,23 @@ class KineticProblem:
         return self._core.sample_function(initial, [number("jumps", x) for x in jumps])
 
     def fields(self, u: ArrayLike) -> dict[str, Array]:
-        """Macroscopic fields of a state by name, [cells] each."""
+        """Returns the macroscopic fields of a state by name, [cells] each."""
         return self._core.fields(real_array("u", u))
 
     def transport(self, u: ArrayLike, t: float = 0.0) -> Array:
-        """T(t, u), of the shape of u."""
+        """Returns T(t, u) in the shape of u."""
         return self._core.transport(real_array("u", u), number("t", t))
 
     def collision(self, u: ArrayLike, t: float = 0.0) -> Array:
-        """Q(u)/ε, of the shape of u. Raises NumericalError where ε = 0."""
+        """Returns Q(u)/ε in the shape of u. Raises NumericalError if ε = 0 somewhere."""
         return self._core.collision(real_array("u", u), number("t", t))
 
     def solve_collision(self, u: ArrayLike, a: float, b: float = 0.0, t: float = 0.0) -> Array:
-        """The solution v of v = u + a Q(v)/ε + b Q'(v)Q(v)/ε², a ≥ 0, b ≤ 0."""
+        """Returns the solution v of the stage equation v = u + a Q(v)/ε + b Q'(v)Q(v)/ε², a ≥ 0, b ≤ 0."""
         return self._core.solve_collision(real_array("u", u), number("a", a), number("b", b), number("t", t))
 
     def forward_euler_step(self, u: ArrayLike) -> float:
-        """Δt_FE of the transport; infinite without space."""
+        """Returns Δt_FE of the transport; infinite without space."""
         return self._core.forward_euler_step(real_array("u", u))
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""Runs of cases, the same as those of `apsis run`."""
+"""Runs of cases, as by `apsis run`."""
 from __future__ import annotations
 
 import json
@@ -22,7 +22,7 @@ Progress = Callable[[int, int, float, float], Any]
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What a run computed. Arrays are not copied.
+    """The result of a run. Arrays are not copied.
 
     f[cell, component] is the state at the end, x the cell centres, v[component] the speeds of the components, epsilon the Knudsen
     number at the centres (empty where the model has none). With two or three velocity dimensions v[component, dimension] are
@@ -47,7 +47,7 @@ class Result:
 
     @property
     def title(self) -> str:
-        """That of the case."""
+        """Title of the case."""
         return str(self.summary.get("case", {}).get("title", ""))
 
     def _size(self) -> str:
@@ -66,7 +66,7 @@ class Result:
 
     def plot(self, kind: str = "fields") -> Any:
         """A Matplotlib figure: "fields" over x or t, "distribution" f(x, v) or, with several velocity dimensions, its marginal over
-        v_x, or "history". Raises InputError where there is nothing to draw."""
+        v_x, or "history". Raises InputError if there is nothing to draw."""
         from .plot.results import figures  # needs Matplotlib, which runs do not
         from .plot.run_result import RunResult
         every = {"f": self.f, "x": self.x, "v": self.v, "v_weights": self.v_weights, "epsilon": self.epsilon, **self.axes}
@@ -76,11 +76,11 @@ class Result:
                            self.labels, "", self.marginals)
         made = figures(stored)
         if kind not in made:
-            raise InputError(f"there is no picture '{kind}' of this result; valid: {', '.join(made) or 'none'}")
+            raise InputError(f"unknown picture '{kind}' (this result has no such picture); valid: {', '.join(made) or 'none'}")
         return made[kind]
 
     def __eq__(self, other: object) -> bool:
-        """The same results, bit for bit, NaN included: everything but wall times."""
+        """Bitwise equality of everything but wall times, including NaN."""
         if not isinstance(other, Result):
             return False
         def same(a: Mapping[str, Array], b: Mapping[str, Array]) -> bool:
@@ -93,7 +93,7 @@ class Result:
 
 
 def cases() -> list[str]:
-    """Names of the built-in cases."""
+    """Returns the names of the built-in cases."""
     return _core.case_names()
 
 
@@ -101,10 +101,10 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
         wall: float | None = None, threads: int | None = None, progress: Progress | None = None) -> Result:
     """Runs a case: the name of a built-in one, a file, or a mapping such as {"model": {"name": "bgk"}, …}.
 
-    overrides are "key=value" ("space.cells=80"). `out` is a folder for the results, `restart` a checkpoint to go on from, `wall`
-    a limit in seconds. progress(step, steps, t, smallest) is called now and then; False ends the run, with a checkpoint in
-    `out`. `threads`: 0 stands for all processors; without it OMP_NUM_THREADS, or all for a large case and 1 for a small one.
-    Other threads of Python run meanwhile. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
+    overrides are "key=value" ("space.cells=80"). `out` is a folder for the results, `restart` a checkpoint to continue from, `wall`
+    a limit in seconds. progress(step, steps, t, smallest) is called about 20 times a second; False ends the run, with a checkpoint in
+    `out`. `threads`: 0 for all processors; default: OMP_NUM_THREADS, else all for a large case and 1 for a small one.
+    Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
     if not isinstance(case, (str, Path, Mapping)):
         raise InputError(f"case is a {type(case).__name__} (it must be a name, a file or a mapping); see apsis.cases()")
     for one in overrides:
@@ -120,7 +120,7 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
 
 
 def to_toml(case: Mapping[str, Any]) -> str:
-    """The case as the text of a case file."""
+    """Returns the text of a case file."""
     plain = [f"{key} = {_value(value)}" for key, value in case.items() if not isinstance(value, Mapping)]
     sections = [f"[{key}]\n" + "\n".join(f"{name} = {_value(x)}" for name, x in value.items())
                 for key, value in case.items() if isinstance(value, Mapping)]

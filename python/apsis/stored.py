@@ -1,4 +1,4 @@
-"""Results from the folders that runs leave."""
+"""Results of stored runs."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -10,10 +10,10 @@ from .runs import Result
 
 
 def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
-    """The Result of a stored run: `run(…, out=folder)` or `apsis run --out folder`.
+    """Returns the Result of a stored run: `run(…, out=folder)` or `apsis run --out folder`.
 
     Without snapshots t and fields have the end alone, and without a stored distribution f has no numbers. f is what the file
-    holds: every output.stride-th cell in output.precision. Raises FileError if the folder is not that of a run."""
+    holds: every output.stride-th cell in output.precision. Raises FileError if the folder is not a result folder."""
     from .plot.run_result import read_result  # needs h5py and Matplotlib, which runs do not
     from .plot.style import PictureError
     try:

@@ -31,8 +31,8 @@ const auto& entry_called(const std::string& what, const std::string& name, const
     if (entry->name == name) return *entry;
     names.push_back(entry->name);
   }
-  throw input_error(
-      fmt::format("there is no {} '{}' (no such name); {}", what, name.substr(0, 60), suggest(name, names)));
+  throw input_error(fmt::format("unknown {} '{}' (there is no such name); {}", what, name.substr(0, 60),
+                                suggest(name, names)));
 }
 
 template <class Choice>
@@ -40,7 +40,7 @@ Choice choice_called(const std::string& what, const std::string& name) {
   const auto& names = choice_names<Choice>;
   for (std::size_t k = 0; k < names.size(); ++k)
     if (name == names[k]) return static_cast<Choice>(k);
-  throw input_error(fmt::format("there is no {} '{}' (no such name); {}", what, name.substr(0, 60),
+  throw input_error(fmt::format("unknown {} '{}' (there is no such name); {}", what, name.substr(0, 60),
                                 suggest(name, {names.begin(), names.end()})));
 }
 
@@ -65,7 +65,8 @@ std::unique_ptr<model> make_equation(const description& of) {
   for (const auto& [name, value] : of.parameters) {
     if (!config.parameters.contains(name))
       throw input_error(
-          fmt::format("model '{}' has no parameter '{}'; see: apsis list models", of.model, name));
+          fmt::format("unknown parameter '{1}' (model '{0}' has no such parameter); see: apsis list models",
+                      of.model, name));
     const auto p = std::find_if(entry.parameters.begin(), entry.parameters.end(),
                                 [&name = name](const auto& one) { return one.name == name; });
     if (!(value >= p->lowest && value <= p->highest) || (p->integer && value != std::floor(value)))
@@ -76,7 +77,8 @@ std::unique_ptr<model> make_equation(const description& of) {
   }
   for (const auto& [name, value] : of.options) {
     if (!config.texts.contains(name))
-      throw input_error(fmt::format("model '{}' has no option '{}'; see: apsis list models", of.model, name));
+      throw input_error(fmt::format(
+          "unknown option '{1}' (model '{0}' has no such option); see: apsis list models", of.model, name));
     config.texts[name] = value;
   }
   if (entry.has_velocity_grid)
@@ -156,7 +158,7 @@ class kinetic_problem {
       if (data.name == name) return checked(builder_.sample(data.point_value, data.jumps));
       names.push_back(data.name);
     }
-    throw input_error(fmt::format("there are no initial data '{}' (no such name); {}", name.substr(0, 60),
+    throw input_error(fmt::format("unknown initial data '{}' (there is no such name); {}", name.substr(0, 60),
                                   suggest(name, names)));
   }
 

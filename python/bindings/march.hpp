@@ -27,18 +27,22 @@ struct step_count {
 
 /// Integrates u from t[0] through t[1], t[2], …; record(u) is called at each of these times, and check()
 /// after each step. `limited`: the problem knows Δt_FE. Throws what the integrator throws, and input_error
-/// where nothing says how long a step is.
+/// if the step size is unknown.
 template <class Problem, class Difference, class Record, class Check>
 step_count march_through(Problem& problem, typename Problem::state& u, const std::vector<double>& t,
                          const method& m, const step_choice& choice, bool limited,
                          const Difference& difference, const Record& record, const Check& check) {
-  if (t.size() < 2) throw input_error("there is no interval; give at least two times, t = (t0, t1)");
+  if (t.size() < 2)
+    throw input_error(
+        "the time interval is missing (fewer than two times were given); give at least two, t = (t0, t1)");
   if (!choice.dt && !limited && !choice.tolerance)
     throw input_error(
-        "nothing says how long a step is; give dt, a tolerance, or forward_euler_step of the problem");
+        "the step size is unknown (neither dt, tolerance nor forward_euler_step is given); give one of them");
   if (choice.tolerance && !m.embedded)
-    throw input_error("method '" + m.name +
-                      "' has no embedded solution to estimate errors with; give dt alone, or another method");
+    throw input_error(
+        "method '" + m.name +
+        "' cannot keep a tolerance (it has no embedded solution to estimate errors with); give dt alone, or "
+        "another method");
   stepper march(m, problem, choice.tolerance ? solutions::result_and_embedded : solutions::result);
   const auto rule = choice.dt ? step_rule<double>::fixed(*choice.dt)
                     : limited ? step_rule<double>::ssp(choice.safety)

@@ -33,7 +33,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
 def method_description(name: str) -> dict[str, Any]:
     """Name and Butcher form of a method of the catalogue or a file. Raises PictureError."""
     try:
-        import apsis  # here, because everything else draws without the compiled part
+        import apsis  # imported here: all other pictures need no compiled module
         method = apsis.read_method(name) if Path(name).is_file() else apsis.method(name)
     except ImportError as problem:
         raise PictureError(f"'{name}' is neither a folder nor a file of results ({problem}); give one of these") from problem
@@ -62,7 +62,7 @@ def of_document(document: dict[str, Any], path: Path) -> Iterable[tuple[str, Any
 
 
 def drawn(what: str) -> tuple[Path, Iterable[tuple[str, Any]]]:
-    """The folder where pictures of this thing go, and the pictures."""
+    """Returns the folder for the pictures of a result, and the pictures."""
     path = Path(what)
     if path.is_dir():
         for name in ("picture.json", "reproduce.json"):

@@ -10,11 +10,11 @@ import numpy as np
 from .run_result import Array, RunResult
 from .style import BLACK, BLUE, COLOURS, GREY, MARKERS, PictureError, plt
 
-SHOWN_TIMES = 5  # so many earlier snapshots, at most, beside the last
+SHOWN_TIMES = 5  # most earlier snapshots drawn with the last one
 
 
 def panels(count: int, width: float = 4.2, height: float = 3.6) -> tuple[Any, list[Any]]:
-    """A figure with a panel for each of `count` things, at most three in a row."""
+    """Returns a figure with `count` panels, at most three in a row."""
     columns = min(count, 3)
     rows = -(-count // columns)
     figure, grid = plt.subplots(rows, columns, figsize=(width * columns if columns > 1 else 6.0, height * rows), squeeze=False)
@@ -148,7 +148,7 @@ def distribution_figure(result: RunResult) -> Any:
     label, axis = distribution_name(result), "v" if result.velocity_dimensions < 2 else "v_x"
     image = panel.pcolormesh(x, v, marginal, shading="nearest", cmap="viridis", rasterized=True)
     figure.colorbar(image, ax=panel, label=f"{label} (dimensionless)")
-    # The tails beyond are below a thousandth of the maximum and would only shrink what is to be seen.
+    # The tails outside are below a thousandth of the maximum.
     seen = v[(marginal > 1e-3 * marginal.max()).any(axis=1)]
     if len(seen) > 1:
         panel.set_ylim(seen.min(), seen.max())
@@ -166,14 +166,14 @@ def distribution_figure(result: RunResult) -> Any:
 
 
 def history_figure(result: RunResult) -> Any:
-    """What was checked at every step: smallest value, conservation defects, entropy, and the step where it changes. None after
+    """Draws the checks of every step: smallest value, conservation defects, entropy, and a step size that varies. None after
     no step."""
     history = result.history
     if len(history["t"]) < 2:
         return None
     defects = [name for name in history if name.startswith("conservation")]
     with_entropy = "entropy" in history and bool(np.isfinite(history["entropy"]).any())
-    # The last two steps share what is left to the end of the run, which is no change.
+    # The last two steps divide the remaining time, which is not a change of the step size.
     steps = history["dt"][1:-2]
     changing = len(steps) > 1 and float(np.ptp(steps)) > 1e-9 * float(steps.max())
     figure, axes = panels(1 + bool(defects) + with_entropy + changing, height=3.4)
@@ -207,7 +207,7 @@ def draw_smallest(panel: Any, history: dict[str, Array]) -> None:
 
 def draw_defects(panel: Any, history: dict[str, Array], defects: list[str]) -> None:
     for name, colour in zip(defects, COLOURS):
-        # An exact zero has no logarithm; it is drawn at the bottom instead of being left out.
+        # An exact zero is drawn at the bottom of the logarithmic axis.
         panel.semilogy(history["t"], np.maximum(history[name], 1e-18), color=colour,
                        label=name.removeprefix("conservation").strip("_.").replace("_", " ") or name)
     panel.set_ylabel("relative conservation defect")
@@ -215,6 +215,6 @@ def draw_defects(panel: Any, history: dict[str, Array], defects: list[str]) -> N
 
 
 def figures(result: RunResult) -> dict[str, Any]:
-    """All pictures of a run by name: fields, distribution, history."""
+    """Returns all pictures of a run by name: fields, distribution, history."""
     made = {"fields": fields_figure(result), "distribution": distribution_figure(result), "history": history_figure(result)}
     return {name: figure for name, figure in made.items() if figure is not None}

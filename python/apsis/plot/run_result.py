@@ -1,4 +1,4 @@
-"""What runs leave in their folders, read for pictures and reports. All quantities are dimensionless."""
+"""Reads result folders for pictures and reports. All quantities are dimensionless."""
 from __future__ import annotations
 
 import csv
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RunResult:
-    """What a run left. fields[name][cell] are the macroscopic fields at the end, snapshots[name][k, cell] at the times t[k];
+    """The content of a result folder. fields[name][cell] are the macroscopic fields at the end, snapshots[name][k, cell] at the times t[k];
     arrays has f[cell, component], x, v, epsilon, those that the model has, and with several velocity dimensions v_weights and the
     nodes v_x, v_y, v_z; history[column][step] what was checked; labels the words for an axis; case the case file;
     marginals[axis][cell, node] f integrated over the other velocity components."""
@@ -53,7 +53,7 @@ class RunResult:
 
 
 def read_history(path: Path) -> dict[str, Array]:
-    """Columns of a table with a header, an empty cell as NaN. Raises PictureError."""
+    """Returns the columns of a table with a header; empty cells become NaN. Raises PictureError."""
     try:
         with open(path, newline="", encoding="utf-8") as file:
             header, *rows = csv.reader(file)
@@ -62,7 +62,7 @@ def read_history(path: Path) -> dict[str, Array]:
     except OSError as problem:
         raise PictureError(f"cannot read '{path}' ({problem.strerror}); run the case with --out first") from problem
     except (IndexError, ValueError) as problem:
-        raise PictureError(f"'{path}' is no table of numbers ({problem}); run the case again") from problem
+        raise PictureError(f"'{path}' is not a table of numbers ({problem}); run the case again") from problem
 
 
 def read_any_json(path: Path) -> Any:
@@ -75,23 +75,23 @@ def read_any_json(path: Path) -> Any:
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """An object of JSON. Raises PictureError."""
+    """Reads a JSON object. Raises PictureError."""
     document = read_any_json(path)
     if not isinstance(document, dict):
-        raise PictureError(f"'{path}' is no object of JSON (it is a {type(document).__name__}); give what apsis wrote")
+        raise PictureError(f"'{path}' is not a JSON object (it is a {type(document).__name__}); give what apsis wrote")
     return document
 
 
 def read_json_list(path: Path) -> list[dict[str, Any]]:
-    """A list of objects of JSON. Raises PictureError."""
+    """Reads a JSON list of objects. Raises PictureError."""
     document = read_any_json(path)
     if not isinstance(document, list) or not all(isinstance(one, dict) for one in document):
-        raise PictureError(f"'{path}' is no list of objects of JSON (it is damaged); make it anew")
+        raise PictureError(f"'{path}' is not a list of JSON objects (it is damaged); run the case again")
     return document
 
 
 def read_result(folder: str | Path) -> RunResult:
-    """Reads the folder of a run. Raises PictureError."""
+    """Reads a result folder. Raises PictureError."""
     folder = Path(folder)
     manifest = read_json(folder / "manifest.json")
     history = read_history(folder / "history.csv")
@@ -115,7 +115,7 @@ def read_result(folder: str | Path) -> RunResult:
 
 
 def columns_of(path: Path) -> list[str]:
-    """Names in the order of the model, which HDF5 does not keep."""
+    """Returns names in the order of the model, which HDF5 does not preserve."""
     try:
         with open(path, encoding="utf-8") as file:
             return file.readline().strip().split(",")

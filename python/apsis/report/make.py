@@ -1,4 +1,4 @@
-"""Which page belongs to a folder."""
+"""Writes the page that belongs to a folder."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -14,7 +14,7 @@ def write(path: Path, content: str) -> None:
 
 
 def make_report(folder: str | Path) -> Path:
-    """Writes <folder>/report.html, for a reproduction claims.md too, and the pictures. Raises PictureError."""
+    """Writes <folder>/report.html, the pictures and, for a reproduction, claims.md. Raises PictureError."""
     folder = Path(folder)
     try:
         if (folder / "reproduce.json").exists():

@@ -1,4 +1,4 @@
-"""The page of a run: what was computed, which promises were kept, pictures, the case, the manifest."""
+"""The page of a run: results, promises, pictures, case and manifest."""
 from __future__ import annotations
 
 import json
@@ -23,7 +23,7 @@ PROMISES = {
 
 
 def caption(name: str, result: RunResult) -> tuple[str, str]:
-    """Heading and text of a picture."""
+    """Heading and caption of a picture."""
     drawn = "f(x, v)" if result.velocity_dimensions < 2 else distribution_name(result)
     heading, words = CAPTIONS[name]
     return heading, words.format(f=drawn)
@@ -44,7 +44,7 @@ def summary(result: RunResult) -> str:
 
 
 def promises(manifest: dict[str, Any]) -> str:
-    """A run ends when a promise breaks, so those of one that did not were kept at every step."""
+    """Describes the promises: a run ends when one is broken, so a completed run kept them at every step."""
     broken = str(manifest.get("message", "")).startswith("broken promise")
     rows = []
     for name, promised in manifest["promises"].items():
@@ -67,14 +67,14 @@ def case_text(result: RunResult) -> str:
 
 
 def flattened(value: Any, name: str = "") -> list[tuple[str, Any]]:
-    """Leaves of nested objects as ("build.compiler", value)."""
+    """Yields the leaves of nested objects as ("build.compiler", value)."""
     if isinstance(value, dict):
         return [leaf for key, inner in value.items() for leaf in flattened(inner, f"{name}.{key}" if name else key)]
     return [(name, value)]
 
 
 def report(folder: Path) -> str:
-    """The page; pictures go into <folder>/pictures as well. Raises PictureError."""
+    """Returns the page; pictures are also written to <folder>/pictures. Raises PictureError."""
     result = read_result(folder)
     manifest = result.manifest
     pictures = "".join(page.embedded(figure, name, *caption(name, result), folder / "pictures")

@@ -20,7 +20,7 @@ def runs_table(runs: list[dict[str, Any]]) -> str:
 
 
 def report(folder: Path) -> str:
-    """The page; the picture goes into <folder>/pictures as well. Raises PictureError."""
+    """Returns the page; the picture is also written to <folder>/pictures. Raises PictureError."""
     manifest = read_json(folder / "manifest.json")
     study: dict[str, Any] = manifest["study"]
     picture = folder / "picture.json"

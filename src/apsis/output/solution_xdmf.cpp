@@ -9,7 +9,7 @@
 namespace apsis {
 namespace {
 
-// In XML, five characters are markup; everything else of a title may stand.
+// Five characters are markup in XML; all others may appear in a title.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -36,14 +36,14 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// Where numbers are: a dataset of a file beside the description.
+/// Returns a reference to a dataset in a file beside the description.
 std::string data_item(const std::string& dimensions, const std::string& source, int bytes = 8) {
   return fmt::format(
       "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"{}\" Dimensions=\"{}\">{}</DataItem>\n",
       bytes, dimensions, source);
 }
 
-/// Row k of a dataset [rows][columns].
+/// Returns a reference to row k of a dataset [rows][columns].
 std::string row_item(std::uint64_t k, std::uint64_t rows, std::uint64_t columns, const std::string& source) {
   return fmt::format(
       "<DataItem ItemType=\"HyperSlab\" Dimensions=\"1 1 {1}\">\n<DataItem Format=\"XML\" Dimensions=\"3 "
@@ -60,7 +60,7 @@ std::string node_values(const std::string& name, const std::string& item) {
   return fmt::format("<Attribute Name=\"{}\" Center=\"Node\">{}</Attribute>\n", escaped(name), item);
 }
 
-/// One axis of a grid: how many points, and where their coordinates are.
+/// One axis of a grid: number of points and reference to their coordinates.
 struct grid_axis {
   std::uint64_t points = 1;
   std::string coordinates = zero_axis();
@@ -70,12 +70,12 @@ grid_axis axis_of(std::uint64_t points, const std::string& source) {
   return {points, data_item(fmt::format("{}", points), source)};
 }
 
-/// Numbers of points of the three axes, the one that runs slowest first.
+/// Returns the numbers of points of the three axes, slowest axis first.
 std::string points_of(const std::array<grid_axis, 3>& axes) {
   return fmt::format("{} {} {}", axes[2].points, axes[1].points, axes[0].points);
 }
 
-/// A rectilinear grid; axes[0] runs fastest.
+/// Returns a rectilinear grid; axes[0] is the fastest axis.
 std::string grid(const std::string& name, const std::array<grid_axis, 3>& axes, double t,
                  const std::string& values) {
   return fmt::format(
@@ -106,7 +106,7 @@ std::string grids_of_fields(const solution& s) {
   return grids;
 }
 
-/// Values [cells][…] of a file over its velocity axes, of which the first runs slowest, and x.
+/// Returns a grid of values [cells][…] over x and the velocity axes, slowest axis first.
 std::string grid_in_phase_space(const std::string& name, const distribution_file& file,
                                 const std::vector<velocity_axis>& axes, const std::string& dataset,
                                 const std::string& attribute) {
@@ -119,14 +119,14 @@ std::string grid_in_phase_space(const std::string& name, const distribution_file
               node_values(attribute, data_item(points_of(all), file.name + ":/" + dataset, bytes)));
 }
 
-/// Series in time of f and its marginals.
+/// Returns the time series of f and its marginals.
 std::string series_of_distributions(const std::vector<distribution_file>& files, const velocity_set& set) {
   const auto axes = velocity_axes(set);
   if (axes.empty() || set.sets() > 1)
-    return "<!-- f is left out: it is not one function on a tensor product of velocities. -->\n";
+    return "<!-- f is omitted: it is not a single function on a tensor product of velocities. -->\n";
   std::string out, grids;
   if (axes.size() > 2)
-    out += "<!-- f has the four axes x, v_x, v_y, v_z, too many for a grid: here are its marginals. -->\n";
+    out += "<!-- f has the four axes x, v_x, v_y, v_z, too many for a grid: its marginals follow. -->\n";
   if (axes.size() == 2) out += "<!-- The axes X, Y, Z of the grids of f are v_y, v_x, x. -->\n";
   for (const auto& file : files)
     if (axes.size() <= 2) grids += grid_in_phase_space("distribution", file, axes, "f", "f");

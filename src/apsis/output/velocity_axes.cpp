@@ -19,7 +19,7 @@ std::vector<double> distinct(const double* values, std::size_t count) {
   return found;
 }
 
-/// Distance from the first to the last node, plus half an interval beyond each of them; 1 for a single node.
+/// Returns the distance between the outermost nodes plus half an interval at each end; 1 for a single node.
 double width(const std::vector<double>& nodes) {
   const std::size_t n = nodes.size();
   if (n < 2) return 1.0;
@@ -27,7 +27,7 @@ double width(const std::vector<double>& nodes) {
          0.5 * (std::abs(nodes[1] - nodes[0]) + std::abs(nodes[n - 1] - nodes[n - 2]));
 }
 
-/// Number of velocities between neighbours along axis k.
+/// Returns the distance in the set between neighbours along axis k.
 std::size_t stride_of(const std::vector<velocity_axis>& axes, std::size_t k) {
   std::size_t stride = 1;
   for (std::size_t l = k + 1; l < axes.size(); ++l) stride *= axes[l].nodes.size();
@@ -41,7 +41,7 @@ bool repeats(const std::vector<double>& nodes, std::size_t stride, const double*
   return true;
 }
 
-/// Weights of the nodes from the sums over all velocities with the same v_k.
+/// Returns the weights of the nodes from sums over all velocities with the same v_k.
 void set_weights(std::span<const double> of_points, double total, std::vector<velocity_axis>& axes) {
   for (std::size_t k = 0; k < axes.size(); ++k) {
     auto& axis = axes[k];
@@ -52,7 +52,7 @@ void set_weights(std::span<const double> of_points, double total, std::vector<ve
   }
 }
 
-/// Whether the weights of the velocities are the products of those of the nodes, up to rounding and a factor.
+/// Whether the weights of the velocities are products of those of the nodes up to rounding and a factor.
 bool weights_are_products(std::span<const double> of_points, double total,
                           const std::vector<velocity_axis>& axes) {
   constexpr double rounding = 1e-12;

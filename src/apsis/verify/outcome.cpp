@@ -1,6 +1,5 @@
 #include <apsis/verify/outcome.hpp>
 
-
 namespace apsis {
 
 outcome compute_outcome(const case_config& config, const study_control& control) {

@@ -18,13 +18,13 @@
 namespace apsis {
 namespace {
 
-/// How the value of a key may be written on the command line. That of a key that does not exist needs no
-/// quotes: it is the key that is wrong.
+/// Returns the syntax of a key on the command line. Quotes are optional for unknown keys, so that the key is
+/// reported.
 override_form form_of(const std::string& path) {
   for (const case_key& key : case_schema())
     if (key.path == path)
       return {key.type == key_type::text || key.type == key_type::formula, type_advice(key.type)};
-  // No model has a number of the same name as a text of another.
+  // Names of numeric parameters and string options are disjoint over all models.
   for (const model_entry* entry : model_entries())
     for (const model_parameter& p : entry->parameters)
       if ("model." + p.name == path)
@@ -32,7 +32,7 @@ override_form form_of(const std::string& path) {
   return {true, type_advice(key_type::text)};
 }
 
-/// Without spaces around it: "space.cells = 80" is one argument of a shell if it is quoted.
+/// Returns the text without surrounding spaces, which quoted arguments such as "space.cells = 80" have.
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
@@ -53,7 +53,7 @@ void apply_overrides(case_text& text, const std::vector<std::string>& overrides)
           place, "not of the form key=value (an override sets one key); write for example space.cells=80");
     all.push_back({path, trimmed(item.substr(equals + 1)), place});
   }
-  // A step rule on the command line takes the place of the one in the file.
+  // A step key on the command line replaces the one in the file.
   const auto sets_step = [](const key_and_value& item) { return is_step_key(item.path); };
   if (std::any_of(all.begin(), all.end(), sets_step))
     for (const auto& key : step_keys()) text.values.erase(key);

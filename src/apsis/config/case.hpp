@@ -14,19 +14,19 @@
 
 namespace apsis {
 
-/// A case as resolved: every key has its value, every name exists. What the keys mean is documented once,
-/// in case_schema.cpp (`apsis show case`).
+/// A resolved case: every key has a value, every name exists. Keys are documented in case_keys.cpp (`apsis
+/// show case`).
 struct case_config {
   std::string source;                          ///< file or name of the built-in case
-  std::map<std::string, source_place> places;  ///< where each key of the text stands, for later messages
+  std::map<std::string, source_place> places;  ///< places of the keys, for later messages
   std::string title;                           ///< one line
   /// Table [model].
   struct {
     std::string name;
     std::string epsilon = "1";  ///< a number or a formula in x, y, z; dimensionless Knudsen number, ≥ 0
     std::string initial;        ///< name of one of the model's initial data; "" takes its first
-    std::map<std::string, double> parameters;  ///< of the model; what is not there has its default
-    std::map<std::string, std::string> texts;  ///< likewise
+    std::map<std::string, double> parameters;  ///< numeric parameters of the model; defaults if absent
+    std::map<std::string, std::string> texts;  ///< string options of the model; defaults if absent
   } model;
   /// Table [space], of models with space.
   struct {

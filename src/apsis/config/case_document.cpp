@@ -1,4 +1,4 @@
-// The schema in words, and cases as text: both follow the one table of keys.
+// Documentation of the schema and cases as text, both generated from the table of keys.
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/word_wrap.hpp>
 
@@ -24,7 +24,7 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-// The shortest decimal that reads back to the same number, marked as a float for TOML.
+// Returns the shortest decimal that is read back unchanged, as a TOML float.
 std::string number_text(double x) {
   const std::string text = fmt::format("{}", x);
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
@@ -73,7 +73,7 @@ std::string scope_text(key_scope scope) {
   return "";
 }
 
-// Lines of at most 100 characters below the name of a key or model.
+// Returns indented lines of at most 100 characters.
 std::string indented(const std::string& text) {
   constexpr std::size_t indent = 6;
   std::string out;
@@ -101,7 +101,7 @@ std::string key_text(const case_key& key) {
   add(scope_text(key.scope));
   std::string out = fmt::format("  {} ({})\n", name_of(key.path), facts);
   out += indented(key.doc);
-  // The names of initial data belong to a model and stand there.
+  // Names of initial data are listed with their model.
   if (key.choices && key.path != "model.initial")
     out += indented(fmt::format("one of: {}", fmt::join(key.choices(case_config{}), ", ")));
   return out;
@@ -149,7 +149,7 @@ std::string schema_text() {
 std::string to_toml(const case_config& config) {
   const model_entry* model = find_model(config.model.name);
   std::string out, table;
-  // Ahead of the next table; parameters are the last keys of [model].
+  // Parameters are the last keys of [model], written before the next table.
   const auto close_table = [&] {
     if (table != "model") return;
     for (const auto& [name, value] : config.model.parameters)

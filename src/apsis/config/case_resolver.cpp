@@ -16,7 +16,7 @@
 namespace apsis {
 namespace {
 
-/// From flat keys to a case: one pass over the schema, then what one key alone cannot decide.
+/// Resolves flat keys: one pass over the schema, then checks that involve several keys.
 class resolver {
  public:
   resolver(case_text text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
@@ -40,7 +40,7 @@ class resolver {
     return found == text_.values.end() ? nullptr : &found->second;
   }
 
-  // Where something is missing: the head of the table in which it should stand, or the first line.
+  // Returns the place for a missing key: the head of its table, or the first line.
   source_place table_place(const std::string& path) const {
     const auto found = text_.tables.find(path.substr(0, path.find('.')));
     return found != text_.tables.end() ? found->second : source_place{file_, 1, 1};
@@ -89,7 +89,7 @@ class resolver {
     return scope == key_scope::space ? "has no space" : "has no velocity grid";
   }
 
-  // The list of valid keys is that of the table: the whole list is what `apsis show case` is for.
+  // Suggests keys of the same table only; `apsis show case` lists all.
   static std::string suggest_path(const std::string& path, const std::vector<std::string>& valid) {
     std::vector<std::string> same_table;
     const std::string table = path.substr(0, path.find('.') + 1);
@@ -235,7 +235,7 @@ class resolver {
   void check_epsilon() const {
     const raw_value* raw = find("model.epsilon");
     source_place place = raw != nullptr ? raw->value_place : source_place{file_, 1, 1};
-    // A formula begins behind its quotation mark; other text has no columns to point to.
+    // A formula begins after its quotation mark; other text has no columns.
     if (raw != nullptr && place.column > 0) ++place.column;
     const bool on_mesh = has_space(*model_);
     const auto dimensions = on_mesh ? config_.space.domain.size() : 0;

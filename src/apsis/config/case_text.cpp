@@ -17,7 +17,7 @@ source_place place_of(const toml::source_region& source, const std::string& file
   return {file, static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
 }
 
-// Both limits stop a file that is no case at all before a parser sees it.
+// Both limits reject files that are not cases before they are parsed.
 void check_size(std::string_view text, const std::string& file) {
   if (text.size() > longest_case_file)
     throw input_error(
@@ -68,8 +68,8 @@ std::string in_quotes(const std::string& value) {
   return out + '"';
 }
 
-// "1/128": exact in a case, and what step sizes look like. Not TOML, so it is read here; nothing if it is no
-// fraction of two decimal numbers.
+// Returns the value of a fraction such as "1/128", which is not TOML; nothing if the text is not a fraction
+// of decimals.
 std::optional<double> fraction(const std::string& value) {
   const auto slash = value.find('/');
   if (slash == std::string::npos) return std::nullopt;
@@ -93,7 +93,7 @@ std::string syntax_message(std::string_view description) {
 
 std::string shown(std::string_view text, std::size_t longest) {
   std::string out(text.substr(0, longest));
-  // Cut bytes of a character that was split; the rest of the text is UTF-8.
+  // Removes the bytes of a truncated UTF-8 character.
   while (text.size() > longest && !out.empty() &&
          (static_cast<unsigned char>(text[out.size()]) & 0xC0U) == 0x80U)
     out.pop_back();
@@ -151,7 +151,7 @@ void apply_override(case_text& target, const std::string& path, const std::strin
   const std::string line = "value = " + (bare ? in_quotes(value) : value);
   try {
     const toml::table root = toml::parse(line);
-    // TOML would take what follows for a comment.
+    // TOML would treat the rest as a comment.
     if (!bare && value.find_first_of("#\"'") != std::string::npos &&
         value[value.find_first_of("#\"'")] == '#')
       throw input_error(place, "the value is followed by '#' (comments are for files); remove the comment");

@@ -11,17 +11,17 @@
 
 namespace apsis {
 
-/// A value as it stands in a file, before anything is known about its key. `std::monostate` is a type that no
-/// key has (a boolean, a date, a nested table); `what` names it for messages.
+/// An untyped value of a case file. `std::monostate` stands for types that no key has (boolean, date, nested
+/// table).
 struct raw_value {
   using list = std::vector<raw_value>;                                  ///< an array of TOML
-  std::variant<std::monostate, long, double, std::string, list> value;  ///< as TOML has it
-  std::string what;                                                     ///< "the integer 5", "a boolean"
-  source_place place;        ///< of the key, or the override; of an element of a list, that of its key
-  source_place value_place;  ///< of the value
+  std::variant<std::monostate, long, double, std::string, list> value;  ///< value in TOML
+  std::string what;          ///< description for messages: "the integer 5", "a boolean"
+  source_place place;        ///< place of the key or override; of the key for list elements
+  source_place value_place;  ///< place of the value
 };
 
-/// Keys of a case by dotted path, and where its tables begin.
+/// Keys of a case by dotted path, and places of its tables.
 struct case_text {
   std::map<std::string, raw_value> values;     ///< by path, "space.cells"
   std::map<std::string, source_place> tables;  ///< by name, "space"
@@ -33,10 +33,9 @@ constexpr std::size_t longest_case_line = 4096;       ///< bytes; bounds the dep
 /// Reads TOML into flat keys. Throws input_error with line and column: too large, not TOML.
 case_text read_case_text(std::string_view text, const std::string& file);
 
-/// What an override may look like: whether the key takes text, and the suggestion where its value is not
-/// TOML.
+/// Syntax of an override: whether its key takes text, and the suggestion if its value is not TOML.
 struct override_form {
-  bool is_text = false;                                      ///< text may stand without quotes
+  bool is_text = false;                                      ///< quotes are optional
   std::string suggestion = "write a number, or \"a text\"";  ///< "write for example [0.0, 2.0]"
 };
 
@@ -45,7 +44,7 @@ struct override_form {
 void apply_override(case_text& target, const std::string& path, const std::string& value,
                     const override_form& form, const source_place& place);
 
-/// A user's text for a message: at most `longest` bytes, control characters as '?'.
+/// Returns user text for a message: at most `longest` bytes, control characters replaced by '?'.
 std::string shown(std::string_view text, std::size_t longest = 60);
 
 }  // namespace apsis

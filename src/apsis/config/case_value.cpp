@@ -63,7 +63,7 @@ long integer(const case_key& key, const raw_value& raw) {
   }
   if (!std::holds_alternative<double>(raw.value))
     refuse(raw, key.path, type_text(key_type::integer) + " is needed", type_advice(key_type::integer));
-  // "1e3", "40.0" and "80/2" are integers too.
+  // "1e3", "40.0" and "80/2" are integers.
   const double x = finite_number(raw, key.path, type_text(key_type::integer));
   if (x != std::floor(x))
     refuse(raw, key.path, type_text(key_type::integer) + " is needed",
@@ -107,7 +107,7 @@ std::vector<std::string> texts(const case_key& key, const raw_value& raw) {
   return out;
 }
 
-/// Items of a list with one item for each direction, of which there are at most three.
+/// Returns the items of a list with one item per direction, at most three; nullptr if it is not a list.
 const raw_value::list* directions(const case_key& key, const raw_value& raw) {
   const auto* items = std::get_if<raw_value::list>(&raw.value);
   if (items != nullptr && (items->empty() || items->size() > 3))
@@ -151,11 +151,11 @@ std::string to_text(const model_text& text, const raw_value& raw) {
   const std::string advice = suggest(*value, text.choices);
   if (text.variable.empty()) refuse(raw, path, "there is no such name", advice);
   source_place place = raw.value_place;
-  if (place.column > 0) ++place.column;  // behind the quotation mark
+  if (place.column > 0) ++place.column;  // after the quotation mark
   try {
     const expression formula(*value, place, formula_kind{{text.variable}, false});
   } catch (const input_error&) {
-    // A word, perhaps misspelled, is not helped by what is wrong with it as a formula.
+    // A single word is more likely a misspelled name than a formula.
     const auto in_word = [](char c) {
       return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
     };

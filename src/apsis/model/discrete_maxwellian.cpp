@@ -119,7 +119,7 @@ class entropy_dual {
  private:
   /// A distance from the boundary that no moment resolves: it is the limit.
   static constexpr double nothing = 1e-100;
-  /// What newton() may leave; search() is more patient.
+  /// Residual tolerance of newton(); search() iterates further.
   static constexpr double rounding = 1e-13;
 
   double total_energy() const {

@@ -24,8 +24,7 @@ std::vector<std::string> known_names(std::vector<std::string> variables) {
   return variables;
 }
 
-// muParser ships its own list of functions, some of which changed meaning between versions (log); this one is
-// ours.
+// Own definitions, since the built-in functions of muParser changed between versions (log).
 void define_language(mu::Parser& parser) {
   parser.ClearFun();
   parser.ClearConst();
@@ -61,7 +60,7 @@ source_place shifted(source_place place, std::size_t by) {
   return place;
 }
 
-// '=' alone would assign to the variable; a comparison is written with two characters.
+// A single '=' would assign to a variable; comparisons have two characters.
 std::size_t find_assignment(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;
@@ -75,7 +74,7 @@ std::size_t find_assignment(const std::string& text) {
   return std::string::npos;
 }
 
-/// At most 60 characters, from around the one that matters.
+/// Returns at most 60 characters around position `at`.
 std::string excerpt(const std::string& text, std::size_t at) {
   constexpr std::size_t longest = 60;
   if (text.size() <= longest) return text;
@@ -239,8 +238,8 @@ expression::expression(const std::string& text, const source_place& place, const
     impl_->parsers.first().evaluate(std::vector<double>(kind.variables.size()));
   } catch (const mu::ParserError& e) {
     const bool unknown = e.GetCode() == mu::ecUNASSIGNABLE_TOKEN;
-    // muParser reports the end of some tokens and the start of others; an unknown name is found again in the
-    // text.
+    // muParser reports the end of some tokens and the start of others, so that an unknown name is searched
+    // for.
     std::size_t at = e.GetPos() >= 0 ? static_cast<std::size_t>(e.GetPos()) : 0;
     if (unknown && text.rfind(e.GetToken(), at) != std::string::npos) at = text.rfind(e.GetToken(), at);
     at = std::min(at, text.size() - 1);

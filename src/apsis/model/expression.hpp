@@ -10,13 +10,14 @@
 
 namespace apsis {
 
-/// What a formula is written in, and which values it may take.
+/// Variables of a formula and constraint on its values.
 struct formula_kind {
   std::vector<std::string> variables = {"x"};  ///< its free names, at least one
   bool nonnegative = true;                     ///< evaluate() refuses values below 0
 };
 
-/// Formulas in the coordinates of D = 0 … 3 space dimensions: x; x and y; x, y and z (x for D = 0).
+/// Returns the kind of formulas in the coordinates of D = 0 … 3 space dimensions: x; x and y; x, y and z (x
+/// for D = 0).
 formula_kind formula_of_position(int dimensions, bool nonnegative = true);
 
 /// A formula for coefficients that a case file gives as text (ε(x), a flux F(u)); dimensionless. Operators
@@ -26,25 +27,25 @@ class expression {
  public:
   static constexpr std::size_t longest = 1000;  ///< characters
 
-  /// `place` is where the first character stands; errors point into the text from there.
+  /// `place` is the place of the first character; errors point into the text from there.
   /// Throws input_error: syntax, unknown name, too long, empty.
   explicit expression(const std::string& text, const source_place& place = {}, const formula_kind& kind = {});
   ~expression();
   expression(expression&&) noexcept;             ///< the source can then only be assigned to or destroyed
   expression& operator=(expression&&) noexcept;  ///< the source can then only be assigned to or destroyed
 
-  /// The value where the variables have these values, in the order of formula_kind; further numbers are not
-  /// used. NaN outside the domain of a function. Thread-safe.
+  /// Returns the value for the given values of the variables, in the order of formula_kind; further numbers
+  /// are ignored. NaN outside the domain of a function. Thread-safe.
   double value(std::span<const double> variables) const;
-  /// The value of a formula in one variable. Thread-safe.
+  /// Returns the value of a formula in one variable. Thread-safe.
   double value(double x) const { return value({&x, 1}); }
 
-  /// Like value(), but throws input_error where the result is not finite, or negative and must not be.
+  /// Returns value(), or throws input_error if it is not finite or violates the constraint of the kind.
   double evaluate(std::span<const double> variables) const;
-  /// The same for a formula in one variable.
+  /// The same check for a formula in one variable.
   double evaluate(double x) const { return evaluate({&x, 1}); }
 
-  const std::string& text() const;  ///< as it was given
+  const std::string& text() const;  ///< text as given
   bool is_constant() const;         ///< contains no variable
 
  private:

@@ -7,25 +7,25 @@
 
 namespace apsis {
 
-/// When Newton's method for an equation between logarithms of sums is done.
+/// Stopping criterion of Newton's method for an equation between logarithms of sums.
 class newton_end {
  public:
-  /// To be called with |residual| before every step.
+  /// Returns whether to stop; called with |residual| before every step.
   bool reached(double residual) {
     close_ = previous_ < quadratic && residual < quadratic;
     const bool at_rounding = close_ && (residual < rounding || !(residual < 0.5 * previous_));
     previous_ = residual;
     return residual <= enough || at_rounding;
   }
-  /// The last two residuals were so small that the sign and size of the present one may be rounding.
+  /// Whether the last two residuals were so small that the current one may be rounding.
   bool close() const { return close_; }
-  /// The last residual.
+  /// Returns the last residual.
   double previous() const { return previous_; }
 
  private:
-  /// Of a sum of a few terms.
+  /// Rounding of a sum of a few terms.
   static constexpr double enough = 4.0 * std::numeric_limits<double>::epsilon();
-  /// Of a sum over a line and of the exponents in it; what is larger is tried again.
+  /// Rounding of a sum over a line and its exponents; a larger residual is iterated further.
   static constexpr double rounding = 1e-14;
   static constexpr double quadratic = 1e-8;
   double previous_ = std::numeric_limits<double>::infinity();
@@ -40,51 +40,51 @@ class newton_end {
 /// boundary is.
 class line_family {
  public:
-  /// Which two grid points have C_j = 0.
+  /// The two grid points with C_j = 0.
   enum class face {
     nearest,  ///< the neighbours of the mean
     farthest  ///< the ends of the grid
   };
 
-  /// Sums over all points.
+  /// Sums over all points of the line.
   struct sums {
     double mass = 0.0,  ///< Σ w
         above = 0.0,    ///< Σ w max(x, 0)
         below = 0.0,    ///< Σ w max(−x, 0)
         energy = 0.0;   ///< Σ w C / Σ w
 
-    /// log(above/below): 0 where the mean is the prescribed one.
+    /// Returns log(above/below), which vanishes if the mean is the prescribed one.
     double imbalance() const { return log_of_ratio(above, below); }
   };
-  /// Derivatives of imbalance() and of the energy. The first is at least 1.
+  /// Derivatives of imbalance() and of the energy; the first is at least 1.
   struct slopes {
     double imbalance_by_beta = 0.0,  ///< ∂ imbalance/∂β
         imbalance_by_tau = 0.0,      ///< ∂ imbalance/∂τ
         energy_by_beta = 0.0,        ///< ∂ energy/∂β
         energy_by_tau = 0.0;         ///< ∂ energy/∂τ
   };
-  /// log(x/y), to the rounding of a quotient also where it is near 0.
+  /// Returns log(x/y), accurate to rounding also near 0.
   static double log_of_ratio(double x, double y) {
     const double more = (x - y) / y;
     return std::abs(more) < 1e-6 ? more * (1.0 - 0.5 * more) : std::log(x / y);
   }
 
-  /// n ≥ 4 points; the mean is `offset` ∈ [−½, ½] beyond its nearest point, and not beyond the ends.
+  /// Sets n ≥ 4 points; the mean lies `offset` ∈ [−½, ½] from its nearest point, between the ends.
   void attach(int n, int nearest_point, double offset, face at);
-  /// Whether the mean is an end of the grid: all mass is there, whatever β and τ are.
+  /// Whether the mean is an end of the grid, which then holds all mass for any β and τ.
   bool fixed() const { return fixed_; }
 
-  /// The sums at (β, τ); the weights are scaled so that they and their products are finite, and 0 below
-  /// 1e−300.
+  /// Returns the sums at (β, τ); the weights are scaled so that they and their products are finite, and 0
+  /// below 1e−300.
   sums evaluate(double beta, double tau);
-  /// The slopes where evaluate() was called last, with the sums `s`.
+  /// Returns the slopes at the last evaluate(), whose result is `s`.
   slopes differentiate(const sums& s) const;
-  /// The β at which the mean is the prescribed one, near the `beta` that comes in, for given τ; and the sums
-  /// there.
+  /// Solves for the β at which the mean is the prescribed one for given τ, starting from `beta`; returns the
+  /// sums.
   sums solve(double tau, double& beta);
-  /// The limit τ → ∞, with the prescribed mean.
+  /// Takes the limit τ → ∞ with the prescribed mean and returns its sums.
   double take_limit();
-  /// Those of the last call.
+  /// Returns the weights of the last call.
   const double* weights() const { return weights_.data(); }
 
  private:

@@ -6,7 +6,7 @@ namespace apsis {
 /// arrays are aligned like aligned_vector and padded to whole packets (model/vector_math.hpp).
 namespace line_sums {
 
-/// Weights and what decides whether they are the right ones.
+/// Sums of the weights.
 struct values {
   double mass = 0.0,  ///< Σ w
       above = 0.0,    ///< Σ w max(x, 0)
@@ -16,7 +16,7 @@ struct values {
 /// w ← exp(βx − τc − shift) at n points, 0 below 1e−300 and at most e^691; padding becomes 0.
 values weigh(const double* x, const double* c, int n, double beta, double tau, double shift, double* w);
 
-/// What the derivatives of `values` in β and τ consist of.
+/// Sums in the derivatives of `values` with respect to β and τ.
 struct products {
   double above_x = 0.0,  ///< Σ w max(x, 0) x
       above_c = 0.0,     ///< Σ w max(x, 0) c
@@ -24,7 +24,7 @@ struct products {
       below_c = 0.0,     ///< Σ w max(−x, 0) c
       cc = 0.0;          ///< Σ w c²
 };
-/// For the weights that weigh() left.
+/// Returns the sums for the weights of weigh().
 products multiply(const double* x, const double* c, const double* w, int n);
 
 }  // namespace line_sums

@@ -16,19 +16,18 @@ namespace apsis {
 velocity_grid::velocity_grid(int dimensions, int points, double max)
     : dimensions_(dimensions), points_(points), max_(max), spacing_(2.0 * max / points) {
   if (dimensions < 1 || dimensions > 3)
-    throw input_error(fmt::format("{} velocity dimensions (1, 2 or 3 exist)", dimensions));
+    throw input_error(fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", dimensions));
   if (points < 4)
     throw input_error(fmt::format("{} velocity points (too few for three moments); give at least 4", points));
   const double velocities = std::pow(points, dimensions);
   if (velocities > most_velocities)
     throw input_error(fmt::format(
         "velocity.points = {} are {:.4g} velocities in {} dimension{} (more than {} cannot be numbered); "
-        "give at "
-        "most {}",
+        "give at most {}",
         points, velocities, dimensions, dimensions == 1 ? "" : "s", most_velocities,
         static_cast<int>(std::floor(std::pow(most_velocities, 1.0 / dimensions) * (1.0 + 1e-12)))));
   if (!(max > 0.0) || !std::isfinite(max))
-    throw input_error("velocity.max is not positive and finite; give max > 0");
+    throw input_error("velocity.max cannot be used (it is not positive and finite); give max > 0");
   const auto n = static_cast<std::size_t>(points);
   for (std::size_t i = 0; i < n; ++i) {
     // Symmetric by construction: v_{N−1−i} = −v_i exactly, so that even data keep u = 0 to round-off.

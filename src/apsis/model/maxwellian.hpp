@@ -14,7 +14,7 @@ namespace apsis {
 /// Midpoint velocity grid on [−max, max]^d, d = 1, 2, 3, the first direction slowest.
 class velocity_grid {
  public:
-  /// Most velocities of a grid. Kernels count in ints, and a few more must be an int too.
+  /// Largest number of velocities, such that kernels can count them in int.
   static constexpr int most_velocities = 1 << 30;
 
   /// Throws input_error unless 1 ≤ d ≤ 3, points ≥ 4, points^d ≤ most_velocities and max > 0.
@@ -26,14 +26,14 @@ class velocity_grid {
   double max() const { return max_; }             ///< v_max, half a spacing beyond the last point
   double spacing() const { return spacing_; }     ///< Δv
   double weight() const { return weight_; }       ///< Δv^d
-  const aligned_vector<double>& line() const { return line_; }  ///< the points of one direction
-  /// ½v² of the points of one direction.
+  const aligned_vector<double>& line() const { return line_; }  ///< points of one direction
+  /// Returns ½v² of the points of one direction.
   const aligned_vector<double>& line_half_square() const { return line_half_square_; }
-  /// Component k of the velocity of every grid point.
+  /// Returns component k of the velocity of every grid point.
   std::span<const double> component(int k) const { return set_.speeds(k); }
-  /// The grid points with weights Δv^d.
+  /// Returns the grid points with weights Δv^d.
   const velocity_set& set() const { return set_; }
-  /// ½|v|² of every grid point.
+  /// Returns ½|v|² of every grid point.
   const aligned_vector<double>& half_square() const { return half_square_; }
 
  private:
@@ -43,18 +43,19 @@ class velocity_grid {
   velocity_set set_;
 };
 
-/// The state that moments ω = (ρ, ρu_1 … ρu_d, 𝓔) with 𝓔 = ½ρ|u|² + (d/2)ρT stand for. Dimensionless.
+/// Primitive variables of the moments ω = (ρ, ρu_1 … ρu_d, 𝓔) with 𝓔 = ½ρ|u|² + (d/2)ρT. Dimensionless.
 struct fluid_state {
   double rho = 0.0;               ///< density ρ
   double u[3] = {0.0, 0.0, 0.0};  ///< bulk velocity; 0 from component d on
   double T = 0.0;                 ///< temperature, in units in which the pressure is ρT
-  /// All finite, ρ > 0 and T > 0.
+  /// Whether all values are finite, ρ > 0 and T > 0.
   bool admissible() const {
     return std::isfinite(rho) && std::isfinite(u[0] + u[1] + u[2]) && std::isfinite(T) && rho > 0.0 &&
            T > 0.0;
   }
 };
-/// From the d + 2 moments ω. Whether it is admissible is left to the caller: ρ = 0 makes NaN or ±∞.
+/// Returns the primitive variables of d + 2 moments ω without checking that they are admissible: ρ = 0 gives
+/// NaN or ±∞.
 inline fluid_state to_fluid_state(const double* omega, int dimensions) {
   fluid_state s;
   s.rho = omega[0];
@@ -67,50 +68,52 @@ inline fluid_state to_fluid_state(const double* omega, int dimensions) {
   return s;
 }
 
-/// Midpoint-rule moments ω = (ρ, ρu, 𝓔), d + 2 numbers, of a row of grid.size() values.
+/// omega ← the d + 2 midpoint-rule moments (ρ, ρu, 𝓔) of a row of grid.size() values.
 void kinetic_moments(const velocity_grid& grid, const double* f, double* omega);
-/// The same of some rows `pitch` numbers apart, one ω behind the other.
+/// The moments of several rows, `pitch` numbers apart, one ω after the other.
 void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega);
 
-/// fluid_state in one velocity dimension, in no more memory than it takes.
+/// Compact fluid_state of one velocity dimension.
 struct line_state {
   double rho,  ///< density
       u,       ///< bulk velocity
       T;       ///< temperature
-  /// All finite, ρ > 0 and T > 0.
+  /// Whether all values are finite, ρ > 0 and T > 0.
   bool admissible() const { return rho > 0.0 && T > 0.0 && std::isfinite(rho + std::abs(u) + T); }
 };
 
 /// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK).
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
-/// Most rows that formula_maxwellians_on_line() takes at once.
+/// Largest number of rows of formula_maxwellians_on_line().
 inline constexpr int most_line_states = 16;
-/// In one velocity dimension those of at most most_line_states rows of ω, in rows `pitch` apart, and the
-/// states. Returns the number of rows before the first ω that is not admissible.
+/// The same for at most most_line_states rows of ω in one velocity dimension, into rows `pitch` apart, with
+/// their states. Returns the number of rows before the first ω that is not admissible.
 int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, int rows, double* m,
                                 std::ptrdiff_t pitch, line_state* states);
 
-/// Sufficient for its midpoint-rule moments to be those of `state` to round-off: Poisson's sum formula bounds
-/// their relative error by about 100 exp(−2π²T/Δv²), and what lies beyond the grid is of the size exp(−(v_max
-/// − |u|)²/(2T)). False for nearly empty space, where the formula would lose values below 1e-300.
+/// Sufficient condition for the midpoint-rule moments of the formula to equal those of `state` to rounding:
+/// Poisson's sum formula bounds their relative error by about 100 exp(−2π²T/Δv²), and what lies beyond the
+/// grid is of the size exp(−(v_max − |u|)²/(2T)). False for nearly empty space, where the formula would lose
+/// values below 1e-300.
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state);
-/// The same in one velocity dimension.
+/// The condition in one velocity dimension.
 bool formula_has_exact_moments(const velocity_grid& grid, const line_state& state);
 
-/// The minimiser of Σ m log m among all m ≥ 0 with the midpoint-rule moments ω, to round-off: the discrete
-/// Maxwellian exp(α + β·v + γ|v|²) (Mieussens, M3AS 10, 2000), and where ω lies on the boundary of what m ≥ 0
-/// can have, its limit, which is 0 at some points (docs/space.md). Exists for the moments of every f ≥ 0, a
-/// row of zeros included; ω may miss the boundary by the rounding of sums. False for other ω, for which
-/// why_unrealizable() has the reason.
+/// m ← the minimizer of Σ m log m among all m ≥ 0 with the midpoint-rule moments ω, to round-off: the
+/// discrete Maxwellian exp(α + β·v + γ|v|²) (Mieussens, M3AS 10, 2000), and where ω lies on the boundary of
+/// what m ≥ 0 can have, its limit, which is 0 at some points (docs/space.md). Exists for the moments of every
+/// f ≥ 0, a row of zeros included; ω may miss the boundary by the rounding of sums. False for other ω, for
+/// which why_unrealizable() has the reason.
 bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m);
-/// The same for the moments of a state.
+/// The discrete Maxwellian with the moments of a state.
 bool discrete_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
-/// For messages, why no row f ≥ 0 has the moments ω: "temperature -0.3 is not positive"; "" where one has.
+/// Returns the reason why no row f ≥ 0 has the moments ω, for messages: "temperature -0.3 is not positive";
+/// "" if one has.
 std::string why_unrealizable(const velocity_grid& grid, const double* omega);
 
-/// Largest defect of the moments of m against `omega`, the moments of `state`; relative to ρ, to ρ(√T +
-/// |u_k|) for each momentum, and to 𝓔.
+/// Returns the largest defect of the moments of m against `omega`, the moments of `state`; relative to ρ, to
+/// ρ(√T + |u_k|) for each momentum, and to 𝓔.
 double moment_defect(const velocity_grid& grid, const double* m, const double* omega,
                      const fluid_state& state);
 

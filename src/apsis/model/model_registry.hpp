@@ -15,17 +15,17 @@ struct model_parameter {
   double value;          ///< default
   double lowest;         ///< smallest allowed value
   double highest;        ///< largest allowed value
-  std::string doc;       ///< meaning and unit
-  bool integer = false;  ///< only whole numbers have a meaning
+  std::string doc;       ///< description with unit
+  bool integer = false;  ///< whole numbers only
 };
 
 /// A string option of a model: one of several names, or a formula.
 struct model_text {
   std::string name;                  ///< key in the table [model]
   std::string value;                 ///< default
-  std::vector<std::string> choices;  ///< names with a meaning of their own
+  std::vector<std::string> choices;  ///< predefined names
   std::string variable;  ///< variable of a formula, which may take any finite value; "": names only
-  std::string doc;       ///< meaning
+  std::string doc;       ///< description
 };
 
 /// How a kinetic model computes its discrete equilibrium.
@@ -37,31 +37,31 @@ enum class equilibrium_choice {
 
 /// Velocity grid of a kinetic model: `points` midpoints on [−max, max] per velocity dimension.
 struct velocity_config {
-  double max = 0.0;  ///< v_max > 0 (dimensionless)
-  int points = 0;    ///< at least 4
-  equilibrium_choice equilibrium = equilibrium_choice::automatic;  ///< of the rows of a model
+  double max = 0.0;                                                ///< v_max > 0 (dimensionless)
+  int points = 0;                                                  ///< at least 4
+  equilibrium_choice equilibrium = equilibrium_choice::automatic;  ///< computation of the equilibrium
 };
 
-/// All that a model is made from.
+/// Configuration of a model.
 struct model_config {
   std::map<std::string, double> parameters;  ///< complete: defaults filled in
-  std::map<std::string, std::string> texts;  ///< likewise; each a choice or a formula that can be read
+  std::map<std::string, std::string> texts;  ///< complete; each a choice or a valid formula
   velocity_config velocity;                  ///< only where the entry has_velocity_grid
 };
 
 /// One equation of the registry: a file of model/models/ defines `extern const model_entry model_<file>`.
 struct model_entry {
-  std::string name;                              ///< value of the key model.name
+  std::string name;                              ///< name in a case file (model.name)
   std::string description;                       ///< one line with the equation
   std::string source;                            ///< citation
   bool has_velocity_grid = false;                ///< made from the table [velocity]
   std::vector<model_parameter> parameters = {};  ///< in the order in which they are documented
   std::vector<model_text> texts = {};            ///< in the order in which they are documented
-  /// Throws input_error where the velocity grid or a formula cannot be used.
+  /// Returns the model. Throws input_error if the velocity grid or a formula is invalid.
   std::unique_ptr<model> (*make)(const model_config&) = nullptr;
 };
 
-/// The model with its defaults, on a small velocity grid where it has one: to ask what it has. Made once.
+/// Returns the model with default_config(), for queries; made once.
 const model& prototype(const model_entry& entry);
 
 /// Whether the model needs the table [space].
@@ -69,16 +69,16 @@ inline bool has_space(const model_entry& entry) {
   return prototype(entry).space_dimensions() > 0;
 }
 
-/// Names of its initial data, the default first.
+/// Returns the names of the initial data, the default first.
 std::vector<std::string> initial_names(const model_entry& entry);
 
-/// Default parameters; where the model has a velocity grid, 16 points on [−8, 8].
+/// Returns the defaults of all parameters and options; 16 points on [−8, 8] as velocity grid.
 model_config default_config(const model_entry& entry);
 
-/// Every model, sorted by name (generated).
+/// Returns all models, sorted by name (generated).
 std::vector<const model_entry*> model_entries();
 
-/// The entry called `name`; nullptr if there is none.
+/// Returns the entry called `name`; nullptr if there is none.
 const model_entry* find_model(const std::string& name);
 
 }  // namespace apsis

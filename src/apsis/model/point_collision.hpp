@@ -16,7 +16,7 @@ struct point_batch {
   bool cached = false;              ///< the rows were just written, which the profiler counts as no traffic
 };
 
-/// What a point_collision has to be ready for.
+/// Largest batch of a point_collision, and its error messages.
 struct batch_limits {
   int points = 1;            ///< most points of a batch
   std::ptrdiff_t pitch = 0;  ///< of its rows, at least the number of components
@@ -41,15 +41,15 @@ class point_collision {
   /// q ← Q(u)/ε for every point, at the same pitch. Throws numerical_error where ε = 0 or Q does not exist.
   virtual void evaluate(const point_batch& at, const double* u, double* q) = 0;
 
-  /// Largest Δt for which u + Δt Q(u)/ε keeps what the collision keeps (for a relaxation ε/C); 0 where none
-  /// is known.
+  /// Returns the largest Δt for which u + Δt Q(u)/ε preserves what the collision preserves (for a relaxation
+  /// ε/C); 0 if it is unknown.
   virtual double forward_euler_step(const double* u, double epsilon);
-  /// Thickness in time of the initial layer, ε/C; +infinity where it is unknown or ε = 0.
+  /// Returns the thickness in time of the initial layer, ε/C; +infinity if it is unknown or ε = 0.
   virtual double relaxation_time(const double* u, double epsilon);
 };
 
-/// Points in a batch of rows of `width` numbers, such that the rows and as many rows of scratch memory fit
-/// into half of a first-level cache of 32 KiB.
+/// Returns the number of points in a batch of rows of `width` numbers, such that the rows and as many rows of
+/// scratch memory fit into half of a first-level cache of 32 KiB.
 inline int points_per_batch(int width) {
   return std::clamp(1024 / std::max(width, 1), 2, 64);
 }

@@ -8,8 +8,8 @@
 namespace apsis {
 namespace {
 
-/// What the moments of f ≥ 0 may miss relative to the sums of absolute values: each of the n additions and of
-/// the few products and divisions rounds once, and two sums are divided by each other.
+/// Rounding of the moments of f ≥ 0 relative to the sums of absolute values: each of n additions and of a few
+/// products and divisions rounds once, and two sums are divided.
 double rounding_of_sums(const velocity_grid& grid) {
   return 4.0 * (grid.size() + 4.0) * std::numeric_limits<double>::epsilon();
 }

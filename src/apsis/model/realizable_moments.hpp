@@ -22,9 +22,10 @@ struct realizable_moments {
   double below_greatest = 0.0;     ///< d h² − square ≥ 0; 0 on the upper boundary
 };
 
-/// Projects what lies outside by no more than the rounding of sums over the grid onto the boundary. Nothing
-/// for ω that no row f ≥ 0 has, or that is not finite. Where ρ is so small that moments are subnormal numbers
-/// or nearly so, their rounding has no bound relative to ρ, and every finite ω is projected.
+/// Returns the moments, projected onto the boundary if they lie outside by no more than the rounding of sums
+/// over the grid; nothing for ω that no row f ≥ 0 has, or that is not finite. Where ρ is so small that
+/// moments are subnormal numbers or nearly so, their rounding has no bound relative to ρ, and every finite ω
+/// is projected.
 std::optional<realizable_moments> find_realizable(const velocity_grid& grid, const double* omega);
 
 }  // namespace apsis

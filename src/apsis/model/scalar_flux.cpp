@@ -14,7 +14,7 @@ const std::vector<std::string>& scalar_flux::names() {
 scalar_flux::scalar_flux(const std::string& text, double slope, double viscosity_ratio)
     : text_(text), b_(slope), M_(viscosity_ratio) {
   const auto found = std::find(names().begin(), names().end(), text);
-  kind_ = static_cast<kind>(found - names().begin());  // behind the last name: a formula
+  kind_ = static_cast<kind>(found - names().begin());  // past the last name: a formula
   if (kind_ == kind::formula)
     formula_ = std::make_unique<expression>(text, source_place{}, formula_kind{{"u"}, false});
 }
@@ -69,7 +69,7 @@ scalar_flux::wave scalar_flux::fastest(double low, double high) const {
     if (!std::isfinite(here.speed)) return here;
     if (here.speed > best.speed) best = here;
   }
-  // Golden sections of the two intervals around the best point.
+  // Golden-section search on the two intervals around the best point.
   double left = std::max(low, best.u - step), right = std::min(high, best.u + step);
   for (int k = 0; k < 60 && right > left; ++k) {
     const double cut = (right - left) / std::numbers::phi;

@@ -14,36 +14,37 @@ struct face {
   bool upper = false;  ///< at the largest coordinate
 };
 
-/// The rows on either side of a face, along one pencil.
+/// The rows on both sides of a face along one pencil.
 struct pencil_end {
-  std::span<const double* const> inside;  ///< of all cells of the pencil, counted inwards from the face
-  std::span<double* const> ghosts;        ///< to be filled, counted outwards from the face
-  const velocity_set& velocities;         ///< of the numbers of a row
+  std::span<const double* const> inside;  ///< rows of all cells of the pencil, counted inwards from the face
+  std::span<double* const> ghosts;        ///< rows to fill, counted outwards from the face
+  const velocity_set& velocities;         ///< velocities of the components
   int components;                         ///< numbers of a row
-  position at;                            ///< where the pencil meets the face
+  position at;                            ///< intersection of the pencil with the face
 };
 
-/// What lies beyond a face of the domain. Transport and collision see it through ghost rows only.
+/// A boundary condition at a face of the domain. Transport and collision access it through ghost rows alone.
 class boundary {
  public:
   virtual ~boundary() = default;
 
-  /// The cell, counted inwards from the face, whose row is ghost row `ghost` = 0, 1, … (outwards) of a pencil
-  /// of `cells` cells; empty where fill() has to compute the row. A repeated row is never copied.
+  /// Returns the cell, counted inwards from the face, whose row is used as ghost row `ghost` = 0, 1, …
+  /// (counted outwards) of a pencil of `cells` cells; empty if fill() computes the row. Repeated rows are not
+  /// copied.
   virtual std::optional<int> repeated_cell(int ghost, int cells) const;
-  /// Fills the ghost rows of a pencil at time t. Called before every evaluation of T, and of Q where it needs
-  /// neighbours, by any number of threads for different pencils.
+  /// Fills the ghost rows of a pencil at time t. Called before every evaluation of T, and of Q if it depends
+  /// on neighbouring cells, concurrently for different pencils.
   virtual void fill(const face& where, double t, const pencil_end& rows) const = 0;
-  /// Whether the opposite face continues the domain; then both faces of the direction have to.
+  /// Whether the domain continues at the opposite face; both faces of a direction must agree.
   virtual bool periodic() const { return false; }
-  /// Whether no invariant enters or leaves through the face.
+  /// Whether no invariant crosses the face.
   virtual bool closed() const { return false; }
 };
 
-/// A boundary whose ghost rows are rows of cells inside.
+/// A boundary condition whose ghost rows are rows of interior cells.
 class repeating_boundary : public boundary {
  public:
-  /// Copies the repeated rows.
+  /// Copies the repeated rows, for callers that need them in ghost rows.
   void fill(const face& where, double t, const pencil_end& rows) const final;
 };
 

@@ -22,8 +22,9 @@ domain::domain(phase_space space, std::vector<faces> sides)
     : space_(std::move(space)), sides_(std::move(sides)), ghosts_(sides_.size()) {
   const grid& mesh = space_.mesh;
   if (sides_.size() != at(mesh.dimensions()))
-    throw input_error(fmt::format("{} pairs of boundaries (the mesh has {} dimensions); give one for each",
-                                  sides_.size(), mesh.dimensions()));
+    throw input_error(
+        fmt::format("{} pairs of boundaries (the mesh has {} dimensions); give one pair for each dimension",
+                    sides_.size(), mesh.dimensions()));
   for (int k = 0; k < mesh.dimensions(); ++k)
     if (side({k, false}).periodic() != side({k, true}).periodic())
       throw input_error(fmt::format(
@@ -73,7 +74,7 @@ void domain::reserve(int components, int width) {
   width_ = std::max(width, width_);
 }
 
-/// Where a pencil meets a face.
+/// Returns the intersection of a pencil with a face.
 position domain::meeting_point(const face& where, int pencil) const {
   position x = mesh().centre(mesh().first_cell(where.direction, pencil));
   double& along = x[at(where.direction)];

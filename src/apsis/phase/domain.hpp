@@ -10,35 +10,35 @@
 
 namespace apsis {
 
-/// A grid with what lies beyond its faces: ghost rows, which belong to the domain and are filled by the
-/// boundary of their face. A ghost row that repeats a row inside is that row, without a copy.
+/// A phase space with the boundary conditions of its faces. The domain owns the ghost rows, which the
+/// boundary of each face fills; a ghost row that repeats an interior row refers to that row without a copy.
 class domain {
  public:
-  /// Lower and upper face of a direction.
+  /// Boundaries at the lower and the upper face of a direction.
   using faces = std::array<std::shared_ptr<const boundary>, 2>;
 
   /// One pair of boundaries for each direction of the mesh. Throws input_error where only one of the two
   /// faces of a direction is periodic.
   domain(phase_space space, std::vector<faces> sides);
-  /// A single cell without faces, for equations without space.
+  /// Returns a single cell without faces, for equations without space.
   static domain point();
 
-  /// The cells inside, and the velocities.
+  /// Returns the interior cells and the velocities.
   const phase_space& space() const { return space_; }
-  /// The cells inside.
+  /// Returns the interior cells.
   const grid& mesh() const { return space_.mesh; }
-  /// Whether the faces of the direction continue each other.
+  /// Whether the direction is periodic.
   bool periodic(int direction) const;
-  /// Whether no invariant enters or leaves through any face.
+  /// Whether no invariant crosses any face.
   bool closed() const;
 
-  /// Makes room for `width` ghost rows of `components` numbers beyond every face.
+  /// Allocates `width` ghost rows of `components` numbers beyond every face.
   void reserve(int components, int width);
   /// Fills the ghost rows of u at time t.
   void fill_ghosts(double t, const field& u);
 
-  /// rows[i − begin] ← the row of cell i of a pencil, i = begin … end−1; cells outside 0 … n−1 are ghost
-  /// cells, as many as were reserved. They hold what fill_ghosts() left, or are rows of u.
+  /// rows[i − begin] ← pointer to the row of cell i of a pencil, i = begin … end−1. Cells outside 0 … n−1 are
+  /// ghost cells within the reserved width, with the values of the last fill_ghosts().
   void pencil_rows(const field& u, int direction, int pencil, int begin, int end,
                    std::vector<const double*>& rows) const;
 

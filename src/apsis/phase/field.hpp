@@ -7,18 +7,18 @@
 
 namespace apsis {
 
-/// The state of a semidiscrete problem: one row of `components` numbers per cell, rows one after the other in
-/// the order of the grid. Rows of eight or more are padded with zeros to whole cache lines, so that every row
-/// is aligned and a vector loop has no remainder.
+/// The state of a semi-discrete problem: one row of `components` numbers per cell, stored in the order of the
+/// grid. Rows of eight or more numbers are padded with zeros to whole cache lines, so that every row is
+/// aligned and vector loops have no remainder.
 class field {
  public:
   field() = default;
-  /// All numbers are 0. Throws std::bad_alloc, also where there are more numbers than addresses.
+  /// A field of zeros. Throws std::bad_alloc, also if its size exceeds the address space.
   field(int cells, int components)
       : cells_(cells), components_(components), stride_(padded(components)), data_(numbers(cells, stride_)) {
     fill_rows(nullptr);
   }
-  /// Padding included, row by row on the thread that works on it.
+  /// Copies rows, including padding, on the threads that will work on them (first touch).
   field(const field& other)
       : cells_(other.cells_),
         components_(other.components_),
@@ -26,7 +26,7 @@ class field {
         data_(other.data_.size()) {
     fill_rows(other.data_.data());
   }
-  /// Without allocation where the sizes are equal.
+  /// Does not allocate if the sizes are equal.
   field& operator=(const field& other) {
     if (data_.size() != other.data_.size()) return *this = field(other);
     cells_ = other.cells_;
@@ -35,23 +35,23 @@ class field {
     fill_rows(other.data_.data());
     return *this;
   }
-  field(field&&) noexcept = default;             ///< the other has sizes, but no rows then
-  field& operator=(field&&) noexcept = default;  ///< likewise
+  field(field&&) noexcept = default;             ///< leaves the source with sizes but without rows
+  field& operator=(field&&) noexcept = default;  ///< leaves the source with sizes but without rows
   ~field() = default;
 
   int cells() const { return cells_; }            ///< number of rows
-  int components() const { return components_; }  ///< numbers of a row, padding not counted
-  /// Numbers from one row to the next, padding included.
+  int components() const { return components_; }  ///< numbers of a row without padding
+  /// Distance between rows, including padding.
   int stride() const { return stride_; }
 
-  /// The stride of rows of so many components.
+  /// Returns the stride of rows with the given number of components.
   static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
 
-  /// The components of cell 0 … cells() − 1, not checked.
+  /// Returns the row of a cell, 0 … cells() − 1 (not checked).
   double* row(int cell) {
     return data_.data() + static_cast<std::size_t>(cell) * static_cast<std::size_t>(stride_);
   }
-  /// The same of a constant field.
+  /// Returns the row of a cell of a constant field.
   const double* row(int cell) const {
     return data_.data() + static_cast<std::size_t>(cell) * static_cast<std::size_t>(stride_);
   }
@@ -59,8 +59,8 @@ class field {
  private:
   static std::size_t numbers(int cells, int stride);
 
-  /// From `values`, or zeros where that is null. Each thread writes the rows that it works on later, so that
-  /// their memory lies near to it (a page belongs to whom touches it first).
+  /// Copies `values`, or fills with zeros if it is null. Each thread writes the rows that it works on later,
+  /// so that their pages are local to it (first touch).
   void fill_rows(const double* values);
 
   int cells_ = 0, components_ = 0, stride_ = 0;

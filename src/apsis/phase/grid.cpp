@@ -9,14 +9,15 @@ namespace apsis {
 grid::grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower, std::array<double, 3> upper)
     : dimensions_(dimensions), cells_{1, 1, 1}, first_{}, lower_{}, spacing_{1.0, 1.0, 1.0} {
   if (dimensions < 1 || dimensions > 3)
-    throw input_error(fmt::format("{} space dimensions (1, 2 or 3 exist)", dimensions));
+    throw input_error(fmt::format("{} space dimensions (not 1, 2 or 3); give 1, 2 or 3", dimensions));
   for (int k = 0; k < dimensions; ++k) {
     const double length = upper[at(k)] - lower[at(k)];
     if (cells[at(k)] < 1)
-      throw input_error(fmt::format("{} cells (a mesh needs at least one)", cells[at(k)]));
+      throw input_error(fmt::format("{} cells (a mesh needs at least one); give more", cells[at(k)]));
     if (!(length > 0.0) || !std::isfinite(length))
-      throw input_error(
-          fmt::format("the domain [{}, {}] has no positive, finite length", lower[at(k)], upper[at(k)]));
+      throw input_error(fmt::format(
+          "the domain [{}, {}] cannot be used (its length is not positive and finite); give lower < upper",
+          lower[at(k)], upper[at(k)]));
     cells_[at(k)] = cells[at(k)];
     lower_[at(k)] = lower[at(k)];
     spacing_[at(k)] = length / cells[at(k)];

@@ -13,36 +13,39 @@ namespace apsis {
 /// coordinates are those of the global grid. Dimensionless lengths.
 class grid {
  public:
-  /// Most cells of a mesh: with those beyond its ends their numbers are ints.
+  /// Largest number of cells; cell numbers, including ghost cells, then fit into int.
   static constexpr int most_cells = 1 << 30;
 
-  /// Throws input_error unless every used direction has ≥ 1 cells and a domain of positive, finite length,
-  /// and all together have at most most_cells.
+  /// Throws input_error unless 1 ≤ D ≤ 3, every direction has at least one cell and a positive, finite
+  /// length, and the number of cells is at most most_cells.
   grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower, std::array<double, 3> upper);
-  /// The interval [a, b].
+  /// Returns a grid on the interval [a, b].
   static grid line(int cells, double a, double b) { return grid(1, {cells, 1, 1}, {a, 0, 0}, {b, 1, 1}); }
 
   /// The block of `cells` cells that begins at cell `first` of this grid, in each direction. Throws
   /// input_error unless it has cells and lies inside.
   grid block(std::array<int, 3> first, std::array<int, 3> cells) const;
 
-  int dimensions() const { return dimensions_; }                            ///< D
-  int cells(int direction) const { return cells_[at(direction)]; }          ///< along a direction 0, 1 or 2
-  int size() const { return cells_[0] * cells_[1] * cells_[2]; }            ///< number of all cells
+  int dimensions() const { return dimensions_; }  ///< D
+  int cells(int direction) const {
+    return cells_[at(direction)];
+  }  ///< number of cells along a direction 0, 1 or 2
+  int size() const { return cells_[0] * cells_[1] * cells_[2]; }            ///< total number of cells
   int global_cells(int direction) const { return global_[at(direction)]; }  ///< of the grid it is a block of
   int first(int direction) const { return first_[at(direction)]; }          ///< global number of local cell 0
   double spacing(int direction) const { return spacing_[at(direction)]; }   ///< Δx along a direction
-  double cell_volume() const;                                               ///< product of the D spacings
-  /// Centre of cell number `cell` along `direction`.
+  double cell_volume() const;                                               ///< Π Δx over the D directions
+  /// Returns the coordinate of the centre of a cell along a direction.
   double centre(int cell, int direction) const;
-  /// Centre of cell number `cell`.
+  /// Returns the centre of a cell.
   position centre(int cell) const;
-  /// Distance in cell numbers between neighbours along `direction`.
+  /// Returns the distance in cell numbers between neighbours along a direction.
   int stride(int direction) const;
 
-  /// Pencils along a direction: lines of cells(direction) cells, stride(direction) apart.
+  /// Returns the number of pencils along a direction: lines of cells(direction) cells, stride(direction)
+  /// apart.
   int pencils(int direction) const { return size() / cells(direction); }
-  /// Number of the first cell of pencil 0 … pencils(direction) − 1.
+  /// Returns the first cell of pencil 0 … pencils(direction) − 1.
   int first_cell(int direction, int pencil) const;
 
  private:

@@ -4,10 +4,9 @@
 
 namespace apsis {
 
-/// Refuses a case that does not fit, before anything large is allocated: throws input_error if the buffers of
-/// a step, `copies` further copies of the state and the snapshots of the fields need more memory than is
-/// available (available_memory). What is small beside them is not counted, so a case that would fit is never
-/// refused.
+/// Throws input_error, before anything large is allocated, if the buffers of a step, `copies` additional
+/// copies of the state and the snapshots of the fields exceed the available memory (available_memory).
+/// Smaller allocations are not counted, so that a case that fits is never refused.
 void check_memory(const case_config& config, const run_setup& setup, int copies);
 
 }  // namespace apsis

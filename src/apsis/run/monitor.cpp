@@ -13,8 +13,7 @@ namespace apsis {
 
 namespace {
 
-/// A sum that keeps what its additions round away (Neumaier 1974): good to a rounding or two, however many
-/// cells there are.
+/// Compensated summation (Neumaier 1974), accurate to one or two roundings for any number of cells.
 class compensated_sum {
  public:
   void add(double x) {

@@ -8,18 +8,19 @@
 
 namespace apsis {
 
-/// Looks at the state after every step: smallest value, conservation, entropy. Sums run in a fixed order, so
-/// the numbers do not depend on threads.
+/// Checks the state after every step: smallest value, conservation, entropy. Sums have a fixed order, so that
+/// results do not depend on the number of threads.
 class monitor {
  public:
-  /// `volume` is that of a cell (1 for an ordinary differential equation).
+  /// `volume` is the cell volume (1 for an ordinary differential equation).
   monitor(const model& equation, double volume) : equation_(equation), volume_(volume) {}
 
-  /// The state against which conservation is measured: defects are |I − I₀| over Σ_cells volume ·
-  /// model::invariant_scales().
+  /// Sets the reference state of conservation and returns its record: defects are |I − I₀| relative to
+  /// Σ_cells volume · model::invariant_scales().
   step_record start(const field& u);
 
-  /// Everything but step, t and dt. Throws numerical_error at the first number that is not finite.
+  /// Returns the record of a state without step, t and dt. Throws numerical_error at the first number that is
+  /// not finite.
   step_record check(const field& u, double previous_entropy) const;
 
  private:

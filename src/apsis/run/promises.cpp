@@ -33,7 +33,7 @@ bool takes_formula(const run_setup& setup) {
   throw numerical_error("broken promise: " + promise, {last.step, last.t, -1, value});
 }
 
-/// Why a conserved quantity changes by more than rounding explains, and what to do.
+/// Returns the likely cause of a change beyond rounding in a conserved quantity, with a remedy.
 std::string reason_of_defect(const step_record& last, const run_setup& setup, double allowed) {
   if (takes_formula(setup))
     return "(the velocity grid became too coarse for the Maxwellian by formula); use "

@@ -7,27 +7,26 @@
 
 namespace apsis {
 
-/// What a run leaves behind besides its state: a row for every step and the snapshots of the fields. The
-/// results know tables and not runs, so the translation between the two is here.
+/// History and snapshots of a run: translates between the run and the tables of the results.
 class run_records {
  public:
-  /// Begins with the initial state: a row of the history, and a snapshot if the case wants some.
+  /// Starts with a history row of the initial state, and a snapshot if the case requests snapshots.
   explicit run_records(const simulation& run);
-  /// Goes on with the records of a checkpoint. Throws io_error if its history has other columns.
+  /// Continues the records of a checkpoint. Throws io_error if its history has other columns.
   run_records(const simulation& run, const checkpoint& from);
 
-  /// A row of the history.
+  /// Adds a row to the history.
   void add_step(const step_record& record);
-  /// The wanted fields (output.fields) of the present state.
+  /// Adds a snapshot of the requested fields (output.fields) of the current state.
   void add_snapshot(const simulation& run);
 
-  /// Columns step, t, dt, min_value, negative_values, conservation_NAME of every invariant, entropy,
-  /// entropy_change; a row for the initial state and every step, at most output.history_rows of them (see
-  /// apsis::history).
+  /// Returns the history with columns step, t, dt, min_value, negative_values, conservation_NAME of every
+  /// invariant, entropy, entropy_change; a row for the initial state and every step, at most
+  /// output.history_rows of them (see apsis::history).
   const numeric_table& history() const { return history_.rows(); }
-  /// Steps from one regular row of the history to the next.
+  /// Returns the number of steps between regular rows of the history.
   long history_stride() const { return history_.stride(); }
-  /// The snapshots so far.
+  /// Returns the snapshots so far.
   const field_series& fields() const { return fields_; }
 
  private:
@@ -37,16 +36,16 @@ class run_records {
   field_series fields_;
 };
 
-/// The case, and what to_run_state() and run_records continue from.
+/// Returns a checkpoint from which to_run_state() and run_records continue.
 checkpoint make_checkpoint(const simulation& run, const run_records& records);
 
-/// The part of a checkpoint that a simulation continues from. Throws io_error where something is missing.
+/// Returns the state of a run in a checkpoint. Throws io_error if a number is missing or invalid.
 run_state to_run_state(const checkpoint& c);
 
-/// Of every `stride`-th cell.
+/// Returns the unknowns of every `stride`-th cell.
 distribution_snapshot make_distribution_snapshot(const simulation& run, int stride);
 
-/// All of solution.h5 but the manifest.
+/// Returns the content of solution.h5 except the manifest.
 solution make_solution(const simulation& run, const run_records& records);
 
 }  // namespace apsis

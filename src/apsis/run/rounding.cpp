@@ -11,8 +11,8 @@ namespace {
 
 constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
 
-/// √L for a moment of n numbers. Rows of velocities are added in chains of at most 64 numbers and 16 lines,
-/// and these by halves; shorter rows of other models one number after the other.
+/// Returns √L for a moment of n numbers. Rows of velocities are summed in chains of at most 64 numbers and 16
+/// lines, then pairwise; shorter rows of other models sequentially.
 double root_of_chain(int n) {
   constexpr double longest = 64.0 + 16.0;
   const double numbers = std::max(n, 1);

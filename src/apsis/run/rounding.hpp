@@ -5,18 +5,18 @@
 
 namespace apsis {
 
-/// How far rounding may carry an invariant in one step, relative to its scale (see model::invariant_scales).
-/// Derived in docs/strong-stability.md.
+/// Bound on the change of an invariant by rounding, relative to its scale (model::invariant_scales). Derived
+/// in docs/strong-stability.md.
 struct rounding_bound {
-  double of_sums,  ///< of the two sums over the state that are compared
-      of_step;     ///< of all stages of a step
-  /// The largest change of an invariant from one step to the next that rounding explains.
+  double of_sums,  ///< contribution of the two sums over the state that are compared
+      of_step;     ///< contribution of all stages of a step
+  /// Returns the largest change of an invariant in one step that rounding explains.
   double in_one_step() const { return of_sums + of_step; }
 };
 
-/// The bound for steps of a method. With u = 2⁻⁵³ and L the longest chain of additions in a moment ℛu, stage
-/// i carries e_i = Σ_j |α_ij| e_j + u (2 + √m_i + c_i (4 + √L)) Σ_j |α_ij|, where α_ij are its m_i weights
-/// and c_i is the number of collisions that it solves or evaluates; of_step is e of the last stage.
+/// Returns the bound for a step of a method. With u = 2⁻⁵³ and L the longest chain of additions in a moment
+/// ℛu, stage i carries e_i = Σ_j |α_ij| e_j + u (2 + √m_i + c_i (4 + √L)) Σ_j |α_ij|, where α_ij are its m_i
+/// weights and c_i is the number of collisions that it solves or evaluates; of_step is e of the last stage.
 rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equation);
 
 }  // namespace apsis

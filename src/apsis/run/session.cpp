@@ -40,7 +40,7 @@ std::vector<distribution_file> distribution_files(const result_folder& folder) {
 
 constexpr long many_steps = 100'000'000;
 
-/// The same case, unless the state, its checkpoint and solution.h5 do not fit into memory together.
+/// Returns the case if the state, its checkpoint and solution.h5 fit into memory together.
 case_config with_room_for_results(case_config config, const session_options& options) {
   if (options.out) check_memory(config, run_setup(config), 2);
   return config;
@@ -61,7 +61,7 @@ void warn_of_another_commit(const checkpoint& saved, const std::string& path) {
       path, saved.commit, version(), here));
 }
 
-// What may differ between a run and its continuation: nothing that enters a step.
+// Keys that may differ between a run and its continuation, because they do not enter a step.
 std::string essential_text(case_config config) {
   config.title.clear();
   config.output = {};
@@ -94,7 +94,7 @@ int threads_for(const case_config& config) {
 
 run_session::run_session(case_config configured, session_options options)
     : options_(std::move(options)), simulation_(with_room_for_results(std::move(configured), options_)) {
-  // First of all: a checkpoint in a folder that another run writes into would be read in vain.
+  // Locked first: a checkpoint in a folder that another run writes into must not be read.
   if (options_.out) folder_ = std::make_unique<result_folder>(*options_.out);
   if (options_.restart)
     resume(*options_.restart);
@@ -174,7 +174,7 @@ void run_session::write_distribution_snapshot() {
   });
 }
 
-/// Those that were taken before the checkpoint.
+/// Resumes the series with the snapshots taken before the checkpoint.
 void run_session::resume_snapshots(const std::string& checkpoint) {
   if (simulation_.config().output.distribution != distribution_choice::snapshots) return;
   folder_->resume_series(snapshots, std::filesystem::path(checkpoint).parent_path(),
@@ -238,7 +238,7 @@ void run_session::publish_checkpoint() {
 }
 
 void run_session::write_checkpoint_of_end(const std::string& path) {
-  // Without the snapshot of the present moment: the run that goes on from here would not have taken it.
+  // Without the snapshot of the current time, which the continued run would not have taken.
   if (end_ == run_end::complete && before_end_)
     write_checkpoint(path, *before_end_);
   else
@@ -263,7 +263,7 @@ void run_session::write_results(result_folder& folder, run_end end, const std::s
 void run_session::save_failure(const std::string& message) {
   if (!folder_) return;
   finish_records();
-  // Good results of an earlier run are not given up for those of a failed one.
+  // Results of an earlier successful run are not replaced by those of a failed one.
   if (std::filesystem::exists(folder_->path() / result_folder::manifest)) {
     result_folder beside(folder_->path() / "failed");
     if (simulation_.config().output.distribution == distribution_choice::snapshots)

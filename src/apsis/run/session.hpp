@@ -13,35 +13,35 @@
 
 namespace apsis {
 
-/// Threads for a case whose user gives no number: what OMP_NUM_THREADS asks for; without it all processors
-/// for 32768 unknowns and more, and 1 for fewer, which gain little by it.
+/// Returns the default number of threads for a case: OMP_NUM_THREADS if set, otherwise all processors for at
+/// least 32768 unknowns and 1 for fewer, which gain little from threads.
 int threads_for(const case_config& config);
 
-/// What goes on around a run.
+/// Session options: output, restart, limits, callbacks.
 struct session_options {
-  std::optional<std::string> out;      ///< folder of the results; without it nothing is written
-  std::optional<std::string> restart;  ///< checkpoint of the same case to go on from
-  std::optional<double> wall;          ///< seconds after which to stop as if interrupted
-  std::vector<std::string> command;    ///< command line, for the manifest; empty where there is none
-  std::function<bool()> stop;          ///< asked before every step: whether to stop with a checkpoint
+  std::optional<std::string> out;      ///< result folder; without it nothing is written
+  std::optional<std::string> restart;  ///< checkpoint of the same case to continue from
+  std::optional<double> wall;          ///< wall time in seconds after which to stop with a checkpoint
+  std::vector<std::string> command;    ///< command line for the manifest; empty if unknown
+  std::function<bool()> stop;          ///< called before every step; true stops with a checkpoint
   /// Called after every step, and once before the first.
   std::function<void(const simulation&)> watch;
-  std::function<void()> stepped;  ///< called when no more steps come, before anything is said or written
+  std::function<void()> stepped;  ///< called once after the last step, before reporting
 };
 
 /// A run of a case with its records, checkpoints and results.
 class run_session {
  public:
-  /// Checks everything and prepares the folder. Throws input_error or io_error; then nothing was left behind.
+  /// Checks the case and prepares the folder. Throws input_error or io_error without leaving files behind.
   run_session(case_config config, session_options options);
 
-  /// Steps to the end, to a stop, or until the wall time is over, and writes the results. A numerical_error
-  /// passes through after what was computed so far has been saved.
+  /// Runs to the end, to a stop, or to the wall-time limit, and writes the results. Rethrows a
+  /// numerical_error after saving the results so far.
   run_end run();
 
-  /// The run as far as it has come.
+  /// Returns the run in its current state.
   const simulation& computed() const { return simulation_; }
-  /// Of the finished run: with a snapshot of its end.
+  /// Returns the records of the finished run, including a snapshot of the final state.
   const run_records& records() const { return *shown_; }
 
  private:
@@ -68,9 +68,9 @@ class run_session {
   std::unique_ptr<result_folder> folder_;
   /// State before the first step whose length depends on time.end; a continuation to a later end starts here.
   std::optional<checkpoint> before_end_;
-  long warn_at_step_ = -1;  ///< after how many steps to say how long all will take
+  long warn_at_step_ = -1;  ///< step at which the duration of the run is estimated; −1: never
   run_end end_ = run_end::complete;
-  long snapshots_ = 0;  ///< multiples of output.every that are behind
+  long snapshots_ = 0;  ///< multiples of output.every passed
 };
 
 }  // namespace apsis

@@ -16,14 +16,14 @@
 namespace apsis {
 namespace {
 
-/// An input error at the place of a key, as far as that is known.
+/// Throws an input error at the place of a key, if it is known.
 [[noreturn]] void refuse(const case_config& config, const std::string& key, const std::string& message) {
   const auto place = config.places.find(key);
   if (place == config.places.end()) throw input_error(message);
   throw input_error(place->second, message);
 }
 
-/// Smallest and largest value of every macroscopic field.
+/// Returns the smallest and the largest value of every macroscopic field.
 std::pair<std::vector<double>, std::vector<double>> extremes_of_fields(const model& equation,
                                                                        const field& u) {
   std::vector<double> values(equation.fields().size());
@@ -39,7 +39,7 @@ std::pair<std::vector<double>, std::vector<double>> extremes_of_fields(const mod
   return {lowest, highest};
 }
 
-/// Runs body() and gives its input errors the place of a key.
+/// Calls body() and adds the place of a key to its input errors.
 template <class Body>
 void at_key(const case_config& config, const std::string& key, const Body& body) {
   try {
@@ -185,7 +185,7 @@ double run_setup::equilibrium_defect(const field& u) const {
   std::vector<double> before(count), after(count), scales(count), missed(count), all(count);
   for (int cell = 0; cell < u.cells(); ++cell) {
     relaxation->moments(u.row(cell), omega.data());
-    if (!relaxation->equilibrium(omega.data(), e.data())) continue;  // the first step has a message
+    if (!relaxation->equilibrium(omega.data(), e.data())) continue;  // reported by the first step
     equation->invariant_densities(u.row(cell), before.data());
     equation->invariant_densities(e.data(), after.data());
     equation->invariant_scales(before.data(), scales.data());
@@ -203,15 +203,14 @@ double run_setup::equilibrium_defect(const field& u) const {
 void run_setup::decide_promises(run_promises& promises, double dt, double limit, bool nonnegative,
                                 bool exact_equilibrium) const {
   const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
-  // Through open ends mass and entropy come and go.
+  // Mass and entropy cross open ends.
   const bool closed = builder_.space().closed();
-  // An explicit Q/epsilon beyond the step that it allows carries its rounding times dt/epsilon into the
-  // invariants.
+  // An explicit Q/epsilon beyond its step limit amplifies its rounding in the invariants by dt/epsilon.
   const bool explicit_collision = schedule(method_->coefficients<double>()).collision_evaluations() > 0;
   promises.conservation =
       closed && exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
   promises.positivity = equation->positive() && nonnegative && within && builder_.keeps_sign();
-  // An equilibrium with other moments is not the least entropy among the states with those of the data.
+  // An equilibrium with other moments does not minimize the entropy among the states with those of the data.
   promises.entropy = equation->has_entropy() && nonnegative && closed && within && builder_.first_order() &&
                      exact_equilibrium;
 }

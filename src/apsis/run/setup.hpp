@@ -12,55 +12,55 @@
 
 namespace apsis {
 
-/// Everything that a case names, made and checked against each other before the first step: names and numbers
-/// of the case become calls of a problem_builder.
+/// The objects of a case, built and checked before the first step: translates the names and numbers of the
+/// case into calls of a problem_builder.
 class run_setup {
  public:
-  /// Throws input_error: mesh smaller than the stencil, method that cannot integrate the model, epsilon(x)
-  /// not a finite number ≥ 0 on the mesh.
+  /// Throws input_error if the mesh is smaller than the stencil, the method cannot integrate the model, or
+  /// epsilon(x) is not a finite number ≥ 0 on the mesh.
   explicit run_setup(const case_config& config);
 
   std::unique_ptr<model> equation;  ///< model.name with its parameters and velocity grid
 
-  /// The case.
+  /// Returns the case.
   const case_config& config() const { return config_; }
-  /// time.method, of the catalogue or from a file.
+  /// Returns the method time.method, of the catalogue or from a file.
   const method& integrator() const { return *method_; }
-  /// r of Δt ≤ r Δt_FE; 0 if the method has none.
+  /// Returns the SSP coefficient r; 0 if the method has none.
   double ssp_coefficient() const { return ssp_coefficient_; }
 
-  /// T and Q on the mesh of the case. Refers to the model of this setup, which must outlive it.
+  /// Returns the semi-discrete problem of the case. This setup, whose model it refers to, must outlive it.
   std::unique_ptr<semidiscrete_problem> make_problem() const;
-  /// Cell averages (finite volume) or point values (finite difference) of the named initial data. Throws
-  /// input_error where the velocity grid cannot hold them.
+  /// Returns cell averages (finite volume) or point values (finite difference) of the initial data. Throws
+  /// input_error if the velocity grid does not support them.
   field initial_state() const;
-  /// The exact solution at time t in the same form; nothing where no formula is known for the data.
+  /// Returns the exact solution at time t in the same form; nothing if no formula is known.
   std::optional<field> exact_state(double t) const;
-  /// Whether exact_state() knows a formula.
+  /// Whether the exact solution is known.
   bool has_exact_state() const { return static_cast<bool>(data().exact); }
 
-  /// Whether the model has a mesh; without one there is a single cell.
+  /// Whether the model has space; without it there is a single cell.
   bool has_space() const { return builder_.has_space(); }
-  /// Δx, or 1 without space.
+  /// Returns the cell volume; 1 without space.
   double cell_volume() const { return has_space() ? builder_.mesh().cell_volume() : 1.0; }
-  /// x of the cell centres; {0} without space.
+  /// Returns x of the cell centres; {0} without space.
   std::vector<double> centres() const;
-  /// ε(x) at the cell centres.
+  /// Returns ε at the cell centres.
   std::vector<double> epsilon_at_centres() const { return builder_.epsilon_at_centres(); }
-  /// dt if it was given as a number and every step is that long.
+  /// Returns time.dt if every step has this length.
   std::optional<double> given_dt() const { return has_tolerance() ? std::nullopt : config_.time.dt; }
-  /// Whether the steps keep time.tolerance.
+  /// Whether the step size is controlled by time.tolerance.
   bool has_tolerance() const { return config_.time.tolerance.has_value(); }
-  /// Δx/v_max, so that Δt = cfl · this.
+  /// Returns Δx/v_max, so that Δt = cfl Δx/v_max.
   double cfl_length() const;
-  /// Whether the first step is cut into steps that resolve the initial layer (time.startup).
+  /// Whether the first step is divided to resolve the initial layer (time.startup).
   bool has_graded_start() const { return config_.time.startup == startup_choice::graded; }
 
-  /// Largest defect of an invariant, Σ|ℛE(ℛu) − ℛu| over all cells relative to its scale; 0 for models that
-  /// do not relax to an equilibrium.
+  /// Returns the largest defect of an invariant in equilibria, Σ|ℛE(ℛu) − ℛu| over all cells relative to its
+  /// scale; 0 for models that do not relax to an equilibrium.
   double equilibrium_defect(const field& u) const;
-  /// What a run with steps of dt ≤ r Δt_FE = `limit` promises; `nonnegative`: the initial state is;
-  /// `exact_equilibrium`: E has the moments of u up to rounding.
+  /// Decides what a run with steps dt promises, where `limit` = r Δt_FE; `nonnegative`: the initial state is
+  /// nonnegative; `exact_equilibrium`: E has the moments of u up to rounding.
   void decide_promises(run_promises& promises, double dt, double limit, bool nonnegative,
                        bool exact_equilibrium) const;
 

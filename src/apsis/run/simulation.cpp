@@ -23,7 +23,7 @@ namespace apsis {
 
 namespace {
 
-/// ‖u − v‖₂/‖u‖₂ over all cells and components.
+/// Returns ‖u − v‖₂/‖u‖₂ over all cells and components.
 double relative_distance(const field& u, const field& v) {
   double difference = 0.0, size = 0.0;
   for (int cell = 0; cell < u.cells(); ++cell)
@@ -35,7 +35,7 @@ double relative_distance(const field& u, const field& v) {
   return difference == 0.0 ? 0.0 : std::sqrt(difference / size);
 }
 
-/// The setup of a case whose state and buffers fit into memory.
+/// Returns the setup of a case if its state and buffers fit into memory.
 run_setup setup_that_fits(const case_config& config) {
   run_setup setup(config);
   check_memory(config, setup, 0);
@@ -90,7 +90,7 @@ struct simulation::impl {
     return setup.ssp_coefficient() * problem->forward_euler_step(march.t(), state);
   }
 
-  /// What the step rule of the case allows.
+  /// Returns the step limit of the case.
   double limit() {
     if (config.time.cfl) return *config.time.cfl * setup.cfl_length();
     if (config.time.safety) return *config.time.safety * forward_euler_limit();
@@ -177,7 +177,7 @@ long simulation::step() const {
 }
 long simulation::steps_total() const {
   if (finished()) return step();
-  // The first step to a tolerance resolves the layer; those that follow are as long as was forecast.
+  // With a tolerance the first step resolves the layer; later ones have the forecast length.
   if (step() == 0 && impl_->expected) return impl_->march.steps_left(impl_->expected->dt);
   return step() + impl_->march.steps_left(impl_->march.starting() ? impl_->limit() : impl_->proposed());
 }
@@ -186,7 +186,7 @@ long simulation::snapshot_times_passed() const {
   return every > 0.0 ? multiples_until(t(), every) : 0;
 }
 bool simulation::next_step_depends_on_end() const {
-  // Far from the end the question is not worth a forward Euler step: no rule makes steps 32 times longer.
+  // Far from the end the answer is no without evaluating Δt_FE: no rule makes steps 32 times longer.
   const bool far = step() > 0 && !impl_->march.starting() && config().time.end - t() > 64.0 * last().dt;
   if (far || finished()) return false;
   return impl_->march.shaped_by_end(impl_->proposed());
@@ -296,7 +296,7 @@ void simulation::restore(const run_state& saved) {
   for (int cell = 0; cell < cells(); ++cell)
     std::copy_n(saved.unknowns.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
                 impl_->state.row(cell));
-  // Before the first step there is nothing but what the case says.
+  // Before the first step the marcher is that of the case.
   if (saved.march.step > 0) impl_->march.resume(saved.march);
   if (impl_->control && saved.control) impl_->control->resume(*saved.control);
   impl_->totals = saved.totals;

@@ -6,15 +6,16 @@
 
 namespace apsis {
 
-/// From 0 to time.end with stops at every output.every. A time.dt that does not divide time.end is reduced,
-/// one that does not divide output.every is the longest step, as with time.cfl; a warning says so.
+/// Returns the marcher from 0 to time.end with stops at multiples of output.every. With a warning, a time.dt
+/// that does not divide time.end is reduced, and one that does not divide output.every becomes the longest
+/// step.
 time_marcher<double> times_of(const run_setup& setup);
 
 /// Warns of an explicit method with a stiff collision, which needs more than 10⁸ steps of about ε/C =
 /// `relaxation`; `dt` is the first step.
 void warn_of_stiff_collision(const run_setup& setup, double relaxation, double dt);
 
-/// Warns where the forecast error is above time.tolerance, and says what helps.
+/// Warns if the forecast error exceeds time.tolerance, and suggests remedies.
 void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation);
 
 }  // namespace apsis

@@ -29,7 +29,8 @@ class cell_average_collision final : public collision {
     for_batches(t, u, [&](const point_batch& at, scratch& own) {
       own.local->solve_stage_means(a, b, at, own.points.data(), gauss3::weight, result_.row(at.first_cell));
     });
-    std::swap(u, result_);  // neighbours need the old averages, so the new ones are made beside them
+    std::swap(u,
+              result_);  // neighbours need the old averages, so that the new ones have a field of their own
   }
 
   void add_collision(double t, const field& u, std::span<const target<field, double>> targets) override {
@@ -93,7 +94,8 @@ class cell_average_collision final : public collision {
     });
   }
 
-  /// body(batch of Gauss points of whole cells, scratch with the values there).
+  /// Calls body(batch, scratch) for batches of the Gauss points of whole cells, with their values in
+  /// scratch.points.
   template <class Body>
   void for_batches(double t, const field& u, const Body& body) {
     space_->fill_ghosts(t, u);

@@ -9,7 +9,7 @@ namespace apsis {
 /// Loops of the collision operators over the components of rows, for the instruction set of this processor.
 namespace collision_rows {
 
-/// What a point contributes to Q(u)/ε of a cell.
+/// Contribution of a quadrature point to Q(u)/ε of a cell.
 struct weighted_row {
   double weight;    ///< quadrature weight of the point
   const double* q;  ///< Q/ε at the point, one row
@@ -19,7 +19,7 @@ struct weighted_row {
 void add(std::span<const weighted_row> points, const double* u, int width,
          std::span<const upwind::row_target> targets);
 
-/// Averages of cells i−1, i, i+1 and the edge values of cell i.
+/// Averages of cells i−1, i, i+1 and edge values of cell i, one row each.
 struct quartic_rows {
   const double *before,  ///< average of cell i−1
       *average,          ///< average of cell i

@@ -12,7 +12,7 @@
 
 namespace apsis {
 
-/// Makes the semi-discrete problem u' = T(t, u) + Q(u)/ε of a model from C++ objects:
+/// Builds the semi-discrete problem u' = T(t, u) + Q(u)/ε of a model from C++ objects:
 ///
 ///   auto problem = problem_builder(equation)
 ///                      .on(grid::line(40, 0.0, 2.0))
@@ -33,41 +33,42 @@ class problem_builder {
   /// `equation` must outlive the builder and what it builds.
   explicit problem_builder(const model& equation);
 
-  /// The mesh. Throws input_error where the model has no space, or another number of dimensions.
+  /// Sets the mesh. Throws input_error if the model has another number of space dimensions.
   problem_builder& on(const grid& mesh);
-  /// What lies beyond one face of the mesh, which must be known; periodic without it.
+  /// Sets the boundary of one face of the mesh, which must be set before; the default is periodic.
   problem_builder& with_boundary(const face& where, std::shared_ptr<const boundary> side);
-  /// The scheme of edge values. Throws input_error where the mesh, which must be known, is smaller than its
-  /// stencil.
+  /// Sets the reconstruction scheme. Throws input_error if the mesh, which must be set before, is smaller
+  /// than its stencil.
   problem_builder& with_reconstruction(std::shared_ptr<const reconstruction> scheme);
-  /// What the unknowns are.
+  /// Sets the meaning of the unknowns: cell averages or point values.
   problem_builder& with_unknowns(formulation unknowns);
-  /// Keeps nonnegative data nonnegative for steps up to r Δt_FE. Throws input_error where the unknowns of the
+  /// Keeps nonnegative data nonnegative for steps up to r Δt_FE. Throws input_error if the unknowns of the
   /// model may be negative.
   problem_builder& with_positivity_limiter();
-  /// ε(x).
+  /// Sets ε(x).
   problem_builder& with_epsilon(scale epsilon);
-  /// For methods that treat T and Q explicitly: Δt_FE is then that of T + Q/ε.
+  /// For methods that treat T and Q explicitly: forward_euler_step() is then that of T + Q/ε.
   problem_builder& with_explicit_collision();
 
-  /// Throws input_error where a mesh or a reconstruction is missing, ε is no finite number ≥ 0, only one face
-  /// of a direction is periodic, or averages are asked for in more than one space dimension.
+  /// Returns the problem. Throws input_error if the mesh or the reconstruction is missing, ε is not a finite
+  /// number ≥ 0, only one face of a direction is periodic, or cell averages have more than one space
+  /// dimension.
   std::unique_ptr<semidiscrete_problem> build() const;
-  /// Cell averages or point values of data, [cells][components]; averages are exact to rounding where the
-  /// data are smooth between the `jumps` (in increasing order).
+  /// Returns cell averages or point values of data, [cells][components]; averages are exact to rounding if
+  /// the data are smooth between the `jumps` (in increasing order).
   field sample(const data& value, const std::vector<double>& jumps = {}) const;
 
   /// Whether the model has space.
   bool has_space() const { return equation_->space_dimensions() > 0; }
-  /// The mesh; a single cell without space.
+  /// Returns the mesh; a single cell without space.
   const grid& mesh() const { return mesh_; }
-  /// The mesh with its faces. Throws input_error where only one face of a direction is periodic.
+  /// Returns the domain. Throws input_error if only one face of a direction is periodic.
   domain space() const;
   /// Whether the reconstruction is first-order upwind.
   bool first_order() const { return how_.scheme && how_.scheme->order() == 1; }
   /// Whether steps within r Δt_FE keep nonnegative data nonnegative.
   bool keeps_sign() const { return limited_ || first_order() || !has_space(); }
-  /// ε at the cell centres. Throws input_error where it is no finite number ≥ 0.
+  /// Returns ε at the cell centres. Throws input_error if it is not a finite number ≥ 0.
   std::vector<double> epsilon_at_centres() const;
 
  private:

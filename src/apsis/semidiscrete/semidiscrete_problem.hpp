@@ -8,12 +8,11 @@
 
 namespace apsis {
 
-/// A model on a mesh (or, without space, at one point), as the integrator sees it (see
-/// integrate/problem.hpp).
+/// A model on a mesh, or at one point without space, as a problem of the integrator (integrate/problem.hpp).
 class semidiscrete_problem {
  public:
   using state = field;  ///< f[cell][component]
-  using real = double;  ///< of time and coefficients
+  using real = double;  ///< type of time and coefficients
 
   /// `equation` must outlive the problem.
   semidiscrete_problem(const model& equation, std::shared_ptr<domain> space, stencil how,
@@ -23,8 +22,8 @@ class semidiscrete_problem {
         collision_(std::move(q)),
         cellwise_(dynamic_cast<cellwise_collision*>(collision_.get())) {}
 
-  /// Methods that treat T and Q explicitly keep what u + Δt (T + Q) keeps: with 1/Δt = 1/Δt_T + 1/Δt_Q that
-  /// is a convex combination of a step of T and a step of Q.
+  /// For methods that treat T and Q explicitly and preserve what u + Δt (T + Q) preserves: with 1/Δt = 1/Δt_T
+  /// + 1/Δt_Q that is a convex combination of forward Euler steps of T and of Q.
   void treat_collision_explicitly() { explicit_collision_ = true; }
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(t, u) for every target; boundaries know the time t.
@@ -34,8 +33,8 @@ class semidiscrete_problem {
   /// u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε². Throws numerical_error where there is no equilibrium, or
   /// Newton's method finds no solution.
   void solve_collision(double t, double a, double b, field& u) { collision_->solve(t, a, b, u); }
-  /// add_transport(), then solve_collision() as `due` says, to the same numbers; where possible, cells are
-  /// solved while they are in the cache.
+  /// Equivalent to add_transport() followed by solve_collision(due); where possible, cells are solved while
+  /// they are in cache.
   void add_transport_and_solve(double t, const field& u, std::span<const target<field, double>> targets,
                                due_collision<field, double> due) {
     const auto collide_cells = [&](int begin, int end) {
@@ -57,7 +56,7 @@ class semidiscrete_problem {
     if (!explicit_collision_) return of_transport;
     return 1.0 / (1.0 / of_transport + 1.0 / (rounding_allowance * collision_->forward_euler_step(u)));
   }
-  /// The model has a mesh or a source.
+  /// Whether the model has space or a source.
   bool has_transport(double, const field&) const { return has_transport_; }
   /// Smallest ε/C > 0; +infinity where none is known, or ε = 0 everywhere.
   double relaxation_time(double, const field& u) const { return collision_->relaxation_time(u); }
@@ -66,7 +65,7 @@ class semidiscrete_problem {
   transport transport_;
   bool has_transport_;
   std::unique_ptr<collision> collision_;
-  cellwise_collision* cellwise_;  ///< the same, if it needs no neighbours; else null
+  cellwise_collision* cellwise_;  ///< the collision if its cells are independent; else null
   bool explicit_collision_ = false;
 };
 

@@ -10,54 +10,53 @@
 
 namespace apsis {
 
-/// How positivity is kept.
+/// Positivity limiter.
 enum class limiter_kind {
   none,   ///< no limiter
-  edges,  ///< edge values of cell averages are moved towards the average (Zhang & Shu)
-  fluxes  ///< fluxes of point values are moved towards first-order upwind (Zalesak, Xu)
+  edges,  ///< scales edge values of cell averages towards the average (Zhang & Shu)
+  fluxes  ///< blends fluxes of point values with first-order upwind (Zalesak, Xu)
 };
 
-/// What is to be done with cells begin … end−1 (a call of a lambda, without an allocation); nothing by
-/// default.
+/// A function of cells begin … end−1, a reference to a lambda that does not allocate; empty by default.
 struct cells_job {
-  void (*call)(const void* body, int begin, int end) = nullptr;  ///< calls the lambda; null: nothing to do
-  const void* body = nullptr;                                    ///< the lambda, which is not copied
+  void (*call)(const void* body, int begin, int end) = nullptr;  ///< calls the lambda; null if empty
+  const void* body = nullptr;                                    ///< the lambda, not copied
 
-  /// body(begin, end); `body` must outlive the job.
+  /// Returns a job that calls body(begin, end); `body` must outlive it.
   template <class Body>
   static cells_job of(const Body& body) {
     return {[](const void* b, int begin, int end) { (*static_cast<const Body*>(b))(begin, end); }, &body};
   }
-  /// Whether there is anything to do.
+  /// Whether the job is not empty.
   explicit operator bool() const { return call != nullptr; }
-  /// Calls the lambda, which must be there.
+  /// Calls the lambda; the job must not be empty.
   void operator()(int begin, int end) const { call(body, begin, end); }
 };
 
-/// How transport and collision see neighbouring cells.
+/// Spatial discretization: reconstruction and limiter.
 struct stencil {
-  std::shared_ptr<const reconstruction> scheme;  ///< of edge values; null without space
-  limiter_kind positivity = limiter_kind::none;  ///< limiter of edges or fluxes
+  std::shared_ptr<const reconstruction> scheme;  ///< reconstruction of edge values; null without space
+  limiter_kind positivity = limiter_kind::none;  ///< positivity limiter of edges or fluxes
 };
 
-/// A few consecutive cells of one pencil with their edge values, small enough to stay in the cache. Reused
-/// from block to block: no allocation once it has grown.
+/// Edge values of consecutive cells of a pencil, few enough to stay in cache. The buffers are reused from
+/// block to block, so that they are allocated once.
 struct pencil_block {
-  /// Makes room for load() with so many cells.
+  /// Allocates buffers for load() with the given number of cells.
   void reserve(const stencil& how, int cells, int halo, int stride);
 
-  /// Cells begin−halo … end−1+halo of a pencil get edge values. Rows reach the ghost cells of the scheme.
+  /// Computes the edge values of cells begin−halo … end−1+halo of a pencil.
   void load(const field& u, const domain& space, const stencil& how, int direction, int pencil, int begin,
             int end, int halo);
 
-  /// The components of a cell of the pencil, or of a ghost cell.
+  /// Returns the row of a cell or ghost cell of the pencil.
   const double* row(int cell) const { return rows[static_cast<std::size_t>(cell - first_row)]; }
-  /// One row: the values of a cell of begin−halo … end−1+halo at its lower edge.
+  /// Returns the row of values at the lower edge of a cell begin−halo … end−1+halo.
   double* left_edge(int cell) { return left.data() + offset(cell); }
-  /// One row: the values of such a cell at its upper edge.
+  /// Returns the row of values at the upper edge of such a cell.
   double* right_edge(int cell) { return right.data() + offset(cell); }
 
-  std::vector<const double*> rows;  ///< of the cells from first_row on; they belong to the field
+  std::vector<const double*> rows;  ///< rows of the cells from first_row on, owned by the field
   aligned_vector<double> left,      ///< values at lower edges, [cell − first_edge][width]
       right;                        ///< values at upper edges, [cell − first_edge][width]
   int first_row = 0,                ///< cell of rows[0]
@@ -70,14 +69,14 @@ struct pencil_block {
   }
 };
 
-/// Cells per block for rows of `width` numbers that are read and written once.
+/// Returns the cells per block for rows of `width` numbers that are read and written once.
 int block_length(int width);
 
-/// Cells of a block whose edge values a pencil_block holds for rows of `width` numbers: many enough that the
-/// beginning of a walk costs little, few enough for the second-level cache.
+/// Returns the cells per block of a pencil_block for rows of `width` numbers: enough to amortize the start of
+/// a sweep, few enough for the second-level cache.
 int collision_block_length(int width);
 
-/// Likewise of a block of a sweep over `columns` numbers of every cell: for the first-level cache.
+/// Returns the cells per block of a sweep over `columns` numbers of every cell, for the first-level cache.
 int sweep_block_length(int columns);
 
 }  // namespace apsis

@@ -16,39 +16,39 @@ namespace {
 
 using targets_view = std::span<const target<field, double>>;
 
-/// Cells of a run that are treated as one row: so many that a row of few components fills some vectors.
+/// Returns the number of cells that are joined into one row, so that rows of few components fill vectors.
 int cells_of_a_row(int stride) {
   constexpr int enough = 64;
   return std::max(1, enough / std::max(stride, 1));
 }
 
-/// Components of a cell that a sweep takes along at once: with some dozens of cells, what it keeps of them
-/// fits into the first-level cache.
+/// Largest number of components per sweep: with some dozens of cells, its buffers fit into the first-level
+/// cache.
 constexpr int most_columns = 32;
-/// And what is worth a sweep of its own, in columns and in cells.
+/// Smallest numbers of components and cells that are worth a separate sweep.
 constexpr int least_columns = 16, least_cells = 16;
-/// Numbers that a kernel takes as one row at most, and tasks of a loop: their sums with a few others are
-/// ints.
+/// Limits on the length of a row and the tasks of a loop, so that sums with a few others fit into int.
 constexpr int longest_row = 1 << 30, most_tasks = 1 << 30;
 
-/// Bytes of accumulators for each number: written, and read before unless they are fresh.
+/// Returns the memory traffic of the accumulators per number: a write, and a read unless they are fresh.
 work traffic(targets_view targets) {
   work each;
   for (const auto& to : targets) each.bytes += sizeof(double) * (to.fresh ? 1.0 : 2.0);
   return each;
 }
 
-/// Cells beyond those of a block whose edges are needed: one for the flux, one more for its limiter.
+/// Returns the number of cells beyond a block whose edges are needed: one for the flux, one more for its
+/// limiter.
 int halo_of(const stencil& how) {
   return how.positivity == limiter_kind::fluxes ? 2 : 1;
 }
 
-/// Cells on either side that the edges of a cell and the limiter depend on.
+/// Returns the number of cells on either side on which edges and limiter of a cell depend.
 int reach_of(const stencil& how) {
   return std::max(how.scheme->ghost_width(), halo_of(how));
 }
 
-/// First component of column 0 … columns of a row, columns being cut at whole vectors.
+/// Returns the first component of column 0 … columns of a row; columns are multiples of vectors.
 int first_component(int width, int columns, int column) {
   if (column == columns) return width;
   return static_cast<int>(static_cast<long>(width / packet_length) * column / columns) * packet_length;
@@ -64,7 +64,7 @@ class transport::block_sweep {
     int first, last;                    ///< components
   };
 
-  /// Makes room for `cells` cells of at most `width` components.
+  /// Allocates buffers for `cells` cells of at most `width` components.
   void reserve(const transport& from, int cells, int width, std::size_t targets) {
     find_reach(from);
     const auto rows = static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_ + reach_);
@@ -95,8 +95,8 @@ class transport::block_sweep {
   }
 
  private:
-  /// Either one cell after another, or cells that are one row in memory and so are their neighbours: a single
-  /// "cell" for the kernels.
+  /// Either separate cells, or cells that are contiguous in memory, as are their neighbours, and form a
+  /// single "cell" for the kernels.
   struct run_of_cells {
     int cells, joined;
   };

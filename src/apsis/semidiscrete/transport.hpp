@@ -10,7 +10,7 @@
 
 namespace apsis {
 
-/// Factor of every forward Euler step, slightly below 1: at the exact limit the rounding of α u + β T(u), a
+/// Factor slightly below 1 of every forward Euler step: at the exact limit the rounding of α u + β T(u), a
 /// few units in the last place, could make a value negative.
 inline constexpr double rounding_allowance = 1.0 - 1e-14;
 
@@ -18,15 +18,15 @@ inline constexpr double rounding_allowance = 1.0 - 1e-14;
 /// operator is the same for cell averages (finite volume) and point values (finite difference).
 class transport {
  public:
-  /// `equation` must outlive this. Without space `how` is not used.
+  /// `equation` must outlive the operator. Without space `how` is ignored.
   transport(const model& equation, std::shared_ptr<domain> space, stencil how);
   ~transport();
   transport(transport&&) noexcept;  ///< leaves the source empty
 
-  /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u). One evaluation of T, none if every β is 0.
-  /// With the positivity limiter and β max|v|/Δx ≤ α/12 no result is negative, in floating point.
-  /// `then` is called with cells of all targets that are complete, while they are in the cache, and the
-  /// result says so; on a mesh, or with a number of threads, where that is of no use, it is not called.
+  /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u), with one evaluation of T, or none if every β
+  /// is 0. With the positivity limiter and β max|v|/Δx ≤ α/12 no result is negative, also in floating point.
+  /// `then` is called with completed cells of all targets while they are in cache, and true is returned;
+  /// where fusion does not pay (mesh, number of threads) it is not called, and false is returned.
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const;
 
@@ -47,13 +47,13 @@ class transport {
   std::shared_ptr<domain> space_;
   stencil how_;
   struct line_speeds {
-    aligned_vector<double> per_cell;  ///< |v|/Δx of every component
-    aligned_vector<double> forward;   ///< 1 where v > 0, else 0
+    aligned_vector<double> per_cell;  ///< |v|/Δx per component
+    aligned_vector<double> forward;   ///< 1 if v > 0, else 0
   };
   class block_sweep;
   struct scratch;
   std::vector<line_speeds> speeds_;
-  std::unique_ptr<scratch> scratch_;  ///< of this operator's loops: one loop at a time
+  std::unique_ptr<scratch> scratch_;  ///< scratch memory of loops; one loop at a time
 };
 
 }  // namespace apsis

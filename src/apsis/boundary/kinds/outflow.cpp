@@ -3,7 +3,7 @@
 namespace apsis {
 namespace {
 
-/// Zero gradient: every ghost row is that of the cell at the face.
+/// Zero gradient: every ghost row is the row of the cell at the face.
 class outflow_boundary final : public repeating_boundary {
  public:
   std::optional<int> repeated_cell(int, int) const override { return 0; }

@@ -3,7 +3,7 @@
 namespace apsis {
 namespace {
 
-/// The domain continues at its opposite face, as often as a stencil wider than the mesh needs.
+/// The domain continues at its opposite face, repeatedly if the stencil is wider than the mesh.
 class periodic_boundary final : public repeating_boundary {
  public:
   std::optional<int> repeated_cell(int ghost, int cells) const override { return cells - 1 - ghost % cells; }

@@ -27,7 +27,7 @@ class bgk_model final : public relaxation_model {
   int components() const override { return grid_.size(); }
   int space_dimensions() const override { return 1; }
   const velocity_set& velocities() const override { return grid_.set(); }
-  /// The end of the velocity grid, half an interval beyond its last point.
+  /// Returns the end of the velocity grid, half an interval beyond its last point.
   double reference_speed(int) const override { return grid_.max(); }
   bool positive() const override { return true; }
 
@@ -39,8 +39,8 @@ class bgk_model final : public relaxation_model {
     kinetic_moments(grid_, f, pitch, rows, omega);
   }
 
-  /// Exists for the moments of every f ≥ 0; where the formula has no meaning (empty space, T = 0 up to
-  /// rounding) it is the discrete one.
+  /// Exists for the moments of every f ≥ 0; where the formula is undefined (empty space, T = 0 up to
+  /// rounding) it is the discrete Maxwellian.
   bool equilibrium(const double* omega, double* m) const override {
     if (choice_ != equilibrium_choice::discrete) {
       const fluid_state state = to_fluid_state(omega, grid_.dimensions());
@@ -75,8 +75,8 @@ class bgk_model final : public relaxation_model {
     return rows;
   }
 
-  /// An addition and d + 1 multiply–adds for ω; for M two multiplications a point of a line (what the first
-  /// of its vectors costs is not counted), or one for a point of a product of lines.
+  /// One addition and d + 1 multiply–adds for ω; for M two multiplications per point on a line (without the
+  /// first vector), or one per point of a product of lines.
   double operations_of_equilibrium() const override {
     return 1.0 + (grid_.dimensions() + 1) + (grid_.dimensions() == 1 ? 2.0 : 1.0);
   }
@@ -91,7 +91,8 @@ class bgk_model final : public relaxation_model {
 
   std::vector<std::string> invariants() const override { return fluid_invariants(grid_.dimensions()); }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
-  /// Particles fly both ways: Σ|v_k| f ≤ √(2ρ𝓔), the Cauchy–Schwarz inequality.
+  /// Momenta cancel between particles of opposite velocities; Σ|v_k| f ≤ √(2ρ𝓔) by the Cauchy–Schwarz
+  /// inequality.
   void invariant_scales(const double* densities, double* scales) const override {
     relaxation_model::invariant_scales(densities, scales);
     const int d = grid_.dimensions();
@@ -119,8 +120,7 @@ class bgk_model final : public relaxation_model {
     const double width = std::sqrt(s.T);
     double speed = 0.0;
     for (int k = 0; k < grid_.dimensions(); ++k) speed = std::max(speed, std::abs(s.u[k]));
-    // Mass of the local Maxwellian beyond the grid; 1e-8 keeps the truncation below the accuracy of any run
-    // here.
+    // Mass fraction of the local Maxwellian beyond the grid; 1e-8 is below the accuracy of the cases.
     const double beyond = 0.5 * std::erfc((grid_.max() - speed) / (std::numbers::sqrt2 * width));
     if (beyond > 1e-8)
       return {
@@ -142,8 +142,8 @@ class bgk_model final : public relaxation_model {
   }
 
  private:
-  /// Four roundings, the part of an equilibrium in the rounding_bound of a step. Beyond it the defect has the
-  /// same sign in every step, and Newton's method makes it smaller.
+  /// Four roundings, the contribution of an equilibrium to the rounding_bound of a step. A larger defect
+  /// would have the same sign in every step; Newton's method reduces it.
   static constexpr double round_off = 4.5e-16;
 
   /// Whether the Maxwellian m of the formula has the moments ω of its state.
@@ -154,7 +154,7 @@ class bgk_model final : public relaxation_model {
     return moment_defect(grid_, m, omega, to_fluid_state(omega, grid_.dimensions())) <= round_off;
   }
 
-  /// a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃] at x, the form of all of the paper's data; u points along x.
+  /// f ← a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃], the form of all data of the paper, with ũ along x.
   void two_beams(double a, double b, double rho, double T, std::span<double> f) const {
     aligned_vector<double> beam(f.size());
     fluid_state state;
@@ -168,7 +168,7 @@ class bgk_model final : public relaxation_model {
     for (std::size_t j = 0; j < f.size(); ++j) f[j] += b * beam[j];
   }
 
-  /// M[ρ, 0, ¼]; by multiplication, because the formula leaves out values below 1e-300.
+  /// f ← ρ M[1, 0, ¼]; the formula would omit values below 1e-300.
   void expansion(double rho, std::span<double> f) const {
     fluid_state state;
     state.rho = 1.0;

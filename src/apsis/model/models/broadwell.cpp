@@ -58,10 +58,10 @@ class broadwell_model final : public relaxation_model {
     return part(f[0]) + 2.0 * part(f[1]) + part(f[2]);
   }
 
-  /// z is no third one: collisions change it.
+  /// z is not invariant: collisions change it.
   std::vector<std::string> invariants() const override { return {"mass", "momentum"}; }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
-  /// Particles fly both ways: f₊ + f₋ ≤ ρ.
+  /// Momenta cancel between opposite velocities; f₊ + f₋ ≤ ρ.
   void invariant_scales(const double* densities, double* scales) const override {
     relaxation_model::invariant_scales(densities, scales);
     scales[1] = std::max(scales[0], scales[1]);

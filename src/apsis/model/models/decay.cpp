@@ -22,7 +22,7 @@ class decay_model final : public general_model {
   int components() const override { return 1; }
   int space_dimensions() const override { return 0; }
   void collision(const number* u, number* q) const override { q[0] = -rate_ * u[0] * u[0]; }
-  /// A negative solution is admissible: methods that lose positivity must be free to show it.
+  /// Negative solutions are admissible, so that methods can be seen to lose positivity.
   bool admissible(const double* u) const override { return std::isfinite(u[0]); }
   bool positive() const override { return true; }
 

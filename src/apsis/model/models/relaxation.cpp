@@ -71,7 +71,7 @@ class relaxation_system final : public relaxation_model {
   }
 
  private:
-  /// To four digits.
+  /// Rounds up to four digits.
   static double rounded_up(double x) {
     const double unit = std::pow(10.0, std::floor(std::log10(x)) - 3.0);
     return std::ceil(x / unit * (1.0 - 1e-12)) * unit;

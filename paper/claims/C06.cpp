@@ -17,6 +17,6 @@ extern const claim_entry claim_C06;
 const claim_entry claim_C06 = {
     "C6", "New SSP IMEX multi-derivative Runge-Kutta methods",
     "the three-stage IMEX method is of second order with r = 1; its printed Butcher form agrees",
-    "certificate; r re-derived from the Butcher form alone", check};
+    "certificate; r derived from the Butcher form alone", check};
 
 }  // namespace apsis

@@ -2,11 +2,9 @@
 #include <apsis/core/extremes.hpp>
 #include <apsis/core/random_source.hpp>
 #include <apsis/model/model_registry.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/transport.hpp>
-#include <apsis/scheme/reconstruction_registry.hpp>
-#include <paper/claim.hpp>
-#include <paper/limit_equations.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +12,8 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <paper/claim.hpp>
+#include <paper/limit_equations.hpp>
 
 namespace apsis {
 namespace {
@@ -55,7 +55,7 @@ void collide_randomly(const broadwell& b, random_source& random, moment_form_def
   const target<field, double> to{&change, 0.0, 1.0, true};
   q->add_collision(0.0, u, {&to, 1});
   const auto w = moments_of(f.data()), rate = moments_of(change.row(0));
-  // Everything is measured against the size of the terms, ρ²/ε.
+  // All defects are relative to the size of the terms, ρ²/ε.
   const double size = w.rho * w.rho / epsilon;
   worst.conservation = maximum({worst.conservation, std::abs(rate.rho) / size, std::abs(rate.m) / size});
   const double written = (w.rho * w.rho + w.m * w.m - 2.0 * w.rho * w.z) / (2.0 * epsilon);
@@ -156,7 +156,7 @@ claim_result check(const study_control&) {
       at_most("characteristic speeds of the limit are (u ± √(2 − u²))/2, u = m/ρ", limit.speeds, 1e-8),
       at_most("and lie within those of the particles (subcharacteristic condition)", limit.fastest, 1.0)};
   result.remarks = {fmt::format(
-      "Largest of {} random states, through the collision and transport operators of the runs: populations "
+      "Largest of {} random states, with the production operators of collision and transport: populations "
       "from 10⁻³ to 10, ε from 10⁻⁸ to 10⁸, profiles linear in x with every reconstruction of the registry.",
       samples)};
   return result;

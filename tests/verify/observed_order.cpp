@@ -1,4 +1,4 @@
-// Observed orders on a problem type of one's own.
+// Observed orders on a user-defined problem type.
 #include <apsis/verify/observed_order.hpp>
 
 #include <apsis/integrate/relaxation_problem.hpp>

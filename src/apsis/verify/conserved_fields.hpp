@@ -14,10 +14,10 @@ using conserved_fields = std::array<std::vector<double>, 3>;
 /// From density, bulk velocity and temperature, the fields of kinetic models in one dimension.
 conserved_fields conserved(const field_table& macroscopic);
 
-/// Averages over pairs of cells, for a comparison with a mesh of half as many.
+/// Averages over pairs of cells, for comparison with a mesh of half as many cells.
 conserved_fields averaged_in_pairs(const conserved_fields& fine);
 
-/// Over fields and cells. NaN where a value is no number.
+/// Maximum over fields and cells; NaN if a value is NaN.
 double largest_difference(const conserved_fields& a, const conserved_fields& b);
 
 }  // namespace apsis

@@ -15,8 +15,10 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C01;
 const claim_entry claim_C01 = {
-    "C1", "Formulating the order conditions",
-    "order conditions of implicit two-derivative Runge-Kutta methods up to order 4",
-    "generated from rooted trees and compared with the printed table term by term", check};
+    .id = "C1",
+    .section = "Formulating the order conditions",
+    .statement = "order conditions of implicit two-derivative Runge-Kutta methods up to order 4",
+    .how = "generated from rooted trees and compared with the printed table term by term",
+    .check = check};
 
 }  // namespace apsis

@@ -15,8 +15,10 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C02;
 const claim_entry claim_C02 = {
-    "C2", "Formulating order conditions",
-    "order conditions of multi-derivative IMEX Runge-Kutta methods up to order 3",
-    "generated from two-coloured rooted trees and compared with the printed table term by term", check};
+    .id = "C2",
+    .section = "Formulating order conditions",
+    .statement = "order conditions of multi-derivative IMEX Runge-Kutta methods up to order 3",
+    .how = "generated from two-coloured rooted trees and compared with the printed table term by term",
+    .check = check};
 
 }  // namespace apsis

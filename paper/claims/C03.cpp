@@ -18,8 +18,10 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C03;
 const claim_entry claim_C03 = {
-    "C3", "New SSP implicit two-derivative Runge-Kutta methods",
-    "the one-stage implicit Taylor method is of second order and SSP for every step",
-    "certificate from the coefficients alone", check};
+    .id = "C3",
+    .section = "New SSP implicit two-derivative Runge-Kutta methods",
+    .statement = "the one-stage implicit Taylor method is of second order and SSP for every step",
+    .how = "certificate from the coefficients alone",
+    .check = check};
 
 }  // namespace apsis

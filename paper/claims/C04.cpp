@@ -15,8 +15,10 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C04;
 const claim_entry claim_C04 = {
-    "C4", "New SSP implicit two-derivative Runge-Kutta methods",
-    "the two-stage method is of third order and SSP for every step; its printed forms agree",
-    "certificate; conversion of the Shu-Osher form compared with the printed matrices", check};
+    .id = "C4",
+    .section = "New SSP implicit two-derivative Runge-Kutta methods",
+    .statement = "the two-stage method is of third order and SSP for every step; its printed forms agree",
+    .how = "certificate; conversion of the Shu-Osher form compared with the printed matrices",
+    .check = check};
 
 }  // namespace apsis

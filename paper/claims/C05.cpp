@@ -18,8 +18,10 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C05;
 const claim_entry claim_C05 = {
-    "C5", "New SSP implicit two-derivative Runge-Kutta methods",
-    "the five-stage method is of fourth order and SSP for every step; its printed forms agree",
-    "certificate; conversion of the Shu-Osher form compared with the printed matrices", check};
+    .id = "C5",
+    .section = "New SSP implicit two-derivative Runge-Kutta methods",
+    .statement = "the five-stage method is of fourth order and SSP for every step; its printed forms agree",
+    .how = "certificate; conversion of the Shu-Osher form compared with the printed matrices",
+    .check = check};
 
 }  // namespace apsis

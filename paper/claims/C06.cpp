@@ -15,8 +15,10 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C06;
 const claim_entry claim_C06 = {
-    "C6", "New SSP IMEX multi-derivative Runge-Kutta methods",
-    "the three-stage IMEX method is of second order with r = 1; its printed Butcher form agrees",
-    "certificate; r derived from the Butcher form alone", check};
+    .id = "C6",
+    .section = "New SSP IMEX multi-derivative Runge-Kutta methods",
+    .statement = "the three-stage IMEX method is of second order with r = 1; its printed Butcher form agrees",
+    .how = "certificate; r derived from the Butcher form alone",
+    .check = check};
 
 }  // namespace apsis

@@ -26,9 +26,12 @@ claim_result check(const study_control&) {
 }  // namespace
 
 extern const claim_entry claim_C07;
-const claim_entry claim_C07 = {
-    "C7", "New SSP IMEX multi-derivative Runge-Kutta methods",
-    "the six-stage IMEX method is of third order with r = 0.904402174130635; its printed Butcher form agrees",
-    "certificate; r derived from the Butcher form alone", check};
+const claim_entry claim_C07 = {.id = "C7",
+                               .section = "New SSP IMEX multi-derivative Runge-Kutta methods",
+                               .statement =
+                                   "the six-stage IMEX method is of third order with r = 0.904402174130635; "
+                                   "its printed Butcher form agrees",
+                               .how = "certificate; r derived from the Butcher form alone",
+                               .check = check};
 
 }  // namespace apsis

@@ -27,8 +27,11 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C08;
 const claim_entry claim_C08 = {
-    "C8", "New SSP IMEX multi-derivative Runge-Kutta methods",
-    "both IMEX methods are of type A and globally stiffly accurate, with three and six implicit solves",
-    "certificate", check};
+    .id = "C8",
+    .section = "New SSP IMEX multi-derivative Runge-Kutta methods",
+    .statement =
+        "both IMEX methods are of type A and globally stiffly accurate, with three and six implicit solves",
+    .how = "certificate",
+    .check = check};
 
 }  // namespace apsis

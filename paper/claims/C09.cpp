@@ -30,8 +30,10 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C09;
 const claim_entry claim_C09 = {
-    "C9", "New SSP IMEX multi-derivative Runge-Kutta methods",
-    "r = 1 is 23 % larger than that of the second-order scheme of Hu, Shu and Zhang (2018)",
-    "their scheme is in the catalogue; both coefficients derived from the Butcher forms alone", check};
+    .id = "C9",
+    .section = "New SSP IMEX multi-derivative Runge-Kutta methods",
+    .statement = "r = 1 is 23 % larger than that of the second-order scheme of Hu, Shu and Zhang (2018)",
+    .how = "their scheme is in the catalogue; both coefficients derived from the Butcher forms alone",
+    .check = check};
 
 }  // namespace apsis

@@ -161,10 +161,12 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C10;
 const claim_entry claim_C10 = {
-    "C10", "Numerical results, the implicit methods on u' = -10 u^2; theorem on implicit methods",
-    "the implicit methods keep u' = -10 u^2, u(0) = 10 positive for every step",
-    "positivity of every stage and step; beyond the paper: random dissipative G with random convex "
-    "functionals, for every unconditionally SSP implicit method of the catalogue",
-    check};
+    .id = "C10",
+    .section = "Numerical results, the implicit methods on u' = -10 u^2; theorem on implicit methods",
+    .statement = "the implicit methods keep u' = -10 u^2, u(0) = 10 positive for every step",
+    .how =
+        "positivity of every stage and step; beyond the paper: random dissipative G with random convex "
+        "functionals, for every unconditionally SSP implicit method of the catalogue",
+    .check = check};
 
 }  // namespace apsis

@@ -32,8 +32,10 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C11;
 const claim_entry claim_C11 = {
-    "C11", "Numerical results, the implicit methods on u' = -10 u^2",
-    "the DIRK methods of second and third order lose positivity for steps above 1/50 and 1/75",
-    "bisection of the step for which every stage of twenty steps from u(0) = 10 is positive", check};
+    .id = "C11",
+    .section = "Numerical results, the implicit methods on u' = -10 u^2",
+    .statement = "the DIRK methods of second and third order lose positivity for steps above 1/50 and 1/75",
+    .how = "bisection of the step for which every stage of twenty steps from u(0) = 10 is positive",
+    .check = check};
 
 }  // namespace apsis

@@ -80,8 +80,10 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C12;
 const claim_entry claim_C12 = {
-    "C12", "Numerical results, figure of u' = -10 u^2",
-    "the SSP methods are qualitatively right for all steps tested, the DIRK methods are not",
-    "both panels of the figure; positivity of every stage and decay in every step", check};
+    .id = "C12",
+    .section = "Numerical results, figure of u' = -10 u^2",
+    .statement = "the SSP methods are qualitatively right for all steps tested, the DIRK methods are not",
+    .how = "both panels of the figure; positivity of every stage and decay in every step",
+    .check = check};
 
 }  // namespace apsis

@@ -57,8 +57,10 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C13;
 const claim_entry claim_C13 = {
-    "C13", "Numerical results, the implicit methods on u' = -10 u^2",
-    "the three implicit methods reach orders 2, 3 and 4",
-    "error against the exact solution at t = 2 through the production stepper, in long double", check};
+    .id = "C13",
+    .section = "Numerical results, the implicit methods on u' = -10 u^2",
+    .statement = "the three implicit methods reach orders 2, 3 and 4",
+    .how = "error against the exact solution at t = 2 through the production stepper, in long double",
+    .check = check};
 
 }  // namespace apsis

@@ -55,8 +55,12 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C14;
 const claim_entry claim_C14 = {
-    "C14", "Models, Properties 3-5",
-    "R Q = 0, Q(E) = 0 and Q'(u) Q(u) = -C Q(u) for the ODE model, the relaxation system, Broadwell and BGK",
-    "random states of every relaxation model; the derivative by differences", check};
+    .id = "C14",
+    .section = "Models, Properties 3-5",
+    .statement =
+        "R Q = 0, Q(E) = 0 and Q'(u) Q(u) = -C Q(u) for the ODE model, the relaxation system, Broadwell and "
+        "BGK",
+    .how = "random states of every relaxation model; the derivative by differences",
+    .check = check};
 
 }  // namespace apsis

@@ -66,10 +66,13 @@ claim_result check(const study_control& control) {
 }  // namespace
 
 extern const claim_entry claim_C15;
-const claim_entry claim_C15 = {"C15", "Models, Property 2",
-                               "backward Euler on the collision keeps positivity for every step",
-                               "random nonnegative states, steps from 1e-12 to 1e12, no value below zero in "
-                               "floating point, exact zeros in the input",
-                               check};
+const claim_entry claim_C15 = {
+    .id = "C15",
+    .section = "Models, Property 2",
+    .statement = "backward Euler on the collision keeps positivity for every step",
+    .how =
+        "random nonnegative states, steps from 1e-12 to 1e12, no value below zero in "
+        "floating point, exact zeros in the input",
+    .check = check};
 
 }  // namespace apsis

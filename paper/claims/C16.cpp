@@ -166,10 +166,12 @@ claim_result check(const study_control&) {
 
 extern const claim_entry claim_C16;
 const claim_entry claim_C16 = {
-    "C16", "Models, the Broadwell model",
-    "in moments ρ_t + m_x = 0, m_t + z_x = 0, z_t + m_x = (ρ² + m² − 2ρz)/(2ε); for ε → 0 z = (ρ² + "
-    "m²)/(2ρ), which closes the limit system; E(ρ, m) as printed",
-    "identities on random states through the production operators, and the fluxes of the limit system",
-    check};
+    .id = "C16",
+    .section = "Models, the Broadwell model",
+    .statement =
+        "in moments ρ_t + m_x = 0, m_t + z_x = 0, z_t + m_x = (ρ² + m² − 2ρz)/(2ε); for ε → 0 z = (ρ² + "
+        "m²)/(2ρ), which closes the limit system; E(ρ, m) as printed",
+    .how = "identities on random states through the production operators, and the fluxes of the limit system",
+    .check = check};
 
 }  // namespace apsis

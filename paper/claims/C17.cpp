@@ -261,11 +261,14 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C17;
 const claim_entry claim_C17 = {
-    "C17", "Properties of the numerical scheme, asymptotic preservation",
-    "at fixed Δt, as ε → 0, the scheme becomes the explicit Runge–Kutta method on "
-    "the limit system, for every model and from any data",
-    "comparison of runs with the limit scheme, implemented without the operators and the stepper of a run, "
-    "and of the limit scheme with the limit systems written out by hand",
-    check};
+    .id = "C17",
+    .section = "Properties of the numerical scheme, asymptotic preservation",
+    .statement =
+        "at fixed Δt, as ε → 0, the scheme becomes the explicit Runge–Kutta method on "
+        "the limit system, for every model and from any data",
+    .how =
+        "comparison of runs with the limit scheme, implemented without the operators and the stepper of a "
+        "run, and of the limit scheme with the limit systems written out by hand",
+    .check = check};
 
 }  // namespace apsis

@@ -177,10 +177,14 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C18;
 const claim_entry claim_C18 = {
-    "C18", "AP and positivity, remark on the entropy",
-    "S[f^{n+1}] <= S[f^n] for BGK and Broadwell with first-order upwind, dt <= r dt_FE, for every epsilon",
-    "every step of runs and of extreme data, epsilon from 0 to 1e12, every IMEX method with an SSP "
-    "coefficient; and a method without one that violates it",
-    check};
+    .id = "C18",
+    .section = "AP and positivity, remark on the entropy",
+    .statement =
+        "S[f^{n+1}] <= S[f^n] for BGK and Broadwell with first-order upwind, dt <= r dt_FE, for every "
+        "epsilon",
+    .how =
+        "every step of runs and of extreme data, epsilon from 0 to 1e12, every IMEX method with an SSP "
+        "coefficient; and a method without one that violates it",
+    .check = check};
 
 }  // namespace apsis

@@ -128,10 +128,13 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C19;
 const claim_entry claim_C19 = {
-    "C19", "Numerical results, an ODE model",
-    "orders 2 and 3 at eps = 1 and eps = 1e-10; order reduction between; plateaus of size O(eps)",
-    "error at t = 1 against a reference accurate to 1e-13, for Δt from 1/4 to 7.6e-6; cause of the plateaus; "
-    "observed order over ε and Δt for all models",
-    check};
+    .id = "C19",
+    .section = "Numerical results, an ODE model",
+    .statement =
+        "orders 2 and 3 at eps = 1 and eps = 1e-10; order reduction between; plateaus of size O(eps)",
+    .how =
+        "error at t = 1 against a reference accurate to 1e-13, for Δt from 1/4 to 7.6e-6; cause of the "
+        "plateaus; observed order over ε and Δt for all models",
+    .check = check};
 
 }  // namespace apsis

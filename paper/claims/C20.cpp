@@ -71,8 +71,10 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C20;
 const claim_entry claim_C20 = {
-    "C20", "Numerical results, an ODE model",
-    "on the plateaus the methods still converge with their order, if Δt is compared with Δt/2",
-    "self-convergence at eps = 1e-6 where the error against the reference is flat", check};
+    .id = "C20",
+    .section = "Numerical results, an ODE model",
+    .statement = "on the plateaus the methods still converge with their order, if Δt is compared with Δt/2",
+    .how = "self-convergence at eps = 1e-6 where the error against the reference is flat",
+    .check = check};
 
 }  // namespace apsis

@@ -113,9 +113,12 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C21;
 const claim_entry claim_C21 = {
-    "C21", "Numerical results, an ODE model",
-    "third order: below Δt ≈ 5e-5 the error grows again because of round-off",
-    "shown with the printed digits; removed by coefficients whose rows sum to 1 exactly, and by long double",
-    check};
+    .id = "C21",
+    .section = "Numerical results, an ODE model",
+    .statement = "third order: below Δt ≈ 5e-5 the error grows again because of round-off",
+    .how =
+        "shown with the printed digits; removed by coefficients whose rows sum to 1 exactly, and by long "
+        "double",
+    .check = check};
 
 }  // namespace apsis

@@ -88,12 +88,14 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C24;
 const claim_entry claim_C24 = {
-    "C24",
-    "BGK model, mixed regime",
-    "with the Knudsen number from 1e-5 to O(1) in one domain no cell becomes negative, and both orders agree "
-    "with the explicit reference and with each other",
-    "the paper's run with both methods and its reference, every step monitored",
-    check,
-    true};
+    .id = "C24",
+    .section = "BGK model, mixed regime",
+    .statement =
+        "with the Knudsen number from 1e-5 to O(1) in one domain no cell becomes negative, and both orders "
+        "agree "
+        "with the explicit reference and with each other",
+    .how = "the paper's run with both methods and its reference, every step monitored",
+    .check = check,
+    .slow = true};
 
 }  // namespace apsis

@@ -193,10 +193,14 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C25;
 const claim_entry claim_C25 = {
-    "C25", "Appendix: unconditionally SSP implicit methods",
-    "with nonnegative coefficients of the derivative no method of the class has order two, because b·e − b·c "
-    "≤ k_s < 1/2",
-    "random nonnegative tableaux; random searches for the largest difference and the smallest residual",
-    check};
+    .id = "C25",
+    .section = "Appendix: unconditionally SSP implicit methods",
+    .statement =
+        "with nonnegative coefficients of the derivative no method of the class has order two, because b·e − "
+        "b·c "
+        "≤ k_s < 1/2",
+    .how =
+        "random nonnegative tableaux; random searches for the largest difference and the smallest residual",
+    .check = check};
 
 }  // namespace apsis

@@ -89,8 +89,11 @@ claim_result check(const study_control& control) {
 
 extern const claim_entry claim_C26;
 const claim_entry claim_C26 = {
-    "C26", "New implicit methods, orders above four",
-    "a fifth-order unconditionally SSP implicit two-derivative method exists (the paper found none)",
-    "certificate of imdrk-9-5, observed order through the production stepper in long double", check};
+    .id = "C26",
+    .section = "New implicit methods, orders above four",
+    .statement =
+        "a fifth-order unconditionally SSP implicit two-derivative method exists (the paper found none)",
+    .how = "certificate of imdrk-9-5, observed order through the production stepper in long double",
+    .check = check};
 
 }  // namespace apsis

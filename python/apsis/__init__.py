@@ -3,13 +3,14 @@
     apsis.run("paper/bgk-mixed").fields["rho"]           a kinetic problem from a case
     apsis.open("results/layer").plot()                   a stored run
     apsis.method("md-imex-6-3").certificate.order        methods and what can be said of them
-    apsis.integrate(problem, u0, t, method=…, dt=…)      a problem of your own
+    apsis.integrate(problem, u0, t, method=…, dt=…)      a problem of your own, or a KineticProblem on a mesh
 
 All quantities are dimensionless.
 """
 from ._core import model_names as models
 from ._core import version as _version
 from .errors import ClaimError, Error, FileError, InputError, NumericalError
+from .kinetic import KineticProblem
 from .methods import Certificate, Method, OrderCondition, method, methods, order_conditions, read_method
 from .problems import RelaxationProblem, Solution, integrate
 from .runs import Case, Result, cases, run
@@ -17,6 +18,6 @@ from .stored import open
 
 __version__: str = _version()
 
-__all__ = ["Case", "Certificate", "ClaimError", "Error", "FileError", "InputError", "Method", "NumericalError",
+__all__ = ["Case", "Certificate", "ClaimError", "Error", "FileError", "InputError", "KineticProblem", "Method", "NumericalError",
            "OrderCondition", "RelaxationProblem", "Result", "Solution", "cases", "integrate", "method", "methods", "models",
            "open", "order_conditions", "read_method", "run"]

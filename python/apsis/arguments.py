@@ -1,4 +1,4 @@
-"""Checks of arguments, so that a wrong one has a message that names it."""
+"""Argument checks; messages name the argument."""
 from __future__ import annotations
 
 import math
@@ -11,7 +11,7 @@ from .errors import InputError
 
 
 def number(name: str, value: Any, positive: bool = False) -> float:
-    """`value` as a float. Raises InputError unless it is a real number, and finite and above 0 if it must be positive."""
+    """`value` as a float. Raises InputError unless it is a real number and, if `positive`, finite and above 0."""
     if isinstance(value, (str, bytes, bool, np.bool_)) or value is None:
         raise InputError(f"{name} is {value!r} (a real number is needed); give one")
     try:
@@ -33,13 +33,13 @@ def whole_number(name: str, value: Any) -> int:
 
 
 def real_array(name: str, value: Any) -> NDArray[np.float64]:
-    """`value` as an array of floats. Raises InputError where it has text, None or complex numbers, or rows of different length."""
+    """`value` as an array of floats. Raises InputError if it has text, None, complex numbers or rows of different length."""
     try:
         found = np.asarray(value)
         if found.dtype.kind == "O":
             found = np.array([float(x) for x in found.ravel()]).reshape(found.shape)
     except (TypeError, ValueError) as problem:
-        raise InputError(f"{name} is no array of real numbers ({problem}); give real numbers") from problem
+        raise InputError(f"{name} is not an array of real numbers ({problem}); give real numbers") from problem
     if found.dtype.kind not in "biuf":
         raise InputError(f"{name} is an array of type {found.dtype} (real numbers are needed); give real numbers")
     return np.ascontiguousarray(found, dtype=np.float64).reshape(found.shape)

@@ -1,8 +1,8 @@
-"""What can go wrong. Messages are those of the library: problem (why) suggestion."""
+"""Exceptions. Messages have the form of the library: problem (reason); suggestion."""
 
 
 class Error(Exception):
-    """Base of all errors that Apsis raises on purpose. exit_code is that of the program."""
+    """Base class of all exceptions of Apsis. exit_code is the exit code of the program for such an error."""
 
     exit_code: int = 1
 
@@ -14,7 +14,7 @@ class InputError(Error, ValueError):
 
 
 class NumericalError(Error, ArithmeticError):
-    """The computation cannot go on, or a promise was broken. What is not known is -1 or NaN."""
+    """The computation cannot continue, or a promise was broken. Unknown attributes are -1 or NaN."""
 
     exit_code = 3
     step: int = -1
@@ -30,6 +30,6 @@ class FileError(Error, OSError):
 
 
 class ClaimError(Error):
-    """A method does not have the properties that its file claims."""
+    """A method lacks a property that its file claims."""
 
     exit_code = 5

@@ -1,4 +1,4 @@
-"""Time integrators: coefficients, and what can be said of them."""
+"""Time integrators: coefficients and certificates."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ Tableau = Sequence[Sequence[Coefficient]]
 
 @dataclass(frozen=True)
 class Certificate:
-    """What the coefficients of a method imply, derived in 60 digits.
+    """Properties of a method, derived from its coefficients in 60 digits.
 
     name of the method; kind "imex", "implicit only" or "explicit"; order of accuracy; conditions, the number of order conditions up to it, and
     order_residual, the largest of their residuals; error_constant, the 2-norm of the residuals of the next order;
@@ -70,7 +70,7 @@ class Certificate:
 
 
 def html_table(rows: dict[str, str]) -> str:
-    """Two columns for a notebook, escaped."""
+    """Returns an escaped HTML table of two columns for notebooks."""
     return "<table>" + "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in rows.items()) + "</table>"
 
 
@@ -97,7 +97,7 @@ class Method:
                            "purpose": self.purpose, "citation": self.citation})
 
     def __eq__(self, other: object) -> bool:
-        """The same name, coefficients and claims: the same file."""
+        """Equality of names, coefficients and claims."""
         return isinstance(other, Method) and self._core._toml == other._core._toml
 
     def __hash__(self) -> int:
@@ -108,27 +108,27 @@ class Method:
 
     @cached_property
     def P(self) -> Array:
-        """Weights of the stages."""
+        """Weights p_ij of the stages."""
         return self._core.P
 
     @cached_property
     def W(self) -> Array:
-        """Weights of the forward Euler steps from the stages."""
+        """Weights w_ij of forward Euler steps from the stages."""
         return self._core.W
 
     @cached_property
     def D(self) -> Array:
-        """Factors of Q."""
+        """Coefficients d_ij of Q."""
         return self._core.D
 
     @cached_property
     def ddot(self) -> Array:
-        """Factors of Q̇."""
+        """Coefficients ḋ_i of Q̇."""
         return self._core.ddot
 
     @property
     def r(self) -> float:
-        """Steps of forward Euler in W have the length Δt/r."""
+        """r: the forward Euler steps in W have the length Δt/r."""
         return self._core.r
 
     @cached_property
@@ -148,7 +148,7 @@ class Method:
 
     @cached_property
     def exact(self) -> dict[str, list[list[Fraction]] | list[Fraction] | Fraction]:
-        """P, W, D, ddot and r as they stand in the file, without rounding."""
+        """P, W, D, ddot and r of the file as exact fractions."""
         file = self._core._exact
         matrices = {name: [[Fraction(x) for x in row] for row in file[name]] for name in ("P", "W", "D")}
         return {**matrices, "ddot": [Fraction(x) for x in file["ddot"]], "r": Fraction(file["r"])}
@@ -165,7 +165,7 @@ def _from_text(text: str, file: str) -> Method:
 
 @dataclass(frozen=True)
 class OrderCondition:
-    """The condition of a rooted tree: F stands for T, G for Q. It holds where the residual, the left-hand side minus 1/γ(τ), is 0."""
+    """The condition of a rooted tree: F stands for T, G for Q. It is satisfied if the residual, the left-hand side minus 1/γ(τ), is 0."""
 
     tree: str
     order: int
@@ -174,19 +174,19 @@ class OrderCondition:
 
 
 def method(name: str) -> Method:
-    """A method by its name, a member of a family ("md-imex-chain-7-2"), or a file FILE.toml, certified.
+    """Returns the certified method of a name, a member of a family ("md-imex-chain-7-2"), or a file FILE.toml.
 
-    Raises InputError if there is none, ClaimError if its claims do not hold."""
+    Raises InputError if there is no such method, ClaimError if a claim is false."""
     return Method(_core.find_method(name))
 
 
 def methods() -> list[str]:
-    """Names of the catalogue."""
+    """Returns the names of the catalogue."""
     return _core.method_names()
 
 
 def read_method(file: str | Path) -> Method:
-    """A method file that need not be what it claims: its certificate tells. Raises InputError, FileError."""
+    """Returns the method of a file without enforcing its claims; certificate.failures lists false ones. Raises InputError, FileError."""
     try:
         text = Path(file).read_text(encoding="utf-8")
     except OSError as problem:
@@ -195,7 +195,7 @@ def read_method(file: str | Path) -> Method:
 
 
 def order_conditions(A: Tableau, A_hat: Tableau | None = None, A_dot: Tableau | None = None, *, order: int) -> list[OrderCondition]:
-    """All conditions up to `order` of a tableau of your own: A of Q, A_hat of T, A_dot of Q̇ (s × s each), u^{n+1} the last stage.
+    """Returns all order conditions of a tableau up to `order`: A of Q, A_hat of T, A_dot of Q̇ (s × s each), u^{n+1} the last stage.
 
     Without A_hat of a method for Q alone. Coefficients may be numbers, fractions or text ("1/3"), and count with every
     digit. Raises InputError."""

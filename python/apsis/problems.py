@@ -1,4 +1,4 @@
-"""Problems of your own, with functions on arrays."""
+"""Problems defined by functions on arrays."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .arguments import number, real_array
+from .arguments import number, real_array, whole_number
 from .errors import InputError
+from .kinetic import KineticProblem
 from .methods import Method, html_table, method as find_method
 
 Array = NDArray[np.float64]
@@ -41,7 +42,7 @@ class RelaxationProblem:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """States u[k] at the times t[k], how many steps they took, and how many were rejected for their error."""
+    """States u[k] at the times t[k], with the numbers of accepted and rejected steps."""
 
     t: Array
     u: Array
@@ -57,34 +58,41 @@ class Solution:
                            "steps": str(self.steps), "rejected steps": str(self.rejected)})
 
     def __eq__(self, other: object) -> bool:
-        """The same numbers, bit for bit, NaN included."""
+        """Bitwise equality, including NaN."""
         return (isinstance(other, Solution) and (self.steps, self.rejected) == (other.steps, other.rejected)
                 and np.array_equal(self.t, other.t, equal_nan=True) and np.array_equal(self.u, other.u, equal_nan=True))
 
 
-def integrate(problem: RelaxationProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str | Method = "md-imex-6-3", *,
-              dt: float | None = None, safety: float = 1.0, startup: str = "none", tolerance: float | None = None) -> Solution:
-    """Integrates from t[0], where u is u0, and returns the states at all times of t.
+def integrate(problem: RelaxationProblem | KineticProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str | Method = "md-imex-6-3", *,
+              dt: float | None = None, safety: float = 1.0, startup: str = "none", tolerance: float | None = None,
+              threads: int | None = None) -> Solution:
+    """Integrates from u0 at t[0] and returns the states at all times of t.
 
     `method` is a name, a file or a Method. Steps have the length dt, shortened until it divides each interval, or
     safety · r · Δt_FE, 0 < safety. startup = "graded" resolves the initial layer of data out of equilibrium. With a tolerance steps are
     shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it; then
-    neither dt nor forward_euler_step is needed.
-    Raises InputError, NumericalError with step and t, and what the functions raise."""
-    if not isinstance(problem, RelaxationProblem):
-        raise InputError(f"problem is a {type(problem).__name__} (an equation is needed); give an apsis.RelaxationProblem")
+    neither dt nor forward_euler_step is needed. `threads` is for problems on a mesh: all processors for large ones where it is not
+    given; results do not depend on it.
+    Raises InputError, NumericalError with step and t, and exceptions of the functions."""
+    if not isinstance(problem, (RelaxationProblem, KineticProblem)):
+        raise InputError(f"problem is a {type(problem).__name__} (an equation is needed); give an apsis.RelaxationProblem or "
+                         "an apsis.KineticProblem")
     if startup not in ("none", "graded"):
-        raise InputError(f"there is no start-up {startup!r}; give \"none\" or \"graded\"")
+        raise InputError(f"unknown start-up {startup!r} (there is no such name); give \"none\" or \"graded\"")
+    integrator = method if isinstance(method, Method) else find_method(_name(method))
+    steps_by = (None if dt is None else number("dt", dt), number("safety", safety, positive=True), startup == "graded",
+                None if tolerance is None else number("tolerance", tolerance))
+    times_wanted = real_array("t", t).ravel().tolist()
+    if isinstance(problem, KineticProblem):
+        return Solution(*problem._core.integrate(real_array("u0", u0), times_wanted, integrator._core, *steps_by,
+                                                 None if threads is None else whole_number("threads", threads)))
     for name in ("transport", "moments", "equilibrium", "rate", "forward_euler_step", "admissible"):
         function = getattr(problem, name)
         if not callable(function) and not (function is None and name in ("forward_euler_step", "admissible")):
             raise InputError(f"{name} of the problem is a {type(function).__name__} (it must be callable); give a function")
-    integrator = method if isinstance(method, Method) else find_method(_name(method))
     times, states, steps, rejected = _core.integrate(
         problem.transport, problem.moments, problem.equilibrium, problem.rate, problem.forward_euler_step, problem.admissible,
-        number("epsilon", problem.epsilon), real_array("u0", u0), real_array("t", t).ravel().tolist(), integrator._core,
-        None if dt is None else number("dt", dt), number("safety", safety, positive=True), startup == "graded",
-        None if tolerance is None else number("tolerance", tolerance))
+        number("epsilon", problem.epsilon), real_array("u0", u0), times_wanted, integrator._core, *steps_by)
     return Solution(times, states, steps, rejected)
 
 

@@ -1,4 +1,4 @@
-"""Runs of cases, the same as those of `apsis run`."""
+"""Runs of cases, as by `apsis run`."""
 from __future__ import annotations
 
 import json
@@ -22,10 +22,12 @@ Progress = Callable[[int, int, float, float], Any]
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What a run computed. Arrays are not copied.
+    """The result of a run. Arrays are not copied.
 
-    f[cell, component] is the state at the end, x the cell centres, v the speeds of the components, epsilon the Knudsen number at
-    the centres (empty where the model has none). fields[name][k, cell] are the macroscopic fields at the times t[k], the last
+    f[cell, component] is the state at the end, x the cell centres, v[component] the speeds of the components, epsilon the Knudsen
+    number at the centres (empty where the model has none). With two or three velocity dimensions v[component, dimension] are
+    the velocities, v_weights[component] their quadrature weights, so that f @ v_weights is the density; where they are a tensor
+    product, axes["v_x"], … are its nodes and marginals["v_x"][cell, node], … f integrated over the other components. fields[name][k, cell] are the macroscopic fields at the times t[k], the last
     of which is the end, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
     the run ended."""
 
@@ -39,10 +41,13 @@ class Result:
     history: dict[str, Array]
     summary: dict[str, Any]
     labels: dict[str, str] = field(default_factory=dict)
+    v_weights: Array = field(default_factory=lambda: np.zeros(0))
+    axes: dict[str, Array] = field(default_factory=dict)
+    marginals: dict[str, Array] = field(default_factory=dict)
 
     @property
     def title(self) -> str:
-        """That of the case."""
+        """Title of the case."""
         return str(self.summary.get("case", {}).get("title", ""))
 
     def _size(self) -> str:
@@ -60,31 +65,35 @@ class Result:
                            "fields": ", ".join(self.fields)})
 
     def plot(self, kind: str = "fields") -> Any:
-        """A Matplotlib figure: "fields" over x or t, "distribution" f(x, v), or "history". Raises InputError where there is nothing to draw."""
-        from .plot.results import RunResult, figures  # needs Matplotlib, which runs do not
-        arrays = {name: value for name, value in (("f", self.f), ("x", self.x), ("v", self.v), ("epsilon", self.epsilon)) if value.size}
+        """A Matplotlib figure: "fields" over x or t, "distribution" f(x, v) or, with several velocity dimensions, its marginal over
+        v_x, or "history". Raises InputError if there is nothing to draw."""
+        from .plot.results import figures  # needs Matplotlib, which runs do not
+        from .plot.run_result import RunResult
+        every = {"f": self.f, "x": self.x, "v": self.v, "v_weights": self.v_weights, "epsilon": self.epsilon, **self.axes}
+        arrays = {name: value for name, value in every.items() if value.size}
         last = {name: values[-1] for name, values in self.fields.items()}
         stored = RunResult(Path("run"), {"case": self.summary.get("case", {})}, last, {**self.fields, "t": self.t}, arrays, self.history,
-                           self.labels, "")
+                           self.labels, "", self.marginals)
         made = figures(stored)
         if kind not in made:
-            raise InputError(f"there is no picture '{kind}' of this result; valid: {', '.join(made) or 'none'}")
+            raise InputError(f"unknown picture '{kind}' (this result has no such picture); valid: {', '.join(made) or 'none'}")
         return made[kind]
 
     def __eq__(self, other: object) -> bool:
-        """The same results, bit for bit, NaN included: everything but wall times."""
+        """Bitwise equality of everything but wall times, including NaN."""
         if not isinstance(other, Result):
             return False
         def same(a: Mapping[str, Array], b: Mapping[str, Array]) -> bool:
             return a.keys() == b.keys() and all(np.array_equal(a[name], b[name], equal_nan=True) for name in a)
-        arrays = ("f", "x", "v", "epsilon", "t")
+        arrays = ("f", "x", "v", "v_weights", "epsilon", "t")
         return (self.state == other.state and self.summary.get("case") == other.summary.get("case")
                 and same({name: getattr(self, name) for name in arrays}, {name: getattr(other, name) for name in arrays})
-                and same(self.fields, other.fields) and same(self.history, other.history))
+                and same(self.fields, other.fields) and same(self.history, other.history)
+                and same(self.axes, other.axes) and same(self.marginals, other.marginals))
 
 
 def cases() -> list[str]:
-    """Names of the built-in cases."""
+    """Returns the names of the built-in cases."""
     return _core.case_names()
 
 
@@ -92,10 +101,10 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
         wall: float | None = None, threads: int | None = None, progress: Progress | None = None) -> Result:
     """Runs a case: the name of a built-in one, a file, or a mapping such as {"model": {"name": "bgk"}, …}.
 
-    overrides are "key=value" ("space.cells=80"). `out` is a folder for the results, `restart` a checkpoint to go on from, `wall`
-    a limit in seconds. progress(step, steps, t, smallest) is called now and then; False ends the run, with a checkpoint in
-    `out`. `threads`: 0 stands for all processors; without it OMP_NUM_THREADS, or all for a large case and 1 for a small one.
-    Other threads of Python run meanwhile. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
+    overrides are "key=value" ("space.cells=80"). `out` is a folder for the results, `restart` a checkpoint to continue from, `wall`
+    a limit in seconds. progress(step, steps, t, smallest) is called about 20 times a second; False ends the run, with a checkpoint in
+    `out`. `threads`: 0 for all processors; default: OMP_NUM_THREADS, else all for a large case and 1 for a small one.
+    Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
     if not isinstance(case, (str, Path, Mapping)):
         raise InputError(f"case is a {type(case).__name__} (it must be a name, a file or a mapping); see apsis.cases()")
     for one in overrides:
@@ -111,7 +120,7 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
 
 
 def to_toml(case: Mapping[str, Any]) -> str:
-    """The case as the text of a case file."""
+    """Returns the text of a case file."""
     plain = [f"{key} = {_value(value)}" for key, value in case.items() if not isinstance(value, Mapping)]
     sections = [f"[{key}]\n" + "\n".join(f"{name} = {_value(x)}" for name, x in value.items())
                 for key, value in case.items() if isinstance(value, Mapping)]

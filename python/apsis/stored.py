@@ -1,4 +1,4 @@
-"""Results from the folders that runs leave."""
+"""Results of stored runs."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -10,11 +10,11 @@ from .runs import Result
 
 
 def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
-    """The Result of a stored run: `run(…, out=folder)` or `apsis run --out folder`.
+    """Returns the Result of a stored run: `run(…, out=folder)` or `apsis run --out folder`.
 
     Without snapshots t and fields have the end alone, and without a stored distribution f has no numbers. f is what the file
-    holds: every output.stride-th cell in output.precision. Raises FileError if the folder is not that of a run."""
-    from .plot.results import read_result  # needs h5py and Matplotlib, which runs do not
+    holds: every output.stride-th cell in output.precision. Raises FileError if the folder is not a result folder."""
+    from .plot.run_result import read_result  # needs h5py and Matplotlib, which runs do not
     from .plot.style import PictureError
     try:
         stored = read_result(folder)
@@ -30,4 +30,6 @@ def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
     arrays = stored.arrays
     return Result(state=str(manifest.get("state", "")), f=arrays.get("f", np.zeros((0, 0))), x=arrays.get("x", empty),
                   v=arrays.get("v", empty), epsilon=arrays.get("epsilon", empty), t=t, fields=fields, history=stored.history,
-                  summary=summary, labels={name: stored.labels[name] for name in fields if name in stored.labels})
+                  summary=summary, labels={name: stored.labels[name] for name in fields if name in stored.labels},
+                  v_weights=arrays.get("v_weights", empty), axes={name: arrays[name] for name in ("v_x", "v_y", "v_z") if name in arrays},
+                  marginals=stored.marginals)

@@ -49,5 +49,6 @@ void bind_errors(py::module_& m);
 void bind_methods(py::module_& m);
 void bind_integrate(py::module_& m);
 void bind_runs(py::module_& m);
+void bind_kinetic(py::module_& m);
 
 }  // namespace apsis::python

@@ -31,7 +31,7 @@ std::string description(const py::object& value) {
   return fmt::format("a value of type {}", std::string(py::str(py::type::of(value).attr("__name__"))));
 }
 
-/// Bytes of text and objects are no numbers, even where NumPy would make some of them; nor are complex ones,
+/// Text, bytes and objects are not numbers, even where NumPy would convert them; nor are complex values,
 /// whose imaginary part it would drop, nor None, for which it writes NaN. Numbers of other classes, such as
 /// Fraction, have __float__.
 real_array real_numbers(const py::object& value) {

@@ -1,8 +1,8 @@
 #include "arrays.hpp"
 #include "callback.hpp"
+#include "march.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
 
 #include <algorithm>
@@ -49,14 +49,6 @@ std::optional<callback> optional_callback(const std::optional<py::function>& fun
   return callback(*function, name);
 }
 
-/// How long steps are: dt or safety · r · Δt_FE, and shorter where the estimated error asks for it.
-struct step_choice {
-  std::optional<double> dt;
-  double safety;
-  bool graded;
-  std::optional<double> tolerance;
-};
-
 struct result {
   py::array_t<double> t, u;
   long steps, rejected;
@@ -79,7 +71,6 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
   const std::vector<py::ssize_t> shape(u0.shape(), u0.shape() + u0.ndim());
   state u(u0.data(), u0.data() + u0.size());
   if (u.empty()) throw input_error("u0 has no numbers; give an initial state");
-  if (t.size() < 2) throw input_error("there is no interval; give at least two times, t = (t0, t1)");
   const auto look = [&shape](const state& v) { return to_fixed_array(v, shape); };
   auto problem = make_relaxation_problem<state>(
       [&](double time, const state& v, state& out) {
@@ -96,35 +87,17 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
     });
   if (of.admissible)
     problem.with_admissible([&](const state& v) { return of.admissible->truth((*of.admissible)(look(v))); });
-  if (!choice.dt && !of.forward_euler_step && !choice.tolerance)
-    throw input_error(
-        "nothing says how long a step is; give dt, a tolerance, or forward_euler_step of the problem");
-  if (choice.tolerance && !m.embedded)
-    throw input_error("method '" + m.name +
-                      "' has no embedded solution to estimate errors with; give dt alone, or another method");
-  stepper march(m, problem, choice.tolerance ? solutions::result_and_embedded : solutions::result);
-  const auto rule = choice.dt               ? step_rule<double>::fixed(*choice.dt)
-                    : of.forward_euler_step ? step_rule<double>::ssp(choice.safety)
-                                            : step_rule<double>::unlimited();
-  std::optional<step_controller<double>> control;
-  if (choice.tolerance) control.emplace(*choice.tolerance, m.embedded->order);
   state all = u;
-  long steps = 0;
-  for (std::size_t k = 1; k < t.size(); ++k) {
-    const auto check = [](long, double, double, const state&) {
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    };
-    const auto start = rule.with(choice.graded && k == 1 ? startup::graded : startup::none);
-    const auto done =
-        control ? integrate_to_tolerance(march, u, t[k - 1], t[k], start, *control, largest_difference, check)
-                : integrate(march, u, t[k - 1], t[k], start, check);
-    steps += done.steps;
-    all.insert(all.end(), u.begin(), u.end());
-  }
+  const auto count = march_through(
+      problem, u, t, m, choice, of.forward_euler_step.has_value(), largest_difference,
+      [&all](const state& now) { all.insert(all.end(), now.begin(), now.end()); },
+      [] {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      });
   std::vector<py::ssize_t> shape_of_all = {static_cast<py::ssize_t>(t.size())};
   shape_of_all.insert(shape_of_all.end(), shape.begin(), shape.end());
-  return {to_array(std::vector<double>(t)), to_array(std::move(all), shape_of_all), steps,
-          control ? control->rejected() : 0};
+  return {to_array(std::vector<double>(t)), to_array(std::move(all), shape_of_all), count.steps,
+          count.rejected};
 }
 
 }  // namespace

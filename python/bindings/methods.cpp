@@ -42,8 +42,9 @@ matrix<mp_real> read_matrix(const texts& rows, const char* name, std::size_t sta
       throw input_error(std::string(name) + " is not square; give s × s coefficients");
     for (std::size_t j = 0; j < stages; ++j) {
       if (!is_coefficient(rows[i][j]))
-        throw input_error("'" + rows[i][j] + "' in " + name +
-                          " is no coefficient; give numbers, fractions, or text such as \"1/3\"");
+        throw input_error(
+            "'" + rows[i][j] + "' in " + name +
+            " is not a coefficient (it is not a number); give numbers, fractions, or text such as \"1/3\"");
       m(i, j) = coefficient_value(rows[i][j]);
     }
   }

@@ -5,6 +5,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/case_json.hpp>
+#include <apsis/output/velocity_axes.hpp>
 #include <apsis/run/session.hpp>
 
 #include <chrono>
@@ -72,14 +73,35 @@ py::dict fields_of(const field_series& series, std::size_t cells) {
   return fields;
 }
 
+/// Velocities as in solution.h5, with weights, axes and marginals of f where there are several dimensions.
+void add_velocities(const simulation& run, const std::vector<double>& f, py::dict& out) {
+  const velocity_set& velocities = run.velocities();
+  py::dict axes, marginal_values;
+  if (velocities.dimensions() < 2) {
+    out["v"] = to_array(velocity_points(velocities));
+    out["v_weights"] = to_array(std::vector<double>());
+  } else {
+    out["v"] = to_array(velocity_points(velocities), {velocities.size(), velocities.dimensions()});
+    const auto weights = velocities.weights();
+    out["v_weights"] = to_array(std::vector<double>(weights.begin(), weights.end()));
+    for (auto& axis : velocity_axes(velocities)) axes[py::str(axis.name)] = to_array(std::move(axis.nodes));
+    for (auto& one : marginals(f, static_cast<std::uint64_t>(run.cells()), velocities))
+      marginal_values[py::str(one.axis.name)] =
+          to_array(std::move(one.values), {run.cells(), static_cast<py::ssize_t>(one.axis.nodes.size())});
+  }
+  out["axes"] = axes;
+  out["marginals"] = marginal_values;
+}
+
 py::dict result_of(const run_session& session, run_end end) {
   const simulation& run = session.computed();
   py::dict out;
   out["state"] = to_string(end);
   out["json"] = to_json(run, session.records()).dump();
-  out["f"] = to_array(run.state(), {run.cells(), run.components()});
+  std::vector<double> f = run.state();
+  add_velocities(run, f, out);
+  out["f"] = to_array(std::move(f), {run.cells(), run.components()});
   out["x"] = to_array(run.has_space() ? run.fields().x : std::vector<double>());
-  out["v"] = to_array(run.velocities());
   out["epsilon"] = to_array(run.epsilon());
   out["history"] = columns_of(session.records().history());
   const auto& fields = session.records().fields();

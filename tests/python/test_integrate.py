@@ -100,14 +100,14 @@ def test_exceptions_of_the_functions_come_out():
     (dict(admissible=lambda u: None), {}, "admissible returned None"),
     (dict(forward_euler_step=lambda t, u: [1]), dict(dt=None), "forward_euler_step returned a value of type list"),
     (dict(rate=3.0), {}, "rate of the problem is a float"), (dict(epsilon="small"), {}, "epsilon is 'small'"),
-    ({}, dict(u0=[1.0, None]), "u0 is no array of real numbers"), ({}, dict(u0=[1.0, 1.0j]), "u0 is an array of type complex128"),
+    ({}, dict(u0=[1.0, None]), "u0 is not an array of real numbers"), ({}, dict(u0=[1.0, 1.0j]), "u0 is an array of type complex128"),
     ({}, dict(t=("a", "b")), "t is an array of type"), ({}, dict(t=(0.0, np.nan)), "not finite|t1|interval"),
     ({}, dict(dt="0.1"), "dt is '0.1'"), ({}, dict(dt=np.nan), "dt is not a positive number"), ({}, dict(method=3), "method is a int"),
     ({}, dict(dt=None, safety=-1), "safety = -1 is not a positive number"), ({}, dict(safety=np.nan), "safety = nan is not a positive number"),
     ({}, dict(tolerance=True), "tolerance is True"),
-    (dict(epsilon=-1.0), {}, "epsilon is negative"), ({}, dict(dt=None), "nothing says how long a step is"),
+    (dict(epsilon=-1.0), {}, "epsilon is negative"), ({}, dict(dt=None), "the step size is unknown"),
     ({}, dict(dt=-1.0), "dt is not a positive number"), ({}, dict(method="none"), "none"),
-    ({}, dict(startup="soft"), "there is no start-up"), ({}, dict(tolerance=0.0), "tolerance is not a positive number"),
+    ({}, dict(startup="soft"), "unknown start-up"), ({}, dict(tolerance=0.0), "tolerance is not a positive number"),
     ({}, dict(tolerance=1e-3, method="ars-222"), "no embedded solution")])
 def test_bad_arguments_have_a_message(change, arguments, message):
     problem = ode(1.0)

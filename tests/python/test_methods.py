@@ -57,9 +57,9 @@ def test_methods_of_the_catalogue_satisfy_the_conditions_from_their_arrays(name)
 
 
 @pytest.mark.parametrize("bad, message", [
-    (dict(A=[[1, 2]], order=1), "not square"), (dict(A=[["x"]], order=1), "'x' in A is no coefficient"),
+    (dict(A=[[1, 2]], order=1), "not square"), (dict(A=[["x"]], order=1), "'x' in A is not a coefficient"),
     (dict(A=[], order=1), "no stages"), (dict(A=[[1]], order=0), "from 1 to 8"),
-    (dict(A=[[1]], A_hat=[[1], [2]], order=1), "another number of rows"), (dict(A=[[float("nan")]], order=1), "no coefficient")])
+    (dict(A=[[1]], A_hat=[[1], [2]], order=1), "another number of rows"), (dict(A=[[float("nan")]], order=1), "not a coefficient")])
 def test_bad_tableaux_have_a_message(bad, message):
     with pytest.raises(apsis.InputError, match=message):
         apsis.order_conditions(**bad)

@@ -54,16 +54,6 @@ def test_f_is_drawn_over_velocity_and_place(tmp_path):
     np.testing.assert_array_equal(figure.axes[1].lines[0].get_ydata(), computed.epsilon)
 
 
-def test_f_of_two_velocities_is_integrated_over_the_second(tmp_path):
-    run(tmp_path, "paper/bgk-mixed", *SMALL_BGK, "model.velocity_dimensions=2")
-    result = read_result(tmp_path)
-    figure = distribution_figure(result)
-    mesh = np.asarray(figure.axes[0].collections[0].get_array()).reshape(48, 12)
-    dv = 30 / 48
-    # The density is the integral over both.
-    np.testing.assert_allclose(mesh.sum(axis=0) * dv, result.fields["rho"], rtol=1e-12)
-
-
 def test_a_few_speeds_make_no_map_and_six_fields_two_rows(tmp_path):
     run(tmp_path, "paper/broadwell")
     result = read_result(tmp_path)

@@ -188,6 +188,6 @@ def test_results_are_drawn():
     assert len(axes) == len(result.fields)
     assert np.array_equal(axes[0].lines[-1].get_ydata(), next(iter(result.fields.values()))[-1])
     assert result.plot("history") is not None and result.plot("distribution") is not None
-    with pytest.raises(apsis.InputError, match="no picture 'none'.*fields, distribution, history"):
+    with pytest.raises(apsis.InputError, match="unknown picture 'none'.*fields, distribution, history"):
         result.plot("none")
     plt.close("all")

@@ -171,7 +171,7 @@ TEST(a_checkpoint, that_was_cut_short_at_any_byte_is_refused) {
     write_bytes(folder / "cut.h5", whole.substr(0, length));
     ASSERT_NE(refusal(folder / "cut.h5"), "") << length;
   }
-  EXPECT_THAT(refusal(folder / "cut.h5"), HasSubstr("its beginning says '" + std::to_string(whole.size())));
+  EXPECT_THAT(refusal(folder / "cut.h5"), HasSubstr("instead of '" + std::to_string(whole.size())));
   write_bytes(folder / "long.h5", whole + '\0');
   EXPECT_NE(refusal(folder / "long.h5"), "");
 }
@@ -197,7 +197,7 @@ TEST(a_checkpoint, of_another_kind_or_another_version_is_refused_with_the_reason
   const test_folder folder;
   EXPECT_THAT(refusal(folder / "none.h5"), HasSubstr("cannot be opened"));
   write_bytes(folder / "text.h5", std::string(5000, 'x'));
-  EXPECT_THAT(refusal(folder / "text.h5"), HasSubstr("does not begin as one"));
+  EXPECT_THAT(refusal(folder / "text.h5"), HasSubstr("its header is missing or damaged"));
   // A whole checkpoint but for the version: sealed as any other.
   const std::string path = some_checkpoint(folder);
   seal(path, "checkpoint", "0.0.7");

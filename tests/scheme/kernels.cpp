@@ -132,6 +132,32 @@ void expect_edges(const std::string& name, expected (*formula)(const stencil5&),
 
 }  // namespace
 
+TEST(kernels, a_scheme_that_defines_both_edges_alone_gets_its_outflow_edges_from_them) {
+  class plain final : public apsis::reconstruction {
+   public:
+    int ghost_width() const override { return scheme_->ghost_width(); }
+    int order() const override { return scheme_->order(); }
+    void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
+      scheme_->edges(rows, count, width, left, right);
+    }
+
+   private:
+    std::unique_ptr<apsis::reconstruction> scheme_ = apsis::find_reconstruction("weno5-z")->make();
+  };
+  const plain scheme;
+  EXPECT_EQ(scheme.operations(true), 0.0) << "not counted";
+  for (const int width : {1, 3, 8}) {
+    const pencil p = draw(width, 20, scheme.ghost_width(), static_cast<std::uint64_t>(width));
+    const auto count = static_cast<std::size_t>(p.cells * width);
+    aligned_vector<double> left(count), right(count), out(count), forward;
+    for (int k = 0; k < width; ++k) forward.push_back(k % 3 == 0 ? 0.0 : 1.0);
+    scheme.edges(p.rows.data() + p.ghosts, p.cells, width, left.data(), right.data());
+    scheme.outflow_edges(p.rows.data() + p.ghosts, p.cells, width, forward.data(), out.data());
+    for (std::size_t at = 0; at < count; ++at)
+      ASSERT_EQ(out[at], at % static_cast<std::size_t>(width) % 3 == 0 ? left[at] : right[at]) << at;
+  }
+}
+
 TEST(kernels, edges_agree_with_the_literature_for_every_instruction_set) {
   for_each_instruction_set([] {
     for (const int width : {1, 3, 8, 40, 152}) {

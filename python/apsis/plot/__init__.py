@@ -8,7 +8,8 @@ methods.
 """
 from .methods import stability_figure, tableau_figure
 from .pictures import draw
-from .results import comparison_figure, distribution_figure, fields_figure, history_figure, read_result
+from .results import comparison_figure, distribution_figure, fields_figure, history_figure
+from .run_result import read_result
 from .style import PictureError
 
 __all__ = ["PictureError", "comparison_figure", "distribution_figure", "draw", "fields_figure", "history_figure", "read_result",

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from . import methods, pictures, results
+from . import methods, pictures, results, run_result
 from .style import FORMATS, PictureError, exit_code_of, save
 
 DESCRIPTION = """Draws what apsis computed, as WHAT/pictures/*.png:
@@ -33,7 +33,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
 def method_description(name: str) -> dict[str, Any]:
     """Name and Butcher form of a method of the catalogue or a file. Raises PictureError."""
     try:
-        import apsis  # here, because everything else draws without the compiled part
+        import apsis  # imported here: all other pictures need no compiled module
         method = apsis.read_method(name) if Path(name).is_file() else apsis.method(name)
     except ImportError as problem:
         raise PictureError(f"'{name}' is neither a folder nor a file of results ({problem}); give one of these") from problem
@@ -62,15 +62,15 @@ def of_document(document: dict[str, Any], path: Path) -> Iterable[tuple[str, Any
 
 
 def drawn(what: str) -> tuple[Path, Iterable[tuple[str, Any]]]:
-    """The folder where pictures of this thing go, and the pictures."""
+    """Returns the folder for the pictures of a result, and the pictures."""
     path = Path(what)
     if path.is_dir():
         for name in ("picture.json", "reproduce.json"):
             if (path / name).exists():
-                return path / "pictures", of_document(results.read_json(path / name), path / name)
-        return path / "pictures", results.figures(results.read_result(path)).items()
+                return path / "pictures", of_document(run_result.read_json(path / name), path / name)
+        return path / "pictures", results.figures(run_result.read_result(path)).items()
     if path.suffix == ".json":
-        document = results.read_json(path)
+        document = run_result.read_json(path)
         return Path() if "A_hat" in document else path.parent / "pictures", of_document(document, path)
     return Path(), of_method(method_description(what))
 
@@ -79,7 +79,7 @@ def compare(what: list[str]) -> Any:
     runs = []
     for word in what:
         label, separator, folder = word.rpartition("=")
-        runs.append((label if separator else Path(folder).resolve().name, results.read_result(folder)))
+        runs.append((label if separator else Path(folder).resolve().name, run_result.read_result(folder)))
     for line in results.differences(runs):
         print(line)
     return results.comparison_figure(runs)

@@ -1,4 +1,4 @@
-"""Pictures of a method: its coefficients, and where it is stable."""
+"""Pictures of a method: coefficients and stability regions."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -37,7 +37,7 @@ def stability_function(method: Description, z_T: Any, z_Q: Any) -> Any:
 
 
 def stable_extent(method: Description, z_Q: float) -> tuple[float, float]:
-    """How far the stability region of T reaches along −Re z and |Im z|, for the window of the picture."""
+    """Returns the extent of the stability region of T along −Re z and |Im z|."""
     x, y = np.meshgrid(np.linspace(-60, 4, 257), np.linspace(0, 30, 121))
     with np.errstate(all="ignore"):
         inside = np.abs(stability_function(method, x + 1j * y, z_Q)) <= 1.0
@@ -45,7 +45,7 @@ def stable_extent(method: Description, z_Q: float) -> tuple[float, float]:
 
 
 def region(axes: Any, size: Any, x: Any, y: Any, **line: Any) -> bool:
-    """Draws |R| = 1; False where it does not pass through the window."""
+    """Draws |R| = 1 and returns whether it passes through the window."""
     crosses = bool(size.min() < 1.0 < size.max())
     if crosses:
         axes.contour(x, y, size, levels=[1.0], **line)
@@ -53,7 +53,7 @@ def region(axes: Any, size: Any, x: Any, y: Any, **line: Any) -> bool:
 
 
 def stability_figure(method: Description) -> Any:
-    """|R| ≤ 1 for Q alone, and for T beside a Q of several stiffnesses; the one of them that the method has, or both."""
+    """Draws |R| ≤ 1 for Q alone and for T with Q of several stiffnesses, as far as the method has them."""
     A_hat, A, A_dot = matrices(method)
     explicit = np.array_equal(A_hat, A)
     parts = [part for part, there in (("Q", not explicit and (A.any() or A_dot.any())), ("T", A_hat.any())) if there]
@@ -83,7 +83,7 @@ def draw_implicit(axes: Any, method: Description) -> None:
 
 def draw_explicit(axes: Any, method: Description, stiff: bool) -> None:
     shown = STIFF if stiff else STIFF[:1]
-    # A stiff Q makes the regions of some methods grow without bound: the window shows those that matter at moderate steps.
+    # With stiff Q the regions of some methods grow without bound; the window is that of moderate steps.
     reach = [stable_extent(method, z) for z, _, _ in shown[:2]]
     left, high = (1.3 * max([1.0, *(r[k] for r in reach)]) for k in (0, 1))
     x, y = np.meshgrid(np.linspace(-left, 0.3 * left, 401), np.linspace(-high, high, 401))
@@ -98,7 +98,7 @@ def draw_explicit(axes: Any, method: Description, stiff: bool) -> None:
 
 
 def tableau_figure(method: Description) -> Any:
-    """Butcher form as maps of coefficients (dimensionless), zeros left empty; row sums on the left, u^{n+1} the last row."""
+    """Draws the Butcher form as maps of coefficients (dimensionless): zeros blank, row sums on the left, u^{n+1} last."""
     A_hat, A, A_dot = matrices(method)
     named = [(r"$\hat A$ of $T$ and of $Q$", A)] if np.array_equal(A_hat, A) else [
         (r"$\hat A$ of $T$", A_hat), (r"$A$ of $Q$", A), (r"$\dot A$ of $\dot Q$", A_dot)]

@@ -1,4 +1,4 @@
-"""Draws pictures that the program apsis wrote as data.
+"""Draws pictures that the program apsis writes as data.
 
 A picture has name, title, caption and panels; a panel has curves {label, x, y, style, colour} or one map {x, y, value}. null
 stands for "no number". A document may hold one picture, or several in a list "pictures" (also inside "claims").
@@ -40,7 +40,7 @@ def draw_curves(axes: Any, panel: Document) -> None:
             index, following = following, following + 1
         colour = BLACK if index < 0 else colours[index % len(colours)]
         line, marked = STYLES[curve["style"]]
-        # Dashed curves often lie on solid ones: their markers are open and larger, so that both are seen.
+        # Dashed curves often coincide with solid ones: larger open markers keep both visible.
         is_open = line in ("none", "--")
         axes.plot(x[shown], y[shown], linestyle=line, color=colour, linewidth=1.3, markersize=7 if line == "--" else 4.5,
                   marker=MARKERS[max(index, 0) % len(MARKERS)] if marked else "none",
@@ -48,7 +48,7 @@ def draw_curves(axes: Any, panel: Document) -> None:
 
 
 def draw_slopes(axes: Any, slopes: list[float]) -> None:
-    """Triangles of the given orders in the corner that curves of such slopes leave empty."""
+    """Draws slope triangles of the given orders in the corner that such curves leave empty."""
     if not slopes or not axes.lines:
         return
     (left, right), (bottom, top) = np.log10(axes.get_xlim()), np.log10(axes.get_ylim())
@@ -70,7 +70,7 @@ def draw_slopes(axes: Any, slopes: list[float]) -> None:
 
 
 def label_ticks(axis: Any, limits: tuple[float, float]) -> None:
-    """Logarithmic axes shorter than two decades also get numbers at 2 and 5, and no others."""
+    """Labels 2 and 5 on logarithmic axes shorter than two decades."""
     axis.set_minor_formatter(NullFormatter())
     if np.ptp(np.log10(limits)) < 2:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
@@ -78,7 +78,7 @@ def label_ticks(axis: Any, limits: tuple[float, float]) -> None:
 
 
 def edges(values: list[float], logarithmic: bool) -> NDArray[np.float64]:
-    """Borders of the fields of a map around their centres."""
+    """Returns the cell boundaries of a map from the centres."""
     centres = np.log10(values) if logarithmic else np.asarray(values, dtype=float)
     if len(centres) == 1:
         borders = np.array([centres[0] - 0.5, centres[0] + 0.5])
@@ -106,7 +106,7 @@ def draw_map(figure: Any, axes: Any, panel: Document) -> None:
 
 
 def share_y_range(panels: list[Any]) -> None:
-    """Gives all panels that have curves the range that holds the curves of each, so that heights can be compared."""
+    """Gives all panels with curves a common range, so that heights can be compared."""
     drawn = [axes for axes in panels if axes.lines and any(len(line.get_xdata()) for line in axes.lines)]
     limits = np.array([axes.get_ylim() for axes in drawn])
     for axes in drawn:
@@ -121,7 +121,7 @@ def measure_of(picture: Document) -> str:
 
 
 def finish(axes: Any, panel: Document, y_label: str) -> None:
-    """Slope triangles, ticks, labels and legend of a panel whose curves are drawn."""
+    """Adds slope triangles, ticks, labels and legend to a panel with curves."""
     with_slopes = panel["log_x"] and panel["log_y"] and not panel["maps"]
     if with_slopes:
         draw_slopes(axes, panel["slopes"])
@@ -133,13 +133,13 @@ def finish(axes: Any, panel: Document, y_label: str) -> None:
     axes.set_ylabel(y_label)
     axes.set_title(panel["title"], fontsize=10)
     if any(curve["label"] for curve in panel["curves"]):
-        # Triangles and curves leave no corner that is empty in every study: beside them the legend stands below the panel.
+        # Triangles and curves leave no corner empty in every study, so that the legend goes below the panel.
         below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2)} if with_slopes and panel["slopes"] else {}
         axes.legend(fontsize=7, ncols=2 if len(panel["curves"]) > 6 else 1, handlelength=3, **below)
 
 
 def draw(picture: Document) -> Any:
-    """The picture as a matplotlib figure."""
+    """Returns the picture as a Matplotlib figure."""
     panels = picture["panels"]
     columns = min(len(panels), 3) if len(panels) != 4 else 2
     rows = -(-len(panels) // columns)
@@ -162,7 +162,7 @@ def draw(picture: Document) -> Any:
 
 
 def pictures_of(document: Document) -> list[Document]:
-    """Every picture of a parsed JSON document."""
+    """Returns all pictures of a parsed JSON document."""
     if "panels" in document:
         return [document]
     found = list(document.get("pictures", []))

@@ -1,128 +1,20 @@
-"""Pictures of runs, from the folders that they leave. All quantities are dimensionless."""
+"""Pictures of runs. All quantities are dimensionless."""
 from __future__ import annotations
 
-import csv
-import json
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
-from numpy.typing import NDArray
 
+from .run_result import Array, RunResult
 from .style import BLACK, BLUE, COLOURS, GREY, MARKERS, PictureError, plt
 
-Array = NDArray[np.float64]
-SHOWN_TIMES = 5  # so many earlier snapshots, at most, beside the last
-
-
-@dataclass(frozen=True)
-class RunResult:
-    """What a run left. fields[name][cell] are the macroscopic fields at the end, snapshots[name][k, cell] at the times t[k];
-    arrays has f[cell, component], x, v, epsilon, those that the model has; history[column][step] what was checked; labels the
-    words for an axis; case the case file."""
-
-    folder: Path
-    manifest: dict[str, Any]
-    fields: dict[str, Array]
-    snapshots: dict[str, Array]
-    arrays: dict[str, Array]
-    history: dict[str, Array]
-    labels: dict[str, str]
-    case: str
-
-    @property
-    def t(self) -> Array:
-        return self.snapshots.get("t", np.zeros(0))
-
-    @property
-    def has_space(self) -> bool:
-        return len(self.arrays.get("x", ())) > 1
-
-    def label(self, name: str) -> str:
-        return textwrap.fill(self.labels.get(name, f"{name} (dimensionless)"), 36)
-
-
-def read_history(path: Path) -> dict[str, Array]:
-    """Columns of a table with a header, an empty cell as NaN. Raises PictureError."""
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            header, *rows = csv.reader(file)
-        table = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows], dtype=float)
-        return {name: table[:, k] for k, name in enumerate(header)}
-    except OSError as problem:
-        raise PictureError(f"cannot read '{path}' ({problem.strerror}); run the case with --out first") from problem
-    except (IndexError, ValueError) as problem:
-        raise PictureError(f"'{path}' is no table of numbers ({problem}); run the case again") from problem
-
-
-def read_any_json(path: Path) -> Any:
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except OSError as problem:
-        raise PictureError(f"cannot read '{path}' ({problem.strerror}); give what apsis wrote") from problem
-    except ValueError as problem:
-        raise PictureError(f"'{path}' is not JSON ({problem}); give what apsis wrote") from problem
-
-
-def read_json(path: Path) -> dict[str, Any]:
-    """An object of JSON. Raises PictureError."""
-    document = read_any_json(path)
-    if not isinstance(document, dict):
-        raise PictureError(f"'{path}' is no object of JSON (it is a {type(document).__name__}); give what apsis wrote")
-    return document
-
-
-def read_json_list(path: Path) -> list[dict[str, Any]]:
-    """A list of objects of JSON. Raises PictureError."""
-    document = read_any_json(path)
-    if not isinstance(document, list) or not all(isinstance(one, dict) for one in document):
-        raise PictureError(f"'{path}' is no list of objects of JSON (it is damaged); make it anew")
-    return document
-
-
-def read_result(folder: str | Path) -> RunResult:
-    """Reads the folder of a run. Raises PictureError."""
-    folder = Path(folder)
-    manifest = read_json(folder / "manifest.json")
-    history = read_history(folder / "history.csv")
-    path = folder / "solution.h5"
-    arrays: dict[str, Array] = {}
-    groups: dict[str, dict[str, Array]] = {"fields": {}, "snapshots": {}}
-    labels: dict[str, str] = {}
-    try:
-        with h5py.File(path) as file:
-            arrays = {name: np.asarray(item, dtype=float) for name, item in file.items() if isinstance(item, h5py.Dataset)}
-            for group, found in groups.items():
-                for name, item in file.get(group, {}).items():
-                    found[name] = np.asarray(item, dtype=float)
-                    labels[name] = words(item.attrs.get("long_name", f"{name} (dimensionless)"))
-            case = words(file.attrs.get("case", ""))
-    except OSError as problem:
-        raise PictureError(f"cannot read '{path}' ({problem}); run the case again with --out") from problem
-    fields = groups["fields"]
-    in_order = {name: fields[name] for name in (*columns_of(folder / "fields.csv"), *fields) if name in fields}
-    return RunResult(folder, manifest, in_order, groups["snapshots"], arrays, history, labels, case)
-
-
-def columns_of(path: Path) -> list[str]:
-    """Names in the order of the model, which HDF5 does not keep."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            return file.readline().strip().split(",")
-    except OSError:
-        return []
-
-
-def words(attribute: Any) -> str:
-    return attribute.decode("utf-8") if isinstance(attribute, bytes) else str(attribute)
+SHOWN_TIMES = 5  # most earlier snapshots drawn with the last one
 
 
 def panels(count: int, width: float = 4.2, height: float = 3.6) -> tuple[Any, list[Any]]:
-    """A figure with a panel for each of `count` things, at most three in a row."""
+    """Returns a figure with `count` panels, at most three in a row."""
     columns = min(count, 3)
     rows = -(-count // columns)
     figure, grid = plt.subplots(rows, columns, figsize=(width * columns if columns > 1 else 6.0, height * rows), squeeze=False)
@@ -149,10 +41,20 @@ def fields_figure(result: RunResult) -> Any:
             panel.plot(result.t, result.snapshots[name][:, 0], color=BLUE, marker=".", markersize=4, linewidth=1)
         panel.set_xlabel("x (dimensionless)" if result.has_space else "t (dimensionless)")
         panel.set_ylabel(result.label(name))
+        show_rounding_as_zero(panel, result, name)
     if result.has_space:
         axes[0].legend(fontsize=8)
     figure.suptitle(title_of(result))
     return figure
+
+
+def show_rounding_as_zero(panel: Any, result: RunResult, name: str) -> None:
+    """Draws a component of the velocity that is zero up to rounding on the scale of the others."""
+    sizes = {other: float(np.abs(result.snapshots.get(other, values)).max())
+             for other, values in result.fields.items() if other.startswith("u_")}
+    largest = max(sizes.values(), default=0.0)
+    if sizes.get(name, largest) < 1e-12 * largest:
+        panel.set_ylim(-largest, largest)
 
 
 def end_of(result: RunResult) -> float:
@@ -211,33 +113,50 @@ def differences(runs: Sequence[tuple[str, RunResult]]) -> list[str]:
     return lines
 
 
-def distribution_figure(result: RunResult) -> Any:
-    """f(x, v) at the end as a map over the profile of ε(x); with more velocity dimensions, integrated over the others. None
-    for a model without a velocity grid (a few speeds are none)."""
-    if not result.has_space or not {"f", "v"} <= result.arrays.keys() or len(np.unique(result.arrays["v"])) < 8:
+def distribution_name(result: RunResult) -> str:
+    """What a picture shows of f over one velocity component: f itself, or its integral over the others."""
+    return {2: "∫ f dv_y", 3: "∫ f dv_y dv_z"}.get(result.velocity_dimensions, "f")
+
+
+def distribution_over_velocity(result: RunResult) -> tuple[Array, Array] | None:
+    """Nodes of v, or of v_x with several velocity dimensions, and f[cell, node] over them, integrated over the other components.
+    None for a model without a velocity grid (a few speeds are none)."""
+    if result.velocity_dimensions > 1:
+        found = result.arrays.get("v_x"), result.marginals.get("v_x")
+    else:
+        found = result.arrays.get("v"), result.arrays.get("f")
+    v, f = found
+    if v is None or f is None or f.shape[1:] != v.shape or len(np.unique(v)) < max(8, len(v)):
         return None
-    x, f = result.arrays["x"], result.arrays["f"]
-    v, place = np.unique(result.arrays["v"], return_inverse=True)
-    others = round(np.log(f.shape[1]) / np.log(len(v))) - 1
-    marginal = np.zeros((len(v), len(x)))
-    np.add.at(marginal, place, f.T * (v[1] - v[0]) ** others)
+    return v, f
+
+
+def distribution_figure(result: RunResult) -> Any:
+    """f(x, v) at the end as a map over the profile of ε(x); with several velocity dimensions the marginal over v_x. None for a
+    model without a velocity grid."""
+    drawn = distribution_over_velocity(result) if result.has_space else None
+    if drawn is None:
+        return None
+    v, f = drawn
+    x, marginal = result.arrays["x"], f.T
     with_epsilon = "epsilon" in result.arrays and bool((result.arrays["epsilon"] > 0).all())
     rows = 1 + with_epsilon
     figure, axes = plt.subplots(rows, 1, figsize=(6, 5.4 if with_epsilon else 4), sharex=True, squeeze=False,
                                 height_ratios=[3, 1][:rows])
     panel = axes[0][0]
     panel.grid(False)
-    label = "f" if others == 0 else "∫ f dv_y" if others == 1 else "∫ f dv_y dv_z"
+    label, axis = distribution_name(result), "v" if result.velocity_dimensions < 2 else "v_x"
     image = panel.pcolormesh(x, v, marginal, shading="nearest", cmap="viridis", rasterized=True)
     figure.colorbar(image, ax=panel, label=f"{label} (dimensionless)")
-    # The tails beyond are below a thousandth of the maximum and would only shrink what is to be seen.
+    # The tails outside are below a thousandth of the maximum.
     seen = v[(marginal > 1e-3 * marginal.max()).any(axis=1)]
     if len(seen) > 1:
         panel.set_ylim(seen.min(), seen.max())
         if len(seen) < len(v):
-            panel.set_title(f"v from {seen.min():.4g} to {seen.max():.4g} of a grid from {v.min():.4g} to {v.max():.4g}; "
-                            f"{label} is below a thousandth of its maximum beyond", fontsize=7)
-    panel.set_ylabel("v (dimensionless)")
+            title = (f"{axis} from {seen.min():.4g} to {seen.max():.4g} of a grid from {v.min():.4g} to {v.max():.4g}; "
+                     f"{label} is below a thousandth of its maximum beyond")
+            panel.set_title(textwrap.fill(title, 96), fontsize=7)
+    panel.set_ylabel(f"{axis} (dimensionless)")
     if with_epsilon:
         axes[1][0].semilogy(x, result.arrays["epsilon"], color=BLACK)
         axes[1][0].set_ylabel("ε (dimensionless)")
@@ -247,14 +166,14 @@ def distribution_figure(result: RunResult) -> Any:
 
 
 def history_figure(result: RunResult) -> Any:
-    """What was checked at every step: smallest value, conservation defects, entropy, and the step where it changes. None after
+    """Draws the checks of every step: smallest value, conservation defects, entropy, and a step size that varies. None after
     no step."""
     history = result.history
     if len(history["t"]) < 2:
         return None
     defects = [name for name in history if name.startswith("conservation")]
     with_entropy = "entropy" in history and bool(np.isfinite(history["entropy"]).any())
-    # The last two steps share what is left to the end of the run, which is no change.
+    # The last two steps divide the remaining time, which is not a change of the step size.
     steps = history["dt"][1:-2]
     changing = len(steps) > 1 and float(np.ptp(steps)) > 1e-9 * float(steps.max())
     figure, axes = panels(1 + bool(defects) + with_entropy + changing, height=3.4)
@@ -288,7 +207,7 @@ def draw_smallest(panel: Any, history: dict[str, Array]) -> None:
 
 def draw_defects(panel: Any, history: dict[str, Array], defects: list[str]) -> None:
     for name, colour in zip(defects, COLOURS):
-        # An exact zero has no logarithm; it is drawn at the bottom instead of being left out.
+        # An exact zero is drawn at the bottom of the logarithmic axis.
         panel.semilogy(history["t"], np.maximum(history[name], 1e-18), color=colour,
                        label=name.removeprefix("conservation").strip("_.").replace("_", " ") or name)
     panel.set_ylabel("relative conservation defect")
@@ -296,6 +215,6 @@ def draw_defects(panel: Any, history: dict[str, Array], defects: list[str]) -> N
 
 
 def figures(result: RunResult) -> dict[str, Any]:
-    """All pictures of a run by name: fields, distribution, history."""
+    """Returns all pictures of a run by name: fields, distribution, history."""
     made = {"fields": fields_figure(result), "distribution": distribution_figure(result), "history": history_figure(result)}
     return {name: figure for name, figure in made.items() if figure is not None}

@@ -1,4 +1,4 @@
-"""One style for all pictures: colours, markers, fonts, and how a picture is written."""
+"""The style of all pictures (colours, markers, fonts) and how they are written."""
 from __future__ import annotations
 
 import sys
@@ -20,7 +20,7 @@ __all__ = ["BLACK", "BLUE", "COLOURS", "FORMATS", "GREEN", "GREY", "MARKERS", "O
 BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
 SKY, GREY = "#56B4E9", "#7F7F7F"
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY)
-# Markers differ too, so that curves are told apart without colour.
+# Markers differ as well, so that curves are distinguishable without colour.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "h")
 FORMATS = ("png", "svg", "pdf")
 UNDATED = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
@@ -30,7 +30,7 @@ plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "sav
 
 
 class PictureError(Exception):
-    """Something that cannot be drawn; the message says what, why and what to do, exit_code is the program's."""
+    """A picture that cannot be drawn. exit_code is the exit code of the program."""
 
     def __init__(self, message: str, exit_code: int = 4) -> None:
         super().__init__(message)
@@ -38,7 +38,7 @@ class PictureError(Exception):
 
 
 def exit_code_of(command: Callable[[], None]) -> int:
-    """0, or that of what cannot be drawn, whose message goes to standard error."""
+    """Runs a command and returns its exit code; the message of a PictureError goes to standard error."""
     try:
         command()
     except PictureError as problem:
@@ -48,13 +48,13 @@ def exit_code_of(command: Callable[[], None]) -> int:
 
 
 def palette(count: int) -> list[Any]:
-    """Colours of `count` curves: named ones while they last, else steps of a map that is read in grey as well."""
+    """Returns `count` colours: named ones if there are enough, else samples of a colour map that prints in grey."""
     return list(COLOURS) if count <= len(COLOURS) else [plt.cm.viridis(t) for t in np.linspace(0.0, 0.9, count)]
 
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """A path to write to; the file takes its name when all is written. Raises PictureError."""
+    """Yields a temporary path that is renamed when complete. Raises PictureError."""
     partial = path.with_name(f".{path.name}.partial")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -67,7 +67,7 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 def save(figure: Any, path: Path) -> Path:
-    """Writes the figure in the format of the path's ending; without a date, so that equal data make equal files."""
+    """Writes the figure in the format of the extension, without a date, so that equal data give equal files."""
     with whole_file(path) as partial:
         figure.savefig(partial, format=path.suffix[1:], metadata=UNDATED.get(path.suffix))
     plt.close(figure)

@@ -1,4 +1,4 @@
-"""Report pages: a run, a study or a reproduction as one HTML file that opens without a network.
+"""Report pages: a run, a study or a reproduction as one HTML file that opens offline.
 
     python -m apsis.report DIR       writes DIR/report.html and DIR/pictures
 

@@ -19,7 +19,7 @@ def overview(claims: list[Claim]) -> str:
 
 
 def deciding(claim: Claim) -> str:
-    """The figure to show in the overview: the first that fails, else the first."""
+    """Returns the finding for the overview: the first that fails, else the first."""
     if claim.get("error"):
         return text(claim["error"])
     findings = claim["findings"]
@@ -51,7 +51,7 @@ def section(claim: Claim, folder: Path) -> str:
 
 
 def report(document: dict[str, Any], folder: Path) -> str:
-    """The page; pictures go into <folder>/pictures as well."""
+    """Returns the page; pictures are also written to <folder>/pictures."""
     claims = document["claims"]
     good = sum(c["holds"] for c in claims)
     intro = (f"<p>{good} of {len(claims)} claims hold"
@@ -65,7 +65,7 @@ def report(document: dict[str, Any], folder: Path) -> str:
 
 
 def markdown(document: dict[str, Any]) -> str:
-    """The verdict table alone, for documentation."""
+    """Returns the verdict table as Markdown for the documentation."""
     def plain(value: Any) -> str:
         return html.unescape(str(value)).replace("|", "\\|").replace("\n", " ")
 

@@ -1,9 +1,9 @@
-"""Which page belongs to a folder."""
+"""Writes the page that belongs to a folder."""
 from __future__ import annotations
 
 from pathlib import Path
 
-from ..plot.results import read_json
+from ..plot.run_result import read_json
 from ..plot.style import PictureError, whole_file
 from . import claims, run, study
 
@@ -14,7 +14,7 @@ def write(path: Path, content: str) -> None:
 
 
 def make_report(folder: str | Path) -> Path:
-    """Writes <folder>/report.html, for a reproduction claims.md too, and the pictures. Raises PictureError."""
+    """Writes <folder>/report.html, the pictures and, for a reproduction, claims.md. Raises PictureError."""
     folder = Path(folder)
     try:
         if (folder / "reproduce.json").exists():

@@ -1,4 +1,4 @@
-"""Parts of a report page, which is one file that opens without a network."""
+"""Parts of a report page, a single HTML file that opens offline."""
 from __future__ import annotations
 
 import base64
@@ -47,7 +47,7 @@ def text(value: Any) -> str:
 
 
 def number(value: float | None) -> str:
-    """Figures as a reader wants them: counts whole, measurements to four digits."""
+    """Formats a number: counts as integers, measurements to four digits."""
     if value is None:
         return "not a number"
     return f"{value:.0f}" if float(value).is_integer() and abs(value) < 1e6 else f"{value:.4g}"
@@ -58,7 +58,7 @@ def verdict(good: bool, words: tuple[str, str] = ("holds", "fails")) -> str:
 
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[str]], title: str = "") -> str:
-    """Cells are HTML already, columns and title are not. Without columns a table of names and values."""
+    """Returns an HTML table. Cells are HTML, columns and title plain text; without columns a table of names and values."""
     head = "<thead><tr>" + "".join(f"<th>{text(c)}</th>" for c in columns) + "</tr></thead>" if columns else ""
     body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>\n" for row in rows)
     caption = f"<caption>{text(title)}</caption>" if title else ""
@@ -66,19 +66,19 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[str]], title: str = ""
 
 
 def embedded(figure: Any, name: str, title: str, caption: str, folder: Path) -> str:
-    """The figure as an <img> with its data inside, and as <folder>/<name>.png."""
+    """Returns the figure as an <img> with embedded data and writes it to <folder>/<name>.png."""
     stream = io.BytesIO()
     width = figure.get_figwidth()
     figure.savefig(stream, format="svg", metadata=UNDATED[".svg"])
     data = base64.b64encode(stream.getvalue()).decode("ascii")
     save(figure, folder / f"{name}.png")
-    # Letters of 10 points keep 7.7 pixels on a narrow screen, where a wide picture scrolls.
+    # 10-point letters remain 7.7 pixels high on a narrow screen, where wide pictures scroll.
     return (f'<figure><img style="min-width: {0.58 * 96 * width:.0f}px" alt="{text(title)}" src="data:image/svg+xml;base64,{data}">'
             f'<figcaption><b>{text(title)}.</b> {text(caption)}</figcaption></figure>\n')
 
 
 def provenance(document: dict[str, Any], version: str) -> str:
-    """One line: by what, and on what."""
+    """Returns one line with version, machine and time."""
     build, machine = document["build"], document["machine"]
     return (f'apsis {text(version)}, {text(build["compiler"])}, {text(build["build_type"])}, '
             f'{text(build["instruction_set"])}; {text(machine["processor"])}, {machine["threads"]} threads')

@@ -1,17 +1,18 @@
-"""The page of a run: what was computed, which promises were kept, pictures, the case, the manifest."""
+"""The page of a run: results, promises, pictures, case and manifest."""
 from __future__ import annotations
 
 import json
 from pathlib import Path
 from typing import Any
 
-from ..plot.results import RunResult, end_of, figures, read_result, title_of
+from ..plot.results import distribution_name, end_of, figures, title_of
+from ..plot.run_result import RunResult, read_result
 from . import page
 from .page import number, table, text, verdict
 
 CAPTIONS = {
     "fields": ("Macroscopic fields", "At the end, and at earlier snapshots in grey."),
-    "distribution": ("Distribution function", "f(x, v) at the end, and the Knudsen number ε(x) where it is not 0."),
+    "distribution": ("Distribution function", "{f} at the end, and the Knudsen number ε(x) where it is not 0."),
     "history": ("History", "What was checked after every step. A conservation defect is relative to the size of the quantity."),
 }
 PROMISES = {
@@ -19,6 +20,13 @@ PROMISES = {
     "conservation": ("sums of the conserved quantities change by rounding only", "conservation_defect", "largest relative defect"),
     "entropy": ("the entropy never grows", "max_entropy_increase", "largest increase in a step"),
 }
+
+
+def caption(name: str, result: RunResult) -> tuple[str, str]:
+    """Heading and caption of a picture."""
+    drawn = "f(x, v)" if result.velocity_dimensions < 2 else distribution_name(result)
+    heading, words = CAPTIONS[name]
+    return heading, words.format(f=drawn)
 
 
 def summary(result: RunResult) -> str:
@@ -36,7 +44,7 @@ def summary(result: RunResult) -> str:
 
 
 def promises(manifest: dict[str, Any]) -> str:
-    """A run ends when a promise breaks, so those of one that did not were kept at every step."""
+    """Describes the promises: a run ends when one is broken, so a completed run kept them at every step."""
     broken = str(manifest.get("message", "")).startswith("broken promise")
     rows = []
     for name, promised in manifest["promises"].items():
@@ -59,17 +67,17 @@ def case_text(result: RunResult) -> str:
 
 
 def flattened(value: Any, name: str = "") -> list[tuple[str, Any]]:
-    """Leaves of nested objects as ("build.compiler", value)."""
+    """Yields the leaves of nested objects as ("build.compiler", value)."""
     if isinstance(value, dict):
         return [leaf for key, inner in value.items() for leaf in flattened(inner, f"{name}.{key}" if name else key)]
     return [(name, value)]
 
 
 def report(folder: Path) -> str:
-    """The page; pictures go into <folder>/pictures as well. Raises PictureError."""
+    """Returns the page; pictures are also written to <folder>/pictures. Raises PictureError."""
     result = read_result(folder)
     manifest = result.manifest
-    pictures = "".join(page.embedded(figure, name, *CAPTIONS[name], folder / "pictures")
+    pictures = "".join(page.embedded(figure, name, *caption(name, result), folder / "pictures")
                        for name, figure in figures(result).items())
     rest = {key: value for key, value in manifest.items() if key not in ("case", "message")}
     body = (summary(result) + "<h2>Promises</h2>\n" + promises(manifest)

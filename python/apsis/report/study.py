@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ..plot.pictures import draw
-from ..plot.results import read_json, read_json_list
+from ..plot.run_result import read_json, read_json_list
 from . import page
 from .page import number, table, text
 
@@ -20,7 +20,7 @@ def runs_table(runs: list[dict[str, Any]]) -> str:
 
 
 def report(folder: Path) -> str:
-    """The page; the picture goes into <folder>/pictures as well. Raises PictureError."""
+    """Returns the page; the picture is also written to <folder>/pictures. Raises PictureError."""
     manifest = read_json(folder / "manifest.json")
     study: dict[str, Any] = manifest["study"]
     picture = folder / "picture.json"

@@ -1,13 +1,13 @@
 #include <apsis/config/case.hpp>
 
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/case_resolver.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_text.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/core/text_file.hpp>
-#include <apsis/model/expression.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,263 +17,6 @@
 
 namespace apsis {
 namespace {
-
-/// From flat keys to a case: one pass over the schema, then what one key alone cannot decide.
-class resolver {
- public:
-  resolver(case_text text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
-
-  case_config resolve() {
-    config_.source = file_;
-    for (const auto& [path, raw] : text_.values) config_.places[path] = raw.place;
-    check_tables();
-    find_the_model();
-    check_known();
-    for (const case_key& key : case_schema()) take(key);
-    if (config_.model.initial.empty()) config_.model.initial = initial_names(*model_).front();
-    take_parameters();
-    check_together();
-    return config_;
-  }
-
- private:
-  const raw_value* find(const std::string& path) const {
-    const auto found = text_.values.find(path);
-    return found == text_.values.end() ? nullptr : &found->second;
-  }
-
-  // Where something is missing: the head of the table in which it should stand, or the first line.
-  source_place table_place(const std::string& path) const {
-    const auto found = text_.tables.find(path.substr(0, path.find('.')));
-    return found != text_.tables.end() ? found->second : source_place{file_, 1, 1};
-  }
-
-  void check_tables() const {
-    std::vector<std::string> names = {"model", "space", "boundary", "velocity", "time", "output"};
-    for (const auto& [name, place] : text_.tables)
-      if (std::find(names.begin(), names.end(), name) == names.end())
-        throw input_error(place, fmt::format("unknown table [{}] (a case has no such table); {}", shown(name),
-                                             suggest(name, names)));
-    for (const auto& name : names)
-      if (const raw_value* raw = find(name))
-        refuse(*raw, name, "it is a table", fmt::format("write [{}]", name));
-  }
-
-  void find_the_model() {
-    for (const case_key& key : case_schema())
-      if (key.path == "model.name") take(key);
-    model_ = find_model(config_.model.name);
-  }
-
-  std::vector<std::string> valid_paths() const {
-    std::vector<std::string> paths;
-    for (const case_key& key : case_schema())
-      if (applies(key, *model_)) paths.push_back(key.path);
-    for (const model_parameter& p : model_->parameters) paths.push_back("model." + p.name);
-    for (const model_text& t : model_->texts) paths.push_back("model." + t.name);
-    return paths;
-  }
-
-  void check_known() const {
-    const auto valid = valid_paths();
-    for (const auto& [path, raw] : text_.values) {
-      if (std::find(valid.begin(), valid.end(), path) != valid.end()) continue;
-      for (const case_key& key : case_schema())
-        if (key.path == path)
-          throw input_error(raw.place, fmt::format("key '{}' is not used (model '{}' {}); remove it", path,
-                                                   model_->name, unused_because(key.scope)));
-      throw input_error(raw.place, fmt::format("unknown key '{}' (no such key for model '{}'); {}",
-                                               shown(path), model_->name, suggest_path(path, valid)));
-    }
-  }
-
-  static std::string unused_because(key_scope scope) {
-    return scope == key_scope::space ? "has no space" : "has no velocity grid";
-  }
-
-  // The list of valid keys is that of the table: the whole list is what `apsis show case` is for.
-  static std::string suggest_path(const std::string& path, const std::vector<std::string>& valid) {
-    std::vector<std::string> same_table;
-    const std::string table = path.substr(0, path.find('.') + 1);
-    for (const auto& candidate : valid)
-      if (!table.empty() && candidate.rfind(table, 0) == 0) same_table.push_back(candidate);
-    if (!same_table.empty()) return suggest(path, same_table);
-    const std::string near = nearest_word(path, valid);
-    return near.empty() ? "see: apsis show case"
-                        : fmt::format("did you mean '{}'? see: apsis show case", near);
-  }
-
-  void take(const case_key& key) {
-    if (model_ != nullptr && !applies(key, *model_)) return;
-    const raw_value* raw = find(key.path);
-    if (raw == nullptr) {
-      if (key.required)
-        throw input_error(table_place(key.path),
-                          fmt::format("key '{}' is missing ({}); add it, for example: {}", key.path,
-                                      model_ == nullptr ? "every case needs it"
-                                                        : fmt::format("model '{}' needs it", model_->name),
-                                      example(key)));
-      return;
-    }
-    key.store(config_, to_value(key, *raw, config_));
-  }
-
-  std::string example(const case_key& key) const {
-    const std::string name = key.path.substr(key.path.find('.') + 1);
-    if (key.choices) {
-      const auto names = key.choices(config_);
-      return fmt::format("{} = \"{}\"", name, names.empty() ? "" : names.front());
-    }
-    return fmt::format("{} = {}", name,
-                       key.type == key_type::integer || key.type == key_type::integers ? "100" : "1.0");
-  }
-
-  void take_parameters() {
-    for (const model_parameter& p : model_->parameters) {
-      double value = p.value;
-      if (const raw_value* raw = find("model." + p.name)) {
-        value = finite_number(*raw, "model." + p.name, type_text(key_type::number));
-        if (value < p.lowest || value > p.highest)
-          refuse(*raw, "model." + p.name,
-                 fmt::format("it must be from {} to {}: {}", p.lowest, p.highest, p.doc),
-                 "change it to a value in this range");
-        if (p.integer && value != std::floor(value))
-          refuse(*raw, "model." + p.name, fmt::format("it must be an integer: {}", p.doc),
-                 "give a whole number");
-      }
-      config_.model.parameters[p.name] = value;
-    }
-    for (const model_text& t : model_->texts) {
-      const raw_value* raw = find("model." + t.name);
-      config_.model.texts[t.name] = raw == nullptr ? t.value : to_text(t, *raw);
-    }
-  }
-
-  void check_together() const {
-    check_step_rule();
-    if (has_space(*model_)) check_mesh();
-    check_epsilon();
-    check_fields();
-    const double snapshots = config_.output.every > 0.0 ? config_.time.end / config_.output.every : 0.0;
-    if (snapshots > 1e5)
-      refuse(*find("output.every"), "output.every",
-             fmt::format("that makes {:.3g} snapshots, at most 100000", snapshots), "give a longer interval");
-  }
-
-  void check_step_rule() const {
-    std::vector<std::string> given, valid;
-    for (const auto& key : step_keys()) {
-      if (find(key) != nullptr) given.push_back(key);
-      if (has_space(*model_) || key == "time.dt") valid.push_back(key);
-    }
-    if (given.empty())
-      throw input_error(table_place("time.dt"),
-                        fmt::format("no step size is given (one of {} is needed); add for example {}",
-                                    fmt::format("{}", fmt::join(valid, ", ")),
-                                    valid.size() > 1 ? "safety = 0.5" : "dt = 0.01"));
-    if (given.size() > 1)
-      throw input_error(
-          find(given[1])->place,
-          fmt::format("'{}' conflicts with '{}' (exactly one of {} sets the step); remove all but one",
-                      given[1], given[0], fmt::join(valid, ", ")));
-    if (config_.time.dt && config_.time.end > 0.0 && *config_.time.dt > config_.time.end * (1.0 + 1e-12))
-      refuse(*find("time.dt"), "time.dt", fmt::format("it is longer than time.end = {}", config_.time.end),
-             "give a step of at most the whole time");
-  }
-
-  void check_mesh() const {
-    check_dimensions();
-    for (std::size_t k = 0; k < config_.space.domain.size(); ++k)
-      check_interval(config_.space.domain[k], config_.space.cells[k]);
-    check_faces();
-    double points = std::max(1, config_.velocity.points);
-    for (const int cells : config_.space.cells) points *= cells;
-    if (points > 2e9)
-      refuse(*find("space.cells"), "space.cells",
-             fmt::format("with velocity.points = {} that is {:.3g} unknowns, at most 2e9 are possible",
-                         config_.velocity.points, points),
-             "give fewer cells or velocities");
-  }
-
-  /// One number of cells and one interval for each dimension of the model.
-  void check_dimensions() const {
-    const auto wanted = static_cast<std::size_t>(make_model(config_)->space_dimensions());
-    const auto check = [&](const std::string& path, std::size_t given, const char* what) {
-      if (given == wanted) return;
-      const raw_value* raw = find(path);
-      throw input_error(raw != nullptr ? raw->place : table_place(path),
-                        fmt::format("'{}' has {} {} (model '{}' has {} space dimension{}); give {}", path,
-                                    given, what, model_->name, wanted, wanted == 1 ? "" : "s", wanted));
-    };
-    check("space.cells", config_.space.cells.size(), "numbers");
-    check("space.domain", config_.space.domain.size(), "intervals");
-  }
-
-  void check_interval(const interval& ends, int cells) const {
-    const auto [lower, upper] = ends;
-    const raw_value* raw = find("space.domain");
-    const double width = upper - lower;
-    if (raw != nullptr && !(width > 0.0))
-      refuse(*raw, "space.domain", fmt::format("[{}, {}] is not lower < upper", lower, upper),
-             "give the lower end first");
-    const double scale = std::max(std::abs(lower), std::abs(upper));
-    if (raw != nullptr && (!std::isfinite(width) || width / cells < 1e-12 * scale))
-      refuse(*raw, "space.domain",
-             fmt::format("cells of [{}, {}] cannot be told apart in double precision", lower, upper),
-             "give a domain nearer to 0 or fewer cells");
-  }
-
-  void check_faces() const {
-    const auto sides = make_boundaries(config_);
-    for (const auto& [lower, upper] : sides) {
-      if (lower->periodic() == upper->periodic()) continue;
-      const char* own = config_.faces.left ? "boundary.left.kind" : "boundary.right.kind";
-      refuse(*find(own), own, "only one of the two ends is periodic",
-             "write space.boundary = \"periodic\" alone, or give both ends another kind");
-    }
-  }
-
-  // At centres and edges of cells along the diagonal, up to a thousand points; the run checks every cell.
-  void check_epsilon() const {
-    const raw_value* raw = find("model.epsilon");
-    source_place place = raw != nullptr ? raw->value_place : source_place{file_, 1, 1};
-    // A formula begins behind its quotation mark; other text has no columns to point to.
-    if (raw != nullptr && place.column > 0) ++place.column;
-    const bool on_mesh = has_space(*model_);
-    const auto dimensions = on_mesh ? config_.space.domain.size() : 0;
-    const expression formula(config_.model.epsilon, place, formula_of_position(static_cast<int>(dimensions)));
-    if (!formula.is_constant() && !on_mesh)
-      throw input_error(
-          place,
-          fmt::format("'model.epsilon' depends on x (model '{}' has no space); give a number", model_->name));
-    const int points = on_mesh ? std::min(2 * config_.space.cells.front(), 1000) : 0;
-    for (int k = 0; k <= points; ++k) {
-      position x{};
-      for (std::size_t d = 0; d < dimensions; ++d) {
-        const auto [lower, upper] = config_.space.domain[d];
-        x[d] = points == 0 ? 0.0 : lower + (upper - lower) * k / points;
-      }
-      formula.evaluate(x);
-    }
-  }
-
-  void check_fields() const {
-    if (config_.output.fields.empty()) return;
-    std::vector<std::string> names;
-    for (const auto& field : make_model(config_)->fields()) names.push_back(field.name);
-    for (const auto& name : config_.output.fields)
-      if (std::find(names.begin(), names.end(), name) == names.end())
-        throw input_error(
-            find("output.fields")->place,
-            fmt::format("unknown field '{}' in 'output.fields' (model '{}' has no such field); {}",
-                        shown(name), model_->name, suggest(name, names)));
-  }
-
-  case_text text_;
-  std::string file_;
-  case_config config_;
-  const model_entry* model_ = nullptr;
-};
 
 /// How the value of a key may be written on the command line. That of a key that does not exist needs no
 /// quotes: it is the key that is wrong.
@@ -323,7 +66,7 @@ case_config parse_case(std::string_view text, const std::string& file,
                        const std::vector<std::string>& overrides) {
   case_text flat = read_case_text(text, file);
   apply_overrides(flat, overrides);
-  return resolver(std::move(flat), file).resolve();
+  return resolve_case(std::move(flat), file);
 }
 
 std::string read_case(const std::string& name_or_path) {

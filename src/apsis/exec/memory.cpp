@@ -1,8 +1,12 @@
 #include <apsis/exec/memory.hpp>
 
+#include <apsis/exec/control_groups.hpp>
+
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -35,27 +39,11 @@ double left_in_group(const fs::path& group, const char* limit, const char* used,
   return most - now + number_after(group / "memory.stat", cache, 0.0);
 }
 
-/// Returns the path of the control group of this process; of version 2 if `controller` is empty.
-std::string group_of_process(const fs::path& root, const std::string& controller) {
-  std::ifstream in(root / "proc/self/cgroup");
-  for (std::string line; std::getline(in, line);) {
-    const auto first = line.find(':'), second = line.find(':', first + 1);
-    if (second == std::string::npos) continue;
-    if (line.substr(first + 1, second - first - 1) == controller) return line.substr(second + 1);
-  }
-  return "/";
-}
-
-/// Minimum over a control group and its ancestors. In a container the path may be that of the host; its own
-/// group is then the mount point itself.
-double left_in_groups(const fs::path& mount, const std::string& path, const char* limit, const char* used,
+/// Minimum over control groups, each with the files of these names.
+double left_in_groups(const std::vector<fs::path>& groups, const char* limit, const char* used,
                       const char* cache) {
-  double left = left_in_group(mount, limit, used, cache);
-  fs::path group = mount;
-  for (const auto& part : fs::path(path).relative_path()) {
-    group /= part;
-    left = std::min(left, left_in_group(group, limit, used, cache));
-  }
+  double left = unknown;
+  for (const auto& group : groups) left = std::min(left, left_in_group(group, limit, used, cache));
   return left;
 }
 
@@ -77,10 +65,9 @@ memory_limit available_memory(const fs::path& root) {
   const fs::path groups = root / "sys/fs/cgroup";
   consider(1024.0 * number_after(root / "proc/meminfo", "MemAvailable:", unknown),
            "available memory of the machine");
-  consider(
-      left_in_groups(groups, group_of_process(root, ""), "memory.max", "memory.current", "inactive_file"),
-      "limit of the control group");
-  consider(left_in_groups(groups / "memory", group_of_process(root, "memory"), "memory.limit_in_bytes",
+  consider(left_in_groups(control_groups(groups, "", root), "memory.max", "memory.current", "inactive_file"),
+           "limit of the control group");
+  consider(left_in_groups(control_groups(groups / "memory", "memory", root), "memory.limit_in_bytes",
                           "memory.usage_in_bytes", "total_inactive_file"),
            "limit of the control group");
   consider(left_of_address_space(root), "limit of the address space");

@@ -1,5 +1,7 @@
 #include <apsis/exec/processors.hpp>
 
+#include <apsis/exec/control_groups.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -28,24 +30,14 @@ std::string first_line(const std::filesystem::path& file) {
   return line;
 }
 
-/// Returns the control group of this process relative to /sys/fs/cgroup, such as "/user.slice"; "/" if
-/// it is unknown.
-std::filesystem::path control_group() {
-  std::ifstream in("/proc/self/cgroup");
-  for (std::string line; std::getline(in, line);)
-    if (line.rfind("0::/", 0) == 0) return line.substr(3);
-  return "/";
-}
-
 /// Minimum quota over the control groups of this process; 0 means no limit.
 int processors_of_groups() {
-  const std::filesystem::path root = "/sys/fs/cgroup";
   int least = 0;
-  for (std::filesystem::path group = control_group().lexically_normal();; group = group.parent_path()) {
-    const int granted = processors_of_quota(first_line(root / group.relative_path() / "cpu.max"));
+  for (const auto& group : control_groups("/sys/fs/cgroup")) {
+    const int granted = processors_of_quota(first_line(group / "cpu.max"));
     if (granted > 0) least = least == 0 ? granted : std::min(least, granted);
-    if (!group.has_relative_path()) return least;
   }
+  return least;
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ enum class equilibrium_choice {
 struct velocity_config {
   double max = 0.0;  ///< v_max > 0 (dimensionless)
   int points = 0;    ///< at least 4
-  equilibrium_choice equilibrium = equilibrium_choice::automatic;
+  equilibrium_choice equilibrium = equilibrium_choice::automatic;  ///< of the rows of a model
 };
 
 /// All that a model is made from.

@@ -22,14 +22,14 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
-// HDF5 has no datasets of zero bytes of text; the line end keeps every list nonempty.
+// HDF5 has no text datasets of zero bytes; the trailing newline keeps every list nonempty.
 std::string joined(const std::vector<std::string>& parts) {
   return fmt::format("{}\n", fmt::join(parts, "\n"));
 }
 
 [[noreturn]] void damaged(const std::string& path, const std::string& what) {
   throw io_error(
-      fmt::format("'{}' is no usable checkpoint ({}); give a checkpoint.h5 written by apsis", path, what));
+      fmt::format("'{}' is not a usable checkpoint ({}); give a checkpoint.h5 written by apsis", path, what));
 }
 
 void write_rows(hdf5_file& file, const std::string& name, const std::vector<std::vector<double>>& rows,

@@ -10,7 +10,7 @@
 
 namespace apsis {
 
-/// Everything that a run needs to go on as if it had never stopped, bit for bit, its results so far included.
+/// Everything from which a run continues bit for bit as if it had not stopped, including its results so far.
 struct checkpoint {
   std::string case_text;                  ///< the resolved case as TOML
   std::string commit;                     ///< commit() of the program that wrote it
@@ -21,15 +21,15 @@ struct checkpoint {
   numeric_table history;                  ///< from the initial state to the last step
   field_series fields;                    ///< snapshots so far
 
-  /// A number that must be there. Throws io_error.
+  /// Returns a number by name. Throws io_error if it is missing.
   double number(const std::string& name) const;
 };
 
-/// A sealed HDF5 file (sealed_file.hpp). Throws io_error.
+/// Writes a sealed HDF5 file (sealed_file.hpp). Throws io_error.
 void write_checkpoint(const std::string& path, const checkpoint& c);
 
-/// Reads and checks that all parts fit together. Throws io_error: missing, damaged, of another version, or no
-/// checkpoint.
+/// Reads a checkpoint and checks the shapes of its parts. Throws io_error if the file is missing, damaged,
+/// of another version, or not a checkpoint.
 checkpoint read_checkpoint(const std::string& path);
 
 }  // namespace apsis

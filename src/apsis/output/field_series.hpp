@@ -7,8 +7,8 @@
 
 namespace apsis {
 
-/// Macroscopic fields on one mesh at one or several times. `x` is empty where the model has no space (one
-/// cell). Dimensionless.
+/// Macroscopic fields on one mesh at one or several times. `x` is empty for a model without space (one cell).
+/// Dimensionless.
 struct field_series {
   /// The fields at one time.
   struct snapshot {
@@ -16,12 +16,12 @@ struct field_series {
     std::vector<std::vector<double>> values;  ///< [field][cell]
   };
   std::vector<double> x;            ///< cell centres
-  std::vector<std::string> names,   ///< of the fields: "rho"
+  std::vector<std::string> names,   ///< field names: "rho"
       labels;                       ///< for plots: "density (dimensionless)"
-  std::vector<snapshot> snapshots;  ///< from the first to the last
+  std::vector<snapshot> snapshots;  ///< in order of time
 };
 
-/// One row per cell: (t,) x, fields; the column t only where there are several snapshots.
+/// Returns one row per cell with columns x and the fields, preceded by t if there are several snapshots.
 numeric_table to_table(const field_series& fields);
 
 }  // namespace apsis

@@ -22,14 +22,14 @@ std::string reason(int code) {
   return std::generic_category().message(code);
 }
 
-/// What the holder wrote: "process 123 on host since …".
+/// Returns the line that the holder wrote: "process 123 on host since …".
 std::string holder(const std::filesystem::path& lock) {
   std::string line;
   std::ifstream in(lock);
   return std::getline(in, line) ? line : "another process";
 }
 
-/// Whether `path` still names the open file: its last holder may have removed it in between.
+/// Whether `path` still names the open file; its last holder may have removed it meanwhile.
 bool names(const std::filesystem::path& path, int file) {
   struct stat there = {}, here = {};
   return stat(path.c_str(), &there) == 0 && fstat(file, &here) == 0 && there.st_ino == here.st_ino &&

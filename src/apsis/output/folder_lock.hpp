@@ -4,13 +4,12 @@
 
 namespace apsis {
 
-/// The right to write into a folder, held by one process at a time through a lock on the file `.lock` in it
-/// (flock). The kernel releases it however the holder ends, so a lock file that a killed run left behind does
-/// not matter.
+/// Exclusive right to write into a folder: an advisory lock (flock) on the file `.lock` in it. The kernel
+/// releases the lock however its holder ends, so a lock file left behind by a killed run is harmless.
 class folder_lock {
  public:
-  /// Takes the lock of a folder that exists. Throws io_error, with the process that holds it, if another one
-  /// does, or if the file cannot be made. Where the file system knows no locks, a warning says so.
+  /// Locks an existing folder. Throws io_error if another process holds the lock, which the message names, or
+  /// if the lock file cannot be created. A file system without locks only causes a warning.
   explicit folder_lock(std::filesystem::path folder);
   /// Removes the file and releases the lock.
   ~folder_lock();

@@ -11,7 +11,7 @@
 namespace apsis {
 namespace {
 
-// One larger than any result of this program; a damaged file must not make us ask for all memory.
+// Larger than any result of this program, so that a damaged file does not exhaust memory.
 constexpr std::uint64_t most_elements = std::uint64_t{1} << 33U;
 constexpr std::size_t longest_text = 10'000'000;
 
@@ -58,7 +58,7 @@ handle creation_properties(hid_t what) {
   return {list, H5Pclose};
 }
 
-/// Makes the groups on the way of "a/b/name".
+/// Creates the parent groups of "a/b/name".
 bool make_groups(hid_t file, const std::string& name) {
   const handle properties = creation_properties(H5P_GROUP_CREATE);
   for (auto slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1)) {
@@ -87,7 +87,7 @@ void hdf5_file::fail(const std::string& what) const {
 
 void hdf5_file::fail_to_write(const std::string& what) const {
   fail(fmt::format("{} ({}); free some space or choose another folder", what,
-                   *error_ != 0 ? std::generic_category().message(*error_) : "HDF5 says no more"));
+                   *error_ != 0 ? std::generic_category().message(*error_) : "no reason given by HDF5"));
 }
 
 hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes) {
@@ -114,7 +114,7 @@ hdf5_file hdf5_file::open(const std::string& path) {
 void hdf5_file::close() {
   const hid_t id = std::exchange(id_, -1);
   const bool flushed = H5Fflush(id, H5F_SCOPE_LOCAL) >= 0;
-  if (H5Fclose(id) < 0 || !flushed || *error_ != 0) fail_to_write("cannot be written to its end");
+  if (H5Fclose(id) < 0 || !flushed || *error_ != 0) fail_to_write("cannot be written completely");
 }
 
 void hdf5_file::write(const std::string& name, const std::vector<double>& values, const shape& extents,
@@ -165,7 +165,7 @@ bool hdf5_file::has(const std::string& name) const {
 hdf5_file::shape hdf5_file::extents(const std::string& name) const {
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!data.good())
-    fail(fmt::format("has no data '{}' (not written by this program?); give another file", name));
+    fail(fmt::format("has no dataset '{}' (not written by this program?); give another file", name));
   const handle space(H5Dget_space(data), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space);
   std::vector<hsize_t> dims(rank > 0 ? static_cast<std::size_t>(rank) : 0);
@@ -177,7 +177,7 @@ hdf5_file::shape hdf5_file::extents(const std::string& name) const {
 precision hdf5_file::stored(const std::string& name) const {
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!data.good())
-    fail(fmt::format("has no data '{}' (not written by this program?); give another file", name));
+    fail(fmt::format("has no dataset '{}' (not written by this program?); give another file", name));
   const handle type(H5Dget_type(data), H5Tclose);
   return H5Tget_size(type) == sizeof(float) ? precision::float32 : precision::float64;
 }
@@ -190,7 +190,7 @@ std::vector<double> hdf5_file::read(const std::string& name) const {
     count *= n;
   }
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  // Storage that is not there reads as zeros: a file cut short must not pass for one with an empty state.
+  // Missing storage reads as zeros: a truncated file must not be mistaken for one with a zero state.
   const std::uint64_t bytes = stored(name) == precision::float32 ? sizeof(float) : sizeof(double);
   if (count > 0 && H5Dget_storage_size(data) < count * bytes)
     fail(fmt::format("'{}' is incomplete (damaged file); give another file", name));
@@ -209,7 +209,7 @@ std::string hdf5_file::read_text(const std::string& name) const {
   const std::size_t length = H5Tget_size(type);
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || length > longest_text ||
       H5Sget_simple_extent_npoints(space) != 1)
-    fail(fmt::format("'{}' is no text (damaged file); give another file", name));
+    fail(fmt::format("'{}' is not text (damaged file); give another file", name));
   std::string text(length, '\0');
   if (H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0)
     fail(fmt::format("'{}' cannot be read (damaged file); give another file", name));
@@ -224,7 +224,7 @@ double hdf5_file::read_attribute(const std::string& name) const {
 
 namespace {
 
-/// Adds the datasets of a group and of those in it. False where something cannot be read.
+/// Adds the datasets of a group and its subgroups. Returns false if an object cannot be read.
 bool list_datasets(hid_t group, const std::string& prefix, std::vector<std::string>& names) {
   H5G_info_t info;
   if (H5Gget_info(group, &info) < 0) return false;
@@ -249,7 +249,7 @@ std::vector<std::string> hdf5_file::datasets() const {
   std::vector<std::string> names;
   const handle root(H5Gopen2(id_, "/", H5P_DEFAULT), H5Gclose);
   if (!root.good() || !list_datasets(root, "", names))
-    fail("its content cannot be listed (damaged file); give another file");
+    fail("its contents cannot be listed (damaged file); give another file");
   return names;
 }
 
@@ -259,7 +259,7 @@ std::string hdf5_file::read_text_attribute(const std::string& name) const {
     fail(fmt::format("has no text '{}' (not written by this program?); give another file", name));
   const handle type(H5Aget_type(attribute), H5Tclose);
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Tget_size(type) > longest_text)
-    fail(fmt::format("'{}' is no text (damaged file); give another file", name));
+    fail(fmt::format("'{}' is not text (damaged file); give another file", name));
   std::string text(H5Tget_size(type), '\0');
   if (H5Aread(attribute, type, text.data()) < 0)
     fail(fmt::format("'{}' cannot be read (damaged file); give another file", name));
@@ -271,7 +271,7 @@ std::vector<std::pair<std::string, double>> hdf5_file::attributes() const {
   for (hsize_t k = 0;; ++k) {
     const handle attribute(H5Aopen_by_idx(id_, ".", H5_INDEX_NAME, H5_ITER_INC, k, H5P_DEFAULT, H5P_DEFAULT),
                            H5Aclose);
-    // Opening fails behind the last one, in every version of the library alike.
+    // Opening fails past the last attribute in every version of the library.
     if (!attribute.good()) return all;
     const handle type(H5Aget_type(attribute), H5Tclose);
     const handle space(H5Aget_space(attribute), H5Sclose);

@@ -8,55 +8,56 @@
 
 namespace apsis {
 
-/// How numbers are stored.
+/// Storage type of numbers.
 enum class precision { float64, float32 };
 
-/// An HDF5 file with the few operations that results need. Identifiers are closed by the destructor, objects
-/// carry no time stamps (the same results give the same bytes), and HDF5 prints nothing by itself. Everything
-/// throws io_error with the name of the file.
+/// An HDF5 file with the operations that results need. The destructor closes identifiers, objects carry no
+/// time stamps (equal results give equal bytes), and HDF5 does not print errors itself. Every member throws
+/// io_error with the name of the file.
 class hdf5_file {
  public:
   using shape = std::vector<std::uint64_t>;  ///< extents of a dataset, the last index running fastest
 
-  /// `free_bytes` at the beginning are left to others (the user block): 0 or a power of two from 512 on.
+  /// Creates a file. The user block of `free_bytes` at its beginning is left to the caller; 0, or a power of
+  /// two of at least 512.
   static hdf5_file create(const std::string& path, std::uint64_t free_bytes = 0);
-  /// A file that is there, for reading.
+  /// Opens an existing file for reading.
   static hdf5_file open(const std::string& path);
   ~hdf5_file();
-  /// `other` has no file any more.
+  /// Leaves `other` without a file.
   hdf5_file(hdf5_file&& other) noexcept;
   hdf5_file& operator=(hdf5_file&&) = delete;
 
-  /// Groups on the way of `name` ("fields/rho") are made as needed. Attributes "units" = "dimensionless" and,
-  /// where given, "long_name".
+  /// Writes a dataset; parent groups of `name` ("fields/rho") are created as needed. Its attributes are
+  /// "units" = "dimensionless" and, if given, "long_name".
   void write(const std::string& name, const std::vector<double>& values, const shape& extents,
              const std::string& long_name = "", precision stored = precision::float64);
-  /// Text as a scalar dataset of UTF-8, without attributes.
+  /// Writes text as a scalar UTF-8 dataset without attributes.
   void write(const std::string& name, const std::string& text);
-  /// A number among the attributes of the file.
+  /// Writes a number as an attribute of the file.
   void write_attribute(const std::string& name, double value);
-  /// Text among the attributes of the file.
+  /// Writes text as an attribute of the file.
   void write_attribute(const std::string& name, const std::string& value);
-  /// Flushes to the disk; a full disk shows here and not in a destructor.
+  /// Flushes the file to disk and closes it, so that a full disk is reported here and not in a destructor.
   void close();
 
-  /// Whether there is a dataset or a group of this name.
+  /// Whether a dataset or group of this name exists.
   bool has(const std::string& name) const;
-  /// The extents of a dataset; none for a single number.
+  /// Returns the extents of a dataset; empty for a scalar.
   shape extents(const std::string& name) const;
-  /// How the numbers of a dataset are stored.
+  /// Returns the storage type of a dataset.
   precision stored(const std::string& name) const;
-  /// All numbers of a dataset, the last index running fastest. A dataset that is incomplete is refused.
+  /// Returns all numbers of a dataset in row-major order. Throws if the dataset is incomplete.
   std::vector<double> read(const std::string& name) const;
-  /// Text that write() wrote.
+  /// Returns text written by write().
   std::string read_text(const std::string& name) const;
-  /// A number among the attributes of the file.
+  /// Returns a number from the attributes of the file.
   double read_attribute(const std::string& name) const;
-  /// Names of all datasets, those in groups with their path ("fields/rho"), sorted.
+  /// Returns the sorted names of all datasets, with the path of their groups ("fields/rho").
   std::vector<std::string> datasets() const;
-  /// Text among the attributes of the file.
+  /// Returns text from the attributes of the file.
   std::string read_text_attribute(const std::string& name) const;
-  /// Numbers among the attributes of the file.
+  /// Returns all numbers among the attributes of the file, by name.
   std::vector<std::pair<std::string, double>> attributes() const;
 
  private:

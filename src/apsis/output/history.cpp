@@ -17,7 +17,7 @@ void history::add(std::vector<double> row) {
   rows_.rows.push_back(std::move(row));
   const std::size_t last = rows_.rows.size() - 1;
   note_extremes(last);
-  // The row before was kept as the last one; now it needs another reason.
+  // The previous row was kept as the last one and is kept now only if it is regular or extreme.
   if (last >= 2 && !is_regular(last - 1) && !is_extreme(last - 1)) {
     rows_.rows[last - 1] = std::move(rows_.rows[last]);
     rows_.rows.pop_back();

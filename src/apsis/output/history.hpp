@@ -10,30 +10,29 @@
 
 namespace apsis {
 
-/// The rows of a run, one per step, of which a bounded number is kept. While there are at most `most_rows`,
-/// all are. After that the stride doubles whenever they become more: the rows kept are those of the steps 0,
-/// stride, 2 stride, …, the last one, and for every column the first row of its smallest and of its largest
-/// value, so that the extremes of the history are those of all steps. The rows depend on the steps only, not
-/// on where a run was interrupted and continued.
+/// A bounded record of the steps of a run, one row per step. Up to `most_rows` rows are kept; whenever there
+/// are more, the stride doubles. The rows kept are those of steps 0, stride, 2 stride, …, of the last step,
+/// and for every column the first rows of its smallest and largest value, so that the extremes of the history
+/// are those of all steps. The rows depend on the steps alone, not on interruptions and restarts.
 class history {
  public:
-  /// No rows. The first column is the number of the step; `most_rows` must exceed two rows per column and
+  /// An empty history. The first column is the step number; `most_rows` must exceed two rows per column plus
   /// two.
   history(std::vector<std::string> columns, std::size_t most_rows);
   /// Continues with the rows and the stride of a checkpoint.
   history(numeric_table rows, long stride, std::size_t most_rows);
 
-  /// Adds the row of the next step; its first number is the number of the step.
+  /// Adds the row of the next step, whose first entry is the step number.
   void add(std::vector<double> row);
 
-  /// The rows that are kept, in the order of the steps.
+  /// Returns the rows kept, in order of the steps.
   const numeric_table& rows() const { return rows_; }
-  /// Steps from one regular row to the next; 1 while every row is kept.
+  /// Returns the number of steps between regular rows; 1 while every row is kept.
   long stride() const { return stride_; }
 
  private:
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  /// Rows of the smallest and the largest value of a column; none while all are NaN.
+  /// Row numbers of the smallest and the largest value of a column; `none` while all are NaN.
   struct extremes {
     std::size_t smallest = none, largest = none;
   };

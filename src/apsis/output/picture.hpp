@@ -7,32 +7,32 @@
 
 namespace apsis {
 
-/// Pictures as data: what is to be seen, not how it is drawn (python/apsis/plot draws them, all in one
-/// style). Numbers that are not finite, and numbers ≤ 0 on a logarithmic axis, are left out of a curve.
+/// Line style of a curve. Pictures are data; python/apsis/plot draws them in one style. Values that are not
+/// finite, or not positive on a logarithmic axis, are omitted from a curve.
 enum class curve_style { line, dashed, dash_dot, markers, line_and_markers, dashed_and_markers };
 
-/// One curve. Curves of the same `colour` (≥ 0) share it; −1 takes the next one, −2 is black (references).
+/// One curve of a panel.
 struct curve {
-  std::string label;                                  ///< "" does not appear in the legend
+  std::string label;                                  ///< legend entry; "" for none
   std::vector<double> x,                              ///< abscissae of the points
-      y;                                              ///< ordinates, as many
-  curve_style style = curve_style::line_and_markers;  ///< of line and markers
-  int colour = -1;                                    ///< index into the palette; −1: the next one, −2: black
+      y;                                              ///< ordinates, as many as abscissae
+  curve_style style = curve_style::line_and_markers;  ///< line and markers
+  int colour = -1;  ///< palette index, which curves may share; −1: next, −2: black
 };
 
-/// A map: value[row][column] at (x[column], y[row]), drawn with numbers in the fields where there is room.
+/// A map of value[row][column] at (x[column], y[row]), with numbers printed in the cells where they fit.
 struct heat_map {
   std::vector<double> x,                   ///< centres of the columns
       y;                                   ///< centres of the rows
-  std::vector<std::vector<double>> value;  ///< [row][column]; not drawn where it is not finite
-  std::string label;                       ///< of the colour bar
+  std::vector<std::vector<double>> value;  ///< [row][column]; entries that are not finite are not drawn
+  std::string label;                       ///< label of the colour bar
   double lowest = 0.0,                     ///< lower end of the colour bar
       highest = 1.0;                       ///< upper end
 };
 
-/// A pair of axes with curves, or with one map.
+/// A pair of axes with curves or one map.
 struct panel {
-  std::string title,                ///< above the axes
+  std::string title,                ///< title above the axes
       x_label,                      ///< with its unit or "dimensionless"
       y_label;                      ///< with its unit or "dimensionless"
   bool log_x = false,               ///< whether x is logarithmic
@@ -44,13 +44,13 @@ struct panel {
 
 /// Panels under one title.
 struct picture {
-  std::string name;           ///< of the file, without ending
-  std::string title;          ///< above all panels
-  std::string caption;        ///< what to see
+  std::string name;           ///< file name without extension
+  std::string title;          ///< title above all panels
+  std::string caption;        ///< what the picture shows
   std::vector<panel> panels;  ///< drawn row by row
 };
 
-/// As python/apsis/plot reads it; numbers that are not finite become null.
+/// Returns the picture as python/apsis/plot reads it; numbers that are not finite become null.
 nlohmann::ordered_json to_json(const picture& p);
 
 }  // namespace apsis

@@ -7,20 +7,19 @@
 
 namespace apsis {
 
-/// Compiler, build type, instruction set and libraries.
+/// Returns compiler, build type, instruction set and library versions.
 nlohmann::ordered_json build_info();
 
-/// Processor, cores and threads in use.
+/// Returns processor model, number of cores and threads in use.
 nlohmann::ordered_json machine_info();
 
-/// Name of this machine in its network; "unknown" where the system has none.
+/// Returns the host name; "unknown" if the system has none.
 std::string host_name();
 
-/// The arguments that this process was started with, the name of the program first; empty where the system
-/// does not say (no /proc).
+/// Returns the command line of this process, program name first; empty on systems without /proc.
 std::vector<std::string> command_line();
 
-/// The present second in universal time, "2026-01-31T12:00:00Z".
+/// Returns the current time in UTC, "2026-01-31T12:00:00Z".
 std::string time_stamp();
 
 }  // namespace apsis

@@ -18,12 +18,12 @@
 namespace apsis {
 namespace {
 
-/// What a property list carries to the driver.
+/// Driver data of a property list.
 struct access_info {
   int* error;
 };
 
-/// An open file. HDF5 knows its first member.
+/// An open file; HDF5 accesses its first member.
 struct recorded_file {
   H5FD_t base;
   int id;
@@ -76,7 +76,7 @@ int compare(const H5FD_t* a, const H5FD_t* b) {
   return 0;
 }
 
-/// As HDF5's own driver, so that files have the same layout.
+/// Same as HDF5's default driver, so that files have the same layout.
 herr_t query(const H5FD_t* /*file*/, unsigned long* flags) {
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
            H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
@@ -94,7 +94,7 @@ haddr_t end_of(const H5FD_t* file, H5FD_mem_t /*type*/) {
   return of(file).end;
 }
 
-/// What is not in the file, because it was dropped or never written, reads as zeros.
+/// Reads zeros where the file has no data because they were discarded or never written.
 herr_t read_bytes(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*list*/, haddr_t address, std::size_t size,
                   void* buffer) {
   auto* bytes = static_cast<char*>(buffer);
@@ -143,8 +143,7 @@ hid_t driver() {
     std::memset(&made, 0, sizeof made);
 #if H5_VERSION_GE(1, 14, 0)
     made.version = H5FD_CLASS_VERSION;
-    made.value =
-        static_cast<H5FD_class_value_t>(400);  // one of those for drivers without a registered number
+    made.value = static_cast<H5FD_class_value_t>(400);  // from the range reserved for unregistered drivers
 #endif
     made.name = "apsis";
     made.maxaddr = (haddr_t{1} << 62) - 1;

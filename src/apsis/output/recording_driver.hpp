@@ -4,10 +4,10 @@
 
 namespace apsis {
 
-/// A new HDF5 property list for files to write, to be closed by the caller. HDF5 cannot close a file that it
-/// failed to write, and crashes when the process ends with such a file. Here it never sees a failure: the
-/// first one is recorded as errno in `error`, which outlives the file, and whatever should be written after
-/// that is dropped. Negative if HDF5 has no memory left.
+/// Returns a new HDF5 file access property list, which the caller closes, for files that are written. HDF5
+/// cannot close a file that it failed to write, and crashes when the process ends with such a file. This
+/// driver hides failures from HDF5: it records errno of the first one in `error`, which must outlive the
+/// file, and discards all later writes. Returns a negative number if HDF5 is out of memory.
 std::int64_t make_recording_access(int* error);
 
 }  // namespace apsis

@@ -29,10 +29,10 @@ constexpr const char* advice = "choose another folder with --out or free some sp
   throw io_error(fmt::format("cannot {} '{}' ({}); {}", verb, path.string(), why, advice));
 }
 
-/// Names live in the folder, which has to reach the disk like a file.
+/// Flushes the directory so that renames are durable.
 void sync_folder(const fs::path& folder) {
   const int id = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (id < 0) return;  // some file systems know no such thing
+  if (id < 0) return;  // not supported by every file system
   fsync(id);
   close(id);
 }
@@ -51,7 +51,7 @@ result_folder::result_folder(fs::path path) : path_(std::move(path)) {
   fs::create_directories(path_, problem);
   if (problem || !fs::is_directory(path_)) {
     discard();
-    cannot("make the folder", path_, problem ? problem.message() : "a file has this name");
+    cannot("create the folder", path_, problem ? problem.message() : "a file has this name");
   }
   const fs::path probe = temporary("probe");
   try {
@@ -114,7 +114,7 @@ void result_folder::begin_series(const std::string& series) {
   std::error_code problem;
   fs::remove_all(temporary(series), problem);
   fs::create_directories(temporary(series), problem);
-  if (problem) cannot("make the folder", temporary(series), problem.message());
+  if (problem) cannot("create the folder", temporary(series), problem.message());
   series_.push_back(series);
 }
 
@@ -139,13 +139,13 @@ std::vector<fs::path> result_folder::files_of_series(const std::string& series) 
 
 void result_folder::resume_series(const std::string& series, const fs::path& from,
                                   const std::function<bool(const std::string& path)>& keep) {
-  // A run that was killed has them under the temporary name still.
+  // A killed run left them under the temporary name.
   const fs::path left = from / temporary(series).filename();
   std::error_code problem;
   const fs::path source = fs::exists(left, problem) ? left : from / series;
   const bool here = fs::equivalent(source, temporary(series), problem);
   if (here) {
-    keep_ = true;  // they are of an earlier run, and stay if this one fails
+    keep_ = true;  // files of an earlier run, kept if this one fails
     series_.push_back(series);
     for (const auto& path : files_of_series(series))
       if (!keep(path.string())) fs::remove(path, problem);
@@ -167,7 +167,7 @@ void result_folder::commit_series() {
     fs::remove_all(path_ / name, problem);
     problem.clear();
     if (std::find(series_.begin(), series_.end(), name) == series_.end()) {
-      fs::remove_all(temporary(name), problem);  // of a run that was killed and is not continued
+      fs::remove_all(temporary(name), problem);  // left by a killed run that is not continued
       continue;
     }
     fs::rename(temporary(name), path_ / name, problem);
@@ -179,11 +179,11 @@ void result_folder::commit_series() {
 
 void result_folder::commit() {
   std::error_code problem;
-  // Of a run that was killed while it wrote them.
+  // Left by a run that was killed while writing.
   for (const char* name : result_names)
     if (std::find(prepared_.begin(), prepared_.end(), name) == prepared_.end())
       fs::remove(temporary(name), problem);
-  // While names change there is no manifest: one that is there belongs to the files beside it.
+  // There is no manifest during renames, so that an existing one describes the files beside it.
   fs::remove(path_ / manifest, problem);
   std::partition(prepared_.begin(), prepared_.end(),
                  [](const std::string& name) { return name != manifest; });

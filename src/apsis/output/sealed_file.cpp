@@ -20,11 +20,11 @@ namespace apsis {
 namespace {
 
 [[noreturn]] void unusable(const std::string& path, const std::string& kind, const std::string& why) {
-  throw io_error(fmt::format("'{}' is no usable {} ({}); give one that was written by this version of apsis",
-                             path, kind, why));
+  throw io_error(fmt::format(
+      "'{}' is not a usable {} ({}); give one that was written by this version of apsis", path, kind, why));
 }
 
-/// What a seal says. Everything in the file but the checksum itself goes into the checksum.
+/// Content of a seal. The checksum covers everything in the file except itself.
 struct seal_text {
   std::string kind, version;
   std::uint64_t bytes = 0;
@@ -41,7 +41,7 @@ struct free_state {
   void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
 };
 
-/// Of the head of the seal and everything behind the seal.
+/// Returns the checksum of the seal without its checksum line and of everything after the seal.
 std::string checksum_of(std::ifstream& file, const std::string& head) {
   const std::unique_ptr<XXH3_state_t, free_state> state(XXH3_createState());
   XXH3_128bits_reset(state.get());
@@ -62,7 +62,7 @@ std::uint64_t length_of(std::ifstream& file) {
   return static_cast<std::uint64_t>(file.tellg());
 }
 
-/// The word after `key` at the beginning of a line.
+/// Returns the word that follows `key` at the beginning of a line.
 std::string word_after(const std::string& block, const std::string& key) {
   const auto at = block.find("\n" + key + " ");
   if (at == std::string::npos) return {};
@@ -77,7 +77,7 @@ void write_through(const std::string& path, const std::string& block) {
                        fsync(file) == 0;
   const bool closed = file < 0 || close(file) == 0;
   if (!written || !closed)
-    throw io_error(fmt::format("'{}' cannot be written to its end (disk full?); free some space", path));
+    throw io_error(fmt::format("'{}' cannot be written completely (disk full?); free some space", path));
 }
 
 }  // namespace
@@ -86,7 +86,9 @@ void seal(const std::string& path, const std::string& kind, const std::string& w
   std::ifstream file(path, std::ios::binary);
   const seal_text text{kind, written_by, length_of(file)};
   const std::string block = text.block(checksum_of(file, text.head()));
-  if (file.bad()) throw io_error(fmt::format("'{}' cannot be read back (damaged disk?)", path));
+  if (file.bad())
+    throw io_error(
+        fmt::format("'{}' cannot be read back (damaged disk?); choose another folder with --out", path));
   write_through(path, block);
 }
 
@@ -96,15 +98,14 @@ void check_seal(const std::string& path, const std::string& kind) {
   std::string block(seal_length, '\0');
   file.read(block.data(), seal_length);
   const std::string begins = fmt::format("apsis {}\n", kind);
-  if (block.compare(0, begins.size(), begins) != 0)
-    unusable(path, kind, "it does not begin as one, or is damaged at its beginning");
+  if (block.compare(0, begins.size(), begins) != 0) unusable(path, kind, "its header is missing or damaged");
   const std::uint64_t length = length_of(file);
   const std::string bytes = word_after(block, "bytes");
   if (bytes != std::to_string(length))
-    unusable(path, kind, fmt::format("it has {} bytes, its beginning says '{}'", length, bytes));
+    unusable(path, kind, fmt::format("it has {} bytes instead of '{}'", length, bytes));
   const seal_text text{kind, word_after(block, "version"), length};
   if (block != text.block(checksum_of(file, text.head())))
-    unusable(path, kind, "it is damaged: its checksum is not that of its content");
+    unusable(path, kind, "its checksum does not match its content");
   if (text.version != version())
     unusable(path, kind, fmt::format("it was written by version {}, this is {}", text.version, version()));
 }

@@ -6,16 +6,16 @@
 
 namespace apsis {
 
-/// A seal is the beginning of a file, which says what the file is, how long it should be, and a checksum
-/// (XXH3, 128 bit) of everything else. A file that was cut short or changed in any bit does not pass for a
-/// whole one. HDF5 leaves room for it (the user block) and opens such files as any others.
+/// Length of a seal in bytes. A seal is a header with the kind of the file, its length and a checksum (XXH3,
+/// 128 bit) of everything else, so that truncation and the change of any bit are detected. It lies in the
+/// user block of HDF5, which opens sealed files like any other.
 inline constexpr unsigned long seal_length = 512;
 
-/// Writes the seal into the first seal_length bytes, which must be there, and sees the file through to the
-/// disk. `kind` is a word such as "checkpoint". Throws io_error.
+/// Writes the seal into the first seal_length bytes, which must exist, and flushes the file to disk. `kind`
+/// is a word such as "checkpoint". Throws io_error.
 void seal(const std::string& path, const std::string& kind, const std::string& written_by = version());
 
-/// Throws io_error with the reason: no such file, of another kind, cut short, changed, or written by another
+/// Throws io_error if the file is missing, of another kind, truncated, changed, or written by another
 /// version.
 void check_seal(const std::string& path, const std::string& kind);
 

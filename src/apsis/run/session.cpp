@@ -88,10 +88,8 @@ void check_same_case(const case_config& mine, const std::string& saved_text, con
 int threads_for(const case_config& config) {
   if (const int requested = requested_threads(); requested > 0) return requested;
   constexpr double large = 32768.0;
-  const auto dimensions = config.model.parameters.find("velocity_dimensions");
-  const double velocities = std::pow(std::max(config.velocity.points, 1),
-                                     dimensions == config.model.parameters.end() ? 1.0 : dimensions->second);
-  return velocities * make_mesh(config).size() < large ? 1 : default_threads();
+  const double unknowns = 1.0 * make_model(config)->components() * make_mesh(config).size();
+  return unknowns < large ? 1 : default_threads();
 }
 
 run_session::run_session(case_config configured, session_options options)

@@ -270,9 +270,8 @@ std::vector<double> simulation::exact_state() const {
   return exact ? without_padding(*exact) : std::vector<double>{};
 }
 
-std::vector<double> simulation::velocities() const {
-  const auto speeds = impl_->setup.equation->speeds(0);
-  return {speeds.begin(), speeds.end()};
+const velocity_set& simulation::velocities() const {
+  return impl_->setup.equation->velocities();
 }
 std::vector<double> simulation::epsilon() const {
   return impl_->setup.epsilon_at_centres();

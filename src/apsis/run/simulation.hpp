@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/phase/velocity_set.hpp>
 #include <apsis/run/run_state.hpp>
 
 #include <functional>
@@ -66,7 +67,7 @@ class simulation {
   std::vector<double> state() const;  ///< [cells][components], contiguous
   /// The exact solution at t() in the form of state(); empty where no formula is known for the data.
   std::vector<double> exact_state() const;
-  std::vector<double> velocities() const;  ///< speeds of the components; empty without space
+  const velocity_set& velocities() const;  ///< of the components; none without space
   std::vector<double> epsilon() const;     ///< at the cell centres
 
   /// Everything that a restart needs to go on to the same last digit.

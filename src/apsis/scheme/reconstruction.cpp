@@ -1,6 +1,25 @@
+#include <apsis/exec/aligned.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
+#include <cstddef>
+
 namespace apsis {
+
+void reconstruction::outflow_edges(const double* const* rows, int count, int width, const double* forward,
+                                   double* edge) const {
+  // One pair of buffers per thread: no allocation once they have grown.
+  thread_local aligned_vector<double> left, right;
+  const std::size_t size = static_cast<std::size_t>(count) * static_cast<std::size_t>(width);
+  left.resize(size);
+  right.resize(size);
+  edges(rows, count, width, left.data(), right.data());
+  for (std::size_t n = 0; n < size; ++n)
+    edge[n] = forward[n % static_cast<std::size_t>(width)] > 0.0 ? right[n] : left[n];
+}
+
+double reconstruction::operations(bool) const {
+  return 0.0;
+}
 
 const reconstruction_entry* find_reconstruction(const std::string& name) {
   for (const reconstruction_entry* entry : reconstruction_entries())

@@ -22,12 +22,13 @@ class reconstruction {
 
   /// Computes, for i = 0 … count−1, the outflow edge edge[i·width + k] of cell i: the right one
   /// where forward[k] is 1, the left one where it is 0. Upwind fluxes of point values need no more,
-  /// at half the work.
+  /// at half the work. By default edges() is called and one of them selected.
   virtual void outflow_edges(const double* const* rows, int count, int width, const double* forward,
-                             double* edge) const = 0;
+                             double* edge) const;
 
-  /// Operation count (exec/counted.hpp) per number, for both edges or one.
-  virtual double operations(bool both_edges) const = 0;
+  /// Operation count (exec/counted.hpp) per number, for both edges or one; 0, the default: not counted, so
+  /// that `apsis run --profile` shows times alone.
+  virtual double operations(bool both_edges) const;
 };
 
 }  // namespace apsis

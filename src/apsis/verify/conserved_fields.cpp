@@ -1,15 +1,35 @@
 #include <apsis/verify/conserved_fields.hpp>
 
+#include <apsis/core/errors.hpp>
 #include <apsis/core/extremes.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+
+#include <fmt/format.h>
 
 namespace apsis {
+namespace {
+
+const std::vector<double>& field_called(const std::string& name, const field_table& fields) {
+  const auto found = std::find(fields.names.begin(), fields.names.end(), name);
+  if (found == fields.names.end())
+    throw input_error(fmt::format(
+        "there is no field '{}' (density, velocity and temperature of one velocity dimension are needed); "
+        "give results of such a model",
+        name));
+  return fields.values[static_cast<std::size_t>(found - fields.names.begin())];
+}
+
+}  // namespace
 
 conserved_fields conserved(const field_table& macroscopic) {
+  const auto &density = field_called("rho", macroscopic), &velocity = field_called("u", macroscopic),
+             &temperature = field_called("T", macroscopic);
   conserved_fields result;
   for (std::size_t i = 0; i < macroscopic.x.size(); ++i) {
-    const double rho = macroscopic.values[0][i], u = macroscopic.values[1][i], T = macroscopic.values[2][i];
+    const double rho = density[i], u = velocity[i], T = temperature[i];
     result[0].push_back(rho);
     result[1].push_back(rho * u);
     result[2].push_back(0.5 * rho * (u * u + T));

@@ -11,7 +11,8 @@ namespace apsis {
 /// Dimensionless.
 using conserved_fields = std::array<std::vector<double>, 3>;
 
-/// From density, bulk velocity and temperature, the fields of kinetic models in one dimension.
+/// From the fields rho, u and T of kinetic models with one velocity dimension. Throws input_error if one of
+/// them is missing.
 conserved_fields conserved(const field_table& macroscopic);
 
 /// Averages over pairs of cells, for comparison with a mesh of half as many cells.

@@ -1,7 +1,5 @@
 #include <apsis/verify/outcome.hpp>
 
-#include <cmath>
-
 namespace apsis {
 
 outcome compute_outcome(const case_config& config, const study_control& control) {
@@ -19,11 +17,8 @@ outcome compute_outcome(const case_config& config, const study_control& control)
   out.state = run.state();
   out.exact = run.exact_state();
   if (run.has_space()) out.cell_volume = make_mesh(config).cell_volume();
-  if (config.velocity.points > 0) {
-    // One velocity cell; components are all nodes of a grid with the same number per dimension.
-    const double dimensions = std::round(std::log(out.components) / std::log(config.velocity.points));
-    out.component_weight = std::pow(2.0 * config.velocity.max / config.velocity.points, dimensions);
-  }
+  // The velocities of a grid have equal weights; those of other models have no part in norms.
+  if (config.velocity.points > 0) out.component_weight = run.velocities().weights().front();
   return out;
 }
 

@@ -38,7 +38,10 @@ method make(std::size_t stages) {
 }  // namespace
 
 extern const family_entry family_chain;
-const family_entry family_chain = {"md-imex-chain-S-2",
-                                   "second order, r = S - 2, n_F = S - 1 (docs/methods.md)", 3, 64, make};
+const family_entry family_chain = {.pattern = "md-imex-chain-S-2",
+                                   .description = "second order, r = S - 2, n_F = S - 1 (docs/methods.md)",
+                                   .lowest = 3,
+                                   .highest = 64,
+                                   .make = make};
 
 }  // namespace apsis

@@ -40,7 +40,10 @@ method make(std::size_t stages) {
 
 extern const family_entry family_plateau_free;
 const family_entry family_plateau_free = {
-    "md-imex-plateau-free-S-2",
-    "second order, r = S - 3, n_F = S - 2, no O(epsilon) plateaus (docs/plateaus.md)", 5, 64, make};
+    .pattern = "md-imex-plateau-free-S-2",
+    .description = "second order, r = S - 3, n_F = S - 2, no O(epsilon) plateaus (docs/plateaus.md)",
+    .lowest = 5,
+    .highest = 64,
+    .make = make};
 
 }  // namespace apsis

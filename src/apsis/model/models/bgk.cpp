@@ -1,3 +1,4 @@
+#include <apsis/model/fluid_fields.hpp>
 #include <apsis/model/maxwellian.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/velocity_rows.hpp>
@@ -88,13 +89,7 @@ class bgk_model final : public relaxation_model {
     return grid_.weight() * velocity_rows::entropy(f, grid_.size());
   }
 
-  std::vector<std::string> invariants() const override {
-    std::vector<std::string> names = {"mass"};
-    static const char* const momenta[] = {"momentum", "momentum_y", "momentum_z"};
-    for (int k = 0; k < grid_.dimensions(); ++k) names.emplace_back(momenta[k]);
-    names.emplace_back("energy");
-    return names;
-  }
+  std::vector<std::string> invariants() const override { return fluid_invariants(grid_.dimensions()); }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
   /// Particles fly both ways: Σ|v_k| f ≤ √(2ρ𝓔), the Cauchy–Schwarz inequality.
   void invariant_scales(const double* densities, double* scales) const override {
@@ -104,18 +99,11 @@ class bgk_model final : public relaxation_model {
     for (int k = 1; k <= d; ++k) scales[k] = std::max(scales[k], bound);
   }
 
-  std::vector<field_name> fields() const override {
-    return {{"rho", "density (dimensionless)"},
-            {"u", "bulk velocity (dimensionless)"},
-            {"T", "temperature (dimensionless)"}};
-  }
+  std::vector<field_name> fields() const override { return fluid_fields(grid_.dimensions()); }
   void macroscopic(const double* f, double* values) const override {
     double omega[5];
     moments(f, omega);
-    const fluid_state s = to_fluid_state(omega, grid_.dimensions());
-    values[0] = s.rho;
-    values[1] = s.u[0];
-    values[2] = s.T;
+    fluid_field_values(to_fluid_state(omega, grid_.dimensions()), grid_.dimensions(), values);
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }

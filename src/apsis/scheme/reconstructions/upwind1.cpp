@@ -23,15 +23,15 @@ class upwind1 final : public reconstruction {
     for (int i = 0; i < count; ++i)
       std::copy_n(rows[i], width, edge + static_cast<std::ptrdiff_t>(i) * width);
   }
-  double operations(bool) const override { return 0.0; }
 };
 
 }  // namespace
 
 extern const reconstruction_entry reconstruction_upwind1;
 const reconstruction_entry reconstruction_upwind1 = {
-    "upwind1", "first-order upwind: monotone, positive and entropy-decaying up to CFL 1",
-    "Courant, Isaacson, Rees (1952)",
-    []() -> std::unique_ptr<reconstruction> { return std::make_unique<upwind1>(); }};
+    .name = "upwind1",
+    .description = "first-order upwind: monotone, positive and entropy-decaying up to CFL 1",
+    .source = "Courant, Isaacson, Rees (1952)",
+    .make = []() -> std::unique_ptr<reconstruction> { return std::make_unique<upwind1>(); }};
 
 }  // namespace apsis

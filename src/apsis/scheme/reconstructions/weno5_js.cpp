@@ -61,8 +61,10 @@ class weno5_js final : public reconstruction {
 
 extern const reconstruction_entry reconstruction_weno5_js;
 const reconstruction_entry reconstruction_weno5_js = {
-    "weno5-js", "fifth-order WENO with the weights of Jiang and Shu", "Jiang, Shu, JCP 126 (1996) 202-228",
-    []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_js>(); }};
+    .name = "weno5-js",
+    .description = "fifth-order WENO with the weights of Jiang and Shu",
+    .source = "Jiang, Shu, JCP 126 (1996) 202-228",
+    .make = []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_js>(); }};
 
 }  // namespace apsis
 #endif

@@ -65,9 +65,10 @@ class weno5_z final : public reconstruction {
 
 extern const reconstruction_entry reconstruction_weno5_z;
 const reconstruction_entry reconstruction_weno5_z = {
-    "weno5-z", "fifth-order WENO with Z weights: full order at smooth extrema",
-    "Borges, Carmona, Costa, Don, JCP 227 (2008) 3191-3211",
-    []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_z>(); }};
+    .name = "weno5-z",
+    .description = "fifth-order WENO with Z weights: full order at smooth extrema",
+    .source = "Borges, Carmona, Costa, Don, JCP 227 (2008) 3191-3211",
+    .make = []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_z>(); }};
 
 }  // namespace apsis
 #endif

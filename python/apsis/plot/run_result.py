@@ -1,0 +1,127 @@
+"""Reads result folders for pictures and reports. All quantities are dimensionless."""
+from __future__ import annotations
+
+import csv
+import json
+import textwrap
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from .style import PictureError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """The content of a result folder. fields[name][cell] are the macroscopic fields at the end, snapshots[name][k, cell] at the times t[k];
+    arrays has f[cell, component], x, v, epsilon, those that the model has, and with several velocity dimensions v_weights and the
+    nodes v_x, v_y, v_z; history[column][step] what was checked; labels the words for an axis; case the case file;
+    marginals[axis][cell, node] f integrated over the other velocity components."""
+
+    folder: Path
+    manifest: dict[str, Any]
+    fields: dict[str, Array]
+    snapshots: dict[str, Array]
+    arrays: dict[str, Array]
+    history: dict[str, Array]
+    labels: dict[str, str]
+    case: str
+    marginals: dict[str, Array] = field(default_factory=dict)
+
+    @property
+    def t(self) -> Array:
+        return self.snapshots.get("t", np.zeros(0))
+
+    @property
+    def has_space(self) -> bool:
+        return len(self.arrays.get("x", ())) > 1
+
+    @property
+    def velocity_dimensions(self) -> int:
+        """0 without velocities."""
+        v = self.arrays.get("v")
+        return 0 if v is None else v.shape[1] if v.ndim == 2 else 1
+
+    def label(self, name: str) -> str:
+        return textwrap.fill(self.labels.get(name, f"{name} (dimensionless)"), 36)
+
+
+def read_history(path: Path) -> dict[str, Array]:
+    """Returns the columns of a table with a header; empty cells become NaN. Raises PictureError."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            header, *rows = csv.reader(file)
+        table = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows], dtype=float)
+        return {name: table[:, k] for k, name in enumerate(header)}
+    except OSError as problem:
+        raise PictureError(f"cannot read '{path}' ({problem.strerror}); run the case with --out first") from problem
+    except (IndexError, ValueError) as problem:
+        raise PictureError(f"'{path}' is not a table of numbers ({problem}); run the case again") from problem
+
+
+def read_any_json(path: Path) -> Any:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as problem:
+        raise PictureError(f"cannot read '{path}' ({problem.strerror}); give what apsis wrote") from problem
+    except ValueError as problem:
+        raise PictureError(f"'{path}' is not JSON ({problem}); give what apsis wrote") from problem
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """Reads a JSON object. Raises PictureError."""
+    document = read_any_json(path)
+    if not isinstance(document, dict):
+        raise PictureError(f"'{path}' is not a JSON object (it is a {type(document).__name__}); give what apsis wrote")
+    return document
+
+
+def read_json_list(path: Path) -> list[dict[str, Any]]:
+    """Reads a JSON list of objects. Raises PictureError."""
+    document = read_any_json(path)
+    if not isinstance(document, list) or not all(isinstance(one, dict) for one in document):
+        raise PictureError(f"'{path}' is not a list of JSON objects (it is damaged); run the case again")
+    return document
+
+
+def read_result(folder: str | Path) -> RunResult:
+    """Reads a result folder. Raises PictureError."""
+    folder = Path(folder)
+    manifest = read_json(folder / "manifest.json")
+    history = read_history(folder / "history.csv")
+    path = folder / "solution.h5"
+    arrays: dict[str, Array] = {}
+    groups: dict[str, dict[str, Array]] = {"fields": {}, "snapshots": {}, "marginals": {}}
+    labels: dict[str, str] = {}
+    try:
+        with h5py.File(path) as file:
+            arrays = {name: np.asarray(item, dtype=float) for name, item in file.items() if isinstance(item, h5py.Dataset)}
+            for group, found in groups.items():
+                for name, item in file.get(group, {}).items():
+                    found[name] = np.asarray(item, dtype=float)
+                    labels[name] = words(item.attrs.get("long_name", f"{name} (dimensionless)"))
+            case = words(file.attrs.get("case", ""))
+    except OSError as problem:
+        raise PictureError(f"cannot read '{path}' ({problem}); run the case again with --out") from problem
+    fields = groups["fields"]
+    in_order = {name: fields[name] for name in (*columns_of(folder / "fields.csv"), *fields) if name in fields}
+    return RunResult(folder, manifest, in_order, groups["snapshots"], arrays, history, labels, case, groups["marginals"])
+
+
+def columns_of(path: Path) -> list[str]:
+    """Returns names in the order of the model, which HDF5 does not preserve."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            return file.readline().strip().split(",")
+    except OSError:
+        return []
+
+
+def words(attribute: Any) -> str:
+    return attribute.decode("utf-8") if isinstance(attribute, bytes) else str(attribute)

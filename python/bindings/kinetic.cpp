@@ -1,0 +1,337 @@
+#include "arrays.hpp"
+#include "callback.hpp"
+#include "march.hpp"
+
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/choices.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
+#include <apsis/semidiscrete/problem_builder.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+namespace apsis::python {
+namespace {
+
+/// The entry of that name. Throws input_error with the nearest names.
+template <class Entries>
+const auto& entry_called(const std::string& what, const std::string& name, const Entries& entries) {
+  std::vector<std::string> names;
+  for (const auto* entry : entries) {
+    if (entry->name == name) return *entry;
+    names.push_back(entry->name);
+  }
+  throw input_error(fmt::format("unknown {} '{}' (there is no such name); {}", what, name.substr(0, 60),
+                                suggest(name, names)));
+}
+
+template <class Choice>
+Choice choice_called(const std::string& what, const std::string& name) {
+  const auto& names = choice_names<Choice>;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (name == names[k]) return static_cast<Choice>(k);
+  throw input_error(fmt::format("unknown {} '{}' (there is no such name); {}", what, name.substr(0, 60),
+                                suggest(name, {names.begin(), names.end()})));
+}
+
+/// What a problem is made from, as Python names it.
+struct description {
+  std::string model;
+  std::map<std::string, double> parameters;
+  std::map<std::string, std::string> options;
+  double velocity_max;
+  int velocity_points;
+  std::string equilibrium;
+  std::vector<int> cells;
+  std::vector<std::array<double, 2>> domain;
+  std::vector<std::array<std::string, 2>> boundary;
+  std::string reconstruction, formulation;
+  bool positivity;
+};
+
+std::unique_ptr<model> make_equation(const description& of) {
+  const model_entry& entry = entry_called("model", of.model, model_entries());
+  model_config config = default_config(entry);
+  for (const auto& [name, value] : of.parameters) {
+    if (!config.parameters.contains(name))
+      throw input_error(
+          fmt::format("unknown parameter '{1}' (model '{0}' has no such parameter); see: apsis list models",
+                      of.model, name));
+    const auto p = std::find_if(entry.parameters.begin(), entry.parameters.end(),
+                                [&name = name](const auto& one) { return one.name == name; });
+    if (!(value >= p->lowest && value <= p->highest) || (p->integer && value != std::floor(value)))
+      throw input_error(fmt::format("{} = {:g} is out of range ({} from {:g} to {:g} is needed); change it",
+                                    name, value, p->integer ? "an integer" : "a number", p->lowest,
+                                    p->highest));
+    config.parameters[name] = value;
+  }
+  for (const auto& [name, value] : of.options) {
+    if (!config.texts.contains(name))
+      throw input_error(fmt::format(
+          "unknown option '{1}' (model '{0}' has no such option); see: apsis list models", of.model, name));
+    config.texts[name] = value;
+  }
+  if (entry.has_velocity_grid)
+    config.velocity = {of.velocity_max, of.velocity_points,
+                       choice_called<equilibrium_choice>("equilibrium", of.equilibrium)};
+  return entry.make(config);
+}
+
+grid make_grid(const description& of) {
+  std::array<int, 3> cells = {1, 1, 1};
+  std::array<double, 3> lower{}, upper = {1.0, 1.0, 1.0};
+  for (std::size_t k = 0; k < std::min<std::size_t>(of.cells.size(), 3); ++k) {
+    cells[k] = of.cells[k];
+    lower[k] = of.domain[k][0];
+    upper[k] = of.domain[k][1];
+  }
+  return {static_cast<int>(of.cells.size()), cells, lower, upper};
+}
+
+/// A model on a mesh, by the problem_builder of the library.
+class kinetic_problem {
+ public:
+  kinetic_problem(const description& of, const py::object& epsilon)
+      : equation_(make_equation(of)), builder_(*equation_) {
+    if (builder_.has_space()) {
+      builder_.on(make_grid(of));
+      for (std::size_t k = 0; k < of.boundary.size(); ++k)
+        for (const bool upper : {false, true})
+          builder_.with_boundary({static_cast<int>(k), upper}, make_boundary(of.boundary[k][upper ? 1 : 0]));
+      builder_.with_unknowns(choice_called<formulation>("formulation", of.formulation));
+      if (of.positivity) builder_.with_positivity_limiter();
+      builder_.with_reconstruction(
+          entry_called("reconstruction", of.reconstruction, reconstruction_entries()).make());
+    }
+    // The function of the user is called here, once for each point, and not by the threads of a step.
+    if (PyCallable_Check(epsilon.ptr()) != 0) {
+      const callback function(py::reinterpret_borrow<py::function>(epsilon), "epsilon");
+      const int dimensions = equation_->space_dimensions();
+      builder_.with_epsilon([function, dimensions](const position& x) {
+        return function.number(function(*coordinates(x, dimensions)));
+      });
+    } else {
+      builder_.with_epsilon([value = epsilon.cast<double>()](const position&) { return value; });
+    }
+    problem_ = builder_.build();
+  }
+
+  int components() const { return equation_->components(); }
+  std::vector<py::ssize_t> shape() const { return {builder_.mesh().size(), components()}; }
+
+  py::array_t<double> centres() const {
+    const int dimensions = equation_->space_dimensions();
+    std::vector<double> all;
+    for (int cell = 0; cell < builder_.mesh().size(); ++cell) {
+      const position x = builder_.mesh().centre(cell);
+      all.insert(all.end(), x.begin(), x.begin() + dimensions);
+    }
+    const auto n = static_cast<py::ssize_t>(dimensions > 0 ? builder_.mesh().size() : 0);
+    return dimensions > 1 ? to_array(std::move(all), {n, dimensions}) : to_array(std::move(all));
+  }
+
+  py::array_t<double> velocities() const {
+    const velocity_set& set = equation_->velocities();
+    std::vector<double> all;
+    for (int j = 0; j < set.components(); ++j)
+      for (int k = 0; k < set.dimensions(); ++k) all.push_back(set.speeds(k)[static_cast<std::size_t>(j)]);
+    return set.dimensions() > 1 ? to_array(std::move(all), {set.components(), set.dimensions()})
+                                : to_array(std::move(all));
+  }
+
+  py::array_t<double> epsilon() const { return to_array(builder_.epsilon_at_centres()); }
+
+  py::array_t<double> sample_named(const std::string& name) const {
+    const auto& all = equation_->initial();
+    std::vector<std::string> names;
+    for (const auto& data : all) {
+      if (data.name == name) return checked(builder_.sample(data.point_value, data.jumps));
+      names.push_back(data.name);
+    }
+    throw input_error(fmt::format("unknown initial data '{}' (there is no such name); {}", name.substr(0, 60),
+                                  suggest(name, names)));
+  }
+
+  py::array_t<double> sample_function(const py::function& function, const std::vector<double>& jumps) const {
+    const callback data(function, "initial");
+    const int dimensions = equation_->space_dimensions();
+    std::vector<double> row(static_cast<std::size_t>(components()));
+    return checked(builder_.sample(
+        [&](const position& x, std::span<double> u) {
+          data.numbers(data(*coordinates(x, dimensions)), {components()}, row);
+          std::copy(row.begin(), row.end(), u.begin());
+        },
+        jumps));
+  }
+
+  py::dict fields(const array& u) const {
+    const field state = to_field(u);
+    const auto names = equation_->fields();
+    std::vector<std::vector<double>> columns(names.size());
+    std::vector<double> values(names.size());
+    for (int cell = 0; cell < state.cells(); ++cell) {
+      equation_->macroscopic(state.row(cell), values.data());
+      for (std::size_t k = 0; k < names.size(); ++k) columns[k].push_back(values[k]);
+    }
+    py::dict out;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      out[py::str(names[k].name)] = to_array(std::move(columns[k]));
+    return out;
+  }
+
+  py::array_t<double> transport(const array& u, double t) {
+    field result = to_field(u);
+    const field state = result;
+    const target<field, double> to{&result, 0.0, 1.0, true};
+    problem_->add_transport(t, state, {&to, 1});
+    return from_field(result);
+  }
+
+  py::array_t<double> collision(const array& u, double t) {
+    field result = to_field(u);
+    const field state = result;
+    const target<field, double> to{&result, 0.0, 1.0, true};
+    problem_->add_collision(t, state, {&to, 1});
+    return from_field(result);
+  }
+
+  py::array_t<double> solve_collision(const array& u, double a, double b, double t) {
+    field state = to_field(u);
+    problem_->solve_collision(t, a, b, state);
+    return from_field(state);
+  }
+
+  double forward_euler_step(const array& u) const { return problem_->forward_euler_step(0.0, to_field(u)); }
+
+  py::tuple integrate(const array& u0, const std::vector<double>& t, const method& m,
+                      const step_choice& choice, std::optional<int> threads) {
+    field u = to_field(u0);
+    set_threads(threads.value_or(threads_for(u)));
+    const bool explicit_only = m.kind == method_kind::explicit_only;
+    if (explicit_only && !explicit_problem_)
+      explicit_problem_ = problem_builder(builder_).with_explicit_collision().build();
+    auto& problem = explicit_only ? *explicit_problem_ : *problem_;
+    std::vector<double> all;
+    append(u, all);
+    step_count count;
+    {
+      const py::gil_scoped_release others;
+      count = march_through(
+          problem, u, t, m, choice, true, largest_difference, [&all](const field& now) { append(now, all); },
+          [] {
+            const py::gil_scoped_acquire python;
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+          });
+    }
+    return py::make_tuple(
+        to_array(std::vector<double>(t)),
+        to_array(std::move(all), {static_cast<py::ssize_t>(t.size()), shape()[0], shape()[1]}), count.steps,
+        count.rejected);
+  }
+
+ private:
+  static py::tuple coordinates(const position& x, int dimensions) {
+    py::tuple all(static_cast<std::size_t>(dimensions));
+    for (int k = 0; k < dimensions; ++k) all[static_cast<std::size_t>(k)] = x[static_cast<std::size_t>(k)];
+    return all;
+  }
+
+  /// Small problems gain little by more threads than one.
+  static int threads_for(const field& u) {
+    if (const int requested = requested_threads(); requested > 0) return requested;
+    return static_cast<double>(u.cells()) * u.components() < 32768.0 ? 1 : default_threads();
+  }
+
+  /// max |u − v|, or NaN if one is.
+  static double largest_difference(const field& u, const field& v) {
+    double largest = 0.0;
+    for (int cell = 0; cell < u.cells(); ++cell)
+      for (int k = 0; k < u.components(); ++k) {
+        const double difference = std::abs(u.row(cell)[k] - v.row(cell)[k]);
+        if (!(difference <= largest)) largest = difference;
+        if (std::isnan(difference)) return difference;
+      }
+    return largest;
+  }
+
+  static void append(const field& u, std::vector<double>& all) {
+    for (int cell = 0; cell < u.cells(); ++cell)
+      all.insert(all.end(), u.row(cell), u.row(cell) + u.components());
+  }
+
+  field to_field(const array& u) const {
+    if (std::vector<py::ssize_t>(u.shape(), u.shape() + u.ndim()) != shape())
+      throw input_error(
+          fmt::format("a state has the shape ({}) (that of the problem is ({}, {})); give [cells, "
+                      "components]",
+                      fmt::join(u.shape(), u.shape() + u.ndim(), ", "), shape()[0], shape()[1]));
+    field state(builder_.mesh().size(), components());
+    for (int cell = 0; cell < state.cells(); ++cell)
+      std::copy_n(u.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(), state.row(cell));
+    return state;
+  }
+
+  py::array_t<double> from_field(const field& u) const {
+    std::vector<double> all;
+    append(u, all);
+    return to_array(std::move(all), shape());
+  }
+
+  /// The state, where the discrete model supports it.
+  py::array_t<double> checked(const field& u) const {
+    for (int cell = 0; cell < u.cells(); ++cell)
+      if (const auto found = equation_->check_supported(u.row(cell)); !found.problem.empty())
+        throw input_error(fmt::format("{} [cell {}]", found.problem, cell));
+    return from_field(u);
+  }
+
+  std::unique_ptr<model> equation_;
+  problem_builder builder_;
+  std::unique_ptr<semidiscrete_problem> problem_, explicit_problem_;
+};
+
+}  // namespace
+
+void bind_kinetic(py::module_& m) {
+  py::class_<kinetic_problem>(m, "KineticProblem")
+      .def(py::init([](std::string model, std::map<std::string, double> parameters,
+                       std::map<std::string, std::string> options, double velocity_max, int velocity_points,
+                       std::string equilibrium, std::vector<int> cells,
+                       std::vector<std::array<double, 2>> domain,
+                       std::vector<std::array<std::string, 2>> boundary, std::string reconstruction,
+                       std::string formulation, bool positivity, const py::object& epsilon) {
+        return std::make_unique<kinetic_problem>(
+            description{std::move(model), std::move(parameters), std::move(options), velocity_max,
+                        velocity_points, std::move(equilibrium), std::move(cells), std::move(domain),
+                        std::move(boundary), std::move(reconstruction), std::move(formulation), positivity},
+            epsilon);
+      }))
+      .def("shape", &kinetic_problem::shape)
+      .def("centres", &kinetic_problem::centres)
+      .def("velocities", &kinetic_problem::velocities)
+      .def("epsilon", &kinetic_problem::epsilon)
+      .def("sample_named", &kinetic_problem::sample_named)
+      .def("sample_function", &kinetic_problem::sample_function)
+      .def("fields", &kinetic_problem::fields)
+      .def("transport", &kinetic_problem::transport)
+      .def("collision", &kinetic_problem::collision)
+      .def("solve_collision", &kinetic_problem::solve_collision)
+      .def("forward_euler_step", &kinetic_problem::forward_euler_step)
+      .def("integrate", [](kinetic_problem& problem, const array& u0, const std::vector<double>& t,
+                           const apsis::method& by, std::optional<double> dt, double safety, bool graded,
+                           std::optional<double> tolerance, std::optional<int> threads) {
+        return problem.integrate(u0, t, by, {dt, safety, graded, tolerance}, threads);
+      });
+}
+
+}  // namespace apsis::python

@@ -1,0 +1,82 @@
+// The fields of a gas: every component of the bulk velocity, under names that say which one.
+#include <apsis/model/model_registry.hpp>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using testing::ElementsAre;
+
+std::unique_ptr<apsis::model> gas(int dimensions) {
+  auto config = apsis::default_config(*apsis::find_model("bgk"));
+  config.parameters["velocity_dimensions"] = dimensions;
+  config.velocity = {9.0, 24, apsis::equilibrium_choice::automatic};
+  return apsis::find_model("bgk")->make(config);
+}
+
+std::vector<std::string> names_of_fields(const apsis::model& m) {
+  std::vector<std::string> names;
+  for (const auto& field : m.fields()) names.push_back(field.name);
+  return names;
+}
+
+/// ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the velocities of the model.
+std::vector<double> maxwellian(const apsis::model& m, double rho, const std::vector<double>& u, double T) {
+  std::vector<double> f;
+  for (int j = 0; j < m.components(); ++j) {
+    double square = 0.0;
+    for (std::size_t k = 0; k < u.size(); ++k)
+      square += std::pow(m.speeds(static_cast<int>(k))[static_cast<std::size_t>(j)] - u[k], 2);
+    const double height = rho * std::pow(2.0 * std::numbers::pi * T, -0.5 * static_cast<double>(u.size()));
+    f.push_back(height * std::exp(-0.5 * square / T));
+  }
+  return f;
+}
+
+std::vector<double> fields_of(const apsis::model& m, const std::vector<double>& f) {
+  std::vector<double> values(m.fields().size());
+  m.macroscopic(f.data(), values.data());
+  return values;
+}
+
+}  // namespace
+
+TEST(fluid_fields, have_one_velocity_for_each_dimension) {
+  EXPECT_THAT(names_of_fields(*gas(1)), ElementsAre("rho", "u", "T"));
+  EXPECT_THAT(names_of_fields(*gas(2)), ElementsAre("rho", "u_x", "u_y", "T"));
+  EXPECT_THAT(names_of_fields(*gas(3)), ElementsAre("rho", "u_x", "u_y", "u_z", "T"));
+  EXPECT_EQ(gas(1)->fields()[1].label, "bulk velocity (dimensionless)");
+  EXPECT_EQ(gas(3)->fields()[2].label, "bulk velocity along y (dimensionless)");
+  EXPECT_THAT(gas(1)->invariants(), ElementsAre("mass", "momentum", "energy"));
+  EXPECT_THAT(gas(2)->invariants(), ElementsAre("mass", "momentum_x", "momentum_y", "energy"));
+}
+
+TEST(fluid_fields, of_a_sampled_maxwellian_are_its_density_velocity_and_temperature) {
+  const std::vector<double> velocity = {0.3, -0.4, 0.25};
+  for (const int d : {1, 2, 3}) {
+    const auto m = gas(d);
+    const std::vector<double> u(velocity.begin(), velocity.begin() + d);
+    const auto values = fields_of(*m, maxwellian(*m, 1.25, u, 1.1));
+    // Δv = 3/4 and v_max = 9: truncation and aliasing are below 1e-12.
+    EXPECT_NEAR(values[0], 1.25, 1e-11);
+    for (std::size_t k = 0; k < u.size(); ++k) EXPECT_NEAR(values[1 + k], u[k], 1e-11) << d << " " << k;
+    EXPECT_NEAR(values.back(), 1.1, 1e-11);
+  }
+}
+
+TEST(fluid_fields, are_exchanged_with_the_axes) {
+  const auto m = gas(3);
+  const auto f = fields_of(*m, maxwellian(*m, 0.8, {0.2, -0.5, 0.1}, 1.3));
+  const auto g = fields_of(*m, maxwellian(*m, 0.8, {0.1, 0.2, -0.5}, 1.3));
+  EXPECT_NEAR(f[1], g[2], 1e-14);
+  EXPECT_NEAR(f[2], g[3], 1e-14);
+  EXPECT_NEAR(f[3], g[1], 1e-14);
+  EXPECT_NEAR(f[4], g[4], 1e-13);
+}

@@ -9,8 +9,8 @@
 namespace apsis {
 
 /// The solution of the written-out limit system (limit_equations) for the initial data of a case, at its end;
-/// the data must be smooth, and stay so until then. Throws input_error for a model whose limit is not
-/// written.
+/// the data must be smooth, and stay so until then. Throws input_error for a model whose limit is
+/// not written.
 fourier_solution limit_solution(const case_config& config, int points = 129, int steps = 1000);
 
 /// Relative L2 distance of ω from that solution (averages or point values, as in the case) after a run of the

@@ -113,8 +113,8 @@ void compare_limit(const broadwell& b, const limit_equations& system, random_sou
     worst.moments = maximum(worst.moments, std::abs(back[k] - omega[k]) / rho);
     worst.fluxes = maximum(worst.fluxes, std::abs(by_transport[k] - by_hand[k]) / rho);
   }
-  // λ is an eigenvalue of F' when F'(1, λ) = λ(1, λ): the derivative of F along (1, λ), by central
-  // differences.
+  // λ is an eigenvalue of F' when F'(1, λ) = λ(1, λ): the derivative of F along (1, λ), by
+  // central differences.
   for (const double sign : {-1.0, 1.0}) {
     const double lambda = 0.5 * (u + sign * std::sqrt(2.0 - u * u)), h = 1e-5 * rho;
     const std::array<double, 2> ahead = {rho + h, m + lambda * h}, behind = {rho - h, m - lambda * h};

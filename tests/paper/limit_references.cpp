@@ -117,8 +117,8 @@ TEST(broadwell_riemann, conserves_and_orders_its_waves_for_random_states) {
               fast[1] < 1.0);
     const auto total = integral(solution);
     const auto in = conserved_flux(left), out = conserved_flux(right);
-    // Weak solution on a box; rounding relative to the larger
-    // density.
+    // Weak solution on a box; rounding relative to the
+    // larger density.
     const double tolerance = 1e-11 * std::max({left.rho, right.rho, solution.middle().rho});
     RC_ASSERT(std::abs(total.rho - (left.rho + right.rho + in.rho - out.rho)) < tolerance);
     RC_ASSERT(std::abs(total.m - (left.m + right.m + in.m - out.m)) < tolerance);

@@ -7,8 +7,7 @@
 
 namespace apsis {
 
-/// ρ, ρu and 𝓔 = ρ(u² + T)/2 of every cell: fields whose cell averages are averages of finer ones.
-/// Dimensionless.
+/// ρ, ρu and 𝓔 = ρ(u² + T)/2 of every cell, whose cell averages are averages of finer ones. Dimensionless.
 using conserved_fields = std::array<std::vector<double>, 3>;
 
 /// From the fields rho, u and T of kinetic models with one velocity dimension. Throws input_error if one of

@@ -7,7 +7,7 @@ namespace apsis::app {
 
 /// apsis design --embedded METHOD.
 struct embedded_options {
-  std::string method;              ///< of the catalogue, of a family, or FILE.toml
+  std::string method;              ///< a method of the catalogue or of a family, or FILE.toml
   std::optional<int> order;        ///< of the embedded solution; the highest useful one if not given
   std::string cost = "one-solve";  ///< or "nothing"
   std::string out;
@@ -15,7 +15,7 @@ struct embedded_options {
 };
 
 /// Finds an embedded solution, writes the method with it to a file and reports the certificate. Throws
-/// input_error, numerical_error with the nearest residuals if there is none, io_error.
+/// input_error, numerical_error with the nearest residuals if there is no such solution, io_error.
 int design_embedded(const embedded_options& given);
 
 }  // namespace apsis::app

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 namespace apsis::embedded {
-/// Every module of python/apsis (generated); the program draws with them.
+/// Every module of python/apsis (generated), used by the program for drawing.
 std::vector<embedded_text> scripts();
 }  // namespace apsis::embedded
 
@@ -26,14 +26,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is dropped of what a program prints.
+/// Which child output is suppressed.
 enum class dropped { nothing, output, everything };
 
-/// Status of a child process at its end, with which interrupts end it.
+/// Termination status of a child process, reported to the interrupt handler.
 int status_of(pid_t child) {
   {
     const forwarded_interrupts forwarding(child);
-    // The child stays known (WNOWAIT) while a handler may send it a signal.
+    // WNOWAIT keeps the process id valid while a handler may send it a signal.
     siginfo_t end = {};
     while (waitid(P_PID, static_cast<id_t>(child), &end, WEXITED | WNOWAIT) < 0)
       if (errno != EINTR) break;
@@ -44,7 +44,8 @@ int status_of(pid_t child) {
   return status;
 }
 
-/// Exit status of a program; −1 if it cannot run. Throws interruption, after its end, where a signal came.
+/// Exit status of a program; −1 if it cannot run. Throws interruption, after the program has ended, if a
+/// signal arrived.
 int execute(const std::vector<std::string>& words, dropped drop) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
@@ -56,7 +57,7 @@ int execute(const std::vector<std::string>& words, dropped drop) {
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   if (drop == dropped::everything)
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  // A process group of its own: Ctrl-C in a terminal reaches the program alone, which passes it on.
+  // A separate process group: a terminal sends Ctrl-C to this program alone, which forwards it.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -95,7 +96,7 @@ fs::path new_folder() {
 
 drawing::drawing() : python_(find_python()), folder_(new_folder()) {
   add("apsis/__init__.py", "");
-  // The subpackages need nothing that is compiled; modules beside them are for the Python package alone.
+  // The subpackages need no compiled module; modules next to them belong to the Python package alone.
   for (const auto& script : embedded::scripts())
     if (script.name.find('/') != std::string_view::npos)
       add(fmt::format("apsis/{}.py", script.name), std::string(script.text));
@@ -115,7 +116,7 @@ std::string drawing::add(const std::string& name, const std::string& text) const
 }
 
 int drawing::run(const std::string& module, const std::vector<std::string>& arguments, bool quiet) const {
-  // A script beside the package finds it, whatever lies in the present folder.
+  // A script next to the package finds it, regardless of the working directory.
   const std::string script = add(
       module + ".py", fmt::format("from apsis.{}.__main__ import main\nraise SystemExit(main())\n", module));
   std::vector<std::string> words = {python_, "-B", script};

@@ -6,22 +6,22 @@
 
 namespace apsis::app {
 
-/// The Python modules apsis.plot and apsis.report, which are part of the program, as files as long as this
-/// object lives.
+/// The Python modules apsis.plot and apsis.report, which are embedded in the program, as files during the
+/// lifetime of this object.
 class drawing {
  public:
-  /// Throws io_error if no Python with matplotlib is found (the variable APSIS_PYTHON names one), or there is
-  /// no place for the files.
+  /// Throws io_error if no Python with matplotlib is found (the variable APSIS_PYTHON names one), or the
+  /// files cannot be written.
   drawing();
   ~drawing();
   drawing(const drawing&) = delete;
   drawing& operator=(const drawing&) = delete;
 
-  /// Puts one more file beside the modules and returns its path.
+  /// Writes one more file next to the modules and returns its path.
   std::string add(const std::string& name, const std::string& text) const;
 
-  /// Exit status of `python -m apsis.MODULE ARGUMENTS`; −1 if it cannot run. Where `quiet`, its standard
-  /// output is dropped; messages go to our standard error.
+  /// Exit status of `python -m apsis.MODULE ARGUMENTS`; −1 if it cannot run. If `quiet`, its standard output
+  /// is suppressed; messages go to our standard error.
   int run(const std::string& module, const std::vector<std::string>& arguments, bool quiet) const;
 
  private:
@@ -29,7 +29,7 @@ class drawing {
   std::filesystem::path folder_;
 };
 
-/// Draws beside a computation, with nothing on standard output. Throws io_error if that fails.
+/// Draws during a computation without output on standard output. Throws io_error if that fails.
 void draw(const std::string& module, const std::vector<std::string>& arguments);
 
 }  // namespace apsis::app

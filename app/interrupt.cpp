@@ -15,7 +15,7 @@ volatile std::sig_atomic_t stop_requested = 0;
 volatile pid_t child_process = 0;
 const char* awaited_text = nullptr;
 
-/// write() may be called in a signal handler; what does not arrive is not missed.
+/// write() is async-signal-safe; a failure is ignored.
 void say(const char* text) {
   if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
 }
@@ -40,12 +40,12 @@ extern "C" void end_program(int) {
 void handle_signals(void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;
-  // The default comes back after the first signal.
+  // The default handler is restored after the first signal.
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before = {};
     sigaction(signal, &action, &before);
-    // nohup, and shells for commands in the background.
+    // Ignored under nohup, and in some shells for background commands.
     if (before.sa_handler == SIG_IGN) sigaction(signal, &before, nullptr);
   }
 }

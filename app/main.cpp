@@ -34,7 +34,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-// CLI11 says what it did not understand, but not what could have been meant.
+// CLI11 reports what it did not understand; the suggestion is added here.
 [[noreturn]] void usage_error(const CLI::App& program, const CLI::ParseError& problem) {
   const auto chosen = program.get_subcommands();
   const CLI::App& place = chosen.empty() ? program : *chosen.front();
@@ -62,7 +62,7 @@ int run_program(int argc, char** argv) {
   action chosen;
   for (const command_entry* command : commands_in_order()) {
     CLI::App* added = program.add_subcommand(command->name, command->summary);
-    // Only noted while the line is parsed, so that nothing runs before the whole line is known to be good.
+    // Only recorded during parsing, so that nothing runs before the whole line is valid.
     added->callback([&chosen, run = command->define(*added)] { chosen = run; });
   }
   check_option_values(program);
@@ -81,15 +81,15 @@ int run_program(int argc, char** argv) {
   return chosen();
 }
 
-/// Descriptors 0 to 2 that the caller closed are opened again: the next file, one of results perhaps, would
-/// get their number and with it every message. Writing to them fails, as to a closed one.
+/// Reopens descriptors 0 to 2 if the caller closed them: otherwise the next file, perhaps one of results,
+/// would get their number and receive every message. Writing to them fails, as to a closed one.
 void occupy_standard_descriptors() {
   for (const int id : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(id, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
 }
 
 int fail(exit_code code, const std::string& message) {
-  // Where standard error cannot be written, the exit code says all that can be said.
+  // If standard error cannot be written, only the exit code reports the error.
   std::fputs(fmt::format("error: {}\n", message).c_str(), stderr);
   return static_cast<int>(code);
 }
@@ -100,7 +100,7 @@ int fail(exit_code code, const std::string& message) {
 int main(int argc, char** argv) {
   using namespace apsis;
   app::occupy_standard_descriptors();
-  // A file that grows beyond its limit (ulimit -f) is an output error and no reason to die.
+  // A file that exceeds its limit (ulimit -f) is an output error and must not kill the process.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return app::run_program(argc, argv);

@@ -17,14 +17,14 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Methods that have a name are certified once; a file of the user is certified where it is asked about.
+// Named methods are certified once; a file of the user is certified on request.
 certificate certificate_of(const method& m) {
   const family_entry* family = find_family(m.name);
   const bool named = family == nullptr ? is_method_name(m.name) : missing_member(*family, m.name).empty();
   return named && &find_method(m.name) == &m ? find_certificate(m.name) : certify(m);
 }
 
-/// What the embedded solution is and what it adds to a step; null without one.
+/// The embedded solution and its cost per step; null without one.
 json embedded_json(const method& m, const certificate& c) {
   if (!c.embedded) return nullptr;
   const schedule steps(m.with_embedded_row().coefficients<double>(), true);
@@ -56,7 +56,7 @@ std::string embedded_term_text(const json& e) {
                      e["last"].get<double>());
 }
 
-/// null where the method has stages that the analysis does not cover, or the term is infinite.
+/// Null if the method has stages that the analysis does not cover, or the term is infinite.
 json regime_json(const certificate& c) {
   if (!c.regime.applies) return nullptr;
   const auto& terms = c.regime;
@@ -79,7 +79,7 @@ json regime_json(const certificate& c) {
           {"band", {{"error", c.band.error}, {"at", c.band.at}}}};
 }
 
-/// The three terms of size ε in parts of the exact ones, so that 1 is right.
+/// The three terms of size ε relative to the exact ones, so that 1 is exact.
 std::string regime_text(const certificate& c) {
   if (!c.regime.applies) return "not covered (a stage is neither relaxed nor u^n)";
   return fmt::format(
@@ -88,7 +88,7 @@ std::string regime_text(const certificate& c) {
       c.regime.layer.convert_to<double>());
 }
 
-/// What these terms mean for the error as dt is refined.
+/// Consequence of these terms for the error as dt is refined.
 std::string verdict_text(const certificate& c) {
   const std::string parts = "in parts of the exact terms of size epsilon, so 1 is right: ";
   if (!c.keeps_slow_terms) return parts + "the error stalls at a multiple of epsilon";
@@ -101,7 +101,7 @@ std::string angle_text(double angle) {
   return fmt::format("A({:.2f} degrees)", std::floor(angle * 100.0 + 1e-6) / 100.0);
 }
 
-/// r/n_F: what a transport evaluation is worth where positivity limits the step; null without such a limit.
+/// r/n_F: the step that positivity allows per transport evaluation; null without such a limit.
 json figure_of_merit(const certificate& c) {
   if (!c.bounded || c.explicit_evaluations == 0) return nullptr;
   return c.ssp_coefficient.convert_to<double>() / c.explicit_evaluations;

@@ -10,8 +10,8 @@ namespace apsis::app {
 
 namespace {
 
-/// The folder of a method file that may be written. It is not made: a path that is mistyped would leave
-/// folders.
+/// Returns the folder of a method file to be written. It is not created, because a mistyped path would leave
+/// folders behind.
 std::filesystem::path folder_of(const std::filesystem::path& path) {
   if (!path.has_filename() || path.extension() != ".toml")
     throw input_error(fmt::format(
@@ -30,8 +30,8 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored))
     throw input_error(
-        fmt::format("command line: no folder '{}' for --out '{}' (it is not made for you); create it "
-                    "first or correct the path",
+        fmt::format("command line: no folder '{}' for --out '{}' (it is not created automatically); create "
+                    "it first or correct the path",
                     folder.string(), path.string()));
   return folder;
 }

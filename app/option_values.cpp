@@ -15,7 +15,7 @@ namespace {
 
 enum class value_type { text, number, integer, unsigned_integer };
 
-/// CLI11 knows the type of a variable by this name only; the names of validators follow behind a colon.
+/// CLI11 identifies the type of a variable by this name only; the names of validators follow after a colon.
 value_type type_of(const CLI::Option& option) {
   const std::string full = option.get_type_name();
   const std::string name = full.substr(0, full.find(':'));
@@ -42,30 +42,31 @@ std::optional<T> parse(std::string_view text) {
 std::string checked_number(const std::string& option, const std::string& given) {
   const auto value = parse<double>(given);
   if (!value || !std::isfinite(*value))
-    refuse(option, given, "a finite decimal number is needed", "write for example 0.5 or 1e-3");
+    refuse(option, given, "a finite decimal number is required", "write for example 0.5 or 1e-3");
   return given;
 }
 
-/// The integer in decimal digits: CLI11 would read "010" as octal and wrap "-1" where no sign is possible.
+/// Reads an integer in decimal digits: CLI11 would read "010" as octal and wrap "-1" to an unsigned value.
 std::string checked_integer(const std::string& option, const std::string& given, bool sign) {
   if (const auto value = parse<long long>(given)) {
     if (!sign && *value < 0)
-      refuse(option, given, "a number below 0 has no meaning here", "write for example 1");
+      refuse(option, given, "a number below 0 is not allowed here", "write for example 1");
     return std::to_string(*value);
   }
   if (!sign)
     if (const auto value = parse<unsigned long long>(given)) return std::to_string(*value);
   const auto value = parse<double>(given);
-  // Up to 2^53 a double is the integer that was written.
+  // Up to 2^53 the double equals the written integer.
   if (value && std::isfinite(*value) && *value == std::floor(*value) && std::abs(*value) <= 0x1p53 &&
       (sign || *value >= 0.0))
     return fmt::format("{}", static_cast<long long>(*value));
-  refuse(option, given, "a whole number is needed", "write for example 10");
+  refuse(option, given, "a whole number is required", "write for example 10");
 }
 
 std::string checked_text(const CLI::Option& option, const std::string& name, const std::string& given) {
   if (given.empty()) refuse(name, given, "it is empty", "give a value");
-  // Behind "--" an argument may begin with a dash; an option cannot, and would have swallowed the next one.
+  // After "--" an argument may begin with a dash; the value of an option may not, because it could be the
+  // next option.
   if (!option.get_positional() && given.front() == '-')
     refuse(name, given, "it begins with a dash, as an option does",
            fmt::format("give {} a value; a path may begin with ./", name));
@@ -94,7 +95,7 @@ CLI::Validator positive_number() {
       [](const std::string& given) {
         const auto value = parse<double>(given);
         return value && *value > 0.0 ? std::string()
-                                     : fmt::format("a number above 0 is needed, not {:.60}", given);
+                                     : fmt::format("a number above 0 is required, not {:.60}", given);
       },
       "POSITIVE");
 }

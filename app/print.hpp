@@ -4,7 +4,7 @@
 
 namespace apsis::app {
 
-/// Writes results to standard output. Throws io_error if they did not arrive.
+/// Writes results to standard output. Throws io_error if that fails.
 void print(const std::string& text);
 
 }  // namespace apsis::app

@@ -5,7 +5,7 @@
 
 namespace apsis::app {
 
-/// A bar on standard error while a command computes; silent where standard error is not a terminal.
+/// A bar on standard error during a computation; silent if standard error is not a terminal.
 class progress_bar {
  public:
   progress_bar();
@@ -15,8 +15,8 @@ class progress_bar {
 
   /// Whether update() would draw now: at most ten times a second, and never without a terminal.
   bool due() const;
-  /// Draws the bar at `fraction` in [0, 1] with `text` behind it if it is due(), cut where the terminal ends.
-  /// The time left is estimated from that since the bar was made.
+  /// Draws the bar at `fraction` in [0, 1], followed by `text`, truncated to the terminal width, if it is
+  /// due(). The remaining time is extrapolated from the time since the bar was created.
   void update(double fraction, const std::string& text);
   /// Erases the bar, so that messages start on a fresh line.
   void finish();

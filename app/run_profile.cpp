@@ -34,7 +34,7 @@ double in_kernels(const run_profile& profile) {
 
 run_profile finish_profile(double wall_seconds, std::size_t numbers) {
   profile::stop();
-  // At least so long that a sweep is longer than the reading of a clock.
+  // Long enough that a sweep exceeds the resolution of the clock.
   const std::size_t count = std::max<std::size_t>(numbers, 4096);
   return {profile::read(), wall_seconds * threads(), multiply_adds_per_second(),
           triad_bytes_per_second(count)};
@@ -55,9 +55,8 @@ std::string profile_text(const run_profile& profile) {
   const double rest = profile.seconds - in_kernels(profile);
   line("the rest", fmt::format("{:.3f}", rest), percent(rest / profile.seconds), "", "", "", "", "");
   out += fmt::format(
-      "  ceilings of a core, measured now: {:.1f} 10⁹ multiply–adds/s (one operation each), triad {:.1f} "
-      "10⁹ bytes/s\n"
-      "  operations and bytes are those of one number; bytes of fields that no cache could save\n",
+      "  ceilings of a core, measured now: {:.1f} 10⁹ multiply–adds/s (one operation each), triad {:.1f} 10⁹ "
+      "bytes/s\n  operations and bytes are per number; bytes are the compulsory memory traffic\n",
       1e-9 * profile.multiply_adds, 1e-9 * profile.triad);
   return out;
 }

@@ -9,7 +9,7 @@
 
 namespace apsis::app {
 
-/// What `apsis run --profile` tells of: the kernels of a run against ceilings of this machine.
+/// Data of `apsis run --profile`: kernels timed by the profiler, and ceilings of this machine.
 struct run_profile {
   std::vector<work_done> kernels;
   double seconds;               ///< of the run, times the number of threads

@@ -6,7 +6,7 @@
 
 namespace apsis::app {
 
-/// A few lines for a person.
+/// Summary of a run in a few lines of text.
 std::string summary_text(const simulation& run, run_end end);
 
 }  // namespace apsis::app

@@ -4,8 +4,8 @@
     bench/report.py [--results results/bench/speed.json] [--docs docs] [--readme README.md]
 
 Copies the results, if there are any, to DOCS/data/speed/PROCESSOR.json. Writes the tables of the newest file there between the
-marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, draws DOCS/images/speed-*.png, and writes the table with a column for every
-processor there and into the README.
+marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, draws DOCS/images/speed-*.png, and writes the table that compares processors
+there and its most important rows into the README.
 """
 import argparse
 import json
@@ -73,11 +73,11 @@ def against(result, label, errors, epsilon=None):
         cell = row[next(k for k, name in enumerate(result["columns"]) if name.startswith(f"error {error} "))]
         found = re.search(r"\(([^()]*)\)\s*$", cell or "") or re.fullmatch(r"\(?([0-9.e+]+)\)?", cell or "")
         ratios.append(f"{found.group(1)}" if found else "—")
-    return f"{', '.join(ratios)} times as long as the best method here"
+    return f"{', '.join(ratios)} times the CPU time of the best method of Apsis"
 
 
 def summary(results):
-    """Returns the rows of the table in the README."""
+    """Returns the rows of the table that compares processors."""
     rows = []
     if "throughput" in results:
         for formulation in ("finite-difference", "finite-volume"):
@@ -87,18 +87,18 @@ def summary(results):
                              f"{row['point·stages/s']:.2g} point·stages/s, {row['of the binding ceiling']} of the binding ceiling"))
     if "threads" in results:
         found = rows_where(results["threads"], N=400)
-        rows.append(("two threads against one, N = 400 (multiply–adds in registers that meet as often)",
+        rows.append(("speedup by two threads, N = 400 (multiply–adds in registers with as many barriers)",
                      ", ".join(f"{row['formulation'].replace('-', ' ')}s {row['ratio']} ({row['in steps']})" for row in found)))
     if "plain" in results:
-        rows.append(("mixed-regime run, N = 40, against the same in plain loops, second and third order",
+        rows.append(("mixed-regime run, N = 40, relative to plain loops, orders 2 and 3",
                      ", ".join(f"{row['plain/library']:.1f}" for row in rows_where(results["plain"])) + " times as fast"))
     if "overhead" in results:
-        rows.append(("a step of a system of two numbers against one written by hand",
+        rows.append(("step of a system of two unknowns, relative to hand-written code",
                      f"{results['overhead']['rows'][1][2]} times as long"))
     if "peers-mixed" in results:
         rows += [(f"mixed-regime run, {who}, at temporal errors 3e-4 and 1e-4", against(results["peers-mixed"], label, ("0.0003", "0.0001")))
                  for who, label in (("best of SUNDIALS and SSP-RK3 with f ≥ 0", "best of the others with least ≥ 0"),
-                                    ("best of them with any f", "best of the others"))]
+                                    ("best of SUNDIALS and SSP-RK3 with f of any sign", "best of the others"))]
     if "peers-ode" in results:
         result = results["peers-ode"]
         rows += [(f"ODE model, ε = {epsilon}, best of SUNDIALS at errors 1e-4 and 1e-6",
@@ -106,14 +106,19 @@ def summary(results):
     return rows
 
 
+# Measures in the README; docs/speed.md has all of them.
+FRONT_PAGE = ("finite", "mixed-regime", "ODE model, ε = 0.01")
+
+
 def any_of(results):
     return next(iter(results.values()))
 
 
-def comparison(machines):
-    """Tabulates the summaries of several machines side by side."""
+def comparison(machines, selection=("",)):
+    """Tabulates the summaries of several machines side by side, restricted to measures that start with a selected text."""
     columns = [dict(summary(results)) for results in machines]
-    measures = list(dict.fromkeys(measure for column in columns for measure in column))
+    measures = [measure for measure in dict.fromkeys(measure for column in columns for measure in column)
+                if measure.startswith(selection)]
     table = markdown(("measure", *(processor(any_of(results)) for results in machines)),
                      [(measure, *(column.get(measure) for column in columns)) for measure in measures])
     return table + "\n\n" + "<br>\n".join(f"*{measured_on(any_of(results))}*" for results in machines)
@@ -235,7 +240,7 @@ def main():
     for name, result in results.items():
         replace(given.docs / "speed.md", name, section(result))
     replace(given.docs / "speed.md", "processors", comparison(machines))
-    replace(given.readme, "speed", comparison(machines))
+    replace(given.readme, "speed", comparison(machines, FRONT_PAGE))
     if "peers-mixed" in results:
         draw_mixed(results["peers-mixed"], given.docs / "images" / "speed-mixed.png")
     if "peers-ode" in results:

@@ -1,8 +1,8 @@
-# Writes OUTPUT, a C++ file that knows the commit of the repository SOURCE; leaves it alone where nothing changed.
+# Writes OUTPUT, a C++ file with the commit of the repository SOURCE; leaves an unchanged file untouched.
 #   cmake -D SOURCE=… -D OUTPUT=… -P ApsisCommit.cmake
 set(commit unknown)
 find_program(GIT git)
-# A repository above SOURCE is that of somebody else who carries these sources.
+# A repository above SOURCE belongs to a project that contains these sources.
 if(GIT AND EXISTS ${SOURCE}/.git)
   execute_process(COMMAND ${GIT} -C ${SOURCE} rev-parse --verify HEAD OUTPUT_VARIABLE head
                   OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)

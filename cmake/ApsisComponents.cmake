@@ -1,9 +1,9 @@
-# The components of the package, what is built of them, and the packages that each needs. The rooms of src/apsis name
+# The components of the package, the selection to build, and the packages that each requires. The rooms of src/apsis name
 # their component (see ApsisRoom.cmake); apsisConfig.cmake finds the same packages again.
 #   integrate   the methods and the time integrator, for any problem
 #   kinetic     the solver of kinetic equations
 #   design      the search for new methods
-# exec is no component that can be asked for, but what kinetic and design have in common.
+# exec cannot be requested as a component; it is the common part of kinetic and design.
 set(apsis_components integrate kinetic design)
 foreach(component IN LISTS APSIS_COMPONENTS)
   if(NOT component IN_LIST apsis_components)
@@ -30,7 +30,7 @@ if("design" IN_LIST apsis_components)
   endif()
 endif()
 
-# In the order in which they depend on each other.
+# In order of dependence.
 set(apsis_parts "")
 foreach(part integrate exec kinetic design)
   if(part IN_LIST apsis_components OR (part STREQUAL exec AND NOT apsis_components STREQUAL "integrate"))
@@ -38,7 +38,7 @@ foreach(part integrate exec kinetic design)
   endif()
 endforeach()
 
-# Packages whose headers or libraries are in the interface: users of the component find them too.
+# Packages with headers or libraries in the interface: users of the component also find them.
 set(apsis_packages_integrate fmt "Boost 1.74")
 set(apsis_packages_exec hwy Threads)
 set(apsis_packages_kinetic "Boost 1.74" nlohmann_json)

@@ -1,4 +1,4 @@
-# Lists that exist twice drift, so these are generated from the files that are there.
+# These lists are generated from the existing files, because lists that exist twice drift apart.
 
 # apsis_embed(methods ${root} toml out): a .cpp with the text of every *.toml below root, as the function
 # apsis::embedded::methods() (see core/embedded.hpp).
@@ -29,8 +29,8 @@ std::vector<embedded_text> ${symbol}() {
 endfunction()
 
 # apsis_registry(what header folder out [namespace]): every file x.cpp of the folder defines `<what>_entry <what>_x`; the
-# generated registry, which defines `<what>_entries()` of the header, is the one place that knows them all. They are
-# in the namespace apsis where no other is given.
+# generated registry, which defines `<what>_entries()` of the header, is the only place that lists them all. The default
+# namespace is apsis.
 function(apsis_registry what header folder out_var)
   set(namespace apsis)
   if(ARGC GREATER 4)

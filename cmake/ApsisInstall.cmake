@@ -4,7 +4,7 @@
 include(CMakePackageConfigHelpers)
 set(apsis_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/apsis)
 
-# The targets of each component have a file of their own, which apsisConfig.cmake reads where the component is asked for.
+# The targets of each component have a separate file, which apsisConfig.cmake reads if the component is requested.
 set(apsis_package_lists "")
 foreach(part IN LISTS apsis_parts)
   get_property(rooms GLOBAL PROPERTY APSIS_ROOMS_${part})
@@ -47,7 +47,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CITATION.cff
 if(NOT PROJECT_IS_TOP_LEVEL)
   return()
 endif()
-# Debian packages (cpack): apsis, the program, and libapsis-dev, for programs of one's own.
+# Debian packages (cpack): apsis, the program, and libapsis-dev, for programs that use the library.
 file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/packages.txt run_lines REGEX "^run ")
 string(REGEX MATCHALL "[a-z0-9+-]+-dev" development_packages "${run_lines}")
 if(NOT "design" IN_LIST apsis_parts)

@@ -1,46 +1,46 @@
-# One library per room of src/apsis, static or shared as BUILD_SHARED_LIBS says. A room may link only the rooms below it,
-# so an include that reaches back does not link and the direction of the data flow is kept by the build.
+# One library per room of src/apsis, static or shared according to BUILD_SHARED_LIBS. A room may link only the rooms below it,
+# so an include of a room above does not link, and the build enforces the direction of the data flow.
 #
 #   apsis_room(method COMPONENT integrate DEPENDS core PUBLIC Boost::headers PRIVATE tomlplusplus::tomlplusplus)
 #
-# PUBLIC and PRIVATE as in target_link_libraries; INSIDE is for packages of headers that only sources read, which users
-# of the installed library therefore need not have. The component is kinetic if not given; a room of a component that is
+# PUBLIC and PRIVATE as in target_link_libraries; INSIDE is for packages of headers that only sources include, which users
+# of the installed library therefore do not need. The component is kinetic if not given; a room of a component that is
 # not built (ApsisComponents.cmake) is skipped.
 
 add_library(apsis_options INTERFACE)
 target_compile_features(apsis_options INTERFACE cxx_std_20)
-# As Boost::headers has it; a precompiled header wants it in all files or in none.
+# The same definition as in Boost::headers; a precompiled header requires it in all files or in no file.
 target_compile_definitions(apsis_options INTERFACE BOOST_ALL_NO_LIB)
-# Kernels are compiled for the plain architecture, 256 and 512 bit (exec/simd-inl.hpp); what lies between, or differs in
-# instructions that no kernel uses, only costs time to build.
+# Kernels are compiled for the plain architecture, 256 and 512 bit (exec/simd-inl.hpp); targets in between, or with
+# instructions that no kernel uses, would only cost build time.
 target_compile_definitions(apsis_options INTERFACE
   "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL)")
 target_compile_options(apsis_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion
   $<$<BOOL:${APSIS_WERROR}>:-Werror>
   -fno-math-errno
-  # g++-12 sees overlaps in its own std::string (GCC bug 105651), and more of them once headers are precompiled.
+  # g++-12 reports overlaps in its own std::string (GCC bug 105651), and more of them with precompiled headers.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${APSIS_PCH}>>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>")
 
-# What only calls the rooms (program, tests) gains nothing from optimisation but time to build.
+# Code that only calls the rooms (program, tests) does not profit from optimisation, which costs build time.
 set(APSIS_QUICKLY_BUILT $<$<CONFIG:Release>:-O1>)
-# Rooms without loops over cells: -O3 costs time to build and makes nothing faster.
+# Rooms without loops over cells: -O3 costs build time without a speedup.
 set(APSIS_PLAIN $<$<CONFIG:Release>:-O2>)
 
-# Rooms with loops over cells and velocities. Their headers keep no type whose layout depends on the instruction
-# set, so other targets are built for the plain architecture and link with them safely.
+# Rooms with loops over cells and velocities. Their headers have no type whose layout depends on the instruction
+# set, so other targets are built for the baseline architecture and link with them safely.
 add_library(apsis_kernel_options INTERFACE)
 target_compile_options(apsis_kernel_options INTERFACE
   -O3 -fopenmp-simd -fno-trapping-math
-  # A number must be rounded alike in the middle and at the end of a row, where other loops treat it: fma where the
-  # source says so, nowhere else.
+  # A number must be rounded equally in the middle and at the end of a row, which different loops process: fma only
+  # where the source requests it.
   -ffp-contract=off
-  # Sanitizers keep clang from vectorising some loops; that is no reason to fail there.
+  # Sanitizers prevent clang from vectorising some loops; this must not be an error.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)
 
-# Headers that most files read, for seconds each (see APSIS_PCH). Rooms with kernels have other flags and go
-# without.
+# Headers that most files include, at a cost of seconds each (see APSIS_PCH). Rooms with kernels have other flags and
+# do not use them.
 if(APSIS_PCH)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/precompiled.cpp CONTENT "")
   add_library(apsis_precompiled STATIC ${PROJECT_BINARY_DIR}/generated/precompiled.cpp)
@@ -66,9 +66,9 @@ function(apsis_room name)
   add_library(apsis_${name} ${sources} ${ROOM_GENERATED})
   add_library(apsis::${name} ALIAS apsis_${name})
   set_target_properties(apsis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF
-    # What a room exports is not marked, so all of it is, whatever a project around this one prefers.
+    # Exports of a room are not marked, so all symbols are visible, regardless of the settings of an enclosing project.
     CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF
-    # Static and shared libraries are compiled alike.
+    # Static and shared libraries have the same compile flags.
     DEFINE_SYMBOL "")
   get_target_property(type apsis_${name} TYPE)
   if(type STREQUAL SHARED_LIBRARY)

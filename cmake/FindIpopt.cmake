@@ -5,7 +5,7 @@ include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(Ipopt REQUIRED_VARS IPOPT_LIBRARY IPOPT_INCLUDE_DIR)
 if(Ipopt_FOUND AND NOT TARGET Ipopt::Ipopt)
   add_library(Ipopt::Ipopt UNKNOWN IMPORTED)
-  # Its headers have to be told that the standard headers exist.
+  # Its headers require a definition that the standard headers exist.
   set_target_properties(Ipopt::Ipopt PROPERTIES
     IMPORTED_LOCATION ${IPOPT_LIBRARY}
     INTERFACE_INCLUDE_DIRECTORIES ${IPOPT_INCLUDE_DIR}/coin

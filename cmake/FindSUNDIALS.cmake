@@ -1,5 +1,5 @@
-# The libraries of SUNDIALS that are asked for as components, each as SUNDIALS::component. The configuration files
-# of SUNDIALS itself ask for the OpenMP of every compiler, which a build without OpenMP has no use for.
+# The requested components of SUNDIALS, each as SUNDIALS::component. The configuration files
+# of SUNDIALS itself require OpenMP for every compiler, which this build does not need.
 find_path(SUNDIALS_INCLUDE_DIR sundials/sundials_types.h)
 set(sundials_libraries)
 foreach(component ${SUNDIALS_FIND_COMPONENTS})

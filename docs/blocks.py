@@ -1,12 +1,12 @@
-"""The code blocks of a page of documentation, what the comments before them say, and whether an output is the one shown.
+"""The code blocks of a page of documentation, the comments before them, and comparison of outputs.
 
-A comment directly before a block says what is to be done with it; GitHub does not show comments:
+A comment directly before a block determines its treatment; GitHub does not show comments:
 
     <!-- file: NAME -->         the block is written to NAME in the folder of the page
     <!-- from: PATH -->         an excerpt, to the letter, of a file of the repository or of the folder of the page; a line
-                                that is a comment with nothing but … stands for lines left out
+                                that is a comment with only … stands for omitted lines
     <!-- output: 1e-3 -->       what the block before prints: numbers to this relative tolerance (1e-6 if none is given),
-                                … for anything up to the text that follows
+                                … for any text up to the following one
     <!-- exit: 2 -->            the block ends with this exit code; its output is what it prints and its messages
     <!-- elsewhere: FILE -->    this test of the repository runs the block; it names the page
 """
@@ -24,7 +24,7 @@ TOKEN = re.compile(r"(?<![\w.])[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9
 
 
 class Problem(Exception):
-    """Something wrong with a page: problem (why) suggestion."""
+    """A problem of a page: problem (reason); suggestion."""
 
     def __init__(self, line: int, text: str):
         super().__init__(text)
@@ -33,7 +33,7 @@ class Problem(Exception):
 
 @dataclass
 class Block:
-    """Lines of a page, first to last, counted from 1, the fences left out. `line` is that of the fence."""
+    """Lines of a page, first to last, counted from 1, without the fences. `line` is that of the fence."""
 
     language: str
     line: int
@@ -44,12 +44,12 @@ class Block:
 
     @property
     def runs(self) -> bool:
-        """Whether the block is a program that is run as it stands."""
+        """Whether the block is a program that is executed unchanged."""
         return self.language in ("sh", "python", "cpp") and not self.marks.keys() & {"file", "from", "output", "elsewhere"}
 
 
 def read_blocks(text: str) -> list[Block]:
-    """Fenced blocks in their order. Raises Problem."""
+    """Returns the fenced blocks in order. Raises Problem."""
     lines, blocks, marks, at = text.splitlines(), [], {}, 0
     while at < len(lines):
         comment, fence = COMMENT.match(lines[at]), FENCE.match(lines[at])
@@ -82,7 +82,7 @@ def stray(marks, names, why):
 
 
 def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
-    """Blocks that no rule covers: nothing would tell when they are wrong."""
+    """Returns blocks that no rule covers: no test would detect their errors."""
     found = []
     for block in blocks:
         if block.language in ("", "text") and not block.marks:
@@ -98,7 +98,7 @@ def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
                                  f"{', '.join(f'<!-- {mark} -->' for mark in sorted(MARKS))} before it"))
         for mark, kind in (("output", float), ("exit", int)):
             if block.marks.get(mark) and not is_number(block.marks[mark], kind):
-                found.append(Problem(block.line, f"<!-- {mark}: {block.marks[mark]} --> (that is no number); give one, or none"))
+                found.append(Problem(block.line, f"<!-- {mark}: {block.marks[mark]} --> (not a number); give a number or omit it"))
         if "exit" in block.marks and not (block.runs and block.language in ("sh", "cpp")):
             found.append(Problem(block.line, "an exit code belongs to a program (```sh or ```cpp that is run here); take it away"))
         if "file" in block.marks and not is_used(block, blocks):
@@ -119,7 +119,7 @@ def is_number(text: str, kind: type) -> bool:
 
 
 def is_used(block: Block, blocks: list[Block]) -> bool:
-    """A case is checked by itself; anything else must be named by another block, CMakeLists.txt by a call of cmake."""
+    """A case is checked alone; any other file must be named by another block, CMakeLists.txt by a call of cmake."""
     if block.language == "toml":
         return True
     name = Path(block.marks["file"])
@@ -128,7 +128,7 @@ def is_used(block: Block, blocks: list[Block]) -> bool:
 
 
 def is_excerpt(excerpt: str, text: str) -> bool:
-    """Whether all lines stand in the text, in this order and without gaps but those marked by …, at any common indentation."""
+    """Whether all lines occur in the text, in order, without gaps except those marked by …, at any common indentation."""
     parts, lines, at = [[]], text.splitlines(), 0
     for line in textwrap.dedent(excerpt).strip("\n").splitlines():
         if re.fullmatch(r"\s*(//|#|--)?\s*…\s*", line):
@@ -149,7 +149,7 @@ def is_excerpt(excerpt: str, text: str) -> bool:
 
 
 def is_same_output(shown: str, printed: str, tolerance: float) -> bool:
-    """Whether an output is the one that the page shows, … standing for anything. Widths of columns do not count."""
+    """Whether an output agrees with that of the page, where … stands for any text. Column widths are ignored."""
     pieces, rest = [[]], tokens(printed)
     for token in tokens(shown):
         if token == "…":

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Builds the site: docs/build.py [--build build/release] [--work build/docs], pages in WORK/html.
 
-The pages of docs stay as GitHub shows them. A copy in WORK/source gets what belongs to the site only: reference pages from the
-program, a page for each room of the library from its headers, fresh pictures from the blocks that execute.py has run, tables of
-contents from the lists of docs/index.md, and links that lead to pages of the site or to copies of files.
+The pages of docs are written for GitHub. A copy in WORK/source adds the parts that only the site has: reference pages from the
+program, a page for each room of the library from its headers, new pictures from the blocks executed by execute.py, tables of
+contents from the lists of docs/index.md, and links to pages of the site or to copies of files.
 """
 import argparse
 import os
@@ -19,7 +19,7 @@ from reference import write_reference
 ROOT = Path(__file__).resolve().parents[1]
 KATEX = Path("/usr/share/javascript/katex")
 NORMALIZE = Path("/usr/share/javascript/normalize.css/normalize.css")
-# Pages that lie elsewhere in the repository, and folders that have a page.
+# Pages outside docs, and folders that have a page.
 PLACES = {"README.md": "overview.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
           "bench/README.md": "bench.md", "methods": "reference/methods.md", "cases": "reference/cases.md"}
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
@@ -32,7 +32,7 @@ def rooms() -> list[str]:
 
 
 class Site:
-    """Markdown pages in a folder of their own, their links turned to where things are on the site."""
+    """Markdown pages in a separate folder, with links converted to locations on the site."""
 
     def __init__(self, source: Path):
         self.source, self.problems = source, []
@@ -44,7 +44,7 @@ class Site:
         self.places |= {f"src/apsis/{room}{file}": f"api/{room}.md" for room in rooms() for file in ("", "/README.md")}
 
     def add(self, place: str, text: str, origin: str | None = None):
-        """A page; `origin` is the file of the repository that its links start from, if they do not start from the site."""
+        """Adds a page; `origin` is the file of the repository to which its links are relative, if it is not the site."""
         page = self.source / place
         page.parent.mkdir(parents=True, exist_ok=True)
         parts = re.split(r"(^ *```.*?^ *```|`[^`\n]+`)", text, flags=re.M | re.S)  # no links in code
@@ -52,7 +52,7 @@ class Site:
         page.write_text("".join(parts), encoding="utf-8")
 
     def link(self, target: str, place: str, origin: str) -> str:
-        """The link of a page of the repository, as one from its place on the site."""
+        """Converts a link of a page of the repository to one from its location on the site."""
         path, mark, anchor = target.partition("#")
         if re.match(r"[a-z]+:", target) or not path:
             return target
@@ -67,7 +67,7 @@ class Site:
             (self.source / to).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / file, self.source / to)
         if to is None:
-            self.problems.append(f"{origin}: there is no {target} (neither a page nor a file) mend the link")
+            self.problems.append(f"{origin}: there is no {target} (neither a page nor a file); correct the link")
             return target
         return os.path.relpath(to, os.path.dirname(place) or ".") + mark + anchor
 
@@ -93,7 +93,7 @@ def assemble(site: Site, program: Path, work: Path):
 
 
 def with_contents(text: str, site: Site, generated: dict[str, list[str]]) -> str:
-    """The front page, a table of contents for each of its sections: the pages that its list names, then the generated ones."""
+    """Returns the front page with a table of contents for each section: the pages of its list, then generated ones."""
     contents = {}
     for section in text.split("\n## ")[1:]:
         contents[section.splitlines()[0]] = [f"{title} <{site.link(target, 'index.md', 'docs/index.md')}>"
@@ -115,8 +115,8 @@ def add_interfaces(site: Site, headers: dict[str, Header]):
             text += headers[name].directives(name)
         site.add(f"api/{room}.md", text, f"src/apsis/{room}/README.md")
         listed += f"- [{room}]({room}.md): {about.split(chr(10), 1)[1].split('. ')[0].strip().rstrip('.')}.\n"
-    site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a row of rooms, each a library that is linked only to those "
-             f"before it. `find_package(apsis)` brings all as `apsis::apsis`, [components](../linking.md) bring less."
+    site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a sequence of rooms, each a library that links only those "
+             f"before it. `find_package(apsis)` provides all as `apsis::apsis`, [components](../linking.md) a part."
              f"\n\n{listed}\n```{{toctree}}\n:hidden:\n\n"
              + "\n".join(rooms()) + "\n```\n")
     site.add("python-api.md", "# Python interface\n\n```{eval-rst}\n.. automodule:: apsis\n   :members:\n   :undoc-members:\n"
@@ -124,8 +124,8 @@ def add_interfaces(site: Site, headers: dict[str, Header]):
 
 
 def mend_theme(static: Path):
-    """Debian's furo is as its sources are: its script is a module, which browsers load from servers only, and its style sheet
-    asks for one at a place of the machine."""
+    """Debian's furo is packaged as in its sources: its script is a module, which browsers load only from servers, and its style
+    sheet loads another one from a path of the machine."""
     scripts, sheet = static / "scripts", static / "styles" / "furo.css"
     script = (scripts / "furo.js").read_text(encoding="utf-8")
     needed = (scripts / "gumshoe-patched.js").read_text(encoding="utf-8")

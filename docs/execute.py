@@ -3,9 +3,9 @@
 
     docs/execute.py [PAGE…] [--build build/release] [--work build/docs] [--jobs N] [--update]
 
-Each page has a fresh folder WORK/run/PAGE in which its blocks are executed in their order: sh by bash, with `apsis` and `python3`
-as an installation has them; python in one interpreter; cpp compiled against the installed library. What the comments before the
-blocks mean is told in blocks.py. --update writes the outputs into the pages, and the pictures into docs/images.
+The blocks of a page are executed in order in a fresh folder WORK/run/PAGE: sh by bash, with `apsis` and `python3`
+as installed; python in one interpreter; cpp compiled against the installed library. blocks.py explains the comments before
+blocks. --update writes the outputs into the pages, and the pictures into docs/images.
 """
 import argparse
 import concurrent.futures
@@ -25,11 +25,10 @@ from blocks import Block, Problem, check_rules, is_excerpt, is_same_output, read
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("README.md", "CONTRIBUTING.md", "src/apsis/*/README.md", "docs/**/*.md")
-LIMIT = 900  # seconds of a block: some on an idle machine, many times as many on a busy one
-REPORTS = ("studies/report.py", "bench/report.py")  # draw pictures from results that took longer than a page may
+LIMIT = 900  # seconds per block, with a margin for loaded machines
+REPORTS = ("studies/report.py", "bench/report.py")  # draw pictures from results that take too long for a page
 
-# Runs the blocks that come on its standard input in one namespace, each with its output into a file, and answers with "ok" or the
-# traceback.
+# Executes blocks from standard input in one namespace, with the output of each in a file, and answers "ok" or the traceback.
 SESSION = """
 import json, os, sys, traceback
 requests, answers, names = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w"), {"__name__": "__main__"}
@@ -56,7 +55,7 @@ target_link_libraries(block PRIVATE apsis::apsis)
 
 
 class Tools:
-    """An installed copy of what BUILD has built, and the environment in which it is found."""
+    """An installed copy of BUILD, and the environment that finds it."""
 
     def __init__(self, build: Path, work: Path):
         self.work, installed, bin = work, work / "apsis", work / "bin"
@@ -72,7 +71,7 @@ class Tools:
         self.commands = ""
 
     def prepare_compiler(self):
-        """The commands that CMake makes of a project that uses the installed library; asked for once."""
+        """Obtains, once, the build commands of a CMake project that uses the installed library."""
         project = self.work / "consumer"
         project.mkdir(exist_ok=True)
         (project / "CMakeLists.txt").write_text(CONSUMER, encoding="utf-8")
@@ -81,7 +80,7 @@ class Tools:
         self.commands = quietly("ninja", "-C", project / "build", "-t", "commands", "block")
 
     def compile(self, source: Path, program: Path) -> list[str]:
-        """A command of the shell that makes the program."""
+        """Returns a shell command that builds the program."""
         lines = self.commands.replace(str(self.work / "consumer" / "block.cpp"), shlex.quote(str(source)))
         lines = re.sub(r"CMakeFiles/block.dir/block.cpp.o(\.d)?", lambda m: shlex.quote(f"{program}.o{m[1] or ''}"), lines)
         return ["bash", "-ec", re.sub(r"-o block ", f"-o {shlex.quote(str(program))} ", lines)]
@@ -95,7 +94,7 @@ def quietly(*command, **options) -> str:
 
 
 class Page:
-    """One page, and what its blocks have left."""
+    """One page and the results of its blocks."""
 
     def __init__(self, path: Path, root: Path, tools: Tools):
         self.path, self.root, self.tools = path, root, tools
@@ -154,7 +153,7 @@ class Page:
         name = block.marks["from"]
         file = next((f / name for f in (self.folder, self.root) if (f / name).is_file()), None)
         if file is None:
-            raise Problem(block.line, f"there is no {name} (in the repository or in the folder of the page); mend the path")
+            raise Problem(block.line, f"there is no {name} (in the repository or in the folder of the page); correct the path")
         if not is_excerpt(block.text, file.read_text(encoding="utf-8")):
             self.problems.append(Problem(block.line, f"the block is not in {name} (it may have changed); copy it again"))
 
@@ -211,7 +210,7 @@ class Page:
             raise Problem(block.line, f"the block fails (exit code {process.returncode}, not {wanted[0]})\n{indented(told)}")
 
     def check_pictures(self, reports: list[str]):
-        """A picture is kept in docs/images, where GitHub finds it, and drawn by a block of some page or by a report."""
+        """Checks that a picture is in docs/images, for GitHub, and drawn by a block of some page or by a report."""
         for name, line in self.pictures().items():
             if not (self.root / "docs" / "images" / name).is_file():
                 self.problems.append(Problem(line, f"docs/images has no {name} (nothing is shown); docs/execute.py --update"))

@@ -30,7 +30,7 @@ def main(folder: Path) -> int:
     with concurrent.futures.ThreadPoolExecutor(8) as pool:
         problems = {address: why for address, why in zip(pages, pool.map(problem_of, pages)) if why}
     for address, why in problems.items():
-        print(f"{pages[address]}: {address} ({why}) mend the link", file=sys.stderr)
+        print(f"{pages[address]}: {address} ({why}); correct the link", file=sys.stderr)
     print(f"{len(pages)} addresses, {len(problems)} with problems")
     return 1 if problems else 0
 

@@ -1,4 +1,4 @@
-"""Pages of reference from the program itself: methods, models, cases, keys, schemes, claims, commands."""
+"""Reference pages written from the program itself: methods, models, cases, keys, schemes, claims, commands."""
 import json
 import math
 import re
@@ -21,13 +21,13 @@ class Program:
 
 
 def plain(text: str) -> str:
-    """Text without meaning to Markdown; names of commands and keys in code."""
+    """Escapes text for Markdown; names of commands and keys become code."""
     text = re.sub(r"([\\`*_<>\[\]$|~])", r"\\\1", text)
     return re.sub(r"\((apsis [a-z-]+(?: [a-z]+)?)\)", r"(`\1`)", text)
 
 
 def prose(text: str) -> str:
-    """Paragraphs, and lines that are indented as they are."""
+    """Returns paragraphs, with indented lines as code."""
     parts = re.split(r"((?:^  .*\n?)+)", text, flags=re.M)
     return "".join(f"\n```text\n{textwrap.dedent(part).rstrip()}\n```\n" if part.startswith("  ") else plain(part)
                    for part in parts)
@@ -39,7 +39,7 @@ def table(columns: list[str], rows: list[list[str]]) -> str:
 
 
 def facts(pairs: dict[str, str]) -> str:
-    """A line for each fact that there is."""
+    """Returns a line for each nonempty fact."""
     return "".join(f"- {name}: {value}\n" for name, value in pairs.items() if value) + "\n"
 
 
@@ -63,8 +63,8 @@ def limit(m: dict) -> str:
 def methods(program: Program) -> str:
     all_methods = program.list("methods")
     text = ("# Methods\n\nAll methods of the catalogue, as `apsis list methods` certifies them. *r* is the SSP coefficient: a "
-            "step keeps what forward Euler keeps for Δt ≤ r Δt_FE, whatever ε is. n_F counts evaluations of the transport in a "
-            "step. What the columns mean is told in [methods](../methods.md) and [the study](../study.md).\n\n")
+            "step preserves what forward Euler preserves for Δt ≤ r Δt_FE, for every ε. n_F counts evaluations of the transport "
+            "per step. [Methods](../methods.md) and [the study](../study.md) define the columns.\n\n")
     for kind, title in (("imex", "With transport and collisions"), ("implicit", "Collisions alone"), ("explicit", "Explicit")):
         chosen = [m for m in all_methods if m["kind"] == kind]
         text += f"**{title}**\n\n" + table(
@@ -100,8 +100,8 @@ def method(program: Program, m: dict) -> str:
 
 
 def models(program: Program) -> str:
-    text = ("# Models\n\nThe equations of `apsis list models`; what they are and what is known of them is told in "
-            "[models](../models.md). Parameters stand in the table `[model]` of a case.\n\n")
+    text = ("# Models\n\nThe equations of `apsis list models`; [models](../models.md) explains "
+            "them. Parameters belong to the table `[model]` of a case.\n\n")
     for m in program.list("models"):
         text += f"## {m['name']}\n\n`{m['description']}`\n\n" + facts({
             "source": plain(m["source"]),
@@ -118,7 +118,7 @@ def models(program: Program) -> str:
 
 def cases(program: Program) -> str:
     all_cases = program.list("cases")
-    text = ("# Cases\n\nThe cases that are built in, from `apsis list cases`. `apsis run NAME` runs one, and `key=value` after "
+    text = ("# Cases\n\nThe built-in cases, from `apsis list cases`. `apsis run NAME` runs one, and `key=value` after "
             "the name changes a [key](keys.md).\n\n")
     text += table(["case", "what", "model", "method"],
                   [[f"[{c['name']}](#{c['name'].replace('/', '')})", plain(c["description"]),
@@ -152,15 +152,15 @@ def keys(program: Program) -> str:
 
 
 def schemes(program: Program) -> str:
-    return ("# Schemes in space\n\nReconstructions of values at cell edges, for `space.reconstruction`; what is done with them "
-            "is told in [space](../space.md).\n\n" + table(
+    return ("# Schemes in space\n\nReconstructions of values at cell edges, for `space.reconstruction`; [space](../space.md) explains "
+            "their use.\n\n" + table(
                 ["name", "order", "ghost cells", "what", "source"],
                 [[f"`{s['name']}`", s["order"], s["ghost_width"], plain(s["description"]), plain(s["source"])]
                  for s in program.list("schemes")]))
 
 
 def claims(program: Program) -> str:
-    return ("# Claims\n\nWhat the paper behind the methods states, and how `apsis reproduce` checks it; "
+    return ("# Claims\n\nClaims of the paper, and how `apsis reproduce` checks them; "
             "[verdicts](../claims.md).\n\n"
             + table(["", "statement", "section of the paper", "how it is checked"],
                     [[c["name"], plain(c["description"]), plain(c["section"]), plain(c["how"])] for c in program.list("claims")]))
@@ -183,7 +183,7 @@ PAGES = {"commands": commands, "keys": keys, "cases": cases, "methods": methods,
 
 
 def write_reference(program: Path, folder: Path) -> list[str]:
-    """One page for each list; their names in the order of PAGES."""
+    """Writes one page for each list; returns their names in the order of PAGES."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, page in PAGES.items():
         (folder / f"{name}.md").write_text(page(Program(program)), encoding="utf-8")

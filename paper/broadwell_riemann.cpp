@@ -49,8 +49,8 @@ broadwell_riemann::broadwell_riemann(state left, state right)
           "no Riemann problem for density {:g} and velocity {:g} (the limit system is hyperbolic for "
           "positive density and velocities below that of the particles); give rho > 0 and |m| < rho",
           given.rho, given.u));
-  // Towards u = −1 the density behind the slow wave exceeds that behind the fast one, towards u = 1 the
-  // reverse.
+  // Towards u = −1 the density behind the slow wave exceeds that behind the fast one; towards u = 1 the
+  // reverse holds.
   double low = -1.0, high = 1.0;
   for (int k = 0; k < 200 && low < high; ++k) {
     const double u = 0.5 * (low + high);

@@ -1,21 +1,22 @@
 #pragma once
 
 #include <apsis/method/certificate.hpp>
-#include <paper/claim.hpp>
 
 #include <string>
 #include <vector>
 
+#include <paper/claim.hpp>
+
 namespace apsis {
 
-/// What every method of the paper must show: its order from the generated conditions, with small residuals.
+/// Findings for every method of the paper: its order from the generated conditions, with small residuals.
 std::vector<finding> certificate_findings(const std::string& method, int order);
 
-/// The same, and the signs that make an implicit method SSP for every step.
+/// The same, and the sign conditions that make an implicit method SSP for every step.
 std::vector<finding> unconditional_findings(const std::string& method, int order);
 
-/// The same for an IMEX method that is SSP for steps up to r Δt_FE: r, re-derived from its Butcher form
-/// alone, is within `tolerance` of the paper's.
+/// The same for an IMEX method that is SSP for steps up to r Δt_FE: r, derived from its Butcher form alone,
+/// is within `tolerance` of the value in the paper.
 std::vector<finding> coefficient_findings(const std::string& method, int order, double r, double tolerance);
 
 /// Agreement with the Butcher form that the paper prints; for the methods of printed_butcher_form.

@@ -9,7 +9,7 @@
 
 namespace apsis {
 
-/// One measured figure and what it must be.
+/// One measured figure and its required value.
 struct finding {
   std::string what;       ///< "slope between dt = 1/512 and 1/1024, eps = 1"
   double value = 0.0;     ///< as measured
@@ -25,26 +25,26 @@ finding at_least(std::string what, double value, double bound);
 finding close_to(std::string what, double value, double target, double tolerance);
 /// value = wanted.
 finding exactly(std::string what, long value, long wanted);
-/// Something that is true or false; a figure of 1 or 0.
+/// A statement that is true or false; a figure of 1 or 0.
 finding is_true(std::string what, bool value);
 
-/// What came out of checking a claim.
+/// Result of checking a claim.
 struct claim_result {
   std::vector<finding> findings;     ///< short tables show the first, or the first that does not hold
   std::vector<report_table> tables;  ///< details, below the findings
   std::vector<picture> pictures;     ///< drawn by the report
   std::vector<std::string> remarks;  ///< corrections to the paper, deviations and their reasons
 
-  bool all_hold() const;  ///< and there is at least one finding
+  bool all_hold() const;  ///< whether all findings hold, and there is at least one
 };
 
 /// One claim of the paper: a file of paper/claims/ defines `extern const claim_entry claim_<file>`.
 struct claim_entry {
   std::string id;                               ///< "C7"
   std::string section;                          ///< of the paper
-  std::string statement;                        ///< what the paper says, or what is said of it
-  std::string how;                              ///< how it is shown
-  claim_result (*check)(const study_control&);  ///< computes all that is shown
+  std::string statement;                        ///< statement of the paper, or about the paper
+  std::string how;                              ///< how it is verified
+  claim_result (*check)(const study_control&);  ///< computes findings, tables and pictures
   bool slow = false;                            ///< more than about 20 s on two cores
 };
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <paper/claim.hpp>
-
 #include <string>
 #include <vector>
+
+#include <paper/claim.hpp>
 
 namespace apsis {
 
@@ -11,7 +11,7 @@ namespace apsis {
 std::vector<const claim_entry*> claim_entries();
 
 /// The claims with these ids, in the order of the registry; all of them for an empty list. Upper and lower
-/// case are the same. Throws input_error with the nearest id.
+/// case are equivalent. Throws input_error with the nearest id.
 std::vector<const claim_entry*> find_claims(const std::vector<std::string>& ids);
 
 }  // namespace apsis

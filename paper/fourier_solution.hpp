@@ -1,16 +1,16 @@
 #pragma once
 
-#include <paper/limit_equations.hpp>
-
 #include <functional>
 #include <span>
 #include <vector>
 
+#include <paper/limit_equations.hpp>
+
 namespace apsis {
 
-/// Solution of a limit system for smooth data on a periodic interval, as exact as double precision allows
-/// while it stays smooth: Fourier collocation in space (whose error falls faster than any power of 1/points),
-/// the classical Runge–Kutta method in time. Shares nothing with the schemes it is compared with.
+/// Solution of a limit system for smooth data on a periodic interval, to double precision as long as it is
+/// smooth: Fourier collocation in space (whose error decreases faster than any power of 1/points), the
+/// classical Runge–Kutta method in time. Independent of the schemes that are compared with it.
 class fourier_solution {
  public:
   /// From ω(x) = initial(x, ω) on [a, b] to t = end with `points` (odd) collocation points and `steps` steps.
@@ -22,7 +22,7 @@ class fourier_solution {
   double value(int k, double x) const { return average(k, x, 0.0); }
   /// The average of ω_k over [x − h/2, x + h/2]; the value at x for h = 0.
   double average(int k, double x, double h) const;
-  /// Size of the highest Fourier modes relative to the largest: how well the points resolve the solution.
+  /// Size of the highest Fourier modes relative to the largest: a measure of the resolution.
   double resolution() const;
 
  private:
@@ -36,7 +36,7 @@ class fourier_solution {
   limit_equations system_;
   double a_, length_;
   int points_, unknowns_;
-  std::vector<double> derivative_;     ///< of the distance of two points, points_ of them
+  std::vector<double> derivative_;     ///< by the distance of two points, points_ entries
   std::vector<double> cosine_, sine_;  ///< [mode][unknown]
 };
 

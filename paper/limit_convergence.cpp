@@ -1,13 +1,13 @@
 #include <paper/limit_convergence.hpp>
 
 #include <apsis/method/certificate.hpp>
-#include <paper/limit_solution.hpp>
 
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
+#include <paper/limit_solution.hpp>
 
 namespace apsis {
 namespace {
@@ -64,7 +64,7 @@ std::vector<convergence_series> all_series(const std::vector<smooth_problem>& pr
   return series;
 }
 
-/// The largest runs first, so that no thread is left with one at the end.
+/// The largest runs first for load balance.
 void run_series(const std::vector<smooth_problem>& problems, std::vector<convergence_series>& series,
                 const study_control& control) {
   std::vector<fourier_solution> exact;
@@ -110,9 +110,9 @@ void add_limit_convergence(const std::string& id, const study_control& control, 
       id + "-convergence",
       "Runs with ε = 0 converge to the limit systems",
       "Relative L2 error of the moments against solutions of the limit systems by Fourier collocation, which "
-      "knows nothing of kinetic schemes. Solid: finite volumes; dashed, hardly to be told from them: finite "
-      "differences. The second-order method falls with slope 2, the third-order method faster than 3 until "
-      "the fifth-order space error is the smaller one.",
+      "is independent of kinetic schemes. Solid: finite volumes; dashed, nearly indistinguishable: finite "
+      "differences. The second-order method has slope 2, the third-order method a slope above 3 until the "
+      "fifth-order spatial error is the smaller one.",
       {}};
   for (const auto& p : problems)
     drawing.panels.push_back({p.title,
@@ -154,8 +154,8 @@ void add_riemann_problems(const std::string& id, const study_control& control, c
   });
   picture drawing{id + "-riemann",
                   "Broadwell model, Riemann problems with ε = 0",
-                  "Density and momentum on 200 cells (markers) beside the exact solution of the limit system "
-                  "(black). The shocks stand where they should and take a handful of cells.",
+                  "Density and momentum on 200 cells (markers) and the exact solution of the limit system "
+                  "(black). The shocks have the correct positions and extend over a handful of cells.",
                   {}};
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const auto& run = runs[k][1];
@@ -166,8 +166,8 @@ void add_riemann_problems(const std::string& id, const study_control& control, c
     curves.push_back({"m", run.x, run.m, curve_style::markers, 1});
     curves.push_back({"exact", run.x, run.rho_exact, curve_style::line, -2});
     curves.push_back({"", run.x, run.m_exact, curve_style::line, -2});
-    // First order at a jump; where a shock stands inside its cell makes single halvings vary, so two
-    // together.
+    // First order at a jump; single halvings vary with the position of the shock inside its cell, so two
+    // are combined.
     result.findings.push_back(
         at_least(fmt::format("Riemann problem, {}: order in L1 from {} to {} cells, ε = 0", titles[k],
                              cells[2], cells[0]),

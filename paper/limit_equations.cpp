@@ -19,7 +19,7 @@ limit_equations broadwell() {
           {}};
 }
 
-/// u_t + F(u)_x = 0; nothing for a flux that is given as a formula, which says itself what it is.
+/// The equation u_t + F(u)_x = 0; empty for a flux given as a formula, which is its own description.
 std::optional<limit_equations> conservation_law(const case_config& config) {
   const std::string& flux = config.model.texts.at("flux");
   if (flux == "burgers")

@@ -8,14 +8,14 @@
 
 namespace apsis {
 
-/// A limit system written out by hand, ω_t + F(ω)_x = S(ω), as the paper does it in its summary of the
-/// models: independent of moments, equilibrium and transport of the model.
+/// A limit system written out by hand, ω_t + F(ω)_x = S(ω), as in the paper's summary of the models:
+/// independent of moments, equilibrium and transport of the model.
 struct limit_equations {
   std::string name;  ///< "compressible Euler equations"
   int unknowns = 0;  ///< numbers in ω
   /// F(ω); empty without space.
   std::function<void(const double* omega, double* flux)> flux;
-  /// S(ω); empty if there is none.
+  /// S(ω); empty if there is no source.
   std::function<void(const double* omega, double* source)> source;
 };
 

@@ -1,24 +1,24 @@
 #pragma once
 
+#include <vector>
+
 #include <paper/broadwell_riemann.hpp>
 #include <paper/claim.hpp>
 #include <paper/fourier_solution.hpp>
 
-#include <vector>
-
 namespace apsis {
 
 /// The solution of the written-out limit system (limit_equations) for the initial data of a case, at its end;
-/// the data must be smooth, and stay so until then. Throws input_error for a model whose limit is not
-/// written.
+/// the data must be smooth, and stay so until then. Throws input_error for a model whose limit is
+/// not written.
 fourier_solution limit_solution(const case_config& config, int points = 129, int steps = 1000);
 
-/// Relative L2 distance of ω from that solution (averages or point values, as the case has them) after a run
-/// of the production code with ε = 0. The mean over ω is taken componentwise and added up.
+/// Relative L2 distance of ω from that solution (averages or point values, as in the case) after a run of the
+/// production code with ε = 0: the sum of the componentwise means over ω.
 double distance_from_limit_solution(const case_config& config, const fourier_solution& solution,
                                     const study_control& control = {});
 
-/// A run of a Riemann problem of the Broadwell model with ε = 0 beside the exact solution of the limit.
+/// A run of a Riemann problem of the Broadwell model with ε = 0 and the exact solution of the limit.
 struct riemann_comparison {
   std::vector<double> x,          ///< cell centres
       rho,                        ///< density of every cell
@@ -28,8 +28,8 @@ struct riemann_comparison {
   double error = 0.0;             ///< L1 norm of both differences, over the L1 norm of both exact
 };
 
-/// The states are those at the ends of the domain, the jump is where the initial data have it. Throws
-/// input_error for another model, or data that do not have one jump.
+/// The states are those at the ends of the domain, the jump is that of the initial data. Throws input_error
+/// for another model, or data without exactly one jump.
 riemann_comparison compare_with_riemann_solution(const case_config& config,
                                                  const study_control& control = {});
 

@@ -26,10 +26,10 @@ auto ode_problem(Real epsilon) {
 /// Initial data of the ODE model.
 enum class ode_data {
   inconsistent,  ///< u = (2, 0), far from equilibrium (the paper's)
-  consistent     ///< u2 = E − ε E′E/C with E = sin 2, C = 5: the slow manifold but for O(ε²)
+  consistent     ///< u2 = E − ε E′E/C with E = sin 2, C = 5: the slow manifold up to O(ε²)
 };
 
-/// u(0) of these data.
+/// Initial value u(0) of these data.
 template <class Real>
 ode_state<Real> ode_initial(ode_data data, Real epsilon) {
   if (data == ode_data::inconsistent) return {2, 0};

@@ -21,17 +21,17 @@ void add_order_maps(const std::string& id, const study_control& control, claim_r
                      {"model", "method", "design order", "reduced", "plateau", "not measurable"},
                      {}};
   for (const auto& model : relaxation_model_names()) {
-    // First-order upwinding is linear; weights of WENO that switch where data are flat cost order in time.
+    // First-order upwinding is linear; WENO weights that switch where data are flat reduce the order in time.
     std::vector<std::string> overrides = {"time.end=1"};
     if (model != "ode") overrides = {"space.reconstruction=upwind1"};
-    if (model == "bgk") overrides.emplace_back("velocity.points=36");  // enough for a test of time steps
+    if (model == "bgk") overrides.emplace_back("velocity.points=36");  // sufficient for a test of time steps
     const auto maps = measure_order_maps(small_case(model, overrides), methods, epsilons, 3, 10, control);
     picture p{fmt::format("{}-order-{}", id, model),
               "Observed order, " + model,
               "Observed order between Δt and Δt/2 from data out of equilibrium. Top: ε ≫ Δt; bottom: the "
-              "limit. Between, the paper's methods have plateaus proportional to ε. For md-imex-5-2 and "
-              "md-imex-8-3 low orders mark the rise of errors ε²/Δt towards Δt = ε; beyond, for ε ≪ Δt, the "
-              "order holds. Empty: less than the reference can tell.",
+              "limit. In between, the paper's methods have plateaus proportional to ε. For md-imex-5-2 and "
+              "md-imex-8-3 low orders mark the growth of errors ε²/Δt towards Δt = ε; for ε ≪ Δt the order "
+              "holds. Empty: below the accuracy of the reference.",
               {}};
     for (const auto& m : maps) {
       p.panels.push_back(m.map());
@@ -44,7 +44,7 @@ void add_order_maps(const std::string& id, const study_control& control, claim_r
       const std::string name = model + ", " + m.method;
       result.findings.push_back(
           close_to(name + ": order at eps = 1, smallest steps", m.fine_slope(0), m.order, 0.15));
-      // Down to where the plateau, up to ε itself, takes over.
+      // Down to the plateau, which is at most ε.
       const std::size_t last = m.epsilon.size() - 1;
       result.findings.push_back(close_to(name + ": order at eps = 1e-8 above the plateau",
                                          m.coarse_slope(last, 3 * m.epsilon[last]), m.order, 0.25));

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <paper/claim.hpp>
-
 #include <string>
+
+#include <paper/claim.hpp>
 
 namespace apsis {
 

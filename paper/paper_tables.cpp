@@ -41,7 +41,7 @@ struct abscissae {
   numbers e, c, c_hat, c_dot, b, b_hat, b_dot;
 };
 
-/// Entries of column a_4j = a_5j, … of the fourth-order method: each value stands in several rows.
+/// Entries of column a_4j = a_5j, … of the fourth-order method: each value occurs in several rows.
 std::vector<printed_entry> fourth_order_entries(const std::array<double, 9>& x) {
   const auto& [x11, x41, x22, x32, x42, x33, x43, x44, x55] = x;
   return {{1, 1, x11}, {2, 1, x11}, {3, 1, x11}, {4, 1, x41}, {5, 1, x41},

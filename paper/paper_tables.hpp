@@ -22,7 +22,7 @@ std::vector<printed_condition> printed_implicit_conditions(const butcher_form<do
 /// The table of multi-derivative IMEX methods up to order 3 (paper, section "Formulating order conditions").
 std::vector<printed_condition> printed_imex_conditions(const butcher_form<double>& t);
 
-/// An entry of a matrix, counted from 1 as the page does.
+/// An entry of a matrix, counted from 1 as in the paper.
 struct printed_entry {
   std::size_t row,  ///< counted from 1
       column;       ///< counted from 1
@@ -32,18 +32,18 @@ struct printed_entry {
 /// The Butcher matrices that the paper prints for one of its methods; entries that are not listed are 0.
 struct printed_tableau {
   std::string method;                ///< its name in the catalogue
-  std::vector<printed_entry> A_hat,  ///< entries of Â; none for implicit methods
+  std::vector<printed_entry> A_hat,  ///< entries of Â; empty for implicit methods
       A,                             ///< entries of A
       A_dot;                         ///< entries of Ȧ
 };
 
-/// Of imdrk-2-3, imdrk-5-4 (with the swapped indices of the page put right), md-imex-3-2, md-imex-6-3.
+/// Of imdrk-2-3, imdrk-5-4 (with corrected indices), md-imex-3-2, md-imex-6-3.
 const printed_tableau& printed_butcher_form(const std::string& method);
 
 /// Largest distance of an entry of the method's Butcher form from the printed one.
 double distance_to_print(const std::string& method);
 
-/// A tableau with no structure but its triangles, entries in (−1, 1); the same on every machine.
+/// A strictly lower triangular tableau with random entries in (−1, 1); the same on every machine.
 butcher_form<double> random_tableau(std::size_t stages, std::uint64_t seed);
 
 }  // namespace apsis

@@ -1,8 +1,7 @@
-// What add_plateau_study() adds to a claim: tables, findings and pictures of measure_regimes() and its
-// fellows.
+// Tables, findings and pictures that add_plateau_study() adds to a claim, from measure_regimes() and
+// related functions.
 #include <apsis/core/errors.hpp>
 #include <apsis/core/extremes.hpp>
-#include <paper/plateau_study.hpp>
 #include <apsis/verify/time_study.hpp>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <paper/plateau_study.hpp>
 
 namespace apsis {
 namespace {
@@ -65,7 +65,7 @@ void add_regimes(const study_control& control, claim_result& result) {
     row("last", of_method.last, &measured_regime::last);
     row("layer", of_method.layer, &measured_regime::layer);
   }
-  // Left are terms ε/Δt = 1e-3 and Δt².
+  // The remaining terms are ε/Δt = 1e-3 and Δt².
   result.findings.push_back(at_most(
       "flux, last, layer: largest |measured − predicted|/(1 + |predicted|), all models", largest, 0.02));
   result.tables.push_back(std::move(table));
@@ -88,7 +88,7 @@ void add_constants(claim_result& result) {
       }
       table.rows.push_back(std::move(row));
     }
-  // The constants are up to 0.2; left are terms Δt² = 1e-6 and ε/Δt = 1e-6.
+  // The constants are up to 0.2; the remaining terms are Δt² = 1e-6 and ε/Δt = 1e-6.
   result.findings.push_back(
       at_most("ODE model: largest |predicted − measured| error/eps on a plateau", largest, 2e-5));
   result.tables.push_back(std::move(table));
@@ -116,9 +116,9 @@ void add_starts(const std::string& id, const study_control& control, claim_resul
       id + "-starts",
       fmt::format("ODE model at ε = {:g}: three starts", epsilon),
       "Plateaus have two causes. md-imex-3-2 stalls from all three starts: it has no flux of size ε. "
-      "md-imex-4-2 keeps that flux, and stalls only where the layer of inconsistent data is not resolved. "
+      "md-imex-4-2 retains that flux, and stalls only if the layer of inconsistent data is not resolved. "
       "md-imex-6-3 has both errors. md-imex-5-2 and md-imex-8-3 have neither and stay far below ε from every "
-      "start; what is left are errors ε²/Δt, which rise towards Δt = ε. Dashed: the plateaus that the "
+      "start; the remaining errors are ε²/Δt, which grow towards Δt = ε. Dashed: the plateaus that the "
       "coefficients predict for inconsistent and for consistent data.",
       {}};
   std::vector<std::vector<std::vector<double>>> errors(
@@ -179,7 +179,7 @@ void add_plateau_study(const std::string& id, const study_control& control, clai
   add_starts(id, control, result);
   result.remarks.emplace_back(
       "The plateaus, which the paper leaves open, follow from the coefficients: docs/plateaus.md derives the "
-      "constants, the tables compare them with what runs show, and md-imex-5-2 and md-imex-8-3 have none.");
+      "constants, the tables compare them with runs, and md-imex-5-2 and md-imex-8-3 have no plateaus.");
 }
 
 }  // namespace apsis

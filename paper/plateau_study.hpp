@@ -2,25 +2,26 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/method/intermediate_regime.hpp>
-#include <paper/claim.hpp>
-#include <paper/ode_study.hpp>
 
 #include <string>
 #include <vector>
 
+#include <paper/claim.hpp>
+#include <paper/ode_study.hpp>
+
 namespace apsis {
 
-/// The terms of size ε that a method shows on a case (docs/plateaus.md), each as a multiple of what the exact
-/// solution shows, with ε = 1e-6: two runs with steps Δt and Δt/2 are extrapolated to Δt → 0.
+/// The terms of size ε of a method on a case (docs/plateaus.md), each relative to that of the exact solution,
+/// with ε = 1e-6: two runs with steps Δt and Δt/2 are extrapolated to Δt → 0.
 struct measured_regime {
   double flux,  ///< of the term of size ε in ω at the end, data at equilibrium
       last,     ///< of the deviation E(ℛu) − u at the end, data at equilibrium
-      layer;    ///< of what the initial layer of the data as given adds to ω
+      layer;    ///< of the effect of the initial layer of the data as given on ω
 };
 
-/// For each method, from its difference between ε and ε = 0, which frees it of errors Δt^p, projected on the
-/// same difference of exact solutions; `layer` from data as given against the same data at equilibrium.
-/// Throws what time_study throws.
+/// For each method, from its difference between ε and ε = 0, which contains no errors Δt^p, projected on the
+/// same difference of exact solutions; `layer` from data as given relative to the same data at equilibrium.
+/// Throws the errors of time_study.
 std::vector<measured_regime> measure_regimes(const case_config& config,
                                              const std::vector<std::string>& methods, long steps,
                                              const study_control& control = {});
@@ -31,10 +32,11 @@ std::vector<measured_regime> measure_regimes(const case_config& config,
 ///   e2 = E′(u) e1 + (1 − last) E′(u) E(u)/C(u),   u the limit solution at t = 1.
 std::array<double, 2> predicted_ode_plateau(const intermediate_regime<double>& regime, ode_data data);
 
-/// The same as measured: error of the part of size ε with ε = 1e-9, in long double, extrapolated to Δt → 0.
+/// The measured counterpart: error of the part of size ε with ε = 1e-9, in long double, extrapolated to Δt
+/// → 0.
 std::array<double, 2> measured_ode_plateau(const method& m, ode_data data);
 
-/// Findings, tables and pictures that show what causes the plateaus, and that the coefficients predict them.
+/// Findings, tables and pictures on the causes of the plateaus and their prediction by the coefficients.
 void add_plateau_study(const std::string& id, const study_control& control, claim_result& result);
 
 }  // namespace apsis

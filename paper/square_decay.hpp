@@ -17,23 +17,23 @@ std::vector<std::string> unconditional_methods();
 /// u' = −10u², u(0) = 10 (paper, numerical tests of the implicit methods), dimensionless.
 struct decay_run {
   std::vector<double> t,   ///< times of u
-      u;                   ///< all steps until a stage equation has no root, the initial state included
+      u;                   ///< all steps until a stage equation has no root, including the initial state
   bool solvable = true;    ///< every stage equation has a root
   bool positive = true;    ///< every stage and every step is > 0
   bool decreasing = true;  ///< u^{n+1} < u^n at every step
 
-  /// As the exact solution: it exists, is positive and falls.
+  /// Whether the run behaves like the exact solution: it exists, is positive and decreases.
   bool qualitatively_right() const { return solvable && positive && decreasing; }
 };
 
 /// `steps` steps of length dt by the method, through the production stepper; a stage is solved by Newton's
-/// method and may come out negative.
+/// method and may be negative.
 decay_run square_decay(const std::string& method, double dt, int steps);
 
 /// The exact solution 1/(1/10 + 10 t).
 double square_decay_exact(double t);
 
-/// |u(2) − 1/20.1| after `steps` equal steps in long double, where orders above three need it.
+/// |u(2) − 1/20.1| after `steps` equal steps in long double, which orders above three require.
 double square_decay_error(const std::string& method, long steps);
 
 }  // namespace apsis

@@ -19,9 +19,9 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def flags_of(command: str) -> list[str]:
-    """Compiler and flags, without the launcher, what is compiled and what is made of it."""
+    """Returns compiler and flags without the launcher, the source and the output."""
     words = shlex.split(command)
-    if Path(words[0]).name == "ccache":  # has no use for a compilation without output
+    if Path(words[0]).name == "ccache":  # useless for a compilation without output
         words = words[1:]
     flags, skip = words[:1], 0
     for k, word in enumerate(words[1:], 1):
@@ -47,7 +47,7 @@ def problem_of(header: Path, command: list[str]) -> str:
 
 
 def problems(build: Path, folders: list[Path], jobs: int) -> tuple[int, list[str]]:
-    """The number of headers, and what is wrong with them."""
+    """Returns the number of headers and their problems."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     commands = {Path(entry["file"]): entry["command"] for entry in entries}
     sources = [file for file in commands if file.is_relative_to(ROOT) and not file.is_relative_to(build)]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""check_layers.py [ROOT]: includes that reach up from one room to another.
+"""check_layers.py [ROOT]: includes of a room above the including one.
 
 The rooms, and what each may include, are those of the apsis_room() calls in src/apsis/CMakeLists.txt. Above the library
 lie paper/, app/, python/bindings/, tests/, bench/ and examples/, which it may not include. The README of a room has to

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# install-packages.sh GROUP: makes sure that the Debian packages of a group of packages.txt are there.
-# Does nothing, and asks for nothing, when they are; never removes a package.
+# install-packages.sh GROUP: installs missing Debian packages of a group of packages.txt.
+# Does nothing, and asks for nothing, if all are installed; never removes a package.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 

@@ -20,8 +20,8 @@
 namespace apsis::app {
 namespace {
 
-// Parsed but not certified: a method whose claims fail is reported on, not refused. A changed copy of a
-// catalogue file keeps its name while it is worked on; a run refuses it.
+// Parses without certifying: a method whose claims fail is reported, not rejected. A modified copy of a
+// catalogue file may retain its name here; a run rejects it.
 method read_method(const std::string& path) {
   method m = parse_method(read_method_text(path), path);
   if (const auto problem = taken_name(m); !problem.empty()) log::warning(path + ": " + problem);
@@ -39,7 +39,7 @@ std::string limit_text(const step_limit& limit) {
 }
 
 std::string observed_text(const std::vector<observed_limit>& all) {
-  std::string text = fmt::format("{:<86}{:>8}   {}\n", "largest steps that were seen to keep a property",
+  std::string text = fmt::format("{:<86}{:>8}   {}\n", "largest observed steps that preserve a property",
                                  "dt/dt_FE", "worst");
   for (const auto& one : all)
     text += fmt::format("  {:<84}{:>8}   {}\n", one.problem + ": " + one.property, limit_text(one.limit),
@@ -93,8 +93,9 @@ action define(CLI::App& command) {
   auto given = std::make_shared<options>();
   command.add_option("METHOD", given->what, "a method of the catalogue or a method file")->required();
   command.add_flag("--json", given->json, "print one JSON object");
-  command.add_flag("--observe", given->observe,
-                   "also look for the largest steps that keep positivity, total variation, entropy, ...");
+  command.add_flag(
+      "--observe", given->observe,
+      "also search for the largest steps that preserve positivity, total variation, entropy, ...");
   return [given] { return check(*given); };
 }
 

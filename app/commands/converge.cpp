@@ -75,14 +75,14 @@ void write_results(result_folder& folder, const options& given, const convergenc
   try {
     draw("plot", {folder.path().string(), "--out", folder.path().string()});
   } catch (const io_error& problem) {
-    // The numbers are there, and the picture can be drawn from picture.json at any time.
+    // The numbers exist, and the picture can be drawn from picture.json at any time.
     log::warning(problem.what());
   } catch (const interruption&) {
-    return;  // so can it after an interrupt
+    return;  // also after an interrupt
   }
 }
 
-/// False if it was interrupted.
+/// Returns false if it was interrupted.
 bool run_all_of(convergence& study) {
   progress_bar bar;
   study_control control;
@@ -97,7 +97,7 @@ bool run_all_of(convergence& study) {
 }
 
 int converge(const options& given) {
-  watch_for_interrupts("the step under way of every run; finished runs are kept");
+  watch_for_interrupts("the current step of every run; finished runs are retained");
   set_threads(given.threads.value_or(default_threads()));
   convergence study(study_of(given));
   std::optional<result_folder> folder;
@@ -117,21 +117,21 @@ int converge(const options& given) {
   }
   if (const long failed = table.failures(); failed > 0)
     throw numerical_error(
-        fmt::format("{} run(s) have no error (they or their references failed, the others are good); see the "
-                    "messages in the table",
+        fmt::format("{} run(s) have no error (they or their references failed, the others are valid); see "
+                    "the messages in the table",
                     failed));
   return 0;
 }
 
 constexpr const char* description =
-    "Runs a case on a grid of values of its keys and measures errors and their rates.\n\n"
+    "Runs a case on a grid of values of its keys and measures errors and rates.\n\n"
     "  apsis converge paper/decay --vary time.method=imdrk-1-2,imdrk-2-3 --vary time.dt=1/16..1/1024\n"
     "  apsis converge paper/bgk-accuracy --vary model.epsilon=1,1e-6 --vary space.cells=20,40,80\n"
     "  apsis converge paper/ode --vary time.dt=1/16..1/1024 --reference md-imex-6-3@1e-5 --norm l1\n\n"
-    "Refined is the last varied key of space.cells, time.dt, time.cfl, time.safety and velocity.points, or, "
-    "where none of them is varied, the last key with positive numbers. The others make blocks, whose rows go "
-    "from coarse to fine. The rate is the slope of the error against the cell length, the step, or that "
-    "number. A run that fails leaves a message in its row, and the exit code is 3.";
+    "The refined key is the last varied one of space.cells, time.dt, time.cfl, time.safety and "
+    "velocity.points, or, if none of them is varied, the last key with positive numbers. The other keys form "
+    "blocks, whose rows go from coarse to fine. The rate is the slope of the error against the cell length, "
+    "the step, or that number. A failed run leaves a message in its row, and the exit code is 3.";
 
 action define(CLI::App& command) {
   auto given = std::make_shared<options>();
@@ -139,26 +139,25 @@ action define(CLI::App& command) {
   command
       .add_option("CASE", given->case_name, "a case file, or the name of a built-in case (apsis list cases)")
       ->required();
-  command.add_option("key=value", given->overrides, "keys of the case that take another value in every run");
+  command.add_option("key=value", given->overrides, "override key=value for every run");
   command
       .add_option("--vary", given->vary,
-                  "key=v1,v2,...: a key and its values, 20..160 stands for 20,40,80,160; all combinations "
-                  "of several --vary are run")
+                  "key=v1,v2,...: a key and its values, 20..160 stands for 20,40,80,160; several --vary run "
+                  "all combinations")
       ->required()
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option(
-      "--reference", given->reference,
-      "what errors are measured against: exact (if the model knows it; then the default), next (the next "
-      "finer run; else the default), time (1/8 of the smallest step), space+time (three times the cells, a "
-      "third of the step), METHOD@STEP, or key=value,... for a run with these keys");
+  command.add_option("--reference", given->reference,
+                     "reference of the errors: exact (default if the model has it), next (the next finer "
+                     "run; default otherwise), time (1/8 of the smallest step), space+time (three times the "
+                     "cells, a third of the step), METHOD@STEP, or key=value,... for a run with these keys");
   command.add_option("--norm", given->norm, "l1, l2 or linf")->capture_default_str();
   command.add_option("--quantity", given->quantity,
-                     "a macroscopic field, such as rho, to compare instead of the full state");
+                     "compare a macroscopic field, such as rho, instead of the full state");
   command.add_option("--out", given->out,
                      "folder for converge.csv, converge.json, and the plot as picture.json and converge.png");
-  command.add_flag("--json", given->json, "print a JSON array with one object per run, and nothing else");
-  add_threads(command, given->threads, "runs at the same time", "all processors");
+  command.add_flag("--json", given->json, "print only a JSON array with one object per run");
+  add_threads(command, given->threads, "number of simultaneous runs", "all processors");
   return [given] { return converge(*given); };
 }
 

@@ -88,7 +88,7 @@ design_task task_of(const options& given) {
   require(d.least_r > 0.0 && d.least_r < d.largest_r, "--ssp", fmt::format("{}", d.least_r),
           fmt::format("positive, below {}", d.largest_r));
   require(given.sparsify >= 0.0 && given.sparsify < 1.0, "--sparsify", fmt::format("{}", given.sparsify),
-          "from 0 to 1: the part of the objective that may be lost");
+          "from 0 to 1: the admissible loss of the objective");
   design_task task;
   task.kind = given.implicit ? method_kind::implicit_only : method_kind::imex;
   task.stages = static_cast<std::size_t>(stages);
@@ -120,14 +120,14 @@ design_task task_of(const options& given) {
   }
   if (!given.implicit) {
     require(stages >= 2, "--stages", std::to_string(stages),
-            "an IMEX method needs 2; --implicit gives one without transport");
+            "an IMEX method needs 2; use --implicit for a method without transport");
     return task;
   }
   if (given.evaluations > 0 || given.regime != "none")
     throw input_error(
-        "command line: --evaluations and --regime are of no meaning with --implicit (there is no transport); "
-        "leave them out");
-  // Without transport there is no r.
+        "command line: --evaluations and --regime cannot be combined with --implicit (there is no "
+        "transport); leave them out");
+  // Without transport r is undefined.
   task.objective = design_objective::smallest_error;
   return task;
 }
@@ -155,8 +155,8 @@ json summary(const design_task& task, const options& given, const design_progres
       {"found", found.best.has_value()}};
 }
 
-/// Takes stages out of the method to begin with until it has as many as asked for, and writes each method on
-/// the way; false if it was stopped before.
+/// Removes stages from the initial method until it has the requested number, and writes each method on the
+/// way; returns false if it was stopped before.
 bool take_stages_out(design_task& task, method_writer& file, const std::function<bool()>& stop) {
   while (task.from && task.from->stages() > task.stages) {
     const std::size_t stages = task.from->stages();
@@ -168,8 +168,8 @@ bool take_stages_out(design_task& task, method_writer& file, const std::function
     if (stop()) return false;
     if (!smaller)
       throw numerical_error(
-          fmt::format("no stage of {} can be left out (least sum of weights {:.2g}); try another "
-                      "method to begin with, a larger box or a smaller --ssp",
+          fmt::format("no stage of {} can be removed (least sum of weights {:.2g}); try another initial "
+                      "method, a larger box or a smaller --ssp",
                       stages, least));
     task.from = std::move(smaller);
     design_task on_the_way = task;
@@ -185,7 +185,7 @@ int design(const options& given) {
     return design_embedded({given.embedded, given.order, given.cost, given.out, given.json});
   design_task task = task_of(given);
   method_writer file(given.out);
-  watch_for_interrupts("the iteration under way; the best method so far stays in its file");
+  watch_for_interrupts("the current iteration; the best method so far remains in its file");
   set_threads(given.threads.value_or(default_threads()));
   const auto begin = clock::now();
   const auto elapsed = [&begin] { return std::chrono::duration<double>(clock::now() - begin).count(); };
@@ -193,7 +193,7 @@ int design(const options& given) {
   if (!take_stages_out(task, file, stop)) {
     if (interrupted()) return static_cast<int>(exit_code::interrupted);
     throw numerical_error(
-        fmt::format("a method of {} stages is left (the time of {:.0f} s is over); give more --time",
+        fmt::format("a method of {} stages remains (the time of {:.0f} s is over); give more --time",
                     task.from->stages(), elapsed()));
   }
   progress_bar bar;
@@ -234,9 +234,8 @@ int design(const options& given) {
                       check_text(polished)));
   }
   if (!result["method"]["claims_hold"].get<bool>())
-    throw claim_error(
-        fmt::format("the method in '{}' does not hold what was asked for ({}); try another seed", file.path(),
-                    first_failure(polished)));
+    throw claim_error(fmt::format("the method in '{}' does not meet the demands ({}); try another seed",
+                                  file.path(), first_failure(polished)));
   return 0;
 }
 
@@ -245,32 +244,28 @@ action define(CLI::App& command) {
   auto& d = given->demands;
   command.add_option("--order", given->order,
                      "order of accuracy (with --embedded: of the embedded solution)");
-  command.add_option("--stages", given->stages, "stages; the last one is the result");
+  command.add_option("--stages", given->stages, "number of stages; the last one is the result");
   command.add_flag("--implicit", given->implicit, "a method without transport, u' = Q(u)");
   command.add_option("--evaluations", given->evaluations,
-                     "transport evaluations in a step (any number if not given)");
+                     "transport evaluations per step (any number if not given)");
   command.add_option("--box", d.box, "largest d and |ddot|")->capture_default_str();
   command.add_option("--margin", d.margin, "least d + |ddot| of a stage")->capture_default_str();
-  command
-      .add_option("--objective", given->objective,
-                  "r, r/n_F, error or band: what the method is to be best in")
+  command.add_option("--objective", given->objective, "objective to optimize: r, r/n_F, error or band")
       ->capture_default_str();
   command.add_option("--ssp", d.least_r, "least SSP coefficient r")->capture_default_str();
-  command.add_option(
-      "--from", given->from,
-      "a method (name or FILE.toml) to improve instead of random starts; stages above --stages are taken "
-      "out, evaluations up to --evaluations are added");
+  command.add_option("--from", given->from,
+                     "a method (name or FILE.toml) to improve instead of random starts; stages above "
+                     "--stages are removed, evaluations up to --evaluations are added");
   command
-      .add_option("--regime", given->regime, "terms of size epsilon that are to be exact: none, slow or all")
+      .add_option("--regime", given->regime, "terms of size epsilon required to be exact: none, slow or all")
       ->capture_default_str();
   command.add_option("--angle", d.least_angle, "least angle of A(alpha)-stability, degrees");
-  command.add_option("--pole", d.least_pole, "least distance of poles on the imaginary axis from zero");
-  command.add_option("--buffers", d.most_buffers, "most state-sized buffers");
-  command.add_option("--sparsify", given->sparsify, "part of the objective to give for fewer coefficients");
+  command.add_option("--pole", d.least_pole, "least distance from zero of poles on the imaginary axis");
+  command.add_option("--buffers", d.most_buffers, "largest number of state-sized buffers");
+  command.add_option("--sparsify", given->sparsify, "part of the objective to trade for fewer coefficients");
   command.add_option("--starts", given->starts, "random starts")->capture_default_str();
-  command.add_option("--time", given->seconds, "the search ends after this many seconds")
-      ->capture_default_str();
-  command.add_option("--seed", given->seed, "of the random starts")->capture_default_str();
+  command.add_option("--time", given->seconds, "time limit of the search in seconds")->capture_default_str();
+  command.add_option("--seed", given->seed, "seed of the random starts")->capture_default_str();
   add_threads(command, given->threads, "threads to use", "all processors");
   command.add_option("--out", given->out, "method file to write (FILE.toml)")->required();
   command.add_flag("--json", given->json, "print one JSON object");
@@ -280,7 +275,7 @@ action define(CLI::App& command) {
     if (!option->check_lname("order") && !option->check_lname("out") && !option->check_lname("json") &&
         !option->check_lname("help") && option != embedded)
       embedded->excludes(option);
-  command.add_option("--cost", given->cost, "of the embedded solution in a step: nothing or one-solve")
+  command.add_option("--cost", given->cost, "solves of the embedded solution per step: nothing or one-solve")
       ->needs(embedded)
       ->capture_default_str();
   return [given] { return design(*given); };
@@ -289,9 +284,10 @@ action define(CLI::App& command) {
 }  // namespace
 
 extern const command_entry command_design;
-const command_entry command_design = {.name = "design",
-                                      .summary = "Find a new method: order, stages, what it is to be best in",
-                                      .place = 70,
-                                      .define = define};
+const command_entry command_design = {
+    .name = "design",
+    .summary = "Find a new method of given order and stages that optimizes an objective",
+    .place = 70,
+    .define = define};
 
 }  // namespace apsis::app

@@ -122,7 +122,7 @@ json keys() {
 }
 
 std::string family_lines() {
-  std::string out = "\nfamilies: any S of the range gives a method\n";
+  std::string out = "\nfamilies: every S of the range gives a method\n";
   for (const family_entry* f : family_entries())
     out += fmt::format("{:<26}S = {} ... {}: {}\n", f->pattern, f->lowest, f->highest, f->description);
   return out;
@@ -150,7 +150,7 @@ std::vector<std::string> list_names() {
   return names;
 }
 
-/// Nothing but names; those of methods without certifying them.
+/// Prints only names; methods are not certified.
 std::string names_text(const std::string& what) {
   if (what == "methods") return fmt::format("{}\n", fmt::join(method_names(), "\n"));
   std::string out;
@@ -185,18 +185,17 @@ action define(CLI::App& command) {
   auto given = std::make_shared<options>();
   command.add_option("WHAT", given->what, fmt::format("{}", fmt::join(list_names(), ", ")))->required();
   auto* as_json = command.add_flag("--json", given->json, "print a JSON array");
-  command.add_flag("--names", given->names, "print names alone, a line each")->excludes(as_json);
+  command.add_flag("--names", given->names, "print only names, one per line")->excludes(as_json);
   return [given] { return list(*given); };
 }
 
 }  // namespace
 
 extern const command_entry command_list;
-const command_entry command_list = {
-    .name = "list",
-    .summary = fmt::format("List what there is: {}", fmt::join(list_names(), ", ")),
-    .place = 30,
-    .completion = fmt::format("{}", fmt::join(list_names(), " ")),
-    .define = define};
+const command_entry command_list = {.name = "list",
+                                    .summary = fmt::format("List {}", fmt::join(list_names(), ", ")),
+                                    .place = 30,
+                                    .completion = fmt::format("{}", fmt::join(list_names(), " ")),
+                                    .define = define};
 
 }  // namespace apsis::app

@@ -14,8 +14,8 @@
 namespace apsis::app {
 namespace {
 
-/// Text of a manual page: a backslash, and a dot or quote at the beginning of a line, mean something else
-/// there.
+/// Escapes a text for a manual page, where a backslash, and a dot or quote at the beginning of a line, have
+/// a meaning.
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -143,7 +143,7 @@ action define(CLI::App& command) {
 extern const command_entry command_manual;
 const command_entry command_manual = {
     .name = "manual",
-    .summary = "Print the manual page, or the completion of command lines for bash",
+    .summary = "Print the manual page, or the command-line completion for bash",
     .place = 110,
     .define = define};
 

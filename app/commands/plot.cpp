@@ -22,13 +22,13 @@ struct options {
   std::string out, format = "png", compare;
 };
 
-/// A method as the file that the pictures are drawn from.
+/// Writes a method as the file from which the pictures are drawn.
 std::string described(const drawing& pictures, std::size_t place, const method& m) {
   return pictures.add(fmt::format("method-{}.json", place), method_document(m, "json"));
 }
 
 int plot(const options& given) {
-  watch_for_interrupts("the pictures to end");
+  watch_for_interrupts("the end of the drawing");
   const drawing pictures;
   std::vector<std::string> arguments;
   for (std::size_t k = 0; k < given.what.size(); ++k) {
@@ -55,15 +55,15 @@ action define(CLI::App& command) {
   auto given = std::make_shared<options>();
   command
       .add_option("WHAT", given->what,
-                  "folders of results (pictures go into DIR/pictures), picture.json files, methods or "
-                  "method files; with --compare folders of runs, also as LABEL=DIR")
+                  "folders of results (pictures go into DIR/pictures), picture.json files, methods or method "
+                  "files; with --compare folders of runs, also as LABEL=DIR")
       ->required();
-  command.add_option("--out", given->out, "folder of the pictures");
-  command.add_option("--format", given->format, "png, svg or pdf")
+  command.add_option("--out", given->out, "folder for the pictures");
+  command.add_option("--format", given->format, "file format: png, svg or pdf")
       ->check(CLI::IsMember({"png", "svg", "pdf"}))
       ->capture_default_str();
   command.add_option("--compare", given->compare,
-                     "draw these runs of one model into one picture of this name, and tell how far they are "
+                     "draw these runs of one model into one picture of this name, and print their distance "
                      "from the one with most cells");
   return [given] { return plot(*given); };
 }

@@ -38,7 +38,7 @@ struct options {
   bool json = false, resume = false;
 };
 
-/// One reproduction: its claims so far, always on disk.
+/// One reproduction, whose claims are written to disk as they are checked.
 class reproduction {
  public:
   explicit reproduction(const options& given)
@@ -46,7 +46,7 @@ class reproduction {
     if (given.resume) load();
   }
 
-  /// False if it was interrupted.
+  /// Returns false if it was interrupted.
   bool run() {
     progress_bar bar;
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
@@ -72,7 +72,7 @@ class reproduction {
     return true;
   }
 
-  /// The claims that were asked for, in the order of the registry.
+  /// The requested claims, in the order of the registry.
   json document() const {
     json claims = json::array();
     for (const claim_entry* claim : chosen_)
@@ -105,7 +105,7 @@ class reproduction {
 
   void save() { folder_.publish_text(document_name, json_text(document()) + "\n"); }
 
-  /// What an earlier run of the same version has shown.
+  /// Results of an earlier run of the same version.
   void load() {
     std::ifstream in(folder_.path() / document_name, std::ios::binary);
     if (!in) return;
@@ -132,7 +132,7 @@ class reproduction {
 };
 
 int reproduce(const options& given) {
-  watch_for_interrupts("the step or the run under way; finished claims are kept");
+  watch_for_interrupts("the current step or run; finished claims are retained");
   set_threads(given.threads.value_or(default_threads()));
   reproduction all(given);
   const bool complete = all.run();
@@ -169,13 +169,13 @@ int reproduce(const options& given) {
 
 action define(CLI::App& command) {
   auto given = std::make_shared<options>();
-  command.add_option("CLAIM", given->claims, "claims such as C22 (apsis list claims); all if none is named");
+  command.add_option("CLAIM", given->claims, "claims such as C22 (apsis list claims); default all");
   command.add_option("--out", given->out, "folder for report.html, reproduce.json and pictures")
       ->capture_default_str();
   command.add_flag("--resume", given->resume,
-                   "keep the claims that an earlier run in the same folder has shown");
+                   "retain the claims that an earlier run in the same folder has checked");
   add_threads(command, given->threads, "threads to use", "all processors");
-  command.add_flag("--json", given->json, "print reproduce.json on standard output, and nothing else");
+  command.add_flag("--json", given->json, "print only reproduce.json on standard output");
   return [given] { return reproduce(*given); };
 }
 

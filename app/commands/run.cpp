@@ -41,8 +41,8 @@ std::string step_text(const simulation& now) {
 }
 
 int run(run_options options) {
-  // First of all: an interrupt that comes before the first step is then no different from a later one.
-  watch_for_interrupts("the step under way, and for a checkpoint where there is a folder (--out)");
+  // Before anything else: an interrupt before the first step has the same effect as a later one.
+  watch_for_interrupts("the current step, and a checkpoint if there is a folder (--out)");
   case_config config = load_case(options.case_name, options.overrides);
   set_threads(options.threads.value_or(threads_for(config)));
   progress_bar bar;
@@ -76,15 +76,15 @@ action define(CLI::App& command) {
       .add_option("CASE", options->case_name,
                   "a case file, or the name of a built-in case (apsis list cases)")
       ->required();
-  command.add_option("key=value", options->overrides,
-                     "keys of the case that take another value (apsis show case)");
-  command.add_option("--out", options->session.out, "folder for the results; without it nothing is written");
-  command.add_flag("--json", options->json, "print one JSON object on standard output, and nothing else");
+  command.add_option("key=value", options->overrides, "override key=value of the case (apsis show case)");
+  command.add_option("--out", options->session.out,
+                     "folder for the results; without it no files are written");
+  command.add_flag("--json", options->json, "print only one JSON object on standard output");
   add_threads(command, options->threads, "threads to use",
               "all processors for a large case and 1 for a small one");
   command.add_flag("--profile", options->profile,
-                   "tell how long each kernel took, and how near it came to the ceilings of this machine");
-  command.add_option("--restart", options->session.restart, "go on from a checkpoint.h5 of the same case");
+                   "report the time of each kernel and its fraction of the ceilings of this machine");
+  command.add_option("--restart", options->session.restart, "continue from a checkpoint.h5 of the same case");
   command
       .add_option("--wall", options->session.wall,
                   "stop after this many seconds with a checkpoint, as if interrupted (exit code 130)")

@@ -58,7 +58,7 @@ int show(const options& given) {
 action define(CLI::App& command) {
   auto given = std::make_shared<options>();
   command.add_option("WHAT", given->what, "a method, a method file, a built-in case, or: case")->required();
-  command.add_option("--format", given->format, "of a method: text, json, latex or toml")
+  command.add_option("--format", given->format, "format for a method: text, json, latex or toml")
       ->check(CLI::IsMember({"text", "json", "latex", "toml"}));
   return [given] { return show(*given); };
 }

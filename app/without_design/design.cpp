@@ -18,7 +18,7 @@ action define(CLI::App& command) {
 
 }  // namespace
 
-/// The command of a program without the component design: it is there, and says what is missing.
+/// The command of a program without the component design, which reports what is missing.
 extern const command_entry command_design;
 const command_entry command_design = {
     .name = "design",

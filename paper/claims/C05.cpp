@@ -10,7 +10,7 @@ claim_result check(const study_control&) {
   result.findings.push_back(agrees_with_print("imdrk-5-4"));
   result.remarks = {
       "The printed Butcher entries off the diagonal have their two indices swapped (the matrices are lower "
-      "triangular): read a_21 for a_12 and so on. With that, every printed digit agrees."};
+      "triangular): read a_21 for a_12 and so on. With this correction every printed digit agrees."};
   return result;
 }
 

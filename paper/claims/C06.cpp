@@ -18,7 +18,7 @@ const claim_entry claim_C06 = {
     .id = "C6",
     .section = "New SSP IMEX multi-derivative Runge-Kutta methods",
     .statement = "the three-stage IMEX method is of second order with r = 1; its printed Butcher form agrees",
-    .how = "certificate; r re-derived from the Butcher form alone",
+    .how = "certificate; r derived from the Butcher form alone",
     .check = check};
 
 }  // namespace apsis

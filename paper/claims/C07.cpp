@@ -17,9 +17,9 @@ claim_result check(const study_control&) {
     least = std::min(least, form.D(i, i) + std::abs(form.ddot[i]));
   result.findings.push_back(at_least("least d_ii + |ḋ_ii| over the stages", least, 1e-3));
   result.remarks = {
-      "The printed digits cannot be completed within one unit of their last place: with the zeros held, "
-      "every method that satisfies the conditions is at least 1.073 units away in some coefficient. The "
-      "catalogue holds one at that distance, to 45 decimals."};
+      "The printed digits cannot be completed within one unit of their last place: with the zeros fixed, "
+      "every method that satisfies the conditions differs by at least 1.073 units in some coefficient. The "
+      "catalogue contains a method at that distance, to 45 decimals."};
   return result;
 }
 
@@ -31,7 +31,7 @@ const claim_entry claim_C07 = {.id = "C7",
                                .statement =
                                    "the six-stage IMEX method is of third order with r = 0.904402174130635; "
                                    "its printed Butcher form agrees",
-                               .how = "certificate; r re-derived from the Butcher form alone",
+                               .how = "certificate; r derived from the Butcher form alone",
                                .check = check};
 
 }  // namespace apsis

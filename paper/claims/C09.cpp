@@ -11,17 +11,18 @@ claim_result check(const study_control&) {
   const double ratio = mp_real(ours.ssp_coefficient / theirs.ssp_coefficient).convert_to<double>();
   claim_result result;
   result.findings = {
-      close_to("r of the second-order method of the paper over that of Hu, Shu and Zhang, in percent more",
-               100.0 * (ratio - 1.0), 23.0, 0.5),
-      exactly("order of the latter", theirs.order, 2),
+      close_to(
+          "r of the second-order method of the paper relative to that of Hu, Shu and Zhang, percent larger",
+          100.0 * (ratio - 1.0), 23.0, 0.5),
+      exactly("order of the method of Hu, Shu and Zhang", theirs.order, 2),
       is_true("it is SSP without a bound from Q", theirs.unconditional),
       close_to("its r, from its Butcher form alone", static_cast<double>(theirs.ssp_coefficient), 0.8125,
                1e-15),
       close_to("r of the second-order method of the paper", static_cast<double>(ours.ssp_coefficient), 1.0,
                1e-15)};
   result.remarks = {
-      "Their scheme counts its correction step as a fifth stage here; it is of type ARS, so that the limit "
-      "needs consistent data, where that of the paper does not."};
+      "The correction step of their scheme counts as a fifth stage here; the scheme is of type ARS, so the "
+      "limit requires consistent data, unlike that of the paper."};
   return result;
 }
 
@@ -32,7 +33,7 @@ const claim_entry claim_C09 = {
     .id = "C9",
     .section = "New SSP IMEX multi-derivative Runge-Kutta methods",
     .statement = "r = 1 is 23 % larger than that of the second-order scheme of Hu, Shu and Zhang (2018)",
-    .how = "their scheme is in the catalogue; both coefficients re-derived from the Butcher forms alone",
+    .how = "their scheme is in the catalogue; both coefficients derived from the Butcher forms alone",
     .check = check};
 
 }  // namespace apsis

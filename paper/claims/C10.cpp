@@ -20,7 +20,7 @@ namespace {
 
 using row = std::vector<double>;
 
-/// Largest relative growth of a functional in a step, in units of the rounding that is allowed: ≤ 1 is decay.
+/// Largest relative growth of a functional in a step, in units of the admissible rounding: ≤ 1 is decay.
 template <class G>
 double growth(const std::string& method, const G& g, const std::function<double(const row&)>& functional,
               double dt, double rounding, row u) {
@@ -36,7 +36,7 @@ double growth(const std::string& method, const G& g, const std::function<double(
   return worst;
 }
 
-/// G = −c u^p: u decays and keeps its sign; infinity where it does not.
+/// G = −c u^p: u decays and keeps its sign; infinity otherwise.
 double power_decay(const std::string& method, random_source& random) {
   const int p = random.integer(1, 6);
   const double c = random.magnitude(-4, 4), dt = random.magnitude(-8, 8);
@@ -44,8 +44,8 @@ double power_decay(const std::string& method, random_source& random) {
     out[0] = -c * u[0];
     for (int k = 1; k < p; ++k) out[0] *= u[0];
   };
-  // A decay below the rounding of u is lost in it: the convex combination of stages is good to an ulp or two.
-  // Linear decay soon underflows to 0.
+  // A decay below the rounding of u is not resolved: the convex combination of stages is accurate to an ulp
+  // or two. Linear decay soon underflows to 0.
   const auto functional = [p](const row& u) {
     return u[0] > 0.0 || (p == 1 && u[0] == 0.0) ? u[0] : std::numeric_limits<double>::infinity();
   };
@@ -83,7 +83,7 @@ double reflected_cubic_decay(const std::string& method, random_source& random) {
     for (const double x : v) sum += x * x;
     return std::sqrt(sum);
   };
-  // k = Δt · fastest rate. Rounding enters Ġ times k² and comes back undamped where G vanishes.
+  // k = Δt · fastest rate. Rounding enters Ġ times k² and returns undamped where G vanishes.
   const double k = random.magnitude(-4, 3);
   return growth(method, g, norm, k / fastest, 1e-14 * (1 + k * k), u);
 }
@@ -144,8 +144,8 @@ claim_result check(const study_control& control) {
       double worst = 0.0;
       for (int k = 0; k < samples; ++k) worst = maximum(worst, sample(method, random));
       result.findings.push_back(
-          at_most(fmt::format("{}, {} random G = {}: largest growth in units of the rounding allowed", method,
-                              samples, what),
+          at_most(fmt::format("{}, {} random G = {}: largest growth in units of the admissible rounding",
+                              method, samples, what),
                   worst, 1.0));
     }
   }
@@ -165,9 +165,8 @@ const claim_entry claim_C10 = {
     .section = "Numerical results, the implicit methods on u' = -10 u^2; theorem on implicit methods",
     .statement = "the implicit methods keep u' = -10 u^2, u(0) = 10 positive for every step",
     .how =
-        "every stage and step looked at for x; beyond: random dissipative G with random convex functionals, "
-        "for "
-        "every implicit method of the catalogue that is unconditionally SSP",
+        "positivity of every stage and step; beyond the paper: random dissipative G with random convex "
+        "functionals, for every unconditionally SSP implicit method of the catalogue",
     .check = check};
 
 }  // namespace apsis

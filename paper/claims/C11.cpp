@@ -17,7 +17,7 @@ double positivity_limit(const std::string& method) {
 
 claim_result check(const study_control&) {
   claim_result result;
-  // A stage passes through zero there, and its sign is decided by rounding: 1e-12 is generous.
+  // A stage vanishes there, and rounding decides its sign: 1e-12 is generous.
   result.findings = {close_to("largest step of dirk-2-2 that keeps every stage positive",
                               positivity_limit("dirk-2-2"), 1.0 / 50, 1e-12),
                      close_to("largest step of dirk-4-3 that keeps every stage positive",

@@ -19,7 +19,7 @@ struct pair_of_methods {
 constexpr pair_of_methods pairs[] = {{"second order", "dirk-2-2", "imdrk-1-2"},
                                      {"third order", "dirk-4-3", "imdrk-2-3"}};
 
-/// Draws the run; where its stage equation has no root it ends, in a marker.
+/// Draws the run; it ends in a marker if its stage equation has no root.
 void draw(const decay_run& run, const std::string& label, curve_style style, int colour, panel& into) {
   if (run.u.size() > 1) into.curves.push_back({label, run.t, run.u, style, colour});
   if (!run.solvable)
@@ -50,7 +50,7 @@ panel draw_pair(const pair_of_methods& methods, claim_result& result) {
   const std::string steps = fmt::format("of {} steps 1/4 … 1/{}", total, finest);
   result.findings.push_back(
       exactly(fmt::format("{}: positive and decreasing for how many {}", methods.ssp, steps), right, total));
-  // 1/64 < 1/50: only there is the second-order DIRK method harmless.
+  // 1/64 < 1/50: the only step at which the second-order DIRK method is harmless.
   const int harmless = std::string(methods.dirk) == "dirk-2-2" ? 1 : 0;
   result.findings.push_back(
       exactly(fmt::format("{}: not so for how many {}", methods.dirk, steps), wrong, total - harmless));
@@ -66,13 +66,13 @@ claim_result check(const study_control&) {
                 "Solid: unconditionally SSP implicit two-derivative methods; dashed: DIRK methods of the "
                 "same order; dash-dotted: the exact solution 1/(10t + 0.1). The SSP methods are positive and "
                 "decreasing for every step, the DIRK methods are not. A marker at the start is a run that "
-                "could not begin: its stage equation has no real root.",
+                "could not begin because its stage equation has no real root.",
                 {}};
   for (const auto& methods : pairs) decay.panels.push_back(draw_pair(methods, result));
   result.pictures.push_back(std::move(decay));
   result.remarks = {
       "For dt >= 1/32 the first implicit stage of the DIRK methods, a quadratic equation for u, has no real "
-      "root (dirk-2-2, dt = 1/4: 1.25 v^2 + v + 115 = 0); their curves end at the last step that exists."};
+      "root (dirk-2-2, dt = 1/4: 1.25 v^2 + v + 115 = 0); their curves end at the last solvable step."};
   return result;
 }
 
@@ -83,7 +83,7 @@ const claim_entry claim_C12 = {
     .id = "C12",
     .section = "Numerical results, figure of u' = -10 u^2",
     .statement = "the SSP methods are qualitatively right for all steps tested, the DIRK methods are not",
-    .how = "both panels of the figure; positivity of every stage and decay at every step",
+    .how = "both panels of the figure; positivity of every stage and decay in every step",
     .check = check};
 
 }  // namespace apsis

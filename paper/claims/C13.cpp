@@ -41,7 +41,7 @@ claim_result check(const study_control& control) {
       table.rows[k].push_back(k > 0 ? fmt::format("{:.3f}", order(m, k)) : "");
     }
     p.curves.push_back(std::move(c));
-    // At the last step the observed orders still approach the design order, from within 0.07 of it.
+    // At the last step the observed orders still approach the design order, to within 0.07.
     result.findings.push_back(close_to(fmt::format("{}: order between 8192 and 16384 steps", name),
                                        order(m, levels - 1), design, 0.1));
   }

@@ -11,8 +11,8 @@
 namespace apsis {
 namespace {
 
-/// One of the model's initial data at a random place, disturbed by up to 90 % in every component; nonnegative
-/// where negative components have no meaning (some published data are negative all the same).
+/// One of the model's initial data at a random position, disturbed by up to 90 % in every component;
+/// nonnegative if negative components are unphysical (some published data are negative nevertheless).
 std::vector<double> disturbed_data(const model& m, random_source& random) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const int data = random.integer(0, static_cast<int>(m.initial().size()));
@@ -46,7 +46,7 @@ claim_result check(const study_control& control) {
   }
   result.remarks = {
       fmt::format("largest of {} random states of every relaxation model of the registry: its initial data "
-                  "at random places, every component multiplied by a random number between 0.1 and 1.9",
+                  "at random positions, every component multiplied by a random number between 0.1 and 1.9",
                   samples)};
   return result;
 }

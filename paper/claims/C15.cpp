@@ -11,7 +11,8 @@
 namespace apsis {
 namespace {
 
-/// Nonnegative: the model's initial data at a random place, disturbed over eight decades, a fifth exactly 0.
+/// Nonnegative: the model's initial data at a random position, disturbed over eight decades, a fifth
+/// exactly 0.
 std::vector<double> nonnegative_data(const model& m, random_source& random) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const int data = random.integer(0, static_cast<int>(m.initial().size()));
@@ -24,7 +25,7 @@ struct tally {
   long values = 0, zeros = 0, negative = 0, refused = 0;
 };
 
-/// For λ = 1e-12 … 1e12; states that have no equilibrium are counted apart.
+/// For λ = 1e-12 … 1e12; states without equilibrium are counted separately.
 void count(const model& m, const std::vector<double>& u, tally& sum) {
   for (int power = -12; power <= 12; ++power) {
     try {
@@ -57,7 +58,7 @@ claim_result check(const study_control& control) {
   }
   result.remarks = {
       fmt::format("{} random states of every model with positive unknowns, each with 25 steps between 1e-12 "
-                  "and 1e12; the stage solve is the one of production",
+                  "and 1e12, solved by the production stage solve",
                   samples)};
   return result;
 }

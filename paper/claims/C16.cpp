@@ -55,7 +55,7 @@ void collide_randomly(const broadwell& b, random_source& random, moment_form_def
   const target<field, double> to{&change, 0.0, 1.0, true};
   q->add_collision(0.0, u, {&to, 1});
   const auto w = moments_of(f.data()), rate = moments_of(change.row(0));
-  // Everything is measured against the size of the terms, ρ²/ε.
+  // All defects are relative to the size of the terms, ρ²/ε.
   const double size = w.rho * w.rho / epsilon;
   worst.conservation = maximum({worst.conservation, std::abs(rate.rho) / size, std::abs(rate.m) / size});
   const double written = (w.rho * w.rho + w.m * w.m - 2.0 * w.rho * w.z) / (2.0 * epsilon);
@@ -113,8 +113,8 @@ void compare_limit(const broadwell& b, const limit_equations& system, random_sou
     worst.moments = maximum(worst.moments, std::abs(back[k] - omega[k]) / rho);
     worst.fluxes = maximum(worst.fluxes, std::abs(by_transport[k] - by_hand[k]) / rho);
   }
-  // λ is an eigenvalue of F' when F'(1, λ) = λ(1, λ): the derivative of F along (1, λ), by central
-  // differences.
+  // λ is an eigenvalue of F' when F'(1, λ) = λ(1, λ): the derivative of F along (1, λ), by
+  // central differences.
   for (const double sign : {-1.0, 1.0}) {
     const double lambda = 0.5 * (u + sign * std::sqrt(2.0 - u * u)), h = 1e-5 * rho;
     const std::array<double, 2> ahead = {rho + h, m + lambda * h}, behind = {rho - h, m - lambda * h};
@@ -156,7 +156,7 @@ claim_result check(const study_control&) {
       at_most("characteristic speeds of the limit are (u ± √(2 − u²))/2, u = m/ρ", limit.speeds, 1e-8),
       at_most("and lie within those of the particles (subcharacteristic condition)", limit.fastest, 1.0)};
   result.remarks = {fmt::format(
-      "Largest of {} random states, through the collision and transport operators of the runs: populations "
+      "Largest of {} random states, with the production operators of collision and transport: populations "
       "from 10⁻³ to 10, ε from 10⁻⁸ to 10⁸, profiles linear in x with every reconstruction of the registry.",
       samples)};
   return result;

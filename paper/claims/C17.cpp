@@ -38,7 +38,7 @@ std::vector<std::string> imex_methods(Condition wanted) {
 constexpr double limit_row::* distances[] = {&limit_row::moments_first, &limit_row::moments_end,
                                              &limit_row::state_first, &limit_row::state_end};
 
-/// The smallest slope of the four distances; those that are rounding from the start have none.
+/// The smallest slope of the four distances; those that are rounding from the start have no slope.
 double smallest_slope(const limit_table& table) {
   double smallest = INFINITY;
   for (const auto column : distances) smallest = minimum(smallest, table.slope(column).value_or(INFINITY));
@@ -71,7 +71,7 @@ std::vector<double> epsilons() {
   return values;
 }
 
-// The distance falls: every model, every formulation, every method that promises it.
+// Decrease of the distance: every model, every formulation, every method that promises it.
 
 struct distance_job {
   std::string model, formulation, method;
@@ -124,8 +124,8 @@ picture draw_distances(const std::vector<distance_job>& jobs) {
       "C17-distance",
       "Distance to the limit scheme, from inconsistent data",
       "Largest difference of the moments ω from those of the limit scheme at the end of eight steps, against "
-      "ε at fixed step and mesh. It falls in proportion to ε until only rounding is left. Solid: finite "
-      "volumes (and the ODE model); dashed, on top of them down to rounding: finite differences.",
+      "ε at fixed step and mesh. It decreases in proportion to ε until only rounding remains. Solid: finite "
+      "volumes (and the ODE model); dashed, coinciding up to rounding: finite differences.",
       {}};
   for (const auto& job : jobs) {
     if (!of_the_paper(job.method)) continue;
@@ -142,7 +142,7 @@ picture draw_distances(const std::vector<distance_job>& jobs) {
   return p;
 }
 
-/// Cases whose equilibrium is found point by point, so that consistent data are exactly consistent.
+/// Cases with pointwise equilibrium, so that consistent data are exactly consistent.
 case_config pointwise_case(const std::string& model, const std::string& method, double step) {
   std::vector<std::string> overrides = {"time.method=" + method};
   if (model != "ode") overrides.emplace_back("space.formulation=finite-difference");
@@ -151,11 +151,11 @@ case_config pointwise_case(const std::string& model, const std::string& method, 
   return config;
 }
 
-// How fast: at least linearly.
+// Rate: at least linear.
 
-/// From data in equilibrium only stages without Q̇ keep an O(ε) distance from it. In md-imex-3-2 the one stage
-/// that feeds T after a transport has Q̇ alone, so its moments fall like ε²; in md-imex-6-3 two such stages
-/// have Q alone.
+/// From data in equilibrium only stages without Q̇ retain an O(ε) distance from it. In md-imex-3-2 the one
+/// stage that feeds T after a transport has Q̇ alone, so its moments decrease like ε²; in md-imex-6-3 two
+/// such stages have Q alone.
 void judge_rates(claim_result& result) {
   constexpr std::pair<const char*, double> rates[] = {{"md-imex-3-2", 2.0}, {"md-imex-6-3", 1.0}};
   for (const auto& [method, rate] : rates) {
@@ -167,13 +167,13 @@ void judge_rates(claim_result& result) {
   }
 }
 
-// What goes wrong: first stages that are not relaxed, last stages that are not.
+// Failures: first stages that are not relaxed, last stages that are not.
 
 /// Methods whose first stage is u^n itself.
 void first_stage_failure(const std::string& model, const std::string& method, int colour, panel& into,
                          claim_result& result) {
   auto positive = epsilons();
-  positive.pop_back();  // where Q(u^n)/ε is evaluated ε = 0 does not exist
+  positive.pop_back();  // ε = 0 is undefined if Q(u^n)/ε is evaluated
   std::vector<double> plateau;
   for (const double step : {1.0, 0.5, 0.25}) {
     const auto table = limit_distance(pointwise_case(model, method, step), positive);
@@ -214,11 +214,11 @@ void show_failures(const study_control& control, claim_result& result) {
   const auto first = imex_methods([](const certificate& c) { return c.type == "ARS"; });
   const auto last = imex_methods([](const certificate& c) { return c.type == "A" && !c.gsa; });
   picture p{"C17-failures",
-            "What type A and GSA are for",
-            "Left: methods whose first stage is u^n itself transport data that are off equilibrium. Their "
-            "moments stay at a distance proportional to Δt (solid); only from data in equilibrium do they "
-            "reach the limit scheme (dashed). Right: methods whose last stage is not relaxed reach the limit "
-            "with their moments (solid), but leave the state off its equilibrium (dashed).",
+            "Effect of type A and GSA",
+            "Left: methods whose first stage is u^n itself transport data that are off equilibrium. The "
+            "distance of their moments is proportional to Δt (solid); only from data in equilibrium do they "
+            "reach the limit scheme (dashed). Right: the moments of methods whose last stage is not relaxed "
+            "reach the limit (solid), but the state remains off equilibrium (dashed).",
             {}};
   for (const std::string model : {"ode", "broadwell"}) {
     panel starts = distance_panel(model + ": first stage not relaxed", "distance of ω");
@@ -247,10 +247,10 @@ claim_result check(const study_control& control) {
   add_limit_convergence("C17", control, result);
   add_riemann_problems("C17", control, result);
   result.remarks = {
-      "The distance falls at least linearly, and no faster in general: the first stage of md-imex-3-2 has Q "
-      "alone, so from inconsistent data it keeps O(ε) of them, and T carries it on.",
-      "Methods of type CK are left out: they evaluate Q(u^n)/ε explicitly, which leaves rounding divided by "
-      "ε in the moments, from data in equilibrium as well.",
+      "The distance decreases at least linearly, and no faster in general: the first stage of md-imex-3-2 "
+      "has Q alone, so from inconsistent data it retains a part O(ε), which T transports.",
+      "Methods of type CK are omitted: they evaluate Q(u^n)/ε explicitly, which leaves rounding divided by ε "
+      "in the moments, also from data in equilibrium.",
       "Stages with cell averages relax at the Gauss points of the quartics through their explicit part, so "
       "the limit of the finite-volume scheme is a state of projected averages; its moments follow the "
       "explicit method."};
@@ -267,8 +267,8 @@ const claim_entry claim_C17 = {
         "at fixed Δt, as ε → 0, the scheme becomes the explicit Runge–Kutta method on "
         "the limit system, for every model and from any data",
     .how =
-        "runs against the limit scheme, written without the operators and the stepper "
-        "of a run; the limit scheme against the limit systems written out by hand",
+        "comparison of runs with the limit scheme, implemented without the operators and the stepper of a "
+        "run, and of the limit scheme with the limit systems written out by hand",
     .check = check};
 
 }  // namespace apsis

@@ -13,7 +13,7 @@ namespace apsis {
 namespace {
 
 const std::vector<double> epsilons = {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 1e-1, 1.0, 1e2, 1e6, 1e12};
-// The entropy is a sum of some hundred terms of order one, each of a value that is good to a few ulp.
+// The entropy is a sum of some hundred terms of order one, each accurate to a few ulp.
 constexpr double rounding = 1e-14;
 constexpr int steps = 20;
 
@@ -37,7 +37,7 @@ case_config upwind_case(const combination& c, int cells) {
   return small_case(c.model, c.method, c.epsilon, cells, {"space.reconstruction=upwind1"});
 }
 
-/// Largest increase in a step, relative to 1 + |S|, as the monitor of a run sees it.
+/// Largest increase in a step, relative to 1 + |S|, as monitored in a run.
 double increase_in_run(const combination& c, const study_control& control) {
   case_config config = upwind_case(c, 40);
   config.time.dt.reset();
@@ -52,7 +52,7 @@ double increase_in_run(const combination& c, const study_control& control) {
   return worst;
 }
 
-/// The same from states that are far from anything a run meets.
+/// The same from extreme states, which do not occur in runs.
 double increase_from_hostile_data(const combination& c) {
   case_problem problem(upwind_case(c, 12));
   stepper march(problem.setup.integrator(), *problem.equations);
@@ -87,7 +87,7 @@ entropy_history violation(const std::string& method, curve_style style, const st
     const auto& record = run.advance();
     history.entropy.x.push_back(record.t);
     history.entropy.y.push_back(record.entropy);
-    if (record.step > 1) {  // the first step of data out of equilibrium would hide all others
+    if (record.step > 1) {  // the first step from data out of equilibrium would dominate all others
       history.change.x.push_back(record.t);
       history.change.y.push_back(record.entropy_change);
     }
@@ -108,16 +108,16 @@ void add_violation(claim_result& result, const study_control& control) {
   result.findings.insert(
       result.findings.end(),
       {at_least("imex-trapezoidal, for contrast: largest increase in a step", bad.largest_increase, 1e-5),
-       at_least("in how many of its 250 steps the entropy increases", bad.increases, 50),
+       at_least("number of its 250 steps in which the entropy increases", bad.increases, 50),
        at_least("its smallest value", bad.smallest_value, 0.4),
        at_most("its step over dt_FE of the transport", bad.forward_euler_steps, 1.0),
        at_most("md-imex-3-2 in the same case: largest increase in a step", good.largest_increase, rounding)});
   result.pictures.push_back(
       {"C18-entropy",
        "Broadwell model, ε = 1e-8, first-order upwind, Δt = 0.8 Δt_FE",
-       "Left: the entropy falls in every step of md-imex-3-2. The IMEX trapezoidal rule is stable and its "
-       "densities stay above 0.4, but the entropy rises in half of its steps, and over long times. Right: "
-       "its change in each step but the first.",
+       "Left: the entropy decays in every step of md-imex-3-2. The IMEX trapezoidal rule is stable and its "
+       "densities stay above 0.4, but the entropy increases in half of its steps, and over long times. "
+       "Right: its change in each step except the first.",
        {{"", "t (dimensionless)", "entropy (dimensionless)", false, false, {bad.entropy, good.entropy}, {}},
         {"",
          "t (dimensionless)",
@@ -143,7 +143,7 @@ claim_result check(const study_control& control) {
   });
   claim_result result;
   report_table table{
-      "largest step, over dt_FE, for which no hostile state gains entropy in three steps", {"epsilon"}, {}};
+      "largest step, over dt_FE, for which no extreme state gains entropy in three steps", {"epsilon"}, {}};
   for (const double epsilon : epsilons) table.rows.push_back({fmt::format("{:g}", epsilon)});
   const auto each = epsilons.size();
   for (std::size_t first = 0; first < all.size(); first += each) {
@@ -157,7 +157,7 @@ claim_result check(const study_control& control) {
                                             limit.begin() + static_cast<std::ptrdiff_t>(first + each));
     result.findings.push_back(
         at_most(name + ": largest relative increase in a run with dt = r dt_FE", worst(run), rounding));
-    result.findings.push_back(at_most(name + ": the same from hostile data", worst(hostile), rounding));
+    result.findings.push_back(at_most(name + ": the same from extreme data", worst(hostile), rounding));
     result.findings.push_back(at_least(name + ": largest step without increase, over dt_FE, worst epsilon",
                                        lowest, r * (1 - 2e-3)));
     table.columns.push_back(name);
@@ -166,10 +166,10 @@ claim_result check(const study_control& control) {
   result.tables.push_back(std::move(table));
   add_violation(result, control);
   result.remarks = {
-      "epsilon from 0 to 1e12, initial data of the models, their equilibrium, and hostile data: unknowns "
-      "disturbed over two decades, cells next to each other that are nearly empty (1e-8), at rest, or full.",
-      "Comparators that are L-stable (ars-222, ssp2-222, ssp2-332, ...) were not seen to gain entropy before "
-      "they lost positivity; a method that does not damp, like the trapezoidal rule, does."};
+      "epsilon from 0 to 1e12, initial data of the models, their equilibrium, and extreme data: unknowns "
+      "disturbed over two decades, neighbouring cells that are nearly empty (1e-8), at rest, or full.",
+      "Comparators that are L-stable (ars-222, ssp2-222, ssp2-332, ...) were not observed to increase the "
+      "entropy before they lost positivity; an undamped method, such as the trapezoidal rule, does."};
   return result;
 }
 
@@ -183,7 +183,7 @@ const claim_entry claim_C18 = {
         "S[f^{n+1}] <= S[f^n] for BGK and Broadwell with first-order upwind, dt <= r dt_FE, for every "
         "epsilon",
     .how =
-        "every step of runs and of hostile data, epsilon from 0 to 1e12, every IMEX method with an SSP "
+        "every step of runs and of extreme data, epsilon from 0 to 1e12, every IMEX method with an SSP "
         "coefficient; and a method without one that violates it",
     .check = check};
 

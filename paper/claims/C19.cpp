@@ -67,8 +67,8 @@ picture figure(const method_errors& m) {
       "C19-" + m.name,
       "ODE model, " + m.name,
       fmt::format(
-          "Order {} for ε = 1 and in the limit of small ε. Between, where Δt falls from far above ε to far "
-          "below, the error stays at a plateau proportional to ε. What is left below 1e-13 is rounding.",
+          "Order {} for ε = 1 and in the limit of small ε. In between, where Δt decreases from far above ε "
+          "to far below, the error stalls at a plateau proportional to ε. Below 1e-13 only rounding remains.",
           m.order),
       {std::move(p)}};
 }
@@ -86,10 +86,10 @@ report_table slopes(const method_errors& m) {
   return t;
 }
 
-/// How far the references move with a tolerance ten times as large and one column less.
+/// Change of the references with a tolerance ten times as large and one column fewer.
 double doubt_of_references(const study_control& control) {
   std::vector<double> moved(epsilon_count);
-  run_all(control, "doubt of the references", static_cast<int>(epsilon_count), [&](int e) {
+  run_all(control, "uncertainty of the references", static_cast<int>(epsilon_count), [&](int e) {
     moved[static_cast<std::size_t>(e)] = ode_distance(
         ode_reference(epsilons[e]), ode_reference(epsilons[e], ode_data::inconsistent, {1e-12L, 0, 7}));
   });
@@ -99,7 +99,7 @@ double doubt_of_references(const study_control& control) {
 claim_result check(const study_control& control) {
   claim_result result;
   for (const auto& m : measure(control)) {
-    // The third order method meets its plateau, 0.3 ε, at ε = 1e-10 and Δt = 1/512, and rounding at ε = 1.
+    // The third-order method reaches its plateau, 0.3 ε, at ε = 1e-10 and Δt = 1/512, and rounding at ε = 1.
     const bool second = m.order == 2;
     result.findings.push_back(close_to(m.name + ": order at eps = 1",
                                        second ? m.slope(1, 7, 13) : m.slope(1, 6, 12), m.order, 0.1));
@@ -116,7 +116,7 @@ claim_result check(const study_control& control) {
     result.pictures.push_back(figure(m));
     result.tables.push_back(slopes(m));
   }
-  // The looser reference has itself errors up to 1e-13, see its test.
+  // The looser reference itself has errors up to 1e-13, see its test.
   result.findings.push_back(at_most("change of the reference with another order and tolerance",
                                     doubt_of_references(control), 2e-13));
   add_plateau_study("C19", control, result);
@@ -133,9 +133,8 @@ const claim_entry claim_C19 = {
     .statement =
         "orders 2 and 3 at eps = 1 and eps = 1e-10; order reduction between; plateaus of size O(eps)",
     .how =
-        "error at t = 1 against a reference good to 1e-13, for Δt from 1/4 to 7.6e-6; what causes the "
-        "plateaus; "
-        "observed order over ε and Δt for all models",
+        "error at t = 1 against a reference accurate to 1e-13, for Δt from 1/4 to 7.6e-6; cause of the "
+        "plateaus; observed order over ε and Δt for all models",
     .check = check};
 
 }  // namespace apsis

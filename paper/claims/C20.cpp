@@ -60,8 +60,8 @@ claim_result check(const study_control& control) {
     result.pictures.push_back(
         {"C20-" + name,
          name + fmt::format(" at ε = {:g}", epsilon),
-         "The error stops at a plateau, while runs with Δt and Δt/2 still come together at the order of the "
-         "method: they converge to another solution, O(ε) away.",
+         "The error stalls at a plateau, while the difference of runs with Δt and Δt/2 still decreases with "
+         "the order of the method: they converge to another solution, O(ε) away.",
          {std::move(p)}});
   }
   return result;
@@ -73,7 +73,7 @@ extern const claim_entry claim_C20;
 const claim_entry claim_C20 = {
     .id = "C20",
     .section = "Numerical results, an ODE model",
-    .statement = "on the plateaus the methods still converge at their order, if Δt is compared with Δt/2",
+    .statement = "on the plateaus the methods still converge with their order, if Δt is compared with Δt/2",
     .how = "self-convergence at eps = 1e-6 where the error against the reference is flat",
     .check = check};
 

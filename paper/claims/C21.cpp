@@ -8,8 +8,8 @@
 namespace apsis {
 namespace {
 
-/// The third-order method as one would type it from the paper: 15 printed digits in double, whose rows sum to
-/// 1 only to rounding, and the closed form of the stage.
+/// The third-order method with the printed coefficients: 15 digits in double, whose rows sum to 1 only up to
+/// rounding, and the closed form of the stage.
 ode_state<double> solve_as_printed(double epsilon, long steps) {
   using row = std::array<double, 6>;
   constexpr double r = 0.904402174130635;
@@ -73,8 +73,8 @@ claim_result check(const study_control& control) {
   claim_result result;
   result.findings = {
       at_least("as printed: error at dt = 2e-4 over that at 5e-5", at(printed, 5000) / at(printed, 20000), 4),
-      // Between, roundings of different sign may cancel; then the rows' missing 1e-16 dominate, lost anew at
-      // every step, so that the error grows in proportion to the number of steps.
+      // In between, roundings of different sign may cancel; then the missing 1e-16 of the rows dominates,
+      // lost anew in every step, so that the error grows in proportion to the number of steps.
       at_least("as printed: error at dt = 1.25e-5 over that at 5e-5", at(printed, 80000) / at(printed, 20000),
                1.5),
       close_to("as printed: growth of the error from dt = 1.25e-5 to a quarter of it",
@@ -83,7 +83,7 @@ claim_result check(const study_control& control) {
               at(catalogue, 320000) / at(printed, 320000), 0.1),
       at_most("rows summing to 1, double: error at dt = 3.1e-6 over that at 5e-5",
               at(catalogue, 320000) / at(catalogue, 20000), 1),
-      // Beyond, the reference itself is not good enough.
+      // Beyond, the reference itself is not accurate enough.
       close_to("long double: order between dt = 5e-5 and 1.25e-5",
                halving_slope({at(extended, 20000), at(extended, 40000), at(extended, 80000)}), 3, 0.1)};
   panel p{"", "Δt (dimensionless)", "|Δu1| + |Δu2| at t = 1 (dimensionless)", true, true, {}, {}, {3}};
@@ -102,9 +102,9 @@ claim_result check(const study_control& control) {
   result.pictures.push_back(
       {"C21-round-off",
        "md-imex-6-3 at ε = 1: rounding, and what removes it",
-       "With 15 printed digits the rows of coefficients miss 1 by about 1e-16, which is lost again at every "
-       "step: the error grows below Δt ≈ 5e-5. Coefficients whose rows sum to 1 without rounding remove the "
-       "growth in double; long double removes the floor.",
+       "With 15 printed digits the rows of coefficients miss 1 by about 1e-16, which is lost in every step: "
+       "the error grows below Δt ≈ 5e-5. Coefficients whose rows sum to 1 without rounding remove the growth "
+       "in double; long double removes the floor.",
        {std::move(p)}});
   return result;
 }
@@ -115,7 +115,7 @@ extern const claim_entry claim_C21;
 const claim_entry claim_C21 = {
     .id = "C21",
     .section = "Numerical results, an ODE model",
-    .statement = "third order: below Δt ≈ 5e-5 the error grows again, a consequence of round-off",
+    .statement = "third order: below Δt ≈ 5e-5 the error grows again because of round-off",
     .how =
         "shown with the printed digits; removed by coefficients whose rows sum to 1 exactly, and by long "
         "double",

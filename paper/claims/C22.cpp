@@ -9,8 +9,8 @@
 namespace apsis {
 namespace {
 
-/// Errors of an independent program at N = 80 and 160 (second and third order, eps = 1 and 1e-8), whose
-/// fifth-order reconstruction is a different one.
+/// Errors of an independent program at N = 80 and 160 (second and third order, eps = 1 and 1e-8), with a
+/// different fifth-order reconstruction.
 struct independent {
   const char *method, *epsilon;
   std::array<double, 2> error;
@@ -62,16 +62,16 @@ claim_result check(const study_control& control) {
   for (const auto* table : {&figure, &deep}) result.findings.push_back(no_failures(*table));
   result.pictures = {accuracy_picture(
       figure, "C22-broadwell", "Accuracy for the Broadwell model, inconsistent data, Δt = Δx/2, t = 0.1",
-      "L² difference to the next finer mesh. For ε = 1 and ε ≤ 1e-6 the curves have the slope of the "
-      "triangle; between, the order is reduced while ε and Δt are comparable. On coarse meshes the error in "
-      "space shows for the third order.")};
+      "L² difference from the next finer mesh. For ε = 1 and ε ≤ 1e-6 the curves have the slope of the "
+      "triangle; in between, the order is reduced while ε and Δt are comparable. On coarse meshes the "
+      "spatial error dominates at third order.")};
   result.tables = {accuracy_table(figure, "Errors (slopes), WENO5-JS, N = 20 … 640"),
                    accuracy_table(deep, "Errors (slopes), WENO5-Z, N = 80 … 2560")};
   result.remarks = {
       "With the weights of Jiang and Shu (the figure) the third-order errors at ε = 1e-8 are 6.9e-6 and "
-      "2.5e-7 for N = 80 and 160, factors of 3.8 and 2.5 above the independent program: there the error in "
-      "space dominates, and these weights lose accuracy where a derivative vanishes. With Z weights, which "
-      "do not, the error in time is seen and the figures agree."};
+      "2.5e-7 for N = 80 and 160, factors of 3.8 and 2.5 above the independent program: there the spatial "
+      "error dominates, because these weights lose accuracy where a derivative vanishes. With Z weights, "
+      "which do not, the temporal error dominates and the figures agree."};
   return result;
 }
 
@@ -82,10 +82,9 @@ const claim_entry claim_C22 = {
     .id = "C22",
     .section = "The Broadwell model",
     .statement =
-        "both methods have their design order for ε = 1 and in the limit, from inconsistent data, and lose "
-        "it "
-        "between",
-    .how = "the paper's runs: finite volumes, Δt = Δx/2, L² difference to the next finer mesh at t = 0.1",
+        "both methods have their design order for ε = 1 and in the limit, from inconsistent data, and a "
+        "reduced order in between",
+    .how = "the paper's runs: finite volumes, Δt = Δx/2, L² difference from the next finer mesh at t = 0.1",
     .check = check,
     .slow = true};
 

@@ -23,7 +23,7 @@ claim_result check(const study_control& control) {
   const auto figure = converge(
       study({}, {"1", "1e-1", "1e-2", "1e-3", "1e-4", "1e-6", "1e-8"}, "space.cells=20..320", kind::next),
       control);
-  // On one mesh, so that the error in space is the same in all runs and only the error in time is left.
+  // On one mesh, so that the spatial error is the same in all runs and only the temporal error remains.
   const auto in_time =
       converge(study({"space.cells=40"}, {"1", "1e-2", "1e-10"}, "time.cfl=1/8..1", kind::time), control);
   for (const char* epsilon : {"1", "1e-10"})
@@ -36,7 +36,7 @@ claim_result check(const study_control& control) {
     result.findings.push_back(slopes_near(
         fmt::format("slope of the second order on the finest meshes of the figure, ε = {}", epsilon),
         rows_of(figure, second, epsilon), 1, 2.0, 0.15));
-    // N = 160: on the next mesh the third order at 1e-6 has met its plateau.
+    // N = 160: on the next mesh the third order at 1e-6 has reached its plateau.
     const auto& a = rows_of(figure, second, epsilon).at(3);
     const auto& b = rows_of(figure, third, epsilon).at(3);
     result.findings.push_back(
@@ -48,13 +48,13 @@ claim_result check(const study_control& control) {
   result.pictures = {
       accuracy_picture(
           figure, "C23-bgk", "Accuracy for the BGK model, inconsistent data, Δt = Δx/(2 v_max), t = 0.1",
-          "L² difference in (x, v) to the next finer mesh. Second order: slope 2 at ε = 1 and ε ≤ 1e-6, "
-          "reduced between. Third order: steeper than 3, because the fifth-order error in space still "
-          "dominates, and far below the second order; at ε = 1e-6 and N = 320 it meets the plateau O(ε)."),
+          "L² difference in (x, v) from the next finer mesh. Second order: slope 2 at ε = 1 and ε ≤ 1e-6, "
+          "reduced in between. Third order: steeper than 3, because the fifth-order spatial error still "
+          "dominates, and far below the second order; at ε = 1e-6 and N = 320 it reaches the plateau O(ε)."),
       accuracy_picture(in_time, "C23-bgk-time", "Accuracy in time for the BGK model on one mesh",
-                       "40 cells, step refined alone, difference to a step eight times smaller than the "
-                       "smallest: the error in space is the same in all runs and drops out. Slopes 2 and 3 "
-                       "at ε = 1 and 1e-10, reduced at 1e-2.")};
+                       "40 cells, only the step refined, difference from a step eight times smaller than the "
+                       "smallest: the spatial error is the same in all runs and cancels. Slopes 2 and 3 at ε "
+                       "= 1 and 1e-10, reduced at 1e-2.")};
   result.tables = {
       accuracy_table(figure, "Errors (slopes), mesh and step refined, N = 20 … 320"),
       accuracy_table(in_time, "Errors (slopes), step refined on 40 cells, Δt v_max/Δx = 1 … 1/8")};
@@ -68,12 +68,11 @@ const claim_entry claim_C23 = {
     .id = "C23",
     .section = "The BGK model",
     .statement =
-        "second order is seen for ε = 1 and in the limit and reduced between; the third order is clearly "
-        "more "
-        "accurate at the same step",
+        "second order is observed for ε = 1 and in the limit and reduced in between; the third order is "
+        "clearly more accurate at the same step",
     .how =
-        "the paper's runs: finite volumes, 150 velocities, Δt = Δx/(2 v_max), L² difference in (x, v) to the "
-        "next finer mesh at t = 0.1; and the step refined on one mesh",
+        "the paper's runs: finite volumes, 150 velocities, Δt = Δx/(2 v_max), L² difference in (x, v) from "
+        "the next finer mesh at t = 0.1; and only the step refined on one mesh",
     .check = check,
     .slow = true};
 

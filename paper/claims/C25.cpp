@@ -59,8 +59,8 @@ std::size_t parameter_count(std::size_t s) {
   return s * (s + 1) / 2 + 2 * s;
 }
 
-/// The largest value that a random search finds: steps of adapted length from the best so far, from several
-/// starts.
+/// The largest value of a random search: steps of adapted length from the best point so far, from
+/// several starts.
 double maximize_at_random(std::size_t s, random_source& random,
                           const std::function<double(const shu_osher_form<double>&)>& value) {
   double best = -1e300;
@@ -73,7 +73,7 @@ double maximize_at_random(std::size_t s, random_source& random,
       for (double& x : there)
         if (random.one_in(3)) x += length * random.uniform(-1, 1);
       const double found = value(form_of(s, there));
-      // One success in five keeps the length.
+      // One success in five retains the length.
       length = std::clamp(length * (found > height ? 1.5 : 0.9), 1e-9, 1.0);
       if (found > height) {
         height = found;
@@ -91,7 +91,7 @@ double difference(const shu_osher_form<double>& m) {
   return sum.be - sum.bc;
 }
 
-/// The same in the time scale in which it is largest: D → τD gives τ b·e − τ² b·c.
+/// The same in the time scale that maximizes it: D → τD gives τ b·e − τ² b·c.
 double largest_difference(const shu_osher_form<double>& m) {
   const auto sum = sums_of(m);
   return sum.bc > 0.0 ? sum.be * sum.be / (4.0 * sum.bc) : 0.0;
@@ -127,7 +127,7 @@ shu_osher_form<double> backward_euler_steps(std::size_t s) {
   return m;
 }
 
-/// What was found with s = 1, 2, …, and how it compares.
+/// Results for s = 1, 2, …, compared with the bounds.
 void add_searches(const std::vector<double>& reached, const std::vector<double>& residual,
                   claim_result& result) {
   report_table table{
@@ -153,11 +153,11 @@ void add_searches(const std::vector<double>& reached, const std::vector<double>&
   result.findings.insert(
       result.findings.end(),
       {at_most("largest (b·e − b·c)/k_s that a search finds, s ≤ 6", above, 1.0 + 1e-14),
-       at_least("how near to k_s the search comes, worst s", least_reached, 0.999),
+       at_least("relative distance of the search from k_s, worst s", least_reached, 0.999),
        at_most("s backward Euler steps of 1/(s+1) reach k_s, relative distance", extremal, 1e-14),
        at_least("smallest residual of order two that a search with ḋ ≥ 0 finds, over 1/(2s), s ≤ 6",
                 least_residual, 1.0 - 1e-14),
-       at_most("how near to 1/(2s) the search comes, worst s", nearest, 1.001)});
+       at_most("relative distance of the search from 1/(2s), worst s", nearest, 1.001)});
 }
 
 claim_result check(const study_control& control) {
@@ -183,9 +183,9 @@ claim_result check(const study_control& control) {
   result.remarks = {
       "Beyond the paper: with b·e = 1 its inequality for every a, x − k_s x² ≤ b·c with x = 1 − a, gives b·c "
       "≥ 1/(4 k_s) = 1/2 + 1/(2s). The residual of order two is at least 1/(2s); s backward Euler steps of "
-      "1/s reach it.",
-      "Where the proof says that a term 'obtains a minimum', it is a maximum, and the inequality before is "
-      "not strict; the conclusion stands."};
+      "1/s attain it.",
+      "Where the proof states that a term 'obtains a minimum', it is a maximum, and the preceding inequality "
+      "is not strict; the conclusion holds."};
   return result;
 }
 

@@ -80,8 +80,8 @@ claim_result check(const study_control& control) {
                              "Errors of imdrk-9-5 fall with the fifth power of the step.",
                              {std::move(plot)}});
   result.remarks = {
-      "The statement of the paper, that none was found, is overtaken by this method; its file tells how it "
-      "was found. Whether fewer than nine stages can do is open."};
+      "This method supersedes the statement of the paper that none was found; its file states how it was "
+      "found. Whether fewer than nine stages suffice is open."};
   return result;
 }
 

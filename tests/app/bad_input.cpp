@@ -1,5 +1,5 @@
-// Bad input through the real program: exit code, one clear message, nothing on standard output, nothing left
-// behind.
+// Bad input to the real program: exit code, one clear message, nothing on standard output, no files
+// left behind.
 #include "program.hpp"
 
 #include <gmock/gmock.h>
@@ -63,7 +63,8 @@ void write_files(const work_folder& folder) {
   folder.file("unnamed.toml", named(""));
   folder.file("taken.toml", named("md-imex-3-2"));
   folder.file("dots.toml", many_dots(50000) + " = 1\n" + good_method);
-  // A megabyte of comment: cut there, the rest would be a method whose last lines are missing.
+  // A megabyte of comments: if the file were truncated there, the rest would be a method without its
+  // last lines.
   folder.file("long.toml", good_method + "#" + std::string(1'100'000, 'x') + "\n");
   folder.file("not_hdf5.h5", "this is no HDF5 file");
 }
@@ -204,7 +205,7 @@ TEST(bad_input, results_of_an_earlier_run_survive_a_failed_start) {
   EXPECT_EQ(read(folder.path() / "o/manifest.json"), manifest);
 }
 
-TEST(bad_input, a_numerical_failure_keeps_what_was_computed_and_says_so) {
+TEST(bad_input, a_numerical_failure_retains_the_computed_results_and_reports_it) {
   const work_folder folder;
   write_files(folder);
   // The explicit method far above its stability limit of dt = O(epsilon).

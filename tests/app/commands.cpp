@@ -1,4 +1,4 @@
-// Commands: a file of app/commands/ is all that one needs.
+// Commands: one file of app/commands/ suffices.
 #include "program.hpp"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ TEST(commands, of_the_help_are_the_files_of_their_folder) {
 }
 
 TEST(commands, of_the_help_begin_with_those_that_compute) {
-  // In the order of the files it would begin with check.
+  // In the order of the files the help would begin with check.
   const auto names = commands_of_the_help();
   ASSERT_GE(names.size(), 2U);
   EXPECT_EQ(names[0], "run");
@@ -62,7 +62,7 @@ TEST(commands, have_a_section_of_the_manual_page_and_options_that_bash_completes
   }
 }
 
-TEST(commands, describe_themselves_without_doing_anything) {
+TEST(commands, describe_themselves_without_side_effects) {
   const work_folder folder;
   for (const auto& name : command_files()) {
     const outcome help = run_apsis(folder, {name, "--help"});

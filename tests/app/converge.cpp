@@ -1,4 +1,4 @@
-// The command converge from outside.
+// The command converge as a process.
 #include "program.hpp"
 
 #include <csignal>
@@ -25,7 +25,7 @@ std::vector<std::string> with(std::vector<std::string> arguments, const std::vec
   return arguments;
 }
 
-/// Rows without what differs between two runs of the same.
+/// Rows without the columns that differ between two identical runs.
 json without_times(json rows) {
   for (auto& row : rows)
     for (const char* time : {"wall_s", "cpu_s"}) row.erase(time);
@@ -34,7 +34,7 @@ json without_times(json rows) {
 
 }  // namespace
 
-TEST(converge, prints_an_array_and_nothing_else) {
+TEST(converge, prints_only_an_array) {
   const work_folder folder;
   const outcome result = run_apsis(folder, with(small, {"--json"}));
   ASSERT_EQ(result.code, 0) << result.err;
@@ -85,7 +85,7 @@ TEST(converge, does_not_depend_on_threads) {
   EXPECT_EQ(rows("1"), rows("3"));
 }
 
-TEST(converge, a_picture_is_drawn_or_its_absence_is_said) {
+TEST(converge, a_picture_is_drawn_or_its_absence_is_reported) {
   const work_folder folder;
   const outcome result = run_apsis(folder, with(small, {"--out", "o"}));
   EXPECT_EQ(result.code, 0);
@@ -95,7 +95,7 @@ TEST(converge, a_picture_is_drawn_or_its_absence_is_said) {
     EXPECT_THAT(result.err, HasSubstr("draw"));
 }
 
-TEST(converge, a_run_that_fails_is_a_row_and_exit_code_3) {
+TEST(converge, a_failed_run_is_a_row_and_gives_exit_code_3) {
   const work_folder folder;
   // The explicit method far beyond its stability limit: its values overflow.
   const outcome result = run_apsis(
@@ -111,7 +111,7 @@ TEST(converge, a_run_that_fails_is_a_row_and_exit_code_3) {
   EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["state"], "some runs failed");
 }
 
-TEST(converge, an_interrupt_leaves_the_runs_that_are_done) {
+TEST(converge, an_interrupt_retains_finished_runs) {
   const work_folder folder;
   // Fifty runs one after the other: several seconds on any machine.
   process run(folder, {"converge", "paper/bgk-accuracy", "velocity.points=100", "time.end=0.3", "--threads",
@@ -178,7 +178,7 @@ const std::vector<bad_line> lines = {
 INSTANTIATE_TEST_SUITE_P(table, bad_lines, testing::ValuesIn(lines),
                          [](const auto& b) { return b.param.name; });
 
-TEST(converge, refuses_a_folder_that_cannot_be_before_it_computes) {
+TEST(converge, rejects_an_impossible_folder_before_it_computes) {
   const work_folder folder;
   folder.file("file", "x");
   EXPECT_EQ(run_apsis(folder, with(small, {"--out", "file"})).code, 4);

@@ -1,4 +1,4 @@
-// The command design from outside.
+// The command design as a process.
 #include "program.hpp"
 
 #include <csignal>
@@ -46,7 +46,7 @@ TEST(design, writes_a_method_that_can_be_checked_and_used) {
   EXPECT_EQ(read(folder.path() / "found.toml"), first);
 }
 
-TEST(design, says_how_near_it_came_if_nothing_is_found) {
+TEST(design, reports_the_nearest_residual_if_nothing_is_found) {
   const work_folder folder;
   const outcome result =
       run_apsis(folder, design({"--implicit", "--order", "4", "--stages", "2", "--starts", "20"}));
@@ -70,7 +70,7 @@ TEST(design, leaves_the_best_so_far_when_interrupted) {
   EXPECT_EQ(check.code, 0) << check.err;
 }
 
-TEST(design, refuses_what_cannot_be_asked_for) {
+TEST(design, rejects_impossible_demands) {
   const work_folder folder;
   const auto refused = [&folder](const std::vector<std::string>& more, const std::string& message) {
     const outcome result = run_apsis(folder, design(more));
@@ -106,7 +106,7 @@ TEST(design, refuses_what_cannot_be_asked_for) {
   EXPECT_THAT(folder.listing(), IsEmpty());
 }
 
-TEST(design, makes_no_folder_and_no_method_that_could_not_be_read_again) {
+TEST(design, creates_no_folder_and_no_unreadable_method) {
   const work_folder folder;
   const auto refused = [&](const std::string& out, const std::string& message) {
     for (const std::vector<std::string>& what :
@@ -141,7 +141,7 @@ TEST(design, writes_a_method_again_with_its_embedded_solution) {
   ASSERT_EQ(check.code, 0) << check.err;
   EXPECT_EQ(json::parse(check.out), found);
   EXPECT_THAT(run_apsis(folder, {"check", "with.toml"}).out, HasSubstr("embedded solution       order 1"));
-  // It is used, where the method by itself cannot be.
+  // A run to a tolerance requires an embedded solution.
   const std::vector<std::string> run = {"run", "paper/ode", "time.tolerance=1e-3"};
   const auto with_method = [&run](const std::string& method) {
     auto arguments = run;
@@ -161,7 +161,7 @@ TEST(design, writes_a_method_again_with_its_embedded_solution) {
   EXPECT_THAT(damaged.out, HasSubstr("[embedded] order 1: the condition of tree G is"));
 }
 
-TEST(design, says_why_there_is_no_embedded_solution) {
+TEST(design, explains_why_there_is_no_embedded_solution) {
   const work_folder folder;
   const auto refused = [&folder](const std::vector<std::string>& more, int code, const std::string& message) {
     std::vector<std::string> arguments = {"design", "--embedded"};
@@ -184,7 +184,7 @@ TEST(design, says_why_there_is_no_embedded_solution) {
   refused({"md-imex-3-2", "--stages", "3"}, 2, "--stages excludes --embedded");
 }
 
-TEST(design, takes_stages_out_and_keeps_what_it_has_when_time_is_over) {
+TEST(design, removes_stages_and_retains_the_best_method_when_time_is_over) {
   const work_folder folder;
   const outcome smaller = run_apsis(folder, design({"--order", "3", "--stages", "7", "--from",
                                                     "md-imex-8-3-accurate", "--starts", "1", "--json"}));
@@ -194,7 +194,7 @@ TEST(design, takes_stages_out_and_keeps_what_it_has_when_time_is_over) {
   const outcome none = run_apsis(folder, {"design", "--implicit", "--order", "3", "--stages", "1", "--from",
                                           "imdrk-2-3", "--out", "n.toml"});
   EXPECT_EQ(none.code, 3);
-  EXPECT_THAT(none.err, HasSubstr("no stage of 2 can be left out (least sum of weights 0.08"));
+  EXPECT_THAT(none.err, HasSubstr("no stage of 2 can be removed (least sum of weights 0.08"));
   EXPECT_FALSE(fs::exists(folder.path() / "n.toml"));
   const outcome fewer = run_apsis(folder, {"design", "--order", "3", "--stages", "6", "--evaluations", "2",
                                            "--from", "md-imex-6-3", "--out", "n.toml"});
@@ -202,7 +202,7 @@ TEST(design, takes_stages_out_and_keeps_what_it_has_when_time_is_over) {
   EXPECT_THAT(fewer.err,
               HasSubstr("--evaluations 2 is out of range ('md-imex-6-3' has 3: as many, or more)"));
   EXPECT_FALSE(fs::exists(folder.path() / "n.toml"));
-  // A stage of 16 takes seconds, so that the second cannot be taken out in time.
+  // Removing one of 16 stages takes seconds, so there is no time for the second.
   const outcome late = run_apsis(folder, {"design", "--order", "4", "--stages", "14", "--time", "0.5",
                                           "--from", "md-imex-16-4-large-r", "--out", "late.toml"});
   EXPECT_EQ(late.code, 3);

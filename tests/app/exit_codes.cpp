@@ -1,4 +1,4 @@
-// Files that are not what a command needs: one message and one exit code for every command that reads a file.
+// Unsuitable files: one message and one exit code for every command that reads a file.
 #include "program.hpp"
 
 #include <gmock/gmock.h>
@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr int input = 2, output = 4;
 
-/// A command line; "FILE" stands for the file in question. Codes where it is missing, a folder, or no text.
+/// A command line; "FILE" stands for the file in question. Exit codes if it is missing, a folder, or
+/// not text.
 struct reader {
   std::vector<std::string> arguments;
   int missing, folder, garbage;
@@ -43,7 +44,7 @@ void expect_failure(const work_folder& folder, const reader& r, const std::strin
   SCOPED_TRACE(arguments.front() + " " + arguments.back());
   const auto before = folder.listing();
   const outcome result = run_apsis(folder, arguments);
-  // Without Python nothing is drawn, and that is said first.
+  // Without Python nothing is drawn, and this is reported first.
   if (result.err.find("pictures cannot be drawn") != std::string::npos) return;
   EXPECT_EQ(result.code, code) << result.err;
   EXPECT_THAT(result.err, HasSubstr("error: "));
@@ -87,7 +88,8 @@ TEST(exit_codes, of_files_that_are_missing_folders_or_no_text) {
 
 TEST(exit_codes, of_files_that_cannot_be_read) {
   const work_folder folder;
-  // The first page of a process's memory: it can be opened, and reading it fails for every user, root too.
+  // The first page of a process's memory: it can be opened, and reading it fails for every user,
+  // including root.
   fs::create_symlink("/proc/self/mem", folder.path() / "broken.toml");
   folder.file("closed.toml", "[model]\n");
   fs::permissions(folder.path() / "closed.toml", fs::perms::none);
@@ -116,7 +118,7 @@ TEST(exit_codes, files_may_have_a_byte_order_mark_windows_line_ends_and_tabs) {
   EXPECT_EQ(run(folder.file("tabs.toml", with_tabs(text))), plain);
   for (const std::string& form : {bom + method, with_windows_line_ends(method), with_tabs(method)})
     EXPECT_EQ(run_apsis(folder, {"check", folder.file("m.toml", form)}).code, 0);
-  // Places count a tab as one character and a line end as one.
+  // Positions count a tab and a line end as one character each.
   const outcome wrong = run_apsis(
       folder, {"run", folder.file("w.toml", with_windows_line_ends("title = \"t\"\n\tcels = 3\n"))});
   EXPECT_EQ(wrong.code, input);

@@ -1,5 +1,5 @@
-// Signals: what a command does within a step of the first one. No test depends on time: a signal is sent when
-// a line was printed or a file was opened, into work that never ends by itself.
+// Signals: a command reacts within a step of the first one. No test depends on time: a signal is sent when a
+// line was printed or a file was opened, during work that never ends by itself.
 #include "program.hpp"
 
 #include <csignal>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A variable of the environment for as long as this lives.
+/// Sets an environment variable during its lifetime.
 class variable {
  public:
   variable(const char* name, const std::string& value) : name_(name) {
@@ -39,7 +39,7 @@ class variable {
 
 class every_signal : public testing::TestWithParam<int> {};
 
-TEST_P(every_signal, ends_converge_within_a_step_and_says_what_is_awaited) {
+TEST_P(every_signal, ends_converge_within_a_step_and_states_what_it_waits_for) {
   const work_folder folder;
   // Ten thousand million steps, for hours.
   process run(folder,
@@ -48,13 +48,13 @@ TEST_P(every_signal, ends_converge_within_a_step_and_says_what_is_awaited) {
   run.send(GetParam());
   const outcome stopped = run.wait();
   EXPECT_EQ(stopped.code, 130) << stopped.err;
-  EXPECT_THAT(stopped.err, HasSubstr("interrupted: waiting for the step under way of every run"));
+  EXPECT_THAT(stopped.err, HasSubstr("interrupted: waiting for the current step of every run"));
   EXPECT_THAT(stopped.err, HasSubstr("interrupted (0 of 3 runs are finished); apsis plot o draws them"));
   EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["state"], "interrupted");
   EXPECT_TRUE(json::parse(read(folder.path() / "o/converge.json")).empty());
 }
 
-TEST_P(every_signal, ends_commands_that_have_nothing_to_keep) {
+TEST_P(every_signal, ends_commands_that_have_nothing_to_save) {
   using words = std::vector<std::string>;
   std::vector<words> commands = {{"check", "m.toml", "--observe"}};
   if (APSIS_HAS_DESIGN) commands.push_back({"design", "--embedded", "m.toml", "--out", "o.toml"});
@@ -76,7 +76,7 @@ TEST_P(every_signal, ends_commands_that_have_nothing_to_keep) {
 
 TEST_P(every_signal, ends_the_drawing_of_plot_and_report_and_leaves_nothing_behind) {
   const work_folder folder, temporary;
-  // In place of Python: good at the test for its modules, then without end.
+  // Replaces Python: succeeds in the test for its modules, then runs without end.
   folder.file("python",
               "#!/bin/sh\ncase \"$1\" in -c) exit 0;; esac\necho $$ > child; echo drawing >&2\n"
               "exec tail -f /dev/null\n");

@@ -1,5 +1,5 @@
-// What could cost a user their results: full disks, closed terminals, two runs in one folder, more memory or
-// more steps than there are.
+// Threats to the results of a user: full disks, closed terminals, two runs in one folder, more memory or more
+// steps than available.
 #include "program.hpp"
 
 #include <apsis/core/version.hpp>
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A line of sh in the folder, with $APSIS for the program and what it prints in files.
+/// Runs a line of sh in the folder, with $APSIS for the program and its output in files.
 outcome shell(const work_folder& folder, const std::string& line) {
   folder.file("line.sh", "APSIS='" + std::string(APSIS_PROGRAM) + "'\ncd '" + folder.path().string() +
                              "' || exit 99\n{ " + line + "\n} > out.txt 2> err.txt\n");
@@ -45,7 +45,7 @@ std::vector<std::string> into(std::vector<std::string> arguments, const std::str
   return arguments;
 }
 
-/// Waits for something that will happen.
+/// Waits for a condition that will become true.
 template <class Condition>
 void await(const Condition& happened) {
   while (!happened()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -73,8 +73,8 @@ void await(const Condition& happened) {
 TEST(a_full_disk, is_an_output_error_in_every_file_and_leaves_the_earlier_results_alone) {
   const work_folder folder;
   ASSERT_EQ(shell(folder, "$APSIS run " + gas + " time.end=0.002 --out o").code, 0);
-  // A limit of the size of files acts as a full disk. In units of 512 bytes: from one that stops the first
-  // file to one that stops the last HDF5 file only.
+  // A file size limit acts as a full disk. In units of 512 bytes: from one that stops the first file to one
+  // that stops only the last HDF5 file.
   for (const int blocks : {1, 8, 20, 36}) {
     const outcome full = shell(
         folder, "ulimit -f " + std::to_string(blocks) + "; $APSIS run " + gas + " time.end=0.01 --out o");
@@ -92,7 +92,7 @@ TEST(a_full_disk, is_an_output_error_in_every_file_and_leaves_the_earlier_result
 TEST(a_full_disk, ends_an_hdf5_file_without_a_crash_at_the_end_of_the_process) {
   const work_folder folder;
   const std::string path = (folder.path() / "x.h5").string();
-  // In a process of its own: HDF5 used to crash when the process ended.
+  // In a separate process: HDF5 used to crash when the process ended.
   EXPECT_EXIT(write_beyond_a_limit(path), testing::ExitedWithCode(41), "File too large");
 }
 
@@ -109,7 +109,7 @@ TEST(unwritable_messages, do_not_change_how_the_program_ends) {
 
 TEST(unwritable_messages, do_not_end_up_in_results) {
   const work_folder folder;
-  // Without descriptors 1 and 2 the first files of the run would take their numbers.
+  // Without descriptors 1 and 2 the first files of the run would get their numbers.
   EXPECT_EQ(shell(folder, "$APSIS run paper/ode --out o >&- 2>&-").code, 4);
   for (const std::string name : {"manifest.json", "history.csv", "fields.csv", "solution.xdmf"})
     EXPECT_THAT(read(folder.path() / "o" / name), Not(HasSubstr("info: "))) << name;
@@ -128,7 +128,7 @@ TEST(a_result_folder, belongs_to_one_run_at_a_time) {
     EXPECT_THAT(second.err, AllOf(HasSubstr("is in use (process "), HasSubstr("wait for that run to end")))
         << what;
   }
-  // A kill releases the folder, whatever it leaves behind.
+  // A killed process releases the folder, whatever files it leaves.
   first.send(SIGKILL);
   EXPECT_EQ(first.wait().code, 1000 + SIGKILL);
   EXPECT_TRUE(fs::exists(folder.path() / "o/.lock"));
@@ -136,7 +136,7 @@ TEST(a_result_folder, belongs_to_one_run_at_a_time) {
   EXPECT_FALSE(fs::exists(folder.path() / "o/.lock"));
 }
 
-TEST(a_result_folder, has_the_files_of_one_run_whoever_came_first) {
+TEST(a_result_folder, has_the_files_of_one_run_in_any_order_of_arrival) {
   const work_folder folder;
   for (int round = 0; round < 5; ++round) {
     const std::string name = "o" + std::to_string(round);
@@ -210,7 +210,7 @@ TEST(a_run, of_very_many_steps_is_announced_as_such_and_its_history_stays_small)
   }
 }
 
-TEST(a_manifest, says_with_what_and_where_a_run_was_made) {
+TEST(a_manifest, records_version_command_and_host_of_a_run) {
   const work_folder folder;
   ASSERT_EQ(shell(folder, "$APSIS run paper/ode time.dt=1/16 --out o").code, 0);
   const json m = json::parse(read(folder.path() / "o/manifest.json"));

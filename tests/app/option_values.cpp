@@ -65,8 +65,7 @@ TEST(option_values, the_definitions_name_options_of_every_type) {
     numbers += t.type == "FLOAT" ? 1 : 0;
     integers += t.type == "INT" || t.type == "UINT" ? 1 : 0;
   }
-  // Of today, half of them of apsis design; fewer means that the test no longer reads the definitions as they
-  // are written.
+  // Current number, half of them of apsis design; fewer means that the test no longer reads all definitions.
   EXPECT_GE(options, APSIS_HAS_DESIGN ? 30 : 17);
   EXPECT_GE(arguments, 9);
   EXPECT_GE(numbers, APSIS_HAS_DESIGN ? 8 : 1);

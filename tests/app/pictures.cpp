@@ -1,5 +1,4 @@
-// `apsis plot` and `apsis report`: what is drawn stands in tests/python/test_plot.py, here is how they are
-// called.
+// `apsis plot` and `apsis report` as commands; tests/python/test_plot.py checks the pictures themselves.
 #include "program.hpp"
 
 #include <filesystem>
@@ -36,7 +35,7 @@ TEST(plot, draws_runs_studies_and_methods_without_the_python_package) {
   ASSERT_EQ(run_apsis(folder, {"show", "md-imex-3-2", "--format", "toml"}).code, 0);
   std::ofstream(folder.path() / "mine.toml")
       << run_apsis(folder, {"show", "md-imex-3-2", "--format", "toml"}).out;
-  // A package of the same name in the present folder is not taken for ours.
+  // A package of the same name in the working directory is not used instead.
   fs::create_directory(folder.path() / "apsis");
   std::ofstream(folder.path() / "apsis" / "__init__.py") << "raise SystemExit(77)\n";
   const auto drawn =

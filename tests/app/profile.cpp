@@ -1,4 +1,4 @@
-// `apsis run --profile`: the kernels that the schedule of the method asks for, no more and no less.
+// `apsis run --profile`: exactly the kernels that the schedule of the method requires.
 #include "program.hpp"
 
 #include <apsis/integrate/schedule.hpp>
@@ -32,7 +32,7 @@ std::map<std::string, json> kernels_of(const std::string& formulation, const std
 
 }  // namespace
 
-TEST(profile, counts_what_the_schedule_asks_for) {
+TEST(profile, counts_the_kernels_of_the_schedule) {
   constexpr double numbers = 40 * 152;  // rows of 150 velocities are padded to whole vectors
   for (const char* method : {"md-imex-3-2", "md-imex-6-3"}) {
     const apsis::schedule plan(apsis::find_method(method).coefficients<double>());
@@ -62,7 +62,7 @@ TEST(profile, counts_what_the_schedule_asks_for) {
   }
 }
 
-TEST(profile, is_a_table_after_the_summary_and_not_there_unless_asked_for) {
+TEST(profile, is_a_table_after_the_summary_only_on_request) {
   work_folder folder;
   const outcome with = run_apsis(folder, {"run", "paper/bgk-mixed", "time.end=0.001", "--profile"});
   EXPECT_EQ(with.code, 0);

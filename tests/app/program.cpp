@@ -46,8 +46,9 @@ std::vector<std::string> work_folder::listing() const {
 process::process(const work_folder& folder, const std::vector<std::string>& arguments, hangups hangup)
     : capture_(fresh_folder("apsis-capture")), id_(fork()) {
   if (id_ != 0) return;
-  std::signal(SIGHUP,
-              hangup == hangups::ignored ? SIG_IGN : SIG_DFL);  // the caller of the tests may ignore it
+  std::signal(
+      SIGHUP,
+      hangup == hangups::ignored ? SIG_IGN : SIG_DFL);  // the parent process of the tests may ignore it
   const int out = open((capture_ / "out").c_str(), O_CREAT | O_WRONLY, 0600);
   const int err = open((capture_ / "err").c_str(), O_CREAT | O_WRONLY, 0600);
   dup2(out, STDOUT_FILENO);
@@ -70,7 +71,7 @@ bool process::wait_until(const std::function<bool()>& seen) const {
   };
   while (!seen()) {
     if (ended()) return seen();
-    usleep(2000);  // between two looks; nothing depends on its length
+    usleep(2000);  // polling interval; no result depends on its length
   }
   return true;
 }

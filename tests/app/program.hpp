@@ -14,7 +14,7 @@ struct outcome {
   std::string out, err;
 };
 
-/// A folder of its own for one test, removed at its end.
+/// A temporary folder for one test, removed at its end.
 class work_folder {
  public:
   work_folder();
@@ -23,22 +23,22 @@ class work_folder {
   work_folder& operator=(const work_folder&) = delete;
   const std::filesystem::path& path() const { return path_; }
   std::string file(const std::string& name, const std::string& text) const;
-  /// Every path below, sorted, with sizes: two listings are equal if nothing was left behind.
+  /// Every path below, sorted, with sizes: two equal listings mean that no file was left behind.
   std::vector<std::string> listing() const;
 
  private:
   std::filesystem::path path_;
 };
 
-/// The program, started in `folder`, with its output in files beside it.
+/// The program, started in `folder`, with its output in adjacent files.
 class process {
  public:
   enum class hangups { received, ignored };
-  /// With `ignored` as under nohup.
+  /// With `ignored` signals, as under nohup.
   process(const work_folder& folder, const std::vector<std::string>& arguments,
           hangups hangup = hangups::received);
   void send(int signal) const;
-  /// Waits until seen() or the end of the program, however long that takes; what seen() says then.
+  /// Waits until seen() or the end of the program, without a time limit; returns seen().
   bool wait_until(const std::function<bool()>& seen) const;
   /// Standard error so far.
   std::string said() const;

@@ -1,4 +1,4 @@
-// The progress bar: on a terminal, and nowhere else.
+// The progress bar: only on a terminal.
 #include "terminal.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 const std::string erase_line = "\r\033[K";
 constexpr const char* bar = "\\[=*>? *\\] +[0-9]+ %  ([0-9:]+|--) left  ";
 
-/// What stood on the terminal between two erasures, the text before the first and behind the last included.
+/// Texts on the terminal between erasures, including the text before the first and after the last.
 std::vector<std::string> drawn(const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0;;) {
@@ -31,7 +31,7 @@ std::vector<std::string> drawn(const std::string& text) {
   }
 }
 
-/// Only those with a bar.
+/// Only texts with a bar.
 std::vector<std::string> bars(const std::string& text) {
   std::vector<std::string> found;
   for (const auto& part : drawn(text))

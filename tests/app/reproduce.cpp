@@ -1,4 +1,4 @@
-// apsis reproduce from outside: verdicts, report, resuming, and what goes wrong.
+// apsis reproduce as a process: verdicts, report, resuming, and failures.
 #include "program.hpp"
 
 #include <csignal>
@@ -55,19 +55,19 @@ TEST(reproduce, prints_only_the_document_when_asked_for_json) {
   EXPECT_EQ(document["claims"][0]["findings"][0]["value"], 2.0);
 }
 
-TEST(reproduce, resumes_what_was_shown_and_refuses_what_is_damaged) {
+TEST(reproduce, resumes_checked_claims_and_rejects_damaged_files) {
   const work_folder folder;
   ASSERT_EQ(run_apsis(folder, {"reproduce", "C3", "--out", "r"}).code, 0);
   const auto file = folder.path() / "r" / "reproduce.json";
   json document = json::parse(app_test::read(file));
-  document["claims"][0]["wall_s"] = 1234.5;  // a mark that a new check would not have
+  document["claims"][0]["wall_s"] = 1234.5;  // a mark that a repeated check would not have
   std::ofstream(file) << document;
   ASSERT_EQ(run_apsis(folder, {"reproduce", "C3", "C4", "--out", "r", "--resume"}).code, 0);
   document = json::parse(app_test::read(file));
   EXPECT_EQ(document["claims"][0]["wall_s"], 1234.5);
   EXPECT_EQ(document["claims"].size(), 2U);
 
-  document["claims"][0]["holds"] = false;  // what did not hold is checked again
+  document["claims"][0]["holds"] = false;  // claims that did not hold are checked again
   std::ofstream(file) << document;
   ASSERT_EQ(run_apsis(folder, {"reproduce", "C3", "--out", "r", "--resume"}).code, 0);
   EXPECT_NE(json::parse(app_test::read(file))["claims"][0]["wall_s"], 1234.5);
@@ -102,9 +102,9 @@ TEST(reproduce, names_the_nearest_claim_and_leaves_nothing_behind) {
   EXPECT_EQ(run_apsis(folder, {"reproduce", "C3", "--out", "/proc/nowhere"}).code, 4);
 }
 
-TEST(reproduce, an_interrupt_keeps_the_claims_so_far) {
+TEST(reproduce, an_interrupt_retains_checked_claims) {
   const work_folder folder;
-  // All claims take a minute and more, so that the first is not the last when the signal comes.
+  // All claims take more than a minute, so the first one is not the last when the signal comes.
   app_test::process running(folder, {"reproduce", "--threads", "1", "--out", "r"});
   const auto file = folder.path() / "r" / "reproduce.json";
   ASSERT_TRUE(running.wait_until([&] { return std::filesystem::exists(file); }));

@@ -40,7 +40,7 @@ std::vector<std::string> lines(const std::string& text) {
   return out;
 }
 
-/// All numbers and the case; the manifest in the file says when it was written.
+/// All numbers and the case; the manifest in the file contains the time of writing.
 void expect_same_solution(const fs::path& a, const fs::path& b) {
   const auto one = apsis::hdf5_file::open(a.string()), other = apsis::hdf5_file::open(b.string());
   ASSERT_EQ(one.datasets(), other.datasets());
@@ -74,7 +74,7 @@ void expect_same_results(const fs::path& a, const fs::path& b) {
     EXPECT_TRUE(read(a / "snapshots" / name) == read(b / "snapshots" / name)) << name;
 }
 
-/// Every dataset that the description names is there, with as many numbers as it says. Returns how many.
+/// Checks that every dataset of the description exists with the stated size. Returns their number.
 int check_references(const fs::path& folder) {
   const std::string text = read(folder / "solution.xdmf");
   static const std::regex item("Precision=\"([48])\" Dimensions=\"([0-9 ]+)\">([^:<]+):/([^<]+)<");
@@ -162,7 +162,7 @@ TEST(results, a_solution_carries_its_case_and_its_manifest) {
   ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.004", "--out", "o"})).code, 0);
   const auto file = apsis::hdf5_file::open((folder.path() / "o/solution.h5").string());
   EXPECT_EQ(file.read_text_attribute("manifest"), read(folder.path() / "o/manifest.json"));
-  // The case that is in the file is the case: it runs, to the same numbers.
+  // The case in the file is complete: it runs to the same numbers.
   folder.file("again.toml", file.read_text_attribute("case"));
   ASSERT_EQ(run_apsis(folder, {"run", "again.toml", "--out", "p"}).code, 0);
   expect_same_solution(folder.path() / "o/solution.h5", folder.path() / "p/solution.h5");
@@ -192,12 +192,12 @@ TEST(results, snapshots_of_the_distribution_are_of_some_cells_and_of_the_chosen_
         ASSERT_EQ(static_cast<float>(f[300 * cell + k]), static_cast<float>(g[100 * cell + k]));
     }
   }
-  // The last snapshot is the end, which has every digit of every cell.
+  // The last snapshot is the end, with every digit of every cell.
   const auto last = apsis::hdf5_file::open((folder.path() / "all/snapshots" / names.back()).string());
   const auto end = apsis::hdf5_file::open((folder.path() / "some/solution.h5").string());
   EXPECT_EQ(last.read("f"), end.read("f"));
   for (const std::string which : {"all", "some"}) EXPECT_GT(check_references(folder.path() / which), 20);
-  // A run without them takes those of the earlier one away.
+  // A run without snapshots removes those of the earlier one.
   ASSERT_EQ(run_apsis(folder, with(run, {"output.distribution=none", "--out", "all"})).code, 0);
   EXPECT_FALSE(fs::exists(folder.path() / "all/snapshots"));
   EXPECT_FALSE(apsis::hdf5_file::open((folder.path() / "all/solution.h5").string()).has("f"));
@@ -212,7 +212,7 @@ TEST(results, two_runs_and_any_number_of_threads_give_the_same_bits) {
   expect_same_results(folder.path() / "a", folder.path() / "c");
 }
 
-TEST(results, a_run_says_how_many_threads_it_uses) {
+TEST(results, a_run_states_its_number_of_threads) {
   const work_folder folder;
   const auto said = [&](const std::vector<std::string>& more) {
     return run_apsis(folder, with(small, with({"time.end=0.001"}, more))).err;
@@ -230,9 +230,9 @@ TEST(results, only_chosen_fields_are_written) {
 
 class interruption : public testing::TestWithParam<int> {};
 
-TEST_P(interruption, gives_130_and_a_checkpoint_that_goes_on_bit_for_bit) {
+TEST_P(interruption, gives_130_and_a_checkpoint_that_continues_bit_for_bit) {
   const work_folder folder;
-  // The signal comes when the first step is done, which a checkpoint shows; the run is far from its end then.
+  // The signal comes after the first step, when a checkpoint exists; the run is then far from its end.
   const fs::path checkpoint = folder.path() / "stopped/checkpoint.h5";
   process run(folder, with(small, {"time.end=50.0", "output.every=0.01", "output.checkpoint_every=1", "--out",
                                    "stopped"}));
@@ -267,7 +267,7 @@ TEST(results, fifty_kills_at_random_moments_lose_nothing) {
   for (int attempt = 0; attempt < 50; ++attempt) {
     const std::string before = read(saved);
     process run(folder, go_on("1"));
-    // Every other one comes at least to its first step, and is killed at a random moment after it.
+    // Every second run reaches at least its first step, and is killed at a random moment after it.
     if (attempt % 2 == 0) {
       ASSERT_TRUE(run.wait_until([&] { return read(saved) != before; }));
     }
@@ -289,9 +289,9 @@ TEST(results, fifty_kills_at_random_moments_lose_nothing) {
 
 INSTANTIATE_TEST_SUITE_P(signals, interruption, testing::Values(SIGINT, SIGTERM, SIGHUP));
 
-TEST(results, a_start_up_goes_on_from_a_checkpoint_bit_for_bit_and_says_what_it_cost) {
+TEST(results, a_graded_start_continues_from_a_checkpoint_bit_for_bit_and_reports_its_cost) {
   const work_folder folder;
-  // Steps slow enough for the run to be stopped after the first of the start-up.
+  // Steps slow enough that the run can be stopped after the first step of the graded start.
   const std::vector<std::string> slow = {"run",
                                          "paper/bgk-mixed",
                                          "time.method=md-imex-4-2",
@@ -359,7 +359,7 @@ TEST(results, lists_and_certificates_are_json) {
     EXPECT_TRUE(m["claims_hold"].get<bool>());
     const json shown = json::parse(run_apsis(folder, {"show", name, "--format", "json"}).out);
     EXPECT_EQ(shown["A"].size(), shown["stages"].get<std::size_t>());
-    // The file that `show` writes is the method again.
+    // The file written by `show` is the same method.
     folder.file("m.toml", run_apsis(folder, {"show", name, "--format", "toml"}).out);
     EXPECT_EQ(json::parse(run_apsis(folder, {"check", "m.toml", "--json"}).out), m);
     EXPECT_EQ(run_apsis(folder, {"show", name, "--format", "latex"}).code, 0);
@@ -369,7 +369,7 @@ TEST(results, lists_and_certificates_are_json) {
   EXPECT_THAT(run_apsis(folder, {"show", "paper/decay"}).out, HasSubstr("imdrk-2-3"));
 }
 
-TEST(results, keys_and_commands_are_json_with_what_their_documentation_says) {
+TEST(results, keys_and_commands_are_json_with_their_documentation) {
   const work_folder folder;
   std::map<std::string, json> keys;
   for (const auto& key : json::parse(run_apsis(folder, {"list", "keys", "--json"}).out))
@@ -399,7 +399,7 @@ TEST(results, the_list_of_methods_fits_a_wide_terminal_and_names_the_families) {
   const work_folder folder;
   const std::string text = run_apsis(folder, {"list", "methods"}).out;
   std::istringstream lines(text);
-  // Signs of one byte only, so bytes are columns.
+  // Characters of one byte only, so bytes are columns.
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 122U) << line;
   EXPECT_THAT(text, HasSubstr("md-imex-chain-S-2"));
   EXPECT_THAT(text, HasSubstr("no O(epsilon) plateau"));
@@ -434,10 +434,10 @@ TEST(results, check_observes_the_limits_of_a_method_that_is_not_in_the_catalogue
   EXPECT_THAT(run_apsis(folder, {"check", "dirk-2-2", "--observe"}).out, HasSubstr("u' = -10 u^2"));
 }
 
-TEST(results, a_run_to_a_tolerance_goes_on_from_a_checkpoint_bit_for_bit_and_says_what_it_rejected) {
+TEST(results, a_run_to_a_tolerance_continues_from_a_checkpoint_bit_for_bit_and_reports_rejections) {
   const work_folder folder;
   const auto run = with(small, {"time.method=md-imex-8-3", "time.tolerance=1e-5", "time.end=0.4"});
-  // Half of the way, whatever the machine does; its checkpoint is one of a run to a longer end.
+  // At half the time, on any machine; its checkpoint belongs to a run with a later end.
   ASSERT_EQ(run_apsis(folder, with(run, {"time.end=0.2", "--out", "stopped"})).code, 0);
   const outcome resumed =
       run_apsis(folder, with(run, {"--restart", "stopped/checkpoint.h5", "--out", "resumed"}));

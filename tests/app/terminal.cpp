@@ -13,7 +13,7 @@
 namespace app_test {
 namespace {
 
-/// Both ends of a pseudo-terminal that changes nothing in what is written to it.
+/// Both ends of a pseudo-terminal in raw mode.
 struct pseudo_terminal {
   explicit pseudo_terminal(unsigned short columns) : reader(posix_openpt(O_RDWR | O_NOCTTY)) {
     if (reader < 0 || grantpt(reader) != 0 || unlockpt(reader) != 0)

@@ -1,4 +1,4 @@
-"""Pages that are wrong in one way each: the runner of blocks must say so, with the line, and must accept what is right."""
+"""Pages with one error each: the runner of blocks must report it with its line, and must accept correct pages."""
 import os
 import subprocess
 import sys
@@ -54,7 +54,7 @@ class Shell(Pages):
                              block("sh", "python3 -c 'import apsis; print(len(apsis.methods()) > 4)'"),
                              block("text", "True", "output"))
 
-    def test_a_command_that_fails_in_the_middle_is_told_with_its_message(self):
+    def test_a_command_that_fails_in_the_middle_is_reported_with_its_message(self):
         self.assert_refused(3, "nothing is called 'nonsense'", block("sh", "apsis show nonsense\ntrue"))
 
     def test_a_pipe_that_fails_at_its_beginning_fails(self):
@@ -87,7 +87,7 @@ class Python(Pages):
         self.assert_accepted(block("python", "x = 1"), block("sh", "true"), block("python", "print(x + 1)"),
                              block("text", "2", "output"))
 
-    def test_an_exception_is_told_with_its_line(self):
+    def test_an_exception_is_reported_with_its_line(self):
         self.assert_refused(3, "docs/page.md:3\", line 2", block("python", "x = 1\nx / 0"))
 
     def test_an_interpreter_that_ends_is_noticed(self):
@@ -103,13 +103,13 @@ class Cpp(Pages):
     def test_a_program_is_compiled_against_the_installed_library_and_run(self):
         self.assert_accepted(block("cpp", self.MAIN), block("text", "…", "output"))
 
-    def test_a_program_that_does_not_compile_is_told(self):
+    def test_a_program_that_does_not_compile_is_reported(self):
         self.assert_refused(3, "was not declared", block("cpp", "int main() { return nowhere; }"))
 
-    def test_a_program_that_fails_is_told(self):
+    def test_a_program_that_fails_is_reported(self):
         self.assert_refused(3, "exit code 7", block("cpp", "int main() { return 7; }"))
 
-    def test_a_piece_without_main_needs_a_file_it_comes_from(self):
+    def test_a_fragment_without_main_needs_its_source_file(self):
         self.assert_refused(3, "no main", block("cpp", "int x;"))
 
     def test_a_file_is_written_for_the_commands_that_compile_it(self):
@@ -135,11 +135,11 @@ class Excerpts(Pages):
     def test_lines_of_a_file_at_any_indentation(self):
         self.assert_accepted(block("cpp", "int x = 1;\nint y = 2;", "from: file.cpp"))
 
-    def test_lines_may_be_left_out_where_it_is_said(self):
+    def test_lines_may_be_omitted_where_marked(self):
         self.assert_accepted(block("cpp", "void f() {\n  int x = 1;\n  // …\n  int z = 3;\n}", "from: file.cpp"))
         self.assert_refused(4, "not in file.cpp", block("cpp", "int x = 1;\nint z = 3;", "from: file.cpp"))
 
-    def test_what_is_not_there_is_refused(self):
+    def test_a_missing_excerpt_is_rejected(self):
         self.assert_refused(4, "not in file.cpp", block("cpp", "int x = 2;", "from: file.cpp"))
         self.assert_refused(4, "not in file.cpp", block("cpp", "int z = 3;\n// …\nint x = 1;", "from: file.cpp"))
         self.assert_refused(4, "not in file.cpp", block("cpp", "// …", "from: file.cpp"))
@@ -175,7 +175,7 @@ class Outputs(Pages):
     def test_an_output_needs_a_block_before_it(self):
         self.assert_refused(4, "no block before", block("text", "one", "output"))
 
-    def test_a_picture_is_drawn_by_somebody(self):
+    def test_every_picture_is_drawn_by_a_block_or_report(self):
         (self.root / "docs" / "images").mkdir(parents=True)
         for name in ("a.png", "work-b.png", "c.png"):
             (self.root / "docs" / "images" / name).touch()
@@ -187,7 +187,7 @@ class Outputs(Pages):
         (self.root / "Makefile").write_text("figures:\n\tapsis plot --compare c --out results\n", encoding="utf-8")
         self.assert_accepted("![b](images/work-b.png)\n![c](images/c.png)")
 
-    def test_update_writes_what_was_printed_and_the_pictures(self):
+    def test_update_writes_outputs_and_pictures(self):
         page = self.run_page("![one](images/one.png)", block("sh", "mkdir images; echo p > images/one.png; printf '1\\n2\\n'"),
                              "- item\n" + textwrap.indent(block("text", "one", "output"), "  "))
         self.assertEqual(len(page.problems), 2, page.problems)
@@ -199,7 +199,7 @@ class Outputs(Pages):
 
 
 class Rules(Pages):
-    def test_a_block_that_nothing_checks_is_refused(self):
+    def test_an_unchecked_block_is_rejected(self):
         for language in ("toml", "cmake", "bash", "json", "c++"):
             self.assert_refused(3, "nothing checks", block(language, "x"))
 

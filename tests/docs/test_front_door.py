@@ -1,5 +1,5 @@
-"""Commands of README.md, CONTRIBUTING.md and docs/first-steps.md that build and test everything: here only that make knows what
-they need, since a test cannot run all tests. test_long.py goes through the door."""
+"""Commands of README.md, CONTRIBUTING.md and docs/first-steps.md that build and test everything. Only the existence of their make
+targets is checked here, since a test cannot run all tests; test_long.py executes `make run`."""
 import re
 import subprocess
 import unittest
@@ -18,7 +18,7 @@ class FrontDoor(unittest.TestCase):
             done = subprocess.run(["make", "-n", "-C", ROOT, target], text=True, capture_output=True)
             self.assertEqual(done.returncode, 0, f"{page}: make {target}: {done.stderr}")
 
-    def test_make_help_names_every_target_but_those_behind_others(self):
+    def test_make_help_names_every_target_except_internal_ones(self):
         help_text = subprocess.run(["make", "-C", ROOT], text=True, capture_output=True).stdout
         named = set(re.findall(r"^  make ([a-z-]+)", help_text, re.M))
         phony = set(re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M)[1].split())

@@ -1,5 +1,5 @@
-"""Blocks of the documentation that take minutes: `make run` of README.md in a copy of the sources, and every block that says
-that it is run here (docs/design.md)."""
+"""Blocks of the documentation that take minutes: `make run` of README.md in a copy of the sources, and every block that names
+this test (docs/design.md)."""
 import os
 import shutil
 import subprocess
@@ -37,7 +37,7 @@ class Long(unittest.TestCase):
         shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns("build", "results", ".git", "__pycache__"))
         subprocess.run(["make", "-C", source, "run"], check=True, stdout=subprocess.DEVNULL)
         self.assertTrue((source / "results" / "bgk-mixed.png").exists())
-        # What the front page says next: the library can be installed from what is there.
+        # Next step of the front page: the library can be installed from this build.
         prefix = self.work / "prefix"
         subprocess.run(["cmake", "--install", source / "build" / "release", "--prefix", prefix], check=True, stdout=subprocess.DEVNULL)
         self.assertTrue((prefix / "bin" / "apsis").exists())

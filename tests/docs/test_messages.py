@@ -9,7 +9,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 CPP_FOLDERS = ["app", "src/apsis", "paper", "python/bindings"]
 PYTHON_FOLDERS = ["python/apsis", "docs", "studies", "bench", "scripts"]
 
-# What throws or warns, and the helpers of a file that make a message for it. A constructor may be written with braces.
+# Expressions that throw or warn, and helpers of a file that compose messages. Constructors may have braces.
 CALL = re.compile(
     r"\b(?:\w+_error|fail\w*|refuse|cannot|unusable|missing|problem\w*|log::warning|log::info|warning)\s*(?=[({])"
     r"|\breturn\s+(?=fmt::format\(|\")")
@@ -18,8 +18,8 @@ CODE = re.compile(r'"(?P<text>(?:[^"\\\n]|\\.)*)"|//[^\n]*|\'(?:[^\'\\]|\\.)\''
 
 
 def messages(source, at):
-    """The texts in the brackets that open at `at`, or else up to the semicolon: one for each operand of commas and ?:, with {} for
-    what is no literal. A bracket within is {} to what stands around it, and has texts of its own."""
+    """Returns the texts in the brackets that open at `at`, otherwise up to the semicolon: one for each operand of commas and ?:, with
+    {} for non-literals. A nested bracket is {} in the surrounding text, and has its own texts."""
     texts, around, current = [], [], ""
     bracketed = source[at] in "({"
     for token in CODE.finditer(source, at):
@@ -76,7 +76,7 @@ def all_messages():
 
 
 def unseparated(text):
-    """Whether a suggestion follows what stands before it, a reason in parentheses or a name, with nothing but a space."""
+    """Whether only a space separates a suggestion from the preceding reason in parentheses or name."""
     text = re.sub(r"(?<=\w)\(\)", "", text)  # the name of a function, as in "call on() first"
     return re.search(r"\) [^\s();][^();]*$|['})] (\{\})+$", text) is not None and re.search("[a-z]{3}", text) is not None
 
@@ -85,10 +85,10 @@ class Messages(unittest.TestCase):
     def test_reasons_are_separated_from_suggestions(self):
         found = list(all_messages())
         self.assertEqual([f"{place}: {text}" for place, text in found if unseparated(text)], [])
-        # Far fewer than today's 246 with a separator would mean that they are no longer found.
+        # Currently 246 with a separator; far fewer would mean that the reader misses them.
         self.assertGreater(sum("); " in text for _, text in found), 180)
 
-    def test_the_reader_of_c_plus_plus_sees_every_way_to_write_a_message(self):
+    def test_the_reader_of_c_plus_plus_finds_every_form_of_a_message(self):
         for source, wanted in (
             ('throw input_error("bad \'" + name(x, y) + "\' (why) "\n  "do")', "bad '{}{}' (why) do"),
             ('throw input_error(place, fmt::format("bad {} (why) {}", f("a", b), g))', "bad {} (why) {}"),
@@ -100,7 +100,7 @@ class Messages(unittest.TestCase):
             texts = [text for match in CALL.finditer(source) for text in messages(source, match.end())]
             self.assertIn(wanted, texts)
 
-    def test_the_pattern_sees_what_it_forbids(self):
+    def test_the_pattern_finds_missing_separators(self):
         self.assertTrue(unseparated("cannot read '{}' (it is a folder) give a file"))
         self.assertTrue(unseparated("no case '{}' (neither a file nor built in) {}"))
         self.assertTrue(unseparated("unknown method '{}' {}{}"))

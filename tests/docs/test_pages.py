@@ -17,7 +17,7 @@ class Pages(unittest.TestCase):
             for case in re.findall(r"apsis (?:run|converge|show) ([a-z]+/[a-z0-9-]+)", text):
                 self.assertTrue((ROOT / "cases" / f"{case}.toml").exists(), f"{page}: {case}")
 
-    def test_every_picture_is_shown(self):  # and drawn by someone: docs/execute.py looks at those that are shown
+    def test_every_picture_is_shown(self):  # docs/execute.py checks that every shown picture is drawn
         shown = {name for text in PAGES.values() for name in re.findall(r"\bimages/([\w.-]+)\)", text)}
         self.assertEqual({picture.name for picture in (ROOT / "docs" / "images").iterdir()}, shown)
 

@@ -1,4 +1,4 @@
-"""The site is built without a warning, every link inside it leads somewhere, and it loads nothing from elsewhere."""
+"""The site builds without warnings, its internal links are valid, and it loads no external resources."""
 import os
 import re
 import subprocess
@@ -18,7 +18,7 @@ LOADING = {("script", "src"), ("img", "src"), ("iframe", "src"), ("source", "src
 
 
 class Reader(HTMLParser):
-    """Links, what is loaded, and the places that links can lead to."""
+    """Links, loaded resources, and link targets of a page."""
 
     def __init__(self, text):
         super().__init__()
@@ -48,7 +48,7 @@ class Site(unittest.TestCase):
         cls.html = WORK / "html"
         cls.pages = {page: Reader(page.read_text(encoding="utf-8")) for page in cls.html.rglob("*.html")}
 
-    def test_every_link_inside_leads_somewhere(self):
+    def test_every_internal_link_has_a_target(self):
         for page, reader in self.pages.items():
             for link in reader.links + reader.loaded:
                 if is_elsewhere(link) or link.startswith("data:"):
@@ -59,7 +59,7 @@ class Site(unittest.TestCase):
                 if file in self.pages and target.fragment:
                     self.assertIn(unquote(target.fragment), self.pages[file].places, f"{page.name}: {link}")
 
-    def test_nothing_is_loaded_from_elsewhere(self):
+    def test_no_external_resource_is_loaded(self):
         for page, reader in self.pages.items():
             self.assertEqual([x for x in reader.loaded if is_elsewhere(x)], [], page)
         for style in self.html.rglob("*.css"):
@@ -70,7 +70,7 @@ class Site(unittest.TestCase):
             text = script.read_text(encoding="utf-8")
             self.assertIsNone(re.search(r"(?:fetch|import|importScripts)\(\s*[\"'](?:https?:)?//", text), script.name)
 
-    def test_a_browser_shows_it_at_any_width_without_a_word(self):
+    def test_a_browser_shows_it_at_any_width_without_console_messages(self):
         browser = Browser()
         self.addCleanup(browser.quit)
         inside = self.html.as_uri() + "/"

@@ -13,7 +13,13 @@ PAGE = ROOT / "docs" / "vocabulary.md"
 REVISED = [
     "src/apsis/core", "src/apsis/exec", "src/apsis/method", "src/apsis/integrate", "src/apsis/design", "src/apsis/scheme",
     "tests/core", "tests/exec", "tests/method", "tests/integrate", "tests/design", "tests/scheme", "tests/support",
-    "methods", "bench", "studies", "docs/vocabulary.md",
+    "src/apsis/verify", "paper", "app", "tests/verify", "tests/paper", "tests/app", "tests/install",
+    "methods", "cases", "cmake", "scripts", "bench", "studies", "README.md", "CHANGELOG.md", "CONTRIBUTING.md",
+    "docs/blocks.py", "docs/build.py", "docs/conf.py", "docs/execute.py", "docs/headers.py", "docs/links.py", "docs/reference.py",
+    "docs/asymptotics.md", "docs/claims.md", "docs/conventions.md",
+    "docs/convergence.md", "docs/design.md", "docs/first-steps.md", "docs/index.md", "docs/linking.md", "docs/measured.md",
+    "docs/methods.md", "docs/models.md", "docs/plateaus.md", "docs/space.md", "docs/speed.md", "docs/strong-stability.md",
+    "docs/study.md", "docs/tutorials", "docs/vocabulary.md",
 ]
 
 # Phrases with a plainer alternative: a pattern and what to write instead.

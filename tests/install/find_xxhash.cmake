@@ -1,5 +1,5 @@
-# XXH3 needs xxHash 0.8: a header of it is found where it is, an older one and none are refused, and the message says
-# what to install. Without the line in CMakeLists.txt a missing header would end the build, not the configuration.
+# XXH3 requires xxHash 0.8: a header of this version is found, an older or missing one is an error, and the message names
+# the package to install. Without the line in CMakeLists.txt a missing header would end the build, not the configuration.
 #   cmake -DSOURCE=… -DWORK=… -P find_xxhash.cmake
 file(READ ${SOURCE}/CMakeLists.txt lists)
 string(REGEX MATCH "find_package\\(XXHash [^)]*REQUIRED\\)" request "${lists}")

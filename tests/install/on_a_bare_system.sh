@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# on_a_bare_system.sh BUILD: installs the Debian packages of BUILD with apt in a Debian 12 that has nothing else, runs a case there, and
+# on_a_bare_system.sh BUILD: installs the Debian packages of BUILD with apt in a minimal Debian 12, runs a case there, and
 # builds and runs the consumer against libapsis-dev. Needs root, a network and debootstrap; takes some minutes.
 set -euo pipefail
 build=$(readlink -f "$1")
@@ -7,7 +7,7 @@ here=$(dirname "$(readlink -f "$0")")
 root=$(mktemp -d) && chmod 755 "$root"
 trap 'rm -rf --one-file-system "$root"' EXIT
 debootstrap --variant=minbase bookworm "$root" >"$root.log" 2>&1 || { tail -3 "$root.log" && exit 1; }
-# The ways to the archive of this system, where it has special ones.
+# The archive settings of this system, if it has special ones.
 cp -r /etc/apt/apt.conf.d "$root/etc/apt/" && cp /etc/resolv.conf "$root/etc/"
 (cd "$build" && cpack -B "$root/packages" >/dev/null)
 cp -r "$here/consumer" "$root/consumer"

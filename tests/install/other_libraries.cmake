@@ -1,6 +1,6 @@
-# The component integrate alone, as shared libraries where the build has static ones, and the other way round: built
-# without the packages of the other components, installed and consumed. The build type, of no flags, and all that
-# follows from it is that of subproject/, so that a compiler cache has work to do only once.
+# The component integrate alone, as shared libraries if the build has static ones, and vice versa: built
+# without the packages of the other components, installed and consumed. It has the build type of subproject/, without
+# flags, so that a compiler cache can reuse the objects.
 include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
 set(work ${WORK}/shared-${SHARED})
 set(others "")

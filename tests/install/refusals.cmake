@@ -1,4 +1,4 @@
-# Components that cannot be had: required they are refused with the reason, optional they are not found.
+# Unavailable components: an error with the reason if required, not found if optional.
 include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
 function(write_project call more)
   file(WRITE ${WORK}/refused/CMakeLists.txt
@@ -25,7 +25,7 @@ write_project("find_package(apsis REQUIRED COMPONENTS integrate OPTIONAL_COMPONE
 configure(${WORK}/refused ${WORK}/refused/build -DCMAKE_PREFIX_PATH=${WORK}/prefix
           -DCMAKE_DISABLE_FIND_PACKAGE_muparser=TRUE)
 
-# One call after the other: apsis::apsis has all that was found.
+# After several calls apsis::apsis contains all components that were found.
 write_project("find_package(apsis REQUIRED COMPONENTS integrate)\nfind_package(apsis REQUIRED COMPONENTS kinetic)"
   "get_target_property(all apsis::apsis INTERFACE_LINK_LIBRARIES)
    if(NOT all STREQUAL \"apsis::integrate;apsis::kinetic\")

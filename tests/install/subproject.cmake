@@ -1,5 +1,5 @@
-# A project that includes the sources, by add_subdirectory or FetchContent, and keeps its own settings. It is the project
-# itself that checks these; with BUILT it is also built and run.
+# A project that includes the sources, by add_subdirectory or FetchContent, and retains its own settings. The project
+# itself checks them; with BUILT it is also built and run.
 include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
 set(work ${WORK}/${CONSUMER})
 file(REMOVE_RECURSE ${work})

@@ -1,6 +1,6 @@
 # Functions of the scripts of this folder.
 
-# Runs a command, whose output is left in `output`; a command that fails is the end of the test.
+# Runs a command and stores its output in `output`; the test ends if the command fails.
 macro(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
@@ -10,13 +10,13 @@ macro(run)
   endif()
 endmacro()
 
-# cmake for a project outside, by the compilers and flags of this build: configure(SOURCE BINARY more…).
+# Configures an external project with the compilers and flags of this build: configure(SOURCE BINARY more…).
 macro(configure source binary)
   run(${CMAKE_COMMAND} -G Ninja -S ${source} -B ${binary} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_C_COMPILER=${CC}
       -DCMAKE_CXX_FLAGS=${FLAGS} ${ARGN})
 endmacro()
 
-# The same, of a project that is to be refused with a message that contains `expected`.
+# Configures a project that must fail with a message that contains `expected`.
 function(configure_fails expected source binary)
   execute_process(COMMAND ${CMAKE_COMMAND} -G Ninja -S ${source} -B ${binary} -DCMAKE_CXX_COMPILER=${CXX}
     -DCMAKE_C_COMPILER=${CC} ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -27,7 +27,7 @@ function(configure_fails expected source binary)
   endif()
 endfunction()
 
-# Installs the build into a fresh prefix. What is there says nothing of where it was made.
+# Installs the build into a fresh prefix, and checks that the installed files do not contain build paths.
 function(install_into build prefix)
   file(REMOVE_RECURSE ${prefix} ${prefix}-first)
   run(${CMAKE_COMMAND} --install ${build} --prefix ${prefix}-first)
@@ -47,11 +47,11 @@ function(install_into build prefix)
   endforeach()
 endfunction()
 
-# Configures the consumer against the prefix, checks that the package looked for `packages` and nothing else, builds the
-# consumer and runs it.
+# Configures the consumer against the prefix, checks that the package looked for exactly `packages`, builds and runs the
+# consumer.
 function(consume consumer prefix work packages)
   file(REMOVE_RECURSE ${work})
-  # Each package that must not be looked for could not be found either.
+  # All other packages are disabled.
   set(others Boost Eigen3 fmt HDF5 hwy Ipopt muparser nlohmann_json OpenMP spdlog Threads tomlplusplus)
   list(REMOVE_ITEM others ${packages})
   list(TRANSFORM others REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=TRUE")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# test_packages.sh BUILD WORK: makes the Debian packages and looks at what is in them.
+# test_packages.sh BUILD WORK: builds the Debian packages and checks their contents.
 set -euo pipefail
 commands=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../app/commands" && ls)
 build=$1 work=$2
@@ -20,7 +20,7 @@ apsis=$work/root/usr/bin/apsis
 grep -q complete summary.txt
 "$apsis" info >/dev/null
 
-# The manual page names every command, and completion knows them and the cases.
+# The manual page names every command, and the completion offers commands and cases.
 page=$work/root/usr/share/man/man1/apsis.1
 for command in ${commands//.cpp/}; do
   grep -q "^.SH apsis $command\$" "$page" || { echo "no apsis $command in the manual page" && exit 1; }

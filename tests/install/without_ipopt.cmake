@@ -1,4 +1,4 @@
-# Without Ipopt everything but the component design is configured.
+# Without Ipopt all components except design are configured.
 include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
 file(REMOVE_RECURSE ${WORK}/without_ipopt)
 configure(${SOURCE} ${WORK}/without_ipopt -DAPSIS_TESTS=OFF -DCMAKE_DISABLE_FIND_PACKAGE_Ipopt=TRUE)

@@ -1,5 +1,5 @@
-// The references that the limit scheme is compared with: written-out limit systems, their smooth solutions,
-// and the exact Riemann solution of the Broadwell limit.
+// The references of the limit scheme: limit systems written out by hand, their smooth solutions, and the
+// exact Riemann solution of the Broadwell limit.
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ TEST(fourier_solution, is_exact_for_burgers_equation_before_the_shock) {
   const auto solution = solve_burgers(129, 1000);
   const double h = 0.1;
   for (const double x : {0.03, 0.5, 1.1, 1.97}) {
-    // Rounding of 1000 steps; the modes have fallen below it.
+    // Rounding of 1000 steps; the modes are below it.
     EXPECT_NEAR(solution.value(0, x), burgers_exact(x, 0.4), 2e-13);
     const double mean = boost::math::quadrature::gauss<double, 15>::integrate(
                             [](double y) { return burgers_exact(y, 0.4); }, x - 0.5 * h, x + 0.5 * h) /
@@ -96,7 +96,7 @@ TEST(fourier_solution, integrates_systems_without_space) {
 TEST(broadwell_riemann, solves_the_problem_made_of_one_shock) {
   const broadwell_riemann::state left{2.0, 1.0}, right{1.0, 0.13962};
   const broadwell_riemann solution(left, right);
-  // The published data have five decimals, so the slow wave is left with that much.
+  // The published data have five decimals, so a slow wave of that size remains.
   EXPECT_NEAR(solution.middle().rho, 2.0, 1e-5);
   EXPECT_NEAR(solution.middle().m, 1.0, 1e-5);
   EXPECT_NEAR(solution.fast_wave()[0], 1.0 - 0.13962, 1e-5);
@@ -117,8 +117,8 @@ TEST(broadwell_riemann, conserves_and_orders_its_waves_for_random_states) {
               fast[1] < 1.0);
     const auto total = integral(solution);
     const auto in = conserved_flux(left), out = conserved_flux(right);
-    // Weak solution on a box; rounding relative to the larger
-    // density.
+    // Weak solution on a box; rounding relative to the
+    // larger density.
     const double tolerance = 1e-11 * std::max({left.rho, right.rho, solution.middle().rho});
     RC_ASSERT(std::abs(total.rho - (left.rho + right.rho + in.rho - out.rho)) < tolerance);
     RC_ASSERT(std::abs(total.m - (left.m + right.m + in.m - out.m)) < tolerance);

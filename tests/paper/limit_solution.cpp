@@ -42,7 +42,7 @@ void expect_same(const case_config& config) {
 
 }  // namespace
 
-// This ties the written systems to the models: a misprint in either would show.
+// Ties the written systems to the models: a misprint in either fails here.
 TEST(limit_equations, are_the_moments_of_transported_equilibria) {
   int written = 0;
   for (const auto& name : relaxation_model_names()) {
@@ -72,7 +72,8 @@ TEST(limit_equations, of_a_gas_with_three_velocity_dimensions_has_gamma_five_thi
 }
 
 TEST(limit_solution, is_met_in_the_order_of_the_method) {
-  // One halving on meshes where the time error of the second-order method leads; the claim C17 has the rest.
+  // One halving on meshes where the temporal error of the second-order method dominates; claim C17 covers
+  // the rest.
   const std::vector<std::string> common = {"time.method=md-imex-3-2", "space.reconstruction=weno5-z"};
   const auto error = [&](const char* cells, const fourier_solution* solution) {
     auto overrides = common;

@@ -1,4 +1,4 @@
-// Every claim of the registry, as `apsis reproduce` checks it. Slow ones are left to `make test-all`.
+// Every claim of the registry, as `apsis reproduce` checks it. Slow ones run with `make test-all`.
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/parallel.hpp>
 
@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(paper, slow_claims, testing::ValuesIn(ids(true)),
                          [](const auto& p) { return p.param; });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(slow_claims);
 
-TEST(paper_tables, a_wrong_term_is_seen) {
+TEST(paper_tables, a_wrong_term_is_detected) {
   const auto wrong = [](const butcher_form<double>& t) {
     auto rows = printed_imex_conditions(t);
     rows[6].left += 1e-6;

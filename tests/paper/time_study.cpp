@@ -1,4 +1,4 @@
-// Time accuracy of a discretised case against its exact solution in time.
+// Temporal accuracy of a discretised case against its exact solution in time.
 #include <apsis/verify/time_study.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -14,8 +14,8 @@ namespace {
 
 TEST(time_study, reference_is_what_fine_steps_of_every_method_converge_to) {
   for (const auto& model : relaxation_model_names()) {
-    // First-order upwinding is linear; weights of WENO that switch where data are flat would cost order in
-    // time.
+    // First-order upwinding is linear; WENO weights that switch where data are flat would reduce the order
+    // in time.
     const bool space = model != "ode";
     const time_study study(small_case(model, space ? std::vector<std::string>{"space.reconstruction=upwind1"}
                                                    : std::vector<std::string>{}),
@@ -30,7 +30,7 @@ TEST(time_study, reference_is_what_fine_steps_of_every_method_converge_to) {
   }
 }
 
-TEST(time_study, difference_to_a_state_with_a_value_that_is_no_number_is_none) {
+TEST(time_study, difference_from_a_state_with_nan_is_nan) {
   field u(2, 3);
   for (int cell = 0; cell < 2; ++cell) {
     field broken = u;
@@ -47,7 +47,7 @@ TEST(time_study, epsilon_zero_keeps_equilibrium) {
   }
 }
 
-TEST(time_study, a_resolved_start_takes_out_the_error_of_the_layer) {
+TEST(time_study, a_resolved_start_removes_the_error_of_the_layer) {
   const time_study study(load_case("paper/ode", {}), 1e-4);
   const field exact = study.reference();
   const auto moments = study.moments(exact);
@@ -65,8 +65,8 @@ TEST(time_study, refuses_models_without_equilibrium) {
   EXPECT_THROW(time_study(load_case("paper/decay", {}), 1.0), input_error);
 }
 
-TEST(plateaus, a_wrong_prediction_is_seen) {
-  // The constants of one method are far from those measured for another.
+TEST(plateaus, a_wrong_prediction_is_detected) {
+  // The constants of one method differ strongly from those measured for another.
   const auto second = analyse_intermediate_regime(find_method("md-imex-3-2").coefficients<double>());
   const auto seen = measured_ode_plateau(find_method("md-imex-6-3"), ode_data::inconsistent);
   EXPECT_GT(std::abs(predicted_ode_plateau(second, ode_data::inconsistent)[0] - seen[0]), 0.1);

@@ -1,5 +1,5 @@
-// Order in time on a PDE of every method of the paper's class with a transport, from data out of equilibrium,
-// at ε = 1 and in the limit. All runs of a method are on one mesh, so there is no error of space.
+// Order in time on a PDE of every method of the paper's class with transport, from data out of equilibrium,
+// at ε = 1 and in the limit. All runs of a method use the same mesh, so there is no spatial error.
 #include "support/catalogue.hpp"
 
 #include <apsis/verify/convergence.hpp>
@@ -24,14 +24,13 @@ double slope(const std::string& method, const std::string& epsilon, const std::s
 
 class every_asymptotic_preserving_method : public ::testing::TestWithParam<std::string> {};
 
-// What the next term of the error leaves at these steps: up to 0.1, as the slopes of docs/convergence.md
-// show.
+// The next term of the error changes the slope by up to 0.1 at these steps, as in docs/convergence.md.
 constexpr double tolerance = 0.15;
 
 TEST_P(every_asymptotic_preserving_method, has_its_order_on_the_broadwell_model) {
   const int order = find_method(GetParam()).claims.order;
   EXPECT_NEAR(slope(GetParam(), "1", "0.2,0.1"), order, tolerance);
-  // Steps so long that errors are far above ten times ε, where all of them stall.
+  // Steps long enough that errors are far above ten times ε, where all of them stall.
   EXPECT_NEAR(slope(GetParam(), "1e-10", "0.8,0.4"), order, tolerance);
 }
 

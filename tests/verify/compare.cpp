@@ -94,7 +94,7 @@ class interpolated_points : public testing::TestWithParam<const char*> {};
 
 TEST_P(interpolated_points, are_of_eighth_order_also_at_the_ends) {
   const bool periodic = std::string(GetParam()) == "periodic";
-  // Beyond the ends of an open domain there are no values: a function that does not continue periodically.
+  // Beyond the ends of an open domain there are no values: a function without periodic continuation.
   const std::function<double(double)> f =
       periodic ? std::function<double(double)>([](double x) { return std::sin(pi * x); })
                : [](double x) { return std::sin(pi * x + 0.3) + x * x; };
@@ -104,7 +104,7 @@ TEST_P(interpolated_points, are_of_eighth_order_also_at_the_ends) {
       auto coarse = points(cells, f);
       coarse.config.space.boundary = GetParam();
       const double error = largest(on_mesh_of(coarse, points(ratio * cells, f)), coarse.state);
-      // Seventh order would be enough for a scheme of fifth order; eighth is what the stencil gives.
+      // Seventh order would suffice for a scheme of fifth order; the stencil gives eighth.
       if (before > 0.0) {
         EXPECT_GE(std::log2(before / error), 7.5) << ratio << " " << cells;
       }

@@ -1,5 +1,5 @@
-// Convergence studies: known orders through the whole chain from case to rate, and what the machinery
-// promises.
+// Convergence studies: known orders through the whole chain from case to rate, and guarantees of the
+// study itself.
 #include <apsis/verify/convergence.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -18,7 +18,7 @@ using kind = convergence_reference::kind;
 
 namespace {
 
-// u' = −u², u(0) = 1: smooth enough for orders to show at once.
+// u' = −u², u(0) = 1: smooth enough for orders to show on coarse steps.
 convergence_study decay(const std::string& methods, const std::string& steps) {
   return {.case_name = "paper/decay",
           .overrides = {"model.rate=1", "model.u0=1"},
@@ -57,12 +57,12 @@ TEST(convergence, against_the_exact_solution_shows_orders_2_3_and_4) {
   ASSERT_EQ(table.blocks.size(), 3U);
   EXPECT_EQ(table.runs, 12);  // no reference is computed
   EXPECT_THAT(table.measure, HasSubstr("exact"));
-  // What is left of the next order at these steps; an order less or more would be off by 1.
+  // The next term of the error at these steps.
   for (int order = 2; order <= 4; ++order)
     EXPECT_NEAR(last_rate(table.blocks[static_cast<std::size_t>(order - 2)]), order, 0.15);
 }
 
-TEST(convergence, measures_the_error_of_the_very_run) {
+TEST(convergence, measures_the_error_of_the_same_run) {
   const auto table = converge(decay("imdrk-2-3", "1/8,1/16"));
   const auto run =
       compute_outcome("paper/decay", {"model.rate=1", "model.u0=1", "time.method=imdrk-2-3", "time.dt=1/16"});
@@ -84,8 +84,8 @@ TEST(convergence, ode_model_has_orders_2_and_3_for_every_reference) {
           .reference = parse_reference(reference),
           .norm = error_norm::l1};
       const auto table = converge(study);
-      // A reference with 1/8 of the smallest step adds up to 0.02 to the second order, the next order the
-      // rest.
+      // A reference with 1/8 of the smallest step adds up to 0.02 at second order; the next order of the
+      // error adds the rest.
       EXPECT_NEAR(last_rate(table.blocks.at(0)), 2.0, 0.1) << reference << " " << epsilon;
       EXPECT_NEAR(last_rate(table.blocks.at(1)), 3.0, 0.1) << reference << " " << epsilon;
     }
@@ -99,15 +99,15 @@ TEST(convergence, self_convergence_shows_the_fifth_order_of_space) {
     study.overrides.push_back("time.cfl=0.1");
     const auto table = converge(study);
     EXPECT_EQ(table.h_name, "Δx");
-    // With this step the error of time is small on these meshes; interpolation of order below five would
-    // show.
+    // With this step the temporal error is small on these meshes; interpolation of order below five would
+    // be visible.
     EXPECT_GE(last_rate(table.blocks.at(0)), 4.4) << formulation;
     EXPECT_LE(last_rate(table.blocks.at(0)), 5.6) << formulation;
   }
 }
 
 TEST(convergence, macroscopic_fields_of_averages_are_compared_at_full_order) {
-  // T is a nonlinear function of the averages: averaging T itself would compare at second order only.
+  // T is a nonlinear function of the averages: averaging T itself would be only second-order accurate.
   auto study = bgk("md-imex-6-3", "space.cells=10..40");
   study.overrides.push_back("time.cfl=0.1");
   study.quantity = "T";
@@ -119,8 +119,8 @@ TEST(convergence, a_refined_step_on_one_mesh_shows_the_orders_of_time) {
     for (const std::string epsilon : {"1", "1e-10"}) {
       auto study = bgk(method, "time.cfl=0.4,0.2,0.1");
       study.overrides.push_back("space.cells=10");
-      // Point values: on a mesh this coarse the collision of cell averages in the limit has an error of space
-      // that changes with the step, and the third order drowns in it.
+      // Point values: on such a coarse mesh the collision of cell averages in the limit has a spatial error
+      // that depends on the step and hides the third order.
       study.overrides.push_back("space.formulation=finite-difference");
       study.overrides.push_back("model.epsilon=" + epsilon);
       study.reference.how = kind::time;
@@ -133,7 +133,7 @@ TEST(convergence, a_refined_step_on_one_mesh_shows_the_orders_of_time) {
 }
 
 TEST(convergence, cells_and_steps_refined_together_show_the_order_of_time_where_space_is_finer) {
-  // Figures of an independent program with another fifth-order reconstruction, for 80 and 160 cells.
+  // Results of an independent program with another fifth-order reconstruction, for 80 and 160 cells.
   const std::map<std::string, std::vector<double>> known = {{"1", {8.0e-5, 2.0e-5}},
                                                             {"1e-8", {2.8e-5, 6.9e-6}}};
   const convergence_study study{
@@ -142,7 +142,7 @@ TEST(convergence, cells_and_steps_refined_together_show_the_order_of_time_where_
       .vary = {parse_vary("model.epsilon=1,1e-8"), parse_vary("space.cells=80,160")}};
   for (const auto& block : converge(study).blocks)
     for (std::size_t k = 0; k < 2; ++k) {
-      // Two digits are known; the error of space is a few percent of that of time at 80 cells.
+      // Two digits are known; the spatial error is a few percent of the temporal error at 80 cells.
       const double wanted = known.at(block.values[0])[k];
       EXPECT_NEAR(block.rows[k].error, wanted, 0.05 * wanted) << block.title;
     }
@@ -174,7 +174,7 @@ TEST(convergence, rows_go_from_coarse_to_fine_however_the_values_are_given) {
   EXPECT_EQ(numbers(sorted), numbers(mixed));
   EXPECT_EQ(sorted.blocks.at(0).title, "time.method = imdrk-2-3");
   EXPECT_EQ(sorted.blocks.at(1).values, std::vector<std::string>{"imdrk-1-2"});
-  // The refined key is found wherever it stands.
+  // The refined key is found at any position.
   auto first = decay("imdrk-2-3,imdrk-1-2", "1/8,1/16,1/32");
   std::swap(first.vary[0], first.vary[1]);
   EXPECT_EQ(numbers(converge(first)), numbers(sorted));
@@ -191,18 +191,18 @@ TEST(convergence, nothing_depends_on_the_number_of_threads) {
 }
 
 TEST(convergence, the_same_run_is_computed_once) {
-  // The neighbours are references of each other; one more run is beyond the finest.
+  // Consecutive runs are references of each other; one additional run is finer than the finest.
   auto study = decay("imdrk-2-3", "1/8,1/16,1/32");
   study.reference.how = kind::next;
   EXPECT_EQ(converge(study).runs, 4);
-  // A reference with a method and a step does not depend on what it replaces.
+  // A reference with method and step does not depend on the method that it replaces.
   study = decay("imdrk-1-2,imdrk-2-3", "1/8,1/16,1/32");
   study.reference = parse_reference("imdrk-5-4@1/256");
   EXPECT_EQ(converge(study).runs, 7);
 }
 
-TEST(convergence, a_run_that_fails_is_a_row_and_the_others_go_on) {
-  // An explicit method far beyond its stability limit of Δt = O(ε), and one that does not care.
+TEST(convergence, a_failed_run_is_a_row_and_the_others_continue) {
+  // An explicit method far beyond its stability limit of Δt = O(ε), and a method without this limit.
   auto study = bgk("md-imex-3-2", "time.method=ssprk-2-2,md-imex-3-2");
   study.overrides = {"velocity.max=9", "velocity.points=40", "space.cells=10", "model.epsilon=1e-6"};
   study.reference = parse_reference("md-imex-6-3@1/1000");
@@ -231,7 +231,7 @@ TEST(convergence, a_reference_that_fails_is_named) {
   }
 }
 
-TEST(convergence, a_stopped_study_shows_what_it_has_and_goes_on) {
+TEST(convergence, a_stopped_study_shows_its_finished_runs_and_can_continue) {
   const auto study = decay("imdrk-1-2,imdrk-2-3", "1/8..1/64");
   convergence whole(study), stopped(study);
   whole.run();
@@ -257,7 +257,7 @@ TEST(convergence, reports_its_progress_by_work) {
   converge(study, control);
   ASSERT_EQ(parts.size(), 3U);
   EXPECT_EQ(parts.front(), 0.0);
-  // The long run goes first and is nearly all there is to do.
+  // The longest run goes first and is nearly all of the work.
   EXPECT_GT(parts[1], 0.99);
   EXPECT_DOUBLE_EQ(parts.back(), 1.0);
 }

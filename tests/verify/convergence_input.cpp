@@ -1,4 +1,4 @@
-// Studies as they are written: lists, ranges, references, and everything that can be wrong with them.
+// Input of studies: lists, ranges, references, and all kinds of errors in them.
 #include <apsis/core/errors.hpp>
 #include <apsis/verify/convergence.hpp>
 #include <apsis/verify/settings.hpp>

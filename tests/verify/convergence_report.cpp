@@ -70,7 +70,7 @@ TEST(convergence_report, csv_and_json_hold_every_bit_of_the_table) {
       ++k;
     }
   }
-  // Keys are the values of the case, whatever they were written as.
+  // Keys are the values of the case, in any notation.
   EXPECT_EQ(rows[5]["time.dt"].get<double>(), 1.0 / 48.0);
   EXPECT_EQ(rows[5]["model.epsilon"].get<double>(), 0.01);
   EXPECT_TRUE(rows[3]["rate"].is_null());

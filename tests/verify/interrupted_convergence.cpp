@@ -1,4 +1,4 @@
-// A study that is asked to stop: within a step, with the runs that are finished.
+// An interrupted study stops within a step and retains its finished runs.
 #include <apsis/exec/parallel.hpp>
 #include <apsis/verify/convergence.hpp>
 
@@ -6,13 +6,13 @@
 
 using namespace apsis;
 
-TEST(interrupted_convergence, stops_between_steps_and_keeps_the_runs_that_are_finished) {
+TEST(interrupted_convergence, stops_between_steps_and_retains_finished_runs) {
   set_threads(1);
   convergence study({.case_name = "paper/ode",
                      .vary = {parse_vary("time.dt=1/16..1/64")},
                      .reference = parse_reference("time.dt=1/128")});
-  // The longest run comes first. It has 128 steps, the next one 64 (to t = 1): asked before each run and each
-  // step, the study stops within the second one.
+  // The longest run comes first. It has 128 steps, the next one 64 (to t = 1). With one query before each run
+  // and each step, the study stops within the second run.
   int asked = 0;
   study_control control;
   control.stop = [&asked] { return ++asked > 128 + 32; };
@@ -20,7 +20,7 @@ TEST(interrupted_convergence, stops_between_steps_and_keeps_the_runs_that_are_fi
   EXPECT_THROW(study.run(control), study_interrupted);
   EXPECT_EQ(study.finished_runs(), 1);
   EXPECT_FALSE(study.table().complete);
-  // What is left is computed by the next call; the result is that of a study that was never stopped.
+  // The next call computes the remaining runs; the result equals that of an uninterrupted study.
   study.run();
   EXPECT_EQ(study.finished_runs(), runs);
   const convergence_table table = study.table();

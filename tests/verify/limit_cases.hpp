@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// The IMEX methods that are asymptotic preserving from any data; without GSA in their moments only.
+/// The IMEX methods that are asymptotic preserving from any data; without GSA only in their moments.
 inline std::vector<std::string> preserving_methods() {
   std::vector<std::string> names;
   for (const auto& name : apsis::method_names()) {

@@ -42,13 +42,13 @@ TEST(limit_distance, falls_at_least_linearly_to_rounding_for_all_models_and_meth
       for (const auto& formulation : formulation_names(model)) {
         SCOPED_TRACE(model + " " + method + " " + formulation);
         const limit_table table = table_of(model, method, formulation);
-        EXPECT_GT(table.off_equilibrium, 1e-2);  // otherwise the question is not asked
+        EXPECT_GT(table.off_equilibrium, 1e-2);  // otherwise not tested
         // Without GSA only the moments promise it.
         const bool state = find_certificate(method).gsa;
         for (const auto column : columns) {
           if (!state && (column == &limit_row::state_first || column == &limit_row::state_end)) continue;
           EXPECT_LE(table.floor(column), round_off);
-          EXPECT_GT(table.rows.front().*column, 1e3 * round_off);  // epsilon = 1e-4 is seen
+          EXPECT_GT(table.rows.front().*column, 1e3 * round_off);  // epsilon = 1e-4 is resolved
           const auto slope = table.slope(column);
           ASSERT_TRUE(slope.has_value());
           EXPECT_GE(*slope, 0.9);
@@ -57,7 +57,7 @@ TEST(limit_distance, falls_at_least_linearly_to_rounding_for_all_models_and_meth
 }
 
 TEST(limit_distance, is_rounding_for_one_step_at_epsilon_zero_from_rough_data) {
-  // Jumps from cell to cell and in every component, so that limiters work.
+  // Jumps from cell to cell and in every component, so that limiters are active.
   const auto models = relaxation_model_names();
   const auto methods = preserving_methods();
   check_property("production step at epsilon = 0 is a step of the limit scheme", [&] {
@@ -65,7 +65,7 @@ TEST(limit_distance, is_rounding_for_one_step_at_epsilon_zero_from_rough_data) {
     const auto method = *rc::gen::elementOf(methods);
     const auto formulation = *rc::gen::elementOf(formulation_names(model));
     std::vector<std::string> overrides = {"model.epsilon=0"};
-    // Unknowns that may be negative take no limiter.
+    // Unknowns of both signs have no limiter.
     const bool limits =
         !formulation.empty() && run_setup(small_case(model, method, formulation)).equation->positive();
     if (limits) overrides.push_back(*rc::gen::element("space.limiter=none", "space.limiter=positivity"));
@@ -85,7 +85,7 @@ TEST(limit_distance, is_rounding_for_one_step_at_epsilon_zero_from_rough_data) {
     production.step(0.0, 0.005, u);
     scheme.step(0.005);
     const auto got = scheme.moments_of(values(u)), wanted = scheme.moments();
-    // Between rough data the weights of WENO pass rounding on, a little enlarged.
+    // Between rough data the weights of WENO amplify rounding slightly.
     for (std::size_t k = 0; k < got.size(); ++k) RC_ASSERT(std::abs(got[k] - wanted[k]) < 1e-12);
   });
 }

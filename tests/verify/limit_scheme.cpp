@@ -1,4 +1,4 @@
-// The limit scheme by itself: against equations written out by hand.
+// The limit scheme, compared with equations written out by hand.
 #include <apsis/verify/limit_scheme.hpp>
 
 #include "limit_cases.hpp"
@@ -85,16 +85,16 @@ TEST(limit_scheme, conserves_what_the_kinetic_scheme_conserves) {
           defect += after[i] - before[i];
           size += std::abs(before[i]);
         }
-        // The moments of 16 cells, each good to a few units of the last digit.
+        // The moments of 16 cells, each accurate to a few units of the last digit.
         EXPECT_LE(std::abs(defect), 1e-14 * (1.0 + size)) << model << " " << formulation << " moment " << k;
       }
     }
   }
 }
 
-// How ω is distributed inside the cells is a matter of the explicit part of each stage: from the same
-// averages of ω a finite-volume scheme goes elsewhere if they come from another kinetic state. Point values
-// know only ω.
+// The distribution of ω inside the cells depends on the explicit part of each stage: from equal averages of ω
+// a finite-volume scheme evolves differently if they belong to different kinetic states. Point values depend
+// on ω alone.
 TEST(limit_scheme, remembers_the_kinetic_state_with_cell_averages_only) {
   for (const std::string formulation : {"finite-volume", "finite-difference"}) {
     const case_config config = small_case("broadwell", "md-imex-6-3", formulation);

@@ -1,4 +1,4 @@
-// Claim C24 beyond paper/claims/C24.cpp (data V): data S, finite differences, and another program.
+// Claim C24 beyond paper/claims/C24.cpp (data V): data S, finite differences, and an independent program.
 #include <apsis/exec/parallel.hpp>
 #include <apsis/verify/conserved_fields.hpp>
 

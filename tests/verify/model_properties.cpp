@@ -1,5 +1,5 @@
-// Properties 2–5 of the paper for every model of the registry: a model added tomorrow is tested by being
-// there. States are random; the counterexample is shrunk.
+// Properties 2–5 of the paper for every model of the registry, including models added later. States are
+// random; the counterexample is shrunk.
 #include <apsis/verify/model_properties.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -12,8 +12,8 @@
 
 namespace {
 
-/// One of the model's initial data at a random place, disturbed by up to 90 % in every component; nonnegative
-/// where negative components have no meaning (some published data are negative all the same).
+/// One of the model's initial data at a random position, disturbed by up to 90 % in every component;
+/// nonnegative if negative components are unphysical (some published data are negative nevertheless).
 std::vector<double> random_state(const apsis::model& m) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const auto& data = m.initial()[*rc::gen::inRange<std::size_t>(0, m.initial().size())];

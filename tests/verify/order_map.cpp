@@ -7,7 +7,7 @@
 namespace apsis {
 namespace {
 
-/// Errors made of Δt², a plateau 0.1 ε, and what the reference cannot tell.
+/// Errors composed of Δt², a plateau 0.1 ε, and the uncertainty of the reference.
 order_map made() {
   order_map m{"none", "none", 2, {1e-12, 1e-4}, {}, {}};
   for (int k = 2; k <= 20; ++k) m.dt.push_back(std::ldexp(1.0, -k));
@@ -18,19 +18,19 @@ order_map made() {
   return m;
 }
 
-TEST(order_map, tells_order_plateau_and_the_limit_of_the_reference_apart) {
+TEST(order_map, distinguishes_order_plateau_and_uncertainty_of_the_reference) {
   const auto m = made();
   EXPECT_EQ(m.kind(0, 0), order_class::design);
   EXPECT_NEAR(m.slope(0, 0), 2, 1e-9);
   EXPECT_EQ(m.kind(1, 0), order_class::design);
   EXPECT_EQ(m.kind(1, m.dt.size() - 2), order_class::plateau);
-  EXPECT_EQ(m.kind(1, 6), order_class::reduced);  // Δt² = 1.5e-5, then 3.8e-6, beside 1e-5
+  EXPECT_EQ(m.kind(1, 6), order_class::reduced);  // Δt² = 1.5e-5, then 3.8e-6, in addition to 1e-5
   EXPECT_EQ(m.kind(0, m.dt.size() - 2), order_class::unknown);
   EXPECT_TRUE(std::isnan(m.slope(0, m.dt.size() - 2)));
   EXPECT_LT(m.smallest_slope(), 0.01);
 }
 
-TEST(order_map, slopes_leave_out_what_is_not_theirs) {
+TEST(order_map, slopes_exclude_other_error_terms) {
   const auto m = made();
   EXPECT_NEAR(m.fine_slope(0), 2, 0.02);         // above the limit of the reference
   EXPECT_LT(m.fine_slope(1), 0.01);              // on the plateau

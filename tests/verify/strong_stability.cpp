@@ -1,5 +1,5 @@
-// The largest step that keeps a property: the promise Δt ≤ r Δt_FE of every method of the catalogue, and
-// where it is sharp.
+// The largest step that preserves a property: the promise Δt ≤ r Δt_FE of every method of the catalogue, and
+// its sharpness.
 #include <apsis/verify/strong_stability.hpp>
 
 #include "support/catalogue.hpp"
@@ -32,7 +32,7 @@ std::vector<std::pair<std::string, double>> promising_methods() {
   return all;
 }
 
-/// The bisection is good to 1e-4 of the step; the promise must hold to that.
+/// The bisection is accurate to 1e-4 of the step; the promise must hold to that accuracy.
 constexpr double bisection = 2e-4;
 
 step_limit words(const std::string& name, double epsilon, double lowest = 0.0625) {
@@ -46,7 +46,7 @@ step_limit words(const std::string& name, double epsilon, double lowest = 0.0625
 }
 
 class every_method : public testing::TestWithParam<std::string> {};
-TEST_P(every_method, keeps_what_it_promises) {
+TEST_P(every_method, preserves_the_promised_property) {
   const auto all = observe_limits(find_method(GetParam()));
   EXPECT_FALSE(all.empty());
   for (const auto& one : all)
@@ -74,8 +74,7 @@ TEST(strong_stability, third_order_imex_loses_positivity_of_the_broadwell_model_
 }
 
 TEST(strong_stability, the_promise_is_sharp_for_operators_that_change_from_stage_to_stage) {
-  // With collisions of moderate strength contributions of different stages still mix; as ε → 0 they come
-  // apart.
+  // With collisions of moderate strength contributions of different stages still mix; they separate as ε → 0.
   for (const auto& [name, r] : promising_methods()) {
     const bool is_explicit = find_method(name).kind == method_kind::explicit_only;
     double sharpest = infinity;
@@ -102,7 +101,7 @@ TEST(strong_stability,
   }
 }
 
-TEST(strong_stability, implicit_methods_on_square_decay_keep_what_their_certificate_says) {
+TEST(strong_stability, implicit_methods_on_square_decay_preserve_what_their_certificate_promises) {
   // G = −10 u², u ≤ 10: u + τG ≥ 0 for τ ≤ 1/100.
   newton_problem problem(no_transport{}, [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; });
   const std::vector<row> data{{10.0}, {1.0}, {1e-3}};
@@ -119,7 +118,7 @@ TEST(strong_stability, implicit_methods_on_square_decay_keep_what_their_certific
     }
   }
   // The classical radius of dirk-2-2 is 2 and sharp here: C11. That of dirk-4-3 is 0, but this problem is not
-  // its worst.
+  // the worst for it.
   EXPECT_EQ(promised_coefficient(find_certificate("dirk-2-2")), 2.0);
   EXPECT_EQ(promised_coefficient(find_certificate("dirk-4-3")), 0.0);
 }
@@ -136,7 +135,7 @@ TEST(strong_stability, forward_euler_steps_of_the_problems_are_sharp) {
               1.0, bisection);
 }
 
-TEST(strong_stability, a_wrong_promise_is_found_out) {
+TEST(strong_stability, a_wrong_promise_is_detected) {
   // Δt_FE too large by 1 %.
   struct boastful : ring_advection {
     double forward_euler_step(double, const state&) const { return 1.01; }
@@ -145,23 +144,22 @@ TEST(strong_stability, a_wrong_promise_is_found_out) {
   const auto tv = does_not_grow<row>("total variation", total_variation);
   EXPECT_LT(largest_step(find_method("ssprk-3-3"), problem, std::span<const row>(rows), tv).kept, 0.995);
   EXPECT_LT(largest_forward_euler_step(problem, std::span<const row>(rows), tv).kept, 0.995);
-  // A functional that forward Euler does not keep is lost at once: the sum of squares of differences of
-  // second order.
+  // Forward Euler does not preserve this functional, the sum of squares of second differences, at any step.
   const auto curvature = does_not_grow<row>("not convex", [](const row& u) { return -total_variation(u); });
   EXPECT_EQ(largest_step(find_method("ssprk-3-3"), problem, std::span<const row>(rows), curvature).kept, 0.0);
 }
 
-TEST(strong_stability, searches_try_what_is_promised_itself) {
+TEST(strong_stability, searches_test_the_promised_step_itself) {
   const auto up_to_one = [](std::size_t, double dt) { return dt <= 1.0 ? 0.0 : 1.0; };
   EXPECT_EQ(search_step(1, 1.0, {.accuracy = 0.1, .promised = 1.0}, up_to_one).kept, 1.0);
-  // A promise that does not hold changes nothing but where the search begins.
+  // A wrong promise only changes where the search begins.
   const auto refuted = search_step(1, 1.0, {.promised = 1.02}, up_to_one);
   EXPECT_NEAR(refuted.kept, 1.0, 1e-4);
   EXPECT_GT(refuted.lost, 1.0);
 }
 
 TEST(strong_stability, searches_climb_before_they_bisect) {
-  // Kept up to 0.3 and again from 0.5 on: the first loss counts.
+  // Preserved up to 0.3 and again from 0.5 on: the first loss counts.
   const auto limit = search_step(
       3, 2.0, {}, [](std::size_t k, double dt) { return k == 1 && dt > 0.6 && dt < 1.0 ? 7.0 : -1.0; });
   EXPECT_NEAR(limit.kept, 0.3, 1e-4);

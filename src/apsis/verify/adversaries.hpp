@@ -10,12 +10,12 @@
 
 namespace apsis {
 
-/// Problems on which methods lose a property soon after they must, for largest_step. Dimensionless, Δt_FE
-/// = 1.
+/// Problems for largest_step on which methods lose a property soon after the guaranteed step. Dimensionless,
+/// Δt_FE = 1.
 
-/// u_i' = u_{i−1} − u_i on a ring: advection by first-order upwind. A forward Euler step u + τT(u) is the
-/// mean of u and u moved by one cell, and keeps every convex functional that the motion keeps, for τ ≤ 1. Q =
-/// 0.
+/// u_i' = u_{i−1} − u_i on a ring: advection by first-order upwind. For τ ≤ 1 a forward Euler step u + τT(u)
+/// is a convex combination of u and u shifted by one cell, and preserves every convex functional that is
+/// invariant under the shift. Q = 0.
 class ring_advection {
  public:
   using state = std::vector<double>;  ///< u around the ring
@@ -29,7 +29,7 @@ class ring_advection {
       return work_;
     });
   }
-  /// u stays: Q = 0.
+  /// Leaves u unchanged: Q = 0.
   void solve_collision(double, double, double, state&) {}
   /// acc ← (fresh ? 0 : acc) + α u for every target.
   void add_collision(double, const state& u, std::span<const target<state, double>> targets) {
@@ -48,23 +48,23 @@ class ring_advection {
 /// A step, a spike, a comb and `random` random rows in [0, 1], each of `cells` numbers.
 std::vector<std::vector<double>> adversarial_rows(std::size_t cells, int random);
 
-/// T and Q that are different operators at every stage, which is what the theory allows and what makes its
-/// bounds sharp. The last number of the state is a clock, θ' = θ, whose value tells the stages apart; for the
-/// others, z = all but the clock,
+/// A problem whose T and Q are different operators at every stage, which the theory allows and which makes
+/// its bounds sharp. The last number of the state is a clock, θ' = θ, whose value identifies the stage; for
+/// the other numbers z,
 ///   T(u) = S_θ z − z,   Q(u) = (E_θ(mass z) − z)/ε,
-/// S_θ a linear map and E_θ an equilibrium that keep what is kept; both may depend on θ as they like, and θ
-/// is conserved by Q. So Properties 1–5 of the paper hold, with Δt_FE = 1. The first clock value that is seen
-/// gets number 0, the next one 1, …
+/// with a linear map S_θ and an equilibrium E_θ that preserve the property; both may depend on θ arbitrarily,
+/// and Q conserves θ. So Properties 1–5 of the paper hold, with Δt_FE = 1. Clock values are numbered 0, 1, …
+/// in the order of their occurrence.
 class staged_problem {
  public:
-  using state = std::vector<double>;  ///< z, and the clock behind it
+  using state = std::vector<double>;  ///< z, followed by the clock
   using real = double;                ///< of time and coefficients
   /// out ← S_k z for the k-th value of the clock; `out` comes with room.
   using motion = std::function<void(int k, std::span<const double> z, std::span<double> out)>;
-  /// out ← E_k(mass) likewise.
+  /// out ← E_k(mass), for the k-th value of the clock.
   using equilibrium = std::function<void(int k, double mass, std::span<double> out)>;
 
-  /// ε = infinity: no collisions, E is not used. Throws input_error unless ε > 0.
+  /// ε = infinity: no collisions, and E is not used. Throws input_error unless ε > 0.
   staged_problem(motion move, equilibrium relax, double epsilon);
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target.
@@ -86,28 +86,28 @@ class staged_problem {
   state work_;
 };
 
-/// The worst such problem for positivity. Cells are words: the last `memory` operators that acted, in
-/// the alphabet of `letters` motions, on one of `letters` equilibria or on the initial data. S_k puts the
-/// letter k in front of every word and E_k puts all mass into the word that is this equilibrium alone, so
-/// contributions that came different ways do not mix, and a negative coefficient of the method is a negative
-/// number in a cell. Methods with more stages than letters use letters again.
+/// The problem of this kind that is worst for positivity. Cells are words: the last `memory` operators that
+/// acted, in the alphabet of `letters` shifts, on one of `letters` equilibria or on the initial data. S_k
+/// prepends the letter k to every word and E_k puts all mass into the word of this equilibrium alone, so
+/// contributions along different paths do not mix, and a negative coefficient of the method becomes a
+/// negative number in a cell. Methods with more stages than letters reuse letters.
 staged_problem word_problem(int letters, int memory, double epsilon);
 
 /// All mass on the word that is the initial data; the clock is 1.
 std::vector<double> word_data(int letters, int memory);
 
-/// The same with random permutations of `cells` cells and the mean as equilibrium: a symmetric convex
+/// The same problem with random permutations of `cells` cells and the mean as equilibrium: a symmetric convex
 /// functional of the cells cannot grow.
 staged_problem permutation_problem(int cells, double epsilon, std::uint64_t seed);
 
-/// Spikes and random rows of `cells` numbers, the clock behind.
+/// Spikes and random rows of `cells` numbers, followed by the clock.
 std::vector<std::vector<double>> permutation_data(int cells, int random);
 
-/// Σ_i h(u_i) over all but the last `ignored` numbers, h the maximum of a few random affine functions.
+/// Σ_i h(u_i) over all but the last `ignored` numbers, with h the maximum of a few random affine functions.
 std::function<double(const std::vector<double>&)> random_symmetric_functional(random_source& random,
                                                                               std::size_t ignored = 0);
 
-/// How far the smallest number but the last `ignored` ones is below 0, for stays_inside.
+/// Distance of the smallest number, without the last `ignored` ones, below 0, for stays_inside.
 std::function<double(const std::vector<double>&)> negative_part(std::size_t ignored = 0);
 
 /// Σ_i |u_i − u_{i−1}| on a ring.

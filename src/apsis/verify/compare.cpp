@@ -64,13 +64,13 @@ class interpolation {
  private:
   static constexpr long longest = 8;
 
-  /// Of the stencil around a position; stencils stay inside a mesh that does not continue beyond its ends.
+  /// Part of a stencil around a position; stencils stay inside a mesh without periodic continuation.
   long first_point(long position) const {
     const long first = position - (longest / 2 - 1);
     return periodic_ && fine_ >= longest ? first : std::clamp(first, 0L, std::max(0L, fine_ - longest));
   }
 
-  /// The polynomial that is 1 at point k of 0 … count−1 and 0 at the others.
+  /// The Lagrange polynomial that is 1 at point k of 0 … count−1 and 0 at the others.
   static double lagrange(double s, long k, long count) {
     double product = 1.0;
     for (long m = 0; m < count; ++m)

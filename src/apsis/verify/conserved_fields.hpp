@@ -7,18 +7,17 @@
 
 namespace apsis {
 
-/// ρ, ρu and 𝓔 = ρ(u² + T)/2 of every cell: fields whose cell averages are averages of finer ones.
-/// Dimensionless.
+/// ρ, ρu and 𝓔 = ρ(u² + T)/2 of every cell, whose cell averages are averages of finer ones. Dimensionless.
 using conserved_fields = std::array<std::vector<double>, 3>;
 
 /// From the fields rho, u and T of kinetic models with one velocity dimension. Throws input_error if one of
 /// them is missing.
 conserved_fields conserved(const field_table& macroscopic);
 
-/// Averages over pairs of cells, for a comparison with a mesh of half as many.
+/// Averages over pairs of cells, for comparison with a mesh of half as many cells.
 conserved_fields averaged_in_pairs(const conserved_fields& fine);
 
-/// Over fields and cells. NaN where a value is no number.
+/// Maximum over fields and cells; NaN if a value is NaN.
 double largest_difference(const conserved_fields& a, const conserved_fields& b);
 
 }  // namespace apsis

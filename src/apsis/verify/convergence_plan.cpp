@@ -77,14 +77,14 @@ class planner {
 
   case_config resolve(const texts& settings) const { return parse_case(text_, study_.case_name, settings); }
 
-  /// Index of the run with these settings, a new one unless the same was planned before.
+  /// Returns the index of the run with these settings, adding it if it is not planned yet.
   std::size_t run_of(const texts& settings) {
     case_config config = resolve(settings);
     const auto [place, is_new] = known_.emplace(numerical_identity(config), plan_.runs.size());
     if (is_new) {
       const run_setup setup(config);
-      // Both throw what would else be found only when the run begins: data that the meshes cannot hold, and a
-      // step that is too short for the interval.
+      // Throws errors that would otherwise appear when the run begins: data that the mesh does not support,
+      // and a step that is too short for the interval.
       setup.initial_state();
       time_marcher<double>(0.0, config.time.end, config.time.dt);
       plan_.work.push_back(work(config, setup));
@@ -103,7 +103,7 @@ class planner {
            static_cast<double>(setup.integrator().stages());
   }
 
-  /// Every combination, the last key running fastest.
+  /// Every combination, the last key varying fastest.
   void resolve_grid() {
     std::vector<std::size_t> index(study_.vary.size(), 0);
     for (bool more = true; more;) {
@@ -157,7 +157,7 @@ class planner {
         outer.push_back(p.values[k]);
         named.push_back(fmt::format("{} = {}", plan_.keys[k], p.values[k]));
       }
-      // Without a refined key all runs stand in one block.
+      // Without a refined key all runs form one block.
       if (plan_.refined < 0) outer = named = {};
       const auto [place, is_new] = where.emplace(outer, plan_.blocks.size());
       if (is_new) {
@@ -241,7 +241,7 @@ class planner {
     const texts& own = settings_of_.at(block.rows[k].run);
     if (how_ == kind::given) return layered(own, study_.reference.overrides);
     if (how_ == kind::next) return layered(own, {beyond(block)});
-    // Rows that lie on one refinement share the reference of the finest.
+    // Rows of one refinement share the reference of the finest.
     const bool shared = how_ == kind::time ? plan_.refined_in_time : resolves_;
     const std::size_t base = shared ? block.rows.back().run : block.rows[k].run;
     const case_config& from = plan_.runs[base];
@@ -257,7 +257,7 @@ class planner {
     return layered(settings_of_.at(base), changes);
   }
 
-  /// The refined key one refinement beyond the finest run, by the last ratio (2 where there is one run only).
+  /// The refined key one refinement beyond the finest run, by the last ratio (2 if there is only one run).
   std::string beyond(const convergence_plan::block& block) const {
     const auto value = [&](std::size_t from_end) {
       return number_of(plan_.runs[block.rows[block.rows.size() - from_end].run], refined_key());

@@ -21,7 +21,7 @@ json number(double x) {
   return std::isfinite(x) ? json(x) : json(nullptr);
 }
 
-/// The value of a key in the run: a number wherever it is one.
+/// The value of a key in the run, as a number if possible.
 json value_of(const convergence_row& row, const std::string& key) {
   const json all = to_json(row.config);
   json value = all;
@@ -64,13 +64,13 @@ std::string or_dash(const std::string& form, double x) {
   return std::isfinite(x) ? fmt::format(fmt::runtime(form), x) : "-";
 }
 
-/// What tells the rows of a block apart.
+/// The values that distinguish the rows of a block.
 std::string row_name(const convergence_table& table, const convergence_row& row) {
   return table.refined >= 0 ? row.values[static_cast<std::size_t>(table.refined)]
                             : fmt::format("{}", fmt::join(row.values, ", "));
 }
 
-/// Value of a key as it is written beside a curve.
+/// Value of a key in the label of a curve.
 std::string label_part(const std::string& key, const std::string& value) {
   if (key == "model.epsilon") return "ε = " + value;
   if (key == "time.method" || key == "model.initial" || key == "space.formulation") return value;
@@ -83,8 +83,8 @@ std::vector<std::string> outer_keys(const convergence_table& table) {
   return keys;
 }
 
-/// Index of the key whose values get a panel each, −1 for one panel: of several keys the one with the fewest
-/// values, so that no panel is crowded.
+/// Index of the key with one panel per value, −1 for a single panel: of several keys the one with the fewest
+/// values, to avoid crowded panels.
 int panel_key(const convergence_table& table) {
   constexpr std::size_t most_panels = 6;
   const std::size_t count = outer_keys(table).size();
@@ -102,7 +102,7 @@ int panel_key(const convergence_table& table) {
   return long_lists > 1 ? chosen : -1;
 }
 
-/// Curves of the blocks that have `value` for the key of the panels (all blocks where there is none).
+/// Curves of the blocks that have `value` for the key of the panels (of all blocks if there is no such key).
 panel panel_of(const convergence_table& table, int key, const std::string& value) {
   const auto keys = outer_keys(table);
   panel axes{"", table.h_name + " (dimensionless)", table.measured + " (dimensionless)", true, true, {}, {},

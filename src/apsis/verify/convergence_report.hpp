@@ -9,20 +9,20 @@
 
 namespace apsis {
 
-/// One block after the other, a line per run: the refined key, error, rate, steps, dt, cpu_s, min_value.
+/// One block after the other, one line per run: the refined key, error, rate, steps, dt, cpu_s, min_value.
 std::string to_text(const convergence_table& table);
 
 /// One line per run: the varied keys, error, rate, steps, dt, wall_s, cpu_s, min_value, problem; 17
-/// significant digits, an empty cell where there is no number.
+/// significant digits, an empty cell for NaN.
 std::string to_csv(const convergence_table& table);
 
-/// An array with one object per run, with the columns of the CSV; null where there is no number, `problem`
-/// only where there is one.
+/// An array with one object per run, with the columns of the CSV; null for NaN, `problem` only if there
+/// is one.
 nlohmann::ordered_json to_json(const convergence_table& table);
 
-/// Errors against what is refined, both logarithmic, one curve per block, with triangles of the orders of the
-/// methods. Of several other keys the one with the fewest values has a panel for each of them. Without panels
-/// where nothing is refined.
+/// Errors against the refined quantity on logarithmic axes, one curve per block, with triangles of the orders
+/// of the methods. Of several other keys the one with the fewest values has one panel per value. Without
+/// panels if no key is refined.
 picture to_picture(const convergence_table& table);
 
 }  // namespace apsis

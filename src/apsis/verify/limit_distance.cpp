@@ -15,7 +15,7 @@
 namespace apsis {
 namespace {
 
-/// max |a − b| / max |b|; max |a − b| where b is 0.
+/// max |a − b| / max |b|; max |a − b| if b is 0.
 double relative_difference(std::span<const double> a, std::span<const double> b) {
   double difference = 0.0, size = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -25,7 +25,7 @@ double relative_difference(std::span<const double> a, std::span<const double> b)
   return size > 0.0 ? difference / size : difference;
 }
 
-/// What is compared, after the first step and at the end.
+/// Compared quantities, after the first step and at the end.
 struct snapshots {
   std::vector<double> first, end;
 };
@@ -40,7 +40,7 @@ simulation begin(case_config config, double epsilon, const std::vector<double>& 
   return run;
 }
 
-/// Runs to the end; the lengths of the steps go to `steps`.
+/// Runs to the end and appends the lengths of the steps to `steps`.
 snapshots run_kinetic(simulation run, const study_control& control, std::vector<double>& steps) {
   snapshots at;
   while (!run.finished()) {

@@ -17,7 +17,7 @@ enum class limit_start {
 };
 
 /// Distances of one run from the limit scheme, after the first step and at the end. Largest difference,
-/// relative to the largest value of what is compared.
+/// relative to the largest reference value.
 struct limit_row {
   double epsilon = 0.0;        ///< ε of the run
   double moments_first = 0.0,  ///< ω against the moments of the limit scheme, after the first step
@@ -26,7 +26,7 @@ struct limit_row {
       state_end = 0.0;         ///< u against the equilibrium of the limit scheme, at the end
 };
 
-/// How far runs of one case are from the limit scheme as ε falls.
+/// Distances of the runs of one case from the limit scheme as ε decreases.
 struct limit_table {
   std::string model,             ///< model.name
       method,                    ///< time.method
@@ -39,20 +39,20 @@ struct limit_table {
   /// Distance at the smallest ε.
   double floor(double limit_row::* column) const;
   /// Least-squares slope of log distance against log ε, over the rows with ε < Δt/10 whose distance is above
-  /// `round_off`; nothing if fewer than three are.
+  /// `round_off`; empty for fewer than three such rows.
   std::optional<double> slope(double limit_row::* column, double round_off = 1e-12) const;
-  /// A line for each ε, and the slopes below.
+  /// One line per ε, followed by the slopes.
   report_table report() const;
 };
 
-/// Runs the case with each ε (a number; whatever the case says of ε is replaced) through the production code,
-/// and the limit scheme with the same steps. The limit scheme starts from the same data, moved to their local
-/// equilibrium if the method does not do that in its first stage. Throws what a simulation and limit_scheme
-/// throw.
+/// Runs the case with each ε (a number, which replaces the ε of the case) through the production code, and
+/// the limit scheme with the same steps. The limit scheme starts from the same data, projected to their local
+/// equilibrium if the first stage of the method does not do that. Throws the errors of a simulation and
+/// of limit_scheme.
 limit_table limit_distance(const case_config& config, const std::vector<double>& epsilons,
                            limit_start start = limit_start::given, const study_control& control = {});
 
-/// `count` numbers in equal ratios from `first` to `last`.
+/// `count` numbers in geometric progression from `first` to `last`.
 std::vector<double> geometric(double first, double last, int count);
 
 }  // namespace apsis

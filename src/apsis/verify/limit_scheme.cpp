@@ -52,7 +52,7 @@ struct limit_scheme::impl {
 
   bool relaxed(std::size_t j) const { return butcher.A(j, j) != 0.0 || butcher.A_dot(j, j) != 0.0; }
 
-  /// How much of what stage j was moved by its relaxation is in the explicit part of stage i > j.
+  /// Factor κ_ij with which the change of stage j by relaxation enters the explicit part of stage i > j.
   double kept(std::size_t i, std::size_t j) const {
     if (butcher.A_dot(j, j) != 0.0) return butcher.A_dot(i, j) / butcher.A_dot(j, j);
     return butcher.A(j, j) != 0.0 ? butcher.A(i, j) / butcher.A(j, j) : 0.0;

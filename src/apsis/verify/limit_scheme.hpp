@@ -8,9 +8,9 @@
 
 namespace apsis {
 
-/// The limit scheme: what an IMEX method on a discretised relaxation model u_t = T(u) + C(E − u)/ε becomes
-/// for ε → 0 with Δt and the mesh held fixed (paper, proof of the AP property), written without the operators
-/// and the stepper of a run, for comparison with them.
+/// The limit ε → 0 of an IMEX method on a discretised relaxation model u_t = T(u) + C(E − u)/ε at fixed Δt
+/// and mesh (paper, proof of the AP property), independent of the operators and the stepper of a run, for
+/// comparison with them.
 ///
 /// Point values (also first order, and no space): the unknowns are the moments ω, and they follow the
 /// explicit method Â for the limit system with flux vector splitting,
@@ -19,31 +19,31 @@ namespace apsis {
 /// state is the average u_i = Π(v_i) of equilibria in each cell (limit_space::equilibrium_averages), and
 ///     v_i = u^n + Δt Σ_{j<i} â_ij T(u_j) + Σ_{j<i} κ_ij (u_j − v_j),   κ_ij = ȧ_ij/ȧ_jj, or a_ij/a_jj if
 ///     ȧ_jj = 0.
-/// ℛ(u_j − v_j) = 0, so the averages of ω follow Â here too; the κ-terms only decide how ω is distributed
-/// inside the cells. Stages that the method does not relax (no implicit part) are left as they are.
+/// ℛ(u_j − v_j) = 0, so the averages of ω follow Â here too; the κ-terms affect only the distribution of ω
+/// inside the cells. Stages without implicit part are not relaxed.
 class limit_scheme {
  public:
   /// Throws input_error unless the model is a relaxation model and the method is IMEX.
   explicit limit_scheme(const case_config& config);
   ~limit_scheme();
-  limit_scheme(limit_scheme&&) noexcept;             ///< the other one has no scheme any more
-  limit_scheme& operator=(limit_scheme&&) noexcept;  ///< the other one has no scheme any more
+  limit_scheme(limit_scheme&&) noexcept;             ///< leaves the source empty
+  limit_scheme& operator=(limit_scheme&&) noexcept;  ///< leaves the source empty
 
-  /// Begins from the state u, [cells][components]; it need not be an equilibrium.
+  /// Starts from the state u, [cells][components]; it need not be an equilibrium.
   void start(std::span<const double> u);
-  /// One step of length dt. Throws numerical_error where a stage has no equilibrium.
+  /// Performs one step of length dt. Throws numerical_error if a stage has no equilibrium.
   void step(double dt);
 
-  /// ω of the present state: averages or point values, [cells][moments].
+  /// ω of the current state: averages or point values, [cells][moments].
   std::vector<double> moments() const;
-  /// The equilibrium of the present state: E(ω), or the averages Π, [cells][components].
+  /// Equilibrium of the current state: E(ω), or the averages Π, [cells][components].
   std::vector<double> equilibrium() const;
 
   /// ω of any state u, [cells][components].
   std::vector<double> moments_of(std::span<const double> u) const;
   /// The equilibrium of any state u: E(ℛu), or the averages Π(u), [cells][components].
   std::vector<double> equilibrium_of(std::span<const double> u) const;
-  /// Whether the method relaxes its first stage (type A), so that it finds the equilibrium by itself.
+  /// Whether the method relaxes its first stage (type A) and thus projects the initial data by itself.
   bool relaxes_first_stage() const;
 
  private:

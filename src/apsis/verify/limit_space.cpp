@@ -12,7 +12,7 @@
 namespace apsis {
 namespace {
 
-/// Cells beyond either end whose edge values are used: one for the flux, one more for its limiter.
+/// Cells beyond either end whose edge values are needed: one for the flux, one more for its limiter.
 constexpr int halo = 2;
 
 domain space_of(const case_config& config, bool has_space) {

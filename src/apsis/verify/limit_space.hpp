@@ -11,9 +11,9 @@
 
 namespace apsis {
 
-/// The space discretisation of a case, face by face, for the limit ε → 0. Written beside the operators of a
-/// run (semidiscrete), of which it uses nothing: only reconstruction, quartic, limiter and ghost cells of the
-/// room space, and moments and equilibrium of the model. Plain and slow. One space dimension, or none.
+/// Space discretisation of a case, face by face, for the limit ε → 0. Independent of the operators of a run
+/// (semidiscrete): it uses only reconstruction, quartic, limiter and ghost cells of the space rooms, and
+/// moments and equilibrium of the model. Simple and slow. One space dimension, or none.
 class limit_space {
  public:
   /// `equation` must outlive this. Throws input_error for an unknown reconstruction or boundary.
@@ -21,13 +21,13 @@ class limit_space {
 
   /// Cells of the mesh; 1 without space.
   int cells() const { return space_.mesh().size(); }
-  /// Unknowns are averages of cells in which the equilibrium varies, so that their equilibrium is a mean over
-  /// Gauss points; otherwise everything happens point by point.
+  /// Whether unknowns are averages of cells in which the equilibrium varies, so that their equilibrium is a
+  /// mean over Gauss points; otherwise all operations are pointwise.
   bool averages() const { return averages_; }
 
   /// ω_i = ℛu_i, [cells][moments].
   field moments(const field& u) const;
-  /// E(ω_i), [cells][components]. Throws numerical_error where ω has no equilibrium.
+  /// E(ω_i), [cells][components]. Throws numerical_error if ω has no equilibrium.
   field equilibria(const field& omega) const;
   /// Π(u)_i = Σ_q w_q E(ℛu(x_q)) with the (limited) quartics u(x) of every component through the averages u;
   /// only if averages(). ℛΠ(u) = ℛu.

@@ -7,9 +7,9 @@
 
 namespace apsis {
 
-/// A small case made from nothing but the entry of a model: its first initial data and default parameters, on
-/// [0, 2] with 16 cells and 60 velocities where it has them, to t = 8 Δt with Δt = Δx/2 over the largest
-/// speed (1/32 without space). ε = 1, method md-imex-6-3; overrides "key=value" change what is needed.
+/// A small case defined by the entry of a model alone: its first initial data and default parameters, on [0,
+/// 2] with 16 cells and 60 velocities if it has them, to t = 8 Δt with Δt = Δx/2 over the largest speed (1/32
+/// without space). ε = 1, method md-imex-6-3; overrides "key=value" change other keys.
 case_config small_case(const std::string& model, const std::vector<std::string>& overrides = {});
 
 /// Names of the models of the registry whose collision is a relaxation.

@@ -41,7 +41,8 @@ row collision_of(const relaxation_model& m, const row& u) {
   return q;
 }
 
-/// ‖Q'(u)Q(u) + C Q(u)‖. Q is linear along Q(u), where the moments stay, so the differences may be wide.
+/// ‖Q'(u)Q(u) + C Q(u)‖. Q is linear along Q(u), where the moments are constant, so the differences may
+/// be wide.
 double derivative_defect(const relaxation_model& m, const row& u, const row& q, double rate) {
   constexpr double h = 1e-2;
   const auto at = [&](double s) {
@@ -77,8 +78,7 @@ relaxation_defects defects_of(const relaxation_model& m, const std::vector<doubl
   const double rate = m.rate(omega.data());
   row moved = moments_of(m, e);
   for (std::size_t k = 0; k < moved.size(); ++k) moved[k] -= omega[k];
-  const double size =
-      std::max(norm(e), std::numeric_limits<double>::min());  // 0 is its own equilibrium at times
+  const double size = std::max(norm(e), std::numeric_limits<double>::min());  // 0 can be its own equilibrium
   return {norm(moments_of(m, q)) / (1.0 + norm(omega)),
           maximum(norm(collision_of(m, e)) / size, norm(moved) / (1.0 + norm(omega))),
           derivative_defect(m, u, q, rate) / ((1.0 + rate) * (1.0 + norm(u) + norm(q)))};

@@ -18,7 +18,7 @@ struct made_model {
 /// Every model of the registry.
 std::vector<made_model> all_models();
 
-/// How far a state is from satisfying Properties 3–5 of the paper; zero but for rounding.
+/// Defects of a state in Properties 3–5 of the paper; zero up to rounding.
 struct relaxation_defects {
   double conservation;  ///< ‖ℛQ(u)‖ / (1 + ‖ℛu‖)   (Property 3)
   double equilibrium;   ///< ‖Q(E(ω))‖/‖E(ω)‖ and ‖ℛE(ω) − ω‖/(1 + ‖ω‖), the larger   (Property 4)
@@ -28,7 +28,7 @@ struct relaxation_defects {
 /// Maximum norms; Q'(u)Q(u) by fourth-order differences of Q. Throws numerical_error if u has no equilibrium.
 relaxation_defects defects_of(const relaxation_model& m, const std::vector<double>& u);
 
-/// v = u + λ Q(v), a backward Euler step on the collision alone, as it is solved inside a stage. Throws
+/// v = u + λ Q(v), a backward Euler step of the collision alone, solved as inside a stage. Throws
 /// numerical_error if u has no equilibrium, or Newton's method no solution.
 std::vector<double> backward_euler_on_collision(const model& m, const std::vector<double>& u, double lambda);
 

@@ -23,7 +23,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// One line of the result: a search that may depend on ε.
 struct experiment {
   std::string problem, property;
-  std::vector<double> epsilons;  ///< of which the worst counts; one infinity where there is none
+  std::vector<double> epsilons;  ///< ε of the search, whose worst counts; one infinity without ε
   std::function<step_limit(double epsilon, double promised)> search;
 };
 
@@ -86,8 +86,7 @@ experiment permutations(const method& m, const std::vector<double>& epsilons) {
           }};
 }
 
-/// A small case takes its method from the catalogue; another one of the same kind is then as good as it sets
-/// up the same operators.
+/// A small case uses a method of the catalogue; any other one of the same kind sets up the same operators.
 const char* stand_in(method_kind kind) {
   return kind == method_kind::explicit_only ? "ssprk-2-2" : "forward-backward-euler";
 }

@@ -15,7 +15,7 @@ namespace apsis {
 namespace {
 
 constexpr double tolerance = 1e-11;           // of the references …
-constexpr double measurable = 5 * tolerance;  // … which are about as good
+constexpr double measurable = 5 * tolerance;  // … which have about the same accuracy
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 
 namespace apsis {
 
-/// A run that went to its end.
+/// A completed run.
 struct outcome {
   case_config config;             ///< as resolved
   run_summary summary;            ///< totals of its steps
@@ -16,15 +16,15 @@ struct outcome {
   int cells = 0,                  ///< of the mesh; 1 without space
       components = 0;             ///< unknowns of a cell
   std::vector<double> state;      ///< [cells][components]
-  std::vector<double> exact;      ///< the exact solution in the same form; empty where none is known
+  std::vector<double> exact;      ///< the exact solution in the same form; empty if unknown
   double cell_volume = 1.0;       ///< 1 without space
   double component_weight = 1.0;  ///< of a component in norms: the velocity cell Δv^d, or 1
 };
 
-/// Runs a case to its end. Throws what a simulation throws, and study_interrupted between steps.
+/// Runs a case to its end. Throws the errors of a simulation, and study_interrupted between steps.
 outcome compute_outcome(const case_config& config, const study_control& control = {});
 
-/// The built-in case or file with overrides "key=value", computed.
+/// Computes the built-in case or file with overrides "key=value".
 outcome compute_outcome(const std::string& name, const std::vector<std::string>& overrides,
                         const study_control& control = {});
 

@@ -7,7 +7,7 @@
 
 namespace apsis {
 
-/// Keys of a case as studies handle them: settings "key=value" in layers, and the numbers behind them.
+/// Settings "key=value" of studies in layers, and their numerical values.
 
 /// Whether a key is a step key, space.cells or velocity.points.
 bool is_resolution_key(const std::string& key);
@@ -15,20 +15,21 @@ bool is_resolution_key(const std::string& key);
 /// "key" of "key=value".
 std::string key_of(const std::string& setting);
 
-/// Settings over settings: an upper one takes the place of a lower one, a step rule that of any step rule.
+/// Settings over settings: an upper one replaces a lower one of the same key, and a step rule replaces any
+/// step rule.
 std::vector<std::string> layered(const std::vector<std::string>& lower,
                                  const std::vector<std::string>& upper);
 
-/// A text of all that decides the numbers of a run: two cases with the same one compute the same.
+/// A text of everything that determines the numbers of a run: cases with equal texts have equal results.
 std::string numerical_identity(case_config config);
 
-/// The number that a key has in a case; NaN where it is none (text, a formula in x, a key that is not set).
+/// The numerical value of a key in a case; NaN if it is not a number (text, a formula in x, an unset key).
 double number_of(const case_config& config, const std::string& key);
 
-/// What a resolution key refines: Δx of space.cells, Δv of velocity.points; else the number itself.
+/// The refined length: Δx for space.cells, Δv for velocity.points; otherwise the value itself.
 double resolution(const case_config& config, const std::string& key);
-/// What a key refines, by name: "Δx" of space.cells, "Δv" of velocity.points, "Δt" of step keys; else the
-/// key.
+/// The name of the refined length: "Δx" for space.cells, "Δv" for velocity.points, "Δt" for step keys;
+/// otherwise the key.
 std::string resolution_name(const std::string& key);
 
 }  // namespace apsis

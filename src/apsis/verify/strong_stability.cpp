@@ -18,7 +18,7 @@ step_limit search_step(std::size_t count, double unit, const step_search& how,
   limit.unit = unit;
   const auto keeps = [&](double step) {
     for (std::size_t n = 0; n < count; ++n) {
-      const std::size_t k = (limit.data + n) % count;  // those that lost it last come first
+      const std::size_t k = (limit.data + n) % count;  // the data that lost it last are tested first
       const double found = excess(k, step * unit);
       if (!(found <= 0.0)) {
         limit.lost = step;

@@ -16,8 +16,8 @@
 
 namespace apsis {
 
-/// Something that a step from `before` to `after` should keep. `excess` says by how much it does not, beyond
-/// rounding: ≤ 0 where it is kept; NaN counts as lost. Dimensionless.
+/// A property that a step from `before` to `after` should preserve. `excess` measures the violation beyond
+/// rounding: ≤ 0 if preserved; NaN counts as lost. Dimensionless.
 template <class State>
 struct kept_property {
   std::string name;  ///< "total variation"
@@ -36,7 +36,8 @@ kept_property<State> does_not_grow(std::string name, std::function<double(const 
           }};
 }
 
-/// Membership of a convex set, given by how far a state is outside (≤ 0 inside): max(0, distance) ≤ rounding.
+/// Membership of a convex set, given by the distance of a state outside it (≤ 0 inside): max(0, distance)
+/// ≤ rounding.
 template <class State>
 kept_property<State> stays_inside(std::string name, std::function<double(const State&)> distance,
                                   double rounding = 0.0) {
@@ -45,12 +46,12 @@ kept_property<State> stays_inside(std::string name, std::function<double(const S
           }};
 }
 
-/// r such that Δt ≤ r Δt_FE keeps what forward Euler steps keep, from the certificate: of the transport for
-/// IMEX methods, of T + Q for explicit ones. Implicit methods: infinity if every step does, otherwise the
-/// classical radius, which counts forward Euler steps of Q.
+/// r such that Δt ≤ r Δt_FE preserves what forward Euler steps preserve, from the certificate: steps of the
+/// transport for IMEX methods, of T + Q for explicit ones. Implicit methods: infinity if unconditional,
+/// otherwise the classical radius in forward Euler steps of Q.
 double promised_coefficient(const certificate& c);
 
-/// A problem whose stages are looked at: `look(u)` is called with every stage value.
+/// A problem with observed stages: `look(u)` is called with every stage value.
 template <problem P>
 class watched_problem {
  public:
@@ -62,9 +63,9 @@ class watched_problem {
   /// `inner` must outlive this.
   watched_problem(P& inner, std::function<void(const state&)> look) : inner_(inner), look_(std::move(look)) {}
 
-  /// As the problem does it; u is looked at where T(u) is wanted.
+  /// Forwards to the problem; observes u if T(u) is evaluated.
   void add_transport(real t, const state& u, targets_type targets) {
-    // Where only multiples of u are asked for, it may be the explicit part of a stage.
+    // If only multiples of u are requested, u may be the explicit part of a stage.
     for (const auto& to : targets)
       if (to.beta != real(0)) {
         look_(u);
@@ -72,12 +73,12 @@ class watched_problem {
       }
     inner_.add_transport(t, u, targets);
   }
-  /// As the problem does it; the solution is looked at.
+  /// Forwards to the problem and observes the solution.
   void solve_collision(real t, real a, real b, state& u) {
     inner_.solve_collision(t, a, b, u);
     look_(u);
   }
-  /// As the problem does it.
+  /// Forwards to the problem.
   void add_collision(real t, const state& u, targets_type targets)
     requires problem_with_explicit_collision<P>
   {
@@ -91,11 +92,11 @@ class watched_problem {
   std::function<void(const state&)> look_;
 };
 
-/// The largest Δt for which a method keeps a property in every one of `how.steps` steps from all of the data,
-/// in units of Δt_FE (the smallest of the data; `how.unit` where T sets none). Methods with SSP coefficient r
-/// keep what forward Euler steps keep for Δt ≤ r Δt_FE, so a smaller result refutes the method, the property
-/// or Δt_FE; a larger one says that the data are not the worst. A step that ends with a numerical_error loses
-/// the property. Throws input_error if there are no data, or no unit.
+/// The largest Δt for which a method preserves a property in every one of `how.steps` steps from all of the
+/// data, in units of Δt_FE (the smallest of the data; `how.unit` if T has none). Methods with SSP coefficient
+/// r preserve what forward Euler steps preserve for Δt ≤ r Δt_FE, so a smaller result refutes the method, the
+/// property or Δt_FE; a larger one means that the data are not the worst. A step that ends with a
+/// numerical_error loses the property. Throws input_error without data or unit.
 template <problem P>
 step_limit largest_step(const method& m, P& equation, std::span<const typename P::state> data,
                         const kept_property<typename P::state>& property, const step_search& how = {}) {
@@ -131,8 +132,8 @@ step_limit largest_step(const method& m, P& equation, std::span<const typename P
   });
 }
 
-/// The largest τ for which u + τ T(u) keeps the property from all of the data: what Δt_FE may be at most. In
-/// units of the problem's own Δt_FE: below 1 its promise is wrong. Throws as largest_step.
+/// The largest τ for which u + τ T(u) preserves the property from all of the data: an upper bound of Δt_FE.
+/// In units of the problem's own Δt_FE: a result below 1 refutes it. Throws as largest_step.
 template <problem P>
 step_limit largest_forward_euler_step(P& equation, std::span<const typename P::state> data,
                                       const kept_property<typename P::state>& property,

@@ -14,24 +14,23 @@ namespace apsis {
 /// Initial data of a time study.
 enum class start_data {
   given,       ///< those of the case
-  equilibrium  ///< their local equilibrium E(ℛu), which is consistent up to O(ε)
+  equilibrium  ///< their local equilibrium E(ℛu), consistent up to O(ε)
 };
 /// The first step of a time study.
 enum class first_step {
   plain,    ///< as long as the others
-  resolved  ///< cut into steps that resolve the initial layer (graded_start)
+  resolved  ///< divided into steps that resolve the initial layer (graded_start)
 };
 
-/// How accurate the steps in time are: a case with a relaxation model on its mesh, as a system of ordinary
-/// differential equations whose exact solution is known from extrapolate(). Space is discretised once and
-/// plays no part in the error. ε is constant and given here; that of the case, its method and its step are
-/// not used.
+/// Temporal accuracy: a case with a relaxation model on its mesh, as a system of ordinary differential
+/// equations whose exact solution is computed by extrapolate(). Space is discretised once and does not affect
+/// the error. ε is constant and given here; the ε, method and step of the case are not used.
 class time_study {
  public:
-  /// Throws input_error unless the model is a relaxation model; what run_setup throws.
+  /// Throws input_error unless the model is a relaxation model, and the errors of run_setup.
   time_study(const case_config& config, double epsilon);
   ~time_study();
-  time_study(time_study&&) noexcept;  ///< the other one has no study any more
+  time_study(time_study&&) noexcept;  ///< leaves the source empty
 
   /// The initial state; always point values.
   field start(start_data data) const;

@@ -58,7 +58,7 @@ struct written_number {
                           slash == std::string::npos ? 1 : parse<long>(text.substr(slash + 1))};
   }
 
-  /// The number times 2^k, in the same way where that is possible.
+  /// The number times 2^k, in the same notation if possible.
   std::string scaled(int k) const {
     constexpr long small = 1L << 31;
     if (!above || !below || *above > small || *below > small || std::abs(k) > 30)
@@ -83,7 +83,7 @@ struct written_number {
   throw input_error(fmt::format("--vary '{}': {}; {}", shown(text), problem, advice));
 }
 
-/// The values of "a..b"; nothing if the text is no range of numbers.
+/// The values of "a..b"; empty if the text is not a range of numbers.
 std::vector<std::string> range(const std::string& value, const std::string& vary) {
   const auto dots = value.find("..");
   if (dots == std::string::npos) return {};
@@ -116,7 +116,7 @@ varied_key parse_vary(const std::string& text) {
     for (const auto& one : many.empty() ? std::vector<std::string>{value} : many) {
       if (std::find(varied.values.begin(), varied.values.end(), one) != varied.values.end())
         bad_vary(text,
-                 fmt::format("the value {} stands there twice (each makes runs of its own)", shown(one)),
+                 fmt::format("the value {} occurs twice (each value makes a run)", shown(one)),
                  "remove one");
       varied.values.push_back(one);
     }

@@ -1,9 +1,9 @@
 static_assert(__cplusplus == 201703L, "the standard of the project around Apsis");
 #ifdef NDEBUG
-#error "compiled for a release, which the project around Apsis did not ask for"
+#error "compiled in Release mode, which the enclosing project did not request"
 #endif
 #ifdef __STRICT_ANSI__
-#error "compiled without extensions, which the project around Apsis asked for"
+#error "compiled without the extensions that the enclosing project requested"
 #endif
 
 int bystander(int unused) {

@@ -6,7 +6,7 @@ set(BUILD_SHARED_LIBS OFF)
 set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_MODULE_PATH ${CMAKE_CURRENT_SOURCE_DIR}/modules)
 set(APSIS_COMPONENTS integrate)
-foreach(package HDF5 hwy Ipopt muparser nlohmann_json OpenMP Threads)  # no business of integrate
+foreach(package HDF5 hwy Ipopt muparser nlohmann_json OpenMP Threads)  # not used by integrate
   set(CMAKE_DISABLE_FIND_PACKAGE_${package} TRUE)
 endforeach()
 

@@ -67,7 +67,7 @@ class Shell(Pages):
         self.assert_accepted(block("sh", "apsis show nonsense", "exit: 2"),
                              block("text", "error: nothing is called 'nonsense' …", "output"))
         self.assert_refused(4, "not 2", block("sh", "true", "exit: 2"))
-        self.assert_refused(4, "no number", block("sh", "true", "exit: two"))
+        self.assert_refused(4, "not a number", block("sh", "true", "exit: two"))
         self.assert_refused(4, "belongs to a program", block("python", "1 / 0", "exit: 1"))
 
     def test_a_block_that_does_not_end_is_ended(self):
@@ -170,7 +170,7 @@ class Outputs(Pages):
         self.assert_accepted(block("sh", "echo x=1.001"), block("text", "x=1", "output: 1e-2"))
 
     def test_a_tolerance_is_a_number(self):
-        self.assert_refused(8, "no number", block("sh", "echo 1"), block("text", "1", "output: some"))
+        self.assert_refused(8, "not a number", block("sh", "echo 1"), block("text", "1", "output: some"))
 
     def test_an_output_needs_a_block_before_it(self):
         self.assert_refused(4, "no block before", block("text", "one", "output"))

@@ -206,5 +206,5 @@ TEST(design, removes_stages_and_retains_the_best_method_when_time_is_over) {
   const outcome late = run_apsis(folder, {"design", "--order", "4", "--stages", "14", "--time", "0.5",
                                           "--from", "md-imex-16-4-large-r", "--out", "late.toml"});
   EXPECT_EQ(late.code, 3);
-  EXPECT_THAT(late.err, HasSubstr("stages is left (the time of"));
+  EXPECT_THAT(late.err, HasSubstr("stages remains (the time of"));
 }

@@ -119,7 +119,7 @@ TEST(option_values, of_design_beyond_their_range_are_refused_by_the_name_of_the_
 TEST(option_values, beyond_their_range_are_refused_by_the_name_of_the_option) {
   const work_folder folder;
   for (const char* value : {"0", "-1", "-1e-300"})
-    expect_refusal(folder, {"run", "paper/ode", "--wall", value}, "--wall: a number above 0 is needed");
+    expect_refusal(folder, {"run", "paper/ode", "--wall", value}, "--wall: a number above 0 is required");
   for (const char* command : {"run", "converge", "reproduce"})
     expect_refusal(folder, {command, "--threads", "-1"}, "--threads");
 }

@@ -115,8 +115,7 @@ varied_key parse_vary(const std::string& text) {
     const auto many = range(value, text);
     for (const auto& one : many.empty() ? std::vector<std::string>{value} : many) {
       if (std::find(varied.values.begin(), varied.values.end(), one) != varied.values.end())
-        bad_vary(text,
-                 fmt::format("the value {} occurs twice (each value makes a run)", shown(one)),
+        bad_vary(text, fmt::format("the value {} occurs twice (each value makes a run)", shown(one)),
                  "remove one");
       varied.values.push_back(one);
     }

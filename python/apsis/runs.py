@@ -27,8 +27,8 @@ class Result:
     f[cell, component] is the state at the end, x the cell centres, v[component] the speeds of the components, epsilon the Knudsen
     number at the centres (empty where the model has none). With two or three velocity dimensions v[component, dimension] are
     the velocities, v_weights[component] their quadrature weights, so that f @ v_weights is the density; where they are a tensor
-    product, axes["v_x"], … are its nodes and marginals["v_x"][cell, node], … f integrated over the other components. fields[name][k, cell] are the macroscopic fields at the times t[k], the last
-    of which is the end, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
+    product, axes["v_x"], … are its nodes and marginals["v_x"][cell, node], … f integrated over the other components. fields[name][k, cell] are the macroscopic fields at the times t[k], ending with
+    the final time, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
     the run ended."""
 
     state: str

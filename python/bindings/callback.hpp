@@ -20,7 +20,7 @@ class callback {
   callback(py::function function, std::string name)
       : function_(std::move(function)), name_(std::move(name)) {}
 
-  /// What the function returns.
+  /// Returns the result of the function.
   template <class... Arguments>
   py::object operator()(Arguments&&... arguments) const {
     return function_(std::forward<Arguments>(arguments)...);

@@ -44,7 +44,7 @@ Choice choice_called(const std::string& what, const std::string& name) {
                                 suggest(name, {names.begin(), names.end()})));
 }
 
-/// What a problem is made from, as Python names it.
+/// Description of a problem by names and numbers.
 struct description {
   std::string model;
   std::map<std::string, double> parameters;

@@ -3,7 +3,7 @@
 #include <apsis/core/log.hpp>
 
 PYBIND11_MODULE(_core, m) {
-  m.doc() = "What the package apsis is made of; use the package.";
+  m.doc() = "Compiled part of the package apsis; use the package.";
   // A library says nothing that was not asked for.
   apsis::log::set_level(apsis::log::level::warning);
   apsis::python::bind_errors(m);

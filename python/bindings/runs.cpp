@@ -21,13 +21,13 @@ namespace {
 /// How far a run is: step, steps in all (estimated), t, smallest value. False ends it.
 using progress_function = std::optional<py::function>;
 
-/// False of Python or of NumPy; anything else, None too, lets a run go on.
+/// Whether an answer is False of Python or NumPy; anything else, including None, continues the run.
 bool is_false(const py::object& answer) {
   const auto type = std::string(py::str(py::type::of(answer).attr("__name__")));
   return (type == "bool" || type == "bool_") && !answer.cast<bool>();
 }
 
-/// Asks Python now and then whether to go on: a signal, or the user's function.
+/// Asks Python from time to time whether to continue: pending signals, and the function of the user.
 class attendant {
  public:
   explicit attendant(progress_function progress) : progress_(std::move(progress)) {}

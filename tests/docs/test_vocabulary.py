@@ -13,6 +13,8 @@ PAGE = ROOT / "docs" / "vocabulary.md"
 REVISED = [
     "src/apsis/core", "src/apsis/exec", "src/apsis/method", "src/apsis/integrate", "src/apsis/design", "src/apsis/scheme",
     "tests/core", "tests/exec", "tests/method", "tests/integrate", "tests/design", "tests/scheme", "tests/support",
+    "src/apsis/phase", "src/apsis/boundary", "src/apsis/semidiscrete", "src/apsis/model", "src/apsis/config", "src/apsis/output",
+    "src/apsis/run", "tests/phase", "tests/extend", "examples",
     "src/apsis/verify", "paper", "app", "tests/verify", "tests/paper", "tests/app", "tests/install",
     "methods", "cases", "cmake", "scripts", "bench", "studies", "README.md", "CHANGELOG.md", "CONTRIBUTING.md",
     "docs/blocks.py", "docs/build.py", "docs/conf.py", "docs/execute.py", "docs/headers.py", "docs/links.py", "docs/reference.py",

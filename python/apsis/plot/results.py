@@ -114,13 +114,13 @@ def differences(runs: Sequence[tuple[str, RunResult]]) -> list[str]:
 
 
 def distribution_name(result: RunResult) -> str:
-    """What a picture shows of f over one velocity component: f itself, or its integral over the others."""
+    """f over one velocity component: f itself, or its integral over the others."""
     return {2: "∫ f dv_y", 3: "∫ f dv_y dv_z"}.get(result.velocity_dimensions, "f")
 
 
 def distribution_over_velocity(result: RunResult) -> tuple[Array, Array] | None:
     """Nodes of v, or of v_x with several velocity dimensions, and f[cell, node] over them, integrated over the other components.
-    None for a model without a velocity grid (a few speeds are none)."""
+    None for a model without a velocity grid; a few speeds do not count."""
     if result.velocity_dimensions > 1:
         found = result.arrays.get("v_x"), result.marginals.get("v_x")
     else:

@@ -1,4 +1,4 @@
-// Ghost rows: what each kind of boundary puts there, and that transport cannot tell how they came.
+// Ghost rows of each kind of boundary, and that transport does not depend on how they are provided.
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/errors.hpp>
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <paper/claim.hpp>
-
 #include <nlohmann/json_fwd.hpp>
+#include <paper/claim.hpp>
 
 namespace apsis {
 

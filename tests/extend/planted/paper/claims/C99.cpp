@@ -12,7 +12,10 @@ claim_result check(const study_control&) {
 }  // namespace
 
 extern const claim_entry claim_C99;
-const claim_entry claim_C99 = {
-    .id = "C99", .section = "none", .statement = "a claim is one file", .how = "by planting one", .check = check};
+const claim_entry claim_C99 = {.id = "C99",
+                               .section = "none",
+                               .statement = "a claim is one file",
+                               .how = "by planting one",
+                               .check = check};
 
 }  // namespace apsis

@@ -39,6 +39,8 @@ const model_entry model_planted_exchange = {
     .name = "planted-exchange",
     .description = "f+_t + f+_x = (rho/2 - f+)/epsilon, f-_t - f-_x = (rho/2 - f-)/epsilon",
     .source = "Goldstein, Quart. J. Mech. Appl. Math. 4 (1951)",
-    .make = [](const model_config&) -> std::unique_ptr<model> { return std::make_unique<planted_exchange>(); }};
+    .make = [](const model_config&) -> std::unique_ptr<model> {
+      return std::make_unique<planted_exchange>();
+    }};
 
 }  // namespace apsis

@@ -17,7 +17,7 @@ using apsis::field;
 using apsis::grid;
 using testing::HasSubstr;
 
-/// The same boundary, whose rows have to be computed.
+/// The same boundary with computed rows.
 class copied final : public apsis::boundary {
  public:
   explicit copied(std::shared_ptr<const apsis::boundary> of) : of_(std::move(of)) {}
@@ -31,7 +31,7 @@ class copied final : public apsis::boundary {
   std::shared_ptr<const apsis::boundary> of_;
 };
 
-/// Ghost rows that say where and when they were filled.
+/// Ghost rows that record where and when they were filled.
 class recording final : public apsis::boundary {
  public:
   void fill(const face& where, double t, const apsis::pencil_end& rows) const override {
@@ -80,8 +80,8 @@ TEST(boundary, outflow_ghosts_repeat_the_nearest_cell_inside) {
   for (std::size_t k = 0; k < rows.size(); ++k) EXPECT_EQ(rows[k], u.row(inside[k])) << k;
 }
 
-TEST(boundary, rows_that_are_computed_equal_rows_that_are_repeated) {
-  // In every kind, in every direction of meshes of 1, 2 and 3 dimensions, some narrower than the stencil.
+TEST(boundary, computed_rows_give_the_results_of_repeated_rows) {
+  // For every kind, in every direction of meshes of 1, 2 and 3 dimensions, some narrower than the stencil.
   for (const grid& mesh : {grid::line(5, 0, 1), grid(2, {2, 4, 1}, {0, 0, 0}, {1, 1, 1}),
                            grid(3, {4, 3, 2}, {0, 0, 0}, {1, 1, 1})})
     for (const std::string& name : apsis::boundary_names()) {
@@ -106,7 +106,7 @@ TEST(boundary, rows_that_are_computed_equal_rows_that_are_repeated) {
     }
 }
 
-TEST(boundary, is_told_face_time_and_position_of_every_pencil) {
+TEST(boundary, receives_face_time_and_position_of_every_pencil) {
   const grid mesh(2, {2, 3, 1}, {0.0, 10.0, 0.0}, {1.0, 16.0, 0.0});
   const auto side = std::make_shared<recording>();
   domain space(mesh, {{side, side}, {side, side}});
@@ -126,14 +126,14 @@ TEST(boundary, is_told_face_time_and_position_of_every_pencil) {
   EXPECT_EQ(ghost(1, 0, 4), (std::vector<double>{0.25, 1.5, 1.0, 200.0, 0.25, 16.0, 0.0}));
 }
 
-TEST(boundary, that_is_periodic_on_one_side_only_is_refused) {
+TEST(boundary, periodic_on_one_side_only_is_refused) {
   const auto periodic = apsis::make_boundary("periodic"), outflow = apsis::make_boundary("outflow");
   EXPECT_THAT(message_of([&] { domain(grid::line(4, 0, 1), {{periodic, outflow}}); }),
               HasSubstr("only one face of direction 1 is periodic"));
   EXPECT_THAT(message_of([&] { domain(grid::line(4, 0, 1), {}); }), HasSubstr("0 pairs of boundaries"));
 }
 
-TEST(boundary, every_name_is_found_and_a_wrong_one_has_a_suggestion) {
+TEST(boundary, every_name_is_found_and_an_unknown_one_gets_a_suggestion) {
   for (const auto& name : apsis::boundary_names()) EXPECT_NE(apsis::make_boundary(name), nullptr) << name;
   EXPECT_EQ(
       message_of([] { apsis::make_boundary("outfow"); }),

@@ -1,4 +1,4 @@
-// Every way a case can be wrong: where the message points, what it says, and that it suggests something.
+// Invalid cases: every message has its place, its reason and a suggestion.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 
@@ -35,7 +35,7 @@ every = 0.1
 
 struct bad_case {
   std::string name;
-  std::string from, to;  ///< the one change to the good case
+  std::string from, to;  ///< the change to the valid case
   std::string place;     ///< "line:column", or "line:" where the column is that of the TOML parser
   std::string says;
 };
@@ -65,7 +65,7 @@ TEST_P(bad_cases, is_refused_at_its_place) {
   EXPECT_THAT(message,
               StartsWith("c.toml:" + GetParam().place + (GetParam().place.back() == ':' ? "" : ": ")));
   EXPECT_THAT(message, HasSubstr(GetParam().says));
-  // problem (reason); suggestion: something follows the last parenthesis.
+  // problem (reason); suggestion: text follows the last parenthesis.
   EXPECT_LT(message.rfind(')') + 2, message.size()) << message;
   EXPECT_THAT(message, HasSubstr("); "));
 }
@@ -145,7 +145,7 @@ const std::vector<bad_case> all = {
 INSTANTIATE_TEST_SUITE_P(table, bad_cases, testing::ValuesIn(all),
                          [](const auto& c) { return c.param.name; });
 
-TEST(bad_case, an_end_has_a_kind_that_exists_and_is_not_periodic_alone) {
+TEST(bad_case, boundaries_of_ends_exist_and_are_periodic_in_pairs) {
   EXPECT_THAT(
       error_of(good + "[boundary.left]\nkind = \"outfow\"\n"),
       StartsWith("c.toml:19:1: 'boundary.left.kind' is the text 'outfow' (there is no such name); did "
@@ -160,7 +160,7 @@ TEST(bad_case, an_end_has_a_kind_that_exists_and_is_not_periodic_alone) {
               StartsWith("c.toml:19:1: unknown key 'boundary.left' (no such key for model 'bgk'); "));
 }
 
-TEST(bad_case, the_text_that_the_table_changes_is_good) {
+TEST(bad_case, the_text_that_the_table_changes_is_valid) {
   EXPECT_EQ(error_of(good), "accepted");
 }
 
@@ -185,7 +185,7 @@ TEST(bad_case, a_mesh_has_the_dimensions_of_its_model) {
         "\"md-imex-3-2\"\nend = 1.0\ncfl = 0.5\n",
         {key + "=" + value});
   };
-  // Lists of one are what a line has always been.
+  // A list of one entry is accepted in one dimension.
   EXPECT_EQ(with("space.cells", "[30]"), "accepted");
   EXPECT_EQ(with("space.domain", "[[0.0, 2.0]]"), "accepted");
   EXPECT_THAT(with("space.cells", "[30, 20]"),
@@ -206,7 +206,7 @@ TEST(bad_case, a_formula_in_x_needs_space) {
   EXPECT_THAT(error_of(ode), HasSubstr("depends on x (model 'ode' has no space)"));
 }
 
-TEST(bad_case, a_text_of_a_model_is_one_of_its_names_or_a_formula) {
+TEST(bad_case, a_text_value_of_a_model_is_a_known_name_or_a_formula) {
   const auto with = [](const std::string& flux) {
     return error_of("[model]\nname = \"relaxation\"\nflux = " + flux +
                     "\n[space]\ncells = 20\n[time]\nmethod = \"md-imex-3-2\"\nend = 1.0\ncfl = 0.5\n");
@@ -241,7 +241,7 @@ struct bad_override {
   std::string text, says;
 };
 
-TEST(bad_case, overrides_report_themselves_as_their_place) {
+TEST(bad_case, messages_quote_the_override) {
   const std::vector<bad_override> overrides = {
       {"space.cells=ten", "'ten' is not a value of TOML"},
       {"space.cells=-1", "at least 1"},
@@ -295,12 +295,13 @@ TEST(bad_case, a_file_cut_at_any_byte_is_refused_or_read) {
     else
       EXPECT_THAT(message, StartsWith("c.toml:")) << n;
   }
-  // Only cuts behind the last required key leave a case, within the numbers "0.04" and "0.1" too.
+  // Only cuts after the last required key leave a valid case, including those within the numbers "0.04" and
+  // "0.1".
   EXPECT_GE(read, 2);
   EXPECT_LE(read, 25);
 }
 
-TEST(bad_case, a_byte_changed_anywhere_is_refused_or_read) {
+TEST(bad_case, a_file_with_any_byte_changed_is_refused_or_read) {
   for (std::size_t n = 0; n < good.size(); ++n) {
     for (const char c : {'\0', '"', '[', '=', '\xff', '\n', '9'}) {
       std::string text = good;
@@ -322,17 +323,17 @@ TEST(bad_case, large_garbage_is_refused_before_it_is_parsed) {
   EXPECT_THAT(error_of("[" + deep + "b]\n" + deep + "c = 1\n"), StartsWith("c.toml:"));
 }
 
-TEST(bad_case, a_misspelt_key_on_the_command_line_is_told_whatever_its_value_is) {
+TEST(bad_case, a_misspelt_key_on_the_command_line_is_reported_for_every_value) {
   for (const std::string value : {"ars-222", "1", "[1, ", "x y"})
     EXPECT_THAT(error_of(good, {"time.methd=" + value}), HasSubstr("did you mean 'time.method'?")) << value;
 }
 
-TEST(bad_case, a_number_of_dimensions_is_whole) {
+TEST(bad_case, a_number_of_dimensions_is_an_integer) {
   EXPECT_EQ(error_of(good, {"model.velocity_dimensions=2"}), "accepted");
   EXPECT_THAT(error_of(good, {"model.velocity_dimensions=1.7"}), HasSubstr("it must be an integer"));
 }
 
-TEST(bad_case, integers_may_be_written_as_any_whole_number) {
+TEST(bad_case, integers_may_be_written_in_any_notation) {
   for (const std::string value : {"1e1", "40.0", "80/2", "+40", "4_0", " 40 ", "4e1"})
     for (const std::string key :
          {"space.cells", "velocity.points", "output.stride", "output.checkpoint_every"})
@@ -341,6 +342,6 @@ TEST(bad_case, integers_may_be_written_as_any_whole_number) {
   EXPECT_EQ(apsis::parse_case(good, "c.toml", {" space.cells = 1.2e2 "}).space.cells, std::vector<int>{120});
 }
 
-TEST(bad_case, a_step_rule_with_spaces_replaces_that_of_the_file_too) {
+TEST(bad_case, a_step_rule_written_with_spaces_replaces_that_of_the_file) {
   EXPECT_EQ(error_of(good, {"time.dt = 0.1"}), "accepted");
 }

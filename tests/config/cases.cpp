@@ -12,7 +12,7 @@
 using namespace apsis;
 using testing::HasSubstr;
 
-TEST(cases, every_built_in_case_is_good_and_says_what_it_shows) {
+TEST(cases, every_built_in_case_is_valid_and_described) {
   const auto names = case_names();
   ASSERT_GE(names.size(), 7U);
   for (const auto& name : names) {
@@ -42,7 +42,7 @@ TEST(cases, the_mixed_regime_case_is_the_one_of_the_paper) {
   EXPECT_NEAR(*reference.time.cfl * (2.0 / 80) / 15.0, 7e-6, 1e-7);
 }
 
-TEST(cases, overrides_take_the_place_of_the_file) {
+TEST(cases, overrides_replace_values_of_the_file) {
   const case_config c =
       load_case("paper/bgk-mixed", {"space.cells=80", "time.method=ssprk-2-2", "title=a \"b\" \\c",
                                     "space.domain=[-1, 1]", "output.fields=[\"rho\"]", "time.dt=1e-4"});
@@ -59,7 +59,7 @@ TEST(cases, overrides_take_the_place_of_the_file) {
 TEST(cases, numbers_of_overrides_may_be_fractions) {
   EXPECT_EQ(*load_case("paper/ode", {"time.dt=1/48"}).time.dt, 1.0 / 48.0);
   EXPECT_EQ(load_case("paper/decay", {"model.u0=2.5e1/4"}).model.parameters.at("u0"), 6.25);
-  // Text stays text, and a formula is computed by its own reader.
+  // Texts stay texts, and formulas are left to the expression parser.
   EXPECT_EQ(load_case("paper/ode", {"title=1/2"}).title, "1/2");
   EXPECT_EQ(load_case("paper/ode", {"model.epsilon=1/2"}).model.epsilon, "1/2");
 }
@@ -101,7 +101,7 @@ RC_GTEST_PROP(cases, resolved_text_keeps_every_bit_of_random_values, ()) {
   RC_ASSERT(again.title == c.title);
 }
 
-TEST(cases, a_list_of_one_number_of_cells_or_one_interval_is_written_as_on_a_line) {
+TEST(cases, lists_of_one_entry_are_written_without_brackets) {
   const std::string text = to_toml(load_case("paper/bgk-mixed"));
   const case_config plain = parse_case(text, "c.toml", {"space.cells=33", "space.domain=[0.0, 3.0]"});
   const case_config listed = parse_case(text, "c.toml", {"space.cells=[33]", "space.domain=[[0.0, 3.0]]"});
@@ -121,7 +121,7 @@ TEST(cases, cells_and_domain_of_several_dimensions_make_a_mesh) {
   EXPECT_THAT(to_toml(c), HasSubstr("cells = [4, 5, 6]\ndomain = [[0.0, 4.0], [-1.0, 1.0], [0.0, 3.0]]\n"));
 }
 
-TEST(cases, each_end_may_have_a_boundary_of_its_own) {
+TEST(cases, each_end_may_have_its_own_boundary) {
   const std::string text = to_toml(load_case("paper/bgk-mixed"));
   const auto kinds = [](const case_config& c) {
     const auto faces = make_boundaries(c).front();
@@ -138,15 +138,15 @@ TEST(cases, each_end_may_have_a_boundary_of_its_own) {
             std::pair(false, false));
 }
 
-TEST(cases, texts_of_a_model_survive_their_own_text) {
+TEST(cases, text_values_of_a_model_read_back_unchanged) {
   const case_config c = load_case("paper/relaxation", {"model.flux=u < 0.5 ? u/4 : (u - 0.25)/2"});
   EXPECT_EQ(c.model.texts.at("flux"), "u < 0.5 ? u/4 : (u - 0.25)/2");
   EXPECT_EQ(parse_case(to_toml(c), "again").model.texts, c.model.texts);
   EXPECT_EQ(load_case("paper/relaxation", {"model.flux=0"}).model.texts.at("flux"), "0");
 }
 
-TEST(schema, a_name_is_a_text_for_every_model_or_for_none) {
-  // The command line decides whether a value needs quotes before it knows the model.
+TEST(schema, a_parameter_name_has_one_type_in_all_models) {
+  // The command line decides whether a value needs quotes before the model is known.
   for (const model_entry* one : model_entries())
     for (const model_text& text : one->texts) {
       EXPECT_NE(std::find(text.choices.begin(), text.choices.end(), text.value), text.choices.end());

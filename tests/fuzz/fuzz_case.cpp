@@ -1,4 +1,5 @@
-// Any bytes as a case file: a case or an apsis::error; and a case that was read must survive its own text.
+// Reads any bytes as a case file, which yields a case or an apsis::error. The text of a case reads back to
+// the same case.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
@@ -13,7 +14,7 @@
 namespace {
 
 std::optional<apsis::case_config> read(std::string_view text) {
-  // The first line of the input doubles as an override, so that both ways in are tried together.
+  // The first line of the input is also an override, so that both readers are fuzzed.
   const std::string line(text.substr(0, text.find('\n')));
   try {
     return line.rfind("#!", 0) == 0 ? apsis::parse_case(text, "input", {line.substr(2)})

@@ -1,4 +1,4 @@
-// Any bytes as a method file: a method or an apsis::error, and its coefficients in double.
+// Reads any bytes as a method file, which yields a method with coefficients in double or an apsis::error.
 #include <apsis/core/errors.hpp>
 #include <apsis/method/method.hpp>
 

@@ -20,7 +20,7 @@ class Headers(unittest.TestCase):
                 (Path(folder) / f"{name}.hpp").write_text(text, encoding="utf-8")
             return check_headers.problems(BUILD, [Path(folder)], 2)
 
-    def test_what_a_header_uses_is_missed_where_it_is_not_included(self):
+    def test_a_missing_include_is_reported(self):
         number, found = self.problems(planted="#pragma once\nstd::string name_of(int);\n",
                                       good="#pragma once\n#include <string>\nstd::string name_of(int);\n")
         self.assertEqual(number, 2)
@@ -32,18 +32,18 @@ class Headers(unittest.TestCase):
         number, found = self.problems(planted="struct twice {};\n")
         self.assertEqual((number, len(found)), (1, 1))
 
-    def test_a_warning_is_a_problem_as_in_the_build(self):
+    def test_a_warning_is_an_error_as_in_the_build(self):
         _, found = self.problems(planted="#pragma once\ninline int narrow(double x) { int y = x; return y; }\n")
         self.assertEqual(len(found), 1)
 
-    def test_what_a_precompiled_header_has_is_missed(self):
+    def test_includes_of_a_precompiled_header_do_not_count(self):
         flags = check_headers.flags_of("/usr/bin/ccache g++ -Wall -Winvalid-pch -include a/cmake_pch.hxx -O2 -o x.o -c x.cpp")
         self.assertEqual(flags, ["g++", "-Wall"])
         flags = check_headers.flags_of("clang++ -Wall -Xclang -include-pch -Xclang a/cmake_pch.hxx.pch -Xclang -include "
                                        "-Xclang a/cmake_pch.hxx -I b -o x.o -c x.cpp")
         self.assertEqual(flags, ["clang++", "-Wall", "-I", "b"])
 
-    def test_a_folder_without_headers_is_no_success(self):
+    def test_a_folder_without_headers_is_an_error(self):
         arguments, sys.argv = sys.argv, ["check_headers.py", str(BUILD), str(SOURCE / "methods")]
         try:
             with contextlib.redirect_stdout(io.StringIO()):

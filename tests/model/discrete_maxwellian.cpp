@@ -1,4 +1,4 @@
-// The discrete Maxwellian up to the boundary of the moments that f ≥ 0 can have, and in a vacuum.
+// The discrete Maxwellian up to the boundary of the realizable moments, and in a vacuum.
 #include <apsis/core/random_source.hpp>
 #include <apsis/model/maxwellian.hpp>
 
@@ -32,7 +32,7 @@ velocity_grid random_grid(random_source& random) {
   return {d, random.integer(4, d == 1 ? 60 : d == 2 ? 16 : 10), random.magnitude(-1, 2)};
 }
 
-/// One to four values of very different size.
+/// One to four values of very different magnitudes.
 row few_values(const velocity_grid& grid, random_source& random) {
   row f = zeros(grid);
   for (int left = random.integer(1, 5); left > 0; --left)
@@ -41,7 +41,7 @@ row few_values(const velocity_grid& grid, random_source& random) {
   return f;
 }
 
-/// Anywhere, at a grid point, midway between two, or off these by a small fraction.
+/// An arbitrary point, a grid point, a midpoint, or a small distance from one of these.
 double random_centre(const velocity_grid& grid, random_source& random) {
   if (random.one_in(3)) return random.uniform(-grid.max(), grid.max());
   const double point = grid.line()[static_cast<std::size_t>(random.integer(0, grid.points()))];
@@ -49,7 +49,8 @@ double random_centre(const velocity_grid& grid, random_source& random) {
   return point + (random.one_in(2) ? 0.0 : 0.5 * grid.spacing() * nearly);
 }
 
-/// exp(∓|v − u|²/(2T)): T from 1e-6 Δv² to `hottest` Δv²; with the lower sign mass gathers at the corners.
+/// exp(∓|v − u|²/(2T)): T from 1e-6 Δv² to `hottest` Δv²; with the lower sign the mass concentrates at the
+/// corners.
 row gaussian(const velocity_grid& grid, random_source& random, double hottest, bool inverted) {
   const double T = random.magnitude(-6, std::log10(hottest)) * grid.spacing() * grid.spacing();
   row exponent = zeros(grid);
@@ -65,7 +66,7 @@ row gaussian(const velocity_grid& grid, random_source& random, double hottest, b
   return exponent;
 }
 
-/// Two adjacent velocities in each direction, and a speck of something else.
+/// Two adjacent velocities in each direction, plus a tiny amount elsewhere.
 row nearly_on_a_face(const velocity_grid& grid, random_source& random) {
   row f(static_cast<std::size_t>(grid.size()), 1.0);
   for (int k = 0; k < grid.dimensions(); ++k) {
@@ -102,9 +103,8 @@ row random_row(const velocity_grid& grid, random_source& random) {
   return f;
 }
 
-/// Largest defect of the moments of m, added up in extended precision, relative to the mass, to
-/// √(2ρ𝓔) ≥ Σ|v|m, and to the energy (with a rounding of that of one spacing, for a gas at rest and at T =
-/// 0).
+/// Largest defect of the moments of m, summed in extended precision, relative to the mass, to √(2ρ𝓔) ≥ Σ|v|m,
+/// and to the energy (plus the rounding error of the energy of one spacing, for a gas at rest with T = 0).
 double defect(const velocity_grid& grid, const row& m, const std::array<double, 5>& omega) {
   const auto d = static_cast<std::size_t>(grid.dimensions());
   std::array<long double, 5> own{};
@@ -126,7 +126,7 @@ double defect(const velocity_grid& grid, const row& m, const std::array<double, 
   return std::max(worst, miss(1 + d, omega[1 + d] + grain));
 }
 
-/// Σ m log(m Δv^d/ρ), without the units of m.
+/// Σ m log(m Δv^d/ρ), independent of the units of m.
 double entropy(const velocity_grid& grid, const row& m, double rho) {
   double sum = 0.0;
   for (const double x : m)
@@ -136,7 +136,7 @@ double entropy(const velocity_grid& grid, const row& m, double rho) {
 
 }  // namespace
 
-TEST(discrete_maxwellian, exists_for_the_moments_of_every_row_that_is_not_negative) {
+TEST(discrete_maxwellian, exists_for_the_moments_of_every_nonnegative_row) {
   random_source random(1);
   for (int sample = 0; sample < 100'000; ++sample) {
     const velocity_grid grid = random_grid(random);
@@ -146,15 +146,16 @@ TEST(discrete_maxwellian, exists_for_the_moments_of_every_row_that_is_not_negati
     ASSERT_TRUE(apsis::discrete_maxwellian(grid, omega.data(), m.data()))
         << sample << ": " << apsis::why_unrealizable(grid, omega.data());
     for (const double x : m) ASSERT_GE(x, 0.0) << sample;
-    // Some ten roundings: those of f's own sums over up to 1000 points, of a division, and of m.
+    // About ten rounding errors: of the sums of f over up to 1000 points, of a division, and of m.
     ASSERT_LE(defect(grid, m, omega), 2e-14) << sample << ", d = " << grid.dimensions();
-    // It has the least entropy among the rows with these moments, f being one of them.
+    // It minimizes the entropy among the rows with these moments, and f is one of them.
     ASSERT_LE(entropy(grid, m, omega[0]), entropy(grid, f, omega[0]) + 1e-9) << sample;
   }
 }
 
-TEST(discrete_maxwellian, near_a_corner_of_the_grid_has_the_moments_too) {
-  // Nearly all mass at one end: weights of the other side pass through the subnormal numbers in the search.
+TEST(discrete_maxwellian, has_the_given_moments_near_a_corner_of_the_grid) {
+  // Nearly all mass at one end: during the iteration the weights at the other end pass through subnormal
+  // numbers.
   for (const int points : {28, 30, 55}) {
     const velocity_grid grid(1, points, 1.0);
     for (double share = 1e-14; share < 1e-6; share *= 1.5)
@@ -169,7 +170,7 @@ TEST(discrete_maxwellian, near_a_corner_of_the_grid_has_the_moments_too) {
   }
 }
 
-TEST(discrete_maxwellian, of_one_velocity_or_two_adjacent_ones_is_the_row_itself) {
+TEST(discrete_maxwellian, of_a_row_on_one_velocity_or_two_adjacent_ones_is_that_row) {
   random_source random(2);
   for (int sample = 0; sample < 2000; ++sample) {
     const velocity_grid grid(1, random.integer(4, 60), random.magnitude(-1, 3));
@@ -179,15 +180,15 @@ TEST(discrete_maxwellian, of_one_velocity_or_two_adjacent_ones_is_the_row_itself
     f[first + 1] = random.one_in(3) && f[first] > 0.0 ? 0.0 : random.magnitude(-20, 0);
     const auto omega = moments_of(grid, f);
     ASSERT_TRUE(apsis::discrete_maxwellian(grid, omega.data(), m.data())) << sample;
-    // Moments are rounded relative to the energy, which may be that of many spacings.
+    // Moments are rounded relative to the energy, which may correspond to many spacings.
     const double rounding = 1e-15 * (f[first] + f[first + 1]) * grid.points() * grid.points();
     for (std::size_t j = 0; j < m.size(); ++j) ASSERT_NEAR(m[j], f[j], rounding) << sample;
   }
 }
 
 TEST(discrete_maxwellian, on_a_face_is_the_product_of_its_lines) {
-  // Means between two adjacent points in each direction and no energy beyond that: 2^d points. Means as
-  // before and all energy that the grid can hold: its 2^d corners.
+  // Means between two adjacent points in each direction with the smallest energy: 2^d points. The same means
+  // with the largest energy of the grid: its 2^d corners.
   for (int d = 1; d <= 3; ++d) {
     const velocity_grid grid(d, 6, 3.0);
     for (const bool lower : {true, false}) {
@@ -199,7 +200,7 @@ TEST(discrete_maxwellian, on_a_face_is_the_product_of_its_lines) {
           const double v = grid.component(k)[j], s = share[static_cast<std::size_t>(k)];
           expected[j] *= v == high ? s : v == low ? 1.0 - s : 0.0;
         }
-      // The opposite of independent: the same marginals with as much mass as possible on the diagonal.
+      // Maximal correlation: the same marginals with as much mass as possible on the diagonal.
       row f = zeros(grid);
       double placed = 0.0;
       std::array<double, 3> sorted = share;
@@ -220,15 +221,14 @@ TEST(discrete_maxwellian, on_a_face_is_the_product_of_its_lines) {
       }
       const auto omega = moments_of(grid, f);
       ASSERT_TRUE(apsis::discrete_maxwellian(grid, omega.data(), m.data()));
-      // A rounding ε of the energy spreads mass over a few ε of other velocities.
+      // A rounding error ε of the energy moves a fraction of a few ε of the mass to other velocities.
       for (std::size_t j = 0; j < m.size(); ++j) EXPECT_NEAR(m[j], expected[j], 1e-14) << d << lower;
     }
   }
 }
 
-TEST(discrete_maxwellian, changes_with_the_moments_up_to_the_boundary_by_no_more_than_they_do) {
-  // From T = 0 at a grid point and between two, in steps of the size of their distance: |Δm| ≤ C |Δω|, C
-  // being of the size of 1/Δv².
+TEST(discrete_maxwellian, depends_continuously_on_the_moments_up_to_the_boundary) {
+  // From T = 0 at and between grid points, in steps of increasing size: |Δm| ≤ C |Δω| with C of order 1/Δv².
   for (const double u : {0.5, 0.0, 0.3, 2.5, 5.4999999999}) {
     const velocity_grid grid(1, 12, 6.0);
     const double distance = std::abs(u - std::floor(u) - 0.5);
@@ -250,7 +250,7 @@ TEST(discrete_maxwellian, changes_with_the_moments_up_to_the_boundary_by_no_more
   }
 }
 
-TEST(discrete_maxwellian, of_empty_space_and_of_subnormal_rows_exists) {
+TEST(discrete_maxwellian, exists_for_vacuum_and_for_subnormal_rows) {
   random_source random(3);
   constexpr double smallest = std::numeric_limits<double>::denorm_min();
   for (int d = 1; d <= 3; ++d) {
@@ -268,13 +268,13 @@ TEST(discrete_maxwellian, of_empty_space_and_of_subnormal_rows_exists) {
         ASSERT_GE(x, 0.0);
         mass += grid.weight() * x;
       }
-      // Every value is rounded to a multiple of the smallest number.
+      // Every value is rounded to a multiple of the smallest subnormal number.
       ASSERT_NEAR(mass, omega[0], static_cast<double>(f.size()) * smallest + 1e-14 * omega[0]) << sample;
     }
   }
 }
 
-TEST(discrete_maxwellian, says_why_moments_are_those_of_no_row) {
+TEST(discrete_maxwellian, reports_why_moments_are_not_realizable) {
   const velocity_grid grid(2, 10, 5.0);
   row m = zeros(grid);
   const auto why = [&](std::array<double, 4> omega) {

@@ -1,5 +1,4 @@
-// Exact solutions that models offer: they begin at their data, and where there is no space they solve u' = S
-// + Q.
+// Exact solutions of models: they start from the initial data, and without space they satisfy u' = S + Q.
 #include <apsis/model/general_model.hpp>
 #include <apsis/model/model_registry.hpp>
 
@@ -28,7 +27,7 @@ std::vector<double> collision(const apsis::general_model& m, const std::vector<d
 
 }  // namespace
 
-TEST(exact_solution, begins_at_its_data) {
+TEST(exact_solution, starts_from_the_initial_data) {
   int known = 0;
   for (const auto* entry : apsis::model_entries()) {
     const auto m = make(*entry);
@@ -47,7 +46,7 @@ TEST(exact_solution, begins_at_its_data) {
   EXPECT_GE(known, 1);
 }
 
-TEST(exact_solution, of_the_decay_satisfies_its_equation) {
+TEST(exact_solution, of_the_decay_model_satisfies_its_equation) {
   const auto m = make(*apsis::find_model("decay"));
   const auto& general = dynamic_cast<const apsis::general_model&>(*m);
   const auto& exact = m->initial().front().exact;
@@ -58,7 +57,7 @@ TEST(exact_solution, of_the_decay_satisfies_its_equation) {
     exact(t, {}, now);
     exact(t + h, {}, after);
     const double derivative = (after[0] - before[0]) / (2.0 * h), q = collision(general, now)[0];
-    // The central difference is good to h²u'''/6 ≤ (h/t)² of u', plus its rounding of about 1e-16 / 1e-4.
+    // Error of the central difference: h²u'''/6 ≤ (h/t)² u', plus rounding of about 1e-16/1e-4.
     RC_ASSERT(std::abs(derivative - q) <= 1e-7 * std::abs(q));
   });
 }

@@ -32,17 +32,16 @@ std::string message_of(const std::string& text) {
 TEST(expression, agrees_with_the_formula_of_the_mixed_regime) {
   const expression epsilon("1e-5 + tanh(1 - 11*(x - 1)) + tanh(1 + 11*(x - 1))");
   EXPECT_FALSE(epsilon.is_constant());
-  // The same sum as a quotient, tanh a + tanh b = sinh(a + b)/(cosh a cosh b): a formula that shares no
-  // operation.
+  // The same sum as a quotient without a common operation: tanh a + tanh b = sinh(a + b)/(cosh a cosh b).
   for (double x = 0.0; x <= 2.0; x += 0.01) {
     const double y = 11.0 * (x - 1.0);
     const double exact = 1e-5 + std::sinh(2.0) / (std::cosh(1.0 - y) * std::cosh(1.0 + y));
-    // Both terms are at most 1: a few roundings of 1.1e-16 each.
+    // Both terms are at most 1: a few rounding errors of 1.1e-16 each.
     EXPECT_NEAR(epsilon.evaluate(x), exact, 1e-15);
   }
 }
 
-TEST(expression, has_the_precedence_and_constants_of_mathematics) {
+TEST(expression, has_the_usual_precedence_and_constants) {
   EXPECT_DOUBLE_EQ(expression("2 + 3 * 2^2").evaluate(0), 14.0);
   EXPECT_DOUBLE_EQ(expression("10 - 2 - 3").evaluate(0), 5.0);
   EXPECT_DOUBLE_EQ(expression("4 - -x").evaluate(3), 7.0);
@@ -53,7 +52,7 @@ TEST(expression, has_the_precedence_and_constants_of_mathematics) {
   EXPECT_TRUE(expression("1e-3").is_constant());
 }
 
-RC_GTEST_PROP(expression, reads_every_nonnegative_number_back, (double x)) {
+RC_GTEST_PROP(expression, reads_back_every_nonnegative_number, (double x)) {
   RC_PRE(std::isfinite(x) && x >= 0.0);
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", x);
@@ -70,7 +69,7 @@ RC_GTEST_PROP(expression, random_text_is_a_formula_or_an_input_error, ()) {
   }
 }
 
-TEST(expression, points_to_the_character_that_is_wrong) {
+TEST(expression, locates_the_wrong_character) {
   EXPECT_THAT(message_of("1 + y"), HasSubstr("file:3:14: "));
   EXPECT_THAT(message_of("1 + y"), HasSubstr("unknown name 'y'"));
   EXPECT_THAT(message_of("1 + sinn(x)"), HasSubstr("did you mean 'sin'?"));
@@ -84,19 +83,19 @@ TEST(expression, points_to_the_character_that_is_wrong) {
   EXPECT_THAT(message_of(std::string(2000, '1')), HasSubstr("2000 characters"));
 }
 
-TEST(expression, refuses_values_that_are_no_knudsen_number) {
+TEST(expression, refuses_values_that_cannot_be_a_knudsen_number) {
   EXPECT_THAT(message_of("x - 1"), HasSubstr("is -0.5 at x = 0.5"));
   EXPECT_THAT(message_of("1/(x - 0.5)"), HasSubstr("inf"));
   EXPECT_THAT(message_of("sqrt(x - 1)"), HasSubstr("nan"));
   EXPECT_THAT(message_of("exp(10000*x)"), HasSubstr("inf"));
 }
 
-TEST(expression, takes_another_variable_and_negative_values_where_asked) {
+TEST(expression, accepts_another_variable_and_negative_values_on_request) {
   const apsis::formula_kind flux{{"u"}, false};
   const expression f("u^2/2 - 1", {"file", 3, 10}, flux);
   EXPECT_DOUBLE_EQ(f.evaluate(1.0), -0.5);
   EXPECT_FALSE(f.is_constant());
-  // The value alone never throws; the checked one does.
+  // The unchecked value never throws; the checked one does.
   const expression root("sqrt(u)", {"file", 3, 10}, flux);
   EXPECT_TRUE(std::isnan(root.value(-1.0)));
   EXPECT_THROW(root.evaluate(-1.0), input_error);
@@ -109,7 +108,7 @@ TEST(expression, takes_another_variable_and_negative_values_where_asked) {
   }
 }
 
-TEST(expression, is_a_formula_in_the_coordinates_of_the_space_it_is_used_in) {
+TEST(expression, uses_the_coordinates_of_its_space) {
   const expression plane("x + 10*y", {"file", 3, 10}, apsis::formula_of_position(2));
   const std::array<double, 3> at = {0.25, 0.5, 7.0};
   EXPECT_DOUBLE_EQ(plane.evaluate(at), 5.25);
@@ -131,10 +130,10 @@ TEST(expression, is_a_formula_in_the_coordinates_of_the_space_it_is_used_in) {
   }
 }
 
-TEST(expression, is_evaluated_by_many_threads_at_once) {
+TEST(expression, is_evaluated_by_many_threads_concurrently) {
   const expression f("sin(u)/2 + u^3 - (u > 0.5 ? exp(-u) : 2*u)", {}, {{"u"}, false});
   const auto exact = [](double u) { return std::sin(u) / 2 + u * u * u - (u > 0.5 ? std::exp(-u) : 2 * u); };
-  // More threads than the expression keeps machines for, all in the same formula for a while.
+  // More threads than the expression has parsers for, all evaluating the same formula.
   std::atomic<int> wrong{0};
   std::vector<std::thread> threads;
   for (int t = 0; t < 80; ++t)

@@ -1,4 +1,4 @@
-// The fields of a gas: every component of the bulk velocity, under names that say which one.
+// Fields of a gas: every component of the bulk velocity has its own name.
 #include <apsis/model/model_registry.hpp>
 
 #include <cmath>
@@ -48,7 +48,7 @@ std::vector<double> fields_of(const apsis::model& m, const std::vector<double>& 
 
 }  // namespace
 
-TEST(fluid_fields, have_one_velocity_for_each_dimension) {
+TEST(fluid_fields, have_one_bulk_velocity_per_dimension) {
   EXPECT_THAT(names_of_fields(*gas(1)), ElementsAre("rho", "u", "T"));
   EXPECT_THAT(names_of_fields(*gas(2)), ElementsAre("rho", "u_x", "u_y", "T"));
   EXPECT_THAT(names_of_fields(*gas(3)), ElementsAre("rho", "u_x", "u_y", "u_z", "T"));
@@ -71,7 +71,7 @@ TEST(fluid_fields, of_a_sampled_maxwellian_are_its_density_velocity_and_temperat
   }
 }
 
-TEST(fluid_fields, are_exchanged_with_the_axes) {
+TEST(fluid_fields, are_permuted_with_the_axes) {
   const auto m = gas(3);
   const auto f = fields_of(*m, maxwellian(*m, 0.8, {0.2, -0.5, 0.1}, 1.3));
   const auto g = fields_of(*m, maxwellian(*m, 0.8, {0.1, 0.2, -0.5}, 1.3));

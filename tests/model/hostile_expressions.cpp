@@ -1,4 +1,4 @@
-// Formulas that nobody means: each is a value or one short message with its place, and never a crash.
+// Adversarial formulas: each has a value or one short message with its place, and none crashes.
 #include <apsis/model/expression.hpp>
 
 #include <cmath>
@@ -20,7 +20,7 @@ std::string repeated(const std::string& part, int times) {
   return out;
 }
 
-/// The message; "" if the formula has a value (NaN is one) at 0.5.
+/// The message, or "" if the formula has a value at 0.5 (possibly NaN).
 std::string message_of(const std::string& text) {
   try {
     const expression f(text, {"c.toml", 3, 12});
@@ -72,7 +72,7 @@ TEST(hostile_expression, of_any_depth_and_length_has_a_value_or_one_short_messag
   EXPECT_EQ(message_of(repeated("(", 499) + "x" + repeated(")", 499)), "");
 }
 
-TEST(hostile_expression, shows_the_part_of_a_long_formula_that_is_wrong) {
+TEST(hostile_expression, shows_the_wrong_part_of_a_long_formula) {
   const std::string message = message_of(repeated("x+", 200) + "foo" + repeated("+x", 200));
   EXPECT_THAT(message, StartsWith("c.toml:3:412: "));
   EXPECT_THAT(message, HasSubstr("foo+x"));
@@ -80,7 +80,7 @@ TEST(hostile_expression, shows_the_part_of_a_long_formula_that_is_wrong) {
   EXPECT_EQ(message.find("did you mean"), std::string::npos);
 }
 
-TEST(hostile_expression, values_that_cannot_be_are_named_with_the_point) {
+TEST(hostile_expression, invalid_values_are_reported_with_their_point) {
   EXPECT_THAT(value_message("1/(x - 0.25)", 0.25),
               HasSubstr("is inf at x = 0.25 (it must be finite and not negative); "));
   EXPECT_THAT(value_message("log(x - 1)", 0.5), HasSubstr("nan at x = 0.5"));
@@ -106,6 +106,6 @@ TEST(hostile_expression, random_tokens_never_end_the_program) {
     else
       EXPECT_THAT(message, StartsWith("c.toml:3:")) << text;
   }
-  // Some are formulas; with none the test would show nothing.
+  // Some random texts are formulas; otherwise the test is vacuous.
   EXPECT_GT(good, 100);
 }

@@ -48,7 +48,7 @@ TEST(maxwellian, moments_and_states_are_inverse_to_each_other) {
   }
 }
 
-TEST(maxwellian, formula_agrees_with_the_exponential_of_the_library) {
+TEST(maxwellian, formula_agrees_with_the_exponential_of_the_standard_library) {
   const velocity_grid grid(1, 150, 15.0);
   const fluid_state s{0.8, {0.4, 0, 0}, 1.5};
   apsis::aligned_vector<double> m(150);
@@ -56,7 +56,7 @@ TEST(maxwellian, formula_agrees_with_the_exponential_of_the_library) {
   for (std::size_t j = 0; j < 150; ++j) {
     const double v = grid.line()[j];
     const double exact = s.rho / std::sqrt(2 * M_PI * s.T) * std::exp(-(v - 0.4) * (v - 0.4) / (2 * s.T));
-    // The exponent carries a relative rounding of 1e-16, which its size (up to 80) magnifies.
+    // The exponent has a relative rounding error of 1e-16, amplified by its magnitude (up to 80).
     EXPECT_NEAR(m[j] / exact, 1.0, 1e-13);
   }
 }
@@ -71,20 +71,20 @@ TEST(maxwellian, formula_is_exact_to_rounding_on_the_grid_of_the_paper) {
   });
 }
 
-TEST(maxwellian, discrete_one_conserves_on_coarse_grids_in_every_dimension) {
+TEST(maxwellian, discrete_maxwellian_conserves_on_coarse_grids_in_every_dimension) {
   for (int d = 1; d <= 3; ++d) {
-    const velocity_grid grid(d, 12, 6.0);  // spacing 1, as wide as √T
+    const velocity_grid grid(d, 12, 6.0);  // spacing 1, equal to √T
     check_property("defect", [&] {
       fluid_state s{*rc::gen::inRange(1, 100) * 0.1, {0, 0, 0}, *rc::gen::inRange(4, 20) * 0.1};
       for (int k = 0; k < d; ++k) s.u[k] = *rc::gen::inRange(-10, 10) * 0.1;
       RC_ASSERT(defect(grid, s, true) < 2e-14);
     });
     const fluid_state cold{1.0, {0.3, 0.1, 0}, 0.25};
-    EXPECT_GT(defect(grid, cold, false), 1e-3) << "else this grid is not coarse and the test shows nothing";
+    EXPECT_GT(defect(grid, cold, false), 1e-3) << "otherwise the grid is not coarse and the test is vacuous";
   }
 }
 
-TEST(maxwellian, discrete_one_is_positive_and_equals_the_formula_on_fine_grids) {
+TEST(maxwellian, discrete_maxwellian_is_positive_and_equals_the_formula_on_fine_grids) {
   const velocity_grid grid(1, 150, 15.0);
   const fluid_state s{1.0, {0.3, 0, 0}, 1.1};
   apsis::aligned_vector<double> formula(150), discrete(150);
@@ -96,10 +96,10 @@ TEST(maxwellian, discrete_one_is_positive_and_equals_the_formula_on_fine_grids) 
   }
 }
 
-TEST(maxwellian, says_so_when_no_discrete_one_exists) {
+TEST(maxwellian, reports_moments_without_a_discrete_maxwellian) {
   const velocity_grid grid(1, 12, 6.0);
   apsis::aligned_vector<double> m(12);
-  // The mean lies between grid points 0.5 apart from both: the variance cannot be below 1/4.
+  // The mean lies midway between grid points at distance 0.5: the variance is at least 1/4.
   EXPECT_FALSE(apsis::discrete_maxwellian(grid, {1.0, {0.0, 0, 0}, 0.1}, m.data()));
   // The mean lies beyond the grid.
   EXPECT_FALSE(apsis::discrete_maxwellian(grid, {1.0, {7.0, 0, 0}, 1.0}, m.data()));
@@ -113,7 +113,7 @@ TEST(maxwellian, cold_tails_underflow_to_zero_not_to_nan) {
   for (const double value : m) EXPECT_GE(value, 0.0);
 }
 
-TEST(velocity_grid, is_symmetric_and_refuses_nonsense) {
+TEST(velocity_grid, is_symmetric_and_refuses_invalid_extents) {
   const velocity_grid grid(2, 10, 3.0);
   EXPECT_EQ(grid.size(), 100);
   EXPECT_EQ(grid.line()[0], -grid.line()[9]);
@@ -123,8 +123,8 @@ TEST(velocity_grid, is_symmetric_and_refuses_nonsense) {
 }
 
 TEST(maxwellian, sums_in_two_and_three_dimensions_keep_the_tails) {
-  // Naive sums round away every term below half a unit in the last place of what is already there: 9 of 10
-  // terms here, a loss of 1e-15 to 1e-14 that has the same sign for every state.
+  // A naive sum drops every term below half a unit in the last place of the partial sum: 9 of 10 terms here,
+  // a loss of 1e-15 to 1e-14 with the same sign for every state.
   for (const int d : {2, 3}) {
     const velocity_grid grid(d, d == 2 ? 150 : 32, d == 2 ? 15.0 : 10.0);
     fluid_state state;
@@ -141,7 +141,7 @@ TEST(maxwellian, sums_in_two_and_three_dimensions_keep_the_tails) {
         mass += m[j];
         energy += static_cast<long double>(grid.half_square()[j]) * m[j];
       }
-      // Some roundings of 1.1e-16; a long double has 11 bits more.
+      // A few rounding errors of 1.1e-16; a long double has 11 more bits.
       EXPECT_NEAR(omega[0], static_cast<double>(mass * grid.weight()), 4.5e-16) << d << " " << u;
       EXPECT_NEAR(omega[d + 1] / static_cast<double>(energy * grid.weight()), 1.0, 6e-16) << d << " " << u;
     }

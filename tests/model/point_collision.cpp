@@ -1,5 +1,5 @@
-// The collision contract: closed form and Newton's method solve the same stages, means are means of
-// solutions.
+// The collision contract: closed form and Newton's method solve the same stages; stage means are weighted
+// sums.
 #include <apsis/core/errors.hpp>
 #include <apsis/core/random_source.hpp>
 #include <apsis/model/general_model.hpp>
@@ -52,14 +52,14 @@ TEST(point_collision, newton_and_closed_form_solve_the_same_stage_at_every_epsil
       auto u = positive_rows(points, 3, random), v = u;
       closed->make_collision({.points = points, .pitch = 3})->solve_stage(a, b, at, u.data());
       general.make_collision({.points = points, .pitch = 3})->solve_stage(a, b, at, v.data());
-      // Newton's method stops at a residual of rounding size; with conserved moments the equation
-      // (1 + μ)(v − E) = u − E loses up to the rounding of μE against u, which is 1e-16 μ / (1 + μ).
+      // Newton's method stops at a residual of rounding size; with conserved moments, (1 + μ)(v − E) = u − E
+      // loses the rounding error of μE relative to u, which is 1e-16 μ/(1 + μ).
       for (std::size_t k = 0; k < u.size(); ++k) EXPECT_NEAR(v[k], u[k], 1e-9) << epsilon << " " << a;
     }
   }
 }
 
-TEST(point_collision, evaluates_the_collision_over_epsilon) {
+TEST(point_collision, evaluates_q_over_epsilon) {
   const auto closed = made("broadwell");
   const broadwell_as_general_model general;
   const std::vector<double> u = {0.7, 0.3, 0.4}, epsilons = {0.05};
@@ -68,7 +68,7 @@ TEST(point_collision, evaluates_the_collision_over_epsilon) {
   for (const apsis::model* equation : std::initializer_list<const apsis::model*>{closed.get(), &general}) {
     std::vector<double> rate(3);
     equation->make_collision({.points = 1, .pitch = 3})->evaluate(at, u.data(), rate.data());
-    EXPECT_NEAR(rate[0], q, 1e-14 * 20.0);  // terms of size 10, each with a few roundings
+    EXPECT_NEAR(rate[0], q, 1e-14 * 20.0);  // terms of size 10, each with a few rounding errors
     EXPECT_NEAR(rate[1], -q, 1e-14 * 20.0);
     EXPECT_NEAR(rate[2], q, 1e-14 * 20.0);
   }
@@ -104,7 +104,7 @@ TEST(point_collision, means_are_the_weighted_sums_of_the_solutions) {
   }
 }
 
-TEST(point_collision, the_limit_is_the_equilibrium_or_a_failure_with_its_cell) {
+TEST(point_collision, in_the_limit_yields_the_equilibrium_or_fails_with_the_cell) {
   const auto closed = made("broadwell");
   const broadwell_as_general_model general;
   std::vector<double> u = {0.7, 0.3, 0.4, 0.2, 0.2, 0.2}, v = u;
@@ -125,7 +125,7 @@ TEST(point_collision, the_limit_is_the_equilibrium_or_a_failure_with_its_cell) {
       HasSubstr("Q/epsilon does not exist for epsilon = 0"));
 }
 
-TEST(point_collision, a_general_model_knows_no_relaxation_time) {
+TEST(point_collision, a_general_model_has_no_relaxation_time) {
   const broadwell_as_general_model general;
   EXPECT_FALSE(general.has_relaxation_time());
   const std::vector<double> u = {0.7, 0.3, 0.4};

@@ -1,4 +1,5 @@
-// What models refuse. (Properties 2–5 of the paper: tests/verify/model_properties.cpp.)
+// Inputs that models refuse, and bit-for-bit agreement of batches. Properties 2–5 of the paper are in
+// tests/verify/model_properties.cpp.
 #include <apsis/model/model_registry.hpp>
 
 #include <algorithm>
@@ -44,12 +45,12 @@ TEST(models, inadmissible_moments_are_refused_with_a_reason) {
   }
 }
 
-TEST(models, rows_together_are_the_same_bits_as_one_by_one) {
+TEST(models, batches_of_rows_give_the_bits_of_single_rows) {
   for (const auto& m : relaxation_models()) {
     const relaxation_model& model = *m.relaxation;
     const auto moments = static_cast<std::size_t>(model.moment_count());
     const auto size = static_cast<std::size_t>(model.components()), pitch = size + 3;
-    constexpr int rows = 21;  // more than are treated at once, and no multiple of anything
+    constexpr int rows = 21;  // more than one batch, and a multiple of no vector width
     std::vector<double> u(rows * pitch), e(rows * pitch, -7.0), omega(rows * moments);
     for (std::size_t p = 0; p < rows; ++p)
       model.initial().front().point_value({0.07 * static_cast<double>(p)}, {u.data() + p * pitch, size});
@@ -61,7 +62,7 @@ TEST(models, rows_together_are_the_same_bits_as_one_by_one) {
       EXPECT_TRUE(std::equal(of_one.begin(), of_one.end(), omega.data() + p * moments)) << m.entry->name;
       ASSERT_TRUE(model.equilibrium(of_one.data(), one.data()));
       EXPECT_TRUE(std::equal(one.begin(), one.end(), e.data() + p * pitch)) << m.entry->name << " " << p;
-      EXPECT_EQ(e[p * pitch + size], -7.0) << "nothing between the rows is touched";
+      EXPECT_EQ(e[p * pitch + size], -7.0) << "padding between the rows is left alone";
     }
     for (const std::size_t bad : {std::size_t{0}, std::size_t{5}, std::size_t{17}}) {
       auto spoilt = omega;
@@ -73,7 +74,7 @@ TEST(models, rows_together_are_the_same_bits_as_one_by_one) {
   }
 }
 
-TEST(models, consistent_data_are_the_equilibrium_of_the_data_they_are_named_after) {
+TEST(models, consistent_data_are_the_equilibrium_of_their_namesake) {
   // "smooth-consistent" of "smooth": the same moments, and E of them is the row itself.
   int found = 0;
   for (const auto& m : relaxation_models()) {
@@ -104,7 +105,7 @@ TEST(models, consistent_data_are_the_equilibrium_of_the_data_they_are_named_afte
   EXPECT_GE(found, 3);
 }
 
-TEST(models, initial_data_have_names_of_their_own_and_jumps_in_order) {
+TEST(models, initial_data_have_distinct_names_and_sorted_jumps) {
   for (const auto* entry : apsis::model_entries()) {
     const auto names = apsis::initial_names(*entry);
     EXPECT_FALSE(names.empty()) << entry->name;
@@ -116,7 +117,7 @@ TEST(models, initial_data_have_names_of_their_own_and_jumps_in_order) {
   EXPECT_EQ(apsis::initial_names(*apsis::find_model("decay")), std::vector<std::string>{"start"});
 }
 
-TEST(models, a_row_has_one_number_for_each_velocity_and_set) {
+TEST(models, a_row_has_one_value_per_velocity_and_component) {
   for (const auto* entry : apsis::model_entries()) {
     const auto& m = apsis::prototype(*entry);
     EXPECT_EQ(apsis::has_space(*entry), m.velocities().size() > 0) << entry->name;
@@ -125,7 +126,7 @@ TEST(models, a_row_has_one_number_for_each_velocity_and_set) {
   }
 }
 
-TEST(models, the_ode_starts_where_its_parameters_say) {
+TEST(models, the_ode_starts_at_the_given_values) {
   auto config = apsis::default_config(*apsis::find_model("ode"));
   config.parameters["u1"] = -0.25;
   config.parameters["u2"] = 3.0;
@@ -136,7 +137,7 @@ TEST(models, the_ode_starts_where_its_parameters_say) {
   EXPECT_EQ(u, (std::vector<double>{-0.25, 3.0}));
 }
 
-TEST(models, bgk_says_how_its_velocity_grid_must_change) {
+TEST(models, bgk_reports_how_its_velocity_grid_must_change) {
   const auto complaint = [](double max, int points) {
     apsis::model_config config;
     config.parameters = {{"velocity_dimensions", 1.0}};

@@ -1,4 +1,4 @@
-// Fluxes of the relaxation system, and the system against its own equations.
+// Fluxes of the relaxation system, and the system checked against its equations.
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/scalar_flux.hpp>
 
@@ -48,13 +48,13 @@ TEST(scalar_flux, a_formula_equals_the_flux_of_the_same_name) {
   const apsis::scalar_flux named("buckley-leverett", 0.0, 0.5),
       formula("u^2/(u^2 + 0.5*(1 - u)^2)", 0.0, 0.0);
   for (double u = -0.5; u <= 1.5; u += 0.01) {
-    EXPECT_NEAR(named(u), formula(u), 4e-16);                       // a handful of roundings
+    EXPECT_NEAR(named(u), formula(u), 4e-16);                       // a few rounding errors
     EXPECT_NEAR(named.derivative(u), formula.derivative(u), 1e-9);  // h⁴ F⁽⁵⁾/30: h 1.4e-3, F⁽⁵⁾ up to 2e3
   }
 }
 
-TEST(scalar_flux, the_fastest_wave_is_found_between_the_ends) {
-  // |F'| of Buckley and Leverett is 0 at both ends. F'' = 0 is a cubic, solved here by bisection.
+TEST(scalar_flux, the_fastest_wave_inside_an_interval_is_found) {
+  // For Buckley–Leverett |F'| is 0 at both ends; the cubic F'' = 0 is solved by bisection here.
   const double M = 0.5;
   const auto curvature = [M](double u) {
     const double d = u * u + M * (1 - u) * (1 - u);
@@ -64,7 +64,7 @@ TEST(scalar_flux, the_fastest_wave_is_found_between_the_ends) {
   for (int k = 0; k < 60; ++k) (curvature(0.5 * (low + high)) > 0.0 ? low : high) = 0.5 * (low + high);
   const apsis::scalar_flux F("buckley-leverett", 0.0, M);
   const auto found = F.fastest(0.0, 1.0);
-  EXPECT_NEAR(found.u, low, 1e-6);  // a maximum is flat
+  EXPECT_NEAR(found.u, low, 1e-6);  // the function is flat at its maximum
   EXPECT_NEAR(found.speed, F.derivative(low), 1e-14);
   EXPECT_EQ(apsis::scalar_flux("burgers", 0, 1).fastest(-2.0, 1.0).speed, 2.0);
   EXPECT_EQ(apsis::scalar_flux("burgers", 0, 1).fastest(0.5, 0.5).speed, 0.5);
@@ -102,20 +102,20 @@ TEST(relaxation, transport_and_collision_are_those_of_the_paper_in_u1_and_u2) {
   });
 }
 
-TEST(relaxation, refuses_fluxes_that_are_faster_than_its_waves) {
+TEST(relaxation, refuses_fluxes_that_violate_the_subcharacteristic_condition) {
   EXPECT_EQ(complaint("burgers", 1.0, -1.0, 1.0), "");  // equality is allowed
   EXPECT_EQ(complaint("sin(u)", 1.0, -3.0, 3.0), "");
   EXPECT_EQ(
       complaint("burgers", 1.0, -1.01, 0.5),
       "model.speed: model.speed = 1 is too small for the flux \"burgers\" (|F'(u)| = 1.01 at u = -1.01, "
       "which the data reach, and the subcharacteristic condition is |F'| <= speed); give at least 1.01");
-  // Between the ends, where |F'| = 0.
+  // The maximum is inside the interval; |F'| = 0 at its ends.
   EXPECT_NE(complaint("buckley-leverett", 2.0, 0.0, 1.0).find("give at least 2.081"), std::string::npos);
   EXPECT_NE(complaint("log(u)", 1.0, -1.0, 1.0).find("model.flux: "), std::string::npos);
   EXPECT_NE(complaint("1/u", 1.0, -1.0, 1.0), "");
 }
 
-TEST(relaxation, the_speed_that_a_refusal_names_is_enough) {
+TEST(relaxation, the_speed_that_a_message_suggests_is_accepted) {
   check_property("speed", [] {
     const double k = 1e-3 * *rc::gen::inRange(1100, 90000);
     const std::string flux = std::to_string(k) + "*sin(u)";
@@ -126,7 +126,7 @@ TEST(relaxation, the_speed_that_a_refusal_names_is_enough) {
   });
 }
 
-TEST(relaxation, an_infinite_flux_is_no_equilibrium_and_says_where) {
+TEST(relaxation, an_infinite_flux_is_refused_with_its_state) {
   const auto made = make("1/(u - 0.5)", 1.0);
   const auto& m = as_relaxation(*made);
   const double omega = 0.5;

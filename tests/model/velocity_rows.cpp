@@ -1,4 +1,4 @@
-// Sums and Gaussians over velocity points, in every instruction set, against long double.
+// Sums and Gaussians over velocity points, in every instruction set, compared with long double.
 #include <apsis/model/velocity_rows.hpp>
 
 #include <apsis/model/maxwellian.hpp>
@@ -12,7 +12,7 @@
 
 namespace {
 
-/// Distance in units of the last place of the larger one.
+/// Distance in units in the last place of the larger value.
 double relative(double value, long double exact) {
   return static_cast<double>(std::abs((static_cast<long double>(value) - exact) / exact));
 }
@@ -37,12 +37,12 @@ TEST(velocity_rows, sums_are_those_of_long_double) {
       }
       apsis::velocity_rows::sums sums{};
       apsis::velocity_rows::moments(f.data(), 0, 1, v.data(), half.data(), n, &sums);
-      // Partial sums of nonnegative terms: n/8 roundings at most.
+      // Partial sums of nonnegative terms: at most n/8 rounding errors.
       const double rounding = 1e-16 * (8.0 + n / 4.0);
       EXPECT_NEAR(sums.mass, static_cast<double>(mass), rounding * static_cast<double>(mass)) << n;
       EXPECT_NEAR(sums.momentum, static_cast<double>(momentum), rounding * static_cast<double>(size)) << n;
       EXPECT_NEAR(sums.energy, static_cast<double>(energy), rounding * static_cast<double>(energy)) << n;
-      // The logarithm is good to a few units in the last place.
+      // The logarithm is accurate to a few units in the last place.
       EXPECT_NEAR(apsis::velocity_rows::entropy(f.data(), n), static_cast<double>(entropy),
                   1e-14 * static_cast<double>(mass) * 100.0)
           << n;
@@ -50,7 +50,7 @@ TEST(velocity_rows, sums_are_those_of_long_double) {
   });
 }
 
-TEST(velocity_rows, a_gaussian_is_one_wherever_its_centre_and_width_are) {
+TEST(velocity_rows, a_gaussian_is_accurate_for_every_centre_and_width) {
   for_each_instruction_set([] {
     for (const int n : {4, 13, 150, 151})
       for (const double T : {0.003, 0.05, 1.0, 30.0})
@@ -59,7 +59,7 @@ TEST(velocity_rows, a_gaussian_is_one_wherever_its_centre_and_width_are) {
           std::vector<double> m(static_cast<std::size_t>(n) + 1, -7.0);
           const apsis::velocity_rows::gaussian of_row{2.0, u, T};
           apsis::velocity_rows::gaussians(line, &of_row, 1, m.data(), 0);
-          EXPECT_EQ(m.back(), -7.0) << "nothing behind the row is touched";
+          EXPECT_EQ(m.back(), -7.0) << "memory after the row is left alone";
           const auto exact = [&](int j) {
             const long double x = 0.5L * line.spacing * (2.0L * j + 1 - n) - u;
             return 2 * std::exp(-x * x / (2 * T));
@@ -72,9 +72,9 @@ TEST(velocity_rows, a_gaussian_is_one_wherever_its_centre_and_width_are) {
               EXPECT_LT(value, 2e-299) << u << " " << T;
               EXPECT_GE(value, 0.0);
             } else {
-              // The exponential of a rounded argument x is good to some 1e-16 (1 + x), x < 700.
+              // The exponential of a rounded argument x has a relative error of about 1e-16 (1 + x), x < 700.
               EXPECT_LT(relative(value, exact(j)), 1e-12) << n << " " << u << " " << T << " " << j;
-              // The distance v − u has the rounding of v and u, which the exponent multiplies by x/T.
+              // The difference v − u has the rounding errors of v and u, which the exponent amplifies.
               const double v = 0.5 * line.spacing * (2.0 * j + 1 - n);
               const double moved = 3e-16 * (std::abs(v) + std::abs(u)) * std::abs(v - u) / T;
               const double exponent = static_cast<double>(-std::log(largest / 2));
@@ -88,7 +88,7 @@ TEST(velocity_rows, a_gaussian_is_one_wherever_its_centre_and_width_are) {
   });
 }
 
-TEST(velocity_rows, rows_together_are_the_same_bits_as_one_by_one) {
+TEST(velocity_rows, batches_of_rows_give_the_bits_of_single_rows) {
   for_each_instruction_set([] {
     for (const int n : {5, 150})
       for (const int rows : {1, 2, 3, 7, 8, 9, 20}) {
@@ -106,7 +106,7 @@ TEST(velocity_rows, rows_together_are_the_same_bits_as_one_by_one) {
           const double* row = m.data() + p * pitch;
           apsis::velocity_rows::gaussians(line, &of[k], 1, one.data(), 0);
           EXPECT_TRUE(std::equal(one.begin(), one.end(), row)) << n << " " << rows << " " << p;
-          EXPECT_EQ(row[n], -7.0) << "nothing between the rows is touched";
+          EXPECT_EQ(row[n], -7.0) << "padding between the rows is left alone";
           apsis::velocity_rows::sums alone{};
           apsis::velocity_rows::moments(row, 0, 1, v.data(), half.data(), n, &alone);
           EXPECT_EQ(alone.mass, sums[k].mass);
@@ -117,7 +117,7 @@ TEST(velocity_rows, rows_together_are_the_same_bits_as_one_by_one) {
   });
 }
 
-TEST(velocity_rows, where_the_moments_of_the_formula_are_called_exact_they_are) {
+TEST(velocity_rows, moments_of_the_formula_are_exact_where_claimed) {
   const apsis::velocity_grid grid(1, 150, 15.0);
   int exact = 0, other = 0;
   std::vector<double> m(150);
@@ -131,7 +131,7 @@ TEST(velocity_rows, where_the_moments_of_the_formula_are_called_exact_they_are) 
       }
       ++exact;
       apsis::formula_maxwellian(grid, state, m.data());
-      // Rounding of a sum of 150 terms, relative to (ρ, ρ√T, ρT).
+      // Rounding error of a sum of 150 terms, relative to (ρ, ρ√T, ρT).
       EXPECT_LT(apsis::moment_defect(grid, m.data(), omega, state), 4e-14) << u << " " << T;
     }
   EXPECT_GT(exact, 20);

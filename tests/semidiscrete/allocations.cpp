@@ -1,4 +1,4 @@
-// What a step takes from the heap: its buffers at the first step, as the schedule says, and then nothing.
+// Heap allocations of a step: the buffers of its schedule at the first step, none afterwards.
 #include "bgk_case.hpp"
 
 #include <apsis/exec/parallel.hpp>
@@ -24,8 +24,8 @@ void* counted_allocation(std::size_t size, std::size_t alignment) {
 
 }  // namespace
 
-// The whole test program allocates through these. The compiler sees half of a pair where it inlines the
-// other.
+// Replace the global allocation functions of the test program. The compiler sees only half of a pair where it
+// inlines the other half.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 #endif
@@ -74,8 +74,8 @@ heap_use measure(const std::string& method, unknowns what) {
   const apsis::grid mesh = apsis::grid::line(cells, 0.0, 2.0);
   auto problem = problem_of(*m, mesh, what);
   apsis::stepper stepper(apsis::find_method(method), problem);
-  // Wide enough for the velocity grid and far from its ends: no Newton iteration, whose scratch a thread
-  // takes when it meets its first.
+  // Equilibria that the grid resolves, far from its ends: no Newton iteration, which would allocate scratch
+  // memory at its first use in a thread.
   apsis::field u = sample(mesh, m->components(), false, [](double x, int k) {
     return (1.5 + std::sin(3.0 * x)) * std::exp(-0.14 * (k - 20.0) * (k - 20.0));
   });
@@ -94,15 +94,16 @@ heap_use measure(const std::string& method, unknowns what) {
 
 }  // namespace
 
-TEST(allocations, a_step_takes_the_buffers_of_its_schedule_once_and_then_nothing) {
+TEST(allocations, the_first_step_takes_the_buffers_of_its_schedule_and_later_steps_none) {
   for (const int threads : {1, 2}) {
     apsis::set_threads(threads);
     for (const char* method :
          {"md-imex-3-2", "md-imex-6-3", "md-imex-8-3-mixed", "ssprk-3-3", "hsz-ars-4-2"}) {
       const apsis::schedule plan(apsis::find_method(method).coefficients<double>());
       const auto points = measure(method, unknowns::points), averages = measure(method, unknowns::averages);
-      EXPECT_EQ(points.fields, plan.buffers() - 1) << method << ", u^n itself is the user's";
-      // Cell averages collide with the old values of their neighbours, beside which the new ones are made.
+      EXPECT_EQ(points.fields, plan.buffers() - 1) << method << ", u^n belongs to the user";
+      // Collisions of cell averages read the old values of their neighbours, so the new ones need a second
+      // buffer.
       EXPECT_EQ(averages.fields, plan.buffers() - 1 + (plan.implicit_solves() > 0 ? 1 : 0)) << method;
       EXPECT_EQ(points.in_later_steps, 0) << method << ", " << threads << " threads";
       EXPECT_EQ(averages.in_later_steps, 0) << method << ", " << threads << " threads";
@@ -111,7 +112,7 @@ TEST(allocations, a_step_takes_the_buffers_of_its_schedule_once_and_then_nothing
   apsis::set_threads(1);
 }
 
-TEST(allocations, a_step_within_a_tolerance_takes_nothing_after_the_first_ones) {
+TEST(allocations, steps_to_a_tolerance_allocate_nothing_after_the_first_ones) {
   constexpr int cells = 40;
   const auto m = small_bgk();
   const apsis::grid mesh = apsis::grid::line(cells, 0.0, 2.0);

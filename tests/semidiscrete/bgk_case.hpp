@@ -33,7 +33,7 @@ inline std::shared_ptr<apsis::domain> space_of(const apsis::grid& mesh,
   return std::make_shared<apsis::domain>(apsis::make_domain(mesh, kind));
 }
 
-/// Nonnegative rows with zeros, jumps and values of very different size.
+/// Nonnegative rows with zeros, jumps and values of very different magnitudes.
 inline apsis::field random_rows(const apsis::grid& mesh, int components) {
   apsis::field u(mesh.size(), components);
   for (int i = 0; i < mesh.size(); ++i)
@@ -50,7 +50,7 @@ inline double smallest(const apsis::field& u) {
   return lowest;
 }
 
-/// Cell averages (ten-point-accurate by a fine midpoint rule of 200 points) or point values of g(x, k).
+/// Cell averages or point values of g(x, k).
 template <class Function>
 apsis::field sample(const apsis::grid& mesh, int components, bool averages, Function g) {
   apsis::field u(mesh.size(), components);
@@ -61,7 +61,8 @@ apsis::field sample(const apsis::grid& mesh, int components, bool averages, Func
         u.row(i)[k] = g(x, k);
         continue;
       }
-      // Five-point Gauss on four parts: exact to rounding for the smooth functions here.
+      // Five-point Gauss quadrature on four parts of a cell: exact to rounding for the smooth functions of
+      // these tests.
       constexpr double node[3] = {0.0, 0.538469310105683091, 0.906179845938663993};
       constexpr double weight[3] = {0.568888888888888889, 0.478628670499366468, 0.236926885056189088};
       double sum = 0.0;
@@ -77,7 +78,7 @@ apsis::field sample(const apsis::grid& mesh, int components, bool averages, Func
   return u;
 }
 
-/// T(u) as a field.
+/// Returns T(u).
 inline apsis::field transport_of(const apsis::transport& t, const apsis::field& u) {
   apsis::field result(u.cells(), u.components());
   const apsis::target<apsis::field, double> to{&result, 0.0, 1.0, true};

@@ -31,7 +31,7 @@ std::vector<double> at_centres(const grid& mesh, double (*f)(double)) {
   return values;
 }
 
-/// Smooth data away from equilibrium.
+/// Smooth data off equilibrium.
 field smooth(const apsis::relaxation_model& m, const grid& mesh, bool averages) {
   std::vector<double> row(static_cast<std::size_t>(m.components()));
   return sample(mesh, m.components(), averages, [&](double x, int k) {
@@ -105,7 +105,7 @@ TEST(collision, limit_of_vanishing_epsilon_is_the_equilibrium_and_zero_is_allowe
   }
 }
 
-TEST(collision, never_makes_a_negative_value_from_limited_data) {
+TEST(collision, keeps_limited_data_nonnegative) {
   const auto m = small_bgk();
   const grid mesh = grid::line(12, 0.0, 2.0);
   check_property("nonnegative", [&] {
@@ -125,7 +125,7 @@ TEST(collision, never_makes_a_negative_value_from_limited_data) {
   });
 }
 
-TEST(collision, a_state_without_temperature_is_a_numerical_failure_with_its_cell) {
+TEST(collision, a_state_without_a_temperature_fails_with_its_cell) {
   const auto m = small_bgk();
   const grid mesh = grid::line(8, 0.0, 2.0);
   const auto q = apsis::make_pointwise_collision(*m, std::vector<double>(8, 1.0));
@@ -181,7 +181,8 @@ TEST(collision, explicit_evaluation_agrees_with_the_implicit_one_for_small_steps
     const apsis::target<field, double> to{&change, 0.0, 1.0, true};
     q->add_collision(0.0, u, {&to, 1});
     for (int i = 0; i < 10; ++i)
-      for (int k = 0; k < m->components(); ++k)  // first order in dt, and rounding of u over dt
+      for (int k = 0; k < m->components();
+           ++k)  // first order in dt, plus the rounding error of u divided by dt
         EXPECT_NEAR((implicit.row(i)[k] - u.row(i)[k]) / dt, change.row(i)[k], 2e-6);
   }
 }

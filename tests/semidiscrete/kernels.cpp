@@ -1,5 +1,5 @@
-// The kernels of transport and collision, in every instruction set, against the same formulas for one number
-// at a time in extended precision; and what the passes over memory must not change.
+// Kernels of transport and collision, in every instruction set, compared with the same formulas in scalar
+// extended precision; fused passes give the same bits.
 #include "bgk_case.hpp"
 
 #include <apsis/core/random_source.hpp>
@@ -20,7 +20,7 @@ using apsis::grid;
 using apsis::limiter_kind;
 namespace limiter = apsis::limiter;
 
-/// A velocity distribution with tails below 1e-150, disturbed, with exact zeros and single spikes.
+/// A perturbed velocity distribution with tails below 1e-150, exact zeros and isolated spikes.
 field adversarial(int cells, int components, std::uint64_t seed) {
   apsis::random_source random(seed);
   field u(cells, components);
@@ -37,15 +37,14 @@ field adversarial(int cells, int components, std::uint64_t seed) {
   return u;
 }
 
-/// What a transport does to component k, one number at a time: edges from the scheme on a pencil of width
-/// one.
+/// Scalar transport of component k, with edges from the scheme on a pencil of width one.
 class plain_transport {
  public:
   plain_transport(const field& u, int k, double speed, double spacing, const apsis::stencil& how)
       : how_(how) {
     n_ = u.cells();
     rate_ = std::abs(speed) / spacing;
-    // Reversed for the other direction, so that everything moves forward from here on.
+    // Reversed for negative velocities, so that the flow is to the right below.
     for (int i = -6; i < n_ + 6; ++i) {
       const int cell = ((speed > 0.0 ? i : n_ - 1 - i) % n_ + n_) % n_;
       u_.push_back(u.row(cell)[k]);
@@ -58,7 +57,7 @@ class plain_transport {
     for (std::size_t i = 2; i + 2 < u_.size(); ++i) edge_.push_back(edge(u_[i], left[i], right[i]));
   }
 
-  /// −v ∂_x u of cell i, by limited upwind fluxes.
+  /// −v ∂_x u in cell i, by limited upwind fluxes.
   double change(int i) const {
     const int j = reversed_ ? n_ - 1 - i : i;
     return static_cast<double>(rate_ * (flux(j - 1) - flux(j)));
@@ -80,7 +79,7 @@ class plain_transport {
                                       static_cast<double>(edge_of(i) - value(i)));
   }
 
-  /// Between cells i and i + 1.
+  /// The face between cells i and i + 1.
   long double flux(int i) const {
     if (how_.positivity != limiter_kind::fluxes) return edge_of(i);
     const long double correction = edge_of(i) - value(i);
@@ -111,8 +110,8 @@ void expect_plain_transport(const apsis::relaxation_model& m, const std::string&
     for (int i = 0; i < cells; ++i) {
       double size = 0.0;
       for (int j = -5; j <= 5; ++j) size = std::max(size, u.row(((i + j) % cells + cells) % cells)[k]);
-      // Some roundings of edges, which are good to a few 1e-16 of the largest value around; κ of them in a
-      // step.
+      // Rounding errors of edges, which are accurate to a few 1e-16 of the largest value nearby; multiplied
+      // by κ in a step.
       const double tolerance = 4e-15 * size;
       ASSERT_NEAR(first.row(i)[k], 0.7 * u.row(i)[k] + 0.6 * dt * plain.change(i), tolerance)
           << name << " " << i << " " << k;
@@ -123,9 +122,10 @@ void expect_plain_transport(const apsis::relaxation_model& m, const std::string&
 
 }  // namespace
 
-TEST(kernels, transport_is_that_of_single_numbers_in_every_instruction_set) {
+TEST(kernels, transport_agrees_with_scalar_code_in_every_instruction_set) {
   for_each_instruction_set([] {
-    // Rows of whole vectors, with a vector of both directions in the middle, and short ones that are joined.
+    // Rows of whole vectors, with a vector of mixed velocity signs in the middle, and short rows that are
+    // joined.
     for (const int points : {4, 8, 20, 150})
       for (const auto kind : {limiter_kind::none, limiter_kind::edges, limiter_kind::fluxes}) {
         const auto m = small_bgk(points);
@@ -136,7 +136,7 @@ TEST(kernels, transport_is_that_of_single_numbers_in_every_instruction_set) {
   });
 }
 
-TEST(kernels, gauss_values_are_those_of_the_quartic_in_every_instruction_set) {
+TEST(kernels, gauss_values_agree_with_the_quartic_in_every_instruction_set) {
   for_each_instruction_set([] {
     for (const int width : {1, 5, 8, 152}) {
       const field u = adversarial(5, width, 7);
@@ -158,7 +158,7 @@ TEST(kernels, gauss_values_are_those_of_the_quartic_in_every_instruction_set) {
           double mean = 0.0;
           for (std::size_t p = 0; p < 3; ++p) {
             const double value = points[p * static_cast<std::size_t>(width) + static_cast<std::size_t>(k)];
-            // A dozen roundings of sums of up to ten times the largest value.
+            // About a dozen rounding errors of sums of up to ten times the largest value.
             ASSERT_NEAR(value, c + theta * q.deviation(apsis::gauss3::xi[p]), 2e-14 * size) << k << " " << p;
             if (limited) {
               ASSERT_GE(value, 0.0);
@@ -172,7 +172,7 @@ TEST(kernels, gauss_values_are_those_of_the_quartic_in_every_instruction_set) {
   });
 }
 
-TEST(kernels, convex_combinations_of_rows_in_every_instruction_set) {
+TEST(kernels, convex_combinations_agree_with_scalar_code_in_every_instruction_set) {
   for_each_instruction_set([] {
     for (const int width : {1, 3, 8, 13, 152}) {
       const field u = adversarial(6, width, 3);
@@ -195,7 +195,7 @@ TEST(kernels, convex_combinations_of_rows_in_every_instruction_set) {
 
 namespace {
 
-/// A collision of points that is done in one pass with the transport that completes them, and afterwards.
+/// Collisions fused with the transport that completes their points, and in a pass of their own.
 void expect_same_in_one_pass(int cells, int threads) {
   const auto m = small_bgk();
   const grid mesh = grid::line(cells, 0.0, 1.0);
@@ -231,7 +231,7 @@ void expect_same_in_one_pass(int cells, int threads) {
 
 }  // namespace
 
-TEST(kernels, collisions_in_the_pass_of_transport_give_the_same_bits) {
+TEST(kernels, collisions_fused_with_transport_give_the_same_bits) {
   for (const int cells : {7, 64, 65, 300})
     for (const int threads : {1, 2, 3}) expect_same_in_one_pass(cells, threads);
 }

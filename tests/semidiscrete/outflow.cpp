@@ -1,5 +1,4 @@
-// The ends of an open domain: what reaches them leaves, nothing comes back, and nothing becomes negative
-// there.
+// Outflow ends of a domain: waves leave without reflection, and nothing becomes negative there.
 #include "bgk_case.hpp"
 
 #include <apsis/semidiscrete/collision.hpp>
@@ -28,7 +27,7 @@ constexpr choice choices[] = {{"upwind1", limiter_kind::none},
 
 TEST(outflow, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
   const auto m = broadwell();
-  const grid mesh = grid::line(7, 0.0, 1.0);  // every cell sees an end
+  const grid mesh = grid::line(7, 0.0, 1.0);  // the stencil of every cell reaches an end
   for (const auto& c : choices) {
     const apsis::transport t(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
     check_property(c.scheme, [&] {
@@ -44,7 +43,7 @@ TEST(outflow, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
 TEST(outflow, collisions_in_cells_keep_any_data_nonnegative) {
   const auto m = broadwell();
   const grid mesh = grid::line(7, 0.0, 1.0);
-  check_property("any strength", [&] {
+  check_property("collisions of any strength", [&] {
     field u = random_rows(mesh, 3);
     const double epsilon = std::pow(10.0, *rc::gen::inRange(-12, 3));
     const auto q = apsis::make_cell_average_collision(*m, space_of(mesh, "outflow"),
@@ -61,15 +60,14 @@ TEST(outflow, uniform_data_do_not_change) {
   for (const auto& c : choices) {
     const apsis::transport t(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
     const field change = transport_of(t, sample(mesh, 3, false, [](double, int k) { return 0.1 + k; }));
-    // Differences of equal fluxes: a rounding of the edge values, over Δx = 1/9.
+    // Differences of equal fluxes: a rounding error of the edge values over Δx = 1/9.
     for (int i = 0; i < 9; ++i)
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(change.row(i)[k], 0.0, 1e-13) << c.scheme;
   }
 }
 
-TEST(outflow, a_pulse_leaves_and_nothing_comes_back) {
-  // Free flight of pulses that stand at the left or the right, for a time in which they cross the whole
-  // domain.
+TEST(outflow, a_pulse_leaves_without_reflection) {
+  // Free flight of pulses at the left or the right end, long enough to cross the whole domain.
   const auto m = broadwell();
   const grid mesh = grid::line(60, 0.0, 1.0);
   const auto pulse = [](double x) { return std::exp(-400.0 * x * x); };
@@ -88,7 +86,7 @@ TEST(outflow, a_pulse_leaves_and_nothing_comes_back) {
       EXPECT_LE(mass, inside * (1.0 + 1e-13)) << "mass comes in";
       inside = mass;
     }
-    // Only the particles at rest are left, exactly those that were there.
+    // Only the particles at rest remain, unchanged.
     double moving = 0.0;
     for (int i = 0; i < 60; ++i) moving += u.row(i)[0] + u.row(i)[2];
     EXPECT_LT(moving, 1e-10 * start) << c.scheme;

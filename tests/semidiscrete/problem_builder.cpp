@@ -1,4 +1,4 @@
-// Problems made from C++ objects, without a case: what they are, and what is refused.
+// Problems built from C++ objects without a case: their operators, and inputs that are refused.
 #include <apsis/semidiscrete/problem_builder.hpp>
 
 #include "bgk_case.hpp"
@@ -40,7 +40,7 @@ std::unique_ptr<apsis::model> made(const std::string& name) {
   return entry->make(apsis::default_config(*entry));
 }
 
-/// Two directions, one component that moves with (1, 0.5): the least that a mesh in the plane needs.
+/// Two directions, one component with velocity (1, 0.5): the smallest model on a mesh in the plane.
 class plane_wave final : public apsis::relaxation_model {
  public:
   int components() const override { return 1; }
@@ -66,7 +66,7 @@ class plane_wave final : public apsis::relaxation_model {
 
 }  // namespace
 
-TEST(problem_builder, averages_are_exact_between_jumps_and_points_are_values) {
+TEST(problem_builder, cell_averages_are_exact_between_jumps_and_point_values_are_samples) {
   const auto m = made("relaxation");
   problem_builder builder(*m);
   builder.on(grid::line(5, 0.0, 1.0));
@@ -107,7 +107,7 @@ TEST(problem_builder, data_and_epsilon_are_functions_of_position_in_the_plane) {
   EXPECT_NEAR(problem->forward_euler_step(0.0, u), 1.0 / 15.0, 1e-12);
 }
 
-TEST(problem_builder, refuses_what_does_not_fit_together) {
+TEST(problem_builder, refuses_inconsistent_parts) {
   const auto m = made("relaxation"), ode = made("ode");
   const auto bgk = small_bgk();
   const grid line = grid::line(9, 0.0, 1.0);
@@ -161,7 +161,7 @@ TEST(problem_builder, an_equation_without_space_needs_no_mesh) {
   EXPECT_DOUBLE_EQ(u.row(0)[1], std::sin(2.0));  // ε = 0: the equilibrium sin u₁ of the paper's model
 }
 
-TEST(problem_builder, a_general_model_on_a_mesh_is_solved_like_its_closed_form) {
+TEST(problem_builder, a_general_model_on_a_mesh_agrees_with_its_closed_form) {
   const auto closed = made("broadwell");
   const broadwell_as_general_model general;
   for (const auto unknowns : {apsis::formulation::finite_volume, apsis::formulation::finite_difference}) {

@@ -1,4 +1,4 @@
-// Nonnegativity where rounding is absolute: values that are small multiples of the smallest number 4.9e-324.
+// Nonnegativity where rounding errors are absolute: values that are small multiples of 4.9e-324.
 #include "bgk_case.hpp"
 
 #include <apsis/core/random_source.hpp>
@@ -17,7 +17,7 @@ using apsis::limiter_kind;
 
 constexpr double unit = std::numeric_limits<double>::denorm_min();
 
-/// Zero, a few units, a power of two between 1 unit and 1e-285, or a number of ordinary size.
+/// Zero, a few units, a power of two between 1 unit and 1e-285, or a number of ordinary magnitude.
 double tiny_value(apsis::random_source& random) {
   const double kind = random.uniform(0.0, 1.0);
   if (kind < 0.2) return 0.0;
@@ -34,7 +34,7 @@ field tiny_rows(int cells, int components, apsis::random_source& random) {
   return u;
 }
 
-/// α u + β T(u) with β as long as nonnegativity allows; α as small as the weights of methods get, or 1.
+/// α u + β T(u) with the largest β that keeps nonnegativity; α is 1 or as small as weights of methods can be.
 field longest_step(const apsis::transport& t, const field& u, double alpha, bool fresh) {
   field result(u.cells(), u.components());
   const apsis::target<field, double> to{&result, alpha, alpha * t.forward_euler_step(), fresh};
@@ -53,7 +53,8 @@ void expect_nonnegative_steps(const std::string& name, limiter_kind kind, int ro
   apsis::random_source random(11);
   for (int round = 0; round < rounds; ++round) {
     const int cells = 11 + round % 7;
-    // |v|/Δx from 1e-8 to 1e8: a product with it rounds where it is small, and is exact where it is large.
+    // |v|/Δx from 1e-8 to 1e8: products of subnormal numbers round if it is small and are exact if it is
+    // large.
     const grid mesh = grid::line(cells, 0.0, std::pow(10.0, random.uniform(-8.0, 8.0)));
     const auto m = small_bgk(10);
     const apsis::transport t(*m, space_of(mesh), scheme(name, kind));
@@ -66,7 +67,7 @@ void expect_nonnegative_steps(const std::string& name, limiter_kind kind, int ro
 
 }  // namespace
 
-TEST(subnormal, the_longest_step_keeps_every_value_nonnegative_in_every_instruction_set) {
+TEST(subnormal, the_largest_step_keeps_every_value_nonnegative_in_every_instruction_set) {
   for_each_instruction_set([] {
     for (const auto* const name : {"weno5-z", "weno5-js"})
       for (const auto kind : {limiter_kind::edges, limiter_kind::fluxes})
@@ -75,8 +76,8 @@ TEST(subnormal, the_longest_step_keeps_every_value_nonnegative_in_every_instruct
   });
 }
 
-TEST(subnormal, a_step_beyond_the_bound_is_negative) {
-  // One cell of ordinary size in a vacuum: limited fluxes leave it nothing at the bound.
+TEST(subnormal, a_step_beyond_the_bound_gives_a_negative_value) {
+  // One cell of ordinary magnitude in a vacuum: at the bound limited fluxes empty it.
   const grid mesh = grid::line(20, 0.0, 1.0);
   const auto m = small_bgk(10);
   field u(20, m->components());
@@ -105,15 +106,15 @@ TEST(subnormal, limited_values_at_gauss_points_are_nonnegative_and_keep_their_me
           ASSERT_GE(value, 0.0) << round << " " << k;
           mean += apsis::gauss3::weight[static_cast<std::size_t>(p)] * value;
         }
-        // Values of up to 20 c with a relative rounding error each; three products and the values themselves
-        // round to multiples of the unit.
+        // Values of up to 20 c, each with a relative rounding error; three products and the values round to
+        // multiples of the unit.
         ASSERT_NEAR(mean, c, 1e-14 * c + 4.0 * unit);
       }
     }
   });
 }
 
-TEST(subnormal, an_explicit_relaxation_takes_no_more_than_there_is) {
+TEST(subnormal, an_explicit_relaxation_step_leaves_nonnegative_values) {
   for_each_instruction_set([] {
     apsis::random_source random(3);
     constexpr int width = 8;
@@ -121,7 +122,7 @@ TEST(subnormal, an_explicit_relaxation_takes_no_more_than_there_is) {
       const field u = tiny_rows(2, width, random);
       const double alpha = random.uniform(0.01, 1.0), of_transport = random.uniform(0.0, 1.0);
       field acc(1, width);
-      // What a step of transport leaves at its limit, then the relaxation with the rest of the bound.
+      // A step of transport at its limit, then relaxation with the remaining part of the bound.
       for (int k = 0; k < width; ++k) acc.row(0)[k] = alpha * (1.0 - of_transport) * u.row(0)[k];
       const double strength = std::pow(10.0, random.uniform(-3.0, 9.0));
       const double beta = apsis::rounding_allowance * alpha * (1.0 - of_transport) / strength;

@@ -13,7 +13,7 @@ using apsis::field;
 using apsis::grid;
 using apsis::limiter_kind;
 
-/// Largest error of T(u) for u = 1 + sin(2πx) (it touches zero), in the mean over cells (L1).
+/// L1 error of T(u) for u = 1 + sin(2πx), which touches zero.
 double transport_error(const apsis::relaxation_model& m, const std::string& name, limiter_kind kind,
                        bool averages, int n) {
   const grid mesh = grid::line(n, 0.0, 1.0);
@@ -48,8 +48,8 @@ TEST(transport, fifth_order_in_both_formulations_with_and_without_limiter) {
   }
 }
 
-TEST(transport, cutting_the_edges_of_point_values_costs_three_orders_which_cutting_fluxes_does_not) {
-  // The flux function of 1 + sin(2πx) is negative around the minimum; see limiter.hpp.
+TEST(transport, limiting_edges_of_point_values_costs_three_orders_and_limiting_fluxes_none) {
+  // The flux function of 1 + sin(2πx) is negative near the minimum; see limiter.hpp.
   const auto m = small_bgk(8);
   const auto slope = [&m](limiter_kind kind) {
     const auto error = [&](int n) { return transport_error(*m, "weno5-z", kind, false, n); };
@@ -84,7 +84,7 @@ TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
     const double dt = t.forward_euler_step();
     check_property(name + " limiter " + std::to_string(static_cast<int>(kind)), [&] {
       const field u = random_rows(mesh, 8);
-      // As a stage sees it: a weight w ≤ 1 and the step w Δt.
+      // As in a stage: a weight w ≤ 1 and the step w Δt.
       const double w = *rc::gen::inRange(1, 1001) * 1e-3;
       field result(mesh.size(), 8);
       const apsis::target<field, double> to{&result, w, w * dt, true};
@@ -95,8 +95,8 @@ TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
 }
 
 TEST(transport, above_dt_fe_positivity_breaks) {
-  // An edge value may be up to 12 times the average; a single full cell that empties shows it: L = 0 by the
-  // data of its neighbours, and the update is negative beyond some multiple of Δt_FE.
+  // An edge value may be up to 12 times the average. A single nonzero cell shows it: nothing flows in, and
+  // the update is negative beyond some multiple of Δt_FE.
   const auto m = small_bgk(8);
   const grid mesh = grid::line(12, 0.0, 1.0);
   const apsis::transport upwind(*m, space_of(mesh), scheme("upwind1", limiter_kind::none));
@@ -121,7 +121,7 @@ TEST(transport, conserves_every_component) {
         sum += change.row(i)[k];
         scale += std::abs(change.row(i)[k]);
       }
-      EXPECT_LT(std::abs(sum), 1e-14 * scale + 1e-13) << k;  // 20 differences of rounded fluxes
+      EXPECT_LT(std::abs(sum), 1e-14 * scale + 1e-13) << k;  // sum of 20 differences of rounded fluxes
     }
   }
 }
@@ -172,7 +172,7 @@ class plane_advection final : public apsis::relaxation_model {
 
 }  // namespace
 
-TEST(transport, is_fifth_order_in_two_dimensions_by_the_same_code) {
+TEST(transport, is_fifth_order_in_two_dimensions) {
   const plane_advection m;
   const double w = 2.0 * std::numbers::pi;
   const auto error = [&](int n) {

@@ -42,7 +42,7 @@ std::optional<T> parse(std::string_view text) {
 std::string checked_number(const std::string& option, const std::string& given) {
   const auto value = parse<double>(given);
   if (!value || !std::isfinite(*value))
-    refuse(option, given, "a finite decimal number is required", "write for example 0.5 or 1e-3");
+    refuse(option, given, "a finite decimal number is needed", "write for example 0.5 or 1e-3");
   return given;
 }
 
@@ -60,7 +60,7 @@ std::string checked_integer(const std::string& option, const std::string& given,
   if (value && std::isfinite(*value) && *value == std::floor(*value) && std::abs(*value) <= 0x1p53 &&
       (sign || *value >= 0.0))
     return fmt::format("{}", static_cast<long long>(*value));
-  refuse(option, given, "a whole number is required", "write for example 10");
+  refuse(option, given, "an integer is needed", "write for example 10");
 }
 
 std::string checked_text(const CLI::Option& option, const std::string& name, const std::string& given) {

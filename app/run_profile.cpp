@@ -12,11 +12,11 @@
 namespace apsis::app {
 namespace {
 
-double of_multiply_adds(const run_profile& profile, const work_done& kernel) {
+double of_multiply_adds(const run_profile& profile, const kernel_totals& kernel) {
   return kernel.operations / kernel.seconds / profile.multiply_adds;
 }
 
-double of_triad(const run_profile& profile, const work_done& kernel) {
+double of_triad(const run_profile& profile, const kernel_totals& kernel) {
   return kernel.bytes / kernel.seconds / profile.triad;
 }
 

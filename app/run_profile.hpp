@@ -11,7 +11,7 @@ namespace apsis::app {
 
 /// Data of `apsis run --profile`: kernels timed by the profiler, and ceilings of this machine.
 struct run_profile {
-  std::vector<work_done> kernels;
+  std::vector<kernel_totals> kernels;
   double seconds;               ///< of the run, times the number of threads
   double multiply_adds, triad;  ///< ceilings of one core: multiply–adds and bytes per second
 };

@@ -18,7 +18,7 @@ foreach(part IN LISTS apsis_parts)
   install(EXPORT apsisTargets-${part} NAMESPACE apsis:: DESTINATION ${apsis_package_dir} COMPONENT development)
   foreach(room IN LISTS rooms)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/apsis/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis
-            COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+            COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN internal EXCLUDE)
   endforeach()
 
   set(packages ${apsis_packages_${part}})

@@ -50,7 +50,7 @@ class relaxation_system {
   void solve_collision(double, double a, double b, field& f) const {
     const auto weights = apsis::relax_weights(a, b, 1.0, epsilon_);
     for (std::size_t i = 0; i < f.u.size(); ++i)
-      f.v[i] = weights.stay * f.v[i] + weights.relax * (f.u[i] * f.u[i] / 2);
+      f.v[i] = weights.of_u * f.v[i] + weights.of_e * (f.u[i] * f.u[i] / 2);
   }
 
   double forward_euler_step(double, const field&) const { return dx_; }

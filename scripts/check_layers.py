@@ -41,7 +41,7 @@ def violations(root: Path) -> list[str]:
         readme = library / room / "README.md"
         named = set(re.findall(r"`(\w+)`", " ".join(readme.read_text(encoding="utf-8").split()).rpartition("May include")[2]))
         if named != allowed:
-            found.append(f"src/apsis/{room}/README.md: says that it may include {sorted(named)} (CMake allows {sorted(allowed)})")
+            found.append(f"src/apsis/{room}/README.md: states that it may include {sorted(named)} (CMake allows {sorted(allowed)})")
         for file in sorted((library / room).rglob("*.[ch]pp")):
             text = file.read_text(encoding="utf-8")
             for match in INCLUDE.finditer(text):

@@ -29,11 +29,11 @@ mixed_step::mixed_step(const std::string& formulation, const std::string& method
   take(1);  // allocates the buffers
 }
 
-work mixed_step::count_work() {
+kernel_work mixed_step::count_work() {
   profile::start();
   take(1);
   profile::stop();
-  work sum;
+  kernel_work sum;
   for (const auto& done : profile::read()) {
     sum.operations += done.operations;
     sum.bytes += done.bytes;

@@ -21,7 +21,7 @@ class mixed_step {
     for (int k = 0; k < steps; ++k) stepper_.step(0.0, dt_, u_);
   }
   /// Counts the operations and bytes of a step by taking one.
-  work count_work();
+  kernel_work count_work();
   /// Returns the fraction of values that are subnormal.
   double subnormal_share() const;
   /// Returns the point·stages of a step: N · N_v · s.

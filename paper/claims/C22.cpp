@@ -28,7 +28,7 @@ convergence_study study(const std::string& reconstruction, std::vector<std::stri
   s.vary = {{"time.method", {"md-imex-3-2", "md-imex-6-3"}},
             {"model.epsilon", std::move(epsilons)},
             parse_vary("space.cells=" + cells)};
-  s.reference.how = convergence_reference::kind::next;
+  s.reference.type = convergence_reference::kind::next;
   return s;
 }
 

@@ -13,7 +13,7 @@ convergence_study study(const std::vector<std::string>& overrides, std::vector<s
   s.case_name = "paper/bgk-accuracy";
   s.overrides = overrides;
   s.vary = {{"time.method", {second, third}}, {"model.epsilon", std::move(epsilons)}, parse_vary(refined)};
-  s.reference.how = reference;
+  s.reference.type = reference;
   return s;
 }
 

@@ -100,7 +100,7 @@ py::dict certificate_of(const method& m) {
   all["implicit_solves"] = c.implicit_solves;
   all["angle"] = c.stability.angle;
   all["l_stable"] = c.stability.l_stable;
-  all["keeps"] = c.keeps();
+  all["keeps"] = c.kept_terms();
   all["claims_hold"] = c.claims_hold;
   all["failures"] = c.failures;
   return all;

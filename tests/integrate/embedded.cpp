@@ -104,7 +104,7 @@ TEST_P(every_embedded_row, estimates_a_term_of_order_q_plus_1) {
 
 TEST_P(every_embedded_row, does_not_change_the_result_bitwise) {
   with_problem(GetParam(), 1e-2L, inconsistent, [&](auto& march, state u) {
-    auto& problem = march.target_problem();
+    auto& problem = march.problem();
     apsis::stepper alone(apsis::find_method(GetParam()), problem);
     state v = u;
     for (int n = 0; n < 20; ++n) {

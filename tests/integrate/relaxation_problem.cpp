@@ -65,18 +65,18 @@ TEST(relaxation_weights, are_accurate_to_a_few_ulps_and_sum_to_one) {
     const double rate = magnitude(-6, 6), epsilon = magnitude(-12, 6);
     const auto w = apsis::relax_weights(a, b, rate, epsilon);
     const long double k = static_cast<long double>(rate) / epsilon, mu = a * k - b * k * k;
-    const long double stay = 1 / (1 + mu), relax = mu / (1 + mu);
+    const long double of_u = 1 / (1 + mu), of_e = mu / (1 + mu);
     // The smaller weight results from five roundings.
-    RC_ASSERT(std::abs(w.stay - stay) <= 5 * rounding * stay);
-    RC_ASSERT(std::abs(w.relax - relax) <= 5 * rounding * relax);
-    RC_ASSERT(w.stay + w.relax == 1.0);
+    RC_ASSERT(std::abs(w.of_u - of_u) <= 5 * rounding * of_u);
+    RC_ASSERT(std::abs(w.of_e - of_e) <= 5 * rounding * of_e);
+    RC_ASSERT(w.of_u + w.of_e == 1.0);
   });
 }
 
 TEST(relaxation_weights, limits_are_exact) {
-  const auto is = [](apsis::relaxation_weights<double> w, double stay, double relax) {
-    EXPECT_EQ(w.stay, stay);
-    EXPECT_EQ(w.relax, relax);
+  const auto is = [](apsis::relaxation_weights<double> w, double of_u, double of_e) {
+    EXPECT_EQ(w.of_u, of_u);
+    EXPECT_EQ(w.of_e, of_e);
   };
   is(apsis::relax_weights(0.0, 0.0, 1.0, 1.0), 1, 0);
   is(apsis::relax_weights(0.0, 0.0, 1.0, 0.0), 1, 0);
@@ -84,8 +84,8 @@ TEST(relaxation_weights, limits_are_exact) {
   is(apsis::relax_weights(0.0, -0.1, 1.0, 0.0), 0, 1);
   is(apsis::relax_weights(1.0, -1.0, 1.0, 1e-200), 0, 1);
   is(apsis::relax_weights(1.0, -1.0, 0.0, 0.0), 1, 0);
-  EXPECT_TRUE(std::isnan(apsis::relax_weights(1.0, 0.0, std::nan(""), 1.0).stay));
-  EXPECT_TRUE(std::isnan(apsis::relax_weights(1.0, 0.0, 1.0, std::nan("")).relax));
+  EXPECT_TRUE(std::isnan(apsis::relax_weights(1.0, 0.0, std::nan(""), 1.0).of_u));
+  EXPECT_TRUE(std::isnan(apsis::relax_weights(1.0, 0.0, 1.0, std::nan("")).of_e));
 }
 
 TEST(claims, C14_broadwell_is_a_relaxation_with_rate_rho) {

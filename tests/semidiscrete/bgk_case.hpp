@@ -24,7 +24,7 @@ inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, doubl
   return std::unique_ptr<apsis::relaxation_model>(dynamic_cast<apsis::relaxation_model*>(made.release()));
 }
 
-inline apsis::stencil scheme(const std::string& name, apsis::limiter_kind positivity) {
+inline apsis::spatial_discretization scheme(const std::string& name, apsis::limiter_kind positivity) {
   return {apsis::find_reconstruction(name)->make(), positivity};
 }
 

@@ -40,8 +40,9 @@ field adversarial(int cells, int components, std::uint64_t seed) {
 /// Scalar transport of component k, with edges from the scheme on a pencil of width one.
 class plain_transport {
  public:
-  plain_transport(const field& u, int k, double speed, double spacing, const apsis::stencil& how)
-      : how_(how) {
+  plain_transport(const field& u, int k, double speed, double spacing,
+                  const apsis::spatial_discretization& discretization)
+      : discretization_(discretization) {
     n_ = u.cells();
     rate_ = std::abs(speed) / spacing;
     // Reversed for negative velocities, so that the flow is to the right below.
@@ -53,7 +54,8 @@ class plain_transport {
     std::vector<const double*> rows;
     for (const double& value : u_) rows.push_back(&value);
     std::vector<double> left(u_.size()), right(u_.size());
-    how.scheme->edges(rows.data() + 2, static_cast<int>(u_.size()) - 4, 1, left.data() + 2, right.data() + 2);
+    discretization.scheme->edges(rows.data() + 2, static_cast<int>(u_.size()) - 4, 1, left.data() + 2,
+                                 right.data() + 2);
     for (std::size_t i = 2; i + 2 < u_.size(); ++i) edge_.push_back(edge(u_[i], left[i], right[i]));
   }
 
@@ -68,7 +70,7 @@ class plain_transport {
   long double edge_of(int i) const { return edge_[static_cast<std::size_t>(i + 4)]; }
 
   long double edge(double c, double l, double r) const {
-    if (how_.positivity != limiter_kind::edges) return r;
+    if (discretization_.positivity != limiter_kind::edges) return r;
     const double theta = limiter::scaling(c, std::min({l, r, limiter::interior(c, l, r)}));
     return theta < 1.0 ? c + theta * (static_cast<long double>(r) - c) : static_cast<long double>(r);
   }
@@ -81,12 +83,12 @@ class plain_transport {
 
   /// The face between cells i and i + 1.
   long double flux(int i) const {
-    if (how_.positivity != limiter_kind::fluxes) return edge_of(i);
+    if (discretization_.positivity != limiter_kind::fluxes) return edge_of(i);
     const long double correction = edge_of(i) - value(i);
     return value(i) + fraction(correction > 0.0L ? i : i + 1) * correction;
   }
 
-  apsis::stencil how_;
+  apsis::spatial_discretization discretization_;
   std::vector<double> u_;
   std::vector<long double> edge_;
   double rate_ = 0.0;
@@ -97,8 +99,8 @@ class plain_transport {
 void expect_plain_transport(const apsis::relaxation_model& m, const std::string& name, limiter_kind kind,
                             int cells) {
   const grid mesh = grid::line(cells, 0.0, 1.0);
-  const auto how = scheme(name, kind);
-  const apsis::transport t(m, space_of(mesh), how);
+  const auto discretization = scheme(name, kind);
+  const apsis::transport t(m, space_of(mesh), discretization);
   const field u = adversarial(cells, m.components(), static_cast<std::uint64_t>(cells));
   field first(cells, m.components()), second = u;
   const double dt = t.forward_euler_step();
@@ -106,7 +108,8 @@ void expect_plain_transport(const apsis::relaxation_model& m, const std::string&
                   std::vector<apsis::target<field, double>>{{&first, 0.7, 0.6 * dt, true},
                                                             {&second, 0.25, 0.2 * dt, false}});
   for (int k = 0; k < m.components(); ++k) {
-    const plain_transport plain(u, k, m.speeds(0)[static_cast<std::size_t>(k)], mesh.spacing(0), how);
+    const plain_transport plain(u, k, m.speeds(0)[static_cast<std::size_t>(k)], mesh.spacing(0),
+                                discretization);
     for (int i = 0; i < cells; ++i) {
       double size = 0.0;
       for (int j = -5; j <= 5; ++j) size = std::max(size, u.row(((i + j) % cells + cells) % cells)[k]);

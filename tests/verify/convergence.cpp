@@ -123,7 +123,7 @@ TEST(convergence, a_refined_step_on_one_mesh_shows_the_orders_of_time) {
       // that depends on the step and hides the third order.
       study.overrides.push_back("space.formulation=finite-difference");
       study.overrides.push_back("model.epsilon=" + epsilon);
-      study.reference.how = kind::time;
+      study.reference.type = kind::time;
       const auto table = converge(study);
       EXPECT_EQ(table.h_name, "Δt");
       EXPECT_EQ(table.runs, 4);  // one reference for all
@@ -151,7 +151,7 @@ TEST(convergence, cells_and_steps_refined_together_show_the_order_of_time_where_
 TEST(convergence, one_run_finer_than_all_serves_every_mesh) {
   auto study = bgk("md-imex-6-3", "space.cells=8..32");
   study.overrides.push_back("time.cfl=0.1");
-  study.reference.how = kind::space_time;
+  study.reference.type = kind::space_time;
   const auto table = converge(study);
   EXPECT_EQ(table.runs, 4);
   EXPECT_GE(last_rate(table.blocks.at(0)), 4.0);
@@ -193,7 +193,7 @@ TEST(convergence, nothing_depends_on_the_number_of_threads) {
 TEST(convergence, the_same_run_is_computed_once) {
   // Consecutive runs are references of each other; one additional run is finer than the finest.
   auto study = decay("imdrk-2-3", "1/8,1/16,1/32");
-  study.reference.how = kind::next;
+  study.reference.type = kind::next;
   EXPECT_EQ(converge(study).runs, 4);
   // A reference with method and step does not depend on the method that it replaces.
   study = decay("imdrk-1-2,imdrk-2-3", "1/8,1/16,1/32");

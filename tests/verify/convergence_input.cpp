@@ -69,10 +69,10 @@ TEST(vary, any_text_is_read_or_refused) {
 }
 
 TEST(references, are_words_methods_with_steps_or_keys) {
-  EXPECT_EQ(parse_reference("exact").how, kind::exact);
-  EXPECT_EQ(parse_reference("next").how, kind::next);
-  EXPECT_EQ(parse_reference("time").how, kind::time);
-  EXPECT_EQ(parse_reference("space+time").how, kind::space_time);
+  EXPECT_EQ(parse_reference("exact").type, kind::exact);
+  EXPECT_EQ(parse_reference("next").type, kind::next);
+  EXPECT_EQ(parse_reference("time").type, kind::time);
+  EXPECT_EQ(parse_reference("space+time").type, kind::space_time);
   EXPECT_THAT(parse_reference("md-imex-6-3@1/1024").overrides,
               ElementsAre("time.method=md-imex-6-3", "time.dt=1/1024"));
   EXPECT_THAT(parse_reference("space.cells=80,model.epsilon=max(x,1)").overrides,

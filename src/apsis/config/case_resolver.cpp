@@ -136,8 +136,7 @@ class resolver {
                  fmt::format("it must be from {} to {}: {}", p.lowest, p.highest, p.doc),
                  "change it to a value in this range");
         if (p.integer && value != std::floor(value))
-          refuse(*raw, "model." + p.name, fmt::format("it must be an integer: {}", p.doc),
-                 "give a whole number");
+          refuse(*raw, "model." + p.name, fmt::format("it must be an integer: {}", p.doc), "give an integer");
       }
       config_.model.parameters[p.name] = value;
     }

@@ -4,15 +4,15 @@
 
 namespace apsis {
 
-/// Weights of the convex combination v = stay·u + relax·E that solves v = u + a Q(v) + b Q̇(v) for a
-/// relaxation Q(u) = C (E − u)/ε with conserved moments. Nonnegative, and stay + relax rounds to 1.
+/// Weights of the convex combination v = of_u·u + of_e·E that solves v = u + a Q(v) + b Q̇(v) for a
+/// relaxation Q(u) = C (E − u)/ε with conserved moments. Nonnegative, and of_u + of_e rounds to 1.
 template <class Real>
 struct relaxation_weights {
-  Real stay,  ///< weight of u
-      relax;  ///< weight of E
+  Real of_u,  ///< weight of u
+      of_e;   ///< weight of E
 };
 
-/// Computes stay = 1/(1 + μ), relax = μ/(1 + μ) with μ = a C/ε + |b| (C/ε)², using Q̇ = −(C/ε) Q (paper,
+/// Computes of_u = 1/(1 + μ), of_e = μ/(1 + μ) with μ = a C/ε + |b| (C/ε)², using Q̇ = −(C/ε) Q (paper,
 /// Property 5 and eq. AP1). All arguments are dimensionless and nonnegative, except b ≤ 0: a = Δt d, b = Δt²
 /// ḋ, `rate` = C, `epsilon` = ε. Each weight is accurate to about an ulp, however small. μ = ∞ (ε = 0, or
 /// (C/ε)² overflows) gives exactly {0, 1}; a = b = 0 gives exactly {1, 0}, also for ε = 0. NaN arguments give

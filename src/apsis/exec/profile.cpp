@@ -48,7 +48,7 @@ bool profile::is_on() {
   return on.load(std::memory_order_relaxed);
 }
 
-void profile::add(kernel which, double seconds, double numbers, const work& each) {
+void profile::add(kernel which, double seconds, double numbers, const kernel_work& each) {
   auto& one = tallies[static_cast<std::size_t>(which)];
   one.seconds += seconds;
   one.numbers += numbers;
@@ -56,8 +56,8 @@ void profile::add(kernel which, double seconds, double numbers, const work& each
   one.bytes += numbers * each.bytes;
 }
 
-std::vector<work_done> profile::read() {
-  std::vector<work_done> done;
+std::vector<kernel_totals> profile::read() {
+  std::vector<kernel_totals> done;
   for (std::size_t k = 0; k < kernel_count; ++k)
     if (tallies[k].numbers > 0.0)
       done.push_back({static_cast<kernel>(k), tallies[k].seconds, tallies[k].numbers, tallies[k].operations,

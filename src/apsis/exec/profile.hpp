@@ -24,18 +24,18 @@ inline constexpr std::size_t kernel_count = static_cast<std::size_t>(kernel::mon
 const char* kernel_name(kernel which);
 
 /// Work of a kernel per number of the state.
-struct work {
+struct kernel_work {
   double operations = 0.0,  ///< operation count (exec/counted.hpp)
       bytes = 0.0;          ///< compulsory memory traffic
 };
 
 /// Work of a kernel, summed over all threads.
-struct work_done {
+struct kernel_totals {
   kernel which;    ///< the kernel
   double seconds,  ///< wall-clock time
       numbers,     ///< numbers of the state processed, counted every time
-      operations,  ///< numbers times work::operations
-      bytes;       ///< numbers times work::bytes
+      operations,  ///< numbers times kernel_work::operations
+      bytes;       ///< numbers times kernel_work::bytes
 };
 
 /// Time and work of the kernels of this process while profiling is on. Initially off, without overhead.
@@ -48,15 +48,15 @@ void stop();
 /// Whether profiling is on.
 bool is_on();
 /// Returns the sums of the kernels that ran since start().
-std::vector<work_done> read();
+std::vector<kernel_totals> read();
 /// Adds to the sums of a kernel, even while profiling is off. Thread-safe.
-void add(kernel which, double seconds, double numbers, const work& each);
+void add(kernel which, double seconds, double numbers, const kernel_work& each);
 
 /// Times the enclosing scope as one call of a kernel on `numbers` numbers.
 class section {
  public:
   /// Starts the timer if profiling is on.
-  section(kernel which, double numbers, const work& each)
+  section(kernel which, double numbers, const kernel_work& each)
       : on_(is_on()), which_(which), numbers_(numbers), each_(each) {
     if (on_) start_ = std::chrono::steady_clock::now();
   }
@@ -72,7 +72,7 @@ class section {
   bool on_;
   kernel which_;
   double numbers_;
-  work each_;
+  kernel_work each_;
   std::chrono::steady_clock::time_point start_;
 };
 

@@ -107,7 +107,7 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
     try {
       const auto tried = method_stepper.attempt(march.t(), dt, u);
       const real error =
-          estimate(method_stepper.target_problem(), march.t(), dt, u, tried, control.target(), distance);
+          estimate(method_stepper.problem(), march.t(), dt, u, tried, control.target(), distance);
       if (!control.accepts(dt, error)) continue;
     } catch (const numerical_error& why) {
       failure = why;
@@ -148,8 +148,7 @@ integration_result<typename P::real> integrate_to_tolerance(stepper<P>& method_s
   const time_marcher<real> march(t0, t1);
   if (!march.done()) {
     const real limit = rule_limit(method_stepper, rule, t0, u);
-    start_control(method_stepper.target_problem(), t0, u, std::min(limit, t1 - t0), rule.start, control,
-                  distance);
+    start_control(method_stepper.problem(), t0, u, std::min(limit, t1 - t0), rule.start, control, distance);
   }
   const auto take = [&](const time_marcher<real>& now, real limit, typename P::state& state) {
     return step_within_tolerance(method_stepper, now, control, estimate, limit, state, distance);

@@ -55,7 +55,7 @@ typename P::real rule_limit(stepper<P>& method_stepper, const step_rule<typename
                             typename P::real t, const typename P::state& u) {
   if (rule.dt) return *rule.dt;
   return rule.safety * method_stepper.require_ssp_coefficient() *
-         method_stepper.target_problem().forward_euler_step(t, u);
+         method_stepper.problem().forward_euler_step(t, u);
 }
 
 /// Returns the width ε/C of the initial layer of u. Throws input_error if the problem has no relaxation_time.
@@ -90,7 +90,7 @@ integration_result<typename P::real> integrate_with(const Take& take, stepper<P>
   const auto limit = [&]() -> real { return rule_limit(method_stepper, rule, march.t(), u); };
   bool wanted = report(real(0));
   if (wanted && rule.start == startup::graded && !march.done())
-    march.start_up(limit(), initial_layer(method_stepper.target_problem(), march.t(), u));
+    march.start_up(limit(), initial_layer(method_stepper.problem(), march.t(), u));
   while (wanted && !march.done()) {
     try {
       const real dt = take(march, limit(), u);

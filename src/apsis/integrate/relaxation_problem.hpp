@@ -79,7 +79,7 @@ class relaxation_problem {
     if (a != real(0) || b != real(0)) {
       const auto weights = relax_weights(a, b, relaxation(u), epsilon_);
       using size_type = decltype(u.size());
-      for (size_type i = 0; i < u.size(); ++i) u[i] = weights.stay * u[i] + weights.relax * work_[i];
+      for (size_type i = 0; i < u.size(); ++i) u[i] = weights.of_u * u[i] + weights.of_e * work_[i];
     }
     require_finite(u, "a stage");  // implies a finite explicit part: neither weight turns a NaN into a number
     if (admissible_ && !admissible_(u))

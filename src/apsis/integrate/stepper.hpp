@@ -99,7 +99,7 @@ class stepper {
     return m_.r;
   }
   const schedule& plan() const { return plan_; }  ///< schedule of a step
-  P& target_problem() { return problem_; }        ///< the problem passed to the constructor
+  P& problem() { return problem_; }               ///< the problem passed to the constructor
 
  private:
   using action = schedule::action;

@@ -25,7 +25,7 @@ typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, ty
                               typename P::real longest, const error_target<typename P::real>& target,
                               const Distance& distance) {
   using real = typename P::real;
-  P& p = method_stepper.target_problem();
+  P& p = method_stepper.problem();
   error_estimate<P> estimate;
   step_controller<real> control(target.tolerance, target.order);
   start_control(p, t, u, longest, startup::none, control, distance);
@@ -96,7 +96,7 @@ tolerance_forecast<typename P::real> forecast_tolerance(stepper<P>& method_stepp
                                                         const plateau_bounds& bounds,
                                                         const Distance& distance) {
   using real = typename P::real;
-  P& p = method_stepper.target_problem();
+  P& p = method_stepper.problem();
   auto from = u;
   tolerance_forecast<real> found{longest, real(0)};
   real relaxation = std::numeric_limits<real>::infinity();

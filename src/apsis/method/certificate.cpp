@@ -205,7 +205,7 @@ certificate certify(const method& m) {
   return c;
 }
 
-std::string certificate::keeps() const {
+std::string certificate::kept_terms() const {
   if (!keeps_slow_terms) return "none";
   return keeps_layer ? "all" : "slow";
 }

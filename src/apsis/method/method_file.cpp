@@ -4,6 +4,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/exact_form.hpp>
+#include <apsis/method/internal/toml_section.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_text.hpp>
 
@@ -17,168 +18,7 @@
 namespace apsis {
 namespace {
 
-constexpr std::size_t most_stages = 64;
-constexpr std::size_t longest_text = 500;
-
-source_place place_of(const toml::node& node, const std::string& file) {
-  const auto& begin = node.source().begin;
-  return {file, static_cast<int>(begin.line), static_cast<int>(begin.column)};
-}
-
-/// A TOML table; the constructor throws input_error if it has an unknown key.
-class section {
- public:
-  section(const toml::table& table, std::string file, std::string name, const std::vector<std::string>& keys)
-      : table_(table), file_(std::move(file)), name_(std::move(name)) {
-    for (const auto& [key, value] : table) {
-      const std::string text(key.str());
-      if (std::find(keys.begin(), keys.end(), text) != keys.end()) continue;
-      const auto& at = key.source().begin;
-      throw input_error(
-          {file_, static_cast<int>(at.line), static_cast<int>(at.column)},
-          fmt::format("unknown key '{}'{}; {}", text.substr(0, 60), inside(), suggest(text, keys)));
-    }
-  }
-
-  bool has(const std::string& key) const { return table_.contains(key); }
-
-  const toml::node& need(const std::string& key) const {
-    const toml::node* node = table_.get(key);
-    if (node == nullptr)
-      throw input_error(place_of(table_, file_),
-                        fmt::format("missing key '{}'{} (it is required); add it", key, inside()));
-    return *node;
-  }
-
-  std::string text(const std::string& key) const {
-    const toml::node& node = need(key);
-    const auto value = node.value<std::string>();
-    if (!node.is_string() || !value) wrong(node, key, "a string in quotes");
-    if (value->size() > longest_text)
-      throw input_error(place_of(node, file_),
-                        fmt::format("{} is too long ({} characters, at most {}); shorten it", quoted(key),
-                                    value->size(), longest_text));
-    return *value;
-  }
-
-  int integer(const std::string& key, int lowest, int highest) const {
-    const toml::node& node = need(key);
-    const auto value = node.value<std::int64_t>();
-    if (!node.is_integer() || !value) wrong(node, key, "an integer");
-    if (*value < lowest || *value > highest)
-      throw input_error(place_of(node, file_),
-                        fmt::format("{} = {} is out of range (from {} to {}); give a number in this range",
-                                    quoted(key), *value, lowest, highest));
-    return static_cast<int>(*value);
-  }
-
-  bool boolean(const std::string& key) const {
-    const toml::node& node = need(key);
-    const auto value = node.value_exact<bool>();
-    if (!value) wrong(node, key, "true or false");
-    return *value;
-  }
-
-  std::string coefficient(const std::string& key) const { return coefficient_of(need(key), key); }
-
-  std::vector<std::string> row(const toml::node& node, const std::string& what) const {
-    const toml::array* array = node.as_array();
-    if (array == nullptr) wrong(node, what, "a list of coefficients such as [\"1/2\", \"0\"]");
-    if (array->size() > most_stages)
-      throw input_error(place_of(node, file_),
-                        fmt::format("{} has {} entries (a method has at most {} stages); leave some out",
-                                    quoted(what), array->size(), most_stages));
-    std::vector<std::string> values;
-    for (const toml::node& entry : *array) values.push_back(coefficient_of(entry, what));
-    return values;
-  }
-
-  std::vector<std::string> vector(const std::string& key) const { return row(need(key), key); }
-
-  /// Reads the rows of a lower triangular matrix into m; row i has i − 1 + diagonal entries, or one per stage
-  /// with trailing zeros.
-  void triangle(const std::string& key, std::size_t diagonal, matrix<std::string>& m) const {
-    const toml::node& node = need(key);
-    const toml::array* rows = node.as_array();
-    if (rows == nullptr) wrong(node, key, "a list of rows");
-    if (rows->size() != m.rows())
-      throw input_error(place_of(node, file_),
-                        fmt::format("{} has {} rows (the method has {} stages); give one row per stage",
-                                    quoted(key), rows->size(), m.rows()));
-    for (std::size_t i = 0; i < m.rows(); ++i) {
-      const toml::node& line = *rows->get(i);
-      const auto values = row(line, key);
-      const std::size_t expected = i + diagonal;
-      if (values.size() != expected && values.size() != m.rows())
-        throw input_error(place_of(line, file_),
-                          fmt::format("row {} of {} has {} entries (the matrix is lower triangular); give {}",
-                                      i + 1, quoted(key), values.size(), expected));
-      for (std::size_t j = 0; j < values.size(); ++j) {
-        if (j < expected) {
-          m(i, j) = values[j];
-        } else if (coefficient_value(values[j]) != 0) {
-          throw input_error(place_of(*line.as_array()->get(j), file_),
-                            fmt::format("entry {} of row {} of {} lies above the triangle (a stage cannot "
-                                        "use a later one); give \"0\" or leave it out",
-                                        j + 1, i + 1, quoted(key)));
-        }
-      }
-    }
-  }
-
-  std::size_t row_count(const std::string& key) const {
-    const toml::node& node = need(key);
-    const toml::array* rows = node.as_array();
-    if (rows == nullptr || rows->empty() || rows->size() > most_stages)
-      throw input_error(place_of(node, file_),
-                        fmt::format("{} is not a list of 1 to {} stages; give one row per stage", quoted(key),
-                                    most_stages));
-    return rows->size();
-  }
-
-  [[noreturn]] void fail(const std::string& key, const std::string& problem) const {
-    throw input_error(place_of(need(key), file_), problem);
-  }
-
- private:
-  std::string inside() const { return name_.empty() ? "" : " in [" + name_ + "]"; }
-  std::string quoted(const std::string& key) const {
-    return "'" + (name_.empty() ? key : name_ + "." + key) + "'";
-  }
-
-  [[noreturn]] void wrong(const toml::node& node, const std::string& key, const std::string& expected) const {
-    throw input_error(place_of(node, file_),
-                      fmt::format("{} has the wrong type; give {}", quoted(key), expected));
-  }
-
-  std::string coefficient_of(const toml::node& node, const std::string& key) const {
-    const auto value = node.value<std::string>();
-    if (!node.is_string() || !value)
-      wrong(node, key, "a coefficient in quotes (\"1/2\" or \"0.25\", so that no digit is lost)");
-    if (!is_coefficient(*value))
-      throw input_error(
-          place_of(node, file_),
-          fmt::format("'{}' is not a coefficient (for {}); write an exact rational \"p/q\" or a "
-                      "decimal of at most 200 characters",
-                      value->substr(0, 40), quoted(key)));
-    return *value;
-  }
-
-  const toml::table& table_;
-  std::string file_, name_;
-};
-
-const toml::table& need_table(const toml::table& root, const std::string& key, const std::string& file) {
-  const toml::node* node = root.get(key);
-  if (node == nullptr)
-    throw input_error(source_place{file, 1, 1},
-                      fmt::format("missing table [{}] (it is required); add it", key));
-  if (node->as_table() == nullptr)
-    throw input_error(place_of(*node, file), fmt::format("'{}' is not a table; give one", key));
-  return *node->as_table();
-}
-
-method_kind read_kind(const section& top) {
+method_kind read_kind(const toml_section& top) {
   static const std::vector<std::string> names = {"implicit", "imex", "explicit"};
   const std::string text = top.text("kind");
   for (const auto kind : {method_kind::implicit_only, method_kind::imex, method_kind::explicit_only})
@@ -187,8 +27,9 @@ method_kind read_kind(const section& top) {
 }
 
 method_claims read_claims(const toml::table& root, const std::string& file) {
-  const section table(need_table(root, "claims", file), file, "claims",
-                      {"order", "ssp_coefficient", "type", "explicit_radius", "l_stable", "intermediate"});
+  const toml_section table(
+      need_table(root, "claims", file), file, "claims",
+      {"order", "ssp_coefficient", "type", "explicit_radius", "l_stable", "intermediate"});
   method_claims claims;
   claims.order = table.integer("order", 1, 8);
   if (table.has("type")) {
@@ -229,7 +70,7 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   std::vector<std::string> keys = {"P"};
   if (m.kind != method_kind::implicit_only) keys.insert(keys.end(), {"W", "r"});
   if (!is_explicit) keys.insert(keys.end(), {"d", "ddot"});
-  const section form(table, file, "shu_osher", keys);
+  const toml_section form(table, file, "shu_osher", keys);
   const std::size_t s = form.row_count("P");
   auto& e = m.exact;
   e.P = e.W = e.D = zeros(s);
@@ -257,7 +98,7 @@ void read_embedded(const toml::table& table, const std::string& file, method& m)
   std::vector<std::string> keys = {"order", "origin", "P"};
   if (m.kind != method_kind::implicit_only) keys.emplace_back("W");
   if (m.kind != method_kind::explicit_only) keys.insert(keys.end(), {"d", "ddot"});
-  const section form(table, file, "embedded", keys);
+  const toml_section form(table, file, "embedded", keys);
   embedded_row row;
   row.order = form.integer("order", 1, 8);
   if (form.has("origin")) row.origin = form.text("origin");
@@ -277,7 +118,7 @@ void read_embedded(const toml::table& table, const std::string& file, method& m)
 }
 
 /// Reads the rows of `key` and, if u^{n+1} is not the last stage, appends the row `weights` of the update.
-matrix<std::string> read_tableau(const section& form, const std::string& key, const std::string& weights,
+matrix<std::string> read_tableau(const toml_section& form, const std::string& key, const std::string& weights,
                                  std::size_t diagonal, std::size_t s, bool update) {
   auto stages = zeros(s);
   form.triangle(key, diagonal, stages);
@@ -309,7 +150,7 @@ void read_butcher(const toml::table& table, const std::string& file, method& m) 
   std::vector<std::string> keys;
   if (m.kind != method_kind::implicit_only) keys.insert(keys.end(), {"A_hat", "b_hat"});
   if (!is_explicit) keys.insert(keys.end(), {"A", "b", "A_dot", "b_dot"});
-  const section form(table, file, "butcher", keys);
+  const toml_section form(table, file, "butcher", keys);
   const std::string first = is_explicit ? "A_hat" : "A", weights = is_explicit ? "b_hat" : "b";
   const std::size_t s = form.row_count(first);
   const bool update = form.has("b_hat") || form.has("b") || form.has("b_dot");
@@ -348,9 +189,9 @@ method parse_method(std::string_view text, const std::string& file) {
                       "not TOML (" + std::string(failure.description()) + "); correct the syntax");
   }
   method m;
-  const section top(root, file, "",
-                    {"name", "title", "citation", "origin", "purpose", "kind", "claims", "shu_osher",
-                     "butcher", "embedded"});
+  const toml_section top(root, file, "",
+                         {"name", "title", "citation", "origin", "purpose", "kind", "claims", "shu_osher",
+                          "butcher", "embedded"});
   m.name = top.text("name");
   if (const auto problem = method_name_problem(m.name); !problem.empty()) top.fail("name", problem);
   m.title = top.text("title");

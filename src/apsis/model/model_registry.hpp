@@ -16,7 +16,7 @@ struct model_parameter {
   double lowest;         ///< smallest allowed value
   double highest;        ///< largest allowed value
   std::string doc;       ///< description with unit
-  bool integer = false;  ///< whole numbers only
+  bool integer = false;  ///< integers only
 };
 
 /// A string option of a model: one of several names, or a formula.

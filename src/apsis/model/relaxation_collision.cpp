@@ -27,7 +27,7 @@ class relaxation_collision final : public point_collision {
     omega_.resize(points * static_cast<std::size_t>(moments_));
     // Padding stays zero, like that of the rows of a field.
     equilibria_.assign(points * static_cast<std::size_t>(pitch_), 0.0);
-    for (auto* numbers : {&rates_, &stay_, &relax_}) numbers->resize(points);
+    for (auto* numbers : {&rates_, &weight_of_u_, &weight_of_e_}) numbers->resize(points);
     rows_.reserve(points);
   }
 
@@ -38,7 +38,7 @@ class relaxation_collision final : public point_collision {
     find_weights(a, b, at);
     for (int p = 0; p < at.count; ++p) {
       const auto k = static_cast<std::size_t>(p);
-      relaxation::combine(stay_[k], relax_[k], equilibrium(p), width(at), u + p * at.pitch);
+      relaxation::combine(weight_of_u_[k], weight_of_e_[k], equilibrium(p), width(at), u + p * at.pitch);
     }
   }
 
@@ -54,7 +54,7 @@ class relaxation_collision final : public point_collision {
       for (int q = 0; q < per_group; ++q) {
         const auto k = static_cast<std::size_t>(first + q);
         const double weight = weights[static_cast<std::size_t>(q)];
-        rows_[static_cast<std::size_t>(q)] = {weight * stay_[k], weight * relax_[k],
+        rows_[static_cast<std::size_t>(q)] = {weight * weight_of_u_[k], weight * weight_of_e_[k],
                                               u + (first + q) * at.pitch, equilibrium(first + q)};
       }
       relaxation::mean(rows_, width(at), means);
@@ -98,13 +98,13 @@ class relaxation_collision final : public point_collision {
   void find_weights(double a, double b, const point_batch& at) {
     const int points = at.count;
     const double* epsilon = at.epsilon;
-    double *rates = rates_.data(), *stay = stay_.data(), *relax = relax_.data();
+    double *rates = rates_.data(), *weight_of_u = weight_of_u_.data(), *weight_of_e = weight_of_e_.data();
     for (int p = 0; p < points; ++p) rates[p] = equation_.rate(omega(p));
 #pragma omp simd
     for (int p = 0; p < points; ++p) {
       const auto weights = relax_weights(a, b, rates[p], epsilon[p]);
-      stay[p] = weights.stay;
-      relax[p] = weights.relax;
+      weight_of_u[p] = weights.of_u;
+      weight_of_e[p] = weights.of_e;
     }
   }
 
@@ -139,7 +139,7 @@ class relaxation_collision final : public point_collision {
   const relaxation_model& equation_;
   bool keeps_sign_;
   std::ptrdiff_t moments_, pitch_;
-  aligned_vector<double> omega_, equilibria_, rates_, stay_, relax_;
+  aligned_vector<double> omega_, equilibria_, rates_, weight_of_u_, weight_of_e_;
   std::vector<relaxation::weighted_rows> rows_;
 };
 

@@ -9,10 +9,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-void combine(double stay, double relax, const double* e, int width, double* u) {
+void combine(double weight_of_u, double weight_of_e, const double* e, int width, double* u) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    fma(N(stay), N::load(u + k), N(relax) * N::load(e + k)).store(u + k);
+    fma(N(weight_of_u), N::load(u + k), N(weight_of_e) * N::load(e + k)).store(u + k);
   });
 }
 
@@ -23,7 +23,8 @@ void mean_of_three(const relaxation::weighted_rows* of_points, int width, double
     using N = pack<decltype(lanes)>;
     N sum(0.0);
     for (const auto& point : points)
-      sum = fma(N(point.stay), N::load(point.u + k), fma(N(point.relax), N::load(point.e + k), sum));
+      sum = fma(N(point.weight_of_u), N::load(point.u + k),
+                fma(N(point.weight_of_e), N::load(point.e + k), sum));
     sum.store(mean + k);
   });
 }
@@ -33,8 +34,8 @@ void mean_of_any(const relaxation::weighted_rows* points, int count, int width, 
     using N = pack<decltype(lanes)>;
     N sum(0.0);
     for (int p = 0; p < count; ++p)
-      sum = fma(N(points[p].stay), N::load(points[p].u + k),
-                fma(N(points[p].relax), N::load(points[p].e + k), sum));
+      sum = fma(N(points[p].weight_of_u), N::load(points[p].u + k),
+                fma(N(points[p].weight_of_e), N::load(points[p].e + k), sum));
     sum.store(mean + k);
   });
 }
@@ -60,8 +61,8 @@ HWY_EXPORT(change);
 
 namespace relaxation {
 
-void combine(double stay, double relax, const double* e, int width, double* u) {
-  HWY_DYNAMIC_DISPATCH(combine)(stay, relax, e, width, u);
+void combine(double weight_of_u, double weight_of_e, const double* e, int width, double* u) {
+  HWY_DYNAMIC_DISPATCH(combine)(weight_of_u, weight_of_e, e, width, u);
 }
 
 void mean(std::span<const weighted_rows> points, int width, double* mean) {

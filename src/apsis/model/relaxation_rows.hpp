@@ -8,15 +8,15 @@ namespace apsis {
 /// Loops over the components of rows of a relaxation, for the instruction set of this processor.
 namespace relaxation {
 
-/// u ← stay u + relax e, the convex combination that solves a stage.
-void combine(double stay, double relax, const double* e, int width, double* u);
+/// u ← weight_of_u·u + weight_of_e·e, the convex combination that solves a stage.
+void combine(double weight_of_u, double weight_of_e, const double* e, int width, double* u);
 
-/// stay u + relax e at one quadrature point, the weight of the point in both factors.
+/// weight_of_u·u + weight_of_e·e at one quadrature point, the weight of the point in both factors.
 struct weighted_rows {
-  double stay,      ///< factor of u
-      relax;        ///< factor of e
-  const double *u,  ///< values at the point, one row
-      *e;           ///< E(ω) there
+  double weight_of_u,  ///< factor of u
+      weight_of_e;     ///< factor of e
+  const double *u,     ///< values at the point, one row
+      *e;              ///< E(ω) there
 };
 
 /// mean ← the sum over the points; three points are the fast case.

@@ -50,6 +50,7 @@ std::unique_ptr<collision> make_pointwise_collision(const model& equation, std::
 /// averages, with the (limited) values there; the new average is the weighted mean, which conserves exactly
 /// even if ε varies within the cell. `epsilon` holds three values per cell, in the order of the points.
 std::unique_ptr<collision> make_cell_average_collision(const model& equation, std::shared_ptr<domain> space,
-                                                       stencil how, std::vector<double> epsilon);
+                                                       spatial_discretization discretization,
+                                                       std::vector<double> epsilon);
 
 }  // namespace apsis

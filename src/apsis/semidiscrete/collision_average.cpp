@@ -17,10 +17,13 @@ namespace {
 
 class cell_average_collision final : public collision {
  public:
-  cell_average_collision(const model& equation, std::shared_ptr<domain> space, stencil how,
-                         std::vector<double> epsilon)
-      : equation_(equation), space_(std::move(space)), how_(std::move(how)), epsilon_(std::move(epsilon)) {
-    space_->reserve(equation.components(), how_.scheme->ghost_width());
+  cell_average_collision(const model& equation, std::shared_ptr<domain> space,
+                         spatial_discretization discretization, std::vector<double> epsilon)
+      : equation_(equation),
+        space_(std::move(space)),
+        discretization_(std::move(discretization)),
+        epsilon_(std::move(epsilon)) {
+    space_->reserve(equation.components(), discretization_.scheme->ghost_width());
   }
 
   void solve(double t, double a, double b, field& u) override {
@@ -70,7 +73,7 @@ class cell_average_collision final : public collision {
     std::vector<upwind::row_target> rows;
   };
 
-  bool limited() const { return how_.positivity != limiter_kind::none; }
+  bool limited() const { return discretization_.positivity != limiter_kind::none; }
   static int cells_per_batch(const field& u) {
     return std::max(1, points_per_batch(u.stride()) / gauss3::points);
   }
@@ -88,7 +91,8 @@ class cell_average_collision final : public collision {
   void prepare(const field& u) {
     const int points = cells_per_batch(u) * gauss3::points;
     scratch_.prepare([&](auto& own) {
-      own.block.reserve(how_, std::min(collision_block_length(u.stride()), u.cells()), 0, u.stride());
+      own.block.reserve(discretization_, std::min(collision_block_length(u.stride()), u.cells()), 0,
+                        u.stride());
       own.points.resize(static_cast<std::size_t>(points) * static_cast<std::size_t>(u.stride()));
       if (!own.local) own.local = equation_.make_collision({points, u.stride(), limited()});
     });
@@ -105,8 +109,8 @@ class cell_average_collision final : public collision {
       auto& own = scratch_.here();
       {
         const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(),
-                                     {how_.scheme->operations(true), sizeof(double)});
-        own.block.load(u, *space_, how_, 0, 0, begin, end, 0);
+                                     {discretization_.scheme->operations(true), sizeof(double)});
+        own.block.load(u, *space_, discretization_, 0, 0, begin, end, 0);
       }
       for (int i = begin; i < end; i += length) {
         const int cells = std::min(length, end - i);
@@ -133,7 +137,7 @@ class cell_average_collision final : public collision {
 
   const model& equation_;
   std::shared_ptr<domain> space_;
-  stencil how_;
+  spatial_discretization discretization_;
   std::vector<double> epsilon_;
   field result_;
   per_thread<scratch> scratch_;
@@ -142,12 +146,13 @@ class cell_average_collision final : public collision {
 }  // namespace
 
 std::unique_ptr<collision> make_cell_average_collision(const model& equation, std::shared_ptr<domain> space,
-                                                       stencil how, std::vector<double> epsilon) {
+                                                       spatial_discretization discretization,
+                                                       std::vector<double> epsilon) {
   if (space->mesh().dimensions() != 1)
     throw input_error(
         "the finite volume formulation collides at the Gauss points of intervals and knows one space "
         "dimension only; use the finite difference formulation");
-  return std::make_unique<cell_average_collision>(equation, std::move(space), std::move(how),
+  return std::make_unique<cell_average_collision>(equation, std::move(space), std::move(discretization),
                                                   std::move(epsilon));
 }
 

@@ -62,7 +62,7 @@ problem_builder& problem_builder::with_reconstruction(std::shared_ptr<const reco
       throw input_error(
           fmt::format("a mesh of {} cells is smaller than the stencil ({} cells); give at least {}",
                       mesh_.cells(direction), needed, needed));
-  how_.scheme = std::move(scheme);
+  discretization_.scheme = std::move(scheme);
   return *this;
 }
 
@@ -94,11 +94,12 @@ bool problem_builder::pointwise() const {
   return !has_space() || first_order() || unknowns_ == formulation::finite_difference;
 }
 
-stencil problem_builder::complete_stencil() const {
-  stencil how = how_;
+spatial_discretization problem_builder::complete_discretization() const {
+  spatial_discretization discretization = discretization_;
   if (limited_ && !first_order())
-    how.positivity = unknowns_ == formulation::finite_volume ? limiter_kind::edges : limiter_kind::fluxes;
-  return how;
+    discretization.positivity =
+        unknowns_ == formulation::finite_volume ? limiter_kind::edges : limiter_kind::fluxes;
+  return discretization;
 }
 
 domain problem_builder::space() const {
@@ -127,16 +128,16 @@ std::vector<double> problem_builder::epsilon_at_centres() const {
 
 std::unique_ptr<collision> problem_builder::make_collision(const std::shared_ptr<domain>& space) const {
   if (pointwise()) return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign());
-  return make_cell_average_collision(*equation_, space, complete_stencil(), epsilon_at(gauss3::xi));
+  return make_cell_average_collision(*equation_, space, complete_discretization(), epsilon_at(gauss3::xi));
 }
 
 std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   if (has_space() && sides_.empty()) throw input_error("no mesh (the model has space); call on()");
-  if (has_space() && !how_.scheme)
+  if (has_space() && !discretization_.scheme)
     throw input_error("no reconstruction (the model has space); call with_reconstruction()");
   const auto space = std::make_shared<domain>(this->space());
-  auto problem =
-      std::make_unique<semidiscrete_problem>(*equation_, space, complete_stencil(), make_collision(space));
+  auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, complete_discretization(),
+                                                        make_collision(space));
   if (explicit_collision_) problem->treat_collision_explicitly();
   return problem;
 }

@@ -65,7 +65,7 @@ class problem_builder {
   /// Returns the domain. Throws input_error if only one face of a direction is periodic.
   domain space() const;
   /// Whether the reconstruction is first-order upwind.
-  bool first_order() const { return how_.scheme && how_.scheme->order() == 1; }
+  bool first_order() const { return discretization_.scheme && discretization_.scheme->order() == 1; }
   /// Whether steps within r Δt_FE keep nonnegative data nonnegative.
   bool keeps_sign() const { return limited_ || first_order() || !has_space(); }
   /// Returns ε at the cell centres. Throws input_error if it is not a finite number ≥ 0.
@@ -73,14 +73,14 @@ class problem_builder {
 
  private:
   bool pointwise() const;
-  stencil complete_stencil() const;
+  spatial_discretization complete_discretization() const;
   std::vector<double> epsilon_at(std::span<const double> offsets) const;
   std::unique_ptr<collision> make_collision(const std::shared_ptr<domain>& space) const;
 
   const model* equation_;
   grid mesh_;
   std::vector<domain::faces> sides_;
-  stencil how_;
+  spatial_discretization discretization_;
   formulation unknowns_ = formulation::finite_volume;
   bool limited_ = false, explicit_collision_ = false;
   scale epsilon_;

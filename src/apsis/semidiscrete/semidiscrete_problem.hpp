@@ -15,9 +15,9 @@ class semidiscrete_problem {
   using real = double;  ///< type of time and coefficients
 
   /// `equation` must outlive the problem.
-  semidiscrete_problem(const model& equation, std::shared_ptr<domain> space, stencil how,
-                       std::unique_ptr<collision> q)
-      : transport_(equation, std::move(space), std::move(how)),
+  semidiscrete_problem(const model& equation, std::shared_ptr<domain> space,
+                       spatial_discretization discretization, std::unique_ptr<collision> q)
+      : transport_(equation, std::move(space), std::move(discretization)),
         has_transport_(equation.space_dimensions() > 0 || equation.has_source()),
         collision_(std::move(q)),
         cellwise_(dynamic_cast<cellwise_collision*>(collision_.get())) {}

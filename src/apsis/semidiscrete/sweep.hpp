@@ -34,7 +34,7 @@ struct cells_job {
 };
 
 /// Spatial discretization: reconstruction and limiter.
-struct stencil {
+struct spatial_discretization {
   std::shared_ptr<const reconstruction> scheme;  ///< reconstruction of edge values; null without space
   limiter_kind positivity = limiter_kind::none;  ///< positivity limiter of edges or fluxes
 };
@@ -43,11 +43,11 @@ struct stencil {
 /// block to block, so that they are allocated once.
 struct pencil_block {
   /// Allocates buffers for load() with the given number of cells.
-  void reserve(const stencil& how, int cells, int halo, int stride);
+  void reserve(const spatial_discretization& discretization, int cells, int halo, int stride);
 
   /// Computes the edge values of cells begin−halo … end−1+halo of a pencil.
-  void load(const field& u, const domain& space, const stencil& how, int direction, int pencil, int begin,
-            int end, int halo);
+  void load(const field& u, const domain& space, const spatial_discretization& discretization, int direction,
+            int pencil, int begin, int end, int halo);
 
   /// Returns the row of a cell or ghost cell of the pencil.
   const double* row(int cell) const { return rows[static_cast<std::size_t>(cell - first_row)]; }

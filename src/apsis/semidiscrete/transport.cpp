@@ -31,21 +31,21 @@ constexpr int least_columns = 16, least_cells = 16;
 constexpr int longest_row = 1 << 30, most_tasks = 1 << 30;
 
 /// Returns the memory traffic of the accumulators per number: a write, and a read unless they are fresh.
-work traffic(targets_view targets) {
-  work each;
+kernel_work traffic(targets_view targets) {
+  kernel_work each;
   for (const auto& to : targets) each.bytes += sizeof(double) * (to.fresh ? 1.0 : 2.0);
   return each;
 }
 
 /// Returns the number of cells beyond a block whose edges are needed: one for the flux, one more for its
 /// limiter.
-int halo_of(const stencil& how) {
-  return how.positivity == limiter_kind::fluxes ? 2 : 1;
+int halo_of(const spatial_discretization& discretization) {
+  return discretization.positivity == limiter_kind::fluxes ? 2 : 1;
 }
 
 /// Returns the number of cells on either side on which edges and limiter of a cell depend.
-int reach_of(const stencil& how) {
-  return std::max(how.scheme->ghost_width(), halo_of(how));
+int reach_of(const spatial_discretization& discretization) {
+  return std::max(discretization.scheme->ghost_width(), halo_of(discretization));
 }
 
 /// Returns the first component of column 0 … columns of a row; columns are multiples of vectors.
@@ -79,7 +79,7 @@ class transport::block_sweep {
     const double numbers = static_cast<double>(at.end - at.begin) * width_;
     {
       const profile::section timed(kernel::edges, numbers,
-                                   {from.how_.scheme->operations(both_edges()), sizeof(double)});
+                                   {from.discretization_.scheme->operations(both_edges()), sizeof(double)});
       for (int i = at.begin - halo_; i < at.end + halo_;) {
         const run_of_cells run = run_from(i, at.end + halo_ - i);
         make_edges(i, run);
@@ -101,11 +101,11 @@ class transport::block_sweep {
     int cells, joined;
   };
 
-  bool both_edges() const { return from_->how_.positivity == limiter_kind::edges; }
+  bool both_edges() const { return from_->discretization_.positivity == limiter_kind::edges; }
 
-  work work_of(targets_view targets) const {
-    work each = traffic(targets);
-    each.operations = upwind::operations(from_->how_.positivity == limiter_kind::fluxes) +
+  kernel_work work_of(targets_view targets) const {
+    kernel_work each = traffic(targets);
+    each.operations = upwind::operations(from_->discretization_.positivity == limiter_kind::fluxes) +
                       upwind::operations_of_target * static_cast<double>(targets.size());
     return each;
   }
@@ -130,8 +130,8 @@ class transport::block_sweep {
   }
 
   void find_reach(const transport& from) {
-    halo_ = halo_of(from.how_);
-    reach_ = reach_of(from.how_);
+    halo_ = halo_of(from.discretization_);
+    reach_ = reach_of(from.discretization_);
   }
 
   /// Where neighbours are joined, a row of edges ends beyond its last cell.
@@ -156,7 +156,7 @@ class transport::block_sweep {
   }
 
   void make_edges(int i, const run_of_cells& run) {
-    const auto& scheme = *from_->how_.scheme;
+    const auto& scheme = *from_->discretization_.scheme;
     const int width = run.joined * width_;
     double *left = left_.data() + offset(i), *right = right_.data() + offset(i);
     if (!both_edges())
@@ -188,7 +188,7 @@ class transport::block_sweep {
                              line_->forward.data() + at.first,
                              line_->per_cell.data() + at.first,
                              first && from_->equation_.has_source() ? source(i, run) : nullptr};
-    if (from_->how_.positivity == limiter_kind::fluxes) {
+    if (from_->discretization_.positivity == limiter_kind::fluxes) {
       upwind::add_limited(some, targets_);
     } else {
       upwind::add(some, targets_);
@@ -213,13 +213,14 @@ struct transport::scratch {
 transport::~transport() = default;
 transport::transport(transport&&) noexcept = default;
 
-transport::transport(const model& equation, std::shared_ptr<domain> space, stencil how)
+transport::transport(const model& equation, std::shared_ptr<domain> space,
+                     spatial_discretization discretization)
     : equation_(equation),
       space_(std::move(space)),
-      how_(std::move(how)),
+      discretization_(std::move(discretization)),
       scratch_(std::make_unique<scratch>()) {
   if (equation.space_dimensions() == 0) return;
-  space_->reserve(equation.components(), halo_of(how_) + reach_of(how_));
+  space_->reserve(equation.components(), halo_of(discretization_) + reach_of(discretization_));
   const field layout(1, equation.components());
   for (int direction = 0; direction < mesh().dimensions(); ++direction) {
     line_speeds line;
@@ -236,7 +237,8 @@ transport::transport(const model& equation, std::shared_ptr<domain> space, stenc
 double transport::forward_euler_step() const {
   double rate = 0.0;  // 1/0 is the infinity of a model without space
   for (const auto& line : speeds_) rate += *std::max_element(line.per_cell.begin(), line.per_cell.end());
-  return rounding_allowance * (how_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) / rate;
+  return rounding_allowance * (discretization_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) /
+         rate;
 }
 
 bool transport::add_transport(double t, const field& u, targets_view targets, const cells_job& then) const {
@@ -278,7 +280,7 @@ void transport::add_weighted(const field& u, targets_view targets, const cells_j
     const int cells = end - begin;
     upwind::rows_of(targets, begin, rows);
     {
-      work each = traffic(targets);
+      kernel_work each = traffic(targets);
       each.bytes += sizeof(double);
       each.operations = 2.0 * static_cast<double>(targets.size());
       const profile::section timed(kernel::multiples, static_cast<double>(cells) * u.stride(), each);

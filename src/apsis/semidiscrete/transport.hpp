@@ -19,7 +19,7 @@ inline constexpr double rounding_allowance = 1.0 - 1e-14;
 class transport {
  public:
   /// `equation` must outlive the operator. Without space `how` is ignored.
-  transport(const model& equation, std::shared_ptr<domain> space, stencil how);
+  transport(const model& equation, std::shared_ptr<domain> space, spatial_discretization discretization);
   ~transport();
   transport(transport&&) noexcept;  ///< leaves the source empty
 
@@ -45,7 +45,7 @@ class transport {
 
   const model& equation_;
   std::shared_ptr<domain> space_;
-  stencil how_;
+  spatial_discretization discretization_;
   struct line_speeds {
     aligned_vector<double> per_cell;  ///< |v|/Δx per component
     aligned_vector<double> forward;   ///< 1 if v > 0, else 0

@@ -60,7 +60,7 @@ void staged_problem::solve_collision(double, double a, double b, state& u) {
   work_.resize(u.size());
   relax_(number_of(u[n]), mass_of(u), std::span(work_).first(n));
   const auto weights = relax_weights(a, b, 1.0, epsilon_);
-  for (std::size_t i = 0; i < n; ++i) u[i] = weights.stay * u[i] + weights.relax * work_[i];
+  for (std::size_t i = 0; i < n; ++i) u[i] = weights.of_u * u[i] + weights.of_e * work_[i];
 }
 
 void staged_problem::add_collision(double, const state& u, std::span<const target<state, double>> targets) {

@@ -180,36 +180,36 @@ class planner {
   }
 
   void choose_reference() {
-    how_ = study_.reference.how;
+    reference_type_ = study_.reference.type;
     const std::string model = plan_.runs.front().model.name;
     const bool on_mesh = has_space(*find_model(model));
-    if (how_ == kind::automatic) {
-      how_ = all_exact() ? kind::exact : kind::next;
-      if (how_ == kind::next && !resolves_)
+    if (reference_type_ == kind::automatic) {
+      reference_type_ = all_exact() ? kind::exact : kind::next;
+      if (reference_type_ == kind::next && !resolves_)
         throw input_error(
             fmt::format("there is nothing to compare with (no mesh or step is refined, and model '{}' has no "
                         "exact solution); give --reference",
                         model));
     }
-    if (how_ == kind::exact && !all_exact())
+    if (reference_type_ == kind::exact && !all_exact())
       throw input_error(
           fmt::format("reference 'exact' does not exist (no exact solution of model '{}' is known for these "
                       "data); choose --reference next, time or METHOD@STEP",
                       model));
-    if (how_ == kind::next && (!resolves_ || refined_key() == "velocity.points"))
+    if (reference_type_ == kind::next && (!resolves_ || refined_key() == "velocity.points"))
       throw input_error(
           "reference 'next' needs a finer run (no mesh or step is refined); vary space.cells or a step, or "
           "choose another reference");
-    if (how_ == kind::space_time && !on_mesh)
+    if (reference_type_ == kind::space_time && !on_mesh)
       throw input_error(
           fmt::format("reference 'space+time' needs a mesh (model '{}' has no space); choose time", model));
-    plan_.measured = how_ == kind::next ? "difference" : "error";
+    plan_.measured = reference_type_ == kind::next ? "difference" : "error";
     plan_.measure = fmt::format("{} norm of the difference{} to {}", to_string(study_.norm),
                                 study_.quantity.empty() ? "" : " of " + study_.quantity, reference_name());
   }
 
   std::string reference_name() const {
-    switch (how_) {
+    switch (reference_type_) {
       case kind::exact:
         return "the exact solution";
       case kind::next:
@@ -225,28 +225,28 @@ class planner {
 
   void plan_reference(convergence_plan::block& block, std::size_t k) {
     auto& row = block.rows[k];
-    if (how_ == kind::exact) {
+    if (reference_type_ == kind::exact) {
       if (!study_.quantity.empty())
         check_comparable(plan_.runs[row.run], plan_.runs[row.run], study_.quantity);
       return;
     }
     const bool last = k + 1 == block.rows.size();
     const std::size_t reference =
-        how_ == kind::next && !last ? block.rows[k + 1].run : run_of(reference_settings(block, k));
+        reference_type_ == kind::next && !last ? block.rows[k + 1].run : run_of(reference_settings(block, k));
     check_comparable(plan_.runs[row.run], plan_.runs[reference], study_.quantity);
     row.reference = static_cast<long>(reference);
   }
 
   texts reference_settings(const convergence_plan::block& block, std::size_t k) const {
     const texts& own = settings_of_.at(block.rows[k].run);
-    if (how_ == kind::given) return layered(own, study_.reference.overrides);
-    if (how_ == kind::next) return layered(own, {beyond(block)});
+    if (reference_type_ == kind::given) return layered(own, study_.reference.overrides);
+    if (reference_type_ == kind::next) return layered(own, {beyond(block)});
     // Rows of one refinement share the reference of the finest.
-    const bool shared = how_ == kind::time ? plan_.refined_in_time : resolves_;
+    const bool shared = reference_type_ == kind::time ? plan_.refined_in_time : resolves_;
     const std::size_t base = shared ? block.rows.back().run : block.rows[k].run;
     const case_config& from = plan_.runs[base];
     texts changes;
-    if (how_ == kind::time) {
+    if (reference_type_ == kind::time) {
       for (const auto& key : step_keys())
         if (const double value = number_of(from, key); value > 0.0)
           changes.push_back(fmt::format("{}={:.17g}", key, value / 8.0));
@@ -274,7 +274,7 @@ class planner {
   std::map<std::string, std::size_t> known_;  ///< numerical identity of a run → its index
   std::map<std::size_t, texts> settings_of_;  ///< of the runs of the grid
   std::vector<point> grid_;
-  kind how_ = kind::automatic;
+  kind reference_type_ = kind::automatic;
   bool resolves_ = false;  ///< the refined key is a mesh or a step
 };
 

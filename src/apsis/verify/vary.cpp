@@ -79,7 +79,8 @@ struct written_number {
   }
 };
 
-[[noreturn]] void bad_vary(const std::string& text, const std::string& problem, const std::string& advice) {
+[[noreturn]] void refuse_vary(const std::string& text, const std::string& problem,
+                              const std::string& advice) {
   throw input_error(fmt::format("--vary '{}': {}; {}", shown(text), problem, advice));
 }
 
@@ -93,8 +94,8 @@ std::vector<std::string> range(const std::string& value, const std::string& vary
   const double doublings = std::log2(last->value / first->value);
   const int count = std::abs(doublings) < 100.0 ? static_cast<int>(std::lround(doublings)) : 0;
   if (!(std::abs(doublings - count) <= 1e-9))
-    bad_vary(vary, fmt::format("the range {} does not end (doubling or halving misses its end)", value),
-             "list the values");
+    refuse_vary(vary, fmt::format("the range {} does not end (doubling or halving misses its end)", value),
+                "list the values");
   std::vector<std::string> values;
   for (int k = 0; k <= std::abs(count); ++k) values.push_back(first->scaled(count < 0 ? -k : k));
   return values;
@@ -105,18 +106,18 @@ std::vector<std::string> range(const std::string& value, const std::string& vary
 varied_key parse_vary(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
-    bad_vary(text, "not of the form key=value,value,… (a key and its values are needed)",
-             "write for example space.cells=20,40,80");
+    refuse_vary(text, "not of the form key=value,value,… (a key and its values are needed)",
+                "write for example space.cells=20,40,80");
   varied_key varied{text.substr(0, equals), {}};
   for (const auto& value : split(text.substr(equals + 1))) {
     if (value.empty())
-      bad_vary(text, "a value is empty (nothing stands before or after a comma, or behind =)",
-               "write for example space.cells=20,40,80");
+      refuse_vary(text, "a value is empty (nothing precedes or follows a comma, or follows =)",
+                  "write for example space.cells=20,40,80");
     const auto many = range(value, text);
     for (const auto& one : many.empty() ? std::vector<std::string>{value} : many) {
       if (std::find(varied.values.begin(), varied.values.end(), one) != varied.values.end())
-        bad_vary(text, fmt::format("the value {} occurs twice (each value makes a run)", shown(one)),
-                 "remove one");
+        refuse_vary(text, fmt::format("the value {} occurs twice (each value makes a run)", shown(one)),
+                    "remove one");
       varied.values.push_back(one);
     }
   }

@@ -27,7 +27,7 @@ struct convergence_reference {
     space_time,  ///< one run with three times the cells of the finest run and a third of its step
     given        ///< each run again with `overrides`
   };
-  kind how = kind::automatic;               ///< the kind in use
+  kind type = kind::automatic;              ///< the kind in use
   std::vector<std::string> overrides = {};  ///< "key=value", of kind::given
 };
 

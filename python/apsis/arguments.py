@@ -24,9 +24,9 @@ def number(name: str, value: Any, positive: bool = False) -> float:
 
 
 def whole_number(name: str, value: Any) -> int:
-    """`value` as an int. Raises InputError unless it is a whole number."""
+    """`value` as an int. Raises InputError unless it is an integer."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
-        raise InputError(f"{name} is {value!r} (a whole number is needed); give one")
+        raise InputError(f"{name} is {value!r} (an integer is needed); give one")
     if abs(int(value)) > 2**31 - 1:
         raise InputError(f"{name} = {value} is out of range; give a smaller number")
     return int(value)

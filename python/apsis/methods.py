@@ -197,7 +197,7 @@ def read_method(file: str | Path) -> Method:
 def order_conditions(A: Tableau, A_hat: Tableau | None = None, A_dot: Tableau | None = None, *, order: int) -> list[OrderCondition]:
     """Returns all order conditions of a tableau up to `order`: A of Q, A_hat of T, A_dot of Q̇ (s × s each), u^{n+1} the last stage.
 
-    Without A_hat of a method for Q alone. Coefficients may be numbers, fractions or text ("1/3"), and count with every
+    Without A_hat the method is for Q alone. Coefficients may be numbers, fractions or text ("1/3"), and count with every
     digit. Raises InputError."""
     def texts(tableau: Tableau | None) -> list[list[str]]:
         return [] if tableau is None else [[_text(x) for x in row] for row in tableau]

@@ -47,7 +47,7 @@ class Layers(unittest.TestCase):
 
     def test_a_readme_that_promises_something_else_is_found(self):
         found = self.planted("src/apsis/method/README.md", "# method\nMay include `core` and `run`.\n")
-        self.assertEqual(found, ["src/apsis/method/README.md: says that it may include ['core', 'run'] (CMake allows ['core'])"])
+        self.assertEqual(found, ["src/apsis/method/README.md: states that it may include ['core', 'run'] (CMake allows ['core'])"])
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""install.py BUILD: pip install . into a new virtual environment, with what BUILD has compiled, and a look at the result.
+"""install.py BUILD: pip install . into a new virtual environment with the compiled module of BUILD, and a check of the result.
 This is the installation of README.md."""
 import os
 import shutil
@@ -24,7 +24,7 @@ print(apsis.__version__)
 def main(build):
     with tempfile.TemporaryDirectory() as folder:
         source, environment = Path(folder, "source"), Path(folder, "venv")
-        # A copy without the build folders, since pip leaves some of its own in what it installs from.
+        # A copy without build folders, since pip writes build files into its source folder.
         shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns("build", "results", ".git", "__pycache__", "*.egg-info"))
         subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", environment], check=True)
         python = environment / "bin" / "python"

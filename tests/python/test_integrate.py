@@ -1,4 +1,4 @@
-"""Problems of one's own with functions on arrays."""
+"""User-defined problems with functions on arrays."""
 import gc
 import pickle
 import signal
@@ -17,13 +17,13 @@ def ode(epsilon, **more):
 
 
 @pytest.mark.parametrize("name, order", [("md-imex-3-2", 2), ("md-imex-6-3", 3), ("md-imex-14-4-accurate", 4)])
-def test_the_order_is_seen_from_python(name, order):
+def test_the_observed_order_is_that_of_the_method(name, order):
     exact = apsis.integrate(ode(1.0), [2.0, 0.0], (0, 1), name, dt=1 / 2048).u[-1]
     errors = [np.abs(apsis.integrate(ode(1.0), [2.0, 0.0], (0, 1), name, dt=dt).u[-1] - exact).sum() for dt in (1 / 64, 1 / 128)]
     assert np.log2(errors[0] / errors[1]) > order - 0.25
 
 
-def test_it_is_the_integration_of_the_program():
+def test_results_are_those_of_the_program():
     mine = apsis.integrate(ode(1e-4), [2.0, 0.0], (0, 1), "md-imex-6-3", dt=1 / 64)
     theirs = apsis.run("paper/ode", "model.epsilon=1e-4", "time.dt=1/64", "time.end=1.0", "time.method=md-imex-6-3")
     assert mine.steps == theirs.summary["steps"] == 64
@@ -31,17 +31,17 @@ def test_it_is_the_integration_of_the_program():
     np.testing.assert_allclose(mine.u[-1], theirs.f[0], rtol=1e-13)
 
 
-def test_a_smaller_tolerance_makes_smaller_errors_by_more_steps():
+def test_a_smaller_tolerance_gives_smaller_errors_and_more_steps():
     name = "md-imex-8-3-accurate"
     exact = apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), name, dt=1 / 4096).u[-1]
     found = [apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 0.5, 1), name, dt=0.5, tolerance=tol) for tol in (1e-3, 1e-6)]
     errors = [np.abs(one.u[-1] - exact).max() for one in found]
-    # Errors of steps add up, and what a step of the wanted size leaves is far below what its estimate says.
+    # Errors accumulate over steps, and the estimate of a step exceeds its error by far.
     assert errors[0] < 1e-2 and errors[1] < 1e-4 and errors[1] < errors[0] / 10
     assert found[1].steps > 2 * found[0].steps
 
 
-def test_steps_that_fail_are_tried_shorter_where_there_is_a_tolerance():
+def test_failed_steps_are_repeated_with_a_smaller_step_to_a_tolerance():
     problem = apsis.RelaxationProblem(lambda t, u: -u, lambda u: u[0], lambda w: [w], lambda w: 1.0, 1.0, admissible=lambda u: u[0] >= 0)
     with pytest.raises(apsis.NumericalError, match="admissible"):
         apsis.integrate(problem, [1.0], (0, 8), "md-imex-8-3-mixed", dt=8)
@@ -60,12 +60,12 @@ def test_states_at_times_and_shapes_of_arrays():
                                       forward_euler_step=lambda t, u: 1 / 20)
     seen = apsis.integrate(problem, u0, np.linspace(0, 1, 5), "md-imex-3-2")
     assert seen.u.shape == (5, 2, 20) and np.array_equal(seen.u[0], u0) and np.array_equal(seen.t, np.linspace(0, 1, 5))
-    # Conserved to rounding, and within the bounds of the data: r Δt_FE keeps both.
+    # Steps of r Δt_FE conserve to rounding and keep the bounds of the data.
     np.testing.assert_allclose(seen.u[:, 0].sum(axis=1), u0[0].sum(), rtol=1e-13)
     assert seen.u[:, 0].min() >= 1.0 - 1e-12 and seen.u[:, 0].max() <= 3.0 + 1e-12
 
 
-def test_arrays_of_the_functions_cannot_be_changed():
+def test_arrays_passed_to_functions_are_read_only():
     def transport(t, u):
         u[0] = 1.0
     problem = ode(1.0)
@@ -74,7 +74,7 @@ def test_arrays_of_the_functions_cannot_be_changed():
         apsis.integrate(problem, [2.0, 0.0], (0, 1), dt=0.1)
 
 
-def test_exceptions_of_the_functions_come_out():
+def test_exceptions_of_the_functions_propagate():
     class Mine(Exception):
         pass
     def fail(u):
@@ -117,7 +117,7 @@ def test_bad_arguments_have_a_message(change, arguments, message):
         apsis.integrate(problem, **({"u0": [2.0, 0.0], "t": (0, 1), "dt": 0.1} | arguments))
 
 
-def test_numbers_of_other_classes_and_layouts_are_the_same():
+def test_other_number_types_and_layouts_give_the_same_result():
     plain = apsis.integrate(ode(0.5), [2.0, 0.0], (0, 1), dt=0.25)
     odd = ode(Fraction(1, 2))
     odd.transport = lambda t, u: np.array([[u[1]], [0.0]], order="F")[:, 0]  # a view with a stride
@@ -144,7 +144,7 @@ def test_arrays_given_to_functions_may_be_kept():
     problem.admissible = lambda u: (note("admissible", u), True)[1]
     apsis.integrate(problem, [2.0, 0.0], (0, 1), dt=1 / 64)
     gc.collect()
-    junk = [np.full(2, -7.0) for _ in range(1000)]  # takes memory that was given back
+    junk = [np.full(2, -7.0) for _ in range(1000)]  # reuses freed memory
     assert len(junk) == 1000
     for name, arrays in kept.items():
         assert len(arrays) > 100
@@ -152,20 +152,20 @@ def test_arrays_given_to_functions_may_be_kept():
 
 
 def test_a_view_of_u_may_be_the_moments():
-    # The moments outlive the call, and u moves on.
+    # The moments outlive the call, and u changes.
     u0 = np.ones((2, 50)) + np.arange(50)
     problem = apsis.RelaxationProblem(lambda t, u: np.zeros((2, 50)), lambda u: u[0], lambda w: np.stack([w, 2 * w]), lambda w: 1.0, 0.0)
     end = apsis.integrate(problem, u0, (0, 1), dt=0.5).u[-1]
-    # A stage is a sum of convex weights times the same number: one rounding.
+    # A stage is a convex combination of equal numbers: one rounding error.
     np.testing.assert_allclose(end, [u0[0], 2 * u0[0]], rtol=4e-16)
 
 
 class Mine(Exception):
-    """An exception of the user."""
+    """An exception raised by the user."""
 
 
 class Fails:
-    """A value whose conversion raises."""
+    """A value whose conversion raises an exception."""
 
     def __init__(self, what):
         self.what = what
@@ -183,7 +183,7 @@ class Fails:
 @pytest.mark.parametrize("what", [Mine("no"), KeyboardInterrupt(), SystemExit(3), MemoryError()])
 @pytest.mark.parametrize("function", ["transport", "equilibrium", "rate", "admissible", "forward_euler_step"])
 @pytest.mark.parametrize("inside", ["function", "conversion"])
-def test_exceptions_leave_as_they_are(function, inside, what):
+def test_exceptions_propagate_unchanged(function, inside, what):
     def fail(*_):
         if inside == "function":
             raise what
@@ -204,8 +204,8 @@ def test_an_exception_of_a_conversion_is_the_cause_of_the_message():
 
 
 @pytest.mark.parametrize("where", ["transport", "conversion", "moments", "rate", "admissible"])
-def test_control_c_is_a_keyboard_interrupt_wherever_it_arrives(where):
-    # The signal comes in Python code of a call, and Python handles it there or at the next step.
+def test_control_c_raises_keyboard_interrupt_wherever_it_arrives(where):
+    # The signal arrives in Python code of a call, and Python handles it there or at the next step.
     class Interrupting:
         def __array__(self, *_, **__):
             signal.raise_signal(signal.SIGINT)
@@ -224,7 +224,8 @@ def test_control_c_is_a_keyboard_interrupt_wherever_it_arrives(where):
 
 
 def test_a_tolerance_needs_no_step():
-    # The error at the end goes with tol^(p/(q + 1)) = tol; the tables of docs/methods.md have errors of up to 32 tolerances.
+    # The final error is proportional to tol^(p/(q + 1)) = tol; the tables of docs/methods.md have errors of
+    # up to 32 tolerances.
     exact = apsis.integrate(ode(1e-3), [2.0, np.sin(2.0)], (0, 1), "md-imex-14-4-accurate", dt=1 / 4096).u[-1]
     for tolerance in (1e-3, 1e-5):
         found = apsis.integrate(ode(1e-3), [2.0, np.sin(2.0)], (0, 1), "md-imex-8-3-mixed", tolerance=tolerance)
@@ -249,7 +250,7 @@ def test_a_method_may_be_an_object_or_a_file(tmp_path):
     assert apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), "md-imex-6-3", dt=0.25) != by_name
 
 
-def test_a_solution_is_equal_to_its_copy_and_says_what_it_is():
+def test_a_solution_equals_its_copy_and_has_a_short_representation():
     one = apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 0.5, 1), dt=0.25)
     again = pickle.loads(pickle.dumps(one))
     assert again == one and again is not one
@@ -257,7 +258,7 @@ def test_a_solution_is_equal_to_its_copy_and_says_what_it_is():
     assert "<td>4</td>" in one._repr_html_()
 
 
-def test_a_failure_says_where():
+def test_a_failure_reports_its_stage_and_place():
     problem = ode(1.0, admissible=lambda u: u[0] < 2.5)
     with pytest.raises(apsis.NumericalError, match="not admissible") as failure:
         apsis.integrate(problem, [2.0, 1.0], (0, 5), dt=0.1)

@@ -1,4 +1,4 @@
-"""Problems on a mesh made from Python objects, without a case."""
+"""Problems on a mesh built from Python objects without a case."""
 import apsis
 import numpy as np
 import pytest
@@ -9,8 +9,8 @@ def bgk(**more):
 
 
 @pytest.mark.parametrize("formulation", ["finite-volume", "finite-difference"])
-def test_it_is_the_problem_of_the_case(formulation):
-    """The same numbers as a run of the same problem from a case file, bit for bit."""
+def test_it_equals_the_problem_of_the_case(formulation):
+    """Bit for bit the numbers of a run of the same problem from a case file."""
     case = apsis.run("paper/bgk-mixed", "space.cells=20", "velocity.points=40", f"space.formulation={formulation}", "model.epsilon=1e-2",
                      "time.end=0.05", "time.method=md-imex-6-3", "time.dt=0.0005", threads=1)
     problem = bgk(formulation=formulation, positivity=True)
@@ -26,13 +26,13 @@ def test_functions_of_position_are_data_and_epsilon():
     problem = bgk(formulation="finite-difference", epsilon=lambda x: 1e-3 + x * x)
     np.testing.assert_array_equal(problem.epsilon, 1e-3 + problem.x * problem.x)
 
-    def gas(x):  # a Maxwellian of the density 1 + 0.2 sin πx at rest
+    def gas(x):  # a Maxwellian at rest with density 1 + 0.2 sin πx
         return (1.0 + 0.2 * np.sin(np.pi * x)) * np.exp(-0.5 * problem.v**2) / np.sqrt(2.0 * np.pi)
 
     u = problem.sample(gas)
     np.testing.assert_allclose(problem.fields(u)["rho"], 1.0 + 0.2 * np.sin(np.pi * problem.x), rtol=1e-12)
     np.testing.assert_allclose(problem.fields(u)["T"], 1.0, rtol=1e-12)
-    # Equilibrium up to the accuracy of the midpoint rule: the collision does nothing.
+    # Equilibrium up to the accuracy of the midpoint rule: the collision vanishes.
     assert np.abs(problem.collision(u)).max() < 1e-9
     np.testing.assert_allclose(problem.solve_collision(u, 0.1, -0.01), u, rtol=0, atol=1e-12)
 
@@ -42,13 +42,13 @@ def test_averages_of_data_with_jumps_are_exact():
     u = problem.sample(lambda x: [x * x if x < 0.5 else 2.0, 1.0], jumps=[0.5])
     assert u[0, 0] == pytest.approx(0.04 / 3, abs=1e-16)
     assert u[2, 0] == pytest.approx((0.125 - 0.064) / 3 / 0.2 + 1.0, abs=1e-15)
-    np.testing.assert_allclose(u[:, 1], 1.0, rtol=1e-15)  # the weights of the quadrature add up to 1 within rounding
+    np.testing.assert_allclose(u[:, 1], 1.0, rtol=1e-15)  # the quadrature weights add up to 1 within rounding
 
 
 def test_transport_is_minus_the_derivative_of_the_flux():
     problem = apsis.KineticProblem("broadwell", cells=160, domain=(-1, 1), formulation="finite-difference")
     u = problem.sample(lambda x: [2 + np.sin(np.pi * x), 1.0, 1.0])
-    expected = -np.pi * np.cos(np.pi * problem.x)  # the first component moves with speed 1
+    expected = -np.pi * np.cos(np.pi * problem.x)  # the first component has speed 1
     # Fifth order on 160 cells: (πΔx)⁵ π/60 ≈ 5e-9, and more at smooth extrema.
     np.testing.assert_allclose(problem.transport(u)[:, 0], expected, atol=1e-5)
     assert problem.forward_euler_step(u) == pytest.approx(2 / 160, rel=1e-12)
@@ -97,13 +97,13 @@ def test_an_ordinary_differential_equation_needs_no_mesh():
     (lambda: bgk().fields(np.ones((20, 3))), "a state has the shape (20, 3) (that of the problem is (20, 40))"),
     (lambda: bgk().sample(lambda x: -np.ones(40)), "no Maxwellian"),
 ])
-def test_what_does_not_fit_is_refused(make, says):
+def test_inconsistent_arguments_are_refused(make, says):
     with pytest.raises(apsis.InputError) as refused:
         make()
     assert says in str(refused.value)
 
 
-def test_failures_have_their_cell():
+def test_failures_report_their_cell():
     problem = bgk(epsilon=0)
     with pytest.raises(apsis.NumericalError) as failed:
         problem.collision(problem.sample("mixed-v"))

@@ -9,7 +9,7 @@ import pytest
 
 
 @pytest.mark.parametrize("name", apsis.methods())
-def test_arrays_fractions_and_certificate_belong_together(name):
+def test_arrays_fractions_and_certificate_agree(name):
     m = apsis.method(name)
     s = m.stages
     assert m.P.shape == m.W.shape == m.D.shape == m.A.shape == m.A_hat.shape == m.A_dot.shape == (s, s)
@@ -34,7 +34,7 @@ def test_the_certificate_is_that_of_the_paper():
 
 
 def test_conditions_of_a_tableau_are_exact():
-    # The trapezoidal rule as two stages, the classical order 2 and no more.
+    # The trapezoidal rule with two stages, of order 2 exactly.
     trapezoidal = [[0, 0], [Fraction(1, 2), Fraction(1, 2)]]
     conditions = apsis.order_conditions(trapezoidal, order=3)
     assert [one.residual for one in conditions if one.order <= 2] == [0.0, 0.0]
@@ -51,7 +51,7 @@ def test_methods_of_the_catalogue_satisfy_the_conditions_from_their_arrays(name)
     order = m.certificate.order
     tableau = dict(A=m.A.tolist(), A_dot=m.A_dot.tolist(), A_hat=None if m.kind.startswith("implicit") else m.A_hat.tolist())
     conditions = apsis.order_conditions(**tableau, order=order + 1)
-    # Double coefficients of size up to 10, products of up to five of them.
+    # Coefficients in double of size up to 10, products of up to five of them.
     assert max(abs(one.residual) for one in conditions if one.order <= order) < 1e-10
     assert max(abs(one.residual) for one in conditions if one.order == order + 1) > 1e-6
 
@@ -65,14 +65,14 @@ def test_bad_tableaux_have_a_message(bad, message):
         apsis.order_conditions(**bad)
 
 
-def test_names_that_are_wrong_have_a_suggestion():
+def test_wrong_names_get_a_suggestion():
     with pytest.raises(apsis.InputError, match="md-imex-6-3"):
         apsis.method("md-imex-6-4")
     with pytest.raises(ValueError):
         apsis.method("nothing of the kind")
 
 
-def test_a_file_that_claims_too_much_is_refused_and_can_be_looked_at(tmp_path):
+def test_a_file_with_a_false_claim_is_refused_and_can_be_inspected(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text('name = "mine-1"\ntitle = "backward Euler"\nkind = "implicit"\ncitation = "none"\n'
                     '[claims]\norder = 2\n[shu_osher]\nP = [[]]\nd = ["1"]\nddot = ["0"]\n', encoding="utf-8")
@@ -108,7 +108,7 @@ def test_methods_and_certificates_are_values(tmp_path):
         copy = pickle.loads(pickle.dumps(value))
         assert copy == value and repr(copy) == repr(value)
     assert np.array_equal(pickle.loads(pickle.dumps(one)).W, one.W)
-    # A file of one's own survives without the file, and without being what it claims.
+    # A method outlives its file, also one with false claims.
     file = tmp_path / "mine.toml"
     file.write_text('name = "mine-1"\ntitle = "backward Euler"\nkind = "implicit"\ncitation = "none"\n'
                     '[claims]\norder = 2\n[shu_osher]\nP = [[]]\nd = ["1"]\nddot = ["0"]\n', encoding="utf-8")
@@ -123,5 +123,5 @@ def test_representations_are_short_and_escaped():
     assert repr(m.certificate) == "<apsis.Certificate of md-imex-6-3: order 3, SSP coefficient 0.904402, type A>"
     assert "any step" in repr(apsis.method("imdrk-5-4").certificate)
     assert "<td>0.904402</td>" in m.certificate._repr_html_()
-    # No text of a file becomes markup.
+    # Text of a file is escaped.
     assert set(re.findall(r"<(/?\w+)", m._repr_html_())) <= {f"{end}{tag}" for end in ("", "/") for tag in ("table", "tr", "th", "td")}

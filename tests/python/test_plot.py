@@ -1,4 +1,4 @@
-"""Pictures of runs and methods: what is drawn, from results whose numbers are known."""
+"""Content of the pictures of runs and methods, from results with known numbers."""
 import json
 import math
 
@@ -34,19 +34,19 @@ SMALL_BGK = ("space.cells=12", "velocity.points=48", "time.end=0.01", "output.ev
 # --- runs ------------------------------------------------------------------------------------------------------------------------
 
 
-def test_fields_are_those_of_the_run_in_the_order_of_the_model(tmp_path):
+def test_fields_of_a_run_are_in_the_order_of_the_model(tmp_path):
     computed = run(tmp_path, "paper/bgk-mixed", *SMALL_BGK)
     figure = fields_figure(read_result(tmp_path))
     assert [a.get_ylabel() for a in figure.axes] == [f"{name} (dimensionless)" for name in ("density", "bulk velocity", "temperature")]
     for axes, name in zip(figure.axes, ("rho", "u", "T")):
-        # Earlier snapshots in grey, the end last.
+        # Earlier snapshots in grey, the final one last.
         assert len(computed.t) == 4
         assert [line.get_label() for line in axes.lines] == [f"t = {t:.4g}" for t in computed.t]
         for line, values in zip(axes.lines, computed.fields[name]):
             np.testing.assert_array_equal(line.get_ydata(), values)
 
 
-def test_f_is_drawn_over_velocity_and_place(tmp_path):
+def test_f_is_drawn_over_velocity_and_position(tmp_path):
     computed = run(tmp_path, "paper/bgk-mixed", *SMALL_BGK)
     figure = distribution_figure(read_result(tmp_path))
     mesh = figure.axes[0].collections[0].get_array().reshape(len(computed.v), len(computed.x))
@@ -54,7 +54,7 @@ def test_f_is_drawn_over_velocity_and_place(tmp_path):
     np.testing.assert_array_equal(figure.axes[1].lines[0].get_ydata(), computed.epsilon)
 
 
-def test_a_few_speeds_make_no_map_and_six_fields_two_rows(tmp_path):
+def test_a_few_speeds_have_no_map_and_six_fields_two_rows(tmp_path):
     run(tmp_path, "paper/broadwell")
     result = read_result(tmp_path)
     assert distribution_figure(result) is None
@@ -70,13 +70,13 @@ def test_without_space_unknowns_are_drawn_over_time(tmp_path):
     np.testing.assert_array_equal(figure.axes[0].lines[0].get_xdata(), computed.t)
 
 
-def test_history_shows_what_was_checked_and_steps_where_they_change(tmp_path):
-    # No snapshot between the ends: steps of one length have no panel.
+def test_history_shows_the_checks_and_varying_steps(tmp_path):
+    # No snapshot between start and end: constant steps have no panel.
     computed = run(tmp_path / "a", "paper/bgk-mixed", *SMALL_BGK[:-1], "output.every=0.01")
     smallest, defects, entropy = history_figure(read_result(tmp_path / "a")).axes
     np.testing.assert_array_equal(smallest.lines[0].get_ydata(), computed.history["min_value"])
     assert [t.get_text() for t in defects.get_legend().get_texts()] == ["mass", "momentum", "energy"]
-    assert all(line.get_ydata().min() >= 1e-18 for line in defects.lines)  # exact zeros are seen
+    assert all(line.get_ydata().min() >= 1e-18 for line in defects.lines)  # exact zeros are visible
     np.testing.assert_array_equal(entropy.lines[0].get_ydata(), computed.history["entropy"])
     run(tmp_path / "b", "paper/ode", "time.tolerance=1e-6")
     assert history_figure(read_result(tmp_path / "b")).axes[-1].get_ylabel() == "Δt (dimensionless)"
@@ -122,18 +122,18 @@ def test_the_stability_function_is_one_step_of_the_integrator(name):
     problem = apsis.RelaxationProblem(transport=lambda t, u: [z_T * u[0]], moments=lambda u: 0.0, equilibrium=lambda w: [0.0],
                                       rate=lambda w: 1.0, epsilon=-1 / z_Q)
     stepped = apsis.integrate(problem, [1.0], (0, 1), dt=1.0, method=name).u[-1][0]
-    # Rounding of some tens of operations.
+    # Rounding errors of some tens of operations.
     assert complex(stability_function(describe(name), z_T, z_Q)) == pytest.approx(stepped, rel=1e-12)
 
 
-def test_regions_are_drawn_for_the_parts_that_a_method_has():
+def test_regions_are_drawn_for_the_parts_of_a_method():
     assert [a.get_xlabel() for a in stability_figure(describe("imdrk-5-4")).axes] == ["Re z_Q (dimensionless)"]
     assert [a.get_xlabel() for a in stability_figure(describe("ssprk-10-4")).axes] == ["Re z_T (dimensionless)"]
     both = stability_figure(describe("md-imex-6-3")).axes
     assert [a.get_xlabel() for a in both] == ["Re z_Q (dimensionless)", "Re z_T (dimensionless)"]
 
 
-def test_a_tableau_shows_every_coefficient_and_leaves_zeros_empty():
+def test_a_tableau_shows_every_coefficient_and_leaves_zeros_blank():
     method = describe("md-imex-3-2")
     axes = [a for a in tableau_figure(method).axes if a.get_images()]
     for a, name in zip(axes, ("A_hat", "A", "A_dot")):
@@ -142,7 +142,8 @@ def test_a_tableau_shows_every_coefficient_and_leaves_zeros_empty():
         assert len(a.texts) == np.count_nonzero(method[name])
 
 
-# --- pictures that the program describes ------------------------------------------------------------------------------------------
+# --- pictures described by the program
+# --------------------------------------------------------------------------------------------
 
 
 def curve(label, x, y, style="line_and_markers", colour=-1):
@@ -158,7 +159,7 @@ def picture(*panels):
     return {"name": "one", "title": "A <title>", "caption": "See & believe", "panels": list(panels)}
 
 
-def test_curves_leave_out_what_no_logarithm_can_show():
+def test_curves_omit_values_without_a_logarithm():
     axes = draw(picture(panel(curves=[curve("a", [1, 0.5, 0.25, 0.125], [1, 0, None, -1])]))).axes[0]
     assert list(axes.lines[0].get_xdata()) == [1.0]
     assert axes.get_xlabel() == "Δt (dimensionless)"
@@ -187,7 +188,7 @@ def study(*panels, caption="The l2 norm of the difference in rho to the next fin
     return picture(*panels) | {"name": "converge", "caption": caption}
 
 
-def test_a_study_names_what_it_measured_and_has_one_range():
+def test_a_study_names_its_quantity_and_has_one_range():
     one, other = panel(curves=[curve("a", [1, 0.1], [1, 1e-2])]), panel(curves=[curve("a", [1, 0.1], [1e-5, 1e-7])])
     left, right = draw(study(one, other)).axes
     assert left.get_ylim() == right.get_ylim() and left.get_ylim()[0] < 1e-7 and left.get_ylim()[1] > 1
@@ -205,12 +206,12 @@ def test_a_legend_lies_on_no_slope_triangle_label_or_curve(slopes):
     figure.canvas.draw()
     (axes,) = figure.axes
     legend = axes.get_legend().get_window_extent()
-    # Everything that is drawn lies inside of the axes, whose labels hang below.
+    # All curves lie inside the axes, whose labels are below.
     assert not legend.overlaps(axes.get_window_extent()) and not legend.overlaps(axes.xaxis.label.get_window_extent())
     assert legend.y0 >= 0 and legend.x0 >= 0 and legend.x1 <= figure.bbox.width
 
 
-def test_a_cut_of_v_is_said_in_the_picture(tmp_path):
+def test_omitted_velocities_are_noted_in_the_picture(tmp_path):
     run(tmp_path, "paper/bgk-mixed", *SMALL_BGK)
     result = read_result(tmp_path)
     axes = distribution_figure(result).axes[0]
@@ -251,7 +252,7 @@ def test_equal_results_make_equal_files(tmp_path, form):
         assert (tmp_path / "a" / f"{name}.{form}").read_bytes() == (tmp_path / "b" / f"{name}.{form}").read_bytes()
 
 
-def test_a_picture_named_by_a_path_is_refused(tmp_path, capsys):
+def test_a_picture_whose_name_is_a_path_is_refused(tmp_path, capsys):
     for name in ("../escape", "/tmp/escape", ".hidden"):
         file = tmp_path / "picture.json"
         file.write_text(json.dumps({"name": name, "A_hat": [[0]], "A": [[1]], "A_dot": [[0]]}), encoding="utf-8")
@@ -261,7 +262,7 @@ def test_a_picture_named_by_a_path_is_refused(tmp_path, capsys):
         assert sorted(p.name for p in tmp_path.iterdir()) == ["picture.json"]
 
 
-def test_what_cannot_be_drawn_is_named(tmp_path, monkeypatch, capsys):
+def test_results_without_a_picture_are_refused(tmp_path, monkeypatch, capsys):
     run(tmp_path / "run", "paper/ode")
     (tmp_path / "empty").mkdir()
     (tmp_path / "none.json").write_text("{}")

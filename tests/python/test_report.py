@@ -1,4 +1,4 @@
-"""Report pages: what stands in them, and how a browser shows them."""
+"""Report pages: their content, and their rendering in a browser."""
 import base64
 import json
 import re
@@ -41,7 +41,7 @@ def page_of_claims(folder, *claims):
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    """A run with a title that HTML must not take for its own."""
+    """A run whose title contains HTML markup."""
     folder = tmp_path_factory.mktemp("run")
     apsis.run("paper/bgk-mixed", *SMALL, 'title="a <b> & \\"c\\""', out=folder)
     return folder
@@ -69,8 +69,8 @@ def test_text_is_escaped(run):
     assert "<b>" not in page.replace("<figcaption><b>", "")
 
 
-def test_a_run_that_broke_a_promise_says_so(tmp_path):
-    # No case breaks one; the manifest is what such a run would leave.
+def test_a_broken_promise_is_reported(tmp_path):
+    # No case breaks a promise; the manifest is edited to that of such a run.
     apsis.run("paper/bgk-mixed", *SMALL, out=tmp_path)
     manifest = json.loads((tmp_path / "manifest.json").read_text(encoding="utf-8"))
     manifest |= {"state": "failed", "message": "broken promise: 1 values are negative [step 3, t = 0.1]"}
@@ -114,7 +114,7 @@ def test_the_table_for_documentation_has_a_row_for_each_claim():
 # --- every page ------------------------------------------------------------------------------------------------------------------
 
 
-def test_nothing_is_loaded_from_outside(run, tmp_path):
+def test_no_external_resource_is_loaded(run, tmp_path):
     for page in (page_of(run), page_of_claims(tmp_path, claim(pictures=[picture(panel(curves=[curve("a", [1, 2], [1, 4])]))]))):
         targets = re.findall(r'(?:src|href)="([^"]*)"', page)
         assert targets and all(re.match(r"data:|#", target) for target in targets)
@@ -123,7 +123,7 @@ def test_nothing_is_loaded_from_outside(run, tmp_path):
         assert not any("url(http" in part for part in (page, *inside))
 
 
-def test_what_is_no_result_is_named_and_nothing_is_left(tmp_path, capsys):
+def test_a_folder_without_results_is_refused_and_stays_empty(tmp_path, capsys):
     (tmp_path / "empty").mkdir()
     (tmp_path / "damaged").mkdir()
     (tmp_path / "damaged" / "reproduce.json").write_text(json.dumps({"claims": [{"id": "C1"}]}))
@@ -147,7 +147,7 @@ def chromium():
 
 @pytest.mark.parametrize("width", [400, 1600])
 @pytest.mark.parametrize("kind", ["run", "study", "claims"])
-def test_a_browser_shows_it_readably_and_asks_for_nothing(chromium, run, tmp_path, kind, width):
+def test_a_browser_shows_it_legibly_without_requests(chromium, run, tmp_path, kind, width):
     if kind == "run":
         page = make_report(run)
     elif kind == "study":
@@ -163,15 +163,15 @@ def test_a_browser_shows_it_readably_and_asks_for_nothing(chromium, run, tmp_pat
         page = tmp_path / "report.html"
     seen = chromium.show(page, width)
     assert seen["window"] == width
-    assert seen["content"] <= width  # no sideways scrolling of the page; wide tables and pictures scroll in themselves
+    assert seen["content"] <= width  # no horizontal scrolling of the page; wide tables and pictures scroll on their own
     assert seen["broken"] == 0
-    assert seen["drawn"] * 10 * 4 / 3 >= 7.5  # pixels of the letters in pictures, which have 10 points
-    assert seen["letters"] >= 12 and seen["paragraph"] <= 62 * 16  # pixels: small print, and lines that an eye can follow
+    assert seen["drawn"] * 10 * 4 / 3 >= 7.5  # height in pixels of 10-point letters in pictures
+    assert seen["letters"] >= 12 and seen["paragraph"] <= 62 * 16  # pixels: size of small print, width of lines of text
     assert chromium.console() == []
     assert [url for url in chromium.requests() if not url.startswith(("data:", page.as_uri()))] == []
 
 
-def test_the_browser_test_sees_what_it_looks_for(chromium, tmp_path):
+def test_the_browser_test_detects_a_bad_page(chromium, tmp_path):
     page = tmp_path / "bad.html"
     page.write_text('<meta charset="utf-8"><p>x</p><img src="gone.png"><div style="width: 5000px">w</div><script>undefined.x</script>')
     seen = chromium.show(page, 400)

@@ -40,7 +40,7 @@ def test_arrays_agree_with_each_other_and_with_the_files(tmp_path):
         assert np.array_equal(file["f"][()], r.f) and np.array_equal(file["epsilon"][()], r.epsilon)
         assert json.loads(file.attrs["manifest"])["result"]["steps"] == r.summary["steps"]
     assert len(r.history["t"]) == r.summary["steps"] + 1
-    assert not r.f.flags.owndata  # the numbers are those of the library
+    assert not r.f.flags.owndata  # memory of the library
 
 
 def test_progress_is_told_and_can_end_the_run(tmp_path):
@@ -113,7 +113,7 @@ def test_results_are_values_with_short_representations():
     text = repr(one)
     assert text.startswith("<apsis.Result 'BGK, mixed regime") and "complete at t = 0.005" in text and len(text) < 200
     assert "<th>steps</th>" in one._repr_html_()
-    ode = apsis.run("paper/ode", "time.end=0.5")  # its entropy is NaN in every row, and still equal to itself
+    ode = apsis.run("paper/ode", "time.end=0.5")  # its entropy is NaN in every row, and NaN equals NaN here
     assert ode == apsis.run("paper/ode", "time.end=0.5") and "2 components" in repr(ode)
 
 
@@ -147,7 +147,7 @@ def test_a_forked_child_has_threads_of_its_own():
 
 
 def test_a_full_disk_is_an_error_and_no_crash(tmp_path):
-    """In a process of its own: HDF5 used to crash when the interpreter ended."""
+    """In a separate process: HDF5 used to crash at the exit of the interpreter."""
     script = (
         "import resource, apsis\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))\n"

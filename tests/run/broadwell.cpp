@@ -53,20 +53,20 @@ TEST(broadwell, averages_of_cells_cut_by_a_jump_are_exact) {
 }
 
 TEST(broadwell, the_first_riemann_problem_becomes_one_shock_at_the_speed_of_the_limit) {
-  // Rankine–Hugoniot: s = [m]/[ρ]. The place of the shock is where the mass on the mesh puts it, which knows
-  // the speed from the flux through the ends: m_left − m_right per unit of time.
+  // Rankine–Hugoniot: s = [m]/[ρ]. The total mass determines the position of the shock; it changes by the
+  // flux through the ends, m_left − m_right per unit of time.
   for (const auto how : {formulation::finite_volume, formulation::finite_difference}) {
     auto c = case_of("broadwell-riemann-1", {"space.cells=100", "model.epsilon=1e-8"});
     c.space.formulation = how;
     apsis::simulation run(c);
     EXPECT_TRUE(run.promises().positivity);
-    EXPECT_FALSE(run.promises().conservation);  // mass comes in at the left
+    EXPECT_FALSE(run.promises().conservation);  // inflow at the left
     EXPECT_FALSE(run.promises().entropy);
     finish(run);
     EXPECT_EQ(run.summary().negative_values, 0);
     const auto fields = run.fields();
     const double shock = 0.2 + 0.5 * (1.0 - 0.13962);
-    // Where ρ passes the mean of both sides; a shock is captured within two cells of 0.02.
+    // Where ρ crosses the mean of both sides; a shock is captured within two cells of 0.02.
     std::size_t i = 0;
     while (fields.values[0][i] > 1.5) ++i;
     EXPECT_NEAR(fields.x[i], shock, 0.03);
@@ -75,11 +75,11 @@ TEST(broadwell, the_first_riemann_problem_becomes_one_shock_at_the_speed_of_the_
     EXPECT_NEAR(fields.values[2].back(), (1.0 + 0.13962 * 0.13962) / 2.0, 1e-6);
     const double mass = sum(fields.values[0]) * 0.02;
     const double expected = 2.0 * (1.0 + shock) + 1.0 * (1.0 - shock);
-    EXPECT_NEAR(mass, expected, 2e-3);  // the initial layer costs O(ε), the point values O(Δx)
+    EXPECT_NEAR(mass, expected, 2e-3);  // O(ε) from the initial layer, O(Δx) from point values
   }
 }
 
-TEST(broadwell, negative_data_promise_no_positivity_and_are_positive_after_one_step) {
+TEST(broadwell, negative_data_disable_the_promise_of_positivity_and_become_positive_after_one_step) {
   apsis::simulation run(case_of("broadwell-riemann-2"));
   EXPECT_EQ(run.initial_record().negative_values, 100);
   EXPECT_NEAR(run.initial_record().min_value, -0.4, 1e-15);
@@ -87,7 +87,7 @@ TEST(broadwell, negative_data_promise_no_positivity_and_are_positive_after_one_s
   run.advance();
   EXPECT_EQ(run.last().negative_values, 0) << run.last().min_value;
   EXPECT_GT(run.last().min_value, 0.0);
-  // With ε = 1 particles fly before they collide, and f₀ stays negative for a while.
+  // With ε = 1 collisions are slow, and f₀ stays negative for a while.
   apsis::simulation slow(case_of("broadwell-riemann-2", {"model.epsilon=1"}));
   slow.advance();
   EXPECT_GT(slow.last().negative_values, 0);

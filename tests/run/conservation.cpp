@@ -1,4 +1,4 @@
-// What rounding may do to conserved quantities, and what is more than rounding.
+// Conserved quantities change by rounding only, and larger defects are detected.
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -23,7 +23,7 @@ apsis::case_config in_dimensions(int dimensions, int points, double v_max) {
   return c;
 }
 
-/// The message of the run whose state is multiplied by 1 + defect after each step; "" if no step notices.
+/// The message of a run whose state is multiplied by 1 + defect after each step; "" if no step fails.
 std::string message_of(const apsis::case_config& c, double defect, int steps) {
   apsis::simulation run(c);
   try {
@@ -41,17 +41,18 @@ std::string message_of(const apsis::case_config& c, double defect, int steps) {
 
 }  // namespace
 
-TEST(conservation, in_three_velocity_dimensions_has_no_drift) {
+TEST(conservation, does_not_drift_in_three_velocity_dimensions) {
   auto c = in_dimensions(3, 24, 10.0);
   c.model.epsilon = "0";  // every stage of every cell replaces f by its Maxwellian
   apsis::simulation run(c);
   constexpr int steps = 8;
   for (int step = 0; step < steps; ++step) run.advance();
-  // Mass: a rounding for each of 6 stages a step, 5e-15. Tails that a naive sum rounds away make it 8e-14.
+  // Mass: a rounding error for each of 6 stages per step, 5e-15. With naive sums, which drop the tails, it is
+  // 8e-14.
   EXPECT_LE(run.last().conservation_defect[0], 5e-15);
 }
 
-TEST(conservation, four_times_the_stages_may_round_four_times_as_much) {
+TEST(conservation, allows_four_times_the_rounding_for_four_times_the_stages) {
   auto c = small("md-imex-chain-64-2", formulation::finite_volume);
   c.model.epsilon = "0";
   c.time.end = 1.0;
@@ -64,7 +65,7 @@ TEST(conservation, four_times_the_stages_may_round_four_times_as_much) {
   EXPECT_NEAR(of_step("md-imex-chain-64-2") / of_step("md-imex-chain-16-2"), 4.0, 0.2);
 }
 
-TEST(conservation, a_factor_of_1e_13_is_found_at_the_next_step) {
+TEST(conservation, detects_a_factor_of_1e_13_at_the_next_step) {
   for (const auto how : {formulation::finite_volume, formulation::finite_difference}) {
     const auto c = small("md-imex-6-3", how);
     EXPECT_EQ(message_of(c, 0.0, 10), "");
@@ -80,8 +81,8 @@ TEST(conservation, a_factor_of_1e_13_is_found_at_the_next_step) {
   }
 }
 
-TEST(conservation, a_defect_of_a_single_late_step_is_found) {
-  // A bound that grows with the number of steps explains 1e-13 after some twenty of them.
+TEST(conservation, detects_a_defect_of_a_single_late_step) {
+  // A bound proportional to the number of steps would accept 1e-13 after about twenty steps.
   auto c = small("md-imex-6-3", formulation::finite_difference);
   c.time.end = 10.0;
   apsis::simulation run(c);
@@ -97,7 +98,7 @@ TEST(conservation, a_defect_of_a_single_late_step_is_found) {
   }
 }
 
-TEST(conservation, a_defect_of_each_step_is_found_in_the_first) {
+TEST(conservation, detects_a_defect_of_every_step_in_the_first) {
   const auto c = small("md-imex-6-3", formulation::finite_difference);
   const double rounding =
       apsis::rounding_of(apsis::find_method("md-imex-6-3").coefficients<double>(), *apsis::make_model(c))
@@ -106,7 +107,7 @@ TEST(conservation, a_defect_of_each_step_is_found_in_the_first) {
   EXPECT_NE(message_of(c, 10.0 * rounding, 2), "");
 }
 
-TEST(conservation, slow_holds_on_the_grids_where_a_fixed_bound_did_not) {
+TEST(conservation, slow_holds_on_grids_where_a_fixed_bound_fails) {
   struct run_of {
     int dimensions, points;
     double v_max;
@@ -127,7 +128,7 @@ TEST(conservation, slow_holds_on_the_grids_where_a_fixed_bound_did_not) {
     for (int step = 0; step < r.steps; ++step) run.advance();
     const auto& defects = run.last().conservation_defect;
     const double worst = *std::max_element(defects.begin(), defects.end());
-    // Two roundings for each stage, in the worst case all of the same sign.
+    // Two rounding errors per stage, in the worst case all of the same sign.
     const auto stages = static_cast<double>(apsis::find_method(r.method).stages());
     EXPECT_LT(worst, 2.3e-16 * stages * r.steps)
         << r.dimensions << " " << r.points << " " << r.method << " " << r.epsilon;

@@ -1,5 +1,5 @@
-// What every model of the registry promises, through one production step from random states: a model added
-// tomorrow is tested by being there.
+// Promises of every model of the registry, checked in one production step from random states. A new model is
+// tested without an entry here.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/integrate/stepper.hpp>
@@ -20,7 +20,7 @@ using namespace apsis;
 
 namespace {
 
-/// A small case made from the entry of a model alone; `dt` is a line of [time].
+/// A small case for a registered model; `dt` is a line of [time].
 case_config case_of(const model_entry& entry, const std::string& method, const std::string& dt,
                     const std::vector<std::string>& overrides) {
   std::string text = "[model]\nname = \"" + entry.name + "\"\n";
@@ -35,7 +35,7 @@ bool is_positive(const model_entry& entry) {
 }
 
 /// Rows of the initial data in random order, every value multiplied by a random number up to 1.7 and some by
-/// 0; nonnegative where the model wants it. Not all of a row is 0.
+/// 0; nonnegative where the model requires it. No row vanishes.
 void disturb(field& u, bool positive, bool with_zeros) {
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
   std::uniform_real_distribution<> factor(0.3, 1.7);
@@ -54,7 +54,7 @@ struct one_step {
   step_record before, after;
 };
 
-/// One step from a random state: all of r Δt_FE where the model is positive, else half of Δx/v or 1/16.
+/// One step from a random state, of length r Δt_FE if the model is positive, else Δx/(2v) or 1/16.
 one_step step_of(const model_entry& entry, const case_config& c, bool with_zeros, bool uniform = false) {
   const run_setup setup(c);
   field u = setup.initial_state();
@@ -79,7 +79,7 @@ std::string step_key_for(const model_entry& entry) {
   return is_positive(entry) ? "safety = 1.0" : "cfl = 0.5";
 }
 
-/// IMEX where there is transport; a model without needs Q alone.
+/// An IMEX method if there is transport, else an implicit one.
 std::string random_method(const model_entry& entry) {
   const auto m = make_model(case_of(entry, "imdrk-1-2", "dt = 0.1", {}));
   if (m->space_dimensions() == 0 && !m->has_source())
@@ -89,12 +89,12 @@ std::string random_method(const model_entry& entry) {
 
 std::vector<std::string> random_overrides(const model_entry& entry, bool positive) {
   std::vector<std::string> overrides;
-  // Without a closed form, Newton's method needs Q/epsilon of moderate size.
+  // Without a closed form, Newton's method needs a moderate Q/epsilon.
   if (prototype(entry).has_relaxation_time())
     overrides.push_back("model.epsilon=" + *rc::gen::element<std::string>("0", "1e-12", "1e-4", "1", "1e6"));
   else
     overrides.push_back("model.epsilon=" + *rc::gen::element<std::string>("1e-3", "1", "1e6"));
-  // More velocity dimensions are the same model, with momenta that are zero but for rounding.
+  // Further velocity dimensions: the same model, with momenta that are zero up to rounding.
   for (const auto& p : entry.parameters)
     if (p.integer)
       overrides.push_back("model." + p.name + "=" + *rc::gen::element<std::string>("1", "1", "1", "2"));
@@ -118,14 +118,14 @@ TEST(every_model, conserves_its_invariants_through_a_step) {
           case_of(*entry, random_method(*entry), step_key_for(*entry), random_overrides(*entry, positive));
       const one_step step = step_of(*entry, c, false);
       RC_ASSERT(step.after.conservation_defect.size() == make_model(c)->invariants().size());
-      // Twelve cells, six stages, sums over 36 velocities: a few dozen roundings of 1e-16.
+      // Twelve cells, six stages, sums over 36 velocities: a few dozen rounding errors of 1e-16.
       for (const double defect : step.after.conservation_defect) RC_ASSERT(defect <= 2e-14);
     });
   }
   EXPECT_GE(asked, 3);
 }
 
-TEST(every_model, stays_nonnegative_through_a_step_where_that_has_a_meaning) {
+TEST(every_model, stays_nonnegative_through_a_step_if_the_model_is_positive) {
   for (const auto* entry : model_entries()) {
     if (!is_positive(*entry)) continue;
     check_property(entry->name, [&] {
@@ -147,18 +147,19 @@ TEST(every_model, loses_entropy_in_a_step_of_first_order_upwind) {
     check_property(entry->name, [&] {
       auto overrides = random_overrides(*entry, true);
       overrides.emplace_back("space.reconstruction=upwind1");
-      // Mixing by transport hides a little growth by collisions, so half of the states are uniform.
+      // Mixing by transport would hide a small growth by collisions, so half of the states are uniform.
       const bool uniform = *rc::gen::arbitrary<bool>();
       const auto c = case_of(*entry, random_method(*entry), step_key_for(*entry), overrides);
       const one_step step = step_of(*entry, c, true, uniform);
-      // A nonlinear sum of twelve rows; random rows are far from equilibrium, so usually it loses percents.
+      // A nonlinear sum over twelve rows; random rows are far from equilibrium, so it usually decreases by
+      // percents.
       RC_ASSERT(step.after.entropy_change <= 1e-14 * (1.0 + std::abs(step.before.entropy)));
     });
   }
   EXPECT_GE(asked, 2);
 }
 
-TEST(every_model, survives_its_own_case_file_with_any_parameters) {
+TEST(every_model, reads_its_resolved_case_back_with_any_parameters) {
   for (const auto* entry : model_entries()) {
     check_property(entry->name, [&] {
       case_config c = case_of(*entry, "imdrk-1-2", "dt = 0.1", {});

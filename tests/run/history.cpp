@@ -1,4 +1,4 @@
-// A history of a bounded number of rows says of a run what the whole history says.
+// A history with a bounded number of rows keeps the first, last and extreme rows of the run.
 #include <apsis/output/history.hpp>
 
 #include <apsis/config/case.hpp>
@@ -19,7 +19,7 @@ namespace {
 
 const std::vector<std::string> columns = {"step", "walk", "noise", "falling", "never"};
 
-/// Rows as columns of different kinds: one that wanders, one that jumps, one that falls, one that is NaN.
+/// Columns of different kinds: a random walk, a jump, a monotone decrease, NaN.
 std::vector<row> some_rows(long steps) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -63,7 +63,7 @@ TEST(a_history, keeps_the_first_the_last_and_the_extreme_rows_in_a_bounded_numbe
   for (const auto& one : kept.rows().rows) EXPECT_TRUE(same(one, all[static_cast<std::size_t>(one[0])]));
 }
 
-TEST(a_history, continued_anywhere_has_the_same_rows) {
+TEST(a_history, continued_from_any_row_has_the_same_rows) {
   const auto all = some_rows(3000);
   history whole(columns, 100);
   for (const auto& one : all) whole.add(one);
@@ -78,7 +78,7 @@ TEST(a_history, continued_anywhere_has_the_same_rows) {
   }
 }
 
-TEST(a_history, of_a_run_has_the_rows_that_the_case_allows) {
+TEST(a_history, of_a_run_respects_the_limit_of_the_case) {
   const auto rows = [](const std::string& most) {
     apsis::run_session session(
         apsis::load_case("paper/ode", {"time.dt=1/4000", "time.end=1", "output.history_rows=" + most}), {});

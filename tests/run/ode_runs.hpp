@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-/// |Δu1| + |Δu2| of a run of the ODE model to t = 1, against extrapolation.
+/// |Δu1| + |Δu2| of a run of the ODE model to t = 1, compared with an extrapolated solution.
 inline double error_at_one(const apsis::case_config& c) {
   apsis::simulation run(c);
   finish(run);
@@ -20,7 +20,7 @@ inline double error_at_one(const apsis::case_config& c) {
   return std::abs(run.state()[0] - u.row(0)[0]) + std::abs(run.state()[1] - u.row(0)[1]);
 }
 
-/// The state, the step and all records after each step, to the end.
+/// Checks that the state, the step sizes and all records agree to the end.
 inline std::vector<std::vector<double>> rest_of(apsis::simulation& run) {
   std::vector<std::vector<double>> all;
   while (!run.finished()) {

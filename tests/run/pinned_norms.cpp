@@ -1,10 +1,7 @@
-// Every built-in case in a small version, its norms compared with pinned ones: a change of any number that a
-// case depends on is seen, whether or not some property of the solution notices. A case added tomorrow fails
-// until it is pinned.
-//
-// Pin again, after a change that is meant to change numbers, and look at the difference before it is
-// committed:
-//   APSIS_PIN_NORMS=1 build/release/tests/test_run --gtest_filter='*pinned_norms*'
+// Norms of a small version of every built-in case, compared with pinned ones: detects a change of any number
+// that a case depends on, even if no property of the solution reveals it. A new case fails until its norms
+// are pinned.  After an intended change, pin the norms again and review the difference before it is
+// committed:   APSIS_PIN_NORMS=1 build/release/tests/test_run --gtest_filter='*pinned_norms*'
 #include <apsis/config/case.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/method.hpp>
@@ -30,26 +27,25 @@ using namespace apsis;
 namespace {
 
 constexpr std::array<const char*, 4> norm_names = {"mean", "rms", "largest", "variation"};
-/// Mean of |u|, root mean square, maximum of |u|, and mean of the differences of neighbours: the only one
-/// that sees a permutation.
+/// Mean of |u|, root mean square, maximum of |u|, and mean difference of neighbours, the only one sensitive
+/// to a permutation.
 using norms = std::array<double, 4>;
-/// Of a case in its small version.
+/// Norms of the small version of a case.
 struct case_norms {
   std::map<std::string, norms> quantities;  ///< of the state and of each field
-  double rounding = 0.0;                    ///< what explicit collisions add to the tolerance
+  double rounding = 0.0;                    ///< contribution of explicit collisions to the tolerance
 };
 
-// Where numbers may differ without an error: the kernels of another instruction set sum in another order and
-// use fma, another compiler or libm rounds exp and pow in another way, and Newton's method for the discrete
-// Maxwellian stops at another iterate. Each is of size 1e-16 to 1e-13 of the largest value per stage;
-// nonlinear weights and ten steps of up to ten stages amplify it. The
-// instruction sets of one machine were seen to agree to 1e-13; 1e-10 leaves a factor of a thousand, and an
-// error in a coefficient is not that small. Methods that evaluate Q explicitly carry the rounding of Q, times
-// Δt/ε, into every step.
+// Legitimate differences: the kernels of another instruction set sum in another order and use fma, another
+// compiler or libm rounds exp and pow in another way, and Newton's method for the discrete Maxwellian stops
+// at another iterate. Each is of size 1e-16 to 1e-13 of the largest value per stage; nonlinear weights and
+// ten steps of up to ten stages amplify it. The instruction sets of one machine agree to 1e-13 in practice;
+// 1e-10 leaves a factor of a thousand, and an error in a coefficient is not that small. Methods that evaluate
+// Q explicitly amplify its rounding error by Δt/ε in every step.
 constexpr double tolerance = 1e-10;
 constexpr long steps = 10;
 
-/// Overrides that make a case small, of the keys that it has.
+/// Overrides that make a case small, restricted to keys of its model.
 std::vector<std::string> small_version(const std::string& name) {
   const case_config whole = load_case(name);
   std::vector<std::string> overrides;
@@ -76,7 +72,7 @@ norms norms_of(const std::vector<double>& u) {
   return {n[0] / count, std::sqrt(n[1] / count), n[2], n[3] / count};
 }
 
-/// After the first steps of a case.
+/// The norms after the first steps of a case.
 case_norms computed(const std::string& name, std::vector<std::string> overrides) {
   simulation run(load_case(name, overrides));
   case_norms all;
@@ -92,9 +88,9 @@ case_norms computed(const std::string& name, std::vector<std::string> overrides)
   return all;
 }
 
-/// Why `now` is not `pinned`; "" if it is.
+/// Returns how `now` differs from `pinned`, "" if it agrees.
 std::string difference(const case_norms& pinned, const case_norms& now) {
-  // A field that vanishes by symmetry is rounding of the size of the state.
+  // A field that vanishes by symmetry has rounding errors relative to the state.
   const double scale = now.quantities.at("state")[2];
   std::string text;
   for (const auto& [what, numbers] : now.quantities) {
@@ -147,7 +143,7 @@ class pinned_norms : public testing::TestWithParam<std::string> {};
 
 }  // namespace
 
-TEST_P(pinned_norms, of_the_small_version_are_those_of_the_file) {
+TEST_P(pinned_norms, of_the_small_version_agree_with_the_file) {
   auto pinned = read_pinned();
   if (std::getenv("APSIS_PIN_NORMS") != nullptr) {
     pinned[GetParam()] = computed(GetParam(), small_version(GetParam()));
@@ -170,14 +166,14 @@ INSTANTIATE_TEST_SUITE_P(cases, pinned_norms, testing::ValuesIn(case_names()), [
   return name;
 });
 
-TEST(the_file_of_pinned_norms, holds_no_case_that_is_gone) {
+TEST(the_file_of_pinned_norms, has_no_case_that_no_longer_exists) {
   const auto names = case_names();
   for (const auto& [name, quantities] : read_pinned())
     EXPECT_TRUE(std::find(names.begin(), names.end(), name) != names.end())
-        << "'" << name << "' is no built-in case; " << pinning_hint;
+        << "'" << name << "' is not a built-in case; " << pinning_hint;
 }
 
-TEST(the_comparison_with_pinned_norms, sees_a_domain_longer_by_a_part_in_two_million) {
+TEST(the_comparison_with_pinned_norms, detects_a_domain_longer_by_a_part_in_two_million) {
   const std::string name = "paper/bgk-mixed";
   auto overrides = small_version(name);
   const auto pinned = computed(name, overrides);

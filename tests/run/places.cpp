@@ -1,4 +1,4 @@
-// What only the assembled simulation can see is still reported at its line and column of the case.
+// Errors that only the assembled simulation can detect are reported at their line and column of the case.
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -29,7 +29,7 @@ const std::string good_time = "method = \"md-imex-3-2\"\ncfl = 0.05";
 
 }  // namespace
 
-TEST(places, of_what_the_mesh_the_velocity_grid_or_the_method_cannot_do) {
+TEST(places, of_errors_in_the_mesh_the_velocity_grid_and_the_method) {
   EXPECT_EQ(complaint(deck("20", good_velocity, "1.0", good_time)), "");
   const auto starts = [](const std::string& message, const std::string& start) {
     EXPECT_EQ(message.substr(0, start.size()), start) << message;

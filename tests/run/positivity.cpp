@@ -1,5 +1,5 @@
-// Nonnegativity on velocity grids that are much wider than the gas: in the tails f passes through the
-// smallest normal number 2.2e-308 and the subnormal ones below it, where rounding errors are absolute.
+// Nonnegativity on velocity grids much wider than the support of f: in the tails f passes through subnormal
+// numbers, below 2.2e-308, where rounding errors are absolute.
 #include "cases.hpp"
 
 #include <apsis/method/method.hpp>
@@ -15,7 +15,7 @@ namespace {
 
 using apsis::formulation;
 
-/// A method with SSP coefficient r > 0 takes steps of r Δt_FE.
+/// Runs a method with SSP coefficient r > 0 in steps of r Δt_FE.
 bool is_convex(const apsis::method& m) {
   const auto claimed = m.claims.ssp_coefficient.value_or("0");
   return m.kind != apsis::method_kind::implicit_only && claimed != "0";
@@ -40,7 +40,7 @@ class wide_grids : public testing::TestWithParam<std::tuple<formulation, double>
 
 }  // namespace
 
-TEST_P(wide_grids, keep_f_nonnegative_with_every_method_at_the_longest_step) {
+TEST_P(wide_grids, keep_f_nonnegative_with_every_method_at_the_largest_step) {
   const auto [how, max] = GetParam();
   long subnormal = 0, runs = 0;
   for (const auto& method : methods_where(is_convex)) {
@@ -57,7 +57,7 @@ TEST_P(wide_grids, keep_f_nonnegative_with_every_method_at_the_longest_step) {
     ++runs;
   }
   EXPECT_GE(runs, 20);
-  EXPECT_GT(subnormal, 0) << "no value was subnormal: the test shows nothing";
+  EXPECT_GT(subnormal, 0) << "no value was subnormal: the test is vacuous";
 }
 
 INSTANTIATE_TEST_SUITE_P(widths, wide_grids,

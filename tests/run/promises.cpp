@@ -32,9 +32,9 @@ TEST(promises, no_negative_value_at_safety_one_for_any_epsilon) {
   }
 }
 
-TEST(promises, beyond_the_limit_nothing_is_promised_and_values_do_become_negative) {
-  // First-order upwind and almost no collisions: a forward Euler step of twice Δt_FE is a negative weight of
-  // the cell. An error of any kind fails the test: the run is over before a temperature is negative.
+TEST(promises, beyond_the_limit_nothing_is_promised_and_values_become_negative) {
+  // First-order upwind and almost no collisions: a forward Euler step of 2 Δt_FE gives the cell a negative
+  // weight. An exception of any kind fails the test: the run ends before a temperature is negative.
   auto c = small("md-imex-3-2", formulation::finite_difference);
   c.space.reconstruction = "upwind1";
   c.space.limiter = apsis::limiter_choice::none;
@@ -48,7 +48,7 @@ TEST(promises, beyond_the_limit_nothing_is_promised_and_values_do_become_negativ
   EXPECT_GT(run.last().negative_values, 0);
   EXPECT_LT(run.last().min_value, 0.0);
 
-  // The same case to the same time within the limit: it is the step that makes them negative.
+  // The same case to the same time within the limit stays nonnegative.
   c.time.safety = 1.0;
   c.time.end = run.t();
   apsis::simulation within(c);
@@ -71,12 +71,12 @@ TEST(promises, entropy_decays_with_first_order_upwind_for_any_epsilon) {
       const double start = run.initial_record().entropy;
       finish(run);
       EXPECT_LE(run.summary().max_entropy_increase, 1e-14 * std::abs(start)) << method << " " << epsilon;
-      EXPECT_LT(run.last().entropy, start) << "the test would show nothing if nothing decayed";
+      EXPECT_LT(run.last().entropy, start) << "the test is vacuous without decay";
     }
   }
 }
 
-TEST(promises, are_decided_from_the_configuration) {
+TEST(promises, follow_from_the_configuration) {
   auto c = small("md-imex-3-2", formulation::finite_volume);
   EXPECT_TRUE(apsis::simulation(c).promises().positivity);
   EXPECT_FALSE(apsis::simulation(c).promises().entropy);
@@ -89,7 +89,7 @@ TEST(promises, are_decided_from_the_configuration) {
 }
 
 TEST(promises, explicit_collisions_beyond_their_step_do_not_promise_conservation_to_rounding) {
-  // Q/ε is evaluated there and carries its rounding times Δt/ε into the invariants.
+  // An explicit evaluation of Q/ε has a rounding error, which Δt/ε amplifies in the invariants.
   const auto promises = [](const std::string& method) {
     return apsis::simulation(apsis::load_case("benchmarks/entropy-violation", {"time.method=" + method}))
         .promises();
@@ -99,7 +99,7 @@ TEST(promises, explicit_collisions_beyond_their_step_do_not_promise_conservation
   EXPECT_TRUE(promises("md-imex-3-2").entropy);
 }
 
-TEST(promises, momentum_across_the_pencil_is_conserved_though_it_is_zero) {
+TEST(promises, transverse_momentum_is_conserved_although_it_is_zero) {
   for (const int dimensions : {2, 3})
     for (const auto how : both) {
       auto c = small("md-imex-6-3", how);
@@ -110,16 +110,16 @@ TEST(promises, momentum_across_the_pencil_is_conserved_though_it_is_zero) {
     }
 }
 
-TEST(promises, a_broken_one_ends_the_run_with_step_and_value) {
+TEST(promises, a_broken_promise_ends_the_run_with_step_and_value) {
   auto c = small("md-imex-3-2", formulation::finite_difference);
   apsis::simulation run(c);
   run.advance();
   auto saved = run.save();
-  for (double& value : saved.unknowns) value *= 1.0 + 1e-9;  // mass from nowhere
+  for (double& value : saved.unknowns) value *= 1.0 + 1e-9;  // a spurious source of mass
   run.restore(saved);
   try {
     finish(run);
-    FAIL() << "conservation held";
+    FAIL() << "the defect was not detected";
   } catch (const apsis::numerical_error& failure) {
     EXPECT_NE(failure.problem().find("broken promise: mass is not conserved"), std::string::npos)
         << failure.what();
@@ -128,8 +128,8 @@ TEST(promises, a_broken_one_ends_the_run_with_step_and_value) {
   }
 }
 
-TEST(promises, a_formula_that_misses_the_moments_promises_no_conservation_and_says_so) {
-  // Δv is close to √T, and 9 is not many of them.
+TEST(promises, a_formula_with_inexact_moments_disables_the_promise_of_conservation_with_a_note) {
+  // Δv is close to √T, and v_max = 9 is only a few thermal speeds.
   auto c = small("md-imex-3-2", formulation::finite_difference);
   c.velocity = {9.0, 22, apsis::equilibrium_choice::formula};
   c.model.epsilon = "1e-3";
@@ -143,12 +143,13 @@ TEST(promises, a_formula_that_misses_the_moments_promises_no_conservation_and_sa
   EXPECT_FALSE(run.promises().conservation);
   EXPECT_TRUE(run.promises().positivity);
   finish(run);
-  EXPECT_GT(run.summary().conservation_defect, 1e-11) << "it could have been promised";
+  EXPECT_GT(run.summary().conservation_defect, 1e-11)
+      << "conservation holds to rounding although it was not promised";
   auto upwind = c;
   upwind.space.reconstruction = "upwind1";
   EXPECT_FALSE(apsis::simulation(upwind).promises().entropy);
 
-  // The discrete Maxwellian keeps the promise on the same grid, and the formula on that of the paper.
+  // The discrete Maxwellian conserves on the same grid, and the formula on the grid of the paper.
   c.velocity.equilibrium = apsis::equilibrium_choice::discrete;
   EXPECT_TRUE(apsis::simulation(c).promises().conservation);
   EXPECT_LE(finished(c).conservation_defect, 1e-12);
@@ -159,7 +160,7 @@ TEST(promises, a_formula_that_misses_the_moments_promises_no_conservation_and_sa
   EXPECT_LE(finished(c).conservation_defect, 1e-12);
 }
 
-TEST(simulation, two_runs_and_any_number_of_threads_give_the_same_bits) {
+TEST(simulation, repeated_runs_on_any_number_of_threads_give_the_same_bits) {
   for (const auto how : both) {
     const auto c = small("md-imex-6-3", how);
     apsis::set_threads(1);
@@ -176,7 +177,7 @@ TEST(simulation, two_runs_and_any_number_of_threads_give_the_same_bits) {
   }
 }
 
-TEST(simulation, goes_on_from_a_saved_run_to_the_same_last_bit) {
+TEST(simulation, continues_a_saved_run_bit_for_bit) {
   auto c = small("md-imex-6-3", formulation::finite_volume);
   apsis::simulation whole(c), first(c), second(c);
   finish(whole);
@@ -220,7 +221,7 @@ std::string complaint(const apsis::case_config& c) {
 }
 }  // namespace
 
-TEST(simulation, refuses_before_the_first_step_what_cannot_work) {
+TEST(simulation, refuses_invalid_configurations_before_the_first_step) {
   const auto base = small("md-imex-3-2", formulation::finite_volume);
   EXPECT_EQ(complaint(base), "");
   auto c = base;
@@ -244,7 +245,7 @@ TEST(simulation, refuses_before_the_first_step_what_cannot_work) {
   EXPECT_NE(complaint(c).find("dt is too small"), std::string::npos) << complaint(c);
 }
 
-TEST(simulation, without_space_it_is_the_ordinary_differential_equation) {
+TEST(simulation, without_space_is_an_ordinary_differential_equation) {
   apsis::case_config c;
   c.model.name = "decay";
   c.model.parameters = {{"rate", 10.0}, {"u0", 10.0}};
@@ -263,8 +264,8 @@ TEST(simulation, without_space_it_is_the_ordinary_differential_equation) {
 }
 
 TEST(simulation, free_flight_is_fifth_order_with_and_without_limiter) {
-  // Almost without collisions; differences between meshes of 40, 80 and 160 cells. The time step shrinks as
-  // Δx^{5/3}, so that third order in time does not hide fifth order in space.
+  // Almost free flight; differences between meshes of 40, 80 and 160 cells. The time step is proportional to
+  // Δx^{5/3}, so that third order in time does not mask fifth order in space.
   for (const auto how : both) {
     for (const auto limiter : {apsis::limiter_choice::none, apsis::limiter_choice::positivity}) {
       const auto solution = [&](int n) {
@@ -284,7 +285,8 @@ TEST(simulation, free_flight_is_fifth_order_with_and_without_limiter) {
       const auto difference = [&](const apsis::field_table& a, const apsis::field_table& b) {
         double sum = 0.0;
         for (std::size_t i = 0; i < a.x.size(); ++i) {
-          // Averages of two cells are the coarse average; point values between fine centres by sixth order.
+          // Coarse averages are means of two fine ones; point values are interpolated between fine centres at
+          // sixth order.
           const auto& f = b.values[0];
           const std::size_t n = f.size();
           const double pair = how == formulation::finite_volume

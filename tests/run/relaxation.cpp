@@ -1,4 +1,4 @@
-// The relaxation system on a mesh, against exact solutions of the conservation laws that it becomes.
+// The relaxation system on a mesh, compared with exact solutions of its limiting conservation laws.
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -40,9 +40,9 @@ std::string complaint(const std::vector<std::string>& overrides) {
 
 }  // namespace
 
-TEST(relaxation, becomes_burgers_equation_at_the_order_of_the_method) {
-  // Point values against the solution by characteristics. Third order in time shows at Δt ~ Δx because the
-  // space error is of fifth order.
+TEST(relaxation, converges_to_burgers_equation_at_the_order_of_the_method) {
+  // Point values compared with the solution by characteristics. At Δt ~ Δx third order in time is visible
+  // because the space error is of fifth order.
   const auto error = [](int cells) {
     const auto fields =
         finished_run("relaxation-burgers", {"space.cells=" + std::to_string(cells), "model.epsilon=0",
@@ -58,7 +58,7 @@ TEST(relaxation, becomes_burgers_equation_at_the_order_of_the_method) {
   EXPECT_LT(fine, 1e-5);
 }
 
-TEST(relaxation, a_linear_flux_moves_the_data_with_its_slope) {
+TEST(relaxation, a_linear_flux_advects_the_data_with_its_slope) {
   const auto fields =
       finished_run("relaxation", {"model.flux=linear", "model.slope=-0.5", "model.epsilon=1e-10",
                                   "time.end=1", "model.initial=smooth-consistent",
@@ -71,10 +71,10 @@ TEST(relaxation, a_linear_flux_moves_the_data_with_its_slope) {
   }
 }
 
-TEST(relaxation, buckley_leverett_has_its_shock_where_the_tangent_says) {
+TEST(relaxation, buckley_leverett_has_its_shock_at_the_position_of_the_tangent_construction) {
   const auto run = finished_run("relaxation-buckley-leverett", {});
   const auto fields = run.fields();
-  // u*² = M/(1 + M); the shock runs with F(u*)/u*, from u* to 0.
+  // u*² = M/(1 + M); the shock from u* to 0 has the speed F(u*)/u*.
   const double star = std::sqrt(0.5 / 1.5);
   const double F = star * star / (star * star + 0.5 * (1 - star) * (1 - star));
   const double shock = 0.4 * F / star, cell = 0.01;
@@ -87,13 +87,13 @@ TEST(relaxation, buckley_leverett_has_its_shock_where_the_tangent_says) {
     }
   }
   EXPECT_FALSE(run.promises().conservation);
-  // Nonetheless conserved: water comes in with flux F(1) = 1 and none goes out.
+  // Balance of mass: inflow with flux F(1) = 1, no outflow.
   double mass = 0.0;
   for (const double u : fields.values[0]) mass += cell * u;
   EXPECT_NEAR(mass, 0.5 + 0.4, 1e-10);
 }
 
-TEST(relaxation, a_formula_gives_the_bits_of_one_thread_on_any_number) {
+TEST(relaxation, a_formula_gives_the_same_bits_on_any_number_of_threads) {
   const std::vector<std::string> overrides = {"model.flux=sin(u)/2 + u^3/9", "space.cells=700",
                                               "time.end=0.02"};
   apsis::set_threads(1);
@@ -104,7 +104,7 @@ TEST(relaxation, a_formula_gives_the_bits_of_one_thread_on_any_number) {
   EXPECT_EQ(one, three);
 }
 
-TEST(relaxation, refuses_at_the_key_what_the_data_forbid) {
+TEST(relaxation, reports_values_that_the_data_rule_out_at_their_key) {
   EXPECT_EQ(complaint({}), "");
   EXPECT_EQ(complaint({"model.speed=0.7"}), "");
   EXPECT_EQ(
@@ -117,7 +117,7 @@ TEST(relaxation, refuses_at_the_key_what_the_data_forbid) {
             std::string::npos);
 }
 
-TEST(relaxation, ends_named_one_by_one_are_those_of_one_name) {
+TEST(relaxation, boundaries_named_per_end_equal_one_name_for_both) {
   const std::vector<std::string> both = {"space.cells=60", "time.end=0.1"};
   auto one_by_one = both;
   one_by_one.insert(one_by_one.end(),

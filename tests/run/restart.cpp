@@ -1,5 +1,5 @@
-// A run that was stopped and goes on is the same run, for everything in the registries; a checkpoint that is
-// not whole is refused.
+// A run continued from a checkpoint gives the bits of an uninterrupted one, for every registered method and
+// model; a damaged checkpoint is refused.
 #include "same_results.hpp"
 
 #include <apsis/config/case.hpp>
@@ -37,7 +37,7 @@ std::string small_case(const model_entry& model, const std::string& method, cons
   return text + "[output]\nevery = 0.011\n";
 }
 
-/// Runs until `steps` steps are done in all, or to the end; its checkpoint is then in the folder.
+/// Runs until the total number of steps is `steps`, or to the end, and leaves a checkpoint in the folder.
 outcome run(const case_config& c, const std::string& folder, long steps,
             std::optional<std::string> restart = {}) {
   session_options how;
@@ -57,11 +57,11 @@ std::string bytes_of(const std::string& path) {
 }
 
 void write_bytes(const std::string& path, const std::string& bytes) {
-  std::filesystem::remove(path);  // some file systems wait for the disk when a file is written over
+  std::filesystem::remove(path);  // some file systems flush to disk when a file is overwritten
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// Why a file is refused; "" if it is not.
+/// Why a file is refused; "" if it is accepted.
 std::string refusal(const std::string& path) {
   try {
     static_cast<void>(read_checkpoint(path));
@@ -81,7 +81,7 @@ std::string some_checkpoint(const test_folder& folder) {
 
 class restart : public testing::TestWithParam<std::string> {};
 
-TEST_P(restart, goes_on_bit_for_bit_with_every_method_from_any_step) {
+TEST_P(restart, continues_bit_for_bit_with_every_method_from_any_step) {
   const auto& model = *find_model(GetParam());
   const test_folder folder;
   std::mt19937 random(7);
@@ -97,7 +97,7 @@ TEST_P(restart, goes_on_bit_for_bit_with_every_method_from_any_step) {
           << refused.what();
       continue;
     } catch (const numerical_error& failure) {
-      // Explicit methods are unstable beyond Δt = O(ε); no other one may fail.
+      // Explicit methods are unstable beyond Δt = O(ε); no other method may fail.
       EXPECT_EQ(find_method(name).kind, method_kind::explicit_only) << name << ": " << failure.what();
       EXPECT_NE(failure.problem().find("a smaller step"), std::string::npos) << failure.what();
       continue;
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(models, restart, testing::ValuesIn([] {
                            return names;
                          }()));
 
-TEST(restart_from, a_start_up_and_a_tolerance_goes_on_bit_for_bit_from_every_step) {
+TEST(restart_from, a_graded_start_or_a_tolerance_continues_bit_for_bit_from_every_step) {
   const test_folder folder;
   for (const std::string more : {"startup = \"graded\"\n", "tolerance = 1e-4\n"}) {
     const auto c = parse_case(small_case(*find_model("ode"), "md-imex-8-3", more), "case");
@@ -132,13 +132,13 @@ TEST(restart_from, a_start_up_and_a_tolerance_goes_on_bit_for_bit_from_every_ste
   }
 }
 
-TEST(restart_from, a_kill_leaves_the_snapshots_of_the_distribution_even_if_the_continuation_fails) {
+TEST(restart_from, a_kill_keeps_the_snapshots_of_the_distribution_even_if_the_continuation_fails) {
   const test_folder folder;
   const auto& model = *find_model("relaxation");
   const auto c = parse_case(small_case(model, "md-imex-3-2", "") + "distribution = \"snapshots\"\n", "case");
   run(c, folder / "whole", 1000);
   run(c, folder / "o", 6);
-  // As a kill leaves them.
+  // The files that a killed run leaves.
   std::filesystem::rename(folder / "o/snapshots", folder / "o/.snapshots.partial");
   {
     session_options how;
@@ -176,13 +176,13 @@ TEST(a_checkpoint, that_was_cut_short_at_any_byte_is_refused) {
   EXPECT_NE(refusal(folder / "long.h5"), "");
 }
 
-TEST(a_checkpoint, in_which_any_bit_is_another_is_refused) {
+TEST(a_checkpoint, with_any_bit_flipped_is_refused) {
   const test_folder folder;
   const std::string path = some_checkpoint(folder), whole = bytes_of(path);
   std::mt19937 random(1);
   for (std::size_t at = 0; at < whole.size(); ++at)
     for (unsigned bit = 0; bit < 8; ++bit) {
-      // All bits of the seal, one of every other byte.
+      // Every bit of the seal, and one bit of each of the other bytes.
       if (at >= seal_length && bit != 0) continue;
       const unsigned which = at < seal_length ? bit : random() % 8;
       std::string changed = whole;
@@ -193,18 +193,18 @@ TEST(a_checkpoint, in_which_any_bit_is_another_is_refused) {
   EXPECT_THAT(refusal(folder / "changed.h5"), HasSubstr("checksum"));
 }
 
-TEST(a_checkpoint, of_another_kind_or_another_version_is_refused_with_the_reason) {
+TEST(a_checkpoint, of_another_kind_or_version_is_refused_with_the_reason) {
   const test_folder folder;
   EXPECT_THAT(refusal(folder / "none.h5"), HasSubstr("cannot be opened"));
   write_bytes(folder / "text.h5", std::string(5000, 'x'));
   EXPECT_THAT(refusal(folder / "text.h5"), HasSubstr("its header is missing or damaged"));
-  // A whole checkpoint but for the version: sealed as any other.
+  // A valid, sealed checkpoint of another version.
   const std::string path = some_checkpoint(folder);
   seal(path, "checkpoint", "0.0.7");
   EXPECT_THAT(refusal(path), HasSubstr(std::string("written by version 0.0.7, this is ") + version()));
 }
 
-TEST(a_checkpoint, knows_the_commit_of_the_program_and_another_one_is_only_warned_of) {
+TEST(a_checkpoint, of_another_commit_is_accepted_with_a_warning) {
   const test_folder folder;
   const std::string path = some_checkpoint(folder);
   checkpoint saved = read_checkpoint(path);
@@ -215,7 +215,7 @@ TEST(a_checkpoint, knows_the_commit_of_the_program_and_another_one_is_only_warne
   testing::internal::CaptureStderr();
   const auto continued = run(c, folder / "again", 1000, folder / "other.h5");
   const std::string said = testing::internal::GetCapturedStderr();
-  expect_same(run(c, folder / "whole", 1000), continued, "other commit");
+  expect_same(run(c, folder / "whole", 1000), continued, "another commit");
   const bool known = std::string(commit()) != "unknown";
   EXPECT_EQ(said.find("was written by commit " + std::string(40, 'a')) != std::string::npos, known) << said;
 }

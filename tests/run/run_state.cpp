@@ -1,4 +1,4 @@
-// One record of the state of a run: checkpoint, history and manifest have every number of it.
+// The record of the state of a run: checkpoint, history and manifest contain every number of it.
 #include <apsis/run/manifest.hpp>
 #include <apsis/run/records.hpp>
 
@@ -13,7 +13,7 @@
 
 namespace {
 
-/// A run in the middle: to a tolerance, or with a graded start.
+/// A run stopped in the middle, to a tolerance or with a graded start.
 apsis::simulation started_run(const std::string& more = "time.tolerance=1e-4") {
   apsis::simulation run(
       apsis::load_case("paper/ode", {"time.method=md-imex-6-3", "model.epsilon=1e-3", more}));
@@ -26,7 +26,7 @@ double as_double(const Number& x) {
   return static_cast<double>(x);
 }
 
-/// Every number by its group and name.
+/// All numbers by group and name.
 std::map<std::string, double> numbers_of(const apsis::run_state& state) {
   std::map<std::string, double> all;
   apsis::run_state::visit_records(state, [&all](const std::string& group, const auto& record) {
@@ -55,11 +55,12 @@ TEST(run_state, survives_a_checkpoint_with_every_number) {
     const apsis::run_records records(run);
     const apsis::run_state before = run.save();
     auto written = make_checkpoint(run, records);
-    written.history.rows.push_back(row_of(before.last));  // the records of this test have the first row only
+    written.history.rows.push_back(
+        row_of(before.last));  // the records of this test contain the first row only
     const apsis::run_state after = to_run_state(written);
     EXPECT_EQ(numbers_of(after), numbers_of(before));
     EXPECT_EQ(after.unknowns, before.unknowns);
-    // As text, where NaN (the entropy of this model) is NaN.
+    // Compared as text, where NaN (the entropy of this model) equals NaN.
     EXPECT_EQ(fmt::format("{}", fmt::join(row_of(after.last), " ")),
               fmt::format("{}", fmt::join(row_of(before.last), " ")));
     EXPECT_EQ(written.numbers.size(), numbers_of(before).size() + 1) << "and the stride of the history";
@@ -68,7 +69,7 @@ TEST(run_state, survives_a_checkpoint_with_every_number) {
   EXPECT_LT(numbers_of(started_run().save()).at("control.proposed"), 1.0);
 }
 
-TEST(run_state, a_number_that_is_missing_or_wrong_is_a_damaged_checkpoint) {
+TEST(run_state, a_missing_or_wrong_number_is_a_damaged_checkpoint) {
   const auto run = started_run();
   const auto written = make_checkpoint(run, apsis::run_records(run));
   for (const auto& [name, value] : written.numbers) {
@@ -86,13 +87,13 @@ TEST(run_state, a_number_that_is_missing_or_wrong_is_a_damaged_checkpoint) {
   }
 }
 
-TEST(run_state, the_manifest_has_every_total_and_the_history_every_check) {
+TEST(run_state, the_manifest_contains_every_total_and_the_history_every_check) {
   const auto run = started_run();
   const auto manifest = apsis::manifest(run, {});
   const apsis::run_summary totals = run.summary();
   apsis::run_summary::visit_members(totals, [&](const char* name, const auto& x) {
     ASSERT_TRUE(manifest["result"].contains(name)) << name;
-    if (manifest["result"][name].is_null()) return;  // max_entropy_increase of a model without entropy
+    if (manifest["result"][name].is_null()) return;  // max_entropy_increase, for a model without entropy
     EXPECT_EQ(manifest["result"][name].template get<double>(), as_double(x)) << name;
   });
   const auto columns = apsis::run_records(run).history().columns;

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-/// What a run computed and recorded.
+/// The computed and recorded results of a run.
 struct outcome {
   std::vector<double> state;
   apsis::numeric_table history;

@@ -1,4 +1,4 @@
-// Results of runs with two and three velocity dimensions: no component of a velocity is lost.
+// Results of runs with two and three velocity dimensions contain every component of the velocity.
 #include "cases.hpp"
 #include "same_results.hpp"
 #include "xdmf_grids.hpp"
@@ -60,7 +60,7 @@ struct moving_gas {
   }
 };
 
-/// Its Maxwellian in every cell, the first velocity component slowest.
+/// The Maxwellian of the gas in every cell, the first velocity component slowest.
 std::vector<double> maxwellians(int dimensions, const std::vector<double>& x) {
   std::vector<double> f;
   const std::size_t n = points, second = dimensions > 1 ? n : 1, third = dimensions > 2 ? n : 1;
@@ -75,7 +75,7 @@ std::vector<double> maxwellians(int dimensions, const std::vector<double>& x) {
   return f;
 }
 
-/// Leaves the results of a run that was stopped in this state before its first step.
+/// Writes the results of a run that is stopped in this state before its first step.
 std::string results_of_moving_gas(const test_folder& folder, const case_config& c) {
   simulation run(c);
   auto saved = run.save();
@@ -104,7 +104,7 @@ void run_into(const std::string& folder, const case_config& c, long steps = -1,
 
 }  // namespace
 
-TEST(several_velocity_dimensions, leave_every_velocity_with_its_weight) {
+TEST(several_velocity_dimensions, store_every_velocity_with_its_weight) {
   for (const int d : {2, 3}) {
     const test_folder folder;
     const auto file = hdf5_file::open(results_of_moving_gas(folder, gas(d)) + "/solution.h5");
@@ -130,7 +130,7 @@ TEST(several_velocity_dimensions, leave_every_velocity_with_its_weight) {
   }
 }
 
-TEST(several_velocity_dimensions, leave_every_component_of_the_bulk_velocity) {
+TEST(several_velocity_dimensions, store_every_component_of_the_bulk_velocity) {
   for (const int d : {2, 3}) {
     const test_folder folder;
     const std::string results = results_of_moving_gas(folder, gas(d));
@@ -143,7 +143,7 @@ TEST(several_velocity_dimensions, leave_every_component_of_the_bulk_velocity) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         // Δv = 3/4 and v_max = 9: truncation and aliasing are below 1e-12.
         EXPECT_NEAR(u[i], moving_gas(x[i]).u.at(k), 1e-11) << names[k] << " " << i;
-        // A reader of f gets the same from the velocities and weights beside it.
+        // Moments of the stored f with the stored velocities and weights are the same.
         double mass = 0.0, momentum = 0.0;
         for (std::size_t j = 0; j < weights.size(); ++j) {
           mass += weights[j] * f[i * weights.size() + j];
@@ -157,7 +157,7 @@ TEST(several_velocity_dimensions, leave_every_component_of_the_bulk_velocity) {
   }
 }
 
-TEST(several_velocity_dimensions, leave_marginals_of_f) {
+TEST(several_velocity_dimensions, store_marginals_of_f) {
   for (const int d : {2, 3}) {
     const test_folder folder;
     const auto file = hdf5_file::open(results_of_moving_gas(folder, gas(d)) + "/solution.h5");
@@ -191,7 +191,7 @@ TEST(several_velocity_dimensions, are_described_as_grids_with_monotone_axes) {
     EXPECT_EQ(whole.size(), d < 3 ? 3U : 0U) << d;
     EXPECT_EQ(marginal.size(), d > 1 ? 3U : 0U) << d;
     EXPECT_EQ(of_name(grids, "marginal_v_z").size(), d > 2 ? 3U : 0U) << d;
-    // Two of six cells, and all of the velocities.
+    // Two of six cells, and all velocities.
     for (const auto& one : whole)
       EXPECT_EQ(one.points, (std::vector<std::size_t>{d == 1 ? 1U : 2U, d == 1 ? 2U : points, points}));
     for (const auto& one : marginal) EXPECT_THAT(one.points, ElementsAre(1, 2, points));
@@ -199,7 +199,7 @@ TEST(several_velocity_dimensions, are_described_as_grids_with_monotone_axes) {
   }
 }
 
-TEST(several_velocity_dimensions, describe_no_grid_of_f_that_is_not_stored) {
+TEST(several_velocity_dimensions, describe_no_grid_of_f_if_f_is_not_stored) {
   const test_folder folder;
   auto c = gas(2);
   c.output.distribution = distribution_choice::none;
@@ -210,7 +210,7 @@ TEST(several_velocity_dimensions, describe_no_grid_of_f_that_is_not_stored) {
   EXPECT_TRUE(file.has("v") && file.has("v_x") && file.has("fields/u_y"));
 }
 
-TEST(several_velocity_dimensions, go_on_from_a_checkpoint_with_all_fields) {
+TEST(several_velocity_dimensions, continue_from_a_checkpoint_with_all_fields) {
   const test_folder folder;
   auto c = gas(2);
   c.output.every = 0.004;
@@ -229,7 +229,7 @@ TEST(several_velocity_dimensions, go_on_from_a_checkpoint_with_all_fields) {
               HasSubstr(",conservation_momentum_x,conservation_momentum_y,"));
 }
 
-TEST(several_velocity_dimensions, change_nothing_where_there_is_one) {
+TEST(several_velocity_dimensions, keep_the_layout_of_one_velocity_dimension) {
   const test_folder folder;
   const std::string results = results_of_moving_gas(folder, gas(1));
   const auto file = hdf5_file::open(results + "/solution.h5");

@@ -1,4 +1,4 @@
-// Sizes at the edge of what can be numbered, without the memory that they would take.
+// Sizes at the limits of the index types, without allocating the memory.
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -27,7 +27,7 @@ std::string refusal(const Function& make) {
 
 }  // namespace
 
-TEST(sizes, velocities_that_cannot_be_numbered_are_refused_with_the_most_that_can) {
+TEST(sizes, too_many_velocities_are_refused_with_the_largest_number) {
   for (const auto& [dimensions, points, most] :
        {std::tuple{3, 1025, "1024"}, std::tuple{3, 1291, "1024"}, std::tuple{3, 2000000000, "1024"},
         std::tuple{2, 32769, "32768"}, std::tuple{1, 2000000000, "1073741824"}}) {
@@ -41,14 +41,14 @@ TEST(sizes, velocities_that_cannot_be_numbered_are_refused_with_the_most_that_ca
   }
 }
 
-TEST(sizes, cells_that_cannot_be_numbered_are_refused) {
+TEST(sizes, too_many_cells_are_refused) {
   EXPECT_EQ(apsis::grid(3, {1024, 1024, 1024}, {0, 0, 0}, {1, 1, 1}).size(), 1 << 30);
   const std::string message = refusal([] { apsis::grid(3, {1024, 1024, 1025}, {0, 0, 0}, {1, 1, 1}); });
   EXPECT_NE(message.find("1.075e+09 cells (more than 1073741824 cannot be numbered)"), std::string::npos)
       << message;
 }
 
-TEST(sizes, a_field_of_more_numbers_than_addresses_is_no_internal_error) {
+TEST(sizes, a_field_larger_than_the_address_space_is_not_an_internal_error) {
   EXPECT_THROW(apsis::field(1 << 30, 1 << 30), std::bad_alloc);
 }
 
@@ -57,7 +57,7 @@ TEST(sizes, blocks_of_the_longest_range_cover_it) {
   for (const int longest : {1, 4, 4096, n})
     for (const int parts : {1, 2, 256}) {
       const apsis::part_blocks blocks(n, longest, parts);
-      if (longest == 1 && parts > 1) continue;  // more blocks than can be counted, of which nobody has use
+      if (longest == 1 && parts > 1) continue;  // the number of blocks overflows
       EXPECT_EQ(blocks.begin(0), 0);
       EXPECT_EQ(blocks.begin(blocks.count()), n) << longest << " " << parts;
       for (const int block : {0, blocks.count() / 2, blocks.count() - 1}) {
@@ -68,7 +68,7 @@ TEST(sizes, blocks_of_the_longest_range_cover_it) {
 }
 
 TEST(sizes, a_row_of_a_million_velocities_is_transported) {
-  // Columns of a row are numbered times vectors of it: 32 768 times 131 072 here.
+  // The product of columns and vectors of a row is 32 768 times 131 072 here, beyond 32 bits.
   auto c = small("ssprk-3-3", apsis::formulation::finite_difference);
   c.model.epsilon = "1e12";
   c.space.cells = {7};
@@ -80,5 +80,5 @@ TEST(sizes, a_row_of_a_million_velocities_is_transported) {
   apsis::simulation run(c);
   run.advance();
   EXPECT_LE(run.last().conservation_defect[0], 1e-13);
-  EXPECT_GE(run.last().min_value, -1e-15);  // what WENO may undershoot where f is zero to rounding
+  EXPECT_GE(run.last().min_value, -1e-15);  // undershoots of WENO where f is zero to rounding
 }

@@ -1,5 +1,5 @@
-// Snapshots are of the times that were asked for, to the last digit, with every rule for the step; and a
-// finished run that goes on to a later end is the run that went there without a halt.
+// Snapshots are taken exactly at the requested times with every step rule, and a finished run continued to a
+// later end gives the bits of an uninterrupted one.
 #include "same_results.hpp"
 
 #include <apsis/config/case.hpp>
@@ -16,7 +16,7 @@ using namespace apsis;
 
 namespace {
 
-/// A small gas; `rule` is how long its steps are.
+/// A small gas; `rule` is the step rule.
 case_config gas_with(const std::string& rule, double end, double every) {
   std::string text = R"([model]
 name = "bgk"
@@ -54,18 +54,18 @@ outcome run(const case_config& c, const std::string& folder, std::optional<std::
 
 }  // namespace
 
-TEST(snapshots, are_of_the_times_asked_for_to_the_last_digit_with_every_step_rule) {
+TEST(snapshots, are_taken_exactly_at_the_requested_times_with_every_step_rule) {
   for (const auto& rule : rules) {
     run_session session(gas_with(rule, 0.75, 0.1), {});
     session.run();
     const auto& taken = session.records().fields().snapshots;
-    ASSERT_EQ(taken.size(), 9U) << rule;  // the beginning, 0.1 … 0.7, and the end
+    ASSERT_EQ(taken.size(), 9U) << rule;  // the start, 0.1 … 0.7, and the end
     for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(taken[k].t, static_cast<double>(k) * 0.1) << rule;
     EXPECT_EQ(taken[8].t, 0.75) << rule;
     const auto& history = session.records().history().rows;
     for (std::size_t n = 1; n < history.size(); ++n) {
       EXPECT_GT(history[n][1], history[n - 1][1]) << rule;
-      // A step is as long as t says; 1e-15 is some roundings of t < 1.
+      // Steps are differences of t; 1e-15 is a few rounding errors of t < 1.
       EXPECT_NEAR(history[n][1] - history[n - 1][1], history[n][2], 1e-15) << rule;
     }
   }
@@ -80,23 +80,24 @@ TEST(snapshots, shorten_no_step_by_more_than_half_and_lengthen_none) {
   const auto with = longest_of(gas_with("cfl = 0.07", 1.0, 0.1)),
              without = longest_of(gas_with("cfl = 0.07", 1.0, 0.0));
   const double dt = without[1][2];
-  // All but the last, which meets the end.
+  // Every step except the last, which ends at time.end.
   for (std::size_t n = 1; n + 1 < with.size(); ++n) {
     EXPECT_LE(with[n][2], dt);
     EXPECT_GE(with[n][2], 0.5 * dt);
   }
-  // Ten intervals, each with less than one step more.
+  // Ten intervals, each with less than one additional step.
   EXPECT_LT(with.size(), without.size() + 10);
 }
 
 TEST(a_finished_run, continues_to_a_later_end_bit_for_bit_with_every_step_rule) {
   const test_folder folder;
   for (const auto& rule : rules) {
-    if (rule == "dt = 0.4") continue;  // see docs/results.md: it divides neither end, so it is another dt
+    if (rule == "dt = 0.4")
+      continue;  // excluded (docs/results.md): dt divides neither end time, so the steps differ
     for (const double every : {0.0, 0.1, 0.13}) {
       for (const double end : {0.3, 0.4, 0.57}) {
         const std::string what = rule + ", every " + std::to_string(every) + ", end " + std::to_string(end);
-        if (every == 0.0 && rule == "dt = 0.007") continue;  // likewise
+        if (every == 0.0 && rule == "dt = 0.007") continue;  // excluded for the same reason
         const auto whole = run(gas_with(rule, 0.8, every), folder / "whole");
         run(gas_with(rule, end, every), folder / "first");
         expect_same(whole, run(gas_with(rule, 0.8, every), folder / "again", folder / "first/checkpoint.h5"),
@@ -106,7 +107,7 @@ TEST(a_finished_run, continues_to_a_later_end_bit_for_bit_with_every_step_rule) 
   }
 }
 
-TEST(time_marcher, counts_a_time_that_is_a_rounded_multiple_as_reached) {
+TEST(time_marcher, accepts_a_rounded_multiple_of_dt_as_reached) {
   for (const double every : {0.1, 0.011, 1.0 / 3.0, 0.7}) {
     for (long k = 1; k < 1000; ++k) {
       const double t = static_cast<double>(k) * every;
@@ -116,7 +117,7 @@ TEST(time_marcher, counts_a_time_that_is_a_rounded_multiple_as_reached) {
   }
 }
 
-TEST(time_marcher, refuses_stops_that_a_given_dt_does_not_meet) {
+TEST(time_marcher, refuses_stops_that_are_not_multiples_of_a_given_dt) {
   time_marcher<double> march(0.0, 1.0, 0.1);
   EXPECT_NO_THROW(march.stop_every(0.2));
   EXPECT_THROW(march.stop_every(0.25), input_error);

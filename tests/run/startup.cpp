@@ -1,4 +1,4 @@
-// time.startup = "graded" through the production run.
+// time.startup = "graded" in a production run.
 #include "ode_runs.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -22,7 +22,7 @@ apsis::case_config ode(const std::string& method, const std::string& epsilon, co
 
 const std::string out_of_equilibrium, near_equilibrium = "initial = \"given\"\nu1 = 2.0\nu2 = 0.90930499\n";
 
-/// Stops after `steps`, goes on in a new run, and compares with one that was not stopped.
+/// Stops after `steps`, continues in a new run, and compares with an uninterrupted one.
 void expect_same_after_restart(const apsis::case_config& c, long steps) {
   apsis::simulation whole(c), first(c), second(c);
   for (long k = 0; k < steps; ++k) {
@@ -46,7 +46,7 @@ TEST(startup, resolves_the_layer_of_the_ode_model) {
   EXPECT_LT(10 * resolved, error_at_one(ode("md-imex-4-2", "1e-4", "none", out_of_equilibrium)));
 }
 
-TEST(startup, counts_its_steps_and_keeps_all_other_times) {
+TEST(startup, counts_its_steps_and_keeps_all_later_times) {
   apsis::simulation run(ode("md-imex-4-2", "1e-4", "graded"));
   EXPECT_EQ(run.steps_total(), 266);
   for (int k = 0; k < 11; ++k) run.advance();
@@ -61,7 +61,7 @@ TEST(startup, counts_its_steps_and_keeps_all_other_times) {
   EXPECT_EQ(limit.steps, 256);
 }
 
-TEST(startup, restarts_in_its_middle_to_the_last_digit) {
+TEST(startup, restarts_in_its_middle_bit_for_bit) {
   for (const long steps : {0L, 1L, 5L, 10L, 11L, 12L})
     expect_same_after_restart(ode("md-imex-4-2", "1e-4", "graded"), steps);
   for (const char* rule : {"cfl", "safety"}) {
@@ -91,18 +91,18 @@ TEST(startup, follows_the_smallest_epsilon_of_the_mesh_and_keeps_the_promises) {
       EXPECT_EQ(run.summary().negative_values, 0);
       return run.summary().startup_steps;
     };
-    // From 1e-6 to 1: a thousand times thinner are ten more steps.
+    // From 1e-6 to 1: each factor of a thousand in ε costs ten steps.
     const long spread = steps("10^(-6*(x < 1 ? 1 : 2 - x))"), thin = steps("1e-6"), wide = steps("1e-3");
     EXPECT_EQ(spread, thin);
     EXPECT_NEAR(static_cast<double>(thin - wide), 10.0, 1.0);
-    EXPECT_EQ(steps("x < 1 ? 0 : 1e-6"), thin);  // cells in the limit have no layer
+    EXPECT_EQ(steps("x < 1 ? 0 : 1e-6"), thin);  // cells with ε = 0 have no layer
     EXPECT_EQ(steps("0"), 1);
     EXPECT_EQ(steps("1e12"), 1);
     EXPECT_LE(steps("1e-60"), 56);
   }
 }
 
-TEST(startup, is_refused_where_it_means_nothing) {
+TEST(startup, is_refused_where_it_has_no_meaning) {
   const auto complaint = [](const auto& make) -> std::string {
     try {
       const apsis::simulation run(make());

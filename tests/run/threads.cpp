@@ -1,4 +1,4 @@
-// How many threads a run takes whose user gives no number.
+// The default number of threads of a run.
 #include "cases.hpp"
 
 #include <apsis/exec/parallel.hpp>
@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Sets OMP_NUM_THREADS for a test and puts back what was there.
+/// Sets OMP_NUM_THREADS during a test and restores it.
 class environment {
  public:
   explicit environment(const char* value) {
@@ -30,7 +30,7 @@ class environment {
 
 }  // namespace
 
-TEST(threads_for, a_case_are_those_of_the_environment_or_fit_its_size) {
+TEST(threads_for, a_case_follow_the_environment_or_its_size) {
   auto c = small("md-imex-3-2", apsis::formulation::finite_difference);
   {
     const environment three("3,2");

@@ -1,4 +1,4 @@
-// time.tolerance: steps by the estimated error, through the production run.
+// time.tolerance: steps chosen by the estimated error in a production run.
 #include "ode_runs.hpp"
 #include "support/catalogue.hpp"
 
@@ -49,17 +49,17 @@ double smallest_of_embedded(const std::string& method, const std::string& epsilo
 
 }  // namespace
 
-TEST(tolerance, makes_the_error_as_small_as_is_asked) {
+TEST(tolerance, bounds_the_error) {
   const double coarse = error_at_one(ode("md-imex-8-3-mixed", "tolerance = 1e-4\n"));
   const double fine = error_at_one(ode("md-imex-8-3-mixed", "tolerance = 1e-9\n"));
-  // From 1e-4 on errors off equilibrium count less, until steps resolve epsilon/C (docs/methods.md).
+  // Below 1e-4 errors off equilibrium have less weight until steps resolve epsilon/C (docs/methods.md).
   EXPECT_LT(fine, 1e-2 * coarse);
   EXPECT_LT(fine, 1e-5);
-  // dt = 0.5 alone, which is now only the longest step, does not see the layer of width 0.002.
+  // dt = 0.5 alone, here only the largest step, does not resolve the layer of width 0.002.
   EXPECT_GT(error_at_one(ode("md-imex-8-3-mixed", "")), 1e3 * fine);
 }
 
-TEST(tolerance, counts_what_it_rejects_and_keeps_within_the_rule) {
+TEST(tolerance, counts_rejected_steps_and_respects_the_step_rule) {
   const auto done = finished(ode("md-imex-8-3", "tolerance = 1e-6\n"));
   EXPECT_GE(done.rejected_steps, 1);
   EXPECT_LE(done.dt, 0.5);
@@ -69,7 +69,7 @@ TEST(tolerance, counts_what_it_rejects_and_keeps_within_the_rule) {
   EXPECT_EQ(loose.steps, 2);
 }
 
-TEST(tolerance, restarts_to_the_last_digit) {
+TEST(tolerance, restarts_bit_for_bit) {
   const auto expect_same = [](const apsis::case_config& c, long steps) {
     apsis::simulation whole(c), first(c), second(c);
     for (long k = 0; k < steps; ++k) {
@@ -89,7 +89,7 @@ TEST(tolerance, restarts_to_the_last_digit) {
     expect_same(ode("md-imex-8-3", "tolerance = 1e-5\nstartup = \"graded\"\n"), steps);
 }
 
-TEST(tolerance, leaves_the_promises_of_the_rule_as_they_are) {
+TEST(tolerance, keeps_the_promises_of_the_step_rule) {
   auto c = small("md-imex-8-3", apsis::formulation::finite_volume);
   c.time.cfl.reset();
   c.time.safety = 1.0;
@@ -100,7 +100,7 @@ TEST(tolerance, leaves_the_promises_of_the_rule_as_they_are) {
   EXPECT_EQ(run.summary().negative_values, 0);
 }
 
-TEST(tolerance, is_refused_where_it_cannot_be_kept) {
+TEST(tolerance, is_refused_where_it_cannot_be_reached) {
   const auto complaint = [](const auto& make) -> std::string {
     try {
       const apsis::simulation run(make());
@@ -131,21 +131,21 @@ TEST(embedded_solution, is_positive_up_to_the_step_of_the_method_for_any_epsilon
             << method << " " << epsilon << " " << scheme;
 }
 
-TEST(tolerance, with_a_graded_start_begins_in_the_layer) {
-  // D₀ changes u by tol^{1/2} = 0.032 in this time: ε/C = 1e-2/5, |D₀|/|u| = sin(2)/2.
+TEST(tolerance, with_a_graded_start_resolves_the_layer) {
+  // Time in which D₀ changes u by tol^{1/2} = 0.032, with ε/C = 1e-2/5 and |D₀|/|u| = sin(2)/2.
   const std::string near =
       "[model]\nname = \"ode\"\nepsilon = 1e-2\ninitial = \"given\"\nu1 = 2.0\nu2 = 0.90930499\n"
       "[time]\nmethod = \"md-imex-3-2\"\nend = 1.0\ndt = 0.5\ntolerance = 1e-3\n";
   const auto first = [](const apsis::case_config& c) { return apsis::simulation(c).dt(); };
   EXPECT_NEAR(first(ode("md-imex-3-2", "tolerance = 1e-3\n")), 2e-3 * std::sqrt(1e-3) * 2.0 / std::sin(2.0),
               1e-9);
-  // Of data near equilibrium the first step is one of the slow solution, unless a graded start is asked for.
+  // For data near equilibrium the first step follows the slow solution unless a graded start is requested.
   EXPECT_GT(first(apsis::parse_case(near, "c.toml")), 0.02);
   EXPECT_DOUBLE_EQ(first(apsis::parse_case(near + "startup = \"graded\"\n", "c.toml")), 5e-4);
   EXPECT_EQ(finished(apsis::parse_case(near + "startup = \"graded\"\n", "c.toml")).t, 1.0);
 }
 
-TEST(tolerance, below_the_plateau_of_a_method_is_told_at_the_start) {
+TEST(tolerance, below_the_plateau_of_a_method_is_warned_about_at_the_start) {
   const auto warning_of = [](const std::string& method, const std::string& tolerance) {
     testing::internal::CaptureStderr();
     const apsis::simulation run(ode(method, "tolerance = " + tolerance + "\n"));
@@ -157,7 +157,7 @@ TEST(tolerance, below_the_plateau_of_a_method_is_told_at_the_start) {
   EXPECT_EQ(warning_of("md-imex-8-3-mixed", "1e-3"), "");
 }
 
-TEST(explicit_method, of_a_stiff_collision_is_warned_of_with_the_number_of_steps) {
+TEST(explicit_method, for_a_stiff_collision_is_warned_about_with_the_number_of_steps) {
   const auto c = apsis::parse_case(
       "[model]\nname = \"ode\"\nepsilon = 1e-9\n[time]\nmethod = \"ssprk-3-3\"\nend = 1.0\ndt = 1e-3\n",
       "c.toml");
@@ -169,10 +169,10 @@ TEST(explicit_method, of_a_stiff_collision_is_warned_of_with_the_number_of_steps
 
 namespace {
 
-/// Knudsen numbers from 1e-5 to 1 on point values, so that all steps solve one and the same system.
+/// Knudsen numbers from 1e-5 to 1 on point values, so that runs with different steps solve the same system.
 apsis::case_config mixed_bgk(const std::string& method, double tolerance) {
   auto c = small(method, apsis::formulation::finite_difference);
-  c.time.cfl = 4.0;  // the tolerance alone decides
+  c.time.cfl = 4.0;  // only the tolerance limits the step
   c.time.end = 0.01;
   c.time.tolerance = tolerance;
   return c;
@@ -205,7 +205,7 @@ const std::vector<double>& converged() {
   return state;
 }
 
-/// As tests/integrate/tolerance_table.cpp does for the ODE model.
+/// The analogue of tests/integrate/tolerance_table.cpp for the ODE model.
 void check_mixed_bgk(const std::string& method, const std::vector<double>& tolerances) {
   long before = 0;
   for (const double tolerance : tolerances) {
@@ -225,12 +225,12 @@ void check_mixed_bgk(const std::string& method, const std::vector<double>& toler
 
 }  // namespace
 
-TEST(tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_of) {
+TEST(tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_about) {
   check_mixed_bgk("md-imex-8-3-mixed", {1e-3, 1e-4, 1e-5, 1e-6, 1e-7});
   check_mixed_bgk("md-imex-3-2", {1e-3, 1e-4, 1e-5, 1e-6, 1e-7});
 }
 
-TEST(tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_of_with_all_methods_slow) {
+TEST(tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_about_with_all_methods_slow) {
   for (const auto& method :
        methods_where([](const apsis::method& m) { return m.embedded && m.kind == apsis::method_kind::imex; }))
     check_mixed_bgk(method, {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9});

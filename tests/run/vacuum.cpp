@@ -1,4 +1,4 @@
-// Runs through states on the boundary of what f ≥ 0 can have, and through empty space.
+// Runs through states on the boundary of the realizable moments, and through vacuum.
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -16,7 +16,7 @@ namespace {
 using apsis::formulation;
 constexpr formulation both[] = {formulation::finite_volume, formulation::finite_difference};
 
-/// A cold gas, Δv = 2√T, that expands into a density of 1e-300.
+/// A cold gas, Δv = 2√T, expanding into a density of 1e-300.
 apsis::case_config expansion(formulation how, const std::string& epsilon,
                              apsis::equilibrium_choice equilibrium) {
   auto c = small("md-imex-6-3", how);
@@ -34,7 +34,7 @@ double lowest_density(const apsis::simulation& run) {
 
 }  // namespace
 
-TEST(vacuum, an_expansion_into_it_keeps_its_promises) {
+TEST(vacuum, an_expansion_into_vacuum_keeps_its_promises) {
   for (const auto how : both)
     for (const char* epsilon : {"0", "1e-6", "1"})
       for (const auto equilibrium :
@@ -44,11 +44,11 @@ TEST(vacuum, an_expansion_into_it_keeps_its_promises) {
         ASSERT_LT(lowest_density(run), 1.1e-300);
         ASSERT_NO_THROW(finish(run)) << epsilon << " " << apsis::choice_name(equilibrium);
         EXPECT_EQ(run.summary().negative_values, 0) << epsilon << " " << apsis::choice_name(equilibrium);
-        EXPECT_GT(lowest_density(run), 1e-30) << "the gas did not get there and the test shows nothing";
+        EXPECT_GT(lowest_density(run), 1e-30) << "the gas did not reach the vacuum: the test is vacuous";
       }
 }
 
-TEST(vacuum, the_entropy_decays_there_too) {
+TEST(vacuum, the_entropy_decays) {
   for (const char* epsilon : {"0", "1e-3", "1"}) {
     auto c = expansion(formulation::finite_difference, epsilon, apsis::equilibrium_choice::discrete);
     c.space.reconstruction = "upwind1";
@@ -58,7 +58,7 @@ TEST(vacuum, the_entropy_decays_there_too) {
   }
 }
 
-TEST(vacuum, also_in_two_velocity_dimensions) {
+TEST(vacuum, holds_in_two_velocity_dimensions) {
   for (const auto how : both) {
     auto c = expansion(how, "1e-4", apsis::equilibrium_choice::discrete);
     c.model.parameters["velocity_dimensions"] = 2.0;
@@ -69,7 +69,7 @@ TEST(vacuum, also_in_two_velocity_dimensions) {
   }
 }
 
-TEST(vacuum, rows_of_zeros_of_subnormal_numbers_and_of_one_velocity_stop_no_run) {
+TEST(vacuum, rows_of_zeros_of_subnormal_numbers_and_of_one_velocity_are_integrated) {
   for (const auto how : both) {
     const auto c = expansion(how, "1e-5", apsis::equilibrium_choice::discrete);
     apsis::simulation run(c);
@@ -85,7 +85,7 @@ TEST(vacuum, rows_of_zeros_of_subnormal_numbers_and_of_one_velocity_stop_no_run)
       value(10, k) = k == 7 || k == 8 ? 0.5 : 0.0;
       value(11, k) = k == 0 || k == width - 1 ? 0.5 : 0.0;
     }
-    // Mass differs from that of the case: ten steps, without promises that compare with the start.
+    // The mass differs from that of the case: ten steps, without promises relative to the start.
     run.restore(saved);
     for (int step = 0; step < 10; ++step) {
       try {

@@ -1,4 +1,4 @@
-// Axes and marginals of velocity sets, found from their points and weights.
+// Axes and marginals of velocity sets, computed from their points and weights.
 #include <apsis/output/velocity_axes.hpp>
 
 #include <cstddef>
@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// Nodes a, b slowest, with other nodes and unequal weights along the second axis.
+/// Tensor product of different nodes with unequal weights along the second axis; the first axis is slowest.
 velocity_set plane() {
   return {{{2.0, 2.0, 2.0, -1.0, -1.0, -1.0}, {0.0, 1.0, 3.0, 0.0, 1.0, 3.0}},
           {0.5, 1.0, 0.25, 1.0, 2.0, 0.5}};
@@ -31,7 +31,7 @@ TEST(velocity_axes, of_a_tensor_product_are_its_nodes) {
   EXPECT_EQ(axes[1].name, "v_y");
   EXPECT_THAT(axes[0].nodes, ElementsAre(2.0, -1.0));
   EXPECT_THAT(axes[1].nodes, ElementsAre(0.0, 1.0, 3.0));
-  // The ratios of the weights of the points; half an interval belongs to each end.
+  // The weights are in the ratios of the weights of the points; each end has half an interval.
   EXPECT_THAT(axes[0].weights, ElementsAre(DoubleEq(2.0), DoubleEq(4.0)));
   EXPECT_THAT(axes[1].weights, ElementsAre(DoubleEq(4.5 * 2 / 7), DoubleEq(4.5 * 4 / 7), DoubleEq(4.5 / 7)));
 }
@@ -44,10 +44,10 @@ TEST(velocity_axes, of_a_line_are_its_points_and_weights) {
   EXPECT_THAT(axes[0].weights, ElementsAre(1.0, 2.0, 1.0));
 }
 
-TEST(velocity_axes, are_missing_where_the_velocities_are_no_grid) {
+TEST(velocity_axes, are_absent_if_the_velocities_are_not_a_grid) {
   EXPECT_THAT(apsis::velocity_axes({}), IsEmpty());
   EXPECT_THAT(apsis::velocity_axes({{{0.0, 2.0, 1.0}}, {1.0, 1.0, 1.0}}), IsEmpty()) << "not monotone";
-  EXPECT_THAT(apsis::velocity_axes({{{0.0, 0.0}}, {1.0, 1.0}}), IsEmpty()) << "twice the same";
+  EXPECT_THAT(apsis::velocity_axes({{{0.0, 0.0}}, {1.0, 1.0}}), IsEmpty()) << "repeated point";
   EXPECT_THAT(apsis::velocity_axes({{{0.0, 1.0, 0.0, 1.0}, {0.0, 0.0, 1.0, 1.0}}, {1.0, 1.0, 1.0, 1.0}}),
               IsEmpty())
       << "the first axis runs fastest";
@@ -55,10 +55,10 @@ TEST(velocity_axes, are_missing_where_the_velocities_are_no_grid) {
       << "a corner is missing";
   EXPECT_THAT(apsis::velocity_axes({{{0.0, 0.0, 1.0, 1.0}, {0.0, 1.0, 0.0, 1.0}}, {1.0, 1.0, 1.0, 2.0}}),
               IsEmpty())
-      << "weights are no products";
+      << "weights are not products";
 }
 
-TEST(velocity_points, are_all_coordinates_of_every_velocity_once) {
+TEST(velocity_points, contain_all_coordinates_of_every_velocity_once) {
   EXPECT_THAT(apsis::velocity_points({{{1.0, -2.0}, {0.0, 0.5}}, {0.25, 0.75}, 3}),
               ElementsAre(1.0, 0.0, -2.0, 0.5));
   EXPECT_THAT(apsis::velocity_points({{{1.0, -1.0}}, {1.0, 1.0}, 2}), ElementsAre(1.0, -1.0));
@@ -86,7 +86,7 @@ TEST(marginals, integrate_to_the_density_along_every_axis) {
   EXPECT_THAT(found[0].values[0], DoubleNear(1.625, 1e-15));
 }
 
-TEST(marginals, are_of_one_function_of_several_velocity_components) {
+TEST(marginals, are_of_a_function_of_several_velocity_components) {
   EXPECT_THAT(apsis::marginals({1.0, 2.0}, 1, {{{1.0, -1.0}}, {1.0, 1.0}}), IsEmpty());
   EXPECT_THAT(apsis::marginals({1.0, 2.0, 3.0, 4.0}, 1, {{{1.0, -1.0}, {0.0, 0.0}}, {1.0, 1.0}, 2}),
               IsEmpty());

@@ -39,8 +39,8 @@ struct described_grid {
   std::vector<std::size_t> points;  ///< slowest axis first
 };
 
-/// The grids of a description, after a check of their axes: strictly monotone, and as long as the topology
-/// says.
+/// The grids of a description. Checks that their axes are strictly monotone and as long as the topology
+/// states.
 inline std::vector<described_grid> checked_grids(const std::string& folder) {
   const std::string text = text_of(folder + "/solution.xdmf");
   static const std::regex grid(
@@ -66,7 +66,7 @@ inline std::vector<described_grid> checked_grids(const std::string& folder) {
       EXPECT_EQ(nodes.size(), one.points.at(--k)) << source;
     }
     EXPECT_EQ(k, 0U) << one.name;
-    // A row of all snapshots of a field has the row in its own description.
+    // The series of all snapshots of a field has a description of its own.
     for (std::sregex_iterator item(attributes.begin(), attributes.end(), value); item != end; ++item) {
       const auto extents = apsis::hdf5_file::open(folder + "/" + (*item)[2].str()).extents((*item)[3].str());
       EXPECT_EQ(product_of((*item)[1].str()),

@@ -1,10 +1,9 @@
-"""Pictures of everything that Apsis computes, all in one style.
+"""Pictures of runs, studies and methods in one style.
 
     python -m apsis.plot DIR             results of a run, a convergence study or a reproduction
     python -m apsis.plot md-imex-6-3     coefficients and stability regions of a method
 
-The functions behind it return figures of matplotlib. Nothing here needs the compiled part of the package, but the names of
-methods.
+The functions below return Matplotlib figures. Only method names need the compiled module of the package.
 """
 from .methods import stability_figure, tableau_figure
 from .pictures import draw

@@ -24,7 +24,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="apsis plot", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", nargs="+", metavar="WHAT", help="a folder of results, a picture.json, a method; "
                         "with --compare also LABEL=FOLDER")
-    parser.add_argument("--out", type=Path, help="folder of the pictures")
+    parser.add_argument("--out", type=Path, help="folder for the pictures")
     parser.add_argument("--format", choices=FORMATS, default="png")
     parser.add_argument("--compare", metavar="NAME", help="one picture NAME of all these runs")
     return parser.parse_args(arguments)

@@ -53,7 +53,7 @@ def region(axes: Any, size: Any, x: Any, y: Any, **line: Any) -> bool:
 
 
 def stability_figure(method: Description) -> Any:
-    """Draws |R| ≤ 1 for Q alone and for T with Q of several stiffnesses, as far as the method has them."""
+    """Draws |R| ≤ 1 for Q alone and for T with Q of several stiffnesses, if the method has these parts."""
     A_hat, A, A_dot = matrices(method)
     explicit = np.array_equal(A_hat, A)
     parts = [part for part, there in (("Q", not explicit and (A.any() or A_dot.any())), ("T", A_hat.any())) if there]

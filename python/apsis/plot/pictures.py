@@ -1,7 +1,7 @@
 """Draws pictures that the program apsis writes as data.
 
 A picture has name, title, caption and panels; a panel has curves {label, x, y, style, colour} or one map {x, y, value}. null
-stands for "no number". A document may hold one picture, or several in a list "pictures" (also inside "claims").
+is NaN. A document may hold one picture, or several in a list "pictures" (also inside "claims").
 """
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def share_y_range(panels: list[Any]) -> None:
 
 
 def measure_of(picture: Document) -> str:
-    """The label of what a study measured, from the first sentence of its caption, "The l2 norm of the difference to ….": a difference to
+    """Returns the axis label of the quantity that a study measured, taken from the first sentence of its caption, "The l2 norm of the difference to ….": a difference to
     the next finer run is not an error."""
     measure = str(picture["caption"]).partition(". ")[0].removeprefix("The ").removesuffix(".")
     return textwrap.fill(f"{measure} (dimensionless)", 44)

@@ -10,7 +10,7 @@ import numpy as np
 from .run_result import Array, RunResult
 from .style import BLACK, BLUE, COLOURS, GREY, MARKERS, PictureError, plt
 
-SHOWN_TIMES = 5  # most earlier snapshots drawn with the last one
+SHOWN_TIMES = 5  # maximum number of earlier snapshots drawn with the last one
 
 
 def panels(count: int, width: float = 4.2, height: float = 3.6) -> tuple[Any, list[Any]]:
@@ -98,8 +98,8 @@ def finest_of(runs: Sequence[tuple[str, RunResult]]) -> int:
 
 
 def differences(runs: Sequence[tuple[str, RunResult]]) -> list[str]:
-    """Largest differences of every run to the one with most cells, the last of several, whose values are averaged onto the coarser
-    cells."""
+    """Returns the largest differences of every run to the finest run, the last one with most cells; its values are averaged onto
+    the coarser cells."""
     finest = finest_of(runs)
     label_of_finest, fine = runs[finest]
     lines = []

@@ -20,8 +20,8 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class RunResult:
     """The content of a result folder. fields[name][cell] are the macroscopic fields at the end, snapshots[name][k, cell] at the times t[k];
-    arrays has f[cell, component], x, v, epsilon, those that the model has, and with several velocity dimensions v_weights and the
-    nodes v_x, v_y, v_z; history[column][step] what was checked; labels the words for an axis; case the case file;
+    arrays has those of f[cell, component], x, v, epsilon that the model has, and with several velocity dimensions v_weights and
+    the nodes v_x, v_y, v_z; history[column][step] the checks of every step; labels the axis labels; case the case file;
     marginals[axis][cell, node] f integrated over the other velocity components."""
 
     folder: Path

@@ -1,4 +1,4 @@
-"""The style of all pictures (colours, markers, fonts) and how they are written."""
+"""The style of all pictures (colours, markers, fonts), and writing of picture files."""
 from __future__ import annotations
 
 import sys

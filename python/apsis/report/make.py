@@ -1,4 +1,4 @@
-"""Writes the page that belongs to a folder."""
+"""Writes the report page of a folder of results."""
 from __future__ import annotations
 
 from pathlib import Path

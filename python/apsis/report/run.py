@@ -13,7 +13,7 @@ from .page import number, table, text, verdict
 CAPTIONS = {
     "fields": ("Macroscopic fields", "At the end, and at earlier snapshots in grey."),
     "distribution": ("Distribution function", "{f} at the end, and the Knudsen number ε(x) where it is not 0."),
-    "history": ("History", "What was checked after every step. A conservation defect is relative to the size of the quantity."),
+    "history": ("History", "Checks after every step. A conservation defect is relative to the size of the quantity."),
 }
 PROMISES = {
     "positivity": ("every unknown stays nonnegative", "min_value", "smallest value"),

@@ -64,7 +64,7 @@ int design_embedded(const embedded_options& given) {
   print(given.json ? report.dump(2) + "\n"
                    : fmt::format("written to '{}'\n\n{}", file.path(), check_text(m)));
   if (!report["claims_hold"].get<bool>())
-    throw claim_error(fmt::format("the method in '{}' does not hold what was asked for ({}); report this",
+    throw claim_error(fmt::format("the method in '{}' lacks a requested property ({}); report this",
                                   file.path(), first_failure(m)));
   return 0;
 }

@@ -16,7 +16,7 @@ namespace {
 using namespace peers;
 using integrator = sundials_options::integrator;
 
-/// Time limit of a run in seconds; the best ones need a fiftieth of it.
+/// Time limit of a run in seconds; the fastest runs need a fiftieth of it.
 double time_limit = 10.0;
 
 void add_ours(contest& all, mixed_regime& what, const std::string& name, const std::vector<double>& factors) {

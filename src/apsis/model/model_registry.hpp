@@ -9,7 +9,7 @@
 
 namespace apsis {
 
-/// A number that a case file can give a model.
+/// A numeric parameter of a model, a key of [model].
 struct model_parameter {
   std::string name;      ///< key in the table [model]
   double value;          ///< default

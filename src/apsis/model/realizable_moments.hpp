@@ -9,9 +9,10 @@
 
 namespace apsis {
 
-/// Moments ω of rows f ≥ 0 per mass, in units of Δv, by their distance from the boundary of what such rows
-/// can have. With z = u/Δv the mean of |v|²/Δv² is at least Σ_k ℓ(z_k), ℓ being z² interpolated linearly
-/// between neighbouring grid points, and at most d h², h = (N − 1)/2 the ends of a direction (docs/space.md).
+/// Moments ω per mass of a row f ≥ 0, in units of Δv, with their distances from the boundary of the
+/// realizable set. With z = u/Δv the mean of |v|²/Δv² is at least Σ_k ℓ(z_k), ℓ being z² interpolated
+/// linearly between neighbouring grid points, and at most d h², h = (N − 1)/2 the ends of a direction
+/// (docs/space.md).
 struct realizable_moments {
   double rho = 0.0;                ///< mass; 0 is a vacuum, without the rest
   std::array<int, 3> nearest{};    ///< index of the grid point nearest to z_k
@@ -22,10 +23,10 @@ struct realizable_moments {
   double below_greatest = 0.0;     ///< d h² − square ≥ 0; 0 on the upper boundary
 };
 
-/// Returns the moments, projected onto the boundary if they lie outside by no more than the rounding of sums
-/// over the grid; nothing for ω that no row f ≥ 0 has, or that is not finite. Where ρ is so small that
-/// moments are subnormal numbers or nearly so, their rounding has no bound relative to ρ, and every finite ω
-/// is projected.
+/// Returns the moments, projected onto the boundary if they lie outside by no more than the rounding error of
+/// sums over the grid; nothing if ω is neither realizable nor close to it, or not finite. If ρ is so small
+/// that moments are subnormal numbers or nearly so, their rounding errors have no bound relative to ρ, and
+/// every finite ω is projected.
 std::optional<realizable_moments> find_realizable(const velocity_grid& grid, const double* omega);
 
 }  // namespace apsis

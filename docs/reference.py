@@ -148,7 +148,8 @@ def keys(program: Program) -> str:
         text += f"### `{k['name']}`\n\n*{', '.join(a for a in about if a)}*\n\n{plain(k['description'])}\n\n" + facts({
             "one of": ", ".join(f"`{c}`" for c in choices),
             "for the models": "" if set(k["models"]) == models_of else ", ".join(f"[{m}](models.md#{m})" for m in k["models"])})
-    return text + "The table `[model]` also takes the parameters of its [model](models.md).\n"
+    return text + ("The table `[model]` also takes the parameters of its [model](models.md). `[parameters]` holds constants of formulas, and "
+                   "`[initial]` [initial data](../initial-data.md) by formulas.\n")
 
 
 def schemes(program: Program) -> str:

@@ -134,6 +134,8 @@ def _value(x: Any) -> str:
         return str(int(x))
     if isinstance(x, (float, np.floating)):
         return repr(float(x))
+    if isinstance(x, Mapping):
+        return "{" + ", ".join(f"{name} = {_value(one)}" for name, one in x.items()) + "}"
     if isinstance(x, (list, tuple, np.ndarray)):
         return "[" + ", ".join(_value(one) for one in x) + "]"
     return json.dumps(str(x), ensure_ascii=False)

@@ -130,6 +130,22 @@ TEST(expression, uses_the_coordinates_of_its_space) {
   }
 }
 
+TEST(expression, has_constants_of_the_user) {
+  const expression f("M*x + gas_2", {}, {{"x"}, true, {{"M", 2.0}, {"gas_2", 0.5}}});
+  EXPECT_EQ(f.value(3.0), 6.5);
+  EXPECT_FALSE(f.is_constant());
+  EXPECT_TRUE(expression("M^2", {}, {{"x"}, true, {{"M", 2.0}}}).is_constant());
+  try {
+    expression("Mach*x", {"file", 3, 12}, {{"x"}, true, {{"Mac", 2.0}}});
+    ADD_FAILURE() << "accepted";
+  } catch (const input_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("did you mean 'Mac'?"));
+  }
+  EXPECT_EQ(apsis::why_not_a_constant("Kn_0"), "");
+  for (const char* name : {"", "1st", "a-b", "_a", "a b", "x", "t", "v_x", "pi", "e", "sin", "max"})
+    EXPECT_NE(apsis::why_not_a_constant(name), "") << name;
+}
+
 TEST(expression, is_evaluated_by_many_threads_concurrently) {
   const expression f("sin(u)/2 + u^3 - (u > 0.5 ? exp(-u) : 2*u)", {}, {{"u"}, false});
   const auto exact = [](double u) { return std::sin(u) / 2 + u * u * u - (u > 0.5 ? std::exp(-u) : 2 * u); };

@@ -20,16 +20,17 @@ namespace {
 
 /// Returns the syntax of a key on the command line. Quotes are optional for unknown keys, so that the key is
 /// reported.
-override_form form_of(const std::string& path) {
+override_form form_of(const std::string& path, const std::string& value) {
   for (const case_key& key : case_schema())
     if (key.path == path)
       return {key.type == key_type::text || key.type == key_type::formula, type_advice(key.type)};
+  if (path.rfind("parameters.", 0) == 0) return {false, type_advice(key_type::number)};
   // Names of numeric parameters and string options are disjoint over all models.
   for (const model_entry* entry : model_entries())
     for (const model_parameter& p : entry->parameters)
       if ("model." + p.name == path)
         return {false, type_advice(p.integer ? key_type::integer : key_type::number)};
-  return {true, type_advice(key_type::text)};
+  return {path.rfind("initial.", 0) != 0 || value.find('[') != 0, type_advice(key_type::text)};
 }
 
 /// Returns the text without surrounding spaces, which quoted arguments such as "space.cells = 80" have.
@@ -57,7 +58,7 @@ void apply_overrides(case_text& text, const std::vector<std::string>& overrides)
   const auto sets_step = [](const key_and_value& item) { return is_step_key(item.path); };
   if (std::any_of(all.begin(), all.end(), sets_step))
     for (const auto& key : step_keys()) text.values.erase(key);
-  for (const auto& [path, value, place] : all) apply_override(text, path, value, form_of(path), place);
+  for (const auto& [path, value, place] : all) apply_override(text, path, value, form_of(path, value), place);
 }
 
 }  // namespace
@@ -94,8 +95,19 @@ std::unique_ptr<model> make_model(const case_config& config) {
   model_config parts = default_config(*entry);
   for (const auto& [name, value] : config.model.parameters) parts.parameters[name] = value;
   for (const auto& [name, value] : config.model.texts) parts.texts[name] = value;
+  parts.constants = config.constants;
   parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium};
   return entry->make(parts);
+}
+
+source_place place_of(const case_config& config, const std::string& path) {
+  for (std::string known = path; !known.empty();) {
+    const auto found = config.places.find(known);
+    if (found != config.places.end()) return found->second;
+    const auto dot = known.rfind('.');
+    known.resize(dot == std::string::npos ? 0 : dot);
+  }
+  return {};
 }
 
 grid make_mesh(const case_config& config) {

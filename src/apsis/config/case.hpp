@@ -1,7 +1,9 @@
 #pragma once
 
 #include <apsis/config/choices.hpp>
+#include <apsis/config/initial_table.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/model/expression.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/phase/domain.hpp>
 
@@ -18,16 +20,18 @@ namespace apsis {
 /// show case`).
 struct case_config {
   std::string source;                          ///< file or name of the built-in case
-  std::map<std::string, source_place> places;  ///< places of the keys, for later messages
+  std::map<std::string, source_place> places;  ///< places of keys and tables, for later messages
   std::string title;                           ///< one line
+  formula_constants constants;                 ///< table [parameters]: constants of all formulas
   /// Table [model].
   struct {
     std::string name;
     std::string epsilon = "1";  ///< a number or a formula in x, y, z; dimensionless Knudsen number, ≥ 0
-    std::string initial;        ///< name of one of the model's initial data; "" takes its first
+    std::string initial;        ///< name of one of the model's initial data; "" with a table [initial]
     std::map<std::string, double> parameters;  ///< numeric parameters of the model; defaults if absent
     std::map<std::string, std::string> texts;  ///< string options of the model; defaults if absent
   } model;
+  initial_table prescribed;  ///< table [initial]; empty if model.initial names the data
   /// Table [space], of models with space.
   struct {
     std::vector<int> cells = {40};                             ///< in every direction
@@ -81,6 +85,9 @@ case_config load_case(const std::string& name_or_path, const std::vector<std::st
 
 /// The model of the case with its parameters. Throws input_error if there is no such model.
 std::unique_ptr<model> make_model(const case_config& config);
+
+/// Returns the place of a key, or of the innermost known table around it; nowhere if there is none.
+source_place place_of(const case_config& config, const std::string& path);
 
 /// The mesh of the table [space]. Throws input_error as grid does.
 grid make_mesh(const case_config& config);

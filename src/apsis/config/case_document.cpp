@@ -112,6 +112,13 @@ std::string describe(const model_entry& model) {
   std::string tables =
       has_space(model) ? (model.has_velocity_grid ? "space, velocity" : "space") : "none but time, output";
   out += fmt::format("      tables: {}; initial data: {}\n", tables, fmt::join(initial_names(model), ", "));
+  for (const data_form& form : prototype(model).data_forms()) {
+    std::vector<std::string> variables;
+    for (const data_variable& v : form.variables)
+      variables.push_back(
+          fmt::format("{}, {}{}", v.name, v.doc, v.value ? fmt::format(" [{}]", *v.value) : ""));
+    out += indented(fmt::format("[initial] ({}): {}", form.description, fmt::join(variables, "; ")));
+  }
   for (const model_parameter& p : model.parameters)
     out += indented(
         fmt::format("{} (number, {} to {}, default {}): {}", p.name, p.lowest, p.highest, p.value, p.doc));
@@ -141,10 +148,54 @@ std::string schema_text() {
     }
     out += key_text(key);
   }
-  out += "\nModels, and the parameters that [model] takes for them\n";
+  out +=
+      "\n[parameters]\n"
+      "  NAME (number)\n"
+      "      A constant of all formulas of the case; on the command line parameters.NAME=2.\n"
+      "\n[initial], in place of model.initial\n"
+      "  rho, u, T, … (number or formula in x, y, z; a list for a vector)\n"
+      "      The variables of the model, listed below with their defaults in brackets.\n"
+      "  [[initial.part]]: weight (formula, default 1) and variables\n"
+      "      A term of a sum of states; a sum replaces the variables of [initial].\n"
+      "  [[initial.region]]: where (condition, \"x < 0.5\") and variables or [[initial.region.part]]\n"
+      "      Replaces variables of the state below where the condition holds; the last region is uppermost.\n"
+      "\nModels, and the parameters that [model] takes for them\n";
   for (const model_entry* model : model_entries()) out += describe(*model);
   return out;
 }
+
+namespace {
+
+void add_state(std::string& out, const state_formulas& state) {
+  for (const auto& [name, formulas] : state) {
+    std::vector<std::string> texts;
+    for (const auto& formula : formulas) texts.push_back(quoted(formula));
+    const std::string list = fmt::format("{}", fmt::join(texts, ", "));
+    out +=
+        formulas.size() == 1 ? fmt::format("{} = {}\n", name, list) : fmt::format("{} = [{}]\n", name, list);
+  }
+}
+
+void add_parts(std::string& out, const std::string& table, const std::vector<initial_part>& parts) {
+  for (const auto& part : parts) {
+    out += fmt::format("\n[[{}.part]]\nweight = {}\n", table, quoted(part.weight));
+    add_state(out, part.state);
+  }
+}
+
+void add_initial_table(std::string& out, const initial_table& initial) {
+  if (initial.empty()) return;
+  out += "\n[initial]\n";
+  add_state(out, initial.state);
+  add_parts(out, "initial", initial.parts);
+  for (const auto& region : initial.regions) {
+    out += fmt::format("\n[[initial.region]]\nwhere = {}\n", quoted(region.where));
+    add_state(out, region.state);
+    add_parts(out, "initial.region", region.parts);
+  }
+}
+
+}  // namespace
 
 std::string to_toml(const case_config& config) {
   const model_entry* model = find_model(config.model.name);
@@ -156,17 +207,26 @@ std::string to_toml(const case_config& config) {
       out += fmt::format("{} = {}\n", name, number_text(value));
     for (const auto& [name, value] : config.model.texts) out += fmt::format("{} = {}\n", name, quoted(value));
   };
+  const auto add_constants = [&] {
+    if (config.constants.empty()) return;
+    out += "\n[parameters]\n";
+    for (const auto& [name, value] : config.constants)
+      out += fmt::format("{} = {}\n", name, number_text(value));
+  };
   for (const case_key& key : case_schema()) {
     const case_value value = key.load(config);
-    if ((model != nullptr && !applies(key, *model)) || std::holds_alternative<std::monostate>(value))
+    if ((model != nullptr && !applies(key, *model)) || std::holds_alternative<std::monostate>(value) ||
+        (key.path == "model.initial" && !config.prescribed.empty()))
       continue;
     if (table_of(key.path) != table) {
+      if (table.empty()) add_constants();
       close_table();
       table = table_of(key.path);
       out += fmt::format("\n[{}]\n", table);
     }
     out += fmt::format("{} = {}\n", name_of(key.path), to_toml(value));
   }
+  add_initial_table(out, config.prescribed);
   return out;
 }
 

@@ -3,6 +3,8 @@
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/initial_reader.hpp>
+#include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/model/expression.hpp>
 
@@ -23,13 +25,14 @@ class resolver {
 
   case_config resolve() {
     config_.source = file_;
-    for (const auto& [path, raw] : text_.values) config_.places[path] = raw.place;
+    note_places();
     check_tables();
     find_the_model();
     check_known();
+    take_constants();
     for (const case_key& key : case_schema()) take(key);
-    if (config_.model.initial.empty()) config_.model.initial = initial_names(*model_).front();
     take_parameters();
+    take_initial_data();
     check_together();
     return config_;
   }
@@ -46,10 +49,40 @@ class resolver {
     return found != text_.tables.end() ? found->second : source_place{file_, 1, 1};
   }
 
+  void note_places() {
+    for (const auto& [name, place] : text_.tables) config_.places[name] = place;
+    for (const auto& [path, raw] : text_.values)
+      config_.places[path] = is_in(path, "initial") ? place_of_formula(raw) : raw.place;
+  }
+
+  /// A formula begins after its quotation mark; other text has no columns.
+  static source_place place_of_formula(const raw_value& raw) {
+    source_place place = raw.value_place;
+    if (place.column > 0 && std::holds_alternative<std::string>(raw.value)) ++place.column;
+    return place;
+  }
+
+  /// The table [initial], or a name of data of the model, by default its first.
+  void take_initial_data() {
+    const auto equation = make_model(config_);
+    config_.prescribed = read_initial_table(text_, *equation, model_->name);
+    const bool named = !config_.model.initial.empty();
+    if (config_.prescribed.empty()) {
+      if (!named) config_.model.initial = initial_names(*model_).front();
+      return;
+    }
+    if (named)
+      throw input_error(find("model.initial")->place,
+                        "'model.initial' conflicts with the table [initial] (both give the initial data); "
+                        "remove one of them");
+    prescribed_data(config_, *equation, [this](const std::string& path) { return place_of(config_, path); });
+  }
+
   void check_tables() const {
-    std::vector<std::string> names = {"model", "space", "boundary", "velocity", "time", "output"};
+    std::vector<std::string> names = {"parameters", "model",    "initial", "space",
+                                      "boundary",   "velocity", "time",    "output"};
     for (const auto& [name, place] : text_.tables)
-      if (std::find(names.begin(), names.end(), name) == names.end())
+      if (std::find(names.begin(), names.end(), name.substr(0, name.find('.'))) == names.end())
         throw input_error(place, fmt::format("unknown table [{}] (a case has no such table); {}", shown(name),
                                              suggest(name, names)));
     for (const auto& name : names)
@@ -75,7 +108,9 @@ class resolver {
   void check_known() const {
     const auto valid = valid_paths();
     for (const auto& [path, raw] : text_.values) {
-      if (std::find(valid.begin(), valid.end(), path) != valid.end()) continue;
+      if (std::find(valid.begin(), valid.end(), path) != valid.end() || is_in(path, "parameters") ||
+          is_in(path, "initial"))
+        continue;
       for (const case_key& key : case_schema())
         if (key.path == path)
           throw input_error(raw.place, fmt::format("key '{}' is not used (model '{}' {}); remove it", path,
@@ -83,6 +118,10 @@ class resolver {
       throw input_error(raw.place, fmt::format("unknown key '{}' (no such key for model '{}'); {}",
                                                shown(path), model_->name, suggest_path(path, valid)));
     }
+  }
+
+  static bool is_in(const std::string& path, const std::string& table) {
+    return path.rfind(table + ".", 0) == 0;
   }
 
   static std::string unused_because(key_scope scope) {
@@ -126,6 +165,18 @@ class resolver {
                        key.type == key_type::integer || key.type == key_type::integers ? "100" : "1.0");
   }
 
+  /// The table [parameters].
+  void take_constants() {
+    for (const auto& [path, raw] : text_.values) {
+      if (!is_in(path, "parameters")) continue;
+      const std::string name = path.substr(path.find('.') + 1);
+      if (const std::string why = why_not_a_constant(name); !why.empty())
+        throw input_error(raw.place, fmt::format("parameter '{}' cannot be used ({}); choose another name",
+                                                 shown(name), why));
+      config_.constants[name] = finite_number(raw, path, type_text(key_type::number));
+    }
+  }
+
   void take_parameters() {
     for (const model_parameter& p : model_->parameters) {
       double value = p.value;
@@ -142,7 +193,7 @@ class resolver {
     }
     for (const model_text& t : model_->texts) {
       const raw_value* raw = find("model." + t.name);
-      config_.model.texts[t.name] = raw == nullptr ? t.value : to_text(t, *raw);
+      config_.model.texts[t.name] = raw == nullptr ? t.value : to_text(t, *raw, config_.constants);
     }
   }
 
@@ -233,12 +284,11 @@ class resolver {
   // At centres and edges of cells along the diagonal, up to a thousand points; the run checks every cell.
   void check_epsilon() const {
     const raw_value* raw = find("model.epsilon");
-    source_place place = raw != nullptr ? raw->value_place : source_place{file_, 1, 1};
-    // A formula begins after its quotation mark; other text has no columns.
-    if (raw != nullptr && place.column > 0) ++place.column;
+    const source_place place = raw != nullptr ? place_of_formula(*raw) : source_place{file_, 1, 1};
     const bool on_mesh = has_space(*model_);
     const auto dimensions = on_mesh ? config_.space.domain.size() : 0;
-    const expression formula(config_.model.epsilon, place, formula_of_position(static_cast<int>(dimensions)));
+    const expression formula(config_.model.epsilon, place,
+                             formula_of_position(static_cast<int>(dimensions), true, config_.constants));
     if (!formula.is_constant() && !on_mesh)
       throw input_error(
           place,

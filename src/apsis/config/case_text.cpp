@@ -59,6 +59,33 @@ raw_value convert(const toml::node& node, const source_place& place) {
   return raw;
 }
 
+void add_value(case_text& out, const std::string& path, const toml::key& key, const toml::node& node,
+               const std::string& file) {
+  raw_value raw = convert(node, place_of(key.source(), file));
+  raw.value_place = place_of(node.source(), file);
+  out.values.emplace(path, std::move(raw));
+}
+
+/// Levels of tables below one that may have them, [[initial.region.part]].
+constexpr int most_levels = 4;
+
+/// Adds a value, or the values of a table or of a list of tables, whose items are numbered from 1:
+/// "initial.region.1.T".
+void add_nested(case_text& out, const std::string& path, const toml::key& key, const toml::node& node,
+                const std::string& file, int levels) {
+  const toml::array* list = node.as_array();
+  const bool tables = list != nullptr && list->is_array_of_tables();
+  if (levels == 0 || (node.as_table() == nullptr && !tables)) return add_value(out, path, key, node, file);
+  const auto add_table = [&](const std::string& name, const toml::table& table) {
+    out.tables.emplace(name, place_of(table.source(), file));
+    for (const auto& [inner, value] : table)
+      add_nested(out, fmt::format("{}.{}", name, inner.str()), inner, value, file, levels - 1);
+  };
+  if (!tables) return add_table(path, *node.as_table());
+  for (std::size_t k = 0; k < list->size(); ++k)
+    add_table(fmt::format("{}.{}", path, k + 1), *list->get(k)->as_table());
+}
+
 std::string in_quotes(const std::string& value) {
   std::string out(1, '"');
   for (const char c : value) {
@@ -105,30 +132,20 @@ std::string shown(std::string_view text, std::size_t longest) {
 case_text read_case_text(std::string_view text, const std::string& file) {
   check_size(text, file);
   case_text out;
-  const auto add = [&](const std::string& path, const toml::key& key, const toml::node& node) {
-    raw_value raw = convert(node, place_of(key.source(), file));
-    raw.value_place = place_of(node.source(), file);
-    out.values.emplace(path, std::move(raw));
-  };
   try {
     const toml::table root = toml::parse(text, file);
     for (const auto& [key, node] : root) {
       const std::string name(key.str());
       const toml::table* table = node.as_table();
       if (table == nullptr) {
-        add(name, key, node);
+        add_value(out, name, key, node, file);
         continue;
       }
       out.tables.emplace(name, place_of(node.source(), file));
-      for (const auto& [inner, value] : *table) {
-        const std::string path = fmt::format("{}.{}", name, inner.str());
-        const toml::table* side = name == "boundary" ? value.as_table() : nullptr;
-        if (side == nullptr) {
-          add(path, inner, value);
-        } else {
-          for (const auto& [last, item] : *side) add(fmt::format("{}.{}", path, last.str()), last, item);
-        }
-      }
+      const bool nested = name == "boundary" || name == "initial";
+      for (const auto& [inner, value] : *table)
+        add_nested(out, fmt::format("{}.{}", name, inner.str()), inner, value, file,
+                   nested ? most_levels : 0);
     }
   } catch (const toml::parse_error& e) {
     throw input_error(place_of(e.source(), file), syntax_message(e.description()));

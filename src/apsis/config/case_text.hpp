@@ -21,10 +21,10 @@ struct raw_value {
   source_place value_place;  ///< place of the value
 };
 
-/// Keys of a case by dotted path, and places of its tables.
+/// Keys of a case by dotted path, and places of its tables. Items of a list of tables are numbered from 1.
 struct case_text {
   std::map<std::string, raw_value> values;     ///< by path, "space.cells"
-  std::map<std::string, source_place> tables;  ///< by name, "space"
+  std::map<std::string, source_place> tables;  ///< by dotted name, "space", "initial.region.1"
 };
 
 constexpr std::size_t longest_case_file = 1'000'000;  ///< bytes

@@ -143,7 +143,7 @@ std::vector<interval> intervals(const case_key& key, const raw_value& raw) {
 
 }  // namespace
 
-std::string to_text(const model_text& text, const raw_value& raw) {
+std::string to_text(const model_text& text, const raw_value& raw, const formula_constants& constants) {
   const std::string path = "model." + text.name;
   const auto* value = std::get_if<std::string>(&raw.value);
   if (value == nullptr) refuse(raw, path, "a text is needed", type_advice(key_type::text));
@@ -153,7 +153,7 @@ std::string to_text(const model_text& text, const raw_value& raw) {
   source_place place = raw.value_place;
   if (place.column > 0) ++place.column;  // after the quotation mark
   try {
-    const expression formula(*value, place, formula_kind{{text.variable}, false});
+    const expression formula(*value, place, formula_kind{{text.variable}, false, constants});
   } catch (const input_error&) {
     // A single word is more likely a misspelled name than a formula.
     const auto in_word = [](char c) {

@@ -12,9 +12,9 @@ namespace apsis {
 /// place of the key.
 case_value to_value(const case_key& key, const raw_value& raw, const case_config& so_far);
 
-/// Returns the value of a string option: a predefined name or a formula. Throws input_error at the place of
-/// the key, or within the formula.
-std::string to_text(const model_text& text, const raw_value& raw);
+/// Returns the value of a string option: a predefined name or a formula, which may use `constants`. Throws
+/// input_error at the place of the key, or within the formula.
+std::string to_text(const model_text& text, const raw_value& raw, const formula_constants& constants);
 
 /// Returns the suggestion with an example value of a type: "write for example 100".
 std::string type_advice(key_type type);

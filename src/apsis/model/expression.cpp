@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -17,11 +18,18 @@ namespace apsis {
 
 namespace {
 
-std::vector<std::string> known_names(std::vector<std::string> variables) {
-  for (const char* name : {"pi", "e", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh",
-                           "exp", "log", "log10", "sqrt", "abs", "min", "max"})
-    variables.emplace_back(name);
-  return variables;
+const std::vector<std::string>& names_of_the_language() {
+  static const std::vector<std::string> names = {"pi",   "e",     "sin",  "cos",  "tan",  "asin",
+                                                 "acos", "atan",  "sinh", "cosh", "tanh", "exp",
+                                                 "log",  "log10", "sqrt", "abs",  "min",  "max"};
+  return names;
+}
+
+std::vector<std::string> known_names(const formula_kind& kind) {
+  std::vector<std::string> names = kind.variables;
+  for (const auto& [name, value] : kind.constants) names.push_back(name);
+  names.insert(names.end(), names_of_the_language().begin(), names_of_the_language().end());
+  return names;
 }
 
 // Own definitions, since the built-in functions of muParser changed between versions (log).
@@ -145,10 +153,10 @@ std::string explain(const mu::ParserError& e) {
 /// time.
 class variable_parser {
  public:
-  variable_parser(const std::string& text, const std::vector<std::string>& variables)
-      : values_(variables.size()) {
+  variable_parser(const std::string& text, const formula_kind& kind) : values_(kind.variables.size()) {
     define_language(parser_);
-    for (std::size_t k = 0; k < variables.size(); ++k) parser_.DefineVar(variables[k], &values_[k]);
+    for (std::size_t k = 0; k < values_.size(); ++k) parser_.DefineVar(kind.variables[k], &values_[k]);
+    for (const auto& [name, value] : kind.constants) parser_.DefineConst(name, value);
     parser_.SetExpr(text);
   }
 
@@ -168,9 +176,8 @@ class variable_parser {
 /// times as slow, bench/micro/expression.cpp).
 class parser_pool {
  public:
-  parser_pool(const std::string& text, const std::vector<std::string>& variables)
-      : text_(text), variables_(variables) {
-    slots_.front().parser = std::make_unique<variable_parser>(text, variables);
+  parser_pool(const std::string& text, const formula_kind& kind) : text_(text), kind_(kind) {
+    slots_.front().parser = std::make_unique<variable_parser>(text, kind);
   }
 
   /// The first parser, for the constructor of an expression.
@@ -179,7 +186,7 @@ class parser_pool {
   double evaluate(std::span<const double> variables) {
     slot& mine = acquire();
     const release_at_exit release{mine};
-    if (!mine.parser) mine.parser = std::make_unique<variable_parser>(text_, variables_);
+    if (!mine.parser) mine.parser = std::make_unique<variable_parser>(text_, kind_);
     return mine.parser->evaluate(variables);
   }
 
@@ -203,7 +210,7 @@ class parser_pool {
   }
 
   std::string text_;
-  std::vector<std::string> variables_;
+  formula_kind kind_;
   std::array<slot, 64> slots_;
 };
 
@@ -216,14 +223,27 @@ std::string values_text(const std::vector<std::string>& names, std::span<const d
 
 }  // namespace
 
-formula_kind formula_of_position(int dimensions, bool nonnegative) {
+formula_kind formula_of_position(int dimensions, bool nonnegative, const formula_constants& constants) {
   const std::vector<std::string> all = {"x", "y", "z"};
-  return {{all.begin(), all.begin() + std::clamp(dimensions, 1, 3)}, nonnegative};
+  return {{all.begin(), all.begin() + std::clamp(dimensions, 1, 3)}, nonnegative, constants};
+}
+
+std::string why_not_a_constant(const std::string& name) {
+  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
+      !std::all_of(name.begin(), name.end(), in_name))
+    return "a name is a letter followed by letters, digits and underscores";
+  const auto& language = names_of_the_language();
+  if (std::find(language.begin(), language.end(), name) != language.end())
+    return "formulas have a function or constant of this name";
+  for (const char* variable : {"x", "y", "z", "t", "u", "v", "v_x", "v_y", "v_z"})
+    if (name == variable) return "it is a variable of formulas";
+  return "";
 }
 
 struct expression::impl {
   impl(const std::string& words, source_place where, formula_kind what)
-      : text(words), place(std::move(where)), kind(std::move(what)), parsers(text, kind.variables) {}
+      : text(words), place(std::move(where)), kind(std::move(what)), parsers(text, kind) {}
 
   std::string text;
   source_place place;
@@ -244,7 +264,7 @@ expression::expression(const std::string& text, const source_place& place, const
     if (unknown && text.rfind(e.GetToken(), at) != std::string::npos) at = text.rfind(e.GetToken(), at);
     at = std::min(at, text.size() - 1);
     fail(text, place, at, explain(e),
-         unknown ? suggest(e.GetToken(), known_names(kind.variables)) : "check the formula");
+         unknown ? suggest(e.GetToken(), known_names(kind)) : "check the formula");
   }
   if (impl_->parsers.first().parser().GetNumResults() != 1)
     fail(text, place, text.find(','), "a comma outside a function", "write one formula");
@@ -263,7 +283,8 @@ double expression::value(std::span<const double> variables) const {
 }
 
 double expression::evaluate(std::span<const double> variables) const {
-  const double result = value(variables);
+  double result = value(variables);
+  if (std::isnan(result)) result = std::abs(result);  // NaN is printed without a sign
   if (!std::isfinite(result) || (impl_->kind.nonnegative && result < 0.0))
     throw input_error(
         impl_->place,

@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -10,15 +11,24 @@
 
 namespace apsis {
 
-/// Variables of a formula and constraint on its values.
+/// Values of constants of the user by name, such as the table [parameters] of a case file.
+using formula_constants = std::map<std::string, double>;
+
+/// Names of a formula and constraint on its values.
 struct formula_kind {
   std::vector<std::string> variables = {"x"};  ///< its free names, at least one
   bool nonnegative = true;                     ///< evaluate() refuses values below 0
+  formula_constants constants = {};            ///< in addition to pi and e
 };
 
 /// Returns the kind of formulas in the coordinates of D = 0 … 3 space dimensions: x; x and y; x, y and z (x
 /// for D = 0).
-formula_kind formula_of_position(int dimensions, bool nonnegative = true);
+formula_kind formula_of_position(int dimensions, bool nonnegative = true,
+                                 const formula_constants& constants = {});
+
+/// Returns why a constant of a formula cannot have this name, "" if it can: it is not an identifier, or the
+/// name of a function, of a constant, or of a variable of some kind of formula.
+std::string why_not_a_constant(const std::string& name);
 
 /// A formula for coefficients that a case file gives as text (ε(x), a flux F(u)); dimensionless. Operators
 /// + - * / ^, comparisons and `a ? b : c`; functions sin cos tan asin acos atan sinh cosh tanh exp log

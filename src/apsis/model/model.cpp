@@ -8,6 +8,10 @@
 
 namespace apsis {
 
+std::vector<data_form> model::data_forms() const {
+  return {};
+}
+
 const velocity_set& model::velocities() const {
   static const velocity_set none;
   return none;

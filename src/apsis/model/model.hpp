@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/model/data_form.hpp>
 #include <apsis/model/point_collision.hpp>
 #include <apsis/phase/position.hpp>
 #include <apsis/phase/velocity_set.hpp>
@@ -88,6 +89,9 @@ class model {
 
   /// Returns the initial data, at least one; the first is the default.
   virtual const std::vector<initial_data>& initial() const = 0;
+  /// Returns the ways to prescribe a row by variables, the preferred one first; none by default. The model
+  /// must outlive them.
+  virtual std::vector<data_form> data_forms() const;
 
   /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could.
   virtual unsupported_initial_data check_supported(const double* u) const;

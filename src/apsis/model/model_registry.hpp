@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/model/expression.hpp>
 #include <apsis/model/model.hpp>
 
 #include <map>
@@ -47,6 +48,7 @@ struct model_config {
   std::map<std::string, double> parameters;  ///< complete: defaults filled in
   std::map<std::string, std::string> texts;  ///< complete; each a choice or a valid formula
   velocity_config velocity;                  ///< only where the entry has_velocity_grid
+  formula_constants constants = {};          ///< constants of formulas
 };
 
 /// One equation of the registry: a file of model/models/ defines `extern const model_entry model_<file>`.

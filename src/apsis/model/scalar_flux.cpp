@@ -11,12 +11,13 @@ const std::vector<std::string>& scalar_flux::names() {
   return all;
 }
 
-scalar_flux::scalar_flux(const std::string& text, double slope, double viscosity_ratio)
+scalar_flux::scalar_flux(const std::string& text, double slope, double viscosity_ratio,
+                         const formula_constants& constants)
     : text_(text), b_(slope), M_(viscosity_ratio) {
   const auto found = std::find(names().begin(), names().end(), text);
   kind_ = static_cast<kind>(found - names().begin());  // past the last name: a formula
   if (kind_ == kind::formula)
-    formula_ = std::make_unique<expression>(text, source_place{}, formula_kind{{"u"}, false});
+    formula_ = std::make_unique<expression>(text, source_place{}, formula_kind{{"u"}, false, constants});
 }
 
 double scalar_flux::operator()(double u) const {

@@ -16,7 +16,8 @@ class scalar_flux {
   static const std::vector<std::string>& names();
 
   /// `text` is a predefined name or a formula in u; `slope` is b, `viscosity_ratio` M. Throws input_error.
-  scalar_flux(const std::string& text, double slope, double viscosity_ratio);
+  scalar_flux(const std::string& text, double slope, double viscosity_ratio,
+              const formula_constants& constants = {});
 
   /// Returns F(u).
   double operator()(double u) const;

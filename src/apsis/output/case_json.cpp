@@ -22,6 +22,34 @@ struct to_json_visitor {
   }
 };
 
+nlohmann::ordered_json to_json(const state_formulas& state) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::object();
+  for (const auto& [name, formulas] : state)
+    out[name] =
+        formulas.size() == 1 ? nlohmann::ordered_json(formulas.front()) : nlohmann::ordered_json(formulas);
+  return out;
+}
+
+void add_parts(nlohmann::ordered_json& out, const std::vector<initial_part>& parts) {
+  for (const auto& part : parts) {
+    nlohmann::ordered_json one = {{"weight", part.weight}};
+    one.update(to_json(part.state));
+    out["part"].push_back(one);
+  }
+}
+
+nlohmann::ordered_json to_json(const initial_table& initial) {
+  nlohmann::ordered_json out = to_json(initial.state);
+  add_parts(out, initial.parts);
+  for (const auto& region : initial.regions) {
+    nlohmann::ordered_json one = {{"where", region.where}};
+    one.update(to_json(region.state));
+    add_parts(one, region.parts);
+    out["region"].push_back(one);
+  }
+  return out;
+}
+
 }  // namespace
 
 nlohmann::ordered_json to_json(const case_config& config) {
@@ -29,7 +57,8 @@ nlohmann::ordered_json to_json(const case_config& config) {
   nlohmann::ordered_json out = {{"source", config.source}};
   for (const case_key& key : case_schema()) {
     const case_value value = key.load(config);
-    if ((model != nullptr && !applies(key, *model)) || std::holds_alternative<std::monostate>(value))
+    if ((model != nullptr && !applies(key, *model)) || std::holds_alternative<std::monostate>(value) ||
+        (key.path == "model.initial" && !config.prescribed.empty()))
       continue;
     nlohmann::ordered_json* place = &out;  // one object for each table of the path
     for (std::size_t from = 0; from != std::string::npos;) {
@@ -41,6 +70,8 @@ nlohmann::ordered_json to_json(const case_config& config) {
   }
   for (const auto& [name, value] : config.model.parameters) out["model"][name] = value;
   for (const auto& [name, value] : config.model.texts) out["model"][name] = value;
+  if (!config.constants.empty()) out["parameters"] = config.constants;
+  if (!config.prescribed.empty()) out["initial"] = to_json(config.prescribed);
   return out;
 }
 

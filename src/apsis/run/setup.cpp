@@ -1,5 +1,6 @@
 #include <apsis/run/setup.hpp>
 
+#include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/convexity.hpp>
@@ -18,7 +19,8 @@ namespace {
 
 /// Throws an input error at the place of a key, if it is known.
 [[noreturn]] void refuse(const case_config& config, const std::string& key, const std::string& message) {
-  const auto place = config.places.find(key);
+  const bool prescribed = key == "model.initial" && !config.prescribed.empty();
+  const auto place = config.places.find(prescribed ? "initial" : key);
   if (place == config.places.end()) throw input_error(message);
   throw input_error(place->second, message);
 }
@@ -57,6 +59,7 @@ run_setup::run_setup(const case_config& config)
   check_method();
   if (has_space()) build_space();
   set_epsilon();
+  set_prescribed_data();
   if (method_->kind == method_kind::explicit_only) builder_.with_explicit_collision();
 }
 
@@ -79,7 +82,7 @@ void run_setup::set_epsilon() {
   const auto place = config_.places.find("model.epsilon");
   const auto formula = std::make_shared<const expression>(
       config_.model.epsilon, place == config_.places.end() ? source_place{} : place->second,
-      formula_of_position(equation->space_dimensions()));
+      formula_of_position(equation->space_dimensions(), true, config_.constants));
   builder_.with_epsilon([formula](const position& x) { return formula->evaluate(x); });
 }
 
@@ -144,7 +147,20 @@ std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
   return builder_.build();
 }
 
+void run_setup::set_prescribed_data() {
+  if (config_.prescribed.empty()) return;
+  const auto given = std::make_shared<const prescribed_data>(
+      config_, *equation, [this](const std::string& path) { return place_of(config_, path); });
+  const std::vector<double> jumps = has_space() ? given->jumps(builder_.mesh()) : std::vector<double>{};
+  prescribed_ = {"initial",
+                 "table [initial]",
+                 [given](const position& x, std::span<double> u) { (*given)(x, u); },
+                 {},
+                 jumps};
+}
+
 const initial_data& run_setup::data() const {
+  if (!config_.prescribed.empty()) return prescribed_;
   const auto& all = equation->initial();
   const auto found = std::find_if(all.begin(), all.end(), [this](const auto& item) {
     return config_.model.initial.empty() || item.name == config_.model.initial;

@@ -68,12 +68,14 @@ class run_setup {
   const initial_data& data() const;
   void build_space();
   void set_epsilon();
+  void set_prescribed_data();
   void check_method();
   void check_startup() const;
   void check_tolerance() const;
 
   case_config config_;
   problem_builder builder_;
+  initial_data prescribed_;  ///< of the table [initial]
   const method* method_ = nullptr;
   double ssp_coefficient_ = 0.0;
 };

@@ -108,6 +108,13 @@ class bgk_model final : public relaxation_model {
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }
+  std::vector<data_form> data_forms() const override {
+    return {{"Maxwellian",
+             {{"rho", "density > 0 (dimensionless)"},
+              {"u", "bulk velocity (dimensionless)", grid_.dimensions(), 0.0},
+              {"T", "temperature > 0 (dimensionless)"}},
+             [this](std::span<const double> given, std::span<double> f) { return maxwellian(given, f); }}};
+  }
 
   unsupported_initial_data check_supported(const double* f) const override {
     double omega[5];
@@ -115,7 +122,7 @@ class bgk_model final : public relaxation_model {
     const fluid_state s = to_fluid_state(omega, grid_.dimensions());
     if (!s.admissible())
       return {"model.initial", fmt::format("the initial data have no Maxwellian (density {:.6g}, temperature "
-                                           "{:.6g})",
+                                           "{:.6g}); change them",
                                            s.rho, s.T)};
     const double width = std::sqrt(s.T);
     double speed = 0.0;
@@ -152,6 +159,23 @@ class bgk_model final : public relaxation_model {
     if (choice_ == equilibrium_choice::formula || formula_has_exact_moments(grid_, state)) return true;
     // The midpoint rule is spectrally accurate: either the defect is round-off or the grid is too coarse.
     return moment_defect(grid_, m, omega, to_fluid_state(omega, grid_.dimensions())) <= round_off;
+  }
+
+  /// f ← the equilibrium of (ρ, u, T), whose discrete moments are those of the state to rounding.
+  std::string maxwellian(std::span<const double> given, std::span<double> f) const {
+    const auto d = static_cast<std::size_t>(grid_.dimensions());
+    const double rho = given[0], T = given[d + 1];
+    if (!(rho > 0.0)) return fmt::format("density {:.6g} is not positive", rho);
+    if (!(T > 0.0)) return fmt::format("temperature {:.6g} is not positive", T);
+    double omega[5];
+    double square = 0.0;
+    omega[0] = rho;
+    for (std::size_t k = 1; k <= d; ++k) {
+      omega[k] = rho * given[k];
+      square += given[k] * given[k];
+    }
+    omega[d + 1] = 0.5 * rho * (square + static_cast<double>(d) * T);
+    return equilibrium(omega, f.data()) ? "" : why_inadmissible(omega);
   }
 
   /// f ← a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃], the form of all data of the paper, with ũ along x.

@@ -82,6 +82,32 @@ class broadwell_model final : public relaxation_model {
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }
+  std::vector<data_form> data_forms() const override {
+    const data_variable rho{"rho", "density (dimensionless)"}, m{"m", "momentum (dimensionless)"};
+    return {{"equilibrium",
+             {rho, m},
+             [this](std::span<const double> given, std::span<double> f) {
+               if (!(std::abs(given[1]) <= given[0]))
+                 return fmt::format("no equilibrium has density {:.6g} and momentum {:.6g}, since |m| > rho",
+                                    given[0], given[1]);
+               equilibrium(given.data(), f.data());
+               return std::string();
+             }},
+            {"moments",
+             {rho, m, {"z", "momentum flux (dimensionless)"}},
+             [](std::span<const double> given, std::span<double> f) {
+               from_moments({given[0], given[1], given[2]}, f);
+               return std::string();
+             }},
+            {"densities of particles",
+             {{"f_plus", "of speed 1 (dimensionless)"},
+              {"f_0", "at rest (dimensionless)"},
+              {"f_minus", "of speed -1 (dimensionless)"}},
+             [](std::span<const double> given, std::span<double> f) {
+               std::copy(given.begin(), given.end(), f.begin());
+               return std::string();
+             }}};
+  }
 
  private:
   static void from_moments(const broadwell_moments& w, std::span<double> f) {

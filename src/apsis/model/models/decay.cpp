@@ -31,6 +31,12 @@ class decay_model final : public general_model {
   std::vector<field_name> fields() const override { return {{"u", "u (dimensionless)"}}; }
   void macroscopic(const double* u, double* values) const override { values[0] = u[0]; }
   const std::vector<initial_data>& initial() const override { return initial_; }
+  std::vector<data_form> data_forms() const override {
+    return {{"state", {{"u", "u (dimensionless)"}}, [](std::span<const double> given, std::span<double> u) {
+               u[0] = given[0];
+               return std::string();
+             }}};
+  }
 
  private:
   double rate_;

@@ -55,6 +55,21 @@ class ode_model final : public relaxation_model {
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }
+  std::vector<data_form> data_forms() const override {
+    return {{"equilibrium",
+             {{"u1", "u1 (dimensionless)"}},
+             [this](std::span<const double> given, std::span<double> u) {
+               equilibrium(given.data(), u.data());
+               return std::string();
+             }},
+            {"state",
+             {{"u1", "u1 (dimensionless)"}, {"u2", "u2 (dimensionless)"}},
+             [](std::span<const double> given, std::span<double> u) {
+               u[0] = given[0];
+               u[1] = given[1];
+               return std::string();
+             }}};
+  }
 
  private:
   std::vector<initial_data> initial_;

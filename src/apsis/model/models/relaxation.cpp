@@ -17,8 +17,8 @@ class relaxation_system final : public relaxation_model {
  public:
   explicit relaxation_system(const model_config& config)
       : a_(config.parameters.at("speed")),
-        flux_(config.texts.at("flux"), config.parameters.at("slope"),
-              config.parameters.at("viscosity_ratio")),
+        flux_(config.texts.at("flux"), config.parameters.at("slope"), config.parameters.at("viscosity_ratio"),
+              config.constants),
         velocities_({{a_, -a_}}, {1.0, 1.0}) {
     make_initial_data(config.parameters.at("left"), config.parameters.at("right"),
                       config.parameters.at("jump"));
@@ -52,6 +52,20 @@ class relaxation_system final : public relaxation_model {
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }
+  std::vector<data_form> data_forms() const override {
+    const data_variable u1{"u1", "conserved quantity (dimensionless)"};
+    return {{"equilibrium, u2 = F(u1)",
+             {u1},
+             [this](std::span<const double> given, std::span<double> f) {
+               return equilibrium(given.data(), f.data()) ? "" : why_inadmissible(given.data());
+             }},
+            {"u1 and its flux u2",
+             {u1, {"u2", "flux (dimensionless)"}},
+             [this](std::span<const double> given, std::span<double> f) {
+               from_fields(given[0], given[1], f.data());
+               return std::string();
+             }}};
+  }
 
   /// The subcharacteristic condition |F'| ≤ a (Liu, Comm. Math. Phys. 108, 1987), without which the limit
   /// ε → 0 is unstable.

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/model/expression.hpp>
+#include <apsis/phase/grid.hpp>
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// The initial data of the table [initial]: a row at every point of space. Thread-safe.
+class prescribed_data {
+ public:
+  /// Returns the place of a key of the case, "initial.region.1.T".
+  using places = std::function<source_place(const std::string& path)>;
+
+  /// Compiles the formulas of a case with a table [initial]; `equation`, its model, must outlive this object.
+  /// Throws input_error: a formula that cannot be read, or variables that are unknown, missing, or of the
+  /// wrong size.
+  prescribed_data(const case_config& config, const model& equation, const places& place_of);
+  ~prescribed_data();
+  prescribed_data(prescribed_data&&) noexcept;  ///< the source can then only be destroyed
+
+  /// u ← the row at x. Throws input_error with the place of a formula whose value is not finite, or of a
+  /// state that has no row (ρ ≤ 0, T ≤ 0).
+  void operator()(const position& x, std::span<double> u) const;
+
+  /// Returns the ends of regions on a line in increasing order, to the last bit; empty in several dimensions.
+  /// Regions thinner than about a sixtieth of a cell may be missed. Throws input_error if a region contains
+  /// no point of the mesh.
+  std::vector<double> jumps(const grid& mesh) const;
+
+ private:
+  class compiler;
+  struct state;
+  struct region;
+  const model* equation_;
+  std::unique_ptr<state> base_;
+  std::vector<region> regions_;
+  int dimensions_ = 0;
+};
+
+}  // namespace apsis

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// A variable that prescribes initial data, such as a density or a bulk velocity.
+struct data_variable {
+  std::string name;                  ///< key of the table [initial], "rho"
+  std::string doc;                   ///< meaning with unit
+  int size = 1;                      ///< number of components of a vector
+  std::optional<double> value = {};  ///< default of every component; the variable is required without it
+};
+
+/// One way to prescribe a row: a Maxwellian by density, velocity and temperature, or the components.
+struct data_form {
+  std::string description;               ///< "Maxwellian"
+  std::vector<data_variable> variables;  ///< in the order of the values below, vectors component by component
+  /// u ← the row with these values of the variables. Returns why there is none ("density -1 is not
+  /// positive"), or "".
+  std::function<std::string(std::span<const double> values, std::span<double> u)> row;
+};
+
+}  // namespace apsis

@@ -66,8 +66,13 @@ std::optional<limit_equations> written_limit(const case_config& config) {
   if (config.model.name == "ode") return ode();
   if (config.model.name == "broadwell") return broadwell();
   if (config.model.name == "relaxation") return conservation_law(config);
-  if (config.model.name == "bgk")
-    return euler(static_cast<int>(config.model.parameters.at("velocity_dimensions")));
+  if (config.model.name == "bgk") {
+    const auto& given = config.model.parameters;
+    const double dimensions = given.at("velocity_dimensions");
+    const auto degrees = given.find("degrees_of_freedom");
+    const bool resolved = degrees == given.end() || degrees->second == 0.0 || degrees->second == dimensions;
+    return resolved ? std::optional(euler(static_cast<int>(dimensions))) : std::nullopt;
+  }
   return std::nullopt;
 }
 

@@ -139,8 +139,7 @@ TEST(models, the_ode_starts_at_the_given_values) {
 
 TEST(models, bgk_reports_how_its_velocity_grid_must_change) {
   const auto complaint = [](double max, int points) {
-    apsis::model_config config;
-    config.parameters = {{"velocity_dimensions", 1.0}};
+    apsis::model_config config = apsis::default_config(*apsis::find_model("bgk"));
     config.velocity = {max, points, apsis::equilibrium_choice::automatic};
     const auto m = apsis::find_model("bgk")->make(config);
     std::vector<double> u(static_cast<std::size_t>(m->components()));

@@ -7,7 +7,7 @@ import apsis
 import h5py
 import numpy as np
 import pytest
-from apsis.plot import distribution_figure, fields_figure, read_result
+from apsis.plot import distribution_figure, fields_figure, read_result, results
 from apsis.plot.style import plt
 from apsis.report import make_report
 
@@ -140,3 +140,15 @@ def test_results_of_one_velocity_dimension_are_as_they_were(tmp_path):
         assert sorted(h5) == ["epsilon", "f", "fields", "v", "x"]
     figure = result.plot("distribution")
     assert figure.axes[0].get_ylabel() == "v (dimensionless)"
+
+
+def test_a_reduced_gas_is_drawn_by_its_first_function(tmp_path):
+    out = tmp_path / "o"
+    r = apsis.run("paper/bgk-mixed", "model.degrees_of_freedom=3", "space.cells=20", "velocity.points=100", "time.end=0.005", out=out)
+    assert r.f.shape == (20, 200) and r.v.shape == (100,)
+    result = read_result(out)
+    v, g = results.distribution_over_velocity(result)
+    assert np.array_equal(g, r.f[:, :100]) and results.distribution_name(result) == "∫ f dη"
+    # The density is the sum of g alone; dv = 0.3.
+    assert np.allclose(g.sum(axis=1) * 0.3, r.fields["rho"][-1], rtol=1e-13)
+    assert results.distribution_figure(result) is not None

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/model/model_registry.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -10,7 +11,9 @@
 inline apsis::case_config mixed(const std::string& data, const std::string& method, apsis::formulation how) {
   apsis::case_config c;
   c.model.name = "bgk";
-  c.model.parameters = {{"velocity_dimensions", 1.0}};
+  const apsis::model_config defaults = apsis::default_config(*apsis::find_model("bgk"));
+  c.model.parameters = defaults.parameters;
+  c.model.texts = defaults.texts;
   c.model.epsilon = "1e-5 + tanh(1 - 11*(x - 1)) + tanh(1 + 11*(x - 1))";
   c.model.initial = data;
   c.space.cells = {40};

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
@@ -87,6 +88,15 @@ std::string random_method(const model_entry& entry) {
   return *rc::gen::element<std::string>("md-imex-3-2", "md-imex-6-3");
 }
 
+/// Whether parameters are valid together, and few enough velocities for a test.
+bool accepts(const model_entry& entry, const std::vector<std::string>& overrides) {
+  try {
+    return make_model(case_of(entry, "imdrk-1-2", "dt = 0.1", overrides))->components() < 10'000;
+  } catch (const input_error&) {
+    return false;
+  }
+}
+
 std::vector<std::string> random_overrides(const model_entry& entry, bool positive) {
   std::vector<std::string> overrides;
   // Without a closed form, Newton's method needs a moderate Q/epsilon.
@@ -94,10 +104,15 @@ std::vector<std::string> random_overrides(const model_entry& entry, bool positiv
     overrides.push_back("model.epsilon=" + *rc::gen::element<std::string>("0", "1e-12", "1e-4", "1", "1e6"));
   else
     overrides.push_back("model.epsilon=" + *rc::gen::element<std::string>("1e-3", "1", "1e6"));
-  // Further velocity dimensions: the same model, with momenta that are zero up to rounding.
-  for (const auto& p : entry.parameters)
-    if (p.integer)
-      overrides.push_back("model." + p.name + "=" + *rc::gen::element<std::string>("1", "1", "1", "2"));
+  // Further velocity dimensions: the same model, with momenta that are zero up to rounding; more degrees of
+  // freedom.
+  for (auto drawn = overrides; overrides == drawn || !accepts(entry, overrides);) {
+    overrides = drawn;
+    for (const auto& p : entry.parameters)
+      if (p.integer)
+        overrides.push_back(fmt::format("model.{}={}", p.name, p.value + *rc::gen::element(0, 0, 0, 1, 3)));
+    if (overrides == drawn) break;  // there are none
+  }
   if (!has_space(entry)) return overrides;
   overrides.push_back("space.formulation=" +
                       *rc::gen::element<std::string>("finite-volume", "finite-difference"));
@@ -175,6 +190,11 @@ TEST(every_model, reads_its_resolved_case_back_with_any_parameters) {
         c.model.texts[t.name] = *rc::gen::elementOf(choices);
       }
       c.model.initial = *rc::gen::elementOf(initial_names(*entry));
+      try {
+        make_model(c);
+      } catch (const input_error&) {
+        RC_DISCARD("parameters that are not valid together");
+      }
       const case_config again = parse_case(to_toml(c), "again");
       RC_ASSERT(again.model.parameters == c.model.parameters);
       RC_ASSERT(again.model.texts == c.model.texts);

@@ -113,8 +113,16 @@ def differences(runs: Sequence[tuple[str, RunResult]]) -> list[str]:
     return lines
 
 
+def is_reduced(result: RunResult) -> bool:
+    """Whether f has two functions of one velocity component, g = ∫ f dη and h, one after the other."""
+    v, f = result.arrays.get("v"), result.arrays.get("f")
+    return v is not None and f is not None and v.ndim == 1 and f.ndim == 2 and f.shape[1] == 2 * len(v)
+
+
 def distribution_name(result: RunResult) -> str:
-    """f over one velocity component: f itself, or its integral over the others."""
+    """f over one velocity component: f itself, or its integral over the others and over components η that the grid does not resolve."""
+    if is_reduced(result):
+        return "∫ f dη"
     return {2: "∫ f dv_y", 3: "∫ f dv_y dv_z"}.get(result.velocity_dimensions, "f")
 
 
@@ -126,6 +134,8 @@ def distribution_over_velocity(result: RunResult) -> tuple[Array, Array] | None:
     else:
         found = result.arrays.get("v"), result.arrays.get("f")
     v, f = found
+    if f is not None and v is not None and is_reduced(result):
+        f = f[:, :len(v)]
     if v is None or f is None or f.shape[1:] != v.shape or len(np.unique(v)) < max(8, len(v)):
         return None
     return v, f

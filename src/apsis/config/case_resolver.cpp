@@ -62,9 +62,21 @@ class resolver {
     return place;
   }
 
+  /// Adds the place of the key with which a message of the model begins.
+  std::unique_ptr<model> checked_model() const {
+    try {
+      return make_model(config_);
+    } catch (const input_error& failure) {
+      const std::string message = failure.what();
+      const auto found = config_.places.find(message.substr(0, message.find(' ')));
+      if (found == config_.places.end()) throw;
+      throw input_error(found->second, message);
+    }
+  }
+
   /// The table [initial], or a name of data of the model, by default its first.
   void take_initial_data() {
-    const auto equation = make_model(config_);
+    const auto equation = checked_model();
     config_.prescribed = read_initial_table(text_, *equation, model_->name);
     const bool named = !config_.model.initial.empty();
     if (config_.prescribed.empty()) {

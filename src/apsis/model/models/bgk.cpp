@@ -1,183 +1,75 @@
 #include <apsis/model/fluid_fields.hpp>
-#include <apsis/model/maxwellian.hpp>
+#include <apsis/model/gas.hpp>
 #include <apsis/model/model_registry.hpp>
-#include <apsis/model/velocity_rows.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-
-#include <fmt/format.h>
 
 namespace apsis {
 namespace {
 
-/// f_t + v·∇_x f = (M[f] − f)/ε on a velocity grid (paper, eq. BGK): ω = (ρ, ρu, 𝓔), E = M, C = 1. One space
-/// dimension, d velocity dimensions. Dimensionless.
+/// f_t + v·∇_x f = (C/ε)(M[f] − f) on a velocity grid (paper, eq. BGK, with C = 1): ω = (ρ, ρu, 𝓔), E = M.
+/// With C = ρ T^{1−s} the viscosity is ε T^s. One space dimension; gas.hpp has the rows. Dimensionless.
 class bgk_model final : public relaxation_model {
  public:
   explicit bgk_model(const model_config& config)
-      : grid_(static_cast<int>(config.parameters.at("velocity_dimensions")), config.velocity.points,
-              config.velocity.max),
-        choice_(config.velocity.equilibrium) {
+      : gas_(config),
+        by_viscosity_(config.texts.at("collision_rate") == "viscosity"),
+        exponent_(1.0 - config.parameters.at("viscosity_exponent")) {
     make_initial_data();
   }
 
-  int components() const override { return grid_.size(); }
+  int components() const override { return gas_.velocities().components(); }
   int space_dimensions() const override { return 1; }
-  const velocity_set& velocities() const override { return grid_.set(); }
+  const velocity_set& velocities() const override { return gas_.velocities(); }
   /// Returns the end of the velocity grid, half an interval beyond its last point.
-  double reference_speed(int) const override { return grid_.max(); }
+  double reference_speed(int) const override { return gas_.grid().max(); }
   bool positive() const override { return true; }
 
-  int moment_count() const override { return grid_.dimensions() + 2; }
-  void moments(const double* f, double* omega) const override { kinetic_moments(grid_, f, omega); }
-  double rate(const double*) const override { return 1.0; }
-
+  int moment_count() const override { return gas_.moment_count(); }
+  void moments(const double* f, double* omega) const override { gas_.moments(f, 0, 1, omega); }
   void moments_of_rows(const double* f, std::ptrdiff_t pitch, int rows, double* omega) const override {
-    kinetic_moments(grid_, f, pitch, rows, omega);
+    gas_.moments(f, pitch, rows, omega);
   }
-
-  /// Exists for the moments of every f ≥ 0; where the formula is undefined (empty space, T = 0 up to
-  /// rounding) it is the discrete Maxwellian.
-  bool equilibrium(const double* omega, double* m) const override {
-    if (choice_ != equilibrium_choice::discrete) {
-      const fluid_state state = to_fluid_state(omega, grid_.dimensions());
-      if (state.admissible()) {
-        formula_maxwellian(grid_, state, m);
-        if (is_good_enough(omega, state, m)) return true;
-      }
-    }
-    return discrete_maxwellian(grid_, omega, m);
-  }
-
+  bool equilibrium(const double* omega, double* m) const override { return gas_.equilibrium(omega, m); }
   int equilibria(const double* omega, int rows, double* m, std::ptrdiff_t pitch) const override {
-    if (grid_.dimensions() != 1 || choice_ == equilibrium_choice::discrete)
-      return relaxation_model::equilibria(omega, rows, m, pitch);
-    std::array<line_state, most_line_states> states;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-    for (int first = 0; first < rows;) {
-      const int some = std::min(most_line_states, rows - first);
-      const double* of = omega + first * 3;
-      double* to = m + first * pitch;
-      const int found = formula_maxwellians_on_line(grid_, of, some, to, pitch, states.data());
-      for (int p = 0; p < found; ++p) {
-        const auto& state = states[static_cast<std::size_t>(p)];
-        if (!is_good_enough(of + p * 3, state, to + p * pitch) &&
-            !discrete_maxwellian(grid_, of + p * 3, to + p * pitch))
-          return first + p;
-      }
-      first += found;
-      if (found == some) continue;
-      if (!equilibrium(omega + first * 3, m + first * pitch)) return first;
-      ++first;
-    }
-    return rows;
+    return gas_.equilibria(omega, rows, m, pitch);
   }
-
-  /// One addition and d + 1 multiply–adds for ω; for M two multiplications per point on a line (without the
-  /// first vector), or one per point of a product of lines.
-  double operations_of_equilibrium() const override {
-    return 1.0 + (grid_.dimensions() + 1) + (grid_.dimensions() == 1 ? 2.0 : 1.0);
+  double rate(const double* omega) const override {
+    if (!by_viscosity_) return 1.0;
+    const double T = omega[0] > 0.0 ? gas_.state(omega).T : 0.0;
+    return T > 0.0 ? omega[0] * std::pow(T, exponent_) : 0.0;
   }
-
-  std::string why_inadmissible(const double* omega) const override { return why_unrealizable(grid_, omega); }
+  double operations_of_equilibrium() const override { return gas_.operations(); }
+  std::string why_inadmissible(const double* omega) const override { return gas_.why_inadmissible(omega); }
 
   bool has_entropy() const override { return true; }
-  /// Σ_j f_j log f_j Δv^d (paper, remark on entropy), with 0 log 0 = 0.
-  double entropy(const double* f) const override {
-    return grid_.weight() * velocity_rows::entropy(f, grid_.size());
-  }
+  double entropy(const double* f) const override { return gas_.entropy(f); }
 
-  std::vector<std::string> invariants() const override { return fluid_invariants(grid_.dimensions()); }
+  std::vector<std::string> invariants() const override { return fluid_invariants(gas_.dimensions()); }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
   /// Momenta cancel between particles of opposite velocities; Σ|v_k| f ≤ √(2ρ𝓔) by the Cauchy–Schwarz
   /// inequality.
   void invariant_scales(const double* densities, double* scales) const override {
     relaxation_model::invariant_scales(densities, scales);
-    const int d = grid_.dimensions();
+    const int d = gas_.dimensions();
     const double bound = std::sqrt(2.0 * scales[0] * scales[d + 1]);
     for (int k = 1; k <= d; ++k) scales[k] = std::max(scales[k], bound);
   }
 
-  std::vector<field_name> fields() const override { return fluid_fields(grid_.dimensions()); }
+  std::vector<field_name> fields() const override { return fluid_fields(gas_.dimensions()); }
   void macroscopic(const double* f, double* values) const override {
     double omega[5];
     moments(f, omega);
-    fluid_field_values(to_fluid_state(omega, grid_.dimensions()), grid_.dimensions(), values);
+    fluid_field_values(gas_.state(omega), gas_.dimensions(), values);
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }
-  std::vector<data_form> data_forms() const override {
-    return {{"Maxwellian",
-             {{"rho", "density > 0 (dimensionless)"},
-              {"u", "bulk velocity (dimensionless)", grid_.dimensions(), 0.0},
-              {"T", "temperature > 0 (dimensionless)"}},
-             [this](std::span<const double> given, std::span<double> f) { return maxwellian(given, f); }}};
-  }
-
-  unsupported_initial_data check_supported(const double* f) const override {
-    double omega[5];
-    moments(f, omega);
-    const fluid_state s = to_fluid_state(omega, grid_.dimensions());
-    if (!s.admissible())
-      return {"model.initial", fmt::format("the initial data have no Maxwellian (density {:.6g}, temperature "
-                                           "{:.6g}); change them",
-                                           s.rho, s.T)};
-    const double width = std::sqrt(s.T);
-    double speed = 0.0;
-    for (int k = 0; k < grid_.dimensions(); ++k) speed = std::max(speed, std::abs(s.u[k]));
-    // Mass fraction of the local Maxwellian beyond the grid; 1e-8 is below the accuracy of the cases.
-    const double beyond = 0.5 * std::erfc((grid_.max() - speed) / (std::numbers::sqrt2 * width));
-    if (beyond > 1e-8)
-      return {
-          "velocity.max",
-          fmt::format(
-              "velocity.max = {:g} is too small for the data (a fraction {:.2g} of the mass of u = {:.3g}, "
-              "T = {:.3g} lies beyond it); give at least {:.1f}",
-              grid_.max(), beyond, s.u[0], s.T, speed + 6.0 * width)};
-    const double widest = choice_ == equilibrium_choice::formula ? 1.0 : 2.0;
-    if (grid_.spacing() > widest * width)
-      return {
-          "velocity.points",
-          fmt::format(
-              "velocity.points = {} is too few for the data (the spacing {:.3g} is more than {:g} times the "
-              "thermal speed sqrt(T) = {:.3g}); give at least {:.0f}",
-              grid_.points(), grid_.spacing(), widest, width,
-              std::ceil(2.0 * grid_.max() / (widest * width)))};
-    return {};
-  }
+  std::vector<data_form> data_forms() const override { return {gas_.maxwellian_form()}; }
+  unsupported_initial_data check_supported(const double* f) const override { return gas_.check_supported(f); }
 
  private:
-  /// Four roundings, the contribution of an equilibrium to the rounding_bound of a step. A larger defect
-  /// would have the same sign in every step; Newton's method reduces it.
-  static constexpr double round_off = 4.5e-16;
-
-  /// Whether the Maxwellian m of the formula has the moments ω of its state.
-  template <class State>
-  bool is_good_enough(const double* omega, const State& state, const double* m) const {
-    if (choice_ == equilibrium_choice::formula || formula_has_exact_moments(grid_, state)) return true;
-    // The midpoint rule is spectrally accurate: either the defect is round-off or the grid is too coarse.
-    return moment_defect(grid_, m, omega, to_fluid_state(omega, grid_.dimensions())) <= round_off;
-  }
-
-  /// f ← the equilibrium of (ρ, u, T), whose discrete moments are those of the state to rounding.
-  std::string maxwellian(std::span<const double> given, std::span<double> f) const {
-    const auto d = static_cast<std::size_t>(grid_.dimensions());
-    const double rho = given[0], T = given[d + 1];
-    if (!(rho > 0.0)) return fmt::format("density {:.6g} is not positive", rho);
-    if (!(T > 0.0)) return fmt::format("temperature {:.6g} is not positive", T);
-    double omega[5];
-    double square = 0.0;
-    omega[0] = rho;
-    for (std::size_t k = 1; k <= d; ++k) {
-      omega[k] = rho * given[k];
-      square += given[k] * given[k];
-    }
-    omega[d + 1] = 0.5 * rho * (square + static_cast<double>(d) * T);
-    return equilibrium(omega, f.data()) ? "" : why_inadmissible(omega);
-  }
-
   /// f ← a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃], the form of all data of the paper, with ũ along x.
   void two_beams(double a, double b, double rho, double T, std::span<double> f) const {
     aligned_vector<double> beam(f.size());
@@ -185,11 +77,10 @@ class bgk_model final : public relaxation_model {
     state.rho = rho;
     state.T = T;
     state.u[0] = 1.0;
-    formula_maxwellian(grid_, state, beam.data());
-    for (std::size_t j = 0; j < f.size(); ++j) f[j] = a * beam[j];
+    gas_.formula(state, a, f.data());
     state.u[0] = -0.5;
-    formula_maxwellian(grid_, state, beam.data());
-    for (std::size_t j = 0; j < f.size(); ++j) f[j] += b * beam[j];
+    gas_.formula(state, b, beam.data());
+    for (std::size_t j = 0; j < f.size(); ++j) f[j] += beam[j];
   }
 
   /// f ← ρ M[1, 0, ¼]; the formula would omit values below 1e-300.
@@ -197,8 +88,7 @@ class bgk_model final : public relaxation_model {
     fluid_state state;
     state.rho = 1.0;
     state.T = 0.25;
-    formula_maxwellian(grid_, state, f.data());
-    for (double& value : f) value *= rho;
+    gas_.formula(state, rho, f.data());
   }
 
   void make_initial_data() {
@@ -235,8 +125,9 @@ class bgk_model final : public relaxation_model {
                         }});
   }
 
-  velocity_grid grid_;
-  equilibrium_choice choice_;
+  gas gas_;
+  bool by_viscosity_;
+  double exponent_;
   std::vector<initial_data> initial_;
 };
 
@@ -245,15 +136,28 @@ class bgk_model final : public relaxation_model {
 extern const model_entry model_bgk;
 const model_entry model_bgk = {
     .name = "bgk",
-    .description = "f_t + v f_x = (M[f] - f)/epsilon on a velocity grid",
+    .description = "f_t + v f_x = C (M[f] - f)/epsilon on a velocity grid",
     .source = "Bhatnagar, Gross, Krook (1954); Gottlieb, Grant, Hu, Shu, BGK model",
     .has_velocity_grid = true,
-    .parameters = {{.name = "velocity_dimensions",
-                    .value = 1.0,
-                    .lowest = 1.0,
-                    .highest = 3.0,
-                    .doc = "number of velocity dimensions (an integer)",
-                    .integer = true}},
+    .parameters =
+        [] {
+          auto all = gas::parameters();
+          all.push_back(
+              {.name = "viscosity_exponent",
+               .value = 0.5,
+               .lowest = 0.0,
+               .highest = 2.0,
+               .doc = "s of the viscosity epsilon T^s with collision_rate = \"viscosity\": 0.5 for hard "
+                      "spheres, 1 for Maxwell molecules, 0.81 for argon"});
+          return all;
+        }(),
+    .texts = {{.name = "collision_rate",
+               .value = "constant",
+               .choices = {"constant", "viscosity"},
+               .variable = "",
+               .doc =
+                   "constant: C = 1, as in the paper; viscosity: C = rho T^(1 - s), so that the viscosity is "
+                   "epsilon T^s with s = viscosity_exponent"}},
     .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<bgk_model>(config);
     }};

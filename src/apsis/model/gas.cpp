@@ -1,0 +1,258 @@
+#include <apsis/model/gas.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/model/velocity_rows.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+int degrees_of(const model_config& config, int dimensions) {
+  const int given = static_cast<int>(config.parameters.at("degrees_of_freedom"));
+  if (given == 0) return dimensions;
+  if (given < dimensions)
+    throw input_error(
+        fmt::format("model.degrees_of_freedom = {} is below model.velocity_dimensions = {} (the grid "
+                    "resolves more than there are); give at least {}",
+                    given, dimensions, dimensions));
+  return given;
+}
+
+velocity_set points_of(const velocity_grid& grid, int sets) {
+  if (sets == 1) return grid.set();
+  std::vector<aligned_vector<double>> coordinates;
+  for (int k = 0; k < grid.dimensions(); ++k)
+    coordinates.emplace_back(grid.component(k).begin(), grid.component(k).end());
+  return {std::move(coordinates), {grid.set().weights().begin(), grid.set().weights().end()}, sets};
+}
+
+}  // namespace
+
+gas::gas(const model_config& config)
+    : grid_(static_cast<int>(config.parameters.at("velocity_dimensions")), config.velocity.points,
+            config.velocity.max),
+      degrees_(degrees_of(config, grid_.dimensions())),
+      choice_(config.velocity.equilibrium),
+      velocities_(points_of(grid_, reduced() ? 2 : 1)) {}
+
+std::vector<model_parameter> gas::parameters() {
+  return {
+      {.name = "velocity_dimensions",
+       .value = 1.0,
+       .lowest = 1.0,
+       .highest = 3.0,
+       .doc = "number of velocity dimensions (an integer)",
+       .integer = true},
+      {.name = "degrees_of_freedom",
+       .value = 0.0,
+       .lowest = 0.0,
+       .highest = 1000.0,
+       .doc =
+           "degrees of freedom D of a molecule, 3 of a monatomic gas in space; the ratio of specific heats "
+           "is (D + 2)/D. 0: as many as velocity dimensions. Those that the velocity grid does not resolve "
+           "are a second set of unknowns (Chu's reduction)",
+       .integer = true}};
+}
+
+void gas::moments(const double* row, std::ptrdiff_t pitch, int rows, double* omega) const {
+  kinetic_moments(grid_, row, pitch, rows, omega);
+  if (!reduced()) return;
+  const int d = dimensions();
+  std::array<double, static_cast<std::size_t>(most_line_states) * most_moments> of_h;  // NOLINT
+  for (int first = 0; first < rows; first += most_line_states) {
+    const int some = std::min(most_line_states, rows - first);
+    kinetic_moments(grid_, row + first * pitch + grid_.size(), pitch, some, of_h.data());
+    for (int p = 0; p < some; ++p)
+      omega[(first + p) * (d + 2) + d + 1] += 0.5 * of_h[static_cast<std::size_t>(p * (d + 2))];
+  }
+}
+
+fluid_state gas::state(const double* omega) const {
+  fluid_state s = to_fluid_state(omega, dimensions());
+  if (reduced()) s.T *= static_cast<double>(dimensions()) / degrees_;
+  return s;
+}
+
+void gas::moments_of_g(const double* omega, double* of_g) const {
+  const int d = dimensions();
+  const fluid_state s = state(omega);
+  double square = 0.0;
+  for (int k = 0; k <= d; ++k) of_g[k] = omega[k];
+  for (int k = 0; k < d; ++k) square += s.u[k] * s.u[k];
+  of_g[d + 1] = omega[0] == 0.0 ? omega[d + 1] : 0.5 * s.rho * (square + d * s.T);
+}
+
+void gas::fill_h(const double* omega, double* row) const {
+  const double T = state(omega).T,
+               factor = omega[0] > 0.0 ? (degrees_ - dimensions()) * std::max(T, 0.0) : 0.0;
+  double* h = row + grid_.size();
+  for (int j = 0; j < grid_.size(); ++j) h[j] = factor * row[j];
+}
+
+template <class State>
+bool gas::is_good_enough(const double* of_g, const State& state, const double* g) const {
+  // Four roundings, the contribution of an equilibrium to the rounding_bound of a step. A larger defect would
+  // have the same sign in every step; Newton's method reduces it.
+  constexpr double round_off = 4.5e-16;
+  if (choice_ == equilibrium_choice::formula || formula_has_exact_moments(grid_, state)) return true;
+  // The midpoint rule is spectrally accurate: either the defect is round-off or the grid is too coarse.
+  return moment_defect(grid_, g, of_g, to_fluid_state(of_g, dimensions())) <= round_off;
+}
+
+/// Exists for the moments of every g ≥ 0; where the formula is undefined (empty space, T = 0 up to rounding)
+/// it is the discrete Maxwellian.
+bool gas::equilibrium_of_g(const double* of_g, double* g) const {
+  if (choice_ != equilibrium_choice::discrete) {
+    const fluid_state s = to_fluid_state(of_g, dimensions());
+    if (s.admissible()) {
+      formula_maxwellian(grid_, s, g);
+      if (is_good_enough(of_g, s, g)) return true;
+    }
+  }
+  return discrete_maxwellian(grid_, of_g, g);
+}
+
+int gas::equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const {
+  if (dimensions() != 1 || choice_ == equilibrium_choice::discrete) {
+    for (int p = 0; p < rows; ++p)
+      if (!equilibrium_of_g(of_g + p * moment_count(), g + p * pitch)) return p;
+    return rows;
+  }
+  std::array<line_state, most_line_states> states;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  for (int first = 0; first < rows;) {
+    const int some = std::min(most_line_states, rows - first);
+    const double* of = of_g + first * 3;
+    double* to = g + first * pitch;
+    const int found = formula_maxwellians_on_line(grid_, of, some, to, pitch, states.data());
+    for (int p = 0; p < found; ++p)
+      if (!is_good_enough(of + p * 3, states[static_cast<std::size_t>(p)], to + p * pitch) &&
+          !discrete_maxwellian(grid_, of + p * 3, to + p * pitch))
+        return first + p;
+    first += found;
+    if (found == some) continue;
+    if (!equilibrium_of_g(of_g + first * 3, g + first * pitch)) return first;
+    ++first;
+  }
+  return rows;
+}
+
+bool gas::equilibrium(const double* omega, double* row) const {
+  return equilibria(omega, 1, row, 0) == 1;
+}
+
+int gas::equilibria(const double* omega, int rows, double* row, std::ptrdiff_t pitch) const {
+  if (!reduced()) return equilibria_of_g(omega, rows, row, pitch);
+  std::array<double, static_cast<std::size_t>(most_line_states) * most_moments> of_g;  // NOLINT
+  const int count = moment_count();
+  for (int first = 0; first < rows; first += most_line_states) {
+    const int some = std::min(most_line_states, rows - first);
+    const double* of = omega + first * count;
+    double* to = row + first * pitch;
+    for (int p = 0; p < some; ++p) moments_of_g(of + p * count, of_g.data() + p * count);
+    const int found = equilibria_of_g(of_g.data(), some, to, pitch);
+    for (int p = 0; p < found; ++p) fill_h(of + p * count, to + p * pitch);
+    if (found < some) return first + found;
+  }
+  return rows;
+}
+
+std::string gas::why_inadmissible(const double* omega) const {
+  if (!reduced()) return why_unrealizable(grid_, omega);
+  double of_g[most_moments];
+  moments_of_g(omega, of_g);
+  return why_unrealizable(grid_, of_g);
+}
+
+void gas::formula(const fluid_state& state, double weight, double* row) const {
+  formula_maxwellian(grid_, state, row);
+  for (int j = 0; j < grid_.size(); ++j) row[j] *= weight;
+  if (!reduced()) return;
+  const double factor = (degrees_ - dimensions()) * state.T;
+  for (int j = 0; j < grid_.size(); ++j) row[grid_.size() + j] = factor * row[j];
+}
+
+double gas::entropy(const double* row) const {
+  double sum = velocity_rows::entropy(row, grid_.size());
+  if (reduced()) {
+    const double* h = row + grid_.size();
+    double coupled = 0.0;
+    // A positive g whose h has vanished by underflow counts like one with the smallest normal number.
+    for (int j = 0; j < grid_.size(); ++j)
+      if (row[j] > 0.0)
+        coupled += row[j] * std::log(row[j] / std::max(h[j], std::numeric_limits<double>::min()));
+    sum += 0.5 * (degrees_ - dimensions()) * coupled;
+  }
+  return grid_.weight() * sum;
+}
+
+/// One addition and d + 1 multiply–adds for ω; for M two multiplications per point on a line (without the
+/// first vector), or one per point of a product of lines. The moments of h are computed like those of g, and
+/// its equilibrium is a multiplication.
+double gas::operations() const {
+  const double of_moments = 1.0 + (dimensions() + 1), of_maxwellian = dimensions() == 1 ? 2.0 : 1.0;
+  return reduced() ? of_moments + 0.5 * (of_maxwellian + 1.0) : of_moments + of_maxwellian;
+}
+
+unsupported_initial_data gas::check_supported(const double* row) const {
+  double omega[most_moments];
+  moments(row, 0, 1, omega);
+  const fluid_state s = state(omega);
+  if (!s.admissible())
+    return {"model.initial",
+            fmt::format("the initial data have no Maxwellian (density {:.6g}, temperature {:.6g}); "
+                        "change them",
+                        s.rho, s.T)};
+  const double width = std::sqrt(s.T);
+  double speed = 0.0;
+  for (int k = 0; k < dimensions(); ++k) speed = std::max(speed, std::abs(s.u[k]));
+  // Mass fraction of the local Maxwellian beyond the grid; 1e-8 is below the accuracy of the cases.
+  const double beyond = 0.5 * std::erfc((grid_.max() - speed) / (std::numbers::sqrt2 * width));
+  if (beyond > 1e-8)
+    return {"velocity.max",
+            fmt::format(
+                "velocity.max = {:g} is too small for the data (a fraction {:.2g} of the mass of u = {:.3g}, "
+                "T = {:.3g} lies beyond it); give at least {:.1f}",
+                grid_.max(), beyond, s.u[0], s.T, speed + 6.0 * width)};
+  const double widest = choice_ == equilibrium_choice::formula ? 1.0 : 2.0;
+  if (grid_.spacing() > widest * width)
+    return {
+        "velocity.points",
+        fmt::format(
+            "velocity.points = {} is too few for the data (the spacing {:.3g} is more than {:g} times the "
+            "thermal speed sqrt(T) = {:.3g}); give at least {:.0f}",
+            grid_.points(), grid_.spacing(), widest, width, std::ceil(2.0 * grid_.max() / (widest * width)))};
+  return {};
+}
+
+std::string gas::row_of(std::span<const double> given, std::span<double> row) const {
+  const auto d = static_cast<std::size_t>(dimensions());
+  const double rho = given[0], T = given[d + 1];
+  if (!(rho > 0.0)) return fmt::format("density {:.6g} is not positive", rho);
+  if (!(T > 0.0)) return fmt::format("temperature {:.6g} is not positive", T);
+  double omega[most_moments];
+  double square = 0.0;
+  omega[0] = rho;
+  for (std::size_t k = 1; k <= d; ++k) {
+    omega[k] = rho * given[k];
+    square += given[k] * given[k];
+  }
+  omega[d + 1] = 0.5 * rho * (square + degrees_ * T);
+  return equilibrium(omega, row.data()) ? "" : why_inadmissible(omega);
+}
+
+data_form gas::maxwellian_form() const {
+  return {"Maxwellian",
+          {{"rho", "density > 0 (dimensionless)"},
+           {"u", "bulk velocity (dimensionless)", dimensions(), 0.0},
+           {"T", "temperature > 0 (dimensionless)"}},
+          [this](std::span<const double> given, std::span<double> row) { return row_of(given, row); }};
+}
+
+}  // namespace apsis

@@ -3,6 +3,7 @@
 #include "method_table.hpp"
 #include "print.hpp"
 
+#include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
@@ -93,6 +94,13 @@ json schemes() {
   return all;
 }
 
+json boundaries() {
+  json all = json::array();
+  for (const boundary_entry* b : boundary_entries())
+    all.push_back({{"name", b->name}, {"description", b->description}});
+  return all;
+}
+
 json claims() {
   json all = json::array();
   for (const claim_entry* c : find_claims({}))
@@ -140,7 +148,7 @@ std::string as_text(const std::string& what, const json& all) {
 const std::map<std::string, json (*)()>& lists() {
   static const std::map<std::string, json (*)()> all = {
       {"methods", methods}, {"families", families}, {"models", models}, {"cases", cases},
-      {"schemes", schemes}, {"claims", claims},     {"keys", keys}};
+      {"schemes", schemes}, {"claims", claims},     {"keys", keys},     {"boundaries", boundaries}};
   return all;
 }
 

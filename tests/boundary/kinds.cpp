@@ -81,10 +81,12 @@ TEST(boundary, outflow_ghosts_repeat_the_nearest_cell_inside) {
 }
 
 TEST(boundary, computed_rows_give_the_results_of_repeated_rows) {
-  // For every kind, in every direction of meshes of 1, 2 and 3 dimensions, some narrower than the stencil.
+  // For every kind that repeats rows, in every direction of meshes of 1, 2 and 3 dimensions, some narrower
+  // than the stencil.
   for (const grid& mesh : {grid::line(5, 0, 1), grid(2, {2, 4, 1}, {0, 0, 0}, {1, 1, 1}),
                            grid(3, {4, 3, 2}, {0, 0, 0}, {1, 1, 1})})
     for (const std::string& name : apsis::boundary_names()) {
+      if (!apsis::make_boundary(name)->repeated_cell(0, 5)) continue;
       const auto side = std::make_shared<copied>(apsis::make_boundary(name));
       domain repeated = apsis::make_domain(mesh, name);
       domain computed(mesh,
@@ -135,9 +137,9 @@ TEST(boundary, periodic_on_one_side_only_is_refused) {
 
 TEST(boundary, every_name_is_found_and_an_unknown_one_gets_a_suggestion) {
   for (const auto& name : apsis::boundary_names()) EXPECT_NE(apsis::make_boundary(name), nullptr) << name;
-  EXPECT_EQ(
-      message_of([] { apsis::make_boundary("outfow"); }),
-      "unknown boundary 'outfow' (there is no such kind); did you mean 'outflow'? valid: outflow, periodic");
+  EXPECT_EQ(message_of([] { apsis::make_boundary("outfow"); }),
+            "unknown boundary 'outfow' (there is no such kind); did you mean 'outflow'? valid: outflow, "
+            "periodic, symmetry");
 }
 
 TEST(boundary, a_domain_is_closed_where_all_its_faces_are) {

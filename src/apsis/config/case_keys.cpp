@@ -163,8 +163,8 @@ std::vector<case_key> space_keys() {
       key("space.boundary", [](auto& c) -> auto& { return c.space.boundary; },
           {.scope = key_scope::space,
            .choices = names_in(boundary_entries),
-           .doc = "Boundary condition at every end of the domain: periodic, or outflow, which repeats the "
-                  "last cell inside (conservation and entropy decay are then not promised)."}),
+           .doc = "Boundary condition at every end of the domain (apsis list boundaries). Conservation and "
+                  "entropy decay are promised for periodic ends only."}),
       key("boundary.left.kind", [](auto& c) -> auto& { return c.faces.left; },
           {.scope = key_scope::space,
            .choices = names_in(boundary_entries),

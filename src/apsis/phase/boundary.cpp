@@ -5,6 +5,10 @@
 
 namespace apsis {
 
+std::shared_ptr<const boundary> boundary::prepared(const face&, const velocity_set&) const {
+  return nullptr;
+}
+
 std::optional<int> boundary::repeated_cell(int, int) const {
   return std::nullopt;
 }

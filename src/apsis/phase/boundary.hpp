@@ -3,6 +3,7 @@
 #include <apsis/phase/position.hpp>
 #include <apsis/phase/velocity_set.hpp>
 
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -28,6 +29,10 @@ class boundary {
  public:
   virtual ~boundary() = default;
 
+  /// Returns this boundary with tables for one face and the velocities of the domain, which the domain then
+  /// uses in its place; nullptr, the default, if it needs none. Throws input_error if the boundary condition
+  /// is not possible with these velocities.
+  virtual std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const;
   /// Returns the cell, counted inwards from the face, whose row is used as ghost row `ghost` = 0, 1, …
   /// (counted outwards) of a pencil of `cells` cells; empty if fill() computes the row. Repeated rows are not
   /// copied.

@@ -30,6 +30,10 @@ domain::domain(phase_space space, std::vector<faces> sides)
       throw input_error(fmt::format(
           "only one face of direction {} is periodic (its ends continue each other); make both periodic",
           k + 1));
+  for (int k = 0; k < mesh.dimensions(); ++k)
+    for (const bool upper : {false, true})
+      if (auto own = side({k, upper}).prepared({k, upper}, space_.velocities))
+        sides_[at(k)][upper ? 1 : 0] = std::move(own);
 }
 
 domain::domain() : space_(grid::line(1, 0.0, 1.0)) {}

@@ -17,7 +17,7 @@ struct command_entry {
   std::string summary;  ///< one line, for the help and the manual page
   int place = 1000;     ///< position in the help, lowest first; by name among equals
   /// Words that complete an argument, as bash expands them in double quotes; "": file names only.
-  std::string completion = "";
+  std::string completion{};
   /// Adds options and arguments, and returns the action of the command.
   action (*define)(CLI::App& command) = nullptr;
 };

@@ -19,7 +19,7 @@ TEST(cases, every_built_in_case_is_valid_and_described) {
     const case_config c = load_case(name);
     EXPECT_EQ(c.source, name);
     EXPECT_GT(c.title.size(), 10U) << name;
-    EXPECT_FALSE(c.model.initial.empty()) << name;
+    EXPECT_NE(c.model.initial.empty(), c.prescribed.empty()) << name << ": data by name, or a table";
   }
 }
 

@@ -40,16 +40,16 @@ enum class key_scope {
 
 /// One key of a case file. The table of all keys (case_keys.cpp) drives reading, writing and documentation.
 struct case_key {
-  std::string path = "";                ///< "space.cells"
+  std::string path{};                   ///< "space.cells"
   key_type type = key_type::text;       ///< which alternative of case_value it has
   key_scope scope = key_scope::always;  ///< models that use it
   bool required = false;                ///< else the default is that of case_config
-  std::string unit = "";                ///< "dimensionless", "steps", …; "" for text
+  std::string unit{};                   ///< "dimensionless", "steps", …; "" for text
   double lowest = -infinite,            ///< smallest allowed number
       highest = infinite;               ///< largest allowed number
   bool lowest_excluded = false;         ///< only numbers above `lowest`
   std::function<std::vector<std::string>(const case_config&)> choices = {};  ///< valid names; empty: any text
-  std::string doc = "";  ///< meaning, as `apsis show case` prints it
+  std::string doc{};  ///< meaning, as `apsis show case` prints it
   std::function<void(case_config&, const case_value&)> store = {};  ///< assigns a checked value
   std::function<case_value(const case_config&)> load = {};  ///< monostate where an optional key is not set
   /// Whether a name outside `choices` is valid: "" if it is, why not if it is meant to be, nothing otherwise.

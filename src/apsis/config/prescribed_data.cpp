@@ -210,7 +210,7 @@ class prescribed_data::compiler {
 };
 
 prescribed_data::prescribed_data(const case_config& config, const model& equation, const places& place_of)
-    : equation_(&equation), dimensions_(equation.space_dimensions()) {
+    : dimensions_(equation.space_dimensions()) {
   const compiler from(config, equation, place_of);
   base_ = std::make_unique<state>(from.base());
   regions_ = from.regions();

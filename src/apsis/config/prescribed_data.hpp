@@ -38,7 +38,6 @@ class prescribed_data {
   class compiler;
   struct state;
   struct region;
-  const model* equation_;
   std::unique_ptr<state> base_;
   std::vector<region> regions_;
   int dimensions_ = 0;

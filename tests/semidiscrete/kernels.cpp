@@ -182,13 +182,15 @@ TEST(kernels, convex_combinations_agree_with_scalar_code_in_every_instruction_se
       field v = u;
       apsis::relaxation::combine(0.25, 0.75, u.row(1), width, v.row(0));
       const std::array<apsis::relaxation::weighted_rows, 3> rows = {
-          {{0.1, 0.2, u.row(0), u.row(1)}, {0.15, 0.25, u.row(2), u.row(3)}, {0.0, 0.3, u.row(4), u.row(5)}}};
+          {apsis::relaxation::contribution(0.3, 1.0 / 3.0, 2.0 / 3.0, u.row(0), u.row(1)),
+           apsis::relaxation::contribution(0.4, 0.625, 0.375, u.row(2), u.row(3)),
+           apsis::relaxation::contribution(0.3, 0.0, 1.0, u.row(4), u.row(5))}};
       apsis::relaxation::mean(rows, width, v.row(1));
       for (int k = 0; k < width; ++k) {
         const auto at = [&](int row) { return static_cast<long double>(u.row(row)[k]); };
         const auto combined = static_cast<double>(0.25L * at(0) + 0.75L * at(1));
         const auto mean =
-            static_cast<double>(0.1L * at(0) + 0.2L * at(1) + 0.15L * at(2) + 0.25L * at(3) + 0.3L * at(5));
+            static_cast<double>(0.1L * at(0) + 0.2L * at(1) + 0.25L * at(2) + 0.15L * at(3) + 0.3L * at(5));
         ASSERT_NEAR(v.row(0)[k], combined, 3e-16 * combined);
         ASSERT_NEAR(v.row(1)[k], mean, 1e-15 * mean);
       }

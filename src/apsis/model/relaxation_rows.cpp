@@ -9,10 +9,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-void combine(double weight_of_u, double weight_of_e, const double* e, int width, double* u) {
+void combine(double share, const double* base, const double* other, int width, double* result) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    fma(N(weight_of_u), N::load(u + k), N(weight_of_e) * N::load(e + k)).store(u + k);
+    const N from = N::load(base + k);
+    fma(N(share), N::load(other + k) - from, from).store(result + k);
   });
 }
 
@@ -22,9 +23,10 @@ void mean_of_three(const relaxation::weighted_rows* of_points, int width, double
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     N sum(0.0);
-    for (const auto& point : points)
-      sum = fma(N(point.weight_of_u), N::load(point.u + k),
-                fma(N(point.weight_of_e), N::load(point.e + k), sum));
+    for (const auto& point : points) {
+      const N from = N::load(point.base + k);
+      sum = fma(N(point.share), N::load(point.other + k) - from, fma(N(point.weight), from, sum));
+    }
     sum.store(mean + k);
   });
 }
@@ -33,9 +35,10 @@ void mean_of_any(const relaxation::weighted_rows* points, int count, int width, 
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     N sum(0.0);
-    for (int p = 0; p < count; ++p)
-      sum = fma(N(points[p].weight_of_u), N::load(points[p].u + k),
-                fma(N(points[p].weight_of_e), N::load(points[p].e + k), sum));
+    for (int p = 0; p < count; ++p) {
+      const N from = N::load(points[p].base + k);
+      sum = fma(N(points[p].share), N::load(points[p].other + k) - from, fma(N(points[p].weight), from, sum));
+    }
     sum.store(mean + k);
   });
 }
@@ -62,7 +65,14 @@ HWY_EXPORT(change);
 namespace relaxation {
 
 void combine(double weight_of_u, double weight_of_e, const double* e, int width, double* u) {
-  HWY_DYNAMIC_DISPATCH(combine)(weight_of_u, weight_of_e, e, width, u);
+  if (weight_of_e <= weight_of_u) return HWY_DYNAMIC_DISPATCH(combine)(weight_of_e, u, e, width, u);
+  HWY_DYNAMIC_DISPATCH(combine)(weight_of_u, e, u, width, u);
+}
+
+weighted_rows contribution(double weight, double weight_of_u, double weight_of_e, const double* u,
+                           const double* e) {
+  if (weight_of_e <= weight_of_u) return {weight, weight * weight_of_e, u, e};
+  return {weight, weight * weight_of_u, e, u};
 }
 
 void mean(std::span<const weighted_rows> points, int width, double* mean) {

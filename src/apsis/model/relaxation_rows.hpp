@@ -8,16 +8,23 @@ namespace apsis {
 /// Loops over the components of rows of a relaxation, for the instruction set of this processor.
 namespace relaxation {
 
-/// u ← weight_of_u·u + weight_of_e·e, the convex combination that solves a stage.
+/// u ← weight_of_u·u + weight_of_e·e, the convex combination that solves a stage, for weights whose sum is 1
+/// up to rounding. It is computed from the smaller weight alone, as the row of the larger weight plus this
+/// fraction of the difference: nonnegative if both rows are, and a difference without moments adds none,
+/// however the weights are rounded.
 void combine(double weight_of_u, double weight_of_e, const double* e, int width, double* u);
 
-/// weight_of_u·u + weight_of_e·e at one quadrature point, the weight of the point in both factors.
+/// The combination at one quadrature point as its contribution to a mean.
 struct weighted_rows {
-  double weight_of_u,  ///< factor of u
-      weight_of_e;     ///< factor of e
-  const double *u,     ///< values at the point, one row
-      *e;              ///< E(ω) there
+  double weight,       ///< quadrature weight of the point
+      share;           ///< weight · (smaller weight of the combination)
+  const double *base,  ///< row of the larger weight
+      *other;          ///< row of the smaller weight
 };
+
+/// Returns the contribution of a point, with the weights of combine().
+weighted_rows contribution(double weight, double weight_of_u, double weight_of_e, const double* u,
+                           const double* e);
 
 /// mean ← the sum over the points; three points are the fast case.
 void mean(std::span<const weighted_rows> points, int width, double* mean);
@@ -28,7 +35,7 @@ void change(double strength, const double* e, const double* u, int width, double
 inline constexpr double operations_of_combine = 2.0;  ///< operations of combine() per component
 /// Operations of mean() per component.
 constexpr double operations_of_mean(std::size_t points) {
-  return 2.0 * static_cast<double>(points);
+  return 3.0 * static_cast<double>(points);
 }
 
 }  // namespace relaxation

@@ -62,13 +62,15 @@ struct description {
 std::unique_ptr<model> make_equation(const description& of) {
   const model_entry& entry = entry_called("model", of.model, model_entries());
   model_config config = default_config(entry);
-  for (const auto& [name, value] : of.parameters) {
+  for (const auto& given : of.parameters) {
+    const std::string& name = given.first;
+    const double value = given.second;
     if (!config.parameters.contains(name))
       throw input_error(
           fmt::format("unknown parameter '{1}' (model '{0}' has no such parameter); see: apsis list models",
                       of.model, name));
     const auto p = std::find_if(entry.parameters.begin(), entry.parameters.end(),
-                                [&name = name](const auto& one) { return one.name == name; });
+                                [&name](const auto& one) { return one.name == name; });
     if (!(value >= p->lowest && value <= p->highest) || (p->integer && value != std::floor(value)))
       throw input_error(fmt::format("{} = {:g} is out of range ({} from {:g} to {:g} is needed); change it",
                                     name, value, p->integer ? "an integer" : "a number", p->lowest,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace apsis::app {
 
@@ -26,6 +27,13 @@ std::string summary_text(const simulation& run, run_end end) {
   line("smallest value", fmt::format("{:.6g} ({} negative)", s.min_value, s.negative_values));
   if (!run.invariants().empty())
     line("conservation defect", fmt::format("{:.2e} (relative)", s.conservation_defect));
+  const auto faces = run.open_faces(), names = run.invariants();
+  for (std::size_t f = 0; f < faces.size() && !names.empty(); ++f) {
+    std::vector<std::string> amounts;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      amounts.push_back(fmt::format("{} {:.6g}", names[k], run.last().flux[f * names.size() + k]));
+    line(fmt::format("flux through {}", faces[f]), fmt::format("{}", fmt::join(amounts, ", ")));
+  }
   if (!std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));
   if (!has_space(*find_model(c.model.name))) {

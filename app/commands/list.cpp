@@ -96,8 +96,14 @@ json schemes() {
 
 json boundaries() {
   json all = json::array();
-  for (const boundary_entry* b : boundary_entries())
-    all.push_back({{"name", b->name}, {"description", b->description}});
+  for (const boundary_entry* b : boundary_entries()) {
+    json one = {{"name", b->name}, {"description", b->description}};
+    if (b->variables != nullptr)
+      for (const auto& v : b->variables(prototype(*find_model("bgk"))))
+        one["variables"].push_back(
+            fmt::format("{}: {}{}", v.name, v.doc, v.value ? fmt::format(" [{}]", *v.value) : ""));
+    all.push_back(one);
+  }
   return all;
 }
 
@@ -140,8 +146,12 @@ std::string as_text(const std::string& what, const json& all) {
   if (what == "methods") return method_table(all) + family_lines();
   if (what == "families") return family_lines().substr(1);
   std::string out;
-  for (const auto& item : all)
+  for (const auto& item : all) {
     out += fmt::format("{:<34}{}\n", item["name"].get<std::string>(), item["description"].get<std::string>());
+    if (item.contains("variables"))
+      for (const auto& variable : item["variables"])
+        out += fmt::format("{:<36}{}\n", "", variable.get<std::string>());
+  }
   return out;
 }
 

@@ -155,9 +155,11 @@ TEST(bad_case, boundaries_of_ends_exist_and_are_periodic_in_pairs) {
       StartsWith("c.toml:19:1: 'boundary.left.kind' is the text 'outflow' (only one of the two ends is "
                  "periodic); write "));
   EXPECT_THAT(error_of(good + "[boundary.top]\nkind = \"outflow\"\n"),
-              StartsWith("c.toml:19:1: unknown key 'boundary.top.kind' (no such key for model 'bgk'); "));
+              StartsWith("c.toml:19:1: unknown key 'boundary.top.kind' (a face is a table [boundary.left] "
+                         "or [boundary.right]); valid: left, right"));
   EXPECT_THAT(error_of(good + "[boundary]\nleft = \"outflow\"\n"),
-              StartsWith("c.toml:19:1: unknown key 'boundary.left' (no such key for model 'bgk'); "));
+              StartsWith("c.toml:19:1: unknown key 'boundary.left' (a face is a table [boundary.left] or "
+                         "[boundary.right]); write [boundary.left]"));
 }
 
 TEST(bad_case, the_text_that_the_table_changes_is_valid) {

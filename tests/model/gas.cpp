@@ -87,6 +87,31 @@ RC_GTEST_PROP(gas, equilibrium_has_the_moments_and_minimizes_the_entropy, ()) {
   RC_ASSERT(of.entropy(middle.data()) <= 0.5 * (h_row + h_e) + 1e-12 * (1.0 + std::abs(h_row)));
 }
 
+RC_GTEST_PROP(gas, every_nonnegative_row_has_an_equilibrium_with_its_moments, ()) {
+  // Sparse rows with g and h of any sizes: temperatures far below and above those that g can have.
+  const int d = *rc::gen::inRange(1, 4);
+  const gas of = make_gas(d, 3 + *rc::gen::inRange(0, 3), d == 3 ? 6 : 10);
+  const auto n = static_cast<std::size_t>(of.grid().size());
+  std::vector<double> row(2 * n, 0.0), e(2 * n);
+  const double scale_of_h = std::pow(10.0, *rc::gen::inRange(-12, 13));
+  const int points = *rc::gen::inRange(1, 6);
+  for (int k = 0; k < points; ++k) {
+    row[*rc::gen::inRange<std::size_t>(0, n)] += *rc::gen::inRange(1, 100) / 50.0;
+    row[n + *rc::gen::inRange<std::size_t>(0, n)] += scale_of_h * *rc::gen::inRange(0, 100);
+  }
+  const auto omega = omega_of(of, row);
+  RC_ASSERT(of.equilibrium(omega.data(), e.data()));
+  for (const double value : e) RC_ASSERT(value >= 0.0);
+  const auto after = omega_of(of, e);
+  const auto size = static_cast<std::size_t>(of.moment_count());
+  const double speed = std::sqrt(2.0 * omega[size - 1] / omega[0]);
+  for (std::size_t k = 0; k < size; ++k) {
+    const double scale = k + 1 == size ? omega[k] : omega[0] * (k == 0 ? 1.0 : std::max(speed, 1.0));
+    // Newton's method ends at a few units in the last place of the largest term.
+    RC_ASSERT(std::abs(after[k] - omega[k]) <= 1e-13 * scale);
+  }
+}
+
 TEST(gas, batches_of_rows_give_the_bits_of_single_rows) {
   const gas of = make_gas(1, 3);
   const std::size_t rows = 37, width = static_cast<std::size_t>(of.velocities().components()),

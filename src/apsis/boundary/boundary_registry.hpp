@@ -1,20 +1,57 @@
 #pragma once
 
+#include <apsis/model/model.hpp>
 #include <apsis/phase/boundary.hpp>
 #include <apsis/phase/domain.hpp>
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace apsis {
 
+/// A quantity at a face: a number, or a function of time and of the position on the face. Dimensionless.
+class face_quantity {
+ public:
+  /// A function of t and x, which may be called concurrently.
+  using function = std::function<double(double t, const position& at)>;
+  /// A number.
+  face_quantity(double value = 0.0) : number_(value) {}
+  /// A function.
+  face_quantity(function value) : function_(std::move(value)) {}
+
+  /// Returns the value at time t at a point of the face.
+  double at(double t, const position& x) const { return function_ ? function_(t, x) : number_; }
+  /// Whether it is a number.
+  bool is_constant() const { return !function_; }
+
+ private:
+  double number_ = 0.0;
+  function function_;
+};
+
+/// Components of the variables of a boundary condition by name: "velocity" → {0, 0.1}.
+using face_quantities = std::map<std::string, std::vector<face_quantity>>;
+
+/// The model and the values from which a boundary condition is made. The model, null for kinds without
+/// variables, must outlive the boundary.
+struct boundary_source {
+  const model* equation = nullptr;         ///< the model on whose components the condition acts
+  std::vector<face_quantity> values = {};  ///< of boundary_entry::variables, vectors component by component
+};
+
 /// A kind of boundary condition: a file of boundary/kinds/ defines `extern const boundary_entry
 /// boundary_<file>`.
 struct boundary_entry {
-  std::string name;                     ///< name in a case file: "periodic"
-  std::string description;              ///< one line
-  std::unique_ptr<boundary> (*make)();  ///< returns a new object
+  std::string name;         ///< name in a case file: "periodic"
+  std::string description;  ///< one line
+  /// Returns the variables of the condition for a model, keys of the tables [boundary.left] and
+  /// [boundary.right]; null if it has none. Throws input_error where the model cannot have the condition.
+  std::vector<data_variable> (*variables)(const model& equation) = nullptr;
+  std::unique_ptr<boundary> (*make)(const boundary_source& from) = nullptr;  ///< returns a new object
 };
 
 /// Returns all kinds, sorted by file name (generated).
@@ -23,10 +60,21 @@ std::vector<const boundary_entry*> boundary_entries();
 /// Returns the names of all kinds: "outflow", "periodic", …
 std::vector<std::string> boundary_names();
 
-/// Returns the boundary of a kind. Throws input_error with the nearest name if there is no such kind.
+/// Returns the kind of a name. Throws input_error with the nearest name if there is none.
+const boundary_entry& find_boundary(const std::string& name);
+
+/// Returns the boundary of a kind without variables. Throws input_error with the nearest name if there is no
+/// such kind, or if it has variables.
 std::shared_ptr<const boundary> make_boundary(const std::string& name);
 
-/// Returns a domain with the same kind of boundary at every face. Throws input_error as make_boundary() does.
+/// Returns the boundary of a kind for a model, with values of its variables; a vector of one value is that
+/// value along x. Throws input_error: no such kind, a variable that it does not have, that is missing or of
+/// another size, or a model that cannot have it.
+std::shared_ptr<const boundary> make_boundary(const std::string& name, const model& equation,
+                                              const face_quantities& values = {});
+
+/// Returns a domain with the same kind of boundary, without variables, at every face. Throws input_error as
+/// make_boundary() does.
 domain make_domain(const phase_space& space, const std::string& name);
 
 }  // namespace apsis

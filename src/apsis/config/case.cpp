@@ -30,7 +30,8 @@ override_form form_of(const std::string& path, const std::string& value) {
     for (const model_parameter& p : entry->parameters)
       if ("model." + p.name == path)
         return {false, type_advice(p.integer ? key_type::integer : key_type::number)};
-  return {path.rfind("initial.", 0) != 0 || value.find('[') != 0, type_advice(key_type::text)};
+  const bool is_formula = path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0;
+  return {!is_formula || value.find('[') != 0, type_advice(key_type::text)};
 }
 
 /// Returns the text without surrounding spaces, which quoted arguments such as "space.cells = 80" have.
@@ -119,14 +120,6 @@ grid make_mesh(const case_config& config) {
     upper[k] = config.space.domain.at(k)[1];
   }
   return {static_cast<int>(config.space.cells.size()), cells, lower, upper};
-}
-
-std::vector<domain::faces> make_boundaries(const case_config& config) {
-  const auto common = make_boundary(config.space.boundary);
-  std::vector<domain::faces> sides(config.space.cells.size(), {common, common});
-  if (config.faces.left) sides.front()[0] = make_boundary(*config.faces.left);
-  if (config.faces.right) sides.front()[1] = make_boundary(*config.faces.right);
-  return sides;
 }
 
 std::vector<std::string> case_names() {

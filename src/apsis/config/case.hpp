@@ -16,6 +16,12 @@
 
 namespace apsis {
 
+/// Tables [boundary.left] and [boundary.right]: the boundary condition of a face.
+struct face_table {
+  std::optional<std::string> kind;  ///< space.boundary where it is not set
+  state_formulas values;            ///< of the variables of the kind, formulas in t and the position
+};
+
 /// A resolved case: every key has a value, every name exists. Keys are documented in case_keys.cpp (`apsis
 /// show case`).
 struct case_config {
@@ -43,7 +49,7 @@ struct case_config {
   } space;
   /// Tables [boundary.left] and [boundary.right], of models with space.
   struct {
-    std::optional<std::string> left, right;  ///< kind of the face; space.boundary where it is not set
+    face_table left, right;  ///< at the lower and the upper end in x
   } faces;
   /// Table [velocity], of models with a velocity grid.
   struct {
@@ -91,9 +97,6 @@ source_place place_of(const case_config& config, const std::string& path);
 
 /// The mesh of the table [space]. Throws input_error as grid does.
 grid make_mesh(const case_config& config);
-
-/// The boundaries at both ends of every direction. Throws input_error if there is no such kind.
-std::vector<domain::faces> make_boundaries(const case_config& config);
 
 /// Names of the built-in cases, sorted.
 std::vector<std::string> case_names();

@@ -195,6 +195,13 @@ void add_initial_table(std::string& out, const initial_table& initial) {
   }
 }
 
+void add_face(std::string& out, const std::string& side, const face_table& table) {
+  if (!table.kind && table.values.empty()) return;
+  out += fmt::format("\n[boundary.{}]\n", side);
+  if (table.kind) out += fmt::format("kind = {}\n", quoted(*table.kind));
+  add_state(out, table.values);
+}
+
 }  // namespace
 
 std::string to_toml(const case_config& config) {
@@ -216,7 +223,7 @@ std::string to_toml(const case_config& config) {
   for (const case_key& key : case_schema()) {
     const case_value value = key.load(config);
     if ((model != nullptr && !applies(key, *model)) || std::holds_alternative<std::monostate>(value) ||
-        (key.path == "model.initial" && !config.prescribed.empty()))
+        (key.path == "model.initial" && !config.prescribed.empty()) || key.path.rfind("boundary.", 0) == 0)
       continue;
     if (table_of(key.path) != table) {
       if (table.empty()) add_constants();
@@ -227,6 +234,8 @@ std::string to_toml(const case_config& config) {
     out += fmt::format("{} = {}\n", name_of(key.path), to_toml(value));
   }
   add_initial_table(out, config.prescribed);
+  add_face(out, "left", config.faces.left);
+  add_face(out, "right", config.faces.right);
   return out;
 }
 

@@ -163,18 +163,22 @@ std::vector<case_key> space_keys() {
       key("space.boundary", [](auto& c) -> auto& { return c.space.boundary; },
           {.scope = key_scope::space,
            .choices = names_in(boundary_entries),
-           .doc = "Boundary condition at every end of the domain (apsis list boundaries). Conservation and "
-                  "entropy decay are promised for periodic ends only."}),
-      key("boundary.left.kind", [](auto& c) -> auto& { return c.faces.left; },
+           .doc = "Boundary condition at every end of the domain (apsis list boundaries). Entropy decay is "
+                  "promised for periodic ends only."}),
+      key("boundary.left.kind", [](auto& c) -> auto& { return c.faces.left.kind; },
           {.scope = key_scope::space,
            .choices = names_in(boundary_entries),
-           .doc = "Boundary condition at the lower end in x, where it differs from space.boundary. Table "
-                  "[boundary.left]."}),
-      key("boundary.right.kind", [](auto& c) -> auto& { return c.faces.right; },
+           .doc =
+               "Boundary condition at the lower end in x, where it differs from space.boundary. Further keys "
+               "of the table [boundary.left] are the variables of the kind (apsis list boundaries), "
+               "numbers or formulas in t and x."}),
+      key("boundary.right.kind", [](auto& c) -> auto& { return c.faces.right.kind; },
           {.scope = key_scope::space,
            .choices = names_in(boundary_entries),
-           .doc = "Boundary condition at the upper end in x, where it differs from space.boundary. Table "
-                  "[boundary.right]."}),
+           .doc =
+               "Boundary condition at the upper end in x, where it differs from space.boundary. Further keys "
+               "of the table [boundary.right] are the variables of the kind (apsis list boundaries), "
+               "numbers or formulas in t and x."}),
       key("velocity.max", [](auto& c) -> auto& { return c.velocity.max; },
           {.scope = key_scope::velocity,
            .required = true,

@@ -1,6 +1,6 @@
 #include <apsis/config/case_resolver.hpp>
 
-#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/initial_reader.hpp>
@@ -33,6 +33,7 @@ class resolver {
     for (const case_key& key : case_schema()) take(key);
     take_parameters();
     take_initial_data();
+    read_boundary_values(text_, *checked_model(), config_);
     check_together();
     return config_;
   }
@@ -52,7 +53,8 @@ class resolver {
   void note_places() {
     for (const auto& [name, place] : text_.tables) config_.places[name] = place;
     for (const auto& [path, raw] : text_.values)
-      config_.places[path] = is_in(path, "initial") ? place_of_formula(raw) : raw.place;
+      config_.places[path] =
+          is_in(path, "initial") || is_in(path, "boundary") ? place_of_formula(raw) : raw.place;
   }
 
   /// A formula begins after its quotation mark; other text has no columns.
@@ -121,7 +123,7 @@ class resolver {
     const auto valid = valid_paths();
     for (const auto& [path, raw] : text_.values) {
       if (std::find(valid.begin(), valid.end(), path) != valid.end() || is_in(path, "parameters") ||
-          is_in(path, "initial"))
+          is_in(path, "initial") || (is_in(path, "boundary") && has_space(*model_)))
         continue;
       for (const case_key& key : case_schema())
         if (key.path == path)
@@ -284,10 +286,11 @@ class resolver {
   }
 
   void check_faces() const {
-    const auto sides = make_boundaries(config_);
+    const auto equation = make_model(config_);
+    const auto sides = make_boundaries(config_, *equation);
     for (const auto& [lower, upper] : sides) {
       if (lower->periodic() == upper->periodic()) continue;
-      const char* own = config_.faces.left ? "boundary.left.kind" : "boundary.right.kind";
+      const char* own = config_.faces.left.kind ? "boundary.left.kind" : "boundary.right.kind";
       refuse(*find(own), own, "only one of the two ends is periodic",
              "write space.boundary = \"periodic\" alone, or give both ends another kind");
     }

@@ -189,4 +189,23 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
   return {};
 }
 
+namespace {
+
+std::string formula_text(const raw_value& raw, const std::string& path) {
+  if (const auto* text = std::get_if<std::string>(&raw.value)) return *text;
+  if (std::holds_alternative<long>(raw.value) || std::holds_alternative<double>(raw.value))
+    return fmt::format("{}", finite_number(raw, path, "a number"));
+  refuse(raw, path, "a number or a formula is needed", "write for example \"1 + 0.2*sin(pi*x)\"");
+}
+
+}  // namespace
+
+std::vector<std::string> formula_texts(const raw_value& raw, const std::string& path) {
+  const auto* list = std::get_if<raw_value::list>(&raw.value);
+  if (list == nullptr || list->empty()) return {formula_text(raw, path)};
+  std::vector<std::string> formulas;
+  for (const auto& component : *list) formulas.push_back(formula_text(component, path));
+  return formulas;
+}
+
 }  // namespace apsis

@@ -4,6 +4,7 @@
 #include <apsis/config/case_text.hpp>
 
 #include <string>
+#include <vector>
 
 namespace apsis {
 
@@ -21,6 +22,10 @@ std::string type_advice(key_type type);
 
 /// Returns a finite number. `needed` describes the expected value ("a number"). Throws input_error.
 double finite_number(const raw_value& raw, const std::string& path, const std::string& needed);
+
+/// Returns the formulas of the components of a variable: a number or a text, or a list of them. Throws
+/// input_error at the place of the key.
+std::vector<std::string> formula_texts(const raw_value& raw, const std::string& path);
 
 /// Throws input_error at the place of the key: "'path' is `raw.what` (why); advice".
 [[noreturn]] void refuse(const raw_value& raw, const std::string& path, const std::string& why,

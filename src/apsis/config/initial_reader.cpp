@@ -24,13 +24,6 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-std::string formula_text(const raw_value& raw, const std::string& path) {
-  if (const auto* text = std::get_if<std::string>(&raw.value)) return *text;
-  if (std::holds_alternative<long>(raw.value) || std::holds_alternative<double>(raw.value))
-    return fmt::format("{}", finite_number(raw, path, "a number"));
-  refuse(raw, path, "a number or a formula is needed", "write for example \"1 + 0.2*sin(pi*x)\"");
-}
-
 class reader {
  public:
   reader(const case_text& text, const model& equation, const std::string& name)
@@ -60,7 +53,7 @@ class reader {
     if (key[1] != "region") unknown(path, raw, key[1], {"part", "region"});
     initial_region& region = item(path, key, 2, raw, table_.regions);
     if (key.size() == 4 && key[3] == "where") {
-      region.where = formula_text(raw, path);
+      region.where = formula_texts(raw, path).front();
     } else if (key.size() == 4) {
       take_variable(path, key[3], raw, region.state, {"where", "part"});
     } else {
@@ -74,7 +67,7 @@ class reader {
     initial_part& part = item(path, key, at, raw, parts);
     if (key.size() != at + 2) unknown(path, raw, key[at + 1], {"weight"});
     if (key[at + 1] == "weight") {
-      part.weight = formula_text(raw, path);
+      part.weight = formula_texts(raw, path).front();
     } else {
       take_variable(path, key[at + 1], raw, part.state, {"weight"});
     }
@@ -86,13 +79,7 @@ class reader {
       refuse(raw, path, "it is a list of tables", fmt::format("write [[{}]]", path));
     if (std::find(variables_.begin(), variables_.end(), name) == variables_.end())
       unknown(path, raw, name, others);
-    auto& formulas = state[name];
-    const auto* list = std::get_if<raw_value::list>(&raw.value);
-    if (list == nullptr) {
-      formulas = {formula_text(raw, path)};
-      return;
-    }
-    for (const auto& component : *list) formulas.push_back(formula_text(component, path));
+    state[name] = formula_texts(raw, path);
   }
 
   /// Returns the item whose number, from 1, is the word `at` of the key.

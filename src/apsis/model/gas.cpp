@@ -80,20 +80,31 @@ fluid_state gas::state(const double* omega) const {
   return s;
 }
 
-void gas::moments_of_g(const double* omega, double* of_g) const {
+/// Every f ≥ 0 has an equilibrium: if the grid cannot hold the temperature in g, because h is small or large
+/// beside it, g gets the nearest one, at most that of equally occupied velocities, and h the rest of the
+/// energy.
+double gas::moments_of_g(const double* omega, double* of_g) const {
   const int d = dimensions();
   const fluid_state s = state(omega);
-  double square = 0.0;
+  const double last = 0.5 * (grid_.points() - 1), step = grid_.spacing();
+  double square = 0.0, least = 0.0;
   for (int k = 0; k <= d; ++k) of_g[k] = omega[k];
-  for (int k = 0; k < d; ++k) square += s.u[k] * s.u[k];
-  of_g[d + 1] = omega[0] == 0.0 ? omega[d + 1] : 0.5 * s.rho * (square + d * s.T);
+  for (int k = 0; k < d; ++k) {
+    square += s.u[k] * s.u[k];
+    const double place = s.u[k] / step + last, beyond = place - std::floor(place);
+    least += beyond * (1.0 - beyond) * step * step;  // variance of two neighbouring velocities
+  }
+  const double greatest = d * last * last * step * step - square;
+  const double variance = std::min(std::max(d * s.T, least), least + (greatest - least) / 3.0);
+  const bool usual = !(omega[0] > 0.0) || !(greatest >= least) || variance == d * s.T;
+  of_g[d + 1] = omega[0] == 0.0 ? omega[d + 1] : 0.5 * s.rho * (square + (usual ? d * s.T : variance));
+  if (!(omega[0] > 0.0)) return 0.0;
+  return std::max(usual ? (degrees_ - d) * s.T : degrees_ * s.T - variance, 0.0);
 }
 
-void gas::fill_h(const double* omega, double* row) const {
-  const double T = state(omega).T,
-               factor = omega[0] > 0.0 ? (degrees_ - dimensions()) * std::max(T, 0.0) : 0.0;
+void gas::fill_h(double energy, double* row) const {
   double* h = row + grid_.size();
-  for (int j = 0; j < grid_.size(); ++j) h[j] = factor * row[j];
+  for (int j = 0; j < grid_.size(); ++j) h[j] = energy * row[j];
 }
 
 template <class State>
@@ -150,14 +161,16 @@ bool gas::equilibrium(const double* omega, double* row) const {
 int gas::equilibria(const double* omega, int rows, double* row, std::ptrdiff_t pitch) const {
   if (!reduced()) return equilibria_of_g(omega, rows, row, pitch);
   std::array<double, static_cast<std::size_t>(most_line_states) * most_moments> of_g;  // NOLINT
+  std::array<double, most_line_states> of_h;                                           // NOLINT
   const int count = moment_count();
   for (int first = 0; first < rows; first += most_line_states) {
     const int some = std::min(most_line_states, rows - first);
     const double* of = omega + first * count;
     double* to = row + first * pitch;
-    for (int p = 0; p < some; ++p) moments_of_g(of + p * count, of_g.data() + p * count);
+    for (int p = 0; p < some; ++p)
+      of_h[static_cast<std::size_t>(p)] = moments_of_g(of + p * count, of_g.data() + p * count);
     const int found = equilibria_of_g(of_g.data(), some, to, pitch);
-    for (int p = 0; p < found; ++p) fill_h(of + p * count, to + p * pitch);
+    for (int p = 0; p < found; ++p) fill_h(of_h[static_cast<std::size_t>(p)], to + p * pitch);
     if (found < some) return first + found;
   }
   return rows;

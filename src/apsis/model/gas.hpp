@@ -36,8 +36,8 @@ class gas {
   void moments(const double* row, std::ptrdiff_t pitch, int rows, double* omega) const;
   /// Returns density, bulk velocity and temperature of ω without checking that they are admissible.
   fluid_state state(const double* omega) const;
-  /// row ← the equilibrium of ω. Returns false if there is none on the grid: for rows f ≥ 0 only where T is
-  /// so low that g alone could not have it.
+  /// row ← the equilibrium of ω. Returns false if there is none on the grid, which moments of rows f ≥ 0 have
+  /// always.
   bool equilibrium(const double* omega, double* row) const;
   /// equilibrium() of several rows, `pitch` apart; returns the number of rows before the first without one.
   int equilibria(const double* omega, int rows, double* row, std::ptrdiff_t pitch) const;
@@ -58,11 +58,11 @@ class gas {
 
  private:
   static constexpr int most_moments = 5;
-  /// ω of g alone in the equilibrium of ω.
-  void moments_of_g(const double* omega, double* of_g) const;
+  /// of_g ← ω of g alone in the equilibrium of ω; returns h/g.
+  double moments_of_g(const double* omega, double* of_g) const;
   bool equilibrium_of_g(const double* of_g, double* g) const;
   int equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const;
-  void fill_h(const double* omega, double* row) const;
+  void fill_h(double energy, double* row) const;
   template <class State>
   bool is_good_enough(const double* of_g, const State& state, const double* g) const;
   std::string row_of(std::span<const double> given, std::span<double> row) const;

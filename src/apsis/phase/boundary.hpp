@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace apsis {
 
@@ -24,7 +25,8 @@ struct pencil_end {
   position at;                            ///< intersection of the pencil with the face
 };
 
-/// A boundary condition at a face of the domain. Transport and collision access it through ghost rows alone.
+/// A boundary condition at a face of the domain: ghost rows for reconstruction and collision and, where it
+/// prescribes them, the values of the incoming components at the face itself.
 class boundary {
  public:
   virtual ~boundary() = default;
@@ -40,6 +42,14 @@ class boundary {
   /// Fills the ghost rows of a pencil at time t. Called before every evaluation of T, and of Q if it depends
   /// on neighbouring cells, concurrently for different pencils.
   virtual void fill(const face& where, double t, const pencil_end& rows) const = 0;
+  /// Whether incoming() gives the values of the components that enter through the face. Transport then uses
+  /// them in the fluxes in place of the edge values of ghost cells.
+  virtual bool prescribes_incoming() const { return false; }
+  /// For every component k that enters, incoming[k] ← its value at the face at time t. outgoing[k] is the
+  /// value of a component that leaves, as it enters the flux v_k outgoing[k] of the step; 0 for others.
+  /// Called concurrently for different pencils.
+  virtual void incoming(const face& where, double t, const position& at, const double* outgoing,
+                        double* incoming) const;
   /// Whether the domain continues at the opposite face; both faces of a direction must agree.
   virtual bool periodic() const { return false; }
   /// Whether no invariant crosses the face.
@@ -52,5 +62,19 @@ class repeating_boundary : public boundary {
   /// Copies the repeated rows, for callers that need them in ghost rows.
   void fill(const face& where, double t, const pencil_end& rows) const final;
 };
+
+/// A boundary condition that prescribes the incoming components. Ghost rows continue the outgoing ones by the
+/// quadratic through three cells, and the incoming ones by the quadratic through the value at the face and
+/// two cells; where these are steeper than three times the smaller of two neighbouring differences, the
+/// continuation is scaled towards the value at the face, or of the cell there. Third order in cell averages,
+/// second in point values, whose average differs by Δx² u''/24.
+class incoming_boundary : public boundary {
+ public:
+  bool prescribes_incoming() const final { return true; }
+  void fill(const face& where, double t, const pencil_end& rows) const final;
+};
+
+/// Returns 1 for components that enter the domain through a face, 0 for others.
+std::vector<double> entering_components(const face& where, const velocity_set& velocities);
 
 }  // namespace apsis

@@ -78,7 +78,6 @@ void domain::reserve(int components, int width) {
   width_ = std::max(width, width_);
 }
 
-/// Returns the intersection of a pencil with a face.
 position domain::meeting_point(const face& where, int pencil) const {
   position x = mesh().centre(mesh().first_cell(where.direction, pencil));
   double& along = x[at(where.direction)];

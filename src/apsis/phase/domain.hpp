@@ -27,6 +27,10 @@ class domain {
   const phase_space& space() const { return space_; }
   /// Returns the interior cells.
   const grid& mesh() const { return space_.mesh; }
+  /// Returns the boundary of a face, as prepared for it.
+  const boundary& side(const face& where) const;
+  /// Returns the point at which a pencil meets a face.
+  position meeting_point(const face& where, int pencil) const;
   /// Whether the direction is periodic.
   bool periodic(int direction) const;
   /// Whether no invariant crosses any face.
@@ -45,13 +49,11 @@ class domain {
  private:
   domain();
 
-  const boundary& side(const face& where) const;
   field& ghosts(const face& where);
   const field& ghosts(const face& where) const;
   bool repeats(const face& where) const;
   const double* ghost_row(const field& u, const face& where, int pencil, int ghost) const;
   void fill_face(const face& where, double t, const field& u);
-  position meeting_point(const face& where, int pencil) const;
 
   phase_space space_;
   std::vector<faces> sides_;

@@ -23,6 +23,7 @@ class field {
       : cells_(other.cells_),
         components_(other.components_),
         stride_(other.stride_),
+        gains_(other.gains_),
         data_(other.data_.size()) {
     fill_rows(other.data_.data());
   }
@@ -32,6 +33,7 @@ class field {
     cells_ = other.cells_;
     components_ = other.components_;
     stride_ = other.stride_;
+    gains_ = other.gains_;
     fill_rows(other.data_.data());
     return *this;
   }
@@ -46,6 +48,13 @@ class field {
 
   /// Returns the stride of rows with the given number of components.
   static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
+
+  /// Amounts of the invariants that this state has received through the faces of the domain,
+  /// [face][invariant]; copied with the rows, and formed by the same linear combinations
+  /// (semidiscrete/face_fluxes.hpp). Empty where nothing crosses a face.
+  std::vector<double>& gains() { return gains_; }
+  /// The gains of a constant field.
+  const std::vector<double>& gains() const { return gains_; }
 
   /// Returns the row of a cell, 0 … cells() − 1 (not checked).
   double* row(int cell) {
@@ -64,6 +73,7 @@ class field {
   void fill_rows(const double* values);
 
   int cells_ = 0, components_ = 0, stride_ = 0;
+  std::vector<double> gains_;
   std::vector<double, untouched_allocator<double>> data_;
 };
 

@@ -80,21 +80,52 @@ step_record monitor::start(const field& u) {
   const totals t = sum(u);
   invariants_ = t.invariants;
   scales_ = t.scales;
-  return check(u, std::numeric_limits<double>::quiet_NaN());
+  step_record record;
+  record.received.assign(faces_ * invariants_.size(), 0.0);
+  record.flux = record.received;
+  record.min_value = t.lowest;
+  record.negative_values = t.negative;
+  record.entropy = t.entropy;
+  record.entropy_change = std::numeric_limits<double>::quiet_NaN();
+  compare(t, invariants_, record.flux, record);
+  return record;
 }
 
-step_record monitor::check(const field& u, double previous_entropy) const {
+step_record monitor::check(const field& u, double dt, const step_record& previous) const {
   const totals t = sum(u);
   step_record record;
   record.min_value = t.lowest;
   record.negative_values = t.negative;
   record.entropy = t.entropy;
-  record.entropy_change = t.entropy - previous_entropy;
-  for (std::size_t k = 0; k < t.invariants.size(); ++k)
-    record.conservation_defect.push_back(scales_[k] > 0.0
-                                             ? std::abs(t.invariants[k] - invariants_[k]) / scales_[k]
-                                             : std::abs(t.invariants[k]));
+  record.entropy_change = t.entropy - previous.entropy;
+  std::vector<double> gained = u.gains();
+  gained.resize(faces_ * invariants_.size());
+  record.received = previous.received;
+  for (std::size_t k = 0; k < gained.size(); ++k) {
+    record.received[k] += gained[k];
+    record.flux.push_back(gained[k] / dt);
+  }
+  compare(t, previous.total, gained, record);
   return record;
+}
+
+void monitor::compare(const totals& t, const std::vector<double>& before, const std::vector<double>& gained,
+                      step_record& record) const {
+  record.total = t.invariants;
+  const std::size_t count = invariants_.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    double received = 0.0, passed = 0.0, in_step = 0.0;
+    for (std::size_t f = 0; f < faces_; ++f) {
+      received += record.received[f * count + k];
+      passed += std::abs(record.received[f * count + k]);
+      in_step += gained[f * count + k];
+    }
+    const double content = std::max(scales_[k], t.scales[k]), all = std::max(content, passed);
+    const double defect = std::abs(t.invariants[k] - invariants_[k] - received),
+                 of_step = std::abs(t.invariants[k] - before[k] - in_step);
+    record.conservation_defect.push_back(all > 0.0 ? defect / all : defect);
+    record.defect_of_step.push_back(content > 0.0 ? of_step / content : of_step);
+  }
 }
 
 }  // namespace apsis

@@ -4,6 +4,7 @@
 #include <apsis/phase/field.hpp>
 #include <apsis/run/simulation.hpp>
 
+#include <cstddef>
 #include <vector>
 
 namespace apsis {
@@ -12,16 +13,18 @@ namespace apsis {
 /// results do not depend on the number of threads.
 class monitor {
  public:
-  /// `volume` is the cell volume (1 for an ordinary differential equation).
-  monitor(const model& equation, double volume) : equation_(equation), volume_(volume) {}
+  /// `volume` is the cell volume (1 for an ordinary differential equation), `faces` the number of faces that
+  /// are not periodic.
+  monitor(const model& equation, double volume, std::size_t faces)
+      : equation_(equation), volume_(volume), faces_(faces) {}
 
-  /// Sets the reference state of conservation and returns its record: defects are |I − I₀| relative to
-  /// Σ_cells volume · model::invariant_scales().
+  /// Sets the reference state of conservation and returns its record: defects are relative to Σ_cells volume
+  /// · model::invariant_scales().
   step_record start(const field& u);
 
-  /// Returns the record of a state without step, t and dt. Throws numerical_error at the first number that is
-  /// not finite.
-  step_record check(const field& u, double previous_entropy) const;
+  /// Returns the record of the state after a step of length dt, whose gains through the faces are those of
+  /// the step; without step and t. Throws numerical_error at the first number that is not finite.
+  step_record check(const field& u, double dt, const step_record& previous) const;
 
  private:
   struct totals {
@@ -30,10 +33,13 @@ class monitor {
     long negative;
   };
   totals sum(const field& u) const;
+  void compare(const totals& t, const std::vector<double>& before, const std::vector<double>& gained,
+               step_record& record) const;
 
   const model& equation_;
   double volume_;
-  std::vector<double> invariants_, scales_;
+  std::size_t faces_;
+  std::vector<double> invariants_, scales_;  ///< of the initial state
 };
 
 }  // namespace apsis

@@ -11,9 +11,9 @@ namespace apsis {
 bool conserves_to_rounding(const run_setup& setup, const field& initial, const rounding_bound& rounding);
 
 /// Throws numerical_error with step, time, value, possible cause and remedy if the record of a step breaks a
-/// promise. `before` is the record of the previous step: in each step an invariant may change by the rounding
-/// of one step, however long the run.
-void check_promises(const run_promises& promises, const step_record& before, const step_record& last,
-                    const run_setup& setup, const rounding_bound& rounding);
+/// promise. In each step an invariant may change by what crosses the faces and by the rounding of one step,
+/// however long the run.
+void check_promises(const run_promises& promises, const step_record& last, const run_setup& setup,
+                    const rounding_bound& rounding);
 
 }  // namespace apsis

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 namespace apsis {
 namespace {
 
@@ -20,9 +22,10 @@ struct row_writer {
   }
 };
 
-/// Appends the names of the columns of a record; those of a vector are NAME_INVARIANT.
+/// Appends the names of the columns of a record; those of a vector are NAME_INVARIANT, or
+/// NAME_FACE_INVARIANT.
 struct column_writer {
-  const std::vector<std::string>& invariants;
+  const std::vector<std::string>&invariants, &faces;
   std::vector<std::string>& columns;
 
   template <class Number>
@@ -30,31 +33,42 @@ struct column_writer {
     columns.emplace_back(name);
   }
   void operator()(const char* name, const std::vector<double>&) const {
-    for (const auto& invariant : invariants) columns.push_back(name + ("_" + invariant));
+    const std::string head = name;
+    if (head == "conservation" || head == "total") return add(head);
+    for (const auto& face : faces) add(head + "_" + face);
+  }
+  void add(const std::string& head) const {
+    for (const auto& invariant : invariants) columns.push_back(head + "_" + invariant);
   }
 };
 
-/// Reads the numbers of a record from a row; a vector takes what the other members leave.
+/// Reads the numbers of a record from a row; a vector takes the columns whose names begin with its own.
 class row_reader {
  public:
-  row_reader(const std::vector<double>& row, std::size_t scalars) : row_(row), scalars_(scalars) {
-    if (row.size() < scalars)
-      throw io_error(
-          "the history of the checkpoint has too few columns (damaged file); give another checkpoint");
-  }
+  row_reader(const std::vector<std::string>& columns, const std::vector<double>& row)
+      : columns_(columns), row_(row) {}
 
-  void operator()(const char*, long& x) { x = static_cast<long>(row_[at_++]); }
-  void operator()(const char*, double& x) { x = row_[at_++]; }
-  void operator()(const char*, std::vector<double>& x) {
-    const auto begin = row_.begin() + static_cast<std::ptrdiff_t>(at_);
-    const std::size_t length = row_.size() - scalars_;
-    x.assign(begin, begin + static_cast<std::ptrdiff_t>(length));
-    at_ += length;
+  void operator()(const char* name, long& x) { x = static_cast<long>(next(name)); }
+  void operator()(const char* name, double& x) { x = next(name); }
+  void operator()(const char* name, std::vector<double>& x) {
+    const std::string head = std::string(name) + "_";
+    x.clear();
+    while (at_ < columns_.size() && columns_[at_].rfind(head, 0) == 0) x.push_back(next(columns_[at_]));
   }
 
  private:
+  double next(const std::string& name) {
+    if (at_ >= row_.size() || at_ >= columns_.size() || columns_[at_] != name)
+      throw io_error(
+          fmt::format("the history of the checkpoint has no column '{}' in its place (damaged file); give "
+                      "another checkpoint",
+                      name));
+    return row_[at_++];
+  }
+
+  const std::vector<std::string>& columns_;
   const std::vector<double>& row_;
-  std::size_t scalars_, at_ = 0;
+  std::size_t at_ = 0;
 };
 
 std::vector<double> to_row(const step_record& record) {
@@ -63,9 +77,9 @@ std::vector<double> to_row(const step_record& record) {
   return row;
 }
 
-step_record from_row(const std::vector<double>& row) {
+step_record from_row(const std::vector<std::string>& columns, const std::vector<double>& row) {
   step_record record;
-  row_reader reader(row, to_row(record).size());
+  row_reader reader(columns, row);
   step_record::visit_members(record, reader);
   return record;
 }
@@ -105,9 +119,9 @@ struct number_reader {
 };
 
 std::vector<std::string> history_columns(const simulation& run) {
-  const std::vector<std::string> invariants = run.invariants();
+  const std::vector<std::string> invariants = run.invariants(), faces = run.open_faces();
   std::vector<std::string> columns;
-  step_record::visit_members(run.initial_record(), column_writer{invariants, columns});
+  step_record::visit_members(run.initial_record(), column_writer{invariants, faces, columns});
   return columns;
 }
 
@@ -191,8 +205,8 @@ run_state to_run_state(const checkpoint& c) {
   });
   if (saved.march.startup_steps > 64 || saved.march.startup_done > saved.march.startup_steps)
     throw io_error("the checkpoint has a wrong start-up (damaged file); give another checkpoint");
-  saved.initial = from_row(c.history.rows.front());
-  saved.last = from_row(c.history.rows.back());
+  saved.initial = from_row(c.history.columns, c.history.rows.front());
+  saved.last = from_row(c.history.columns, c.history.rows.back());
   return saved;
 }
 

@@ -11,14 +11,24 @@ namespace apsis {
 
 /// The checks after a step; one row of history.csv. Dimensionless.
 struct step_record {
-  long step = 0;                            ///< number of the step, 0 for the initial state
-  double t = 0.0,                           ///< time at its end
-      dt = 0.0;                             ///< its length
-  double min_value = 0.0;                   ///< smallest unknown of the state
-  long negative_values = 0;                 ///< number of unknowns < 0
-  std::vector<double> conservation_defect;  ///< |I − I₀| / scale of I₀ for each invariant
-  double entropy = 0.0;                     ///< NaN where the model has none, or an unknown is < 0
-  double entropy_change = 0.0;              ///< S^{n+1} − S^n; NaN without entropy, and at the start
+  long step = 0;             ///< number of the step, 0 for the initial state
+  double t = 0.0,            ///< time at its end
+      dt = 0.0;              ///< its length
+  double min_value = 0.0;    ///< smallest unknown of the state
+  long negative_values = 0;  ///< number of unknowns < 0
+  /// |I − I₀ − received| for each invariant, relative to the largest of its scales at the start, of the state
+  /// and of what crossed the faces.
+  std::vector<double> conservation_defect;
+  double entropy = 0.0;         ///< NaN where the model has none, or an unknown is < 0
+  double entropy_change = 0.0;  ///< S^{n+1} − S^n; NaN without entropy, and at the start
+  std::vector<double> total;    ///< I, the sum of the densities of each invariant over the domain
+  /// Amounts of the invariants that the gas received through each face since the start, [face][invariant],
+  /// per area of the face.
+  std::vector<double> received;
+  std::vector<double> flux;  ///< the same per unit of time, in the mean over the step
+  /// |I − I₀ − received| of this step alone, relative to the same scales; not among the members that are
+  /// kept.
+  std::vector<double> defect_of_step = {};
 
   /// Calls visit(name, member) for every member of `self`, in the order of the columns of the history.
   template <class Self, class Visitor>
@@ -31,6 +41,9 @@ struct step_record {
     visit("conservation", self.conservation_defect);
     visit("entropy", self.entropy);
     visit("entropy_change", self.entropy_change);
+    visit("total", self.total);
+    visit("received", self.received);
+    visit("flux", self.flux);
   }
 };
 

@@ -1,5 +1,6 @@
 #include <apsis/run/setup.hpp>
 
+#include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/schedule.hpp>
@@ -8,6 +9,7 @@
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -68,7 +70,7 @@ void run_setup::build_space() {
   const reconstruction_entry* scheme = find_reconstruction(space.reconstruction);
   if (scheme == nullptr) throw input_error("unknown reconstruction '" + space.reconstruction + "'");
   builder_.on(make_mesh(config_)).with_unknowns(space.formulation);
-  const auto sides = make_boundaries(config_);
+  const auto sides = make_boundaries(config_, *equation);
   for (int direction = 0; direction < static_cast<int>(sides.size()); ++direction)
     for (const bool upper : {false, true})
       builder_.with_boundary({direction, upper}, sides[static_cast<std::size_t>(direction)][upper ? 1 : 0]);
@@ -141,6 +143,18 @@ std::vector<double> run_setup::centres() const {
   for (int cell = 0; cell < builder_.mesh().size(); ++cell)
     x.push_back(has_space() ? builder_.mesh().centre(cell, 0) : 0.0);
   return x;
+}
+
+std::vector<std::string> run_setup::open_faces() const {
+  static const std::array<std::array<const char*, 2>, 3> names = {
+      {{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
+  std::vector<std::string> open;
+  if (!has_space()) return open;
+  const domain space = builder_.space();
+  for (int direction = 0; direction < builder_.mesh().dimensions(); ++direction)
+    for (const char* name : names[static_cast<std::size_t>(direction)])
+      if (!space.periodic(direction)) open.emplace_back(name);
+  return open;
 }
 
 std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
@@ -219,12 +233,12 @@ double run_setup::equilibrium_defect(const field& u) const {
 void run_setup::decide_promises(run_promises& promises, double dt, double limit, bool nonnegative,
                                 bool exact_equilibrium) const {
   const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
-  // Mass and entropy cross open ends.
+  // Entropy crosses open ends; what crosses them of the invariants is known.
   const bool closed = builder_.space().closed();
   // An explicit Q/epsilon beyond its step limit amplifies its rounding in the invariants by dt/epsilon.
   const bool explicit_collision = schedule(method_->coefficients<double>()).collision_evaluations() > 0;
   promises.conservation =
-      closed && exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
+      exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
   promises.positivity = equation->positive() && nonnegative && within && builder_.keeps_sign();
   // An equilibrium with other moments does not minimize the entropy among the states with those of the data.
   promises.entropy = equation->has_entropy() && nonnegative && closed && within && builder_.first_order() &&

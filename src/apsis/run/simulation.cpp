@@ -51,7 +51,7 @@ struct simulation::impl {
         problem(setup.make_problem()),
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
-        watch(*setup.equation, setup.cell_volume()),
+        watch(*setup.equation, setup.cell_volume(), setup.open_faces().size()),
         rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
         state(setup.initial_state()),
         march(times_of(setup)) {
@@ -102,6 +102,7 @@ struct simulation::impl {
 
   /// u ← u^{n+1}; returns Δt.
   double step() {
+    state.gains().clear();  // those of this step alone
     if (control)
       return step_within_tolerance(integrator, march, *control, estimate, limit(), state, relative_distance);
     const double dt = next_dt();
@@ -111,8 +112,7 @@ struct simulation::impl {
 
   void record_step(double dt) {
     march.advance(dt);
-    const double previous = last.entropy;
-    last = watch.check(state, previous);
+    last = watch.check(state, dt, last);
     last.step = march.step();
     last.t = march.t();
     last.dt = dt;
@@ -166,6 +166,9 @@ const run_promises& simulation::promises() const {
 std::vector<std::string> simulation::invariants() const {
   return impl_->setup.equation->invariants();
 }
+std::vector<std::string> simulation::open_faces() const {
+  return impl_->setup.open_faces();
+}
 double simulation::t() const {
   return impl_->march.t();
 }
@@ -202,7 +205,6 @@ const step_record& simulation::advance() {
   const auto start = std::chrono::steady_clock::now();
   const double cpu = thread_seconds();
   impl& run = *impl_;
-  const step_record before = run.last;
   try {
     run.record_step(run.step());
   } catch (const numerical_error& failure) {
@@ -210,7 +212,7 @@ const step_record& simulation::advance() {
   }
   run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.totals.cpu_s += thread_seconds() - cpu;
-  check_promises(run.promises, before, run.last, run.setup, run.rounding);
+  check_promises(run.promises, run.last, run.setup, run.rounding);
   return run.last;
 }
 

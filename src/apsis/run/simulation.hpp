@@ -15,7 +15,7 @@ namespace apsis {
 /// Properties guaranteed by the configuration of a run. A broken promise ends the run (exit code 3).
 struct run_promises {
   bool positivity = false;    ///< nonnegative data, limiter (or first-order upwind), Δt ≤ r Δt_FE
-  bool conservation = false;  ///< invariants, no open ends, and Q implicit or Δt ≤ r Δt_FE
+  bool conservation = false;  ///< with what crosses the faces, and Q implicit or Δt ≤ r Δt_FE
   bool entropy = false;       ///< positivity with first-order upwind and periodic boundaries
   std::string text() const;   ///< returns one line for the log
 };
@@ -40,11 +40,13 @@ class simulation {
   const case_config& config() const;            ///< the case as given
   const run_promises& promises() const;         ///< promises checked after every step
   std::vector<std::string> invariants() const;  ///< names in the order of conservation_defect
-  double t() const;                             ///< time reached
-  double dt() const;                            ///< length of the next step
-  long step() const;                            ///< steps taken
-  long steps_total() const;                     ///< estimate of the total number of steps
-  bool finished() const;                        ///< whether t() is time.end
+  /// Returns the names of the faces that are not periodic, in the order of step_record::received: "left".
+  std::vector<std::string> open_faces() const;
+  double t() const;          ///< time reached
+  double dt() const;         ///< length of the next step
+  long step() const;         ///< steps taken
+  long steps_total() const;  ///< estimate of the total number of steps
+  bool finished() const;     ///< whether t() is time.end
   /// Returns the forecast of the relative error from terms of size ε in a run with time.tolerance; a warning
   /// is given if it exceeds the tolerance. 0 if the steps resolve the relaxation, or without tolerance.
   double expected_plateau() const;

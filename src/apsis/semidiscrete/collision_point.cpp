@@ -1,6 +1,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
+#include <apsis/semidiscrete/face_fluxes.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -39,6 +40,7 @@ class pointwise_collision final : public cellwise_collision {
   }
 
   void add_collision(double, const field& u, std::span<const target<field, double>> targets) override {
+    combine_gains(u, targets);
     prepare(u);
     const int length = points_per_batch(u.stride());
     scratch_.prepare([&](auto& own) {

@@ -75,6 +75,7 @@ class transport::block_sweep {
   }
 
   void run(const transport& from, const field& u, const place& at, targets_view targets) {
+    if (at.begin == at.end) return;
     prepare(from, u, at);
     const double numbers = static_cast<double>(at.end - at.begin) * width_;
     {
@@ -86,12 +87,17 @@ class transport::block_sweep {
         i += run.cells * run.joined;
       }
     }
+    for (const bool upper : {false, true})
+      if (touches({at.direction, upper}, at) && from.faces_->prescribes({at.direction, upper}))
+        empty_beyond(upper ? at.end : -1, upper ? 1 : -1);
     const profile::section timed(kernel::fluxes, numbers, work_of(targets));
     for (int i = at.begin; i < at.end;) {
       const run_of_cells run = run_from(i, at.end - i);
       add(i, run, at, targets);
       i += run.cells * run.joined;
     }
+    for (const bool upper : {false, true})
+      if (touches({at.direction, upper}, at)) record({at.direction, upper}, at);
   }
 
  private:
@@ -100,6 +106,47 @@ class transport::block_sweep {
   struct run_of_cells {
     int cells, joined;
   };
+
+  /// Whether a block ends at a face that is not periodic.
+  bool touches(const face& where, const place& at) const {
+    return (where.upper ? at.end == from_->mesh().cells(at.direction) : at.begin == 0) &&
+           from_->faces_->records(where);
+  }
+
+  /// Replaces the ghost cells from `first` outwards, as the fluxes see them, by vacuum.
+  void empty_beyond(int first, int outwards) {
+    vacuum_.resize(std::max(vacuum_.size(), static_cast<std::size_t>(width_)));
+    for (int k = 0; k < halo_; ++k) {
+      const int ghost = first + k * outwards;
+      rows_[static_cast<std::size_t>(ghost - first_row_)] = vacuum_.data();
+      std::fill_n(left_.data() + offset(ghost), width_, 0.0);
+      std::fill_n(right_.data() + offset(ghost), width_, 0.0);
+    }
+  }
+
+  /// Stores the upwind values at a face.
+  void record(const face& where, const place& at) {
+    const int cell = where.upper ? at.end - 1 : 0;
+    const auto width = static_cast<std::size_t>(width_);
+    in_.resize(std::max(in_.size(), width));
+    out_.resize(std::max(out_.size(), width));
+    const double* right = right_.data() + offset(cell);
+    const upwind::cells one{row(cell),
+                            both_edges() ? left_.data() + offset(cell) : right,
+                            right,
+                            width_,
+                            1,
+                            width_,
+                            line_->forward.data() + at.first,
+                            line_->per_cell.data() + at.first,
+                            nullptr};
+    upwind::fluxes_of_cell(one, from_->discretization_.positivity == limiter_kind::fluxes, in_.data(),
+                           out_.data());
+    double* values = from_->faces_->recorded(where, at.pencil) + at.first;
+    for (std::size_t k = 0; k < width; ++k)
+      values[k] =
+          (line_->forward[k + static_cast<std::size_t>(at.first)] != 0.0) == where.upper ? out_[k] : in_[k];
+  }
 
   bool both_edges() const { return from_->discretization_.positivity == limiter_kind::edges; }
 
@@ -200,7 +247,7 @@ class transport::block_sweep {
   std::vector<const double*> rows_;
   std::vector<int> joined_;
   std::vector<upwind::row_target> targets_;
-  aligned_vector<double> left_, right_, source_;
+  aligned_vector<double> left_, right_, source_, vacuum_, in_, out_;
   int width_ = 0, first_component_ = 0, halo_ = 0, reach_ = 0, first_row_ = 0, first_edge_ = 0;
   bool whole_rows_ = false;
 };
@@ -219,6 +266,7 @@ transport::transport(const model& equation, std::shared_ptr<domain> space,
       space_(std::move(space)),
       discretization_(std::move(discretization)),
       scratch_(std::make_unique<scratch>()) {
+  faces_ = std::make_unique<face_fluxes>(equation_, space_);
   if (equation.space_dimensions() == 0) return;
   space_->reserve(equation.components(), halo_of(discretization_) + reach_of(discretization_));
   const field layout(1, equation.components());
@@ -245,6 +293,7 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   const bool moves =
       std::any_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta != 0.0; });
   if (!moves) {
+    faces_->add_gains(u, targets, false);
     add_weighted(u, targets, then);
     return static_cast<bool>(then);
   }
@@ -254,9 +303,16 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   }
   space_->fill_ghosts(t, u);
   const int dimensions = mesh().dimensions();
-  for (int direction = 0; direction + 1 < dimensions; ++direction) add_direction(u, targets, direction, {});
+  for (int direction = 0; direction + 1 < dimensions; ++direction)
+    add_direction(t, u, targets, direction, {});
   // Cells are complete pencil by pencil only where one direction is all there is.
-  return add_direction(u, targets, dimensions - 1, dimensions == 1 ? then : cells_job());
+  const bool done = add_direction(t, u, targets, dimensions - 1, dimensions == 1 ? then : cells_job());
+  faces_->add_gains(u, targets, true);
+  return done;
+}
+
+void transport::complete_face(const face& where, int pencil, double t, targets_view targets) const {
+  if (faces_->records(where)) faces_->complete(where, pencil, t, targets);
 }
 
 void transport::add_source(const field& u, targets_view targets) const {
@@ -290,7 +346,7 @@ void transport::add_weighted(const field& u, targets_view targets, const cells_j
   });
 }
 
-bool transport::add_direction(const field& u, targets_view targets, int direction,
+bool transport::add_direction(double t, const field& u, targets_view targets, int direction,
                               const cells_job& then) const {
   const int n = mesh().cells(direction), pencils = mesh().pencils(direction), width = u.stride();
   // A source is a function of all components of a cell.
@@ -320,12 +376,18 @@ bool transport::add_direction(const field& u, targets_view targets, int directio
   if (by_cells) {
     parallel_for(blocks.count(), [&](int block) {
       for (int column = 0; column < columns; ++column) sweep(0, block, column);
+      const bool cells = blocks.begin(block) < blocks.end(block);
+      if (cells && blocks.begin(block) == 0) complete_face({direction, false}, 0, t, targets);
+      if (cells && blocks.end(block) == n) complete_face({direction, true}, 0, t, targets);
       if (then) then(blocks.begin(block), blocks.end(block));
     });
     return static_cast<bool>(then);
   }
   parallel_for(static_cast<int>(pieces) * columns, [&](int task) {
     sweep(task / columns / blocks.count(), task / columns % blocks.count(), task % columns);
+  });
+  parallel_for(pencils, [&](int pencil) {
+    for (const bool upper : {false, true}) complete_face({direction, upper}, pencil, t, targets);
   });
   return false;
 }

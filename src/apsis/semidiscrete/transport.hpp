@@ -2,6 +2,7 @@
 
 #include <apsis/integrate/problem.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/sweep.hpp>
 
 #include <memory>
@@ -24,9 +25,10 @@ class transport {
   transport(transport&&) noexcept;  ///< leaves the source empty
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u), with one evaluation of T, or none if every β
-  /// is 0. With the positivity limiter and β max|v|/Δx ≤ α/12 no result is negative, also in floating point.
-  /// `then` is called with completed cells of all targets while they are in cache, and true is returned;
-  /// where fusion does not pay (mesh, number of threads) it is not called, and false is returned.
+  /// is 0; likewise the gains through faces. With the positivity limiter and β max|v|/Δx ≤ α/12 no result is
+  /// negative, also in floating point. `then` is called with completed cells of all targets while they are in
+  /// cache, and true is returned; where fusion does not pay (mesh, number of threads) it is not called, and
+  /// false is returned.
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const;
 
@@ -38,14 +40,17 @@ class transport {
   void add_source(const field& u, std::span<const target<field, double>> targets) const;
   void add_weighted(const field& u, std::span<const target<field, double>> targets,
                     const cells_job& then) const;
-  bool add_direction(const field& u, std::span<const target<field, double>> targets, int direction,
+  bool add_direction(double t, const field& u, std::span<const target<field, double>> targets, int direction,
                      const cells_job& then) const;
+  void complete_face(const face& where, int pencil, double t,
+                     std::span<const target<field, double>> targets) const;
 
   const grid& mesh() const { return space_->mesh(); }
 
   const model& equation_;
   std::shared_ptr<domain> space_;
   spatial_discretization discretization_;
+  std::unique_ptr<face_fluxes> faces_;
   struct line_speeds {
     aligned_vector<double> per_cell;  ///< |v|/Δx per component
     aligned_vector<double> forward;   ///< 1 if v > 0, else 0

@@ -100,6 +100,23 @@ void add_limited(const cells& of, std::span<const row_target> targets) {
   });
 }
 
+void fluxes_of_cell(const cells& of, bool limited, double* in, double* out) {
+  const cells run = of;
+  for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
+    (void)k;
+    if (!limited) {
+      way.store(outflow(way, run, -1), in, 0, 0);
+      return way.store(outflow(way, run, 0), out, 0, 0);
+    }
+    const auto first = way.load(run.u, -2);
+    const auto before = next_cell(way, run, -1, first, outflow(way, run, -2) - first);
+    const auto here = next_cell(way, run, 0, before.u, before.correction);
+    const auto after = next_cell(way, run, 1, here.u, here.correction);
+    way.store(limited_flux(before, here), in, 0, 0);
+    way.store(limited_flux(here, after), out, 0, 0);
+  });
+}
+
 /// Of the last of two cells: what one more costs.
 double operations(bool limited) {
   const auto of_cells = [limited](int count) {
@@ -136,6 +153,7 @@ namespace {
 HWY_EXPORT(add);
 HWY_EXPORT(add_limited);
 HWY_EXPORT(add_weights);
+HWY_EXPORT(fluxes_of_cell);
 }  // namespace
 
 namespace upwind {
@@ -155,6 +173,10 @@ void add_limited(const cells& run, std::span<const row_target> targets) {
 
 void add_weights(const double* u, int width, std::span<const row_target> targets) {
   HWY_DYNAMIC_DISPATCH(add_weights)(u, width, targets);
+}
+
+void fluxes_of_cell(const cells& run, bool limited, double* in, double* out) {
+  HWY_DYNAMIC_DISPATCH(fluxes_of_cell)(run, limited, in, out);
 }
 
 }  // namespace upwind

@@ -58,6 +58,10 @@ void add(const cells& run, std::span<const row_target> targets);
 /// flux can make its donor cell negative, a negative one its receiver. Reads edges of cells −2 … count+1.
 void add_limited(const cells& run, std::span<const row_target> targets);
 
+/// in ← the upwind values in the fluxes into the only cell of a run, out ← those in the fluxes out of it, as
+/// add() uses them or, if `limited`, add_limited(); one row each.
+void fluxes_of_cell(const cells& run, bool limited, double* in, double* out);
+
 /// Returns the operation count per number of add() or add_limited() without targets (exec/counted.hpp).
 double operations(bool limited);
 /// Operation count per number and target.

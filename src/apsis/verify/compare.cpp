@@ -1,5 +1,6 @@
 #include <apsis/verify/compare.hpp>
 
+#include <apsis/config/boundary_reader.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/run/setup.hpp>
@@ -161,7 +162,7 @@ std::vector<double> on_mesh_of(const outcome& run, const outcome& finer) {
   if (run.cells == finer.cells) return finer.state;
   if (run.config.space.formulation == formulation::finite_volume)
     return averages{static_cast<std::size_t>(finer.cells / run.cells), components}(finer.state);
-  const bool periodic = make_boundaries(run.config).front()[0]->periodic();
+  const bool periodic = make_boundaries(run.config, *make_model(run.config)).front()[0]->periodic();
   return interpolation(finer.cells, run.cells, periodic)(finer.state, components);
 }
 

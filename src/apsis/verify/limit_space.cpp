@@ -1,5 +1,6 @@
 #include <apsis/verify/limit_space.hpp>
 
+#include <apsis/config/boundary_reader.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/scheme/limiter.hpp>
 #include <apsis/scheme/quartic.hpp>
@@ -15,10 +16,10 @@ namespace {
 /// Cells beyond either end whose edge values are needed: one for the flux, one more for its limiter.
 constexpr int halo = 2;
 
-domain space_of(const case_config& config, bool has_space) {
-  if (!has_space) return domain::point();
+domain space_of(const case_config& config, const relaxation_model& equation) {
+  if (equation.space_dimensions() == 0) return domain::point();
   const grid mesh = make_mesh(config);
-  return {mesh, {make_boundaries(config)}};
+  return {mesh, {make_boundaries(config, equation)}};
 }
 
 }  // namespace
@@ -37,9 +38,7 @@ struct limit_space::pencil {
 };
 
 limit_space::limit_space(const case_config& config, const relaxation_model& equation)
-    : equation_(equation),
-      space_(space_of(config, equation.space_dimensions() > 0)),
-      has_space_(equation.space_dimensions() > 0) {
+    : equation_(equation), space_(space_of(config, equation)), has_space_(equation.space_dimensions() > 0) {
   if (!has_space_) return;
   const reconstruction_entry* entry = find_reconstruction(config.space.reconstruction);
   if (entry == nullptr) throw input_error("unknown reconstruction '" + config.space.reconstruction + "'");

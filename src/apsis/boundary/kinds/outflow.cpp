@@ -15,6 +15,8 @@ extern const boundary_entry boundary_outflow;
 const boundary_entry boundary_outflow = {
     .name = "outflow",
     .description = "zero gradient: ghost cells repeat the cell at the face, so that waves leave",
-    .make = []() -> std::unique_ptr<boundary> { return std::make_unique<outflow_boundary>(); }};
+    .make = [](const boundary_source&) -> std::unique_ptr<boundary> {
+      return std::make_unique<outflow_boundary>();
+    }};
 
 }  // namespace apsis

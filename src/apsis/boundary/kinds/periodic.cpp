@@ -14,9 +14,10 @@ class periodic_boundary final : public repeating_boundary {
 }  // namespace
 
 extern const boundary_entry boundary_periodic;
-const boundary_entry boundary_periodic = {
-    .name = "periodic",
-    .description = "the opposite face continues the domain",
-    .make = []() -> std::unique_ptr<boundary> { return std::make_unique<periodic_boundary>(); }};
+const boundary_entry boundary_periodic = {.name = "periodic",
+                                          .description = "the opposite face continues the domain",
+                                          .make = [](const boundary_source&) -> std::unique_ptr<boundary> {
+                                            return std::make_unique<periodic_boundary>();
+                                          }};
 
 }  // namespace apsis

@@ -38,6 +38,8 @@ const boundary_entry boundary_symmetry = {
     .name = "symmetry",
     .description =
         "plane of symmetry, or wall that reflects specularly: mirror images with reversed normal velocity",
-    .make = []() -> std::unique_ptr<boundary> { return std::make_unique<symmetry_boundary>(); }};
+    .make = [](const boundary_source&) -> std::unique_ptr<boundary> {
+      return std::make_unique<symmetry_boundary>();
+    }};
 
 }  // namespace apsis

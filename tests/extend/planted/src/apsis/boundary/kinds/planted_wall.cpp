@@ -22,7 +22,9 @@ class planted_wall final : public boundary {
 
 extern const boundary_entry boundary_planted_wall;
 const boundary_entry boundary_planted_wall = {
-    .name = "planted-wall", .description = "inflow of a constant", .make = []() -> std::unique_ptr<boundary> {
+    .name = "planted-wall",
+    .description = "inflow of a constant",
+    .make = [](const boundary_source&) -> std::unique_ptr<boundary> {
       return std::make_unique<planted_wall>();
     }};
 

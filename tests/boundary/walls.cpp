@@ -1,0 +1,235 @@
+// Boundaries that prescribe what enters: walls and inflow.
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/model/model_registry.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace {
+
+using apsis::face;
+using apsis::face_quantities;
+using apsis::face_quantity;
+using apsis::make_boundary;
+using apsis::position;
+using testing::HasSubstr;
+
+std::unique_ptr<apsis::model> gas_of(int dimensions, int degrees, int points = 24) {
+  auto parts = apsis::default_config(*apsis::find_model("bgk"));
+  parts.parameters["velocity_dimensions"] = dimensions;
+  parts.parameters["degrees_of_freedom"] = degrees;
+  parts.velocity.max = 7.0;
+  parts.velocity.points = points;
+  return apsis::find_model("bgk")->make(parts);
+}
+
+/// A wall with tables for a face.
+std::shared_ptr<const apsis::boundary> wall(const apsis::model& gas, const face& where,
+                                            const face_quantities& values) {
+  return make_boundary("diffuse", gas, values)->prepared(where, gas.velocities());
+}
+
+/// Outgoing components: random numbers; others 0.
+std::vector<double> random_outgoing(const apsis::model& gas, const face& where) {
+  std::vector<double> f(static_cast<std::size_t>(gas.components()));
+  const auto enters = apsis::entering_components(where, gas.velocities());
+  for (std::size_t k = 0; k < f.size(); ++k)
+    if (enters[k] == 0.0) f[k] = *rc::gen::inRange(0, 1000) / 999.0;
+  return f;
+}
+
+/// Flux of an invariant through the face, Σ φ_j v_j f_j.
+std::vector<double> fluxes(const apsis::model& gas, const std::vector<double>& f) {
+  std::vector<double> moving = f, sums(gas.invariants().size());
+  for (std::size_t k = 0; k < f.size(); ++k) moving[k] *= gas.speeds(0)[k];
+  gas.invariant_densities(moving.data(), sums.data());
+  return sums;
+}
+
+template <class Call>
+std::string message_of(const Call& call) {
+  try {
+    call();
+  } catch (const apsis::input_error& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+RC_GTEST_PROP(diffuse_wall, no_mass_crosses_and_everything_emitted_is_nonnegative, ()) {
+  const int d = *rc::gen::inRange(1, 4), degrees = *rc::gen::element(0, 3, 5);
+  const auto gas = gas_of(d, degrees == 0 ? 0 : std::max(degrees, d), d == 3 ? 12 : 16);
+  const face where{0, *rc::gen::arbitrary<bool>()};
+  face_quantities values = {{"T", {*rc::gen::inRange(60, 150) / 100.0}},
+                            {"accommodation", {*rc::gen::inRange(0, 11) / 10.0}}};
+  if (d > 1) values["velocity"] = {0.0, *rc::gen::inRange(-50, 50) / 100.0};
+  if (d == 3) values["velocity"].emplace_back(0.25);
+  const std::vector<double> leaving = random_outgoing(*gas, where);
+  std::vector<double> all = leaving;
+  const auto enters = apsis::entering_components(where, gas->velocities());
+  std::vector<double> entering(leaving.size());
+  wall(*gas, where, values)->incoming(where, 0.0, {}, leaving.data(), entering.data());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (enters[k] == 0.0) continue;
+    RC_ASSERT(entering[k] >= 0.0);
+    all[k] = entering[k];
+  }
+  // Relative to the mass that arrives; a sum of at most 2000 numbers of one sign.
+  RC_ASSERT(std::abs(fluxes(*gas, all)[0]) <= 1e-14 * std::abs(fluxes(*gas, leaving)[0]));
+}
+
+TEST(diffuse_wall, re_emits_the_equilibrium_that_arrives) {
+  // A gas at rest in equilibrium with the wall does not notice it.
+  for (const int degrees : {0, 3}) {
+    const auto gas = gas_of(1, degrees);
+    std::vector<double> f(static_cast<std::size_t>(gas->components()));
+    gas->data_forms().front().row(std::array{0.7, 0.0, 1.3}, f);
+    std::vector<double> leaving = f, entering(f.size());
+    const face where{0, false};
+    const auto enters = apsis::entering_components(where, gas->velocities());
+    for (std::size_t k = 0; k < f.size(); ++k)
+      if (enters[k] != 0.0) leaving[k] = 0.0;
+    wall(*gas, where, {{"T", {1.3}}})->incoming(where, 0.0, {}, leaving.data(), entering.data());
+    for (std::size_t k = 0; k < f.size(); ++k)
+      if (enters[k] != 0.0) {
+        EXPECT_NEAR(entering[k], f[k], 1e-14 * f[k]) << k;
+      }
+  }
+}
+
+TEST(diffuse_wall, reflects_without_accommodation_and_mixes_with_a_part) {
+  const auto gas = gas_of(1, 0);
+  const face where{0, true};
+  std::vector<double> leaving(24), specular(24), diffuse(24), mixed(24);
+  for (std::size_t k = 12; k < 24; ++k) leaving[k] = static_cast<double>(k);
+  const auto emit = [&](double accommodation, std::vector<double>& f) {
+    wall(*gas, where, {{"accommodation", {accommodation}}})
+        ->incoming(where, 0.0, {}, leaving.data(), f.data());
+  };
+  emit(0.0, specular);
+  emit(1.0, diffuse);
+  emit(0.25, mixed);
+  for (std::size_t k = 0; k < 12; ++k) {
+    EXPECT_EQ(specular[k], leaving[23 - k]);
+    EXPECT_NEAR(mixed[k], 0.75 * specular[k] + 0.25 * diffuse[k], 1e-14 * mixed[k]);
+  }
+}
+
+TEST(diffuse_wall, follows_its_values_in_time) {
+  const auto gas = gas_of(2, 3);
+  const face where{0, false};
+  const auto temperature = [](double t, const position&) { return 1.0 + 0.5 * t; };
+  const auto moving = wall(*gas, where, {{"T", {face_quantity(temperature)}}, {"velocity", {0.0, 0.2}}});
+  const auto fixed = wall(*gas, where, {{"T", {1.2}}, {"velocity", {0.0, 0.2}}});
+  const std::vector<double> leaving(static_cast<std::size_t>(gas->components()), 1.0);
+  std::vector<double> a(leaving.size()), b(leaving.size());
+  moving->incoming(where, 0.4, {}, leaving.data(), a.data());
+  fixed->incoming(where, 7.0, {}, leaving.data(), b.data());
+  EXPECT_EQ(a, b);
+}
+
+TEST(diffuse_wall, values_that_no_wall_has_are_refused) {
+  const auto gas = gas_of(2, 3);
+  const face where{0, false};
+  std::vector<double> f(static_cast<std::size_t>(gas->components()), 1.0);
+  const auto error_of = [&](const face_quantities& values) {
+    return message_of([&] { wall(*gas, where, values)->incoming(where, 0.5, {}, f.data(), f.data()); });
+  };
+  EXPECT_EQ(error_of({}), "");
+  EXPECT_THAT(error_of({{"velocity", {0.1, 0.0}}}),
+              HasSubstr("the velocity of a diffuse wall is 0.1 along its normal at t = 0.5"));
+  EXPECT_THAT(error_of({{"accommodation", {1.5}}}),
+              HasSubstr("the accommodation of a diffuse wall is 1.5 at t = 0.5 (a number from 0 to 1"));
+  EXPECT_THAT(error_of({{"T", {-1.0}}}), HasSubstr("the boundary has no Maxwellian at t = 0 ("));
+  EXPECT_THAT(error_of({{"T", {face_quantity([](double t, const position&) { return -t; })}}}),
+              HasSubstr("the boundary has no Maxwellian at t = 0.5 ("));
+  EXPECT_THAT(error_of({{"temperature", {1.0}}}),
+              HasSubstr("boundary 'diffuse' has no variable 'temperature'"));
+  EXPECT_THAT(error_of({{"velocity", {0.0, 0.1, 0.2}}}),
+              HasSubstr("'velocity' of boundary 'diffuse' has 3 components (the model has 2); give 2"));
+  EXPECT_THAT(message_of([&] { make_boundary("inflow", *gas, {{"T", {1.0}}}); }),
+              HasSubstr("boundary 'inflow' has no value of 'rho'"));
+  EXPECT_THAT(message_of([&] { make_boundary("diffuse"); }), HasSubstr("boundary 'diffuse' needs a model"));
+  const auto broadwell = apsis::find_model("broadwell");
+  const auto other = broadwell->make(apsis::default_config(*broadwell));
+  EXPECT_THAT(message_of([&] { make_boundary("diffuse", *other); }),
+              HasSubstr("boundary 'diffuse' cannot be used (the model has no Maxwellians)"));
+}
+
+TEST(inflow, enters_whatever_leaves) {
+  const auto gas = gas_of(1, 3);
+  const face where{0, true};
+  const std::size_t n = static_cast<std::size_t>(gas->components());
+  std::vector<double> state(n), a(n), leaving(n, 3.0);
+  gas->data_forms().front().row(std::array{0.5, -0.3, 0.8}, state);
+  const auto inflow = make_boundary("inflow", *gas, {{"rho", {0.5}}, {"u", {-0.3}}, {"T", {0.8}}});
+  inflow->incoming(where, 0.0, {}, leaving.data(), a.data());
+  const auto enters = apsis::entering_components(where, gas->velocities());
+  for (std::size_t k = 0; k < n; ++k)
+    if (enters[k] != 0.0) {
+      EXPECT_EQ(a[k], state[k]);
+    }
+}
+
+TEST(incoming_boundary, continues_quadratics_exactly) {
+  // Averages of f = 1 + 0.3 x + 0.2 x² over cells of width 1, x counted inwards from the face; the face value
+  // of incoming components is f(0) = 1.
+  class fixed final : public apsis::incoming_boundary {
+   public:
+    void incoming(const face&, double, const position&, const double* leaving,
+                  double* entering) const override {
+      EXPECT_NEAR(leaving[0], 1.0, 1e-14);  // extrapolated from inside
+      entering[1] = 1.0;
+    }
+  };
+  const auto average = [](double left) {
+    const double right = left + 1.0;
+    return 1.0 + 0.15 * (right * right - left * left) +
+           0.2 / 3.0 * (right * right * right - left * left * left);
+  };
+  const apsis::velocity_set v({{-1.0, 1.0}}, {1.0, 1.0});
+  std::vector<std::array<double, 2>> cells, ghosts(3);
+  for (int i = 0; i < 5; ++i) cells.push_back({average(i), average(i)});
+  std::vector<const double*> inside;
+  std::vector<double*> beyond;
+  for (auto& cell : cells) inside.push_back(cell.data());
+  for (auto& ghost : ghosts) beyond.push_back(ghost.data());
+  fixed().fill({0, false}, 0.0, {inside, beyond, v, 2, {}});
+  for (std::size_t g = 0; g < ghosts.size(); ++g)
+    for (const double value : ghosts[g])
+      EXPECT_NEAR(value, average(-static_cast<double>(g) - 1.0), 1e-13) << g;
+}
+
+RC_GTEST_PROP(incoming_boundary, a_jump_inside_is_not_continued_beyond_the_face, ()) {
+  // Constant but for a jump next to the first or the second cell: ghosts stay at the value of the first cell
+  // or of the face.
+  class fixed final : public apsis::incoming_boundary {
+   public:
+    void incoming(const face&, double, const position&, const double*, double* entering) const override {
+      entering[1] = 4.0;
+    }
+  };
+  const apsis::velocity_set v({{-1.0, 1.0}}, {1.0, 1.0});
+  const int at = *rc::gen::inRange(1, 3);
+  std::vector<std::array<double, 2>> cells(4), ghosts(3);
+  for (int i = 0; i < 4; ++i) cells[static_cast<std::size_t>(i)] = {i < at ? 1.0 : 9.0, 9.0};
+  std::vector<const double*> inside;
+  std::vector<double*> beyond;
+  for (auto& cell : cells) inside.push_back(cell.data());
+  for (auto& ghost : ghosts) beyond.push_back(ghost.data());
+  fixed().fill({0, false}, 0.0, {inside, beyond, v, 2, {}});
+  for (const auto& ghost : ghosts) {
+    RC_ASSERT(ghost[0] == 1.0);
+    RC_ASSERT(ghost[1] == 4.0);
+  }
+}

@@ -1,0 +1,183 @@
+// Runs between walls: balances, positivity, the free-molecular limit, accuracy up to the wall.
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace {
+
+using apsis::simulation;
+
+/// A monatomic gas between diffuse walls, the left one heated and, with two velocity dimensions, moving.
+const std::string gas_between_walls = R"toml(
+title = "Gas between walls"
+[parameters]
+heat = 0.2
+U = 0.3
+[model]
+name = "bgk"
+velocity_dimensions = 1
+degrees_of_freedom = 3
+collision_rate = "viscosity"
+viscosity_exponent = 0.81
+epsilon = 0.1
+[initial]
+rho = 1
+T = 1
+[space]
+cells = 16
+formulation = "finite-difference"
+limiter = "positivity"
+[boundary.left]
+kind = "diffuse"
+T = "1 + heat*sin(4*t)"
+[boundary.right]
+kind = "diffuse"
+[velocity]
+max = 7
+points = 20
+[time]
+method = "md-imex-6-3"
+safety = 1
+end = 0.2
+)toml";
+
+simulation run_of(const std::vector<std::string>& overrides) {
+  return simulation(apsis::parse_case(gas_between_walls, "walls.toml", overrides));
+}
+
+void finish(simulation& run) {
+  while (!run.finished()) run.advance();
+}
+
+/// Received through the left and the right face: [2][invariant].
+double received(const simulation& run, int side, const std::string& invariant) {
+  const auto names = run.invariants();
+  const auto at = std::find(names.begin(), names.end(), invariant) - names.begin();
+  return run.last().received[static_cast<std::size_t>(side) * names.size() + static_cast<std::size_t>(at)];
+}
+
+double flux(const simulation& run, int side, const std::string& invariant) {
+  const auto names = run.invariants();
+  const auto at = std::find(names.begin(), names.end(), invariant) - names.begin();
+  return run.last().flux[static_cast<std::size_t>(side) * names.size() + static_cast<std::size_t>(at)];
+}
+
+}  // namespace
+
+TEST(walls, balances_close_to_rounding_with_heat_and_motion) {
+  // Every step is checked by the promise; here the sums over the run.
+  for (const char* formulation : {"finite-difference", "finite-volume"})
+    for (const char* method : {"md-imex-6-3", "md-imex-3-2", "md-imex-8-3-mixed"}) {
+      simulation run =
+          run_of({std::string("space.formulation=") + formulation, std::string("time.method=") + method,
+                  "model.velocity_dimensions=2", "boundary.left.velocity=[0, \"U*sin(9*t)\"]",
+                  "boundary.right.accommodation=0.7"});
+      EXPECT_TRUE(run.promises().conservation);
+      finish(run);
+      EXPECT_LT(run.summary().conservation_defect, 1e-13) << formulation << method;
+      EXPECT_LT(std::abs(received(run, 0, "mass")), 1e-15);
+      EXPECT_LT(std::abs(received(run, 1, "mass")), 1e-15);
+      EXPECT_GT(received(run, 0, "energy"), 0.01);
+      EXPECT_GT(std::abs(received(run, 0, "momentum_y")), 0.001);
+      // Momentum of about p t from each side.
+      EXPECT_NEAR(received(run, 0, "momentum_x"), 0.2, 0.05);
+      EXPECT_NEAR(received(run, 1, "momentum_x"), -0.2, 0.05);
+    }
+}
+
+TEST(walls, mass_does_not_drift) {
+  simulation run = run_of({"time.end=1000", "space.cells=10", "velocity.points=12", "velocity.max=6.5"});
+  for (int step = 0; step < 5000; ++step) run.advance();
+  // Five thousand times the rounding of one flux at random.
+  EXPECT_LT(run.last().conservation_defect[0], 1e-14);
+}
+
+TEST(walls, slow_mass_is_conserved_over_1e5_steps) {
+  simulation run = run_of({"time.end=1000", "space.cells=10", "velocity.points=12", "velocity.max=6.5"});
+  for (int step = 0; step < 100'000; ++step) run.advance();
+  EXPECT_LT(run.last().conservation_defect[0], 1e-12);
+}
+
+RC_GTEST_PROP(walls, keep_the_promises_of_every_method_kind_and_epsilon, ()) {
+  std::vector<std::string> overrides = {
+      "space.cells=" + std::to_string(*rc::gen::inRange(5, 20)),
+      "model.epsilon=" + *rc::gen::element<std::string>("0", "1e-12", "1e-4", "0.1", "1e3", "1e12"),
+      "space.formulation=" + *rc::gen::element<std::string>("finite-difference", "finite-volume"),
+      "space.reconstruction=" + *rc::gen::element<std::string>("weno5-z", "weno5-js", "upwind1"),
+      "time.method=" + *rc::gen::element<std::string>("md-imex-6-3", "md-imex-3-2", "md-imex-8-3-mixed"),
+      "model.degrees_of_freedom=" + *rc::gen::element<std::string>("1", "3", "5"),
+      "time.end=0.02"};
+  const std::string kind = *rc::gen::element<std::string>("diffuse", "inflow", "symmetry", "outflow");
+  overrides.push_back("boundary.right.kind=" + kind);
+  if (kind == "inflow") {
+    overrides.insert(overrides.end(),
+                     {"boundary.right.rho=" + *rc::gen::element<std::string>("1e-9", "0.1", "5"),
+                      "boundary.right.u=" + *rc::gen::element<std::string>("-1", "0.5"),
+                      "boundary.right.T=\"0.8+0.1*sin(50*t)\""});
+  } else if (kind == "diffuse") {
+    overrides.push_back("boundary.right.accommodation=" + *rc::gen::element<std::string>("0", "0.3", "1"));
+  }
+  // Data with a jump and nearly a vacuum.
+  overrides.insert(overrides.end(),
+                   {"initial.rho=\"x < 0.4 ? 1 : " + *rc::gen::element<std::string>("1e-12", "0.1") + "\"",
+                    "initial.u=" + *rc::gen::element<std::string>("0", "1", "-1")});
+  simulation run = run_of(overrides);
+  RC_ASSERT(run.promises().positivity);
+  RC_ASSERT(run.promises().conservation);
+  finish(run);  // throws where a promise is broken
+  RC_ASSERT(run.summary().negative_values == 0);
+}
+
+TEST(walls, beyond_the_step_limit_values_become_negative) {
+  simulation run = run_of({"time.safety=14", "model.epsilon=1e12", "initial.rho=\"x < 0.4 ? 1 : 1e-9\""});
+  EXPECT_FALSE(run.promises().positivity);
+  finish(run);
+  EXPECT_GT(run.summary().negative_values, 0);
+}
+
+TEST(walls, free_molecular_heat_and_shear_are_those_of_half_maxwellians) {
+  // Without collisions each half of the velocities carries the emission of its wall: f± = ρ± M[1, u±, T±]
+  // with equal mass fluxes. Fluxes by discrete sums over the midpoints, where Maxwellians of density 1 are
+  // exact to spectral accuracy; mass, shear stress and heat flux of the run must equal them once the slowest
+  // molecules have crossed.
+  const double hot = 1.2, U = 0.3;
+  simulation run = run_of({"model.epsilon=1e12", "space.cells=8", "model.velocity_dimensions=2",
+                           "velocity.points=16", "boundary.left.T=1.2", "boundary.left.velocity=[0, \"U\"]",
+                           "time.end=40", "space.reconstruction=upwind1"});
+  finish(run);
+  const int n = 16;
+  const double dv = 14.0 / n;
+  double mass[2] = {0.0, 0.0}, shear = 0.0, energy[2] = {0.0, 0.0};
+  for (int side = 0; side < 2; ++side) {
+    const double T = side == 0 ? hot : 1.0, u = side == 0 ? U : 0.0;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const double v = -7.0 + (i + 0.5) * dv, w = -7.0 + (j + 0.5) * dv;
+        if (side == 0 ? v < 0.0 : v > 0.0) continue;
+        const double g =
+            std::exp(-(v * v + (w - u) * (w - u)) / (2.0 * T)) / (2.0 * std::numbers::pi * T) * dv * dv;
+        mass[side] += v * g;
+        energy[side] += v * 0.5 * (v * v + w * w + T) * g;
+      }
+  }
+  // The density: total mass 1 in steady state is that of both halves.
+  const double ratio = -mass[0] / mass[1];  // ρ₋/ρ₊
+  const double plus = 2.0 / (1.0 + ratio), minus = ratio * plus;
+  shear = plus * mass[0] * U;
+  const double heat = plus * energy[0] + minus * energy[1];
+  EXPECT_NEAR(flux(run, 0, "momentum_y"), shear, 1e-7 * shear);
+  EXPECT_NEAR(flux(run, 1, "momentum_y"), -shear, 1e-7 * shear);
+  EXPECT_NEAR(flux(run, 0, "energy"), heat, 1e-7 * heat);
+  EXPECT_NEAR(flux(run, 1, "energy"), -heat, 1e-7 * heat);
+}

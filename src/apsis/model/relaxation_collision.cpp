@@ -55,7 +55,8 @@ class relaxation_collision final : public point_collision {
         const auto k = static_cast<std::size_t>(first + q);
         const double weight = weights[static_cast<std::size_t>(q)];
         rows_[static_cast<std::size_t>(q)] = relaxation::contribution(
-            weight, weight_of_u_[k], weight_of_e_[k], u + (first + q) * at.pitch, equilibrium(first + q));
+            weight, weight_of_u_[k], weight_of_e_[k], u + static_cast<std::ptrdiff_t>(first + q) * at.pitch,
+            equilibrium(first + q));
       }
       relaxation::mean(rows_, width(at), means);
     }

@@ -94,9 +94,11 @@ double gas::moments_of_g(const double* omega, double* of_g) const {
     const double place = s.u[k] / step + last, beyond = place - std::floor(place);
     least += beyond * (1.0 - beyond) * step * step;  // variance of two neighbouring velocities
   }
-  const double greatest = d * last * last * step * step - square;
+  // Rounding may put a bulk velocity beyond the last point.
+  const double greatest = std::max(d * last * last * step * step - square, 0.0);
+  least = std::min(least, greatest);
   const double variance = std::min(std::max(d * s.T, least), least + (greatest - least) / 3.0);
-  const bool usual = !(omega[0] > 0.0) || !(greatest >= least) || variance == d * s.T;
+  const bool usual = !(omega[0] > 0.0) || variance == d * s.T;
   of_g[d + 1] = omega[0] == 0.0 ? omega[d + 1] : 0.5 * s.rho * (square + (usual ? d * s.T : variance));
   if (!(omega[0] > 0.0)) return 0.0;
   return std::max(usual ? (degrees_ - d) * s.T : degrees_ * s.T - variance, 0.0);

@@ -80,4 +80,22 @@ const model_entry* find_model(const std::string& name) {
   return nullptr;
 }
 
+void relaxation_model::relaxing_moments(const double*, const double*, double*) const {}
+
+void relaxation_model::relax(const stage_strength&, double*) const {}
+
+bool relaxation_model::target(const double* omega, const double*, const double*, double, double* e) const {
+  return equilibrium(omega, e);
+}
+
+stage_strength strength_of_stage(double a, double b, double rate, double epsilon) {
+  const double k = rate > 0.0 || rate != rate ? rate / epsilon : 0.0;
+  stage_strength of;
+  of.a = a == 0.0 ? 0.0 : a * k;
+  const double once = b == 0.0 ? 0.0 : -b * k;  // B/A without overflow of B
+  of.b = once == 0.0 ? 0.0 : once * k;
+  if (once > 0.0) of.share = std::isinf(once) ? 1.0 : once / (a + once);
+  return of;
+}
+
 }  // namespace apsis

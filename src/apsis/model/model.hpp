@@ -67,8 +67,12 @@ class model {
 
   /// Whether components are nonnegative by definition, so that positivity can be promised.
   virtual bool positive() const { return false; }
+  /// Whether stage solves keep nonnegative rows nonnegative.
+  virtual bool collisions_keep_sign() const { return positive(); }
   /// Whether entropy() is defined.
   virtual bool has_entropy() const { return false; }
+  /// Whether no stage solve of a collision increases the entropy.
+  virtual bool collisions_decrease_entropy() const { return has_entropy(); }
   /// Returns the convex entropy density of a nonnegative row, whose sum over all cells decays under upwind
   /// transport and collision; NaN if it is not defined.
   virtual double entropy(const double* u) const;
@@ -99,8 +103,18 @@ class model {
   virtual unsupported_initial_data check_supported_range(const double* lowest, const double* highest) const;
 };
 
-/// Q(u) = C(ω)(E(ω) − u) with ω = ℛu and ℛQ = 0 (paper, Properties 3–5); every stage is solved in closed
-/// form.
+/// The coefficients of a stage v = u + A (…) + B (…) of a relaxation.
+struct stage_strength {
+  double a = 0.0,   ///< A = aC/ε
+      b = 0.0,      ///< B = |b|(C/ε)²
+      share = 0.0;  ///< B/(A + B); 0 if both are 0
+};
+/// Returns the coefficients for C/ε, which may be infinite.
+stage_strength strength_of_stage(double a, double b, double rate, double epsilon);
+
+/// Q(u) = C(ω)(E − u) with ω = ℛu and ℛQ = 0 (paper, Properties 3–5); every stage is solved in closed form.
+/// The target is the equilibrium E(ω), or depends also on moments s of u that relax: then 𝒮E(ω, s) = (1 −
+/// λ)s, and s is the deviation from equilibrium (docs/models.md).
 class relaxation_model : public model {
  public:
   /// Returns the length of ω.
@@ -114,6 +128,17 @@ class relaxation_model : public model {
   virtual void moments_of_rows(const double* u, std::ptrdiff_t pitch, int rows, double* omega) const;
   /// equilibrium() of several rows; returns the number of rows before the first ω that is not admissible.
   virtual int equilibria(const double* omega, int rows, double* e, std::ptrdiff_t pitch) const;
+  /// Returns the length of s; 0 if the target is the equilibrium.
+  virtual int relaxing_count() const { return 0; }
+  /// s ← the relaxing moments of a row with moments ω.
+  virtual void relaxing_moments(const double* u, const double* omega, double* s) const;
+  /// s ← those of the solution of a stage whose explicit part has s, σ/(1 + λA + λ²B), and what target()
+  /// needs of the derivative Q̇ in the stage, of weight λB/(A + B).
+  virtual void relax(const stage_strength& strength, double* s) const;
+  /// e ← E(ω, s) + λB/(A + B) E_s s, the target of a stage after relax(), or E(ω, s), for a row u ≥ 0. Where
+  /// it is less than −keep·u, a model that keeps the sign changes it, so that the solution of the stage is
+  /// not negative; keep = ∞ leaves it. Returns false if ω is not admissible.
+  virtual bool target(const double* omega, const double* s, const double* u, double keep, double* e) const;
   /// Returns C(ω) > 0.
   virtual double rate(const double* omega) const = 0;
   std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const final;

@@ -28,11 +28,12 @@ class relaxation_collision final : public point_collision {
     // Padding stays zero, like that of the rows of a field.
     equilibria_.assign(points * static_cast<std::size_t>(pitch_), 0.0);
     for (auto* numbers : {&rates_, &weight_of_u_, &weight_of_e_}) numbers->resize(points);
+    relaxing_.resize(static_cast<std::size_t>(equation.relaxing_count()));
     rows_.reserve(points);
   }
 
   void solve_stage(double a, double b, const point_batch& at, double* u) override {
-    find_equilibria(at, u);
+    find_targets(a, b, at, u);
     const profile::section timed(kernel::relaxation, numbers(at),
                                  {relaxation::operations_of_combine, at.cached ? 0.0 : 2.0 * sizeof(double)});
     find_weights(a, b, at);
@@ -44,7 +45,7 @@ class relaxation_collision final : public point_collision {
 
   void solve_stage_means(double a, double b, const point_batch& at, double* u,
                          std::span<const double> weights, double* means) override {
-    find_equilibria(at, u);
+    find_targets(a, b, at, u);
     const profile::section timed(kernel::relaxation, numbers(at) / static_cast<double>(weights.size()),
                                  {relaxation::operations_of_mean(weights.size()), sizeof(double)});
     find_weights(a, b, at);
@@ -63,7 +64,7 @@ class relaxation_collision final : public point_collision {
   }
 
   void evaluate(const point_batch& at, const double* u, double* q) override {
-    find_equilibria(at, u);
+    find_targets(0.0, 0.0, at, u);
     for (int p = 0; p < at.count; ++p)
       relaxation::change(strength(p, at), equilibrium(p), u + p * at.pitch, width(at), q + p * at.pitch);
   }
@@ -84,16 +85,35 @@ class relaxation_collision final : public point_collision {
   }
   static long cell(int p, const point_batch& at) { return at.first_cell + p / at.points_per_cell; }
 
-  /// E(ℛu) of every point.
-  void find_equilibria(const point_batch& at, const double* u) {
+  /// The target of every point: E(ℛu), or that of a stage with relaxing moments, which for a = b = 0 is the
+  /// one of Q(u).
+  void find_targets(double a, double b, const point_batch& at, const double* u) {
     const profile::section timed(kernel::equilibria, numbers(at),
                                  {equation_.operations_of_equilibrium(), 0.0});
     equation_.moments_of_rows(u, at.pitch, at.count, omega(0));
-    const int p = equation_.equilibria(omega(0), at.count, equilibria_.data(), pitch_);
+    const int p = relaxing_.empty() ? equation_.equilibria(omega(0), at.count, equilibria_.data(), pitch_)
+                                    : relaxed_targets(a, b, at, u);
     if (p < at.count)
       throw numerical_error(
           "no local equilibrium (" + equation_.why_inadmissible(omega(p)) + "); " + advice(),
           {-1, unknown, cell(p, at), *omega(p)});
+  }
+
+  /// Returns the number of points before the first without a target.
+  int relaxed_targets(double a, double b, const point_batch& at, const double* u) {
+    for (int p = 0; p < at.count; ++p) {
+      const double* row = u + p * at.pitch;
+      const double rate = equation_.rate(omega(p));
+      const auto weights = relax_weights(a, b, rate, at.epsilon[p]);
+      // The margin is larger than the rounding of the combination.
+      constexpr double margin = 1e-13;
+      const double keep = weights.of_e > 0.0 ? (1.0 - margin) * (weights.of_u / weights.of_e)
+                                             : std::numeric_limits<double>::infinity();
+      equation_.relaxing_moments(row, omega(p), relaxing_.data());
+      equation_.relax(strength_of_stage(a, b, rate, at.epsilon[p]), relaxing_.data());
+      if (!equation_.target(omega(p), relaxing_.data(), row, keep, equilibria_.data() + p * pitch_)) return p;
+    }
+    return at.count;
   }
 
   void find_weights(double a, double b, const point_batch& at) {
@@ -141,6 +161,7 @@ class relaxation_collision final : public point_collision {
   bool keeps_sign_;
   std::ptrdiff_t moments_, pitch_;
   aligned_vector<double> omega_, equilibria_, rates_, weight_of_u_, weight_of_e_;
+  std::vector<double> relaxing_;  ///< of one point
   std::vector<relaxation::weighted_rows> rows_;
 };
 

@@ -239,10 +239,14 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
   const bool explicit_collision = schedule(method_->coefficients<double>()).collision_evaluations() > 0;
   promises.conservation =
       exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
-  promises.positivity = equation->positive() && nonnegative && within && builder_.keeps_sign();
+  // Stage solves keep the sign of every row; an explicit Q only where the target is an equilibrium, E ≥ 0.
+  const auto* relaxation = dynamic_cast<const relaxation_model*>(equation.get());
+  const bool collisions = equation->collisions_keep_sign() &&
+                          !(explicit_collision && relaxation != nullptr && relaxation->relaxing_count() > 0);
+  promises.positivity = equation->positive() && collisions && nonnegative && within && builder_.keeps_sign();
   // An equilibrium with other moments does not minimize the entropy among the states with those of the data.
-  promises.entropy = equation->has_entropy() && nonnegative && closed && within && builder_.first_order() &&
-                     exact_equilibrium;
+  promises.entropy = equation->collisions_decrease_entropy() && nonnegative && closed && within &&
+                     builder_.first_order() && exact_equilibrium;
 }
 
 }  // namespace apsis

@@ -1,0 +1,135 @@
+#include <apsis/model/gas_model.hpp>
+
+#include <apsis/model/fluid_fields.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace apsis {
+
+gas_model::gas_model(const model_config& config, double prandtl)
+    : gas_(config),
+      by_viscosity_(config.texts.at("collision_rate") == "viscosity"),
+      exponent_(1.0 - config.parameters.at("viscosity_exponent")),
+      prandtl_(prandtl),
+      signed_tails_(config.texts.contains("tails") && config.texts.at("tails") == "signed") {
+  make_initial_data();
+}
+
+std::vector<model_parameter> gas_model::parameters(double degrees_of_freedom) {
+  auto all = gas::parameters();
+  for (auto& one : all)
+    if (one.name == "degrees_of_freedom" && degrees_of_freedom > 0.0)
+      one.value = one.lowest = one.highest = degrees_of_freedom;
+  all.push_back({.name = "viscosity_exponent",
+                 .value = 0.5,
+                 .lowest = 0.0,
+                 .highest = 2.0,
+                 .doc = "s of the viscosity epsilon T^s with collision_rate = \"viscosity\": 0.5 for hard "
+                        "spheres, 1 for Maxwell molecules, 0.81 for argon"});
+  return all;
+}
+
+std::vector<model_text> gas_model::texts() {
+  return {{.name = "collision_rate",
+           .value = "constant",
+           .choices = {"constant", "viscosity"},
+           .variable = "",
+           .doc = "constant: C = 1, as in the paper; viscosity: C = rho T^(1 - s), so that the viscosity is "
+                  "epsilon T^s with s = viscosity_exponent"}};
+}
+
+std::vector<model_text> gas_model::texts_with_tails() {
+  auto all = texts();
+  all.push_back({.name = "tails",
+                 .value = "nonnegative",
+                 .choices = {"nonnegative", "signed"},
+                 .variable = "",
+                 .doc = "nonnegative: where the target would make the solution of a stage negative, far from "
+                        "the bulk velocity, it is cut off and its moments are restored, so that positivity "
+                        "is promised; signed: the target as published"});
+  return all;
+}
+
+double gas_model::rate(const double* omega) const {
+  if (!by_viscosity_) return 1.0;
+  const double T = omega[0] > 0.0 ? gas_.state(omega).T : 0.0;
+  return T > 0.0 ? prandtl_ * omega[0] * std::pow(T, exponent_) : 0.0;
+}
+
+std::vector<std::string> gas_model::invariants() const {
+  return fluid_invariants(gas_.dimensions());
+}
+
+void gas_model::invariant_scales(const double* densities, double* scales) const {
+  relaxation_model::invariant_scales(densities, scales);
+  const int d = gas_.dimensions();
+  const double bound = std::sqrt(2.0 * scales[0] * scales[d + 1]);
+  for (int k = 1; k <= d; ++k) scales[k] = std::max(scales[k], bound);
+}
+
+std::vector<field_name> gas_model::fields() const {
+  return fluid_fields(gas_.dimensions());
+}
+
+void gas_model::macroscopic(const double* f, double* values) const {
+  double omega[5];
+  moments(f, omega);
+  fluid_field_values(gas_.state(omega), gas_.dimensions(), values);
+}
+
+/// f ← a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃], the form of all data of the paper, with ũ along x.
+void gas_model::two_beams(double a, double b, double rho, double T, std::span<double> f) const {
+  aligned_vector<double> beam(f.size());
+  fluid_state state;
+  state.rho = rho;
+  state.T = T;
+  state.u[0] = 1.0;
+  gas_.formula(state, a, f.data());
+  state.u[0] = -0.5;
+  gas_.formula(state, b, beam.data());
+  for (std::size_t j = 0; j < f.size(); ++j) f[j] += beam[j];
+}
+
+/// f ← ρ M[1, 0, ¼]; the formula would omit values below 1e-300.
+void gas_model::expansion(double rho, std::span<double> f) const {
+  fluid_state state;
+  state.rho = 1.0;
+  state.T = 0.25;
+  gas_.formula(state, rho, f.data());
+}
+
+void gas_model::make_initial_data() {
+  using std::numbers::pi;
+  const auto add = [this](const char* name, const char* description, double a, double b, double k_rho,
+                          double k_T) {
+    initial_.push_back({name, description, [this, a, b, k_rho, k_T](const position& x, std::span<double> f) {
+                          two_beams(a, b, 1.0 + 0.2 * std::sin(k_rho * pi * x[0]),
+                                    1.0 / (1.0 + 0.2 * std::sin(k_T * pi * x[0])), f);
+                        }});
+  };
+  add("mixed-v", "0.5 M[r,1,T] + 0.3 M[r,-1/2,T], r = 1 + 0.2 sin(pi x), T = 1/(1 + 0.2 sin(2 pi x))", 0.5,
+      0.3, 1.0, 2.0);
+  add("mixed-s", "0.5 M[r,1,T] + 0.3 M[r,-1/2,T], r = 1 + 0.2 sin(pi x), T = 1/(1 + 0.2 sin(pi x))", 0.5, 0.3,
+      1.0, 1.0);
+  add("accuracy", "0.7 M[r,1,T] + 0.3 M[r,-1/2,T], r = 1 + 0.2 sin(2 pi x), T = 1/(1 + 0.2 sin(pi x))", 0.7,
+      0.3, 2.0, 1.0);
+  const auto accuracy = initial_.back().point_value;
+  initial_.push_back({"expansion",
+                      "M[r,0,1/4], r = 1 for 1/2 <= x < 3/2 and 1e-300 elsewhere: a cold gas in empty space",
+                      [this](const position& x, std::span<double> f) {
+                        expansion(x[0] >= 0.5 && x[0] < 1.5 ? 1.0 : 1e-300, f);
+                      },
+                      {},
+                      {0.5, 1.5}});
+  initial_.push_back({"accuracy-consistent", "the Maxwellian with the moments of 'accuracy'",
+                      [this, accuracy](const position& x, std::span<double> f) {
+                        double omega[5];
+                        accuracy(x, f);
+                        moments(f.data(), omega);
+                        equilibrium(omega, f.data());
+                      }});
+}
+
+}  // namespace apsis

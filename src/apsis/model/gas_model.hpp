@@ -1,0 +1,87 @@
+#pragma once
+
+#include <apsis/model/gas.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/model/model_registry.hpp>
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// A gas that relaxes to a Maxwellian, in one space dimension: everything that BGK, Shakhov and ES-BGK models
+/// share. f_t + v·∇_x f = (C/ε)(target − f), ω = (ρ, ρu, 𝓔), rows as in gas.hpp, E = M. With C = Pr ρ T^{1−s}
+/// the viscosity is ε T^s. Dimensionless.
+class gas_model : public relaxation_model {
+ public:
+  /// `prandtl`: the factor of C by viscosity, 1 if the stress relaxes with the rate C.
+  explicit gas_model(const model_config& config, double prandtl = 1.0);
+
+  /// Returns the parameters that all of these models have. `degrees_of_freedom`: their only number of them; 0
+  /// leaves it to the user.
+  static std::vector<model_parameter> parameters(double degrees_of_freedom);
+  static std::vector<model_text> texts();  ///< the string options of all
+  /// Returns also that of models whose target may be negative in its tails.
+  static std::vector<model_text> texts_with_tails();
+
+  int components() const override { return gas_.velocities().components(); }
+  int space_dimensions() const override { return 1; }
+  const velocity_set& velocities() const override { return gas_.velocities(); }
+  /// Returns the end of the velocity grid, half an interval beyond its last point.
+  double reference_speed(int) const override { return gas_.grid().max(); }
+  bool positive() const override { return true; }
+  bool collisions_keep_sign() const override { return !signed_tails_; }
+
+  int moment_count() const override { return gas_.moment_count(); }
+  void moments(const double* f, double* omega) const override { gas_.moments(f, 0, 1, omega); }
+  void moments_of_rows(const double* f, std::ptrdiff_t pitch, int rows, double* omega) const override {
+    gas_.moments(f, pitch, rows, omega);
+  }
+  bool equilibrium(const double* omega, double* m) const override { return gas_.equilibrium(omega, m); }
+  int equilibria(const double* omega, int rows, double* m, std::ptrdiff_t pitch) const override {
+    return gas_.equilibria(omega, rows, m, pitch);
+  }
+  double rate(const double* omega) const override;
+  double operations_of_equilibrium() const override { return gas_.operations(); }
+  std::string why_inadmissible(const double* omega) const override { return gas_.why_inadmissible(omega); }
+
+  bool has_entropy() const override { return true; }
+  double entropy(const double* f) const override { return gas_.entropy(f); }
+
+  std::vector<std::string> invariants() const override;
+  void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
+  /// Momenta cancel between particles of opposite velocities; Σ|v_k| f ≤ √(2ρ𝓔) by the Cauchy–Schwarz
+  /// inequality.
+  void invariant_scales(const double* densities, double* scales) const override;
+
+  std::vector<field_name> fields() const override;
+  void macroscopic(const double* f, double* values) const override;
+
+  const std::vector<initial_data>& initial() const override { return initial_; }
+  std::vector<data_form> data_forms() const override { return {gas_.maxwellian_form()}; }
+  unsupported_initial_data check_supported(const double* f) const override { return gas_.check_supported(f); }
+
+ protected:
+  /// The rows of the gas.
+  const gas& molecules() const { return gas_; }
+  /// Returns `keep` of target(), or ∞ with signed tails.
+  double bound_of_tails(double keep) const {
+    return signed_tails_ ? std::numeric_limits<double>::infinity() : keep;
+  }
+
+ private:
+  void two_beams(double a, double b, double rho, double T, std::span<double> f) const;
+  void expansion(double rho, std::span<double> f) const;
+  void make_initial_data();
+
+  gas gas_;
+  bool by_viscosity_;
+  double exponent_, prandtl_;
+  bool signed_tails_;
+  std::vector<initial_data> initial_;
+};
+
+}  // namespace apsis

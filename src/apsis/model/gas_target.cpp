@@ -1,0 +1,152 @@
+#include <apsis/model/gas_target.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace apsis {
+namespace {
+
+/// Calls body(first point, c without the last component) for every line of the last direction.
+template <class Body>
+void for_lines(const velocity_grid& grid, const fluid_state& state, const Body& body) {
+  const int d = grid.dimensions(), n = grid.points();
+  for (int first = 0; first < grid.size(); first += n) {
+    std::array<double, 3> c{};
+    for (int k = 0; k + 1 < d; ++k)
+      c[static_cast<std::size_t>(k)] =
+          grid.component(k)[static_cast<std::size_t>(first)] - state.u[static_cast<std::size_t>(k)];
+    body(first, c);
+  }
+}
+
+/// Relative size of a defect that counts as rounding, that of a target that is good enough where corrections
+/// no longer reduce it, and the largest bound on an energy that is a difference of large numbers.
+constexpr double rounding = 4.5e-16, useful = 1e-14, largest_bound = 1e-12;
+/// Smallest variance of a base in units of Δv²: below it, a Gaussian at points has other moments.
+constexpr double narrowest = 0.25;
+
+/// The differences of moments about the bulk velocity, each relative to its scale.
+struct defect {
+  double mass = 0.0, energy = 0.0;
+  std::array<double, 3> momentum{};
+
+  double size() const {
+    return std::max({std::abs(mass), std::abs(energy), std::abs(momentum[0]), std::abs(momentum[1]),
+                     std::abs(momentum[2])});
+  }
+};
+
+defect defect_of(const double* after, const double* omega, const fluid_state& state, int d, double variance) {
+  defect found;
+  const double speed = std::sqrt(variance);
+  const double mass = after[0] - omega[0];
+  double energy = after[d + 1] - omega[d + 1];
+  for (int k = 0; k < d; ++k) {
+    const double momentum = after[k + 1] - omega[k + 1];
+    found.momentum[static_cast<std::size_t>(k)] = (momentum - state.u[k] * mass) / (omega[0] * speed);
+    energy -= state.u[k] * (momentum - 0.5 * state.u[k] * mass);
+  }
+  found.mass = mass / omega[0];
+  found.energy = energy / (omega[0] * variance);
+  return found;
+}
+
+/// Returns the attainable defect: the energy is a difference to that of the bulk velocity.
+double attainable(const double* omega, int d, double variance) {
+  return std::min(rounding * std::max(1.0, omega[d + 1] / (omega[0] * variance)), largest_bound);
+}
+
+/// Subtracts the defect, with the moments of a Gaussian of this variance.
+void correct(const defect& found, int d, double variance, target_polynomial& p) {
+  const double speed = std::sqrt(variance);
+  const double gamma = -(found.energy - 0.5 * d * found.mass) / (d * variance);
+  p.k += -found.mass - gamma * d * variance;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) {
+    p.l[k] -= found.momentum[k] / speed;
+    p.a[k][k] += gamma;
+  }
+}
+
+}  // namespace
+
+central_moments find_central_moments(const gas& of, const double* row, const fluid_state& state) {
+  const velocity_grid& grid = of.grid();
+  const int d = grid.dimensions(), n = grid.points();
+  const auto last = static_cast<std::size_t>(d - 1);
+  central_moments m;
+  for_lines(grid, state, [&](int first, const std::array<double, 3>& c) {
+    std::array<double, 4> g{}, h{};
+    target_rows::power_sums(row + first, grid.line().data(), state.u[last], n, g.data());
+    if (of.reduced())
+      target_rows::power_sums(row + grid.size() + first, grid.line().data(), state.u[last], n, h.data());
+    double square = 0.0;
+    for (std::size_t k = 0; k < last; ++k) square += c[k] * c[k];
+    m.stress[last][last] += g[2];
+    m.heat[last] += 0.5 * (square * g[1] + g[3] + h[1]);
+    for (std::size_t k = 0; k < last; ++k) {
+      m.heat[k] += 0.5 * c[k] * (square * g[0] + g[2] + h[0]);
+      m.stress[k][last] += c[k] * g[1];
+      for (std::size_t l = 0; l < last; ++l) m.stress[k][l] += c[k] * c[l] * g[0];
+    }
+  });
+  for (std::size_t k = 0; k <= last; ++k) {
+    m.heat[k] *= grid.weight();
+    if (k < last) m.stress[last][k] = m.stress[k][last];
+  }
+  for (auto& line : m.stress)
+    for (double& one : line) one *= grid.weight() / state.rho;
+  return m;
+}
+
+target_rows::cubic target_polynomial::along_last(int dimensions, const std::array<double, 3>& c) const {
+  const auto last = static_cast<std::size_t>(dimensions - 1);
+  double square = 0.0, along = 0.0;
+  target_rows::cubic p{k, l[last], a[last][last], w[last]};
+  for (std::size_t i = 0; i < last; ++i) {
+    square += c[i] * c[i];
+    along += w[i] * c[i];
+    p.k0 += l[i] * c[i];
+    p.k1 += 2.0 * a[i][last] * c[i];
+    for (std::size_t j = 0; j < last; ++j) p.k0 += a[i][j] * c[i] * c[j];
+  }
+  p.k0 += along * square;
+  p.k1 += w[last] * square;
+  p.k2 += along;
+  return p;
+}
+
+bool conservative_target(const gas& of, const double* omega, const double* base, const target_shape& given,
+                         const double* f, double keep, double* e) {
+  const velocity_grid& grid = of.grid();
+  const int d = grid.dimensions(), n = grid.points();
+  const fluid_state state = of.state(omega);
+  target_shape shape = given;
+  if (!(shape.variance >= narrowest * grid.spacing() * grid.spacing())) return false;
+  const double enough = attainable(omega, d, shape.variance);
+  double best = 1e300;
+  constexpr int most_corrections = 12;
+  for (int iteration = 0; iteration < most_corrections; ++iteration) {
+    for_lines(grid, state, [&](int first, const std::array<double, 3>& c) {
+      const double* v = grid.line().data();
+      target_rows::weigh(base + first, v, state.u[d - 1], shape.of_g.along_last(d, c), f + first, keep, n,
+                         e + first);
+      if (!of.reduced() || iteration > 0) return;
+      const int of_h = grid.size() + first;
+      target_rows::weigh(base + of_h, v, state.u[d - 1], shape.of_h.along_last(d, c), f + of_h, keep, n,
+                         e + of_h);
+    });
+    std::array<double, 5> after{};
+    of.moments(e, 0, 1, after.data());
+    const defect found = defect_of(after.data(), omega, state, d, shape.variance);
+    const double size = found.size();
+    if (size <= enough) return true;
+    // Corrections contract as long as little of the row is cut off.
+    if (!(size < 0.7 * best)) return size <= std::max(useful, enough);
+    best = size;
+    correct(found, d, shape.variance, shape.of_g);
+  }
+  return best <= std::max(useful, enough);
+}
+
+}  // namespace apsis

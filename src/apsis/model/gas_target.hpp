@@ -1,0 +1,42 @@
+#pragma once
+
+#include <apsis/model/gas.hpp>
+#include <apsis/model/target_rows.hpp>
+
+#include <array>
+
+namespace apsis {
+
+/// Second and third moments about the bulk velocity.
+struct central_moments {
+  std::array<std::array<double, 3>, 3> stress{};  ///< Θ_kl = Σ c_k c_l g Δv^d / ρ for resolved k, l
+  std::array<double, 3> heat{};                   ///< q_k = ½ Σ c_k (|c|² g + h) Δv^d
+};
+/// Returns those of a row whose density and bulk velocity are given.
+central_moments find_central_moments(const gas& of, const double* row, const fluid_state& state);
+
+/// The polynomial P(c) = k + l·c + cᵀA c + (w·c)|c|² in the resolved components c = v − u.
+struct target_polynomial {
+  double k = 1.0;                            ///< k
+  std::array<double, 3> l{},                 ///< l
+      w{};                                   ///< w
+  std::array<std::array<double, 3>, 3> a{};  ///< A, symmetric
+  /// Returns the values along the last direction, the other components of c given.
+  target_rows::cubic along_last(int dimensions, const std::array<double, 3>& c) const;
+};
+
+/// The part of the temperature that a target has in its resolved directions, for the correction below.
+struct target_shape {
+  target_polynomial of_g,  ///< factor of g
+      of_h;                ///< factor of h
+  double variance = 1.0;   ///< of one resolved component of the base
+};
+
+/// e ← max(base · P, −keep f) for a row f ≥ 0, where P is corrected by α + β·c + γ|c|² in g until e has the
+/// moments ω: a combination of f and e stays nonnegative and conservative, also where P is negative in the
+/// tails. Returns false if that is
+/// not found; e is then undefined.
+bool conservative_target(const gas& of, const double* omega, const double* base, const target_shape& shape,
+                         const double* f, double keep, double* e);
+
+}  // namespace apsis

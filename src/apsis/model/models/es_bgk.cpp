@@ -1,0 +1,171 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/model/gas_model.hpp>
+#include <apsis/model/gas_target.hpp>
+#include <apsis/model/velocity_rows.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Dense>
+
+namespace apsis {
+namespace {
+
+using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+
+/// The Gaussian of covariance Θ̂ in the resolved directions and T̂ in each of the others.
+struct gaussian_shape {
+  matrix covariance, inverse;
+  double others = 1.0;  ///< T̂
+};
+
+/// The ellipsoidal statistical model (Holway, Phys. Fluids 9, 1966) of a monatomic gas: Q = C (G − f) with
+/// the Gaussian G of covariance T I + (1 − 1/Pr)(Θ − T I), Θ the stress per density. The stress relaxes with
+/// the rate C/Pr and the heat flux with C, so that the Prandtl number is Pr. In stages with a derivative the
+/// target is G times a quadratic; where the solution of the stage would be negative, in the tails, it is cut
+/// off, and a polynomial of second degree restores the moments. Reduced as in gas.hpp. Dimensionless.
+class es_bgk_model final : public gas_model {
+ public:
+  explicit es_bgk_model(const model_config& config)
+      : gas_model(config, config.parameters.at("prandtl")),
+        rate_of_stress_(1.0 / config.parameters.at("prandtl")) {
+    if (molecules().degrees_of_freedom() != 3)
+      throw input_error("model.degrees_of_freedom is not 3 (the model is that of a monatomic gas); give 3");
+  }
+
+  /// The H-theorem (Andries et al., Eur. J. Mech. B 19, 2000) is that of Q, not of stages with its
+  /// derivative.
+  bool collisions_decrease_entropy() const override { return false; }
+
+  int relaxing_count() const override { return pairs() + 1; }
+
+  /// s = (Θ_kl − T δ_kl for k ≤ l, weight of the derivative).
+  void relaxing_moments(const double* f, const double* omega, double* s) const override {
+    std::fill_n(s, relaxing_count(), 0.0);
+    const fluid_state state = molecules().state(omega);
+    if (!state.admissible()) return;
+    const central_moments m = find_central_moments(molecules(), f, state);
+    for (std::size_t k = 0; k < size(); ++k)
+      for (std::size_t l = k; l < size(); ++l) *s++ = m.stress[k][l] - (k == l ? state.T : 0.0);
+  }
+
+  void relax(const stage_strength& of, double* s) const override {
+    const double decay = 1.0 / (1.0 + rate_of_stress_ * of.a + rate_of_stress_ * rate_of_stress_ * of.b);
+    for (int k = 0; k < pairs(); ++k) s[k] *= decay;
+    s[pairs()] = rate_of_stress_ * of.share;
+  }
+
+  bool target(const double* omega, const double* s, const double* f, double keep, double* e) const override {
+    const gas& g = molecules();
+    const fluid_state state = g.state(omega);
+    if (state.admissible())
+      for (double part = 1.0; part > 0.01; part *= 0.5)
+        if (gaussian_target(omega, state, s, part, f, bound_of_tails(keep), e)) return true;
+    return g.equilibrium(omega, e);  // far from every equilibrium, or below the resolution of the grid: BGK
+  }
+
+ private:
+  std::size_t size() const { return static_cast<std::size_t>(molecules().dimensions()); }
+  int pairs() const { return molecules().dimensions() * (molecules().dimensions() + 1) / 2; }
+
+  /// The target with `part` of the deviation of the stress.
+  bool gaussian_target(const double* omega, const fluid_state& state, const double* s, double part,
+                       const double* f, double keep, double* e) const {
+    const gas& g = molecules();
+    const auto d = static_cast<Eigen::Index>(size());
+    matrix change = matrix::Zero(d, d);  // (1 − 1/Pr) σ
+    const double* next = s;
+    for (Eigen::Index k = 0; k < d; ++k)
+      for (Eigen::Index l = k; l < d; ++l)
+        change(k, l) = change(l, k) = part * (1.0 - rate_of_stress_) * *next++;
+    const double derivative = *next;
+    const int unresolved = g.degrees_of_freedom() - g.dimensions();
+    const double change_of_others = unresolved > 0 ? -change.trace() / unresolved : 0.0;
+    gaussian_shape shape;
+    shape.covariance = state.T * matrix::Identity(d, d) + change;
+    shape.others = state.T + change_of_others;
+    const Eigen::LLT<matrix> factors(shape.covariance);
+    if (factors.info() != Eigen::Success || !(shape.others > 0.0)) return false;
+    shape.inverse = factors.solve(matrix::Identity(d, d));
+    thread_local std::vector<double> base;
+    base.resize(static_cast<std::size_t>(components()));
+    fill(state, shape, base.data());
+
+    target_shape target;
+    target.variance = shape.covariance.trace() / static_cast<double>(d);
+    const matrix quadratic = 0.5 * derivative * shape.inverse * change * shape.inverse;
+    const double trace = 0.5 * derivative * (shape.inverse * change).trace();
+    target.of_g.k = target.of_h.k = 1.0 - trace;
+    for (std::size_t k = 0; k < size(); ++k)
+      for (std::size_t l = 0; l < size(); ++l)
+        target.of_g.a[k][l] = target.of_h.a[k][l] =
+            quadratic(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
+    target.of_h.k += derivative * change_of_others / shape.others;
+    return conservative_target(g, omega, base.data(), target, f, keep, e);
+  }
+
+  /// row ← G, line by line of the last direction: there it is a Gaussian about a mean that depends on the
+  /// other components.
+  void fill(const fluid_state& state, const gaussian_shape& shape, double* row) const {
+    const gas& g = molecules();
+    const velocity_grid& grid = g.grid();
+    const auto last = static_cast<Eigen::Index>(size()) - 1;
+    const double variance = 1.0 / shape.inverse(last, last);
+    const double height =
+        state.rho / std::sqrt(std::pow(2.0 * std::numbers::pi, static_cast<double>(last + 1)) *
+                              shape.covariance.determinant());
+    matrix outer;
+    if (last > 0) outer = shape.covariance.topLeftCorner(last, last).inverse();
+    thread_local std::vector<velocity_rows::gaussian> lines;
+    lines.clear();
+    for (int first = 0; first < grid.size(); first += grid.points()) {
+      double exponent = 0.0, shift = 0.0;
+      for (Eigen::Index k = 0; k < last; ++k) {
+        const auto speed = [&](Eigen::Index i) {
+          return grid.component(static_cast<int>(i))[static_cast<std::size_t>(first)] - state.u[i];
+        };
+        shift -= shape.inverse(last, k) * variance * speed(k);
+        for (Eigen::Index l = 0; l < last; ++l) exponent -= 0.5 * speed(k) * outer(k, l) * speed(l);
+      }
+      lines.push_back({height * std::exp(exponent), state.u[last] + shift, variance});
+    }
+    constexpr int together = most_line_states;
+    const int n = grid.points(), count = static_cast<int>(lines.size());
+    for (int first = 0; first < count; first += together)
+      velocity_rows::gaussians({n, grid.spacing()}, lines.data() + first, std::min(together, count - first),
+                               row + static_cast<std::ptrdiff_t>(first) * n, n);
+    if (!g.reduced()) return;
+    const double energy = (g.degrees_of_freedom() - g.dimensions()) * shape.others;
+    for (int j = 0; j < grid.size(); ++j) row[grid.size() + j] = energy * row[j];
+  }
+
+  double rate_of_stress_;  ///< λ = 1/Pr
+};
+
+}  // namespace
+
+extern const model_entry model_es_bgk;
+const model_entry model_es_bgk = {
+    .name = "es-bgk",
+    .description = "f_t + v f_x = C (G[f] - f)/epsilon, a monatomic gas with a Prandtl number",
+    .source = "Holway, Phys. Fluids 9 (1966)",
+    .has_velocity_grid = true,
+    .parameters =
+        [] {
+          auto all = gas_model::parameters(3.0);
+          all.push_back({.name = "prandtl",
+                         .value = 2.0 / 3.0,
+                         .lowest = 2.0 / 3.0,
+                         .highest = 10.0,
+                         .doc = "Prandtl number, at least 2/3, for which the Gaussian exists; 2/3 for a "
+                                "monatomic gas"});
+          return all;
+        }(),
+    .texts = gas_model::texts_with_tails(),
+    .make = [](const model_config& config) -> std::unique_ptr<model> {
+      return std::make_unique<es_bgk_model>(config);
+    }};
+
+}  // namespace apsis

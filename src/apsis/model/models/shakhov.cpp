@@ -1,0 +1,101 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/model/gas_model.hpp>
+#include <apsis/model/gas_target.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace apsis {
+namespace {
+
+/// Shakhov's model (Fluid Dyn. 3, 1968) of a monatomic gas: Q = C (S − f) with
+///   S = M [1 + (1 − Pr) q·c/(5pT) (|c|²/T − 5)],  c = v − u,
+/// whose heat flux relaxes with the rate Pr C and its stress with C, so that the Prandtl number is Pr. Where
+/// the bracket is so negative that the solution of a stage would be, in the tails, the target is cut off, and
+/// a polynomial of second degree restores its moments: the steps keep f ≥ 0. Reduced as in gas.hpp.
+/// Dimensionless.
+class shakhov_model final : public gas_model {
+ public:
+  explicit shakhov_model(const model_config& config)
+      : gas_model(config), prandtl_(config.parameters.at("prandtl")) {
+    if (molecules().degrees_of_freedom() != 3)
+      throw input_error(
+          "model.degrees_of_freedom is not 3 (Shakhov's model is that of a monatomic gas); give 3");
+  }
+
+  /// No H-theorem is known far from equilibrium.
+  bool collisions_decrease_entropy() const override { return false; }
+
+  int relaxing_count() const override { return molecules().dimensions() + 1; }
+
+  /// s = (q, weight of the derivative).
+  void relaxing_moments(const double* f, const double* omega, double* s) const override {
+    const int d = molecules().dimensions();
+    for (int k = 0; k <= d; ++k) s[k] = 0.0;
+    const fluid_state state = molecules().state(omega);
+    if (!state.admissible()) return;
+    const central_moments m = find_central_moments(molecules(), f, state);
+    for (int k = 0; k < d; ++k) s[k] = m.heat[static_cast<std::size_t>(k)];
+  }
+
+  void relax(const stage_strength& of, double* s) const override {
+    const int d = molecules().dimensions();
+    const double decay = 1.0 / (1.0 + prandtl_ * of.a + prandtl_ * prandtl_ * of.b);
+    for (int k = 0; k < d; ++k) s[k] *= decay;
+    s[d] = prandtl_ * of.share;
+  }
+
+  bool target(const double* omega, const double* s, const double* f, double keep, double* e) const override {
+    const gas& g = molecules();
+    const int d = g.dimensions();
+    thread_local std::vector<double> base;
+    base.resize(static_cast<std::size_t>(components()));
+    if (!g.equilibrium(omega, base.data())) return false;
+    const fluid_state state = g.state(omega);
+    std::copy(base.begin(), base.end(), e);
+    if (!state.admissible()) return true;
+    const double scale = (1.0 - prandtl_) * (1.0 + s[d]) / (5.0 * state.rho * state.T * state.T);
+    for (double part = 1.0; part > 0.01; part *= 0.5) {
+      target_shape shape;
+      shape.variance = state.T;
+      for (int k = 0; k < d; ++k) {
+        const double along = part * scale * s[k];
+        const auto i = static_cast<std::size_t>(k);
+        shape.of_g.l[i] = -(d + 2.0) * along;
+        shape.of_h.l[i] = -static_cast<double>(d) * along;
+        shape.of_g.w[i] = shape.of_h.w[i] = along / state.T;
+      }
+      if (conservative_target(g, omega, base.data(), shape, f, bound_of_tails(keep), e)) return true;
+    }
+    std::copy(base.begin(), base.end(), e);  // far from every equilibrium: BGK
+    return true;
+  }
+
+ private:
+  double prandtl_;
+};
+
+}  // namespace
+
+extern const model_entry model_shakhov;
+const model_entry model_shakhov = {
+    .name = "shakhov",
+    .description = "f_t + v f_x = C (S[f] - f)/epsilon, a monatomic gas with a Prandtl number",
+    .source = "Shakhov, Fluid Dyn. 3 (1968)",
+    .has_velocity_grid = true,
+    .parameters =
+        [] {
+          auto all = gas_model::parameters(3.0);
+          all.push_back({.name = "prandtl",
+                         .value = 2.0 / 3.0,
+                         .lowest = 0.1,
+                         .highest = 2.0,
+                         .doc = "Prandtl number; 2/3 for a monatomic gas"});
+          return all;
+        }(),
+    .texts = gas_model::texts_with_tails(),
+    .make = [](const model_config& config) -> std::unique_ptr<model> {
+      return std::make_unique<shakhov_model>(config);
+    }};
+
+}  // namespace apsis

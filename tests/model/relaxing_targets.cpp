@@ -1,0 +1,178 @@
+// Stage solves of models whose target has moments that relax (Shakhov, ES-BGK), against the equation that
+// defines a stage, with the derivative Q̇ = Q'Q as a difference quotient.
+#include <apsis/model/gas_target.hpp>
+#include <apsis/model/model_registry.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace {
+
+using row = std::vector<double>;
+
+struct gas_and_model {
+  std::unique_ptr<apsis::gas> gas;
+  std::unique_ptr<apsis::model> equation;
+  const apsis::relaxation_model& relaxation() const {
+    return dynamic_cast<const apsis::relaxation_model&>(*equation);
+  }
+};
+
+gas_and_model make(const char* name, int dimensions, int points, double max = 8.0,
+                   const char* tails = "nonnegative") {
+  auto parts = apsis::default_config(*apsis::find_model(name));
+  if (parts.texts.contains("tails")) parts.texts["tails"] = tails;
+  parts.parameters["velocity_dimensions"] = dimensions;
+  parts.parameters["degrees_of_freedom"] = 3;
+  parts.velocity.max = max;
+  parts.velocity.points = points;
+  return {std::make_unique<apsis::gas>(parts), apsis::find_model(name)->make(parts)};
+}
+
+double number(int low, int high) {
+  return *rc::gen::inRange(low, high) / 100.0;
+}
+
+/// Two beams: heat flux and stress of a tenth of the pressure or more.
+row random_row(const apsis::gas& of) {
+  row sum(static_cast<std::size_t>(of.velocities().components()), 0.0), beam(sum.size());
+  for (int k = 0; k < 2; ++k) {
+    apsis::fluid_state s;
+    s.rho = number(20, 100);
+    s.T = number(70, 130);
+    for (int i = 0; i < of.dimensions(); ++i) s.u[i] = number(-60, 60);
+    of.formula(s, 1.0, beam.data());
+    for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += beam[j];
+  }
+  return sum;
+}
+
+row collide(const apsis::model& m, const row& u, double epsilon) {
+  const auto local = m.make_collision({1, static_cast<std::ptrdiff_t>(u.size()), true});
+  row q(u.size());
+  local->evaluate({.count = 1, .pitch = static_cast<std::ptrdiff_t>(u.size()), .epsilon = &epsilon}, u.data(),
+                  q.data());
+  return q;
+}
+
+row solved(const apsis::model& m, row u, double a, double b, double epsilon) {
+  const auto local = m.make_collision({1, static_cast<std::ptrdiff_t>(u.size()), true});
+  local->solve_stage(a, b, {.count = 1, .pitch = static_cast<std::ptrdiff_t>(u.size()), .epsilon = &epsilon},
+                     u.data());
+  return u;
+}
+
+double largest(const row& u) {
+  double most = 0.0;
+  for (const double x : u) most = std::max(most, std::abs(x));
+  return most;
+}
+
+int points_for(int dimensions) {
+  return dimensions == 1 ? 32 : dimensions == 2 ? 24 : 20;
+}
+
+void expect_stage_equation(const char* name) {
+  const int d = *rc::gen::inRange(1, 4);
+  const auto m = make(name, d, points_for(d), 8.0, "signed");
+  const row u = random_row(*m.gas);
+  const double epsilon = *rc::gen::element(1.0, 0.3, 0.05), a = number(0, 50), b = -number(0, 20);
+  const row v = solved(*m.equation, u, a, b, epsilon);
+  const row q = collide(*m.equation, v, epsilon);
+  // Central difference along Q: truncation h², rounding 1e-16/h.
+  const double h = 1e-5 * epsilon;
+  row ahead = v, behind = v;
+  for (std::size_t j = 0; j < v.size(); ++j) {
+    ahead[j] += h * q[j];
+    behind[j] -= h * q[j];
+  }
+  const row q_ahead = collide(*m.equation, ahead, epsilon), q_behind = collide(*m.equation, behind, epsilon);
+  double worst = 0.0;
+  for (std::size_t j = 0; j < v.size(); ++j) {
+    const double derivative = (q_ahead[j] - q_behind[j]) / (2.0 * h);
+    worst = std::max(worst, std::abs(v[j] - u[j] - a * q[j] - b * derivative));
+  }
+  // Tails beyond the grid, of 1e-8, are corrected in the target but not in its derivative. A wrong
+  // coefficient gives 1e-2.
+  const double weights = std::abs(a) / epsilon + std::abs(b) / (epsilon * epsilon);
+  RC_ASSERT(worst <= (1e-9 + 1e-7 * weights) * largest(u));
+}
+
+void expect_conservation_and_positivity(const char* name) {
+  const int d = *rc::gen::inRange(1, 4);
+  const auto m = make(name, d, d == 3 ? 10 : 16, 6.0);
+  // A few molecules anywhere, with energies in h of any size.
+  row u(static_cast<std::size_t>(m.equation->components()), 0.0);
+  const double scale = std::pow(10.0, *rc::gen::inRange(-4, 5));
+  const auto n = static_cast<std::size_t>(m.gas->grid().size());
+  for (int k = *rc::gen::inRange(1, 30); k > 0; --k) {
+    u[*rc::gen::inRange<std::size_t>(0, n)] += number(1, 100);
+    if (m.gas->reduced()) u[n + *rc::gen::inRange<std::size_t>(0, n)] += scale * number(0, 100);
+  }
+  const double epsilon = *rc::gen::element(0.0, 1e-12, 1e-3, 1.0, 1e6);
+  const row v =
+      solved(*m.equation, u, *rc::gen::element(0.0, 0.1, 10.0), *rc::gen::element(0.0, -0.1, -10.0), epsilon);
+  for (const double x : v) RC_ASSERT(x >= 0.0);
+  row before(5), after(5), scales(5);
+  m.equation->invariant_densities(u.data(), before.data());
+  m.equation->invariant_densities(v.data(), after.data());
+  m.equation->invariant_scales(before.data(), scales.data());
+  for (std::size_t k = 0; k < m.equation->invariants().size(); ++k)
+    RC_ASSERT(std::abs(after[k] - before[k]) <= 3e-14 * scales[k]);
+}
+
+/// Decay of the stress and the heat flux in a homogeneous gas over one exact stage, against the closed form.
+void expect_rates(const char* name, double prandtl, double rate_of_stress, double rate_of_heat) {
+  for (const int d : {1, 2, 3}) {
+    const auto m = make(name, d, points_for(d), 8.0, "signed");
+    row u(static_cast<std::size_t>(m.equation->components()), 0.0), beam(u.size());
+    for (const double sign : {1.0, -1.0}) {
+      apsis::fluid_state s;
+      s.rho = sign > 0 ? 0.3 : 0.6;
+      s.T = sign > 0 ? 1.3 : 0.8;
+      s.u[0] = sign > 0 ? 0.6 : -0.3;
+      m.gas->formula(s, 1.0, beam.data());
+      for (std::size_t j = 0; j < u.size(); ++j) u[j] += beam[j];
+    }
+    row omega(5);
+    m.gas->moments(u.data(), 0, 1, omega.data());
+    const auto state = m.gas->state(omega.data());
+    const double A = 0.4, B = 0.3;
+    const row v = solved(*m.equation, u, A, -B, 1.0);
+    const auto before = find_central_moments(*m.gas, u.data(), state),
+               after = find_central_moments(*m.gas, v.data(), state);
+    const auto decay = [&](double rate) { return 1.0 / (1.0 + rate * A + rate * rate * B); };
+    // Tails beyond the grid carry 1e-9 of the heat flux.
+    EXPECT_NEAR((after.stress[0][0] - state.T) / (before.stress[0][0] - state.T), decay(rate_of_stress), 1e-7)
+        << name << d << prandtl;
+    EXPECT_NEAR(after.heat[0] / before.heat[0], decay(rate_of_heat), 1e-7) << name << d << prandtl;
+  }
+}
+
+}  // namespace
+
+RC_GTEST_PROP(relaxing_targets, shakhov_stages_satisfy_their_equation, ()) {
+  expect_stage_equation("shakhov");
+}
+
+RC_GTEST_PROP(relaxing_targets, es_bgk_stages_satisfy_their_equation, ()) {
+  expect_stage_equation("es-bgk");
+}
+
+RC_GTEST_PROP(relaxing_targets, shakhov_stages_conserve_and_stay_nonnegative, ()) {
+  expect_conservation_and_positivity("shakhov");
+}
+
+RC_GTEST_PROP(relaxing_targets, es_bgk_stages_conserve_and_stay_nonnegative, ()) {
+  expect_conservation_and_positivity("es-bgk");
+}
+
+TEST(relaxing_targets, stress_and_heat_flux_relax_at_the_rates_of_the_prandtl_number) {
+  expect_rates("shakhov", 2.0 / 3.0, 1.0, 2.0 / 3.0);
+  expect_rates("es-bgk", 2.0 / 3.0, 1.5, 1.0);
+  expect_rates("bgk", 1.0, 1.0, 1.0);
+}

@@ -23,6 +23,10 @@ std::string summary_text(const simulation& run, run_end end) {
                                           : fmt::format("{} steps instead of 1", s.startup_steps));
   if (c.time.tolerance)
     line("tolerance", fmt::format("{:g} ({} steps rejected)", *c.time.tolerance, s.rejected_steps));
+  if (c.time.steady)
+    line("steady state", fmt::format("{} (the state changes by {:.2g} per unit of time; time.steady = {:g})",
+                                     run.last().change <= *c.time.steady ? "reached" : "not reached",
+                                     run.last().change, *c.time.steady));
   line("largest step", fmt::format("{:.6g}", s.dt));
   line("smallest value", fmt::format("{:.6g} ({} negative)", s.min_value, s.negative_values));
   if (!run.invariants().empty())

@@ -133,7 +133,7 @@ TEST(results, files_agree_with_each_other) {
   EXPECT_EQ(history[0],
             "step,t,dt,min_value,negative_values,conservation_mass,conservation_momentum,conservation_energy,"
             "entropy,"
-            "entropy_change,total_mass,total_momentum,total_energy");
+            "entropy_change,change,total_mass,total_momentum,total_energy");
   // A header, the initial state, and every step.
   EXPECT_EQ(history.size(), 2 + manifest["result"]["steps"].get<std::size_t>());
   const auto fields = lines(read(folder.path() / "o/fields.csv"));

@@ -181,3 +181,56 @@ TEST(walls, free_molecular_heat_and_shear_are_those_of_half_maxwellians) {
   EXPECT_NEAR(flux(run, 0, "energy"), heat, 1e-7 * heat);
   EXPECT_NEAR(flux(run, 1, "energy"), -heat, 1e-7 * heat);
 }
+
+TEST(walls, a_steady_state_ends_the_run) {
+  const std::vector<std::string> heated = {"boundary.left.T=1.2", "time.end=500", "time.steady=1e-6",
+                                           "space.reconstruction=upwind1", "velocity.points=12"};
+  simulation run = run_of(heated);
+  finish(run);
+  EXPECT_LT(run.t(), 100.0);
+  EXPECT_LE(run.last().change, 1e-6);
+  // The heat that enters on one side leaves on the other; its difference heats the gas at the rate `change`.
+  EXPECT_GT(flux(run, 0, "energy"), 0.01);
+  EXPECT_NEAR(flux(run, 0, "energy"), -flux(run, 1, "energy"), 1e-5);
+
+  auto short_of_it = heated;
+  short_of_it[1] = "time.end=0.5";
+  simulation cut = run_of(short_of_it);
+  finish(cut);
+  EXPECT_EQ(cut.t(), 0.5);
+  EXPECT_GT(cut.last().change, 1e-6);
+
+  // A continued run ends at the same step.
+  simulation first = run_of(heated), second = run_of(heated);
+  for (int step = 0; step < 100; ++step) first.advance();
+  second.restore(first.save());
+  finish(second);
+  EXPECT_EQ(second.step(), run.step());
+  EXPECT_EQ(second.state(), run.state());
+}
+
+TEST(walls, fields_of_a_steady_gas_are_the_fluxes_through_its_walls) {
+  // Stress plus pressure and heat flux are constant, and those that the walls feel; point values and edge
+  // values of the second-order scheme at the wall differ by some 1e-3 of the heat flux.
+  for (const char* model : {"bgk", "shakhov", "es-bgk"}) {
+    auto config = apsis::parse_case(
+        gas_between_walls, "walls.toml",
+        {"boundary.left.T=1.2", "time.end=500", "time.steady=1e-6", std::string("model.name=") + model,
+         "velocity.points=16", "output.fields=[\"p\", \"stress\", \"heat_flux\", \"distance\", \"mach\"]"});
+    simulation run(config);
+    finish(run);
+    const auto fields = run.fields();
+    const auto value = [&](const std::string& name, std::size_t cell) {
+      const auto at = std::find(fields.names.begin(), fields.names.end(), name) - fields.names.begin();
+      return fields.values.at(static_cast<std::size_t>(at))[cell];
+    };
+    const double heat = flux(run, 0, "energy"), force = flux(run, 0, "momentum");
+    EXPECT_GT(heat, 0.01) << model;
+    for (std::size_t cell = 0; cell < 16; ++cell) {
+      EXPECT_NEAR(value("heat_flux", cell), heat, 5e-3 * heat) << model << cell;
+      EXPECT_NEAR(value("p", cell) + value("stress", cell), force, 1e-4 * force) << model << cell;
+      EXPECT_GT(value("distance", cell), 1e-3);
+      EXPECT_LT(value("mach", cell), 1e-3);
+    }
+  }
+}

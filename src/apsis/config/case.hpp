@@ -64,6 +64,7 @@ struct case_config {
     std::optional<double> dt, cfl, safety;  ///< exactly one is set
     startup_choice startup = startup_choice::none;
     std::optional<double> tolerance;  ///< of a step; dt, cfl or safety then says how long one may be
+    std::optional<double> steady;     ///< change of the state per time at which the run ends
   } time;
   /// Table [output].
   struct {

@@ -236,7 +236,12 @@ std::vector<case_key> time_keys() {
                       "to the method's embedded solution relative to that of the state; errors off "
                       "equilibrium, which relax, count less in steps shorter than the tolerance asks for "
                       "(docs/methods.md). dt, cfl or safety then limits the step; startup = graded starts in "
-                      "the initial layer. For methods with an embedded solution (apsis list methods)."})};
+                      "the initial layer. For methods with an embedded solution (apsis list methods)."}),
+          key("time.steady", [](auto& c) -> auto& { return c.time.steady; },
+              {.lowest = 0.0,
+               .lowest_excluded = true,
+               .doc = "The run ends as soon as the state is steady: its change per unit of time, relative to "
+                      "its 2-norm, is at most this; time.end is then the latest end."})};
 }
 
 std::vector<case_key> output_keys() {
@@ -244,7 +249,10 @@ std::vector<case_key> output_keys() {
       key("output.every", [](auto& c) -> auto& { return c.output.every; },
           {.lowest = 0.0, .doc = "Time between snapshots of the fields; 0 keeps the final state only."}),
       key("output.fields", [](auto& c) -> auto& { return c.output.fields; },
-          {.doc = "Names of the macroscopic fields to write; empty writes all of the model."}),
+          {.doc =
+               "Names of the macroscopic fields to write; empty writes the usual ones of the model. Further "
+               "fields of a gas: p, mach, stress, heat_flux (with several velocity dimensions stress_xy, "
+               "heat_flux_x, ...), distance (to equilibrium)."}),
       key("output.distribution", [](auto& c) -> auto& { return c.output.distribution; },
           {.doc = "Where the unknowns themselves (f) are written: nowhere, at the end into solution.h5, or "
                   "also for every snapshot, into files of their own in snapshots/."}),

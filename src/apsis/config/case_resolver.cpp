@@ -322,7 +322,9 @@ class resolver {
   void check_fields() const {
     if (config_.output.fields.empty()) return;
     std::vector<std::string> names;
-    for (const auto& field : make_model(config_)->fields()) names.push_back(field.name);
+    const auto equation = make_model(config_);
+    for (const auto& field : equation->fields()) names.push_back(field.name);
+    for (const auto& field : equation->further_fields()) names.push_back(field.name);
     for (const auto& name : config_.output.fields)
       if (std::find(names.begin(), names.end(), name) == names.end())
         throw input_error(

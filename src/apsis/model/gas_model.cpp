@@ -1,6 +1,8 @@
 #include <apsis/model/gas_model.hpp>
 
 #include <apsis/model/fluid_fields.hpp>
+#include <apsis/model/gas_target.hpp>
+#include <apsis/phase/component_name.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -77,6 +79,45 @@ void gas_model::macroscopic(const double* f, double* values) const {
   double omega[5];
   moments(f, omega);
   fluid_field_values(gas_.state(omega), gas_.dimensions(), values);
+}
+
+std::vector<field_name> gas_model::further_fields() const {
+  const int d = gas_.dimensions();
+  const std::string axes = "xyz";
+  std::vector<field_name> all = {{"p", "pressure (dimensionless)"}, {"mach", "Mach number"}};
+  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
+    for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l) {
+      const std::string pair = d == 1 ? "" : std::string("_") + axes[k] + axes[l];
+      all.push_back({"stress" + pair, "stress" + (d == 1 ? "" : " " + pair.substr(1)) + " (dimensionless)"});
+    }
+  for (int k = 0; k < d; ++k) all.push_back({component_name("heat_flux", k, d), "heat flux (dimensionless)"});
+  all.push_back({"distance", "distance to equilibrium, relative"});
+  return all;
+}
+
+void gas_model::further_macroscopic(const double* f, double* values) const {
+  const int d = gas_.dimensions();
+  double omega[5];
+  moments(f, omega);
+  const fluid_state s = gas_.state(omega);
+  const double gamma = (gas_.degrees_of_freedom() + 2.0) / gas_.degrees_of_freedom(), p = s.rho * s.T;
+  double square = 0.0;
+  for (int k = 0; k < d; ++k) square += s.u[k] * s.u[k];
+  *values++ = p;
+  *values++ = std::sqrt(square / (gamma * s.T));
+  const central_moments m = find_central_moments(gas_, f, s);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
+    for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l)
+      *values++ = s.rho * m.stress[k][l] - (k == l ? p : 0.0);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) *values++ = m.heat[k];
+  std::vector<double> e(static_cast<std::size_t>(components()));
+  double difference = 0.0, all = 0.0;
+  if (equilibrium(omega, e.data()))
+    for (std::size_t j = 0; j < static_cast<std::size_t>(gas_.grid().size()); ++j) {
+      difference += std::abs(f[j] - e[j]);
+      all += f[j];
+    }
+  *values = all > 0.0 ? difference / all : 0.0;
 }
 
 /// f ← a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃], the form of all data of the paper, with ũ along x.

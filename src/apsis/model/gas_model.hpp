@@ -59,6 +59,10 @@ class gas_model : public relaxation_model {
 
   std::vector<field_name> fields() const override;
   void macroscopic(const double* f, double* values) const override;
+  /// Pressure p = ρT, Mach number |u|/√(γT) with γ = (D + 2)/D, stress p_kl = Σ c_k c_l g − p δ_kl, heat flux
+  /// ½ Σ c (|c|² g + h), and the distance Σ|f − M|/Σ f to equilibrium, of g if there are two functions.
+  std::vector<field_name> further_fields() const override;
+  void further_macroscopic(const double* f, double* values) const override;
 
   const std::vector<initial_data>& initial() const override { return initial_; }
   std::vector<data_form> data_forms() const override { return {gas_.maxwellian_form()}; }

@@ -80,6 +80,8 @@ const model_entry* find_model(const std::string& name) {
   return nullptr;
 }
 
+void model::further_macroscopic(const double*, double*) const {}
+
 void relaxation_model::relaxing_moments(const double*, const double*, double*) const {}
 
 void relaxation_model::relax(const stage_strength&, double*) const {}

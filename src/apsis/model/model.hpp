@@ -91,6 +91,11 @@ class model {
   /// values ← the fields of a row, in the order of fields().
   virtual void macroscopic(const double* u, double* values) const = 0;
 
+  /// Returns fields that results have only where output.fields names them; none by default.
+  virtual std::vector<field_name> further_fields() const { return {}; }
+  /// values ← the further fields of a row, in the order of further_fields().
+  virtual void further_macroscopic(const double* u, double* values) const;
+
   /// Returns the initial data, at least one; the first is the default.
   virtual const std::vector<initial_data>& initial() const = 0;
   /// Returns the ways to prescribe a row by variables, the preferred one first; none by default. The model

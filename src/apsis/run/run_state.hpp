@@ -21,7 +21,10 @@ struct step_record {
   std::vector<double> conservation_defect;
   double entropy = 0.0;         ///< NaN where the model has none, or an unknown is < 0
   double entropy_change = 0.0;  ///< S^{n+1} − S^n; NaN without entropy, and at the start
-  std::vector<double> total;    ///< I, the sum of the densities of each invariant over the domain
+  /// ‖u^{n+1} − u^n‖₂/(Δt ‖u^{n+1}‖₂), the relative change per unit of time; NaN at the start, and without
+  /// time.steady.
+  double change = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> total;  ///< I, the sum of the densities of each invariant over the domain
   /// Amounts of the invariants that the gas received through each face since the start, [face][invariant],
   /// per area of the face.
   std::vector<double> received;
@@ -41,6 +44,7 @@ struct step_record {
     visit("conservation", self.conservation_defect);
     visit("entropy", self.entropy);
     visit("entropy_change", self.entropy_change);
+    visit("change", self.change);
     visit("total", self.total);
     visit("received", self.received);
     visit("flux", self.flux);

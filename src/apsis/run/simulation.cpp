@@ -100,9 +100,13 @@ struct simulation::impl {
   double proposed() { return control ? std::min(limit(), control->proposed()) : limit(); }
   double next_dt() { return march.next(proposed()); }
 
+  /// Whether the change of the last step is at most time.steady.
+  bool steady() const { return config.time.steady && last.change <= *config.time.steady; }
+
   /// u ← u^{n+1}; returns Δt.
   double step() {
     state.gains().clear();  // those of this step alone
+    if (config.time.steady) before = state;
     if (control)
       return step_within_tolerance(integrator, march, *control, estimate, limit(), state, relative_distance);
     const double dt = next_dt();
@@ -113,6 +117,7 @@ struct simulation::impl {
   void record_step(double dt) {
     march.advance(dt);
     last = watch.check(state, dt, last);
+    if (config.time.steady) last.change = relative_distance(state, before) / dt;
     last.step = march.step();
     last.t = march.t();
     last.dt = dt;
@@ -133,7 +138,7 @@ struct simulation::impl {
   stepper<semidiscrete_problem> integrator;
   monitor watch;
   rounding_bound rounding;
-  field state;
+  field state, before;  ///< before a step; empty without time.steady
   time_marcher<double> march;
   std::optional<step_controller<double>> control;
   error_estimate<semidiscrete_problem> estimate;
@@ -198,7 +203,7 @@ double simulation::expected_plateau() const {
   return impl_->expected ? impl_->expected->error : 0.0;
 }
 bool simulation::finished() const {
-  return impl_->march.done();
+  return impl_->march.done() || impl_->steady();
 }
 
 const step_record& simulation::advance() {
@@ -243,11 +248,22 @@ field_table simulation::fields() const {
     table.names.push_back(name.name);
     table.labels.push_back(name.label);
   }
+  const std::size_t usual = table.names.size();
+  const auto& wanted = config().output.fields;
+  const auto further = equation.further_fields();
+  if (std::any_of(further.begin(), further.end(), [&](const field_name& one) {
+        return std::find(wanted.begin(), wanted.end(), one.name) != wanted.end();
+      }))
+    for (const auto& one : further) {
+      table.names.push_back(one.name);
+      table.labels.push_back(one.label);
+    }
   table.x = impl_->setup.centres();
   table.values.assign(table.names.size(), {});
   std::vector<double> values(table.names.size());
   for (int cell = 0; cell < cells(); ++cell) {
     equation.macroscopic(impl_->state.row(cell), values.data());
+    if (values.size() > usual) equation.further_macroscopic(impl_->state.row(cell), values.data() + usual);
     for (std::size_t k = 0; k < values.size(); ++k) table.values[k].push_back(values[k]);
   }
   return table;

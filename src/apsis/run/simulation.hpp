@@ -46,7 +46,7 @@ class simulation {
   double dt() const;         ///< length of the next step
   long step() const;         ///< steps taken
   long steps_total() const;  ///< estimate of the total number of steps
-  bool finished() const;     ///< whether t() is time.end
+  bool finished() const;     ///< whether t() is time.end, or the state is steady
   /// Returns the forecast of the relative error from terms of size ε in a run with time.tolerance; a warning
   /// is given if it exceeds the tolerance. 0 if the steps resolve the relaxation, or without tolerance.
   double expected_plateau() const;

@@ -142,7 +142,8 @@ class relaxation_model : public model {
   virtual void relax(const stage_strength& strength, double* s) const;
   /// e ← E(ω, s) + λB/(A + B) E_s s, the target of a stage after relax(), or E(ω, s), for a row u ≥ 0. Where
   /// it is less than −keep·u, a model that keeps the sign changes it, so that the solution of the stage is
-  /// not negative; keep = ∞ leaves it. Returns false if ω is not admissible.
+  /// not negative; keep = 0 for an explicit Q(u), whose forward Euler step ends at the target. Returns false
+  /// if ω is not admissible.
   virtual bool target(const double* omega, const double* s, const double* u, double keep, double* e) const;
   /// Returns C(ω) > 0.
   virtual double rate(const double* omega) const = 0;

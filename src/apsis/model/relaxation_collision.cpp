@@ -105,10 +105,10 @@ class relaxation_collision final : public point_collision {
       const double* row = u + p * at.pitch;
       const double rate = equation_.rate(omega(p));
       const auto weights = relax_weights(a, b, rate, at.epsilon[p]);
-      // The margin is larger than the rounding of the combination.
+      // The margin is larger than the rounding of the combination. An explicit Q(u) is bounded for its
+      // forward Euler step ε/C, which ends at the target.
       constexpr double margin = 1e-13;
-      const double keep = weights.of_e > 0.0 ? (1.0 - margin) * (weights.of_u / weights.of_e)
-                                             : std::numeric_limits<double>::infinity();
+      const double keep = weights.of_e > 0.0 ? (1.0 - margin) * (weights.of_u / weights.of_e) : 0.0;
       equation_.relaxing_moments(row, omega(p), relaxing_.data());
       equation_.relax(strength_of_stage(a, b, rate, at.epsilon[p]), relaxing_.data());
       if (!equation_.target(omega(p), relaxing_.data(), row, keep, equilibria_.data() + p * pitch_)) return p;

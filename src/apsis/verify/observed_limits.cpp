@@ -142,7 +142,7 @@ std::vector<experiment> experiments_for(const method& m) {
       permutations(m, staged)};
   for (const auto& model : all_models()) {
     if (!has_space(*model.entry)) continue;
-    if (model.equation->has_entropy()) all.push_back(entropy(m, model.entry->name, stiff));
+    if (model.equation->collisions_decrease_entropy()) all.push_back(entropy(m, model.entry->name, stiff));
     if (model.equation->positive())
       for (const char* form : {"finite-volume", "finite-difference"})
         all.push_back(positive_weno(m, model, form, stiff));

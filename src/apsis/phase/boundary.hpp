@@ -63,11 +63,11 @@ class repeating_boundary : public boundary {
   void fill(const face& where, double t, const pencil_end& rows) const final;
 };
 
-/// A boundary condition that prescribes the incoming components. Ghost rows continue the outgoing ones by the
-/// quadratic through three cells, and the incoming ones by the quadratic through the value at the face and
-/// two cells; where these are steeper than three times the smaller of two neighbouring differences, the
-/// continuation is scaled towards the value at the face, or of the cell there. Third order in cell averages,
-/// second in point values, whose average differs by Δx² u''/24.
+/// A boundary condition that prescribes the incoming components. Ghost rows continue all components by the
+/// quadratic through three cells inside; where it is steeper than three times the smaller of two neighbouring
+/// differences, it is scaled towards the cell at the face. The value at the face enters only the flux: near a
+/// wall f has a layer of some mean free paths, and a continuation through the face would carry it, where
+/// cells do not resolve it, as a kink into the reconstruction of the smooth solution inside.
 class incoming_boundary : public boundary {
  public:
   bool prescribes_incoming() const final { return true; }

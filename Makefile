@@ -9,7 +9,7 @@ export CTEST_PARALLEL_LEVEL ?= $(CORES)
 FORMATTED = $(shell find src app tests bench examples python -name '*.[ch]pp' 2>/dev/null)
 
 .DEFAULT_GOAL := help
-.PHONY: help run reproduce study program figures test test-all test-slow clang asan tsan bench packages format format-check tidy docs docs-links clean
+.PHONY: help run validate reproduce study program figures test test-all test-slow clang asan tsan bench packages format format-check tidy docs docs-links clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' Makefile
@@ -19,6 +19,9 @@ run: program ## install packages, build the program, solve the mixed-regime prob
 	$(APSIS) run paper/bgk-mixed time.method=md-imex-3-2 --out results/bgk-mixed-second-order
 	$(APSIS) run paper/bgk-mixed-reference --out results/bgk-mixed-reference
 	$(MAKE) --no-print-directory figures
+
+validate: program ## compare the solver with published values of gas flows: results/validate/report.html
+	$(APSIS) validate --out results/validate
 
 reproduce: program ## check every claim of the paper and redraw its figures: results/reproduce/report.html
 	$(APSIS) reproduce --out results/reproduce

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """check_headers.py BUILD [FOLDER ...] [--jobs N]: headers that do not compile alone.
 
-Each header of the folders (src/apsis, app and paper if none is given) is compiled as the only include of a file, twice, by the
+Each header of the folders (src/apsis, app, paper and validation if none is given) is compiled as the only include of a file, twice, by the
 compiler and flags that BUILD/compile_commands.json has for the nearest source: of the same room, or for all else of the
 program. Precompiled headers are left out, since they would hide what is missing. Prints what the compiler says of each; exit
 code 1 if there are any.
@@ -60,7 +60,7 @@ def problems(build: Path, folders: list[Path], jobs: int) -> tuple[int, list[str
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=Path)
-    parser.add_argument("folders", type=Path, nargs="*", default=[ROOT / "src/apsis", ROOT / "app", ROOT / "paper"])
+    parser.add_argument("folders", type=Path, nargs="*", default=[ROOT / "src/apsis", ROOT / "app", ROOT / "paper", ROOT / "validation"])
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     given = parser.parse_args()
     number, found = problems(given.build.resolve(), [folder.resolve() for folder in given.folders], given.jobs)

@@ -20,6 +20,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <paper/claim_registry.hpp>
+#include <validation/quantity.hpp>
 
 namespace apsis::app {
 namespace {
@@ -114,6 +115,17 @@ json claims() {
   return all;
 }
 
+json quantities() {
+  json all = json::array();
+  for (const quantity_entry* q : quantity_entries()) {
+    json one = {{"name", q->name}, {"description", q->description}, {"source", q->source}};
+    for (const auto& p : q->parameters)
+      one["variables"].push_back(fmt::format("{}: {} [{}]", p.name, p.doc, p.value));
+    all.push_back(one);
+  }
+  return all;
+}
+
 json keys() {
   json all = json::array();
   for (const case_key& key : case_schema()) {
@@ -157,8 +169,9 @@ std::string as_text(const std::string& what, const json& all) {
 
 const std::map<std::string, json (*)()>& lists() {
   static const std::map<std::string, json (*)()> all = {
-      {"methods", methods}, {"families", families}, {"models", models}, {"cases", cases},
-      {"schemes", schemes}, {"claims", claims},     {"keys", keys},     {"boundaries", boundaries}};
+      {"methods", methods}, {"families", families},     {"models", models},
+      {"cases", cases},     {"schemes", schemes},       {"claims", claims},
+      {"keys", keys},       {"boundaries", boundaries}, {"quantities", quantities}};
   return all;
 }
 

@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
-CPP_FOLDERS = ["app", "src/apsis", "paper", "python/bindings"]
+CPP_FOLDERS = ["app", "src/apsis", "paper", "validation", "python/bindings"]
 PYTHON_FOLDERS = ["python/apsis", "docs", "studies", "bench", "scripts"]
 
 # Expressions that throw or warn, and helpers of a file that compose messages. Constructors may have braces.

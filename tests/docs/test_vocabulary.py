@@ -10,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "vocabulary.md"
 
 # Folders and files with comments, messages or pages. This file quotes the phrases.
-PLACES = ["src", "app", "paper", "python", "bench", "studies", "methods", "cases", "cmake", "scripts", "tests", "examples", "docs",
+PLACES = ["src", "app", "paper", "validation", "python", "bench", "studies", "methods", "cases", "cmake", "scripts", "tests", "examples", "docs",
           "README.md", "CHANGELOG.md", "CONTRIBUTING.md"]
 
 # Phrases with a plainer alternative: a pattern and what to write instead.

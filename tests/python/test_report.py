@@ -111,11 +111,34 @@ def test_the_table_for_documentation_has_a_row_for_each_claim():
     assert "1 of 2 claims hold" in table and "a \\| b" in table and "- **C1** misprint" in table
 
 
+# --- a validation -----------------------------------------------------------------------------------------------------------------
+
+
+def page_of_validation(folder, **changes):
+    value = {"settings": ["delta=1"], "value": 0.6009, "published": 0.6007, "difference": 3.3e-4, "tolerance": 1e-3, "holds": True,
+             "wall_s": 0.5} | changes
+    quantity = {"name": "couette", "description": "stress < 1", "source": "Willis & others", "values": [value],
+                "pictures": [picture(panel(curves=[curve("a", [1, 2], [1, 4])]))]}
+    content = {**document(), "quantities": [quantity]}
+    (folder / "validate.json").write_text(json.dumps(content), encoding="utf-8")
+    return page_of(folder)
+
+
+def test_a_validation_shows_every_value_with_its_verdict(tmp_path):
+    good = page_of_validation(tmp_path)
+    assert "1 of 1 published values are met." in good and "stress &lt; 1" in good and "Willis &amp; others" in good
+    assert "+3.3e-04" in good and 'class="yes"' in good and 'class="no"' not in good
+    bad = page_of_validation(tmp_path, value=None, difference=None, holds=False)
+    assert "0 of 1 published values are met; those that are not are marked" in bad and "not a number" in bad and 'class="no"' in bad
+
+
 # --- every page ------------------------------------------------------------------------------------------------------------------
 
 
 def test_no_external_resource_is_loaded(run, tmp_path):
-    for page in (page_of(run), page_of_claims(tmp_path, claim(pictures=[picture(panel(curves=[curve("a", [1, 2], [1, 4])]))]))):
+    claims = claim(pictures=[picture(panel(curves=[curve("a", [1, 2], [1, 4])]))])
+    (tmp_path / "claims").mkdir()
+    for page in (page_of(run), page_of_claims(tmp_path / "claims", claims), page_of_validation(tmp_path)):
         targets = re.findall(r'(?:src|href)="([^"]*)"', page)
         assert targets and all(re.match(r"data:|#", target) for target in targets)
         inside = [base64.b64decode(data).decode() for data in re.findall(r"data:image/svg\+xml;base64,([^\"]+)", page)]

@@ -65,7 +65,7 @@ def drawn(what: str) -> tuple[Path, Iterable[tuple[str, Any]]]:
     """Returns the folder for the pictures of a result, and the pictures."""
     path = Path(what)
     if path.is_dir():
-        for name in ("picture.json", "reproduce.json"):
+        for name in ("picture.json", "reproduce.json", "validate.json"):
             if (path / name).exists():
                 return path / "pictures", of_document(run_result.read_json(path / name), path / name)
         return path / "pictures", results.figures(run_result.read_result(path)).items()

@@ -1,7 +1,7 @@
 """Draws pictures that the program apsis writes as data.
 
 A picture has name, title, caption and panels; a panel has curves {label, x, y, style, colour} or one map {x, y, value}. null
-is NaN. A document may hold one picture, or several in a list "pictures" (also inside "claims").
+is NaN. A document may hold one picture, or several in a list "pictures" (also inside "claims" and "quantities").
 """
 from __future__ import annotations
 
@@ -166,6 +166,6 @@ def pictures_of(document: Document) -> list[Document]:
     if "panels" in document:
         return [document]
     found = list(document.get("pictures", []))
-    for claim in document.get("claims", []):
-        found += pictures_of(claim)
+    for part in [*document.get("claims", []), *document.get("quantities", [])]:
+        found += pictures_of(part)
     return found

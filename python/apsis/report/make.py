@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..plot.run_result import read_json
 from ..plot.style import PictureError, whole_file
-from . import claims, run, study
+from . import claims, run, study, validation
 
 
 def write(path: Path, content: str) -> None:
@@ -21,13 +21,15 @@ def make_report(folder: str | Path) -> Path:
             document = read_json(folder / "reproduce.json")
             content = claims.report(document, folder)
             write(folder / "claims.md", claims.markdown(document))
+        elif (folder / "validate.json").exists():
+            content = validation.report(read_json(folder / "validate.json"), folder)
         elif (folder / "converge.json").exists():
             content = study.report(folder)
         elif (folder / "manifest.json").exists():
             content = run.report(folder)
         else:
             raise PictureError(f"'{folder}' holds no results (neither manifest.json nor reproduce.json); give a folder that "
-                               "apsis run --out, apsis converge --out or apsis reproduce wrote")
+                               "apsis run --out, apsis converge --out, apsis reproduce or apsis validate wrote")
     except (KeyError, TypeError, IndexError) as problem:
         raise PictureError(f"results in '{folder}' are damaged or of another version ({type(problem).__name__}: {problem}); "
                            "make them anew") from problem

@@ -1,0 +1,58 @@
+// apsis validate as a process: verdicts, report, a value for other parameters, and refusals.
+#include "program.hpp"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using app_test::run_apsis;
+using app_test::work_folder;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+}  // namespace
+
+TEST(validate, leaves_a_report_that_needs_no_other_file) {
+  const work_folder folder;
+  const auto result = run_apsis(folder, {"validate", "prandtl", "--out", "v"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("3 of 3 published values are met"));
+  const json document = json::parse(app_test::read(folder.path() / "v" / "validate.json"));
+  ASSERT_EQ(document["quantities"].size(), 1U);
+  for (const auto& value : document["quantities"][0]["values"]) EXPECT_TRUE(value["holds"].get<bool>());
+  const std::string page = app_test::read(folder.path() / "v" / "report.html");
+  EXPECT_THAT(page, HasSubstr("3 of 3 published values are met"));
+  EXPECT_THAT(page, Not(HasSubstr("src=\"http")));
+}
+
+TEST(validate, computes_a_value_for_other_parameters) {
+  const work_folder folder;
+  const auto result = run_apsis(folder, {"validate", "couette", "delta=2.5", "velocity.points=48", "--json"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  const json document = json::parse(result.out);
+  EXPECT_EQ(document["name"], "couette");
+  EXPECT_EQ(document["settings"], (json{"delta=2.5", "velocity.points=48"}));
+  // Between the published values at δ = 2 and 5.
+  EXPECT_LT(document["value"].get<double>(), 0.4436);
+  EXPECT_GT(document["value"].get<double>(), 0.2522);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "results"));  // nothing is written
+}
+
+TEST(validate, refuses_settings_without_one_quantity) {
+  const work_folder folder;
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"validate", "delta=2"}, {"validate", "couette", "prandtl", "delta=2"}}) {
+    const auto result = run_apsis(folder, words);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_THAT(result.err, HasSubstr("one is needed"));
+  }
+  const auto unknown = run_apsis(folder, {"validate", "couete", "--out", "v"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'couette'"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "v"));
+}

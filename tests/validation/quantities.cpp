@@ -1,0 +1,146 @@
+// Published values of gas flows, which runs of the program's own cases meet, and how a comparison fails.
+#include <apsis/core/errors.hpp>
+#include <apsis/output/picture.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <validation/comparison.hpp>
+#include <validation/quantity.hpp>
+
+namespace {
+
+using apsis::compare_published;
+using apsis::compared_value;
+using apsis::compute_quantity;
+using apsis::find_quantity;
+using apsis::published_value;
+using apsis::quantity_entry;
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct one_value {
+  const quantity_entry* quantity;
+  const published_value* published;
+};
+
+std::vector<one_value> published() {
+  std::vector<one_value> all;
+  for (const quantity_entry* quantity : apsis::quantity_entries())
+    for (const auto& value : quantity->published) all.push_back({quantity, &value});
+  return all;
+}
+
+std::string name_of(const testing::TestParamInfo<one_value>& info) {
+  std::string name = info.param.quantity->name;
+  for (const auto& [parameter, value] : info.param.published->at) name += "_" + parameter + "_" + value;
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  return name;
+}
+
+class slow_published : public testing::TestWithParam<one_value> {};
+TEST_P(slow_published, is_met) {
+  const compared_value one = compare_published(*GetParam().quantity, *GetParam().published);
+  EXPECT_TRUE(one.holds()) << one.value << " for " << one.published->value;
+}
+INSTANTIATE_TEST_SUITE_P(all, slow_published, testing::ValuesIn(published()), name_of);
+
+std::string refusal(const std::string& quantity, const std::vector<std::string>& settings) {
+  try {
+    static_cast<void>(compute_quantity(find_quantity(quantity), settings));
+  } catch (const apsis::input_error& problem) {
+    return problem.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST(quantities, meet_some_published_values) {
+  for (const auto& [name, at] : {std::pair<std::string, std::size_t>{"couette", 4}, {"prandtl", 1}}) {
+    const quantity_entry& quantity = find_quantity(name);
+    const compared_value one = compare_published(quantity, quantity.published.at(at));
+    EXPECT_TRUE(one.holds()) << name << ": " << one.value << " for " << one.published->value;
+  }
+}
+
+TEST(quantities, are_not_met_with_a_velocity_grid_that_is_too_coarse) {
+  const quantity_entry& couette = find_quantity("couette");
+  const double coarse = compute_quantity(couette, {"delta=5", "velocity.points=12"});
+  const published_value printed{{{"delta", "5"}}, 0.2522};
+  EXPECT_FALSE((compared_value{&couette, &printed, coarse, 0.0}.holds())) << coarse;
+  EXPECT_NEAR(coarse, 0.2522, 0.02);  // the same quantity nevertheless
+}
+
+TEST(quantities, depend_on_their_parameters_as_the_limits_say) {
+  // Navier–Stokes equations with the slip 1.016191 of the BGK equation: √π/(δ + 2·1.016191) for large δ;
+  // the difference is of the order exp(−δ/2).
+  const double stress = compute_quantity(find_quantity("couette"), {"delta=14"});
+  EXPECT_NEAR(stress, std::sqrt(3.14159265358979) / (14.0 + 2.032382), 1e-3 * stress);
+}
+
+TEST(quantities, refuse_what_they_do_not_know) {
+  EXPECT_THAT(refusal("couet", {}),
+              AllOf(HasSubstr("unknown quantity 'couet'"), HasSubstr("did you mean 'couette'")));
+  EXPECT_THAT(refusal("couette", {"delt=1"}),
+              AllOf(HasSubstr("unknown parameter 'delt' of 'couette'"), HasSubstr("did you mean 'delta'")));
+  EXPECT_THAT(refusal("couette", {"delta"}), HasSubstr("'delta' is not of the form name=value"));
+  for (const char* bad : {"delta=", "delta=0", "delta=-1", "delta=1x", "delta=nan", "delta=inf"})
+    EXPECT_THAT(refusal("couette", {bad}), HasSubstr("is not a number > 0")) << bad;
+  EXPECT_THAT(refusal("couette", {"model=bkg"}), HasSubstr("bgk"));
+  EXPECT_THAT(refusal("couette", {"space.cels=3"}), HasSubstr("space.cells"));
+}
+
+TEST(quantities, stop_when_asked) {
+  EXPECT_THROW(static_cast<void>(compute_quantity(find_quantity("couette"), {}, [](double) { return true; })),
+               apsis::quantity_interrupted);
+}
+
+TEST(quantities, have_distinct_published_values_of_known_parameters) {
+  for (const quantity_entry* quantity : apsis::quantity_entries()) {
+    ASSERT_FALSE(quantity->parameters.empty()) << quantity->name;
+    std::set<apsis::quantity_values> seen;
+    for (const auto& value : quantity->published) {
+      EXPECT_TRUE(seen.insert(value.at).second) << quantity->name;
+      for (const auto& [name, text] : value.at)
+        EXPECT_TRUE(std::any_of(quantity->parameters.begin(), quantity->parameters.end(),
+                                [name = name](const auto& p) { return p.name == name; }))
+            << quantity->name << " " << name;
+    }
+  }
+}
+
+TEST(compared_value, holds_within_its_tolerance_only) {
+  const published_value printed{{}, 2.0, 1e-3};
+  const auto holds = [&](double value) {
+    return compared_value{&find_quantity("couette"), &printed, value, 0.0}.holds();
+  };
+  EXPECT_TRUE(holds(2.0019));
+  EXPECT_TRUE(holds(1.9981));
+  EXPECT_FALSE(holds(2.0021));
+  EXPECT_FALSE(holds(1.9979));
+  EXPECT_FALSE(holds(-2.0));
+  EXPECT_FALSE(holds(std::numeric_limits<double>::quiet_NaN()));
+}
+
+TEST(compared_value, is_drawn_over_the_first_parameter_where_there_are_several) {
+  const quantity_entry& couette = find_quantity("couette");
+  std::vector<compared_value> values;
+  for (const auto& one : couette.published) values.push_back({&couette, &one, one.value * 1.0005, 1.0});
+  const auto picture = apsis::quantity_picture(couette, values);
+  ASSERT_EQ(picture.panels.size(), 2U);
+  EXPECT_EQ(picture.panels[0].curves[0].x.size(), couette.published.size());
+  EXPECT_NEAR(picture.panels[1].curves[0].y[0], 5e-4, 1e-12);
+  const auto document = to_json(couette, values);
+  EXPECT_EQ(document["values"].size(), values.size());
+  EXPECT_EQ(document["pictures"].size(), 1U);
+  values.resize(2);
+  EXPECT_TRUE(apsis::quantity_picture(couette, values).panels.empty());
+}

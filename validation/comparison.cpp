@@ -1,0 +1,120 @@
+#include <validation/comparison.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace apsis {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+/// Returns the value of a parameter in a comparison, its default if it is not set there.
+std::string value_of(const compared_value& one, const quantity_parameter& parameter) {
+  const auto found = one.published->at.find(parameter.name);
+  return found == one.published->at.end() ? parameter.value : found->second;
+}
+
+/// The settings other than the first parameter, as a label.
+std::string others(const compared_value& one) {
+  quantity_values rest = one.published->at;
+  rest.erase(one.quantity->parameters.front().name);
+  return fmt::format("{}", fmt::join(settings_of(rest), " "));
+}
+
+panel log_panel(const std::string& title, const std::string& x, const std::string& y) {
+  panel out;
+  out.title = title;
+  out.x_label = x;
+  out.y_label = y;
+  out.log_x = out.log_y = true;
+  return out;
+}
+
+}  // namespace
+
+double compared_value::difference() const {
+  return value / published->value - 1.0;
+}
+
+bool compared_value::holds() const {
+  return std::abs(difference()) <= published->tolerance;
+}
+
+std::vector<std::string> settings_of(const quantity_values& values) {
+  std::vector<std::string> settings;
+  for (const auto& [name, value] : values) settings.push_back(fmt::format("{}={}", name, value));
+  return settings;
+}
+
+compared_value compare_published(const quantity_entry& quantity, const published_value& published,
+                                 const std::function<bool(double)>& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  compared_value one{&quantity, &published};
+  one.value = compute_quantity(quantity, settings_of(published.at), progress);
+  one.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return one;
+}
+
+picture quantity_picture(const quantity_entry& quantity, const std::vector<compared_value>& values) {
+  const quantity_parameter& first = quantity.parameters.front();
+  panel shown = log_panel("value", first.name, quantity.name);
+  panel differences = log_panel("relative difference", first.name, "|computed/published - 1|");
+  struct group {
+    std::vector<double> x, computed, published, difference, tolerance;
+  };
+  std::map<std::string, group> groups;
+  std::set<double> abscissae;
+  for (const auto& one : values) {
+    const double x = std::stod(value_of(one, first));
+    abscissae.insert(x);
+    group& to = groups[others(one)];
+    to.x.push_back(x);
+    to.computed.push_back(one.value);
+    to.published.push_back(one.published->value);
+    to.difference.push_back(std::abs(one.difference()));
+    to.tolerance.push_back(one.published->tolerance);
+  }
+  picture out{
+      quantity.name, quantity.name, quantity.description + ". Published: " + quantity.source + ".", {}};
+  if (abscissae.size() < 3) return out;
+  int colour = 0;
+  for (const auto& [label, of] : groups) {
+    const std::string prefix = label.empty() ? "" : label + ", ";
+    shown.curves.push_back({prefix + "computed", of.x, of.computed, curve_style::line, colour});
+    shown.curves.push_back({prefix + "published", of.x, of.published, curve_style::markers, colour});
+    differences.curves.push_back(
+        {prefix + "difference", of.x, of.difference, curve_style::line_and_markers, colour});
+    differences.curves.push_back({prefix + "tolerance", of.x, of.tolerance, curve_style::dashed, colour});
+    ++colour;
+  }
+  out.panels = {shown, differences};
+  return out;
+}
+
+json to_json(const quantity_entry& quantity, const std::vector<compared_value>& values) {
+  json compared = json::array();
+  for (const auto& one : values)
+    compared.push_back({{"settings", settings_of(one.published->at)},
+                        {"value", one.value},
+                        {"published", one.published->value},
+                        {"difference", one.difference()},
+                        {"tolerance", one.published->tolerance},
+                        {"holds", one.holds()},
+                        {"wall_s", one.wall_s}});
+  json pictures = json::array();
+  const picture drawn = quantity_picture(quantity, values);
+  if (!drawn.panels.empty()) pictures.push_back(to_json(drawn));
+  return {{"name", quantity.name},
+          {"description", quantity.description},
+          {"source", quantity.source},
+          {"values", compared},
+          {"pictures", pictures}};
+}
+
+}  // namespace apsis

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <apsis/output/picture.hpp>
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+#include <validation/quantity.hpp>
+
+namespace apsis {
+
+/// A published value and the one that was computed for it.
+struct compared_value {
+  const quantity_entry* quantity = nullptr;
+  const published_value* published = nullptr;
+  double value = 0.0, wall_s = 0.0;
+
+  /// Returns value/published − 1.
+  double difference() const;
+  /// Whether |difference| ≤ tolerance; a NaN does not hold.
+  bool holds() const;
+};
+
+/// Returns "name=value" for every parameter.
+std::vector<std::string> settings_of(const quantity_values& values);
+
+/// Computes the value that a published one is compared with. Throws the errors of compute_quantity().
+compared_value compare_published(const quantity_entry& quantity, const published_value& published,
+                                 const std::function<bool(double)>& progress = {});
+
+/// Returns the values of one quantity over its first parameter, a curve for each set of the others, and the
+/// differences with their tolerances; without panels if the first parameter has fewer than three values.
+picture quantity_picture(const quantity_entry& quantity, const std::vector<compared_value>& values);
+
+/// Returns name, description, source, values and pictures of one quantity.
+nlohmann::ordered_json to_json(const quantity_entry& quantity, const std::vector<compared_value>& values);
+
+}  // namespace apsis

@@ -1,0 +1,94 @@
+#include <validation/quantity.hpp>
+
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/suggest.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+std::vector<std::string> names_of(const quantity_entry& quantity) {
+  std::vector<std::string> names;
+  for (const auto& parameter : quantity.parameters) names.push_back(parameter.name);
+  return names;
+}
+
+std::size_t place_in(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw std::out_of_range("no '" + name + "' among the fluxes of the run");
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+}  // namespace
+
+const quantity_entry& find_quantity(const std::string& name) {
+  std::vector<std::string> names;
+  for (const quantity_entry* entry : quantity_entries()) {
+    if (entry->name == name) return *entry;
+    names.push_back(entry->name);
+  }
+  throw input_error(fmt::format("unknown quantity '{}' (there is no such name); {}", name.substr(0, 60),
+                                suggest(name, names)));
+}
+
+double compute_quantity(const quantity_entry& quantity, const std::vector<std::string>& settings,
+                        const std::function<bool(double)>& progress) {
+  quantity_values values;
+  for (const auto& parameter : quantity.parameters) values[parameter.name] = parameter.value;
+  std::vector<std::string> overrides;
+  for (const auto& setting : settings) {
+    const auto equals = setting.find('=');
+    const std::string name = setting.substr(0, equals);
+    if (equals == std::string::npos)
+      throw input_error(fmt::format(
+          "'{}' is not of the form name=value (it sets a parameter); write for example "
+          "{}={}",
+          setting.substr(0, 60), quantity.parameters.front().name, quantity.parameters.front().value));
+    if (name.find('.') != std::string::npos) {
+      overrides.push_back(setting);
+    } else if (values.contains(name)) {
+      values[name] = setting.substr(equals + 1);
+    } else {
+      throw input_error(fmt::format("unknown parameter '{}' of '{}' (keys of its case have a dot); {}",
+                                    name.substr(0, 60), quantity.name, suggest(name, names_of(quantity))));
+    }
+  }
+  return quantity.compute(values, [&](const std::string& name, std::vector<std::string> own) {
+    own.insert(own.end(), overrides.begin(), overrides.end());
+    simulation run(load_case(name, own));
+    while (!run.finished()) {
+      run.advance();
+      const long total = std::max(run.steps_total(), 1L);
+      if (progress && progress(static_cast<double>(run.step()) / static_cast<double>(total)))
+        throw quantity_interrupted();
+    }
+    return run;
+  });
+}
+
+double positive_number(const quantity_values& parameters, const std::string& name) {
+  const std::string& text = parameters.at(name);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0) || std::isinf(value))
+    throw input_error(
+        fmt::format("{} = '{}' is not a number > 0; write for example {}=1", name, text.substr(0, 60), name));
+  return value;
+}
+
+double last_flux(const simulation& run, const std::string& face, const std::string& invariant) {
+  const auto invariants = run.invariants();
+  const std::size_t at =
+      place_in(run.open_faces(), face) * invariants.size() + place_in(invariants, invariant);
+  return run.last().flux.at(at);
+}
+
+}  // namespace apsis

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <apsis/run/simulation.hpp>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// A parameter of a quantity, as "name=value" on the command line.
+struct quantity_parameter {
+  std::string name;   ///< "delta"
+  std::string value;  ///< default
+  std::string doc;    ///< meaning with unit
+};
+
+/// Values of parameters by name.
+using quantity_values = std::map<std::string, std::string>;
+
+/// A published value.
+struct published_value {
+  quantity_values at;       ///< parameters that differ from their defaults
+  double value = 0.0;       ///< as printed
+  double tolerance = 1e-3;  ///< relative, including the digits that were printed
+};
+
+/// Makes and finishes the run of a case with overrides.
+using quantity_run = std::function<simulation(const std::string& name, std::vector<std::string> overrides)>;
+
+/// A quantity that one run determines: a file of validation/quantities/ defines `extern const quantity_entry
+/// quantity_<file>`.
+struct quantity_entry {
+  std::string name;                            ///< "couette"
+  std::string description;                     ///< one line: the value and its unit
+  std::string source;                          ///< of the published values
+  std::vector<quantity_parameter> parameters;  ///< all of them, first the number over which values are drawn
+  std::vector<published_value> published;      ///< may be empty
+  /// Returns the value for given parameters, each with a value.
+  double (*compute)(const quantity_values& parameters, const quantity_run& run) = nullptr;
+};
+
+/// Every quantity, sorted by file name (generated).
+std::vector<const quantity_entry*> quantity_entries();
+
+/// Returns the quantity of a name. Throws input_error with the nearest name if there is none.
+const quantity_entry& find_quantity(const std::string& name);
+
+/// Computes a quantity. `settings`: "parameter=value", or "key.of.the.case=value" for the run; `progress` is
+/// called with the fraction done and returns whether to stop. Throws input_error for an unknown parameter,
+/// and the errors of a run.
+double compute_quantity(const quantity_entry& quantity, const std::vector<std::string>& settings,
+                        const std::function<bool(double)>& progress = {});
+
+/// Thrown where `progress` stopped a computation.
+struct quantity_interrupted {};
+
+/// Returns a parameter as a number > 0. Throws input_error for any other text.
+double positive_number(const quantity_values& parameters, const std::string& name);
+
+/// Returns the flux of an invariant through a face of a run in its last step, into the gas. Throws
+/// std::out_of_range for unknown names.
+double last_flux(const simulation& run, const std::string& face, const std::string& invariant);
+
+}  // namespace apsis

@@ -6,7 +6,7 @@ APSIS  := build/release/app/apsis
 export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
 export CTEST_PARALLEL_LEVEL ?= $(CORES)
 
-FORMATTED = $(shell find src app tests bench examples python -name '*.[ch]pp' 2>/dev/null)
+FORMATTED = $(shell find src app paper validation tests bench examples python -name '*.[ch]pp' 2>/dev/null)
 
 .DEFAULT_GOAL := help
 .PHONY: help run validate reproduce study program figures test test-all test-slow clang asan tsan bench packages format format-check tidy docs docs-links clean
@@ -70,7 +70,7 @@ tsan: ## run the tests of threads and of their users under the thread sanitizer
 tidy: ## run clang-tidy over the library, the program and the Python package
 	cmake --preset clang -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) >/dev/null
 	cmake --build build/clang --target app/apsis
-	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app|python)/.*'
+	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app|paper|validation|python)/.*'
 
 bench: ## measure every table of docs/speed.md into results/bench/speed.json (half an hour, on an idle machine)
 	@scripts/install-packages.sh test

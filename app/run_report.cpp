@@ -36,7 +36,7 @@ std::string summary_text(const simulation& run, run_end end) {
     std::vector<std::string> amounts;
     for (std::size_t k = 0; k < names.size(); ++k)
       amounts.push_back(fmt::format("{} {:.6g}", names[k], run.last().flux[f * names.size() + k]));
-    line(fmt::format("flux through {}", faces[f]), fmt::format("{}", fmt::join(amounts, ", ")));
+    line(faces[f] == "force" ? "given by the force" : fmt::format("flux through {}", faces[f]), fmt::format("{}", fmt::join(amounts, ", ")));
   }
   if (!std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));

@@ -22,6 +22,9 @@ namespace {
 /// reported.
 override_form form_of(const std::string& path, const std::string& value) {
   for (const case_key& key : case_schema())
+    if (key.path == path && key.type == key_type::formulas)
+      return {value.find('[') != 0, type_advice(key.type)};
+  for (const case_key& key : case_schema())
     if (key.path == path)
       return {key.type == key_type::text || key.type == key_type::formula, type_advice(key.type)};
   if (path.rfind("parameters.", 0) == 0) return {false, type_advice(key_type::number)};

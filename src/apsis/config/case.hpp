@@ -51,6 +51,10 @@ struct case_config {
   struct {
     face_table left, right;  ///< at the lower and the upper end in x
   } faces;
+  /// Table [force], of models with a velocity grid.
+  struct {
+    std::optional<std::vector<std::string>> acceleration;  ///< formulas in t and the position
+  } force;
   /// Table [velocity], of models with a velocity grid.
   struct {
     double max = 0.0;

@@ -106,7 +106,8 @@ template <class At>
 case_key key(std::string path, At at, case_key facts) {
   using member = std::remove_cvref_t<decltype(at(std::declval<case_config&>()))>;
   facts.path = std::move(path);
-  if (facts.type != key_type::formula) facts.type = conversion<member>::type;
+  if (facts.type != key_type::formula && facts.type != key_type::formulas)
+    facts.type = conversion<member>::type;
   facts.store = [at](case_config& c, const case_value& value) { conversion<member>::from(value, at(c)); };
   facts.load = [at](const case_config& c) { return conversion<member>::to(at(c)); };
   if constexpr (std::is_enum_v<member>)
@@ -114,8 +115,8 @@ case_key key(std::string path, At at, case_key facts) {
       return std::vector<std::string>(choice_names<member>.begin(), choice_names<member>.end());
     };
   const bool numeric = facts.type == key_type::integer || facts.type == key_type::number ||
-                       facts.type == key_type::formula || facts.type == key_type::integers ||
-                       facts.type == key_type::intervals;
+                       facts.type == key_type::formula || facts.type == key_type::formulas ||
+                       facts.type == key_type::integers || facts.type == key_type::intervals;
   if (numeric && facts.unit.empty()) facts.unit = "dimensionless";
   return facts;
 }
@@ -179,6 +180,11 @@ std::vector<case_key> space_keys() {
                "Boundary condition at the upper end in x, where it differs from space.boundary. Further keys "
                "of the table [boundary.right] are the variables of the kind (apsis list boundaries), "
                "numbers or formulas in t and x."}),
+      key("force.acceleration", [](auto& c) -> auto& { return c.force.acceleration; },
+          {.type = key_type::formulas,
+           .scope = key_scope::velocity,
+           .doc = "Acceleration of the molecules, one formula for each velocity dimension; those that are "
+                  "left out are 0."}),
       key("velocity.max", [](auto& c) -> auto& { return c.velocity.max; },
           {.scope = key_scope::velocity,
            .required = true,

@@ -3,6 +3,7 @@
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/force_reader.hpp>
 #include <apsis/config/initial_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/suggest.hpp>
@@ -53,8 +54,9 @@ class resolver {
   void note_places() {
     for (const auto& [name, place] : text_.tables) config_.places[name] = place;
     for (const auto& [path, raw] : text_.values)
-      config_.places[path] =
-          is_in(path, "initial") || is_in(path, "boundary") ? place_of_formula(raw) : raw.place;
+      config_.places[path] = is_in(path, "initial") || is_in(path, "boundary") || is_in(path, "force")
+                                 ? place_of_formula(raw)
+                                 : raw.place;
   }
 
   /// A formula begins after its quotation mark; other text has no columns.
@@ -93,8 +95,8 @@ class resolver {
   }
 
   void check_tables() const {
-    std::vector<std::string> names = {"parameters", "model",    "initial", "space",
-                                      "boundary",   "velocity", "time",    "output"};
+    std::vector<std::string> names = {"parameters", "model",    "initial", "space", "boundary",
+                                      "force",      "velocity", "time",    "output"};
     for (const auto& [name, place] : text_.tables)
       if (std::find(names.begin(), names.end(), name.substr(0, name.find('.'))) == names.end())
         throw input_error(place, fmt::format("unknown table [{}] (a case has no such table); {}", shown(name),
@@ -248,6 +250,7 @@ class resolver {
     for (std::size_t k = 0; k < config_.space.domain.size(); ++k)
       check_interval(config_.space.domain[k], config_.space.cells[k]);
     check_faces();
+    make_acceleration(config_, *checked_model());
     double points = std::max(1, config_.velocity.points);
     for (const int cells : config_.space.cells) points *= cells;
     if (points > 2e9)

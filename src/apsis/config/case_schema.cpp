@@ -40,6 +40,8 @@ std::string type_text(key_type type) {
       return "a number or a formula in x, y, z";
     case key_type::text_list:
       return "a list of texts";
+    case key_type::formulas:
+      return "a number or a formula in t, x, y, z, or a list of up to 3";
     case key_type::integers:
       return "an integer or a list of up to 3 integers";
     case key_type::intervals:

@@ -27,6 +27,7 @@ enum class key_type {
   text,       ///< std::string
   formula,    ///< std::string: a formula in x, y, z, or a number, written as text
   text_list,  ///< std::vector<std::string>
+  formulas,   ///< std::vector<std::string>: formulas or numbers, one alone is written without brackets
   integers,   ///< std::vector<long>: one for each direction; one alone is written without brackets
   intervals   ///< std::vector<interval>: one for each direction; one alone is written without outer brackets
 };

@@ -23,6 +23,8 @@ std::string type_advice(key_type type) {
       return "write for example 1e-3 or \"1e-3 + x^2\"";
     case key_type::text_list:
       return "write for example [\"rho\", \"u\"]";
+    case key_type::formulas:
+      return "write for example [0, \"0.1*sin(t)\"]";
     case key_type::integers:
       return "write for example 100, or [100, 50] in two dimensions";
     case key_type::intervals:
@@ -181,6 +183,8 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
       return formula(key, raw);
     case key_type::text_list:
       return texts(key, raw);
+    case key_type::formulas:
+      return formula_texts(raw, key.path);
     case key_type::integers:
       return integers(key, raw);
     case key_type::intervals:

@@ -31,6 +31,14 @@ struct initial_data {
   std::vector<double> jumps = {};  ///< discontinuities of data on a line, in increasing order
 };
 
+/// Velocities that are all combinations of the same n equidistant points in each of d directions, the last
+/// direction fastest.
+struct velocity_lattice {
+  int dimensions = 0;    ///< d; 0 if the velocities are no lattice
+  int points = 0;        ///< n
+  double spacing = 0.0;  ///< Δv
+};
+
 /// Data that a model cannot hold.
 struct unsupported_initial_data {
   std::string key,  ///< of the case, that must change; "" if all is well
@@ -51,6 +59,8 @@ class model {
   virtual const velocity_set& velocities() const;
   /// Returns the transport speed of every component along a direction; empty without space.
   std::span<const double> speeds(int direction) const { return velocities().speeds(direction); }
+  /// Returns the lattice of the velocities, along which forces act; none by default.
+  virtual velocity_lattice lattice() const { return {}; }
   /// Returns v of the CFL number v Δt/Δx along a direction: by default the largest |speed|; 0 without space.
   virtual double reference_speed(int direction) const;
 

@@ -49,8 +49,8 @@ class field {
   /// Returns the stride of rows with the given number of components.
   static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
 
-  /// Amounts of the invariants that this state has received through the faces of the domain,
-  /// [face][invariant]; copied with the rows, and formed by the same linear combinations
+  /// Amounts of the invariants that this state has received through the faces of the domain, and from a
+  /// force after them, [face][invariant]; copied with the rows, and formed by the same linear combinations
   /// (semidiscrete/face_fluxes.hpp). Empty where nothing crosses a face.
   std::vector<double>& gains() { return gains_; }
   /// The gains of a constant field.

@@ -1,6 +1,7 @@
 #include <apsis/run/setup.hpp>
 
 #include <apsis/config/boundary_reader.hpp>
+#include <apsis/config/force_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/schedule.hpp>
@@ -74,6 +75,7 @@ void run_setup::build_space() {
   for (int direction = 0; direction < static_cast<int>(sides.size()); ++direction)
     for (const bool upper : {false, true})
       builder_.with_boundary({direction, upper}, sides[static_cast<std::size_t>(direction)][upper ? 1 : 0]);
+  if (auto of = make_acceleration(config_, *equation)) builder_.with_force(std::move(*of));
   at_key(config_, "space.limiter", [&] {
     if (space.limiter == limiter_choice::positivity) builder_.with_positivity_limiter();
   });
@@ -154,6 +156,7 @@ std::vector<std::string> run_setup::open_faces() const {
   for (int direction = 0; direction < builder_.mesh().dimensions(); ++direction)
     for (const char* name : names[static_cast<std::size_t>(direction)])
       if (!space.periodic(direction)) open.emplace_back(name);
+  if (config_.force.acceleration) open.emplace_back("force");
   return open;
 }
 

@@ -43,7 +43,7 @@ class run_setup {
   bool has_space() const { return builder_.has_space(); }
   /// Returns the cell volume; 1 without space.
   double cell_volume() const { return has_space() ? builder_.mesh().cell_volume() : 1.0; }
-  /// Returns the names of the faces that are not periodic: "left", "right".
+  /// Returns the names of the faces that are not periodic, "left", "right", and "force" if there is one.
   std::vector<std::string> open_faces() const;
   /// Returns x of the cell centres; {0} without space.
   std::vector<double> centres() const;

@@ -40,7 +40,8 @@ class simulation {
   const case_config& config() const;            ///< the case as given
   const run_promises& promises() const;         ///< promises checked after every step
   std::vector<std::string> invariants() const;  ///< names in the order of conservation_defect
-  /// Returns the names of the faces that are not periodic, in the order of step_record::received: "left".
+  /// Returns the names of the faces that are not periodic and then "force", if there is one, in the order of
+  /// step_record::received.
   std::vector<std::string> open_faces() const;
   double t() const;          ///< time reached
   double dt() const;         ///< length of the next step

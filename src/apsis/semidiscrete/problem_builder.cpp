@@ -89,6 +89,11 @@ problem_builder& problem_builder::with_explicit_collision() {
   return *this;
 }
 
+problem_builder& problem_builder::with_force(acceleration of) {
+  force_ = std::move(of);
+  return *this;
+}
+
 /// Collision on the unknowns themselves: point values, or first order, where the quartic would be too much.
 bool problem_builder::pointwise() const {
   return !has_space() || first_order() || unknowns_ == formulation::finite_difference;
@@ -138,6 +143,7 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   const auto space = std::make_shared<domain>(this->space());
   auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, complete_discretization(),
                                                         make_collision(space));
+  if (force_) problem->set_force(*force_);
   if (explicit_collision_) problem->treat_collision_explicitly();
   return problem;
 }

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,12 +48,14 @@ class problem_builder {
   problem_builder& with_positivity_limiter();
   /// Sets ε(x).
   problem_builder& with_epsilon(scale epsilon);
+  /// Adds the force −a·∇_v f of an acceleration, on models whose velocities are a lattice.
+  problem_builder& with_force(acceleration of);
   /// For methods that treat T and Q explicitly: forward_euler_step() is then that of T + Q/ε.
   problem_builder& with_explicit_collision();
 
   /// Returns the problem. Throws input_error if the mesh or the reconstruction is missing, ε is not a finite
-  /// number ≥ 0, only one face of a direction is periodic, or cell averages have more than one space
-  /// dimension.
+  /// number ≥ 0, only one face of a direction is periodic, cell averages have more than one space dimension,
+  /// or the force is not possible (force.hpp).
   std::unique_ptr<semidiscrete_problem> build() const;
   /// Returns cell averages or point values of data, [cells][components]; averages are exact to rounding if
   /// the data are smooth between the `jumps` (in increasing order).
@@ -84,6 +87,7 @@ class problem_builder {
   formulation unknowns_ = formulation::finite_volume;
   bool limited_ = false, explicit_collision_ = false;
   scale epsilon_;
+  std::optional<acceleration> force_;
 };
 
 }  // namespace apsis

@@ -282,8 +282,12 @@ transport::transport(const model& equation, std::shared_ptr<domain> space,
   }
 }
 
+void transport::set_force(acceleration of) {
+  force_ = std::make_unique<force>(equation_, space_, std::move(of), discretization_);
+}
+
 double transport::forward_euler_step() const {
-  double rate = 0.0;  // 1/0 is the infinity of a model without space
+  double rate = force_ ? force_->rate() : 0.0;  // 1/0 is the infinity of a model without space
   for (const auto& line : speeds_) rate += *std::max_element(line.per_cell.begin(), line.per_cell.end());
   return rounding_allowance * (discretization_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) /
          rate;
@@ -306,8 +310,11 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   for (int direction = 0; direction + 1 < dimensions; ++direction)
     add_direction(t, u, targets, direction, {});
   // Cells are complete pencil by pencil only where one direction is all there is.
-  const bool done = add_direction(t, u, targets, dimensions - 1, dimensions == 1 ? then : cells_job());
-  faces_->add_gains(u, targets, true);
+  const bool alone = dimensions == 1 && !force_;
+  const bool done = add_direction(t, u, targets, dimensions - 1, alone ? then : cells_job());
+  if (force_) force_->add(t, u, targets);
+  faces_->add_gains(u, targets, true,
+                    force_ ? std::span<const double>(force_->given()) : std::span<const double>());
   return done;
 }
 

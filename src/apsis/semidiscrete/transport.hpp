@@ -3,6 +3,7 @@
 #include <apsis/integrate/problem.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
+#include <apsis/semidiscrete/force.hpp>
 #include <apsis/semidiscrete/sweep.hpp>
 
 #include <memory>
@@ -15,8 +16,8 @@ namespace apsis {
 /// few units in the last place, could make a value negative.
 inline constexpr double rounding_allowance = 1.0 - 1e-14;
 
-/// T(u) = −Σ_k ∂_xk(v_k u) + S(u) with upwind fluxes of reconstructed edge values. For constant speeds the
-/// operator is the same for cell averages (finite volume) and point values (finite difference).
+/// T(u) = −Σ_k ∂_xk(v_k u) − a·∇_v u + S(u) with upwind fluxes of reconstructed edge values. For constant
+/// speeds the operator is the same for cell averages (finite volume) and point values (finite difference).
 class transport {
  public:
   /// `equation` must outlive the operator. Without space `how` is ignored.
@@ -32,8 +33,12 @@ class transport {
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const;
 
-  /// Δt_FE = κ / Σ_k (max|v_k|/Δx_k): κ = 1/12 with the positivity limiter (Zhang & Shu 2010), else 1, which
-  /// for first-order upwind keeps positivity, total variation and entropy. +infinity without space.
+  /// Adds a force. Throws input_error as force does.
+  void set_force(acceleration of);
+
+  /// Δt_FE = κ / Σ_k (max|v_k|/Δx_k + max|a_k|/Δv): κ = 1/12 with the positivity limiter (Zhang & Shu 2010),
+  /// else 1, which for first-order upwind keeps positivity, total variation and entropy. +infinity without
+  /// space.
   double forward_euler_step() const;
 
  private:
@@ -51,6 +56,7 @@ class transport {
   std::shared_ptr<domain> space_;
   spatial_discretization discretization_;
   std::unique_ptr<face_fluxes> faces_;
+  std::unique_ptr<force> force_;  ///< null without
   struct line_speeds {
     aligned_vector<double> per_cell;  ///< |v|/Δx per component
     aligned_vector<double> forward;   ///< 1 if v > 0, else 0

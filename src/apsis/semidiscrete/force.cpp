@@ -1,0 +1,193 @@
+#include <apsis/semidiscrete/force.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
+#include <apsis/semidiscrete/upwind_rows.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+constexpr int halo = 2,            // cells beyond a line whose edges limited fluxes see
+    reach = 2,                     // cells on either side on which an edge depends
+    beyond = halo + reach;         // rows of vacuum at either end of a line
+constexpr int enough_lanes = 64;   // lines of several cells are swept together, so that they fill vectors
+constexpr int cells_of_task = 64;  // some blocks of lines
+
+std::size_t size(int n) {
+  return static_cast<std::size_t>(n);
+}
+
+}  // namespace
+
+/// Buffers of one thread. A "lane" is a line of the lattice: [point][lane].
+struct force::workspace {
+  aligned_vector<double> values, edges, change, forward, per_cell, in, out, sum;
+  std::vector<const double*> rows;
+  std::vector<std::array<double, 3>> a;  ///< of every cell of the block
+  std::vector<upwind::row_target> target;
+};
+
+/// The lines along one direction of the cells begin … end−1.
+struct force::place {
+  int direction, begin, end;
+};
+
+force::~force() = default;
+force::force(force&&) noexcept = default;
+
+force::force(const model& equation, std::shared_ptr<domain> space, acceleration of,
+             const spatial_discretization& discretization)
+    : equation_(equation),
+      space_(std::move(space)),
+      lattice_(equation.lattice()),
+      acceleration_(std::move(of)),
+      limited_(discretization.positivity != limiter_kind::none),
+      scheme_(find_reconstruction(discretization.scheme->order() == 1 ? "upwind1" : "upwind5")->make()),
+      invariants_(equation.invariants().size()),
+      workspaces_(std::make_unique<per_thread<workspace>>()) {
+  if (lattice_.points < 2 * reach + 1)
+    throw input_error(
+        fmt::format("a force along a line of {} velocities (it needs a lattice of at least {} "
+                    "per direction); use a model of a gas",
+                    lattice_.points, 2 * reach + 1));
+  for (const double bound : acceleration_.largest)
+    if (!(bound >= 0.0) || std::isinf(bound))
+      throw input_error(
+          fmt::format("the largest acceleration is {} (a finite number is needed); change it", bound));
+  of_cells_.resize(size(space_->mesh().size()) * invariants_);
+  given_.resize(invariants_);
+}
+
+double force::rate() const {
+  double sum = 0.0;
+  for (int k = 0; k < lattice_.dimensions; ++k) sum += acceleration_.largest[size(k)] / lattice_.spacing;
+  return sum;
+}
+
+void force::add(double t, const field& u, std::span<const target<field, double>> targets) const {
+  const int lanes = equation_.components() / lattice_.points;
+  const int together = std::max(1, enough_lanes / lanes);
+  workspaces_->prepare([&](workspace& here) {
+    const std::size_t width = size(together) * size(lanes), line = size(lattice_.points);
+    here.values.assign((line + 2 * beyond) * width, 0.0);
+    here.edges.resize((line + 2 * halo) * width);
+    here.change.resize(line * width);
+    for (auto* row : {&here.forward, &here.per_cell, &here.in, &here.out}) row->resize(width);
+    here.sum.resize(size(together) * size(u.stride()));
+    here.rows.resize(line + 2 * beyond);
+    here.a.resize(size(together));
+    here.target.reserve(1);
+  });
+  parallel_blocks(u.cells(), std::max(together, cells_of_task), [&](int begin, int end) {
+    for (int first = begin; first < end; first += together)
+      add_cells(t, u, targets, first, std::min(end, first + together), workspaces_->here());
+  });
+  // In the order of the cells, whatever the number of threads.
+  std::fill(given_.begin(), given_.end(), 0.0);
+  for (std::size_t cell = 0; cell < size(u.cells()); ++cell)
+    for (std::size_t k = 0; k < invariants_; ++k) given_[k] += of_cells_[cell * invariants_ + k];
+  for (double& one : given_) one *= space_->mesh().cell_volume();
+}
+
+void force::load_acceleration(double t, int begin, int end, workspace& here) const {
+  for (int cell = begin; cell < end; ++cell) {
+    auto& a = here.a[size(cell - begin)];
+    a = acceleration_.value(t, space_->mesh().centre(cell));
+    for (std::size_t k = 0; k < size(lattice_.dimensions); ++k)
+      if (!(std::abs(a[k]) <= acceleration_.largest[k]))
+        throw numerical_error(
+            fmt::format(
+                "the acceleration exceeds its bound {:.6g} (on which the step depends); use a smaller "
+                "step or a smoother formula",
+                acceleration_.largest[k]),
+            {-1, t, cell, a[k]});
+  }
+}
+
+void force::add_cells(double t, const field& u, std::span<const target<field, double>> targets, int begin,
+                      int end, workspace& here) const {
+  load_acceleration(t, begin, end, here);
+  std::fill(here.sum.begin(), here.sum.end(), 0.0);
+  for (int direction = 0; direction < lattice_.dimensions; ++direction)
+    if (acceleration_.largest[size(direction)] > 0.0) add_direction(u, {direction, begin, end}, here);
+  store(u, targets, begin, end, here);
+}
+
+void force::add_direction(const field& u, const place& at, workspace& here) const {
+  const int n = lattice_.points, lanes = equation_.components() / n, cells = at.end - at.begin;
+  const int width = cells * lanes;
+  std::ptrdiff_t apart = 1;
+  for (int k = at.direction + 1; k < lattice_.dimensions; ++k) apart *= n;
+  // First component of a lane.
+  const auto first_of = [&](int lane) { return (lane / apart) * apart * n + lane % apart; };
+  double* values = here.values.data() + static_cast<std::ptrdiff_t>(beyond) * width;
+  std::fill(here.values.begin(), here.values.end(), 0.0);
+  for (int cell = 0; cell < cells; ++cell) {
+    const double a = here.a[size(cell)][size(at.direction)];
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int column = cell * lanes + lane;
+      const double* from = u.row(at.begin + cell) + first_of(lane);
+      for (int i = 0; i < n; ++i) values[static_cast<std::ptrdiff_t>(i) * width + column] = from[i * apart];
+      here.forward[size(column)] = a > 0.0 ? 1.0 : 0.0;
+      here.per_cell[size(column)] = std::abs(a) / lattice_.spacing;
+    }
+  }
+  for (int i = -beyond; i < n + beyond; ++i)
+    here.rows[size(i + beyond)] = values + static_cast<std::ptrdiff_t>(i) * width;
+  double* edges = here.edges.data() + static_cast<std::ptrdiff_t>(halo) * width;
+  std::fill(here.edges.begin(), here.edges.end(), 0.0);  // nothing enters through the ends
+  const double* const* rows = here.rows.data() + beyond;
+  scheme_->outflow_edges(rows, n, width, here.forward.data(), edges);
+  here.target.assign(1, {here.change.data(), width, 0.0, 1.0, true});
+  const auto run_of = [&](int first, int count) {
+    const double* of_first = edges + static_cast<std::ptrdiff_t>(first) * width;
+    return upwind::cells{rows + first,         of_first, of_first, width, count, width, here.forward.data(),
+                         here.per_cell.data(), nullptr};
+  };
+  if (limited_) {
+    upwind::add_limited(run_of(0, n), here.target);
+  } else {
+    upwind::add(run_of(0, n), here.target);
+  }
+  for (const bool upper : {false, true}) {
+    // The flux out of the last point stays there.
+    const int last = upper ? n - 1 : 0;
+    double* change = here.change.data() + static_cast<std::ptrdiff_t>(last) * width;
+    upwind::fluxes_of_cell(run_of(last, 1), limited_, here.in.data(), here.out.data());
+    for (std::size_t k = 0; k < size(width); ++k)
+      if ((here.forward[k] != 0.0) == upper) change[k] += here.per_cell[k] * here.out[k];
+  }
+  for (int cell = 0; cell < cells; ++cell)
+    for (int lane = 0; lane < lanes; ++lane) {
+      double* to = here.sum.data() + static_cast<std::ptrdiff_t>(cell) * u.stride() + first_of(lane);
+      const double* from = here.change.data() + cell * lanes + lane;
+      for (int i = 0; i < n; ++i) to[i * apart] += from[static_cast<std::ptrdiff_t>(i) * width];
+    }
+}
+
+void force::store(const field& u, std::span<const target<field, double>> targets, int begin, int end,
+                  workspace& here) const {
+  for (int cell = begin; cell < end; ++cell) {
+    const double* change = here.sum.data() + static_cast<std::ptrdiff_t>(cell - begin) * u.stride();
+    equation_.invariant_densities(change, of_cells_.data() + size(cell) * invariants_);
+    for (const auto& to : targets) {
+      double* acc = to.acc->row(cell);
+      for (int k = 0; k < u.components(); ++k) {
+        const double sum = acc[k] + to.beta * change[k];
+        // Two roundings of subnormal numbers may exceed the value.
+        const bool rounding = sum < 0.0 && sum > -std::numeric_limits<double>::min();
+        acc[k] = rounding ? 0.0 : sum;
+      }
+    }
+  }
+}
+
+}  // namespace apsis

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <apsis/exec/parallel.hpp>
+#include <apsis/integrate/problem.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/phase/acceleration.hpp>
+#include <apsis/phase/domain.hpp>
+#include <apsis/phase/field.hpp>
+#include <apsis/semidiscrete/sweep.hpp>
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// The part −a(t, x)·∇_v f of T on a velocity lattice: conservative differences of the linear fifth-order
+/// upwind reconstruction along v, no flux through the ends of the lattice, and limited fluxes where
+/// positivity is kept (limiter_kind::fluxes). The sums of the reconstruction make the discrete force give the
+/// momentum ρa and the energy ρu·a per unit of time, to rounding, but for limited fluxes and molecules at the
+/// ends of the lattice. Dimensionless.
+class force {
+ public:
+  /// `equation` must outlive the object. Throws input_error if its velocities are no lattice of at least five
+  /// points, or `of` has no finite bound.
+  force(const model& equation, std::shared_ptr<domain> space, acceleration of,
+        const spatial_discretization& discretization);
+  ~force();
+  force(force&&) noexcept;  ///< leaves the source empty
+
+  /// acc ← acc + β (−a·∇_v u) for every target. Throws numerical_error where a is not finite or larger than
+  /// its bound.
+  void add(double t, const field& u, std::span<const target<field, double>> targets) const;
+  /// Returns the invariants that the last add() gave per unit of time and β.
+  const std::vector<double>& given() const { return given_; }
+  /// Returns Σ_k |a_k|/Δv with the bounds.
+  double rate() const;
+
+ private:
+  struct workspace;
+  struct place;
+  void add_cells(double t, const field& u, std::span<const target<field, double>> targets, int begin, int end,
+                 workspace& here) const;
+  void load_acceleration(double t, int begin, int end, workspace& here) const;
+  void add_direction(const field& u, const place& at, workspace& here) const;
+  void store(const field& u, std::span<const target<field, double>> targets, int begin, int end,
+             workspace& here) const;
+
+  const model& equation_;
+  std::shared_ptr<domain> space_;
+  velocity_lattice lattice_;
+  acceleration acceleration_;
+  bool limited_;
+  std::shared_ptr<const reconstruction> scheme_;
+  std::size_t invariants_;
+  mutable std::vector<double> of_cells_, given_;
+  std::unique_ptr<per_thread<workspace>> workspaces_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,207 @@
+// The force −a·∇_v f: positivity, what it gives, and its order.
+#include <apsis/semidiscrete/force.hpp>
+
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
+#include <apsis/semidiscrete/problem_builder.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace {
+
+using apsis::acceleration;
+using apsis::field;
+using apsis::position;
+using apsis::target;
+using testing::HasSubstr;
+
+constexpr int cells = 8;
+
+std::unique_ptr<apsis::model> gas_of(int dimensions, int degrees, int points) {
+  auto parts = apsis::default_config(*apsis::find_model("bgk"));
+  parts.parameters["velocity_dimensions"] = dimensions;
+  parts.parameters["degrees_of_freedom"] = degrees;
+  parts.velocity.max = 7.0;
+  parts.velocity.points = points;
+  return apsis::find_model("bgk")->make(parts);
+}
+
+acceleration constant(std::array<double, 3> a) {
+  return {[a](double, const position&) { return a; }, {std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}};
+}
+
+/// A periodic problem with a force, limited unless the scheme is of first order.
+std::unique_ptr<apsis::semidiscrete_problem> problem_of(const apsis::model& gas, const acceleration& of,
+                                                        bool limited, const std::string& scheme = "weno5-z") {
+  apsis::problem_builder builder(gas);
+  builder.on(apsis::grid::line(cells, 0.0, 1.0))
+      .with_unknowns(apsis::formulation::finite_difference)
+      .with_reconstruction(apsis::find_reconstruction(scheme)->make())
+      .with_force(of);
+  if (limited) builder.with_positivity_limiter();
+  return builder.build();
+}
+
+/// α u + β T(u).
+field combined(apsis::semidiscrete_problem& problem, const field& u, double alpha, double beta) {
+  field sum(u.cells(), u.components());
+  const target<field, double> to{&sum, alpha, beta, true};
+  problem.add_transport(0.0, u, std::span(&to, 1));
+  return sum;
+}
+
+double least(const field& u) {
+  double found = std::numeric_limits<double>::infinity();
+  for (int cell = 0; cell < u.cells(); ++cell)
+    found = std::min(found, *std::min_element(u.row(cell), u.row(cell) + u.components()));
+  return found;
+}
+
+/// Rows of every size, with zeros and subnormal numbers.
+field random_rows(const apsis::model& gas) {
+  field u(cells, gas.components());
+  for (int cell = 0; cell < cells; ++cell)
+    for (int k = 0; k < u.components(); ++k) {
+      const int kind = *rc::gen::inRange(0, 6);
+      const double size = kind == 0 ? 0.0 : kind == 1 ? 5e-324 : kind == 2 ? 1e-310 : 1.0;
+      u.row(cell)[k] =
+          size * std::pow(10.0, -*rc::gen::inRange(0, 12)) * (*rc::gen::inRange(0, 1000) / 999.0);
+    }
+  return u;
+}
+
+std::array<double, 3> random_acceleration() {
+  std::array<double, 3> a{};
+  for (double& one : a) one = *rc::gen::inRange(-300, 300) / 100.0;
+  return a;
+}
+
+}  // namespace
+
+RC_GTEST_PROP(force, keeps_positivity_up_to_its_forward_euler_step, ()) {
+  const int d = *rc::gen::inRange(1, 4);
+  const auto gas = gas_of(d, *rc::gen::element(0, 5), d == 3 ? 6 : 10);
+  const bool first_order = *rc::gen::arbitrary<bool>();
+  const auto problem =
+      problem_of(*gas, constant(random_acceleration()), !first_order, first_order ? "upwind1" : "weno5-z");
+  const field u = random_rows(*gas);
+  const double tau = problem->forward_euler_step(0.0, u), alpha = *rc::gen::inRange(1, 100) / 99.0;
+  RC_ASSERT(least(combined(*problem, u, alpha, alpha * tau)) >= 0.0);
+}
+
+TEST(force, loses_positivity_above_its_forward_euler_step) {
+  // All mass at one velocity, next to a zero; without motion through space only the force limits the step.
+  const auto gas = gas_of(1, 0, 10);
+  const auto problem = problem_of(*gas, constant({500.0, 0.0, 0.0}), false, "upwind1");
+  field u(cells, gas->components());
+  for (int cell = 0; cell < cells; ++cell) u.row(cell)[5] = 1.0;
+  const double tau = problem->forward_euler_step(0.0, u);
+  EXPECT_GE(least(combined(*problem, u, 1.0, tau)), 0.0);
+  // The velocity .7 of the middle leaves a sixth of the bound on |v|/Δx unused, 7 · 8 of it beside 500/1.4.
+  EXPECT_LT(least(combined(*problem, u, 1.0, 1.2 * tau)), 0.0);
+}
+
+RC_GTEST_PROP(force, gives_momentum_and_energy_to_rounding, ()) {
+  // A Maxwellian far from the ends of the lattice, the same in all cells; T is then the force alone.
+  const int d = *rc::gen::inRange(1, 4);
+  const auto gas = gas_of(d, *rc::gen::element(0, 3, 5) < d ? 0 : 5, d == 3 ? 16 : 24);
+  const auto a = random_acceleration();
+  const auto problem = problem_of(*gas, constant(a), false);
+  const auto form = gas->data_forms().front();
+  std::vector<double> given = {1.3}, row(static_cast<std::size_t>(gas->components()));
+  std::vector<double> u(static_cast<std::size_t>(d));
+  for (double& one : u) one = *rc::gen::inRange(-50, 50) / 100.0;
+  given.insert(given.end(), u.begin(), u.end());
+  given.push_back(0.8);
+  RC_ASSERT(form.row(given, row).empty());
+  field state(cells, gas->components());
+  for (int cell = 0; cell < cells; ++cell) std::copy(row.begin(), row.end(), state.row(cell));
+  const field change = combined(*problem, state, 0.0, 1.0);
+  std::vector<double> rates(gas->invariants().size());
+  gas->invariant_densities(change.row(3), rates.data());
+  // |a| |v|² times f at the ends, which are seven thermal speeds from the nearest bulk velocity, and
+  // rounding.
+  constexpr double tolerance = 2e-8;
+  RC_ASSERT(std::abs(rates[0]) <= 1e-12);
+  double power = 0.0;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    RC_ASSERT(std::abs(rates[1 + k] - 1.3 * a[k]) <= tolerance);
+    power += 1.3 * u[k] * a[k];
+  }
+  RC_ASSERT(std::abs(rates[1 + u.size()] - power) <= 10.0 * tolerance);
+  // The ledger holds the same amounts, over a domain of length 1, after no face.
+  for (std::size_t k = 0; k < rates.size(); ++k) RC_ASSERT(std::abs(change.gains()[k] - rates[k]) <= 1e-12);
+}
+
+TEST(force, has_fifth_order_along_velocities) {
+  // The derivative of a Gaussian of variance 1, in the largest norm.
+  const auto error_with = [](int points) {
+    const auto gas = gas_of(1, 0, points);
+    const auto problem = problem_of(*gas, constant({1.0, 0.0, 0.0}), false);
+    field u(cells, gas->components());
+    const auto v = gas->speeds(0);
+    const auto f = [](double at) { return std::exp(-0.5 * at * at); };
+    for (int cell = 0; cell < cells; ++cell)
+      for (std::size_t k = 0; k < v.size(); ++k) u.row(cell)[k] = f(v[k]);
+    const field change = combined(*problem, u, 0.0, 1.0);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < v.size(); ++k)
+      largest = std::max(largest, std::abs(change.row(2)[k] - v[k] * f(v[k])));
+    return largest;
+  };
+  const double rate = std::log2(error_with(64) / error_with(128));
+  EXPECT_NEAR(rate, 5.0, 0.1);
+}
+
+TEST(force, does_not_depend_on_how_cells_are_grouped) {
+  const auto gas = gas_of(2, 3, 8);
+  const acceleration of{
+      [](double t, const position& x) { return std::array<double, 3>{x[0] - 0.5, 0.2 * std::sin(t), 0.0}; },
+      {0.5, 0.2, 0.0}};
+  const auto problem = problem_of(*gas, of, true);
+  field u(cells, gas->components());
+  for (int cell = 0; cell < cells; ++cell)
+    for (int k = 0; k < u.components(); ++k) u.row(cell)[k] = std::abs(std::sin(1.0 + cell + 3.1 * k));
+  // A constant acceleration with the value of one cell gives the same row there.
+  const field all = combined(*problem, u, 0.0, 1.0);
+  for (const int cell : {0, 3, 7}) {
+    const double a = (cell + 0.5) / cells - 0.5;
+    const field one = combined(*problem_of(*gas, constant({a, 0.0, 0.0}), true), u, 0.0, 1.0);
+    for (int k = 0; k < u.components(); ++k) EXPECT_EQ(all.row(cell)[k], one.row(cell)[k]);
+  }
+}
+
+TEST(force, refuses_what_it_cannot_hold) {
+  const auto gas = gas_of(1, 0, 10);
+  field u(cells, gas->components());
+  const auto message = [&](const acceleration& of) -> std::string {
+    try {
+      combined(*problem_of(*gas, of, true), u, 1.0, 0.1);
+    } catch (const apsis::error& failure) {
+      return failure.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message({[](double, const position&) { return std::array<double, 3>{2.0, 0.0, 0.0}; },
+                       {1.0, 0.0, 0.0}}),
+              HasSubstr("the acceleration exceeds its bound 1"));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(message({[&](double, const position&) { return std::array<double, 3>{nan, 0.0, 0.0}; },
+                       {1.0, 0.0, 0.0}}),
+              HasSubstr("the acceleration exceeds its bound"));
+  EXPECT_THAT(message(constant({std::numeric_limits<double>::infinity(), 0.0, 0.0})),
+              HasSubstr("the largest acceleration is inf"));
+  const auto other =
+      apsis::find_model("broadwell")->make(apsis::default_config(*apsis::find_model("broadwell")));
+  EXPECT_THROW(problem_of(*other, constant({1.0, 0.0, 0.0}), false), apsis::input_error);
+}

@@ -23,7 +23,7 @@ std::vector<std::string> names_of(const quantity_entry& quantity) {
 
 std::size_t place_in(const std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw std::out_of_range("no '" + name + "' among the fluxes of the run");
+  if (found == names.end()) throw std::out_of_range("no '" + name + "' in the run");
   return static_cast<std::size_t>(found - names.begin());
 }
 
@@ -82,6 +82,24 @@ double positive_number(const quantity_values& parameters, const std::string& nam
     throw input_error(
         fmt::format("{} = '{}' is not a number > 0; write for example {}=1", name, text.substr(0, 60), name));
   return value;
+}
+
+double steady_safety(double delta) {
+  return std::min(1.0, 25.0 / delta);
+}
+
+double mean_of_field(const simulation& run, const std::string& name) {
+  const field_table fields = run.fields();
+  const auto& values = fields.values.at(place_in(fields.names, name));
+  const std::size_t n = values.size();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    // The average of a cell is its centre + second difference/24; the end cells take that of their
+    // neighbours.
+    const std::size_t at = std::clamp<std::size_t>(i, 1, n - 2);
+    sum += values[i] + (values[at - 1] - 2.0 * values[at] + values[at + 1]) / 24.0;
+  }
+  return sum / static_cast<double>(n);
 }
 
 double last_flux(const simulation& run, const std::string& face, const std::string& invariant) {

@@ -59,6 +59,14 @@ struct quantity_interrupted {};
 /// Returns a parameter as a number > 0. Throws input_error for any other text.
 double positive_number(const quantity_values& parameters, const std::string& name);
 
+/// Returns the part of r Δt_FE with which a steady state is accurate to 2e-4 at rarefaction δ: it depends on
+/// Δt/ε where that is of order 1 (docs/validation.md).
+double steady_safety(double delta);
+
+/// Returns the mean of a field in x over the domain from its values at the cell centres, of fourth order.
+/// Throws std::out_of_range for an unknown name.
+double mean_of_field(const simulation& run, const std::string& name);
+
 /// Returns the flux of an invariant through a face of a run in its last step, into the gas. Throws
 /// std::out_of_range for unknown names.
 double last_flux(const simulation& run, const std::string& face, const std::string& invariant);

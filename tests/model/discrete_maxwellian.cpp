@@ -44,15 +44,16 @@ row few_values(const velocity_grid& grid, random_source& random) {
 /// An arbitrary point, a grid point, a midpoint, or a small distance from one of these.
 double random_centre(const velocity_grid& grid, random_source& random) {
   if (random.one_in(3)) return random.uniform(-grid.max(), grid.max());
-  const double point = grid.line()[static_cast<std::size_t>(random.integer(0, grid.points()))];
+  const double point = grid.line(0).v()[static_cast<std::size_t>(random.integer(0, grid.line(0).points()))];
   const double nearly = random.one_in(2) ? 1.0 : 1.0 + random.magnitude(-18, -1);
-  return point + (random.one_in(2) ? 0.0 : 0.5 * grid.spacing() * nearly);
+  return point + (random.one_in(2) ? 0.0 : 0.5 * grid.line(0).spacing() * nearly);
 }
 
 /// exp(∓|v − u|²/(2T)): T from 1e-6 Δv² to `hottest` Δv²; with the lower sign the mass concentrates at the
 /// corners.
 row gaussian(const velocity_grid& grid, random_source& random, double hottest, bool inverted) {
-  const double T = random.magnitude(-6, std::log10(hottest)) * grid.spacing() * grid.spacing();
+  const double T =
+      random.magnitude(-6, std::log10(hottest)) * grid.line(0).spacing() * grid.line(0).spacing();
   row exponent = zeros(grid);
   for (int k = 0; k < grid.dimensions(); ++k) {
     const double u = random_centre(grid, random);
@@ -70,10 +71,11 @@ row gaussian(const velocity_grid& grid, random_source& random, double hottest, b
 row nearly_on_a_face(const velocity_grid& grid, random_source& random) {
   row f(static_cast<std::size_t>(grid.size()), 1.0);
   for (int k = 0; k < grid.dimensions(); ++k) {
-    const double first = grid.line()[static_cast<std::size_t>(random.integer(0, grid.points() - 1))];
+    const double first =
+        grid.line(0).v()[static_cast<std::size_t>(random.integer(0, grid.line(0).points() - 1))];
     const double share = random.one_in(4) ? random.magnitude(-17, 0) : random.uniform();
     for (std::size_t j = 0; j < f.size(); ++j) {
-      const double steps = (grid.component(k)[j] - first) / grid.spacing();
+      const double steps = (grid.component(k)[j] - first) / grid.line(0).spacing();
       f[j] *= std::abs(steps) < 0.5 ? 1.0 - share : std::abs(steps - 1.0) < 0.5 ? share : 0.0;
     }
   }
@@ -122,7 +124,7 @@ double defect(const velocity_grid& grid, const row& m, const std::array<double, 
   };
   double worst = miss(0, omega[0]);
   for (std::size_t k = 1; k <= d; ++k) worst = std::max(worst, miss(k, omega[0] * speed));
-  const double grain = 1e-16 * omega[0] * grid.spacing() * grid.spacing();
+  const double grain = 1e-16 * omega[0] * grid.line(0).spacing() * grid.line(0).spacing();
   return std::max(worst, miss(1 + d, omega[1 + d] + grain));
 }
 
@@ -174,14 +176,14 @@ TEST(discrete_maxwellian, of_a_row_on_one_velocity_or_two_adjacent_ones_is_that_
   random_source random(2);
   for (int sample = 0; sample < 2000; ++sample) {
     const velocity_grid grid(1, random.integer(4, 60), random.magnitude(-1, 3));
-    const auto first = static_cast<std::size_t>(random.integer(0, grid.points() - 1));
+    const auto first = static_cast<std::size_t>(random.integer(0, grid.line(0).points() - 1));
     row f = zeros(grid), m = zeros(grid);
     f[first] = random.one_in(3) ? 0.0 : random.magnitude(-20, 0);
     f[first + 1] = random.one_in(3) && f[first] > 0.0 ? 0.0 : random.magnitude(-20, 0);
     const auto omega = moments_of(grid, f);
     ASSERT_TRUE(apsis::discrete_maxwellian(grid, omega.data(), m.data())) << sample;
     // Moments are rounded relative to the energy, which may correspond to many spacings.
-    const double rounding = 1e-15 * (f[first] + f[first + 1]) * grid.points() * grid.points();
+    const double rounding = 1e-15 * (f[first] + f[first + 1]) * grid.line(0).points() * grid.line(0).points();
     for (std::size_t j = 0; j < m.size(); ++j) ASSERT_NEAR(m[j], f[j], rounding) << sample;
   }
 }

@@ -54,9 +54,9 @@ std::vector<std::string> small_version(const std::string& name) {
     overrides.push_back(fmt::format("space.cells={}", std::min(whole.space.cells.front(), 24)));
   // Δv = 1/2: the equilibria of temperatures near 1 are resolved.
   if (whole.places.contains("velocity.points"))
-    overrides.push_back(
-        fmt::format("velocity.points={}",
-                    std::min(whole.velocity.points, static_cast<int>(std::ceil(4.0 * whole.velocity.max)))));
+    overrides.push_back(fmt::format(
+        "velocity.points={}",
+        std::min<int>(whole.velocity.points, static_cast<int>(std::ceil(4.0 * whole.velocity.max)))));
   return overrides;
 }
 

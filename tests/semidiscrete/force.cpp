@@ -129,9 +129,8 @@ RC_GTEST_PROP(force, gives_momentum_and_energy_to_rounding, ()) {
   const field change = combined(*problem, state, 0.0, 1.0);
   std::vector<double> rates(gas->invariants().size());
   gas->invariant_densities(change.row(3), rates.data());
-  // |a| |v|² times f at the ends, which are seven thermal speeds from the nearest bulk velocity, and
-  // rounding.
-  constexpr double tolerance = 2e-8;
+  // The flux out of the last velocity, which is dropped: a thirtieth of f two points before, times |a| |v|².
+  const double tolerance = d == 3 ? 2e-6 : 2e-8;
   RC_ASSERT(std::abs(rates[0]) <= 1e-12);
   double power = 0.0;
   for (std::size_t k = 0; k < u.size(); ++k) {

@@ -111,7 +111,7 @@ TEST(quantities, have_distinct_published_values_of_known_parameters) {
       EXPECT_TRUE(seen.insert(value.at).second) << quantity->name;
       for (const auto& [name, text] : value.at)
         EXPECT_TRUE(std::any_of(quantity->parameters.begin(), quantity->parameters.end(),
-                                [name = name](const auto& p) { return p.name == name; }))
+                                [parameter = name](const auto& p) { return p.name == parameter; }))
             << quantity->name << " " << name;
     }
   }

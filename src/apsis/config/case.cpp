@@ -100,7 +100,8 @@ std::unique_ptr<model> make_model(const case_config& config) {
   for (const auto& [name, value] : config.model.parameters) parts.parameters[name] = value;
   for (const auto& [name, value] : config.model.texts) parts.texts[name] = value;
   parts.constants = config.constants;
-  parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium};
+  parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium,
+                    config.velocity.set};
   return entry->make(parts);
 }
 

@@ -5,6 +5,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/model/model_registry.hpp>
 #include <apsis/phase/domain.hpp>
 
 #include <array>
@@ -57,9 +58,10 @@ struct case_config {
   } force;
   /// Table [velocity], of models with a velocity grid.
   struct {
-    double max = 0.0;
-    int points = 0;
+    double max = 0.0;         ///< 0 where the set chooses it
+    point_counts points = 0;  ///< 0 where the set chooses it
     equilibrium_choice equilibrium = equilibrium_choice::automatic;
+    std::vector<std::string> set = {};  ///< empty: "uniform"
   } velocity;
   /// Table [time].
   struct {

@@ -3,8 +3,10 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
+#include <apsis/model/velocity_line_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -79,6 +81,18 @@ struct conversion<std::vector<int>> {
     for (const long item : std::get<std::vector<long>>(value)) member.push_back(static_cast<int>(item));
   }
 };
+template <>
+struct conversion<point_counts> {
+  static constexpr key_type type = key_type::integers;
+  static case_value to(const point_counts& member) {
+    return std::vector<long>(member.each().begin(), member.each().end());
+  }
+  static void from(const case_value& value, point_counts& member) {
+    std::vector<int> each;
+    conversion<std::vector<int>>::from(value, each);
+    member = std::move(each);
+  }
+};
 template <class Member>
 struct conversion<std::optional<Member>> {
   static constexpr key_type type = conversion<Member>::type;
@@ -119,6 +133,28 @@ case_key key(std::string path, At at, case_key facts) {
                        facts.type == key_type::integers || facts.type == key_type::intervals;
   if (numeric && facts.unit.empty()) facts.unit = "dimensionless";
   return facts;
+}
+
+/// The key, whose value counts as not given where it is 0 or empty.
+case_key if_given(case_key of) {
+  of.load = [load = std::move(of.load)](const case_config& c) -> case_value {
+    case_value value = load(c);
+    if (value == case_value(0.0) || value == case_value(std::vector<long>{0}) ||
+        value == case_value(std::vector<std::string>{}))
+      return {};
+    return value;
+  };
+  return of;
+}
+
+bool needs_max(const std::string& name) {
+  const velocity_line_entry* entry = find_velocity_line(name);
+  return entry != nullptr && entry->needs_max;
+}
+
+/// Whether velocity.set is given and no name in it has a property.
+bool no_set_is(const case_config& c, bool (*property)(const std::string&)) {
+  return !c.velocity.set.empty() && std::none_of(c.velocity.set.begin(), c.velocity.set.end(), property);
 }
 
 std::vector<case_key> model_keys() {
@@ -185,19 +221,32 @@ std::vector<case_key> space_keys() {
            .scope = key_scope::velocity,
            .doc = "Acceleration of the molecules, one formula for each velocity dimension; those that are "
                   "left out are 0."}),
-      key("velocity.max", [](auto& c) -> auto& { return c.velocity.max; },
+      if_given(key(
+          "velocity.set", [](auto& c) -> auto& { return c.velocity.set; },
+          {.scope = key_scope::velocity,
+           .choices = names_in(velocity_line_entries),
+           .doc = "Velocities of each direction, or of all: \"uniform\" where not given, or a file NAME.csv "
+                  "or NAME.txt of velocities and weights (relative to where the program runs)."})),
+      if_given(key(
+          "velocity.max", [](auto& c) -> auto& { return c.velocity.max; },
           {.scope = key_scope::velocity,
            .required = true,
+           .optional = [](const case_config& c) { return no_set_is(c, needs_max); },
            .lowest = 0.0,
            .highest = 1e6,
            .lowest_excluded = true,
-           .doc = "The velocity grid covers [-max, max]; it must hold the tails of the data."}),
-      key("velocity.points", [](auto& c) -> auto& { return c.velocity.points; },
-          {.scope = key_scope::velocity,
-           .required = true,
-           .lowest = 4,
-           .highest = 100'000,
-           .doc = "Number of velocities per dimension (midpoints of equal intervals)."}),
+           .doc = "Largest velocity: the grid covers [-max, max], which must hold the tails of the data."})),
+      if_given(key("velocity.points", [](auto& c) -> auto& { return c.velocity.points; },
+                   {.scope = key_scope::velocity,
+                    .required = true,
+                    .optional =
+                        [](const case_config& c) {
+                          return no_set_is(c,
+                                           [](const std::string& name) { return !is_velocity_file(name); });
+                        },
+                    .lowest = 4,
+                    .highest = 100'000,
+                    .doc = "Number of velocities of each direction, or of all."})),
       key("velocity.equilibrium", [](auto& c) -> auto& { return c.velocity.equilibrium; },
           {.scope = key_scope::velocity,
            .doc = "Maxwellian by its formula, or with the discrete moments matched (conservative on any "

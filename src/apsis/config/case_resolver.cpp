@@ -160,7 +160,7 @@ class resolver {
     if (model_ != nullptr && !applies(key, *model_)) return;
     const raw_value* raw = find(key.path);
     if (raw == nullptr) {
-      if (key.required)
+      if (key.required && !(key.optional && key.optional(config_)))
         throw input_error(table_place(key.path),
                           fmt::format("key '{}' is missing ({}); add it, for example: {}", key.path,
                                       model_ == nullptr ? "every case needs it"
@@ -251,12 +251,13 @@ class resolver {
       check_interval(config_.space.domain[k], config_.space.cells[k]);
     check_faces();
     make_acceleration(config_, *checked_model());
-    double points = std::max(1, config_.velocity.points);
+    const int of_line = config_.velocity.points;
+    double points = std::max(1, of_line);
     for (const int cells : config_.space.cells) points *= cells;
     if (points > 2e9)
       refuse(*find("space.cells"), "space.cells",
              fmt::format("with velocity.points = {} that is {:.3g} unknowns, at most 2e9 are possible",
-                         config_.velocity.points, points),
+                         of_line, points),
              "give fewer cells or velocities");
   }
 

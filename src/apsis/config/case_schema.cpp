@@ -39,7 +39,7 @@ std::string type_text(key_type type) {
     case key_type::formula:
       return "a number or a formula in x, y, z";
     case key_type::text_list:
-      return "a list of texts";
+      return "a text or a list of texts";
     case key_type::formulas:
       return "a number or a formula in t, x, y, z, or a list of up to 3";
     case key_type::integers:

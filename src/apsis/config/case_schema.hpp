@@ -45,10 +45,12 @@ struct case_key {
   key_type type = key_type::text;       ///< which alternative of case_value it has
   key_scope scope = key_scope::always;  ///< models that use it
   bool required = false;                ///< else the default is that of case_config
-  std::string unit{};                   ///< "dimensionless", "steps", …; "" for text
-  double lowest = -infinite,            ///< smallest allowed number
-      highest = infinite;               ///< largest allowed number
-  bool lowest_excluded = false;         ///< only numbers above `lowest`
+  /// Whether the keys before make a required key optional.
+  std::function<bool(const case_config&)> optional = {};
+  std::string unit{};            ///< "dimensionless", "steps", …; "" for text
+  double lowest = -infinite,     ///< smallest allowed number
+      highest = infinite;        ///< largest allowed number
+  bool lowest_excluded = false;  ///< only numbers above `lowest`
   std::function<std::vector<std::string>(const case_config&)> choices = {};  ///< valid names; empty: any text
   std::string doc{};  ///< meaning, as `apsis show case` prints it
   std::function<void(case_config&, const case_value&)> store = {};  ///< assigns a checked value

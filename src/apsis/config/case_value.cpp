@@ -99,6 +99,7 @@ std::string formula(const case_key& key, const raw_value& raw) {
 
 std::vector<std::string> texts(const case_key& key, const raw_value& raw) {
   std::vector<std::string> out;
+  if (const auto* one = std::get_if<std::string>(&raw.value)) return {*one};
   const auto* items = std::get_if<raw_value::list>(&raw.value);
   if (items == nullptr) refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
   for (const auto& item : *items) {

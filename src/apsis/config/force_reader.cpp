@@ -42,8 +42,7 @@ int samples_in_time(int cells) {
 
 std::optional<acceleration> make_acceleration(const case_config& config, const model& equation) {
   if (!config.force.acceleration) return std::nullopt;
-  const auto given = config.force.acceleration->size(),
-             possible = static_cast<std::size_t>(equation.lattice().dimensions);
+  const auto given = config.force.acceleration->size(), possible = equation.lattice().points.size();
   if (given > possible)
     throw input_error(
         place_of(config, key),

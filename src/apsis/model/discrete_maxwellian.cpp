@@ -35,20 +35,20 @@ class entropy_dual {
     const bool nearest = face == line_family::face::nearest;
     energy_ = nearest ? moments_.above_least : moments_.below_greatest;
     for (std::size_t k = 0; k < d_; ++k)
-      lines_[k].attach(grid_.points(), moments_.nearest[k], moments_.offset[k], face);
+      lines_[k].attach(grid_.line(static_cast<int>(k)), !grid_.uniform(), moments_.nearest[k],
+                       moments_.offset[k], face);
   }
 
-  /// The Gaussian with the variance of the moments, or with a tenth of Δv² where that is larger.
+  /// The Gaussian with the variance of the moments, or with a tenth of the square of the gap about the mean
+  /// where that is larger.
   parameters gaussian() const {
     double variance = moments_.square;
     for (std::size_t k = 0; k < d_; ++k) variance -= moments_.z[k] * moments_.z[k];
     parameters at;
-    at.tau = 0.5 / std::max(variance / static_cast<double>(d_), 0.1);
-    // exp(−τ (j − z)²) in the form of line_family.
-    for (std::size_t k = 0; k < d_; ++k) {
-      const double offset = moments_.offset[k];
-      at.beta[k] = at.tau * (2.0 * offset - (offset > 0.0 || moments_.nearest[k] == 0 ? 1.0 : -1.0));
-    }
+    double gap = 0.0;
+    for (std::size_t k = 0; k < d_; ++k) gap = std::max(gap, lines_[k].gap_square());
+    at.tau = 0.5 / std::max(variance / static_cast<double>(d_), 0.1 * gap);
+    for (std::size_t k = 0; k < d_; ++k) at.beta[k] = lines_[k].beta_of_gaussian(at.tau);
     return at;
   }
 
@@ -107,7 +107,7 @@ class entropy_dual {
     std::array<const double*, 3> weights{};
     for (std::size_t k = 0; k < d_; ++k) {
       partition *= sums_[k].mass;
-      weights[k] = lines_[k].weights();
+      weights[k] = lines_[k].values();
     }
     constexpr double normal = 1e-290;
     if (moments_.rho > normal) return tensor_product(grid_, moments_.rho / partition, weights, m);

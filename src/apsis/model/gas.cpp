@@ -1,6 +1,7 @@
 #include <apsis/model/gas.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/model/velocity_line_registry.hpp>
 #include <apsis/model/velocity_rows.hpp>
 
 #include <algorithm>
@@ -25,6 +26,49 @@ int degrees_of(const model_config& config, int dimensions) {
   return given;
 }
 
+/// Variances of the two velocities next to u, and of those at the ends, with the mean u.
+struct variances {
+  double nearest = 0.0, farthest = 0.0;
+};
+
+variances variances_at(const velocity_line& line, double u) {
+  const auto& v = line.v();
+  // Rounding may put a bulk velocity beyond the last point.
+  const double farthest = std::max((u - v.front()) * (v.back() - u), 0.0);
+  if (line.uniform()) {
+    const double step = line.spacing(), place = u / step + 0.5 * (line.points() - 1);
+    const double beyond = place - std::floor(place);
+    return {beyond * (1.0 - beyond) * step * step, farthest};
+  }
+  const auto after = std::upper_bound(v.begin(), v.end(), u);
+  if (after == v.begin() || after == v.end()) return {0.0, farthest};
+  return {(u - *(after - 1)) * (*after - u), farthest};
+}
+
+/// Why a quadrature does not hold a Gaussian: what it misses of mass, mean and variance, or of one half.
+unsupported_initial_data check_quadrature(const velocity_line& line, double u, double width) {
+  double mass = 0.0, energy = 0.0;
+  for (std::size_t j = 0; j < line.v().size(); ++j) {
+    const double c = (line.v()[j] - u) / width;
+    const double part =
+        line.weights()[j] / width * std::exp(-0.5 * c * c) / std::sqrt(2.0 * std::numbers::pi);
+    mass += part;
+    energy += part * c * c;
+  }
+  // Discrete conservation repairs moments; a grid that is this far off does not resolve the data.
+  constexpr double tolerable = 0.01;
+  const double defect = std::max(std::abs(mass - 1.0), std::abs(energy - 1.0));
+  if (defect <= tolerable) return {};
+  const std::string why = fmt::format(
+      "the {} velocities up to {:.3g} miss {:.2g} of the mass or the energy of u = "
+      "{:.3g}, T = {:.3g}",
+      line.points(), line.max(), defect, u, width * width);
+  if (std::abs(u) + 3.0 * width > line.max())
+    return {"velocity.max", fmt::format("velocity.max is too small for the data ({}); give at least {:.1f}",
+                                        why, std::abs(u) + 6.0 * width)};
+  return {"velocity.points", fmt::format("velocity.points is too small for the data ({}); give more", why)};
+}
+
 velocity_set points_of(const velocity_grid& grid, int sets) {
   if (sets == 1) return grid.set();
   std::vector<aligned_vector<double>> coordinates;
@@ -36,8 +80,7 @@ velocity_set points_of(const velocity_grid& grid, int sets) {
 }  // namespace
 
 gas::gas(const model_config& config)
-    : grid_(static_cast<int>(config.parameters.at("velocity_dimensions")), config.velocity.points,
-            config.velocity.max),
+    : grid_(make_lines(config.velocity, static_cast<int>(config.parameters.at("velocity_dimensions")))),
       degrees_(degrees_of(config, grid_.dimensions())),
       choice_(config.velocity.equilibrium),
       velocities_(points_of(grid_, reduced() ? 2 : 1)) {}
@@ -86,16 +129,14 @@ fluid_state gas::state(const double* omega) const {
 double gas::moments_of_g(const double* omega, double* of_g) const {
   const int d = dimensions();
   const fluid_state s = state(omega);
-  const double last = 0.5 * (grid_.points() - 1), step = grid_.spacing();
-  double square = 0.0, least = 0.0;
+  double square = 0.0, least = 0.0, greatest = 0.0;
   for (int k = 0; k <= d; ++k) of_g[k] = omega[k];
   for (int k = 0; k < d; ++k) {
     square += s.u[k] * s.u[k];
-    const double place = s.u[k] / step + last, beyond = place - std::floor(place);
-    least += beyond * (1.0 - beyond) * step * step;  // variance of two neighbouring velocities
+    const auto [nearest, farthest] = variances_at(grid_.line(k), s.u[k]);
+    least += nearest;
+    greatest += farthest;
   }
-  // Rounding may put a bulk velocity beyond the last point.
-  const double greatest = std::max(d * last * last * step * step - square, 0.0);
   least = std::min(least, greatest);
   const double variance = std::min(std::max(d * s.T, least), least + (greatest - least) / 3.0);
   const bool usual = !(omega[0] > 0.0) || variance == d * s.T;
@@ -194,6 +235,7 @@ void gas::formula(const fluid_state& state, double weight, double* row) const {
 }
 
 double gas::entropy(const double* row) const {
+  if (!grid_.uniform()) return weighted_entropy(row);
   double sum = velocity_rows::entropy(row, grid_.size());
   if (reduced()) {
     const double* h = row + grid_.size();
@@ -205,6 +247,21 @@ double gas::entropy(const double* row) const {
     sum += 0.5 * (degrees_ - dimensions()) * coupled;
   }
   return grid_.weight() * sum;
+}
+
+double gas::weighted_entropy(const double* row) const {
+  const auto w = grid_.set().weights();
+  const double* h = row + grid_.size();
+  double sum = 0.0;
+  for (std::size_t j = 0; j < w.size(); ++j) {
+    if (!(row[j] > 0.0)) continue;
+    double of_point = std::log(row[j]);
+    if (reduced())
+      of_point += 0.5 * (degrees_ - dimensions()) *
+                  std::log(row[j] / std::max(h[j], std::numeric_limits<double>::min()));
+    sum += w[j] * row[j] * of_point;
+  }
+  return sum;
 }
 
 /// One addition and d + 1 multiply–adds for ω; for M two multiplications per point on a line (without the
@@ -225,24 +282,32 @@ unsupported_initial_data gas::check_supported(const double* row) const {
                         "change them",
                         s.rho, s.T)};
   const double width = std::sqrt(s.T);
-  double speed = 0.0;
-  for (int k = 0; k < dimensions(); ++k) speed = std::max(speed, std::abs(s.u[k]));
+  for (int k = 0; k < dimensions(); ++k) {
+    auto found = check_line(grid_.line(k), s.u[k], width);
+    if (!found.problem.empty()) return found;
+  }
+  return {};
+}
+
+/// Why a line does not hold a Gaussian of this mean and width.
+unsupported_initial_data gas::check_line(const velocity_line& line, double u, double width) const {
   // Mass fraction of the local Maxwellian beyond the grid; 1e-8 is below the accuracy of the cases.
-  const double beyond = 0.5 * std::erfc((grid_.max() - speed) / (std::numbers::sqrt2 * width));
-  if (beyond > 1e-8)
+  const double beyond = 0.5 * std::erfc((line.max() - std::abs(u)) / (std::numbers::sqrt2 * width));
+  if (line.uniform() && beyond > 1e-8)
     return {"velocity.max",
             fmt::format(
                 "velocity.max = {:g} is too small for the data (a fraction {:.2g} of the mass of u = {:.3g}, "
                 "T = {:.3g} lies beyond it); give at least {:.1f}",
-                grid_.max(), beyond, s.u[0], s.T, speed + 6.0 * width)};
+                line.max(), beyond, u, width * width, std::abs(u) + 6.0 * width)};
+  if (!line.uniform()) return check_quadrature(line, u, width);
   const double widest = choice_ == equilibrium_choice::formula ? 1.0 : 2.0;
-  if (grid_.spacing() > widest * width)
+  if (line.spacing() > widest * width)
     return {
         "velocity.points",
         fmt::format(
             "velocity.points = {} is too few for the data (the spacing {:.3g} is more than {:g} times the "
             "thermal speed sqrt(T) = {:.3g}); give at least {:.0f}",
-            grid_.points(), grid_.spacing(), widest, width, std::ceil(2.0 * grid_.max() / (widest * width)))};
+            line.points(), line.spacing(), widest, width, std::ceil(2.0 * line.max() / (widest * width)))};
   return {};
 }
 

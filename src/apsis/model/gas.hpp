@@ -58,6 +58,8 @@ class gas {
 
  private:
   static constexpr int most_moments = 5;
+  double weighted_entropy(const double* row) const;
+  unsupported_initial_data check_line(const velocity_line& line, double u, double width) const;
   /// of_g ← ω of g alone in the equilibrium of ω; returns h/g.
   double moments_of_g(const double* omega, double* of_g) const;
   bool equilibrium_of_g(const double* of_g, double* g) const;

@@ -54,6 +54,16 @@ std::vector<model_text> gas_model::texts_with_tails() {
   return all;
 }
 
+velocity_lattice gas_model::lattice() const {
+  velocity_lattice found;
+  for (int k = 0; k < gas_.dimensions(); ++k) {
+    const velocity_line& line = gas_.grid().line(k);
+    found.points.push_back(line.points());
+    found.spacing.push_back(line.uniform() ? line.spacing() : 0.0);
+  }
+  return found;
+}
+
 double gas_model::rate(const double* omega) const {
   if (!by_viscosity_) return 1.0;
   const double T = omega[0] > 0.0 ? gas_.state(omega).T : 0.0;

@@ -30,11 +30,9 @@ class gas_model : public relaxation_model {
   int components() const override { return gas_.velocities().components(); }
   int space_dimensions() const override { return 1; }
   const velocity_set& velocities() const override { return gas_.velocities(); }
-  velocity_lattice lattice() const override {
-    return {gas_.grid().dimensions(), gas_.grid().points(), gas_.grid().spacing()};
-  }
-  /// Returns the end of the velocity grid, half an interval beyond its last point.
-  double reference_speed(int) const override { return gas_.grid().max(); }
+  velocity_lattice lattice() const override;
+  /// Returns the end of the velocity line, that of a uniform one half an interval beyond its last point.
+  double reference_speed(int k) const override { return gas_.grid().line(k).max(); }
   bool positive() const override { return true; }
   bool collisions_keep_sign() const override { return !signed_tails_; }
 

@@ -10,7 +10,7 @@ namespace {
 /// Calls body(first point, c without the last component) for every line of the last direction.
 template <class Body>
 void for_lines(const velocity_grid& grid, const fluid_state& state, const Body& body) {
-  const int d = grid.dimensions(), n = grid.points();
+  const int d = grid.dimensions(), n = grid.last_line().points();
   for (int first = 0; first < grid.size(); first += n) {
     std::array<double, 3> c{};
     for (int k = 0; k + 1 < d; ++k)
@@ -25,6 +25,18 @@ void for_lines(const velocity_grid& grid, const fluid_state& state, const Body& 
 constexpr double rounding = 4.5e-16, useful = 1e-14, largest_bound = 1e-12;
 /// Smallest variance of a base in units of Δv²: below it, a Gaussian at points has other moments.
 constexpr double narrowest = 0.25;
+
+/// Returns Δv² or, of other lines, the square of the largest distance of velocities within a thermal speed.
+double widest_gap(const velocity_grid& grid, const fluid_state& state) {
+  double widest = 0.0;
+  for (int k = 0; k < grid.dimensions(); ++k) {
+    const velocity_line& line = grid.line(k);
+    const double width = std::sqrt(state.T);
+    widest = std::max(
+        widest, line.uniform() ? line.spacing() : line.widest_gap(state.u[k] - width, state.u[k] + width));
+  }
+  return widest * widest;
+}
 
 /// The differences of moments about the bulk velocity, each relative to its scale.
 struct defect {
@@ -72,14 +84,17 @@ void correct(const defect& found, int d, double variance, target_polynomial& p) 
 
 central_moments find_central_moments(const gas& of, const double* row, const fluid_state& state) {
   const velocity_grid& grid = of.grid();
-  const int d = grid.dimensions(), n = grid.points();
+  const int d = grid.dimensions(), n = grid.last_line().points();
   const auto last = static_cast<std::size_t>(d - 1);
   central_moments m;
+  thread_local aligned_vector<double> scratch_of_g, scratch_of_h;
+  const double* of_g = grid.weighted(row, scratch_of_g);
+  const double* of_h = of.reduced() ? grid.weighted(row + grid.size(), scratch_of_h) : nullptr;
   for_lines(grid, state, [&](int first, const std::array<double, 3>& c) {
     std::array<double, 4> g{}, h{};
-    target_rows::power_sums(row + first, grid.line().data(), state.u[last], n, g.data());
+    target_rows::power_sums(of_g + first, grid.last_line().v().data(), state.u[last], n, g.data());
     if (of.reduced())
-      target_rows::power_sums(row + grid.size() + first, grid.line().data(), state.u[last], n, h.data());
+      target_rows::power_sums(of_h + first, grid.last_line().v().data(), state.u[last], n, h.data());
     double square = 0.0;
     for (std::size_t k = 0; k < last; ++k) square += c[k] * c[k];
     m.stress[last][last] += g[2];
@@ -119,16 +134,16 @@ target_rows::cubic target_polynomial::along_last(int dimensions, const std::arra
 bool conservative_target(const gas& of, const double* omega, const double* base, const target_shape& given,
                          const double* f, double keep, double* e) {
   const velocity_grid& grid = of.grid();
-  const int d = grid.dimensions(), n = grid.points();
+  const int d = grid.dimensions(), n = grid.last_line().points();
   const fluid_state state = of.state(omega);
   target_shape shape = given;
-  if (!(shape.variance >= narrowest * grid.spacing() * grid.spacing())) return false;
+  if (!(shape.variance >= narrowest * widest_gap(grid, state))) return false;
   const double enough = attainable(omega, d, shape.variance);
   double best = 1e300;
   constexpr int most_corrections = 12;
   for (int iteration = 0; iteration < most_corrections; ++iteration) {
     for_lines(grid, state, [&](int first, const std::array<double, 3>& c) {
-      const double* v = grid.line().data();
+      const double* v = grid.last_line().v().data();
       target_rows::weigh(base + first, v, state.u[d - 1], shape.of_g.along_last(d, c), f + first, keep, n,
                          e + first);
       if (!of.reduced() || iteration > 0) return;

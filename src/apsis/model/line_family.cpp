@@ -9,28 +9,38 @@
 
 namespace apsis {
 
-void line_family::attach(int n, int nearest_point, double offset, face at) {
+void line_family::attach(const velocity_line& line, bool weighted, int nearest_point, double offset,
+                         face at) {
+  const int n = line.points();
   if (n != n_) {
     n_ = n;
     padded_ = (n + packet_length - 1) / packet_length * packet_length;
-    for (auto* line : {&x_, &c_, &weights_}) line->assign(static_cast<std::size_t>(padded_), 0.0);
+    for (auto* one : {&x_, &c_, &base_, &weights_, &values_})
+      one->assign(static_cast<std::size_t>(padded_), 0.0);
   }
+  line_ = &line;
+  weighted_ = weighted;
+  if (weighted) std::copy(line.weights().begin(), line.weights().end(), base_.begin());
+  const double* place = line.places().data();
   const bool nearest = at == face::nearest;
   // The neighbour on the side of the mean; any where the mean is a grid point.
   const int other = nearest_point + ((offset > 0.0 || nearest_point == 0) ? 1 : -1);
   nearest_ = nearest_point;
   left_ = nearest ? std::min(nearest_point, other) : 0;
   right_ = nearest ? std::max(nearest_point, other) : n - 1;
-  mean_ = (nearest_point - left_) + offset;
-  from_right_ = (right_ - nearest_point) - offset;
+  const double here = place[nearest_point], before = here - place[left_], after = place[right_] - here;
+  offset_ = offset;
+  ends_ = after - before;
+  mean_ = before + offset;
+  from_right_ = after - offset;
   fixed_ = offset == 0.0 && (nearest_point == 0 || nearest_point == n - 1);
   double *x = x_.data(), *c = c_.data();
   sign_ = nearest ? 1.0 : -1.0;
-  const double sign = sign_;
+  const double sign = sign_, left = place[left_], right = place[right_];
 #pragma omp simd
   for (int j = 0; j < n; ++j) {
-    x[j] = (j - nearest_point) - offset;
-    c[j] = sign * static_cast<double>(j - left_) * static_cast<double>(j - right_);
+    x[j] = (place[j] - here) - offset;
+    c[j] = sign * (place[j] - left) * (place[j] - right);
   }
 }
 
@@ -39,11 +49,7 @@ double line_family::largest_exponent(double beta, double tau) const {
     return beta * x_[static_cast<std::size_t>(j)] - tau * c_[static_cast<std::size_t>(j)];
   };
   double largest = std::max(exponent(0), exponent(n_ - 1));
-  if (tau * sign_ > 0.0) {  // concave: largest at a neighbour of the vertex
-    const double vertex = 0.5 * (left_ + right_ + beta / (tau * sign_));
-    const int j = vertex > 0.0 ? static_cast<int>(std::min(vertex, n_ - 2.0)) : 0;  // 0 for NaN
-    largest = std::max({largest, exponent(j), exponent(j + 1)});
-  }
+  for (int j = 1; tau * sign_ > 0.0 && j + 1 < n_; ++j) largest = std::max(largest, exponent(j));
   return largest;
 }
 
@@ -63,7 +69,8 @@ line_family::sums line_family::evaluate(double beta, double tau) {
 }
 
 line_family::sums line_family::sums_of(double beta, double tau, double shift) {
-  const auto of = line_sums::weigh(x_.data(), c_.data(), n_, beta, tau, shift, weights_.data());
+  const double* base = weighted_ ? base_.data() : nullptr;
+  const auto of = line_sums::weigh(x_.data(), c_.data(), base, n_, beta, tau, shift, weights_.data());
   return {of.mass, of.above, of.below, of.energy / of.mass};
 }
 
@@ -113,9 +120,17 @@ line_family::sums line_family::solve(double tau, double& beta) {
 
 double line_family::take_limit() {
   std::fill(weights_.begin(), weights_.end(), 0.0);
-  weights_[static_cast<std::size_t>(left_)] = from_right_ / (right_ - left_);
-  weights_[static_cast<std::size_t>(right_)] = mean_ / (right_ - left_);
+  const auto left = static_cast<std::size_t>(left_), right = static_cast<std::size_t>(right_);
+  const double gap = line_->places()[right] - line_->places()[left];
+  weights_[left] = from_right_ / gap;
+  weights_[right] = mean_ / gap;
   return 1.0;
+}
+
+const double* line_family::values() {
+  if (!weighted_) return weights_.data();
+  for (std::size_t j = 0; j < static_cast<std::size_t>(n_); ++j) values_[j] = weights_[j] / base_[j];
+  return values_.data();
 }
 
 }  // namespace apsis

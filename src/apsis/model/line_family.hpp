@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/exec/aligned.hpp>
+#include <apsis/model/velocity_line.hpp>
 
 #include <cmath>
 #include <limits>
@@ -32,12 +33,12 @@ class newton_end {
   bool close_ = false;
 };
 
-/// The weights w_j = exp(β x_j − τ C_j) on one direction of a velocity grid, where x_j is the distance from
-/// the prescribed mean in units of Δv, and C_j ≥ 0 a parabola with zeros at two grid points: at the
-/// neighbours of the mean (`nearest`), or at the ends of the grid (`farthest`). Every discrete Maxwellian is
-/// a product of these; τ → ∞ leaves the two points, the limit on the boundary of the realisable moments. Sums
-/// of C_j and of one-sided x_j have terms of one sign and therefore no cancellation, however close the
-/// boundary is.
+/// The weights w_j = b_j exp(β x_j − τ C_j) on one direction of a velocity grid, b_j being those of its
+/// quadrature, or 1 on a uniform grid, where x_j is the distance from the prescribed mean in units of the
+/// spacing, and C_j ≥ 0 a parabola with zeros at two grid points: at the neighbours of the mean (`nearest`),
+/// or at the ends of the grid (`farthest`). Every discrete Maxwellian is a product of these; τ → ∞ leaves the
+/// two points, the limit on the boundary of the realisable moments. Sums of C_j and of one-sided x_j have
+/// terms of one sign and therefore no cancellation, however close the boundary is.
 class line_family {
  public:
   /// The two grid points with C_j = 0.
@@ -69,8 +70,13 @@ class line_family {
     return std::abs(more) < 1e-6 ? more * (1.0 - 0.5 * more) : std::log(x / y);
   }
 
-  /// Sets n ≥ 4 points; the mean lies `offset` ∈ [−½, ½] from its nearest point, between the ends.
-  void attach(int n, int nearest_point, double offset, face at);
+  /// Sets the line, with its weights as b or b = 1; the mean lies `offset` from its nearest point, between
+  /// the ends.
+  void attach(const velocity_line& line, bool weighted, int nearest_point, double offset, face at);
+  /// Returns the β of exp(−τ x²), a Gaussian about the mean.
+  double beta_of_gaussian(double tau) const { return tau * (2.0 * offset_ - ends_); }
+  /// Returns the square of the distance of the two points with C = 0.
+  double gap_square() const { return (from_right_ + mean_) * (from_right_ + mean_); }
   /// Whether the mean is an end of the grid, which then holds all mass for any β and τ.
   bool fixed() const { return fixed_; }
 
@@ -84,19 +90,22 @@ class line_family {
   sums solve(double tau, double& beta);
   /// Takes the limit τ → ∞ with the prescribed mean and returns its sums.
   double take_limit();
-  /// Returns the weights of the last call.
-  const double* weights() const { return weights_.data(); }
+  /// Returns w_j/b_j of the last call.
+  const double* values();
 
  private:
   sums sums_of(double beta, double tau, double shift);
   double largest_exponent(double beta, double tau) const;
 
+  const velocity_line* line_ = nullptr;
+  bool weighted_ = false;
   int n_ = 0, padded_ = 0, left_ = 0, right_ = 0;  // zeros of C
   int nearest_ = 0;
+  double offset_ = 0.0, ends_ = 0.0;      // sum of the distances of the zeros from nearest_
   double mean_ = 0.0, from_right_ = 0.0;  // from left_, and to right_
   double sign_ = 1.0;                     // of the curvature of C
   bool fixed_ = false;
-  aligned_vector<double> x_, c_, weights_;
+  aligned_vector<double> x_, c_, base_, weights_, values_;
 };
 
 }  // namespace apsis

@@ -20,8 +20,8 @@ HWY_INLINE double total(N x) {
   return hn::GetLane(hn::SumOfLanes(wide(), x.v));
 }
 
-line_sums::values weigh(const double* x, const double* c, int n, double beta, double tau, double shift,
-                        double* w) {
+line_sums::values weigh(const double* x, const double* c, const double* base, int n, double beta, double tau,
+                        double shift, double* w) {
   const int length = static_cast<int>(hn::Lanes(wide()));
   const N limit(691.0), smallest(1e-300), zero(0.0);
   N mass = zero, above = zero, below = zero, energy = zero;
@@ -31,7 +31,8 @@ line_sums::values weigh(const double* x, const double* c, int n, double beta, do
     const N exponent = N(beta) * at - N(tau) * parabola - N(shift);
     const N weight(hn::Exp(wide(), smaller(larger(exponent, -limit), limit).v));
     const auto inside = hn::FirstN(wide(), static_cast<std::size_t>(std::min(n - j, length)));
-    const N kept(hn::IfThenElseZero(inside, select(weight > smallest, weight, zero).v));
+    N kept(hn::IfThenElseZero(inside, select(weight > smallest, weight, zero).v));
+    if (base != nullptr) kept = kept * N::load(base + j);
     kept.store(w + j);
     mass = mass + kept;
     above = fma(kept, maximum(at, zero), above);
@@ -67,9 +68,9 @@ HWY_EXPORT(weigh);
 HWY_EXPORT(multiply);
 }  // namespace
 
-line_sums::values line_sums::weigh(const double* x, const double* c, int n, double beta, double tau,
-                                   double shift, double* w) {
-  return HWY_DYNAMIC_DISPATCH(weigh)(x, c, n, beta, tau, shift, w);
+line_sums::values line_sums::weigh(const double* x, const double* c, const double* base, int n, double beta,
+                                   double tau, double shift, double* w) {
+  return HWY_DYNAMIC_DISPATCH(weigh)(x, c, base, n, beta, tau, shift, w);
 }
 
 line_sums::products line_sums::multiply(const double* x, const double* c, const double* w, int n) {

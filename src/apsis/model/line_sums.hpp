@@ -13,8 +13,10 @@ struct values {
       below = 0.0,    ///< Σ w max(−x, 0)
       energy = 0.0;   ///< Σ w c
 };
-/// w ← exp(βx − τc − shift) at n points, 0 below 1e−300 and at most e^691; padding becomes 0.
-values weigh(const double* x, const double* c, int n, double beta, double tau, double shift, double* w);
+/// w ← base exp(βx − τc − shift) at n points, 0 below 1e−300 and at most e^691 base; padding becomes 0.
+/// Without a base it is 1.
+values weigh(const double* x, const double* c, const double* base, int n, double beta, double tau,
+             double shift, double* w);
 
 /// Sums in the derivatives of `values` with respect to β and τ.
 struct products {

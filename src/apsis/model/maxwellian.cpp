@@ -8,48 +8,71 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace apsis {
 
 velocity_grid::velocity_grid(int dimensions, int points, double max)
-    : dimensions_(dimensions), points_(points), max_(max), spacing_(2.0 * max / points) {
-  if (dimensions < 1 || dimensions > 3)
-    throw input_error(fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", dimensions));
-  if (points < 4)
-    throw input_error(fmt::format("{} velocity points (too few for three moments); give at least 4", points));
-  const double velocities = std::pow(points, dimensions);
+    : velocity_grid([&] {
+        if (dimensions < 1 || dimensions > 3)
+          throw input_error(
+              fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", dimensions));
+        return std::vector<velocity_line>(static_cast<std::size_t>(dimensions), velocity_line(points, max));
+      }()) {}
+
+velocity_grid::velocity_grid(std::vector<velocity_line> lines) : lines_(std::move(lines)) {
+  const int d = dimensions();
+  if (d < 1 || d > 3)
+    throw input_error(fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", d));
+  double velocities = 1.0;
+  for (const auto& line : lines_) velocities *= line.points();
   if (velocities > most_velocities)
     throw input_error(fmt::format(
         "velocity.points = {} are {:.4g} velocities in {} dimension{} (more than {} cannot be numbered); "
         "give at most {}",
-        points, velocities, dimensions, dimensions == 1 ? "" : "s", most_velocities,
-        static_cast<int>(std::floor(std::pow(most_velocities, 1.0 / dimensions) * (1.0 + 1e-12)))));
-  if (!(max > 0.0) || !std::isfinite(max))
-    throw input_error("velocity.max cannot be used (it is not positive and finite); give max > 0");
-  const auto n = static_cast<std::size_t>(points);
-  for (std::size_t i = 0; i < n; ++i) {
-    // Symmetric by construction: v_{N−1−i} = −v_i exactly, so that even data keep u = 0 to round-off.
-    line_.push_back(0.5 * spacing_ * (2.0 * static_cast<double>(i) + 1.0 - points));
-    line_half_square_.push_back(0.5 * line_.back() * line_.back());
+        lines_.front().points(), velocities, d, d == 1 ? "" : "s", most_velocities,
+        static_cast<int>(std::floor(std::pow(most_velocities, 1.0 / d) * (1.0 + 1e-12)))));
+  for (const auto& line : lines_) {
+    size_ *= line.points();
+    uniform_ = uniform_ && line.uniform();
+    weight_ *= line.spacing();
   }
-  for (int k = 0; k < dimensions; ++k) size_ *= points;
-  weight_ = std::pow(spacing_, dimensions);
+  if (!uniform_) weight_ = 1.0;
+  unit_ = lines_.front().spacing();
+  for (const auto& line : lines_) unit_ = std::min(unit_, line.spacing());
+  for (auto& line : lines_) line.set_unit(unit_);
   const auto total = static_cast<std::size_t>(size_);
-  std::vector<aligned_vector<double>> components(static_cast<std::size_t>(dimensions),
-                                                 aligned_vector<double>(total));
+  std::vector<aligned_vector<double>> components(lines_.size(), aligned_vector<double>(total));
+  std::vector<double> weights(total, weight_);
   half_square_.assign(total, 0.0);
   for (std::size_t j = 0; j < total; ++j) {
     std::size_t rest = j;
-    for (int k = dimensions - 1; k >= 0; --k) {
-      const double v = line_[rest % n];
-      components[static_cast<std::size_t>(k)][j] = v;
+    for (std::size_t k = lines_.size(); k-- > 0;) {
+      const auto n = static_cast<std::size_t>(lines_[k].points());
+      const double v = lines_[k].v()[rest % n];
+      components[k][j] = v;
       half_square_[j] += 0.5 * v * v;
+      if (!uniform_) weights[j] *= lines_[k].weights()[rest % n];
       rest /= n;
     }
   }
-  set_ = velocity_set(std::move(components), std::vector<double>(total, weight_));
+  set_ = velocity_set(std::move(components), std::move(weights));
+}
+
+double velocity_grid::max() const {
+  double largest = 0.0;
+  for (const auto& line : lines_) largest = std::max(largest, line.max());
+  return largest;
+}
+
+const double* velocity_grid::weighted(const double* f, aligned_vector<double>& row) const {
+  if (uniform_) return f;
+  row.resize(static_cast<std::size_t>(size_));
+  const auto w = set_.weights();
+  for (std::size_t j = 0; j < row.size(); ++j) row[j] = w[j] * f[j];
+  return row.data();
 }
 
 namespace {
@@ -61,8 +84,8 @@ void moments_on_line(const velocity_grid& grid, const double* f, std::ptrdiff_t 
   std::array<velocity_rows::sums, most> sums;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int first = 0; first < rows; first += most) {
     const int some = std::min(most, rows - first);
-    velocity_rows::moments(f + first * pitch, pitch, some, grid.line().data(), grid.half_square().data(),
-                           grid.size(), sums.data());
+    velocity_rows::moments(f + first * pitch, pitch, some, grid.last_line().v().data(),
+                           grid.half_square().data(), grid.size(), sums.data());
     for (int r = 0; r < some; ++r, omega += 3) {
       const auto& sum = sums[static_cast<std::size_t>(r)];
       omega[0] = grid.weight() * sum.mass;
@@ -76,7 +99,7 @@ void moments_on_line(const velocity_grid& grid, const double* f, std::ptrdiff_t 
 
 void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega) {
-  if (grid.dimensions() == 1) return moments_on_line(grid, f, pitch, rows, omega);
+  if (grid.dimensions() == 1 && grid.uniform()) return moments_on_line(grid, f, pitch, rows, omega);
   for (int r = 0; r < rows; ++r) kinetic_moments(grid, f + r * pitch, omega + r * (grid.dimensions() + 2));
 }
 
@@ -105,10 +128,11 @@ line_sums sum_over_lines(const velocity_grid& grid, const double* f, int first, 
     sum.add(sum_over_lines(grid, f, first + half, lines - half));
     return sum;
   }
-  const std::ptrdiff_t n = grid.points(), from = n * first;
+  const velocity_line& line = grid.last_line();
+  const std::ptrdiff_t n = line.points(), from = n * first;
   std::array<velocity_rows::sums, few> rows;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-  velocity_rows::moments(f + from, n, lines, grid.line().data(), grid.line_half_square().data(),
-                         grid.points(), rows.data());
+  velocity_rows::moments(f + from, n, lines, line.v().data(), line.half_square().data(), line.points(),
+                         rows.data());
   const auto outer = static_cast<std::size_t>(grid.dimensions()) - 1;
   for (int i = 0; i < lines; ++i) {
     const auto& row = rows[static_cast<std::size_t>(i)];
@@ -129,8 +153,10 @@ line_sums sum_over_lines(const velocity_grid& grid, const double* f, int first, 
 
 void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) {
   const int d = grid.dimensions();
-  if (d == 1) return moments_on_line(grid, f, 0, 1, omega);
-  const line_sums sum = sum_over_lines(grid, f, 0, grid.size() / grid.points());
+  thread_local aligned_vector<double> scratch;
+  const double* row = grid.weighted(f, scratch);
+  if (d == 1) return moments_on_line(grid, row, 0, 1, omega);
+  const line_sums sum = sum_over_lines(grid, row, 0, grid.size() / grid.last_line().points());
   omega[0] = grid.weight() * sum.mass;
   for (int k = 0; k < d; ++k) omega[1 + k] = grid.weight() * sum.momentum[static_cast<std::size_t>(k)];
   omega[1 + d] = grid.weight() * sum.energy;
@@ -139,10 +165,15 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) 
 namespace {
 
 /// Per-thread scratch for the three directions.
-std::array<aligned_vector<double>, 3>& line_buffers(int points) {
+std::array<aligned_vector<double>, 3>& line_buffers(const velocity_grid& grid) {
   thread_local std::array<aligned_vector<double>, 3> lines;
-  for (auto& line : lines) line.resize(static_cast<std::size_t>(points));
+  for (int k = 0; k < grid.dimensions(); ++k)
+    lines[static_cast<std::size_t>(k)].resize(static_cast<std::size_t>(grid.line(k).points()));
   return lines;
+}
+
+void gaussian_on(const velocity_line& line, const velocity_rows::gaussian& of, double* m) {
+  gaussians_on(line, &of, 1, m, 0);
 }
 
 /// ρ (2πT)^{−d/2}.
@@ -157,34 +188,41 @@ double height(const fluid_state& state, int dimensions) {
 
 void tensor_product(const velocity_grid& grid, double factor, const std::array<const double*, 3>& g,
                     double* m) {
-  const int n = grid.points();
+  const int n = grid.last_line().points();
   const auto scaled = [n](double scale, const double* line, double* to) {
     for (int j = 0; j < n; ++j) to[j] = scale * line[j];
   };
   if (grid.dimensions() == 1) return scaled(factor, g[0], m);
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < grid.line(0).points(); ++i) {
     const double of_first = factor * g[0][i];
     if (grid.dimensions() == 2) {
       scaled(of_first, g[1], m);
       m += n;
     } else {
-      for (int k = 0; k < n; ++k, m += n) scaled(of_first * g[1][k], g[2], m);
+      for (int k = 0; k < grid.line(1).points(); ++k, m += n) scaled(of_first * g[1][k], g[2], m);
     }
   }
 }
 
+void gaussians_on(const velocity_line& line, const velocity_rows::gaussian* of_rows, int rows, double* m,
+                  std::ptrdiff_t pitch) {
+  if (line.uniform())
+    return velocity_rows::gaussians({line.points(), line.spacing()}, of_rows, rows, m, pitch);
+  for (int p = 0; p < rows; ++p)
+    for (std::size_t j = 0; j < line.v().size(); ++j) {
+      const double c = line.v()[j] - of_rows[p].u,
+                   value = of_rows[p].a * std::exp(-c * c / (2.0 * of_rows[p].T));
+      m[p * pitch + static_cast<std::ptrdiff_t>(j)] = value > 1e-300 ? value : 0.0;
+    }
+}
+
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m) {
-  const velocity_rows::points points{grid.points(), grid.spacing()};
   const double factor = height(state, grid.dimensions());
-  if (grid.dimensions() == 1) {
-    const velocity_rows::gaussian row{factor, state.u[0], state.T};
-    return velocity_rows::gaussians(points, &row, 1, m, 0);
-  }
-  auto& lines = line_buffers(grid.points());
+  if (grid.dimensions() == 1) return gaussian_on(grid.line(0), {factor, state.u[0], state.T}, m);
+  auto& lines = line_buffers(grid);
   std::array<const double*, 3> g{};
   for (std::size_t k = 0; k < static_cast<std::size_t>(grid.dimensions()); ++k) {
-    const velocity_rows::gaussian of_line{1.0, state.u[k], state.T};
-    velocity_rows::gaussians(points, &of_line, 1, lines[k].data(), 0);
+    gaussian_on(grid.line(static_cast<int>(k)), {1.0, state.u[k], state.T}, lines[k].data());
     g[k] = lines[k].data();
   }
   tensor_product(grid, factor, g, m);
@@ -204,22 +242,30 @@ int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, 
                                                     s.u, s.T};
     if (!s.admissible()) break;
   }
-  velocity_rows::gaussians({grid.points(), grid.spacing()}, curves.data(), admissible, m, pitch);
+  gaussians_on(grid.last_line(), curves.data(), admissible, m, pitch);
   return admissible;
 }
 
-bool formula_has_exact_moments(const velocity_grid& grid, const line_state& state) {
+namespace {
+
+bool has_exact_moments(const velocity_line& line, const line_state& state) {
   constexpr double dense = 1e-250;  // values below 1e-300, which are set to 0, are below its rounding
   constexpr double enough = 40.0;   // 100 e^−40 is below the rounding of a sum
   constexpr double spacings = enough / (2.0 * std::numbers::pi * std::numbers::pi);
-  const double room = grid.max() - std::abs(state.u);
-  return state.rho >= dense && state.T >= spacings * grid.spacing() * grid.spacing() && room > 0.0 &&
-         room * room >= 2.0 * enough * state.T;
+  const double room = line.max() - std::abs(state.u);
+  return line.uniform() && state.rho >= dense && state.T >= spacings * line.spacing() * line.spacing() &&
+         room > 0.0 && room * room >= 2.0 * enough * state.T;
+}
+
+}  // namespace
+
+bool formula_has_exact_moments(const velocity_grid& grid, const line_state& state) {
+  return has_exact_moments(grid.last_line(), state);
 }
 
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state) {
   for (int k = 0; k < grid.dimensions(); ++k)
-    if (!formula_has_exact_moments(grid, line_state{state.rho, state.u[k], state.T})) return false;
+    if (!has_exact_moments(grid.line(k), {state.rho, state.u[k], state.T})) return false;
   return true;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <apsis/exec/aligned.hpp>
+#include <apsis/model/velocity_line.hpp>
+#include <apsis/model/velocity_rows.hpp>
 #include <apsis/phase/velocity_set.hpp>
 
 #include <cmath>
@@ -11,35 +13,45 @@
 
 namespace apsis {
 
-/// Midpoint velocity grid on [−max, max]^d, d = 1, 2, 3, the first direction slowest.
+/// All combinations of the velocities of d = 1, 2, 3 lines, the first direction slowest, with the products of
+/// their weights.
 class velocity_grid {
  public:
   /// Largest number of velocities, such that kernels can count them in int.
   static constexpr int most_velocities = 1 << 30;
 
-  /// Throws input_error unless 1 ≤ d ≤ 3, points ≥ 4, points^d ≤ most_velocities and max > 0.
+  /// Midpoints of equal intervals, the same in all directions. Throws input_error unless 1 ≤ d ≤ 3, points ≥
+  /// 4, points^d ≤ most_velocities and max > 0.
   velocity_grid(int dimensions, int points, double max);
+  /// Throws input_error unless there are 1 to 3 lines and at most most_velocities combinations.
+  explicit velocity_grid(std::vector<velocity_line> lines);
 
-  int dimensions() const { return dimensions_; }  ///< d
-  int points() const { return points_; }          ///< per direction
-  int size() const { return size_; }              ///< points^d
-  double max() const { return max_; }             ///< v_max, half a spacing beyond the last point
-  double spacing() const { return spacing_; }     ///< Δv
-  double weight() const { return weight_; }       ///< Δv^d
-  const aligned_vector<double>& line() const { return line_; }  ///< points of one direction
-  /// Returns ½v² of the points of one direction.
-  const aligned_vector<double>& line_half_square() const { return line_half_square_; }
+  int dimensions() const { return static_cast<int>(lines_.size()); }  ///< d
+  int size() const { return size_; }                                  ///< number of velocities
+  /// Returns the velocities of a direction.
+  const velocity_line& line(int k) const { return lines_[static_cast<std::size_t>(k)]; }
+  /// Returns those of the last direction, along which velocities are contiguous.
+  const velocity_line& last_line() const { return lines_.back(); }
+  /// Whether all lines are uniform. The weights are then equal.
+  bool uniform() const { return uniform_; }
+  double weight() const { return weight_; }  ///< Δv_1 ⋯ Δv_d, or 1 if not uniform
+  double max() const;                        ///< the largest of all lines
+  double unit() const { return unit_; }      ///< smallest spacing of all lines, the unit of their places()
+  /// row ← w ∘ f, which sums with weight(); f itself if uniform.
+  const double* weighted(const double* f, aligned_vector<double>& row) const;
   /// Returns component k of the velocity of every grid point.
   std::span<const double> component(int k) const { return set_.speeds(k); }
-  /// Returns the grid points with weights Δv^d.
+  /// Returns the velocities with their weights.
   const velocity_set& set() const { return set_; }
   /// Returns ½|v|² of every grid point.
   const aligned_vector<double>& half_square() const { return half_square_; }
 
  private:
-  int dimensions_, points_, size_ = 1;
-  double max_, spacing_, weight_;
-  aligned_vector<double> line_, line_half_square_, half_square_;
+  std::vector<velocity_line> lines_;
+  int size_ = 1;
+  bool uniform_ = true;
+  double weight_ = 1.0, unit_ = 0.0;
+  aligned_vector<double> half_square_;
   velocity_set set_;
 };
 
@@ -82,6 +94,10 @@ struct line_state {
   /// Whether all values are finite, ρ > 0 and T > 0.
   bool admissible() const { return rho > 0.0 && T > 0.0 && std::isfinite(rho + std::abs(u) + T); }
 };
+
+/// Rows of Gaussians at the points of a line, `pitch` numbers apart; below 1e-300 values are 0.
+void gaussians_on(const velocity_line& line, const velocity_rows::gaussian* of_rows, int rows, double* m,
+                  std::ptrdiff_t pitch);
 
 /// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK).
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);

@@ -31,12 +31,10 @@ struct initial_data {
   std::vector<double> jumps = {};  ///< discontinuities of data on a line, in increasing order
 };
 
-/// Velocities that are all combinations of the same n equidistant points in each of d directions, the last
-/// direction fastest.
+/// Velocities that are all combinations of points in each of d directions, the last direction fastest.
 struct velocity_lattice {
-  int dimensions = 0;    ///< d; 0 if the velocities are no lattice
-  int points = 0;        ///< n
-  double spacing = 0.0;  ///< Δv
+  std::vector<int> points;      ///< n_k of each direction; empty if the velocities are no lattice
+  std::vector<double> spacing;  ///< Δv_k; 0 where the points are not equidistant
 };
 
 /// Data that a model cannot hold.

@@ -36,11 +36,31 @@ enum class equilibrium_choice {
   discrete    ///< the minimizer of the entropy with the discrete moments
 };
 
-/// Velocity grid of a kinetic model: `points` midpoints on [−max, max] per velocity dimension.
+/// Numbers of velocities: one for all directions, or one for each.
+class point_counts {
+ public:
+  /// One number for all directions.
+  point_counts(int all = 0) : of_({all}) {}  // NOLINT(google-explicit-constructor)
+  /// One number for each direction.
+  point_counts(std::vector<int> each) : of_(std::move(each)) {}  // NOLINT(google-explicit-constructor)
+  /// Returns the first number.
+  operator int() const { return of_.empty() ? 0 : of_.front(); }  // NOLINT(google-explicit-constructor)
+  const std::vector<int>& each() const { return of_; }            ///< one number, or one per direction
+  bool operator==(const point_counts&) const = default;           ///< equal numbers
+  bool operator==(int all) const { return of_ == std::vector<int>{all}; }  ///< one number
+
+ private:
+  std::vector<int> of_;
+};
+
+/// Velocity grid of a kinetic model.
 struct velocity_config {
-  double max = 0.0;                                                ///< v_max > 0 (dimensionless)
-  int points = 0;                                                  ///< at least 4
+  double max = 0.0;         ///< largest |v| (dimensionless); 0 where the set chooses it
+  point_counts points = 0;  ///< at least 4; 0 where the set chooses it
   equilibrium_choice equilibrium = equilibrium_choice::automatic;  ///< computation of the equilibrium
+  /// Names of velocity lines or files (velocity_line_registry.hpp): one for all directions, or one for each;
+  /// none stands for "uniform".
+  std::vector<std::string> set = {};
 };
 
 /// Configuration of a model.

@@ -32,18 +32,39 @@ bool is_vacuum(const velocity_grid& grid, const double* omega) {
   return true;
 }
 
-/// Fills the part of direction k; returns ℓ(z).
-double place(const velocity_grid& grid, std::size_t k, double z, realizable_moments& to) {
-  const double h = 0.5 * (grid.points() - 1.0);
-  to.z[k] = std::clamp(z, -h, h);
-  const double index = std::clamp(std::round(to.z[k] + h), 0.0, grid.points() - 1.0);
-  const double point = index - h;  // exact, and so is the distance where it is small
-  const double distance = std::clamp(to.z[k] - point, -0.5, 0.5);
+/// Least and greatest mean of v_k²/Δv² with the mean z.
+struct bounds {
+  double least, greatest;
+};
+
+/// Returns the index of the place nearest to z.
+int nearest_place(const velocity_line& line, double z) {
+  const auto& places = line.places();
+  const auto after = std::lower_bound(places.begin(), places.end(), z);
+  if (after == places.begin()) return 0;
+  if (after == places.end()) return line.points() - 1;
+  const int right = static_cast<int>(after - places.begin());
+  return *after - z <= z - *(after - 1) ? right : right - 1;
+}
+
+/// Fills the part of direction k.
+bounds place(const velocity_grid& grid, std::size_t k, double z, realizable_moments& to) {
+  const velocity_line& line = grid.line(static_cast<int>(k));
+  const auto& places = line.places();
+  const double first = places.front(), last = places.back();
+  to.z[k] = std::clamp(z, first, last);
+  const int index = nearest_place(line, to.z[k]);
+  const double point = places[static_cast<std::size_t>(index)];
+  const double distance = to.z[k] - point;  // exact where it is small
   // Far below the rounding of u; without it no exponent is extreme.
   constexpr double nothing = 1e-100;
-  to.nearest[k] = static_cast<int>(index);
+  to.nearest[k] = index;
   to.offset[k] = std::abs(distance) < nothing ? 0.0 : distance;
-  return point * point + 2.0 * point * to.offset[k] + std::abs(to.offset[k]);
+  const double offset = to.offset[k];
+  const int other = std::clamp(index + (offset > 0.0 ? 1 : -1), 0, line.points() - 1);
+  const double gap = std::abs(places[static_cast<std::size_t>(other)] - point);
+  return {point * point + 2.0 * point * offset + std::abs(offset) * gap,
+          to.z[k] * (first + last) - first * last};
 }
 
 }  // namespace
@@ -57,20 +78,23 @@ std::optional<realizable_moments> find_realizable(const velocity_grid& grid, con
     found.rho = 0.0;
     return is_vacuum(grid, omega) ? std::optional(found) : std::nullopt;
   }
-  const double unit = grid.spacing(), h = 0.5 * (grid.points() - 1.0);
+  const double unit = grid.unit();
   const bool exact = found.rho * std::min({1.0, unit, unit * unit}) > large_enough;
   const double tolerance = exact ? rounding_of_sums(grid) : std::numeric_limits<double>::infinity();
-  double least = 0.0;
+  double least = 0.0, greatest = 0.0;
   for (int k = 0; k < d; ++k) {
     const double z = omega[1 + k] / found.rho / unit;
-    if (std::abs(z) - h > tolerance * h || std::isnan(z)) return std::nullopt;
-    least += place(grid, static_cast<std::size_t>(k), z, found);
+    const auto& places = grid.line(k).places();
+    const double margin = tolerance * std::max(std::abs(places.front()), std::abs(places.back()));
+    if (z - places.back() > margin || places.front() - z > margin || std::isnan(z)) return std::nullopt;
+    const bounds of = place(grid, static_cast<std::size_t>(k), z, found);
+    least += of.least;
+    greatest += of.greatest;
   }
-  const double greatest = d * h * h;
   found.square = std::max(2.0 * (omega[1 + d] / found.rho / unit / unit), 0.0);
   found.above_least = found.square - least;
   found.below_greatest = greatest - found.square;
-  // ℓ has slopes up to 2h, and the error of z is relative to √square.
+  // ℓ has slopes up to twice the ends, and the error of z is relative to √square.
   const double margin = tolerance * (1.0 + std::max(found.square, least)) * 2.0;
   if (found.above_least < -margin || found.below_greatest < -tolerance * 2.0 * greatest) return std::nullopt;
   found.above_least = std::clamp(found.above_least, 0.0, greatest - least);
@@ -86,28 +110,31 @@ std::string why_unrealizable(const velocity_grid& grid, const double* omega) {
   if (!(omega[0] > 0.0)) return fmt::format("density {:.6g} is not positive", omega[0]);
   const fluid_state s = to_fluid_state(omega, d);
   if (!(s.T > 0.0)) return fmt::format("temperature {:.6g} is not positive", s.T);
-  const double last = grid.max() - 0.5 * grid.spacing();
   realizable_moments at;
-  double least = 0.0, bulk = 0.0;
+  double least = 0.0, greatest = 0.0, bulk = 0.0;
   for (int k = 0; k < d; ++k) {
-    if (std::abs(s.u[k]) > last)
+    const auto& v = grid.line(k).v();
+    const double last = s.u[k] > 0.0 ? v.back() : v.front();
+    if (s.u[k] > v.back() || s.u[k] < v.front())
       return fmt::format("bulk velocity {:.6g} lies beyond the last point {:.6g} of the velocity grid",
-                         s.u[k], last);
-    const double z = s.u[k] / grid.spacing();
-    least += place(grid, static_cast<std::size_t>(k), z, at);
+                         s.u[k], std::abs(last));
+    const double z = s.u[k] / grid.unit();
+    const bounds of = place(grid, static_cast<std::size_t>(k), z, at);
+    least += of.least;
+    greatest += of.greatest;
     bulk += z * z;
   }
-  const double unit = grid.spacing() * grid.spacing() / d;
-  const double coldest = (least - bulk) * unit, h = 0.5 * (grid.points() - 1.0);
+  const double unit = grid.unit() * grid.unit() / d;
+  const double coldest = (least - bulk) * unit;
   if (s.T < coldest)
     return fmt::format(
         "temperature {:.6g} is below {:.6g}, the least that f >= 0 has on a velocity grid of spacing {:.3g} "
         "at this bulk velocity",
-        s.T, coldest, grid.spacing());
+        s.T, coldest, grid.unit());
   return fmt::format(
       "temperature {:.6g} is above {:.6g}, the largest that f >= 0 has on the velocity grid at this bulk "
       "velocity",
-      s.T, (d * h * h - bulk) * unit);
+      s.T, (greatest - bulk) * unit);
 }
 
 }  // namespace apsis

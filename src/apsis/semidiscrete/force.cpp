@@ -53,11 +53,15 @@ force::force(const model& equation, std::shared_ptr<domain> space, acceleration 
       scheme_(find_reconstruction(discretization.scheme->order() == 1 ? "upwind1" : "upwind5")->make()),
       invariants_(equation.invariants().size()),
       workspaces_(std::make_unique<per_thread<workspace>>()) {
-  if (lattice_.points < 2 * reach + 1)
+  if (lattice_.points.empty())
     throw input_error(
-        fmt::format("a force along a line of {} velocities (it needs a lattice of at least {} "
-                    "per direction); use a model of a gas",
-                    lattice_.points, 2 * reach + 1));
+        "a force has no meaning (the velocities of the model are no lattice); use a model of a gas");
+  for (std::size_t k = 0; k < lattice_.points.size(); ++k)
+    if (acceleration_.largest[k] > 0.0 && (lattice_.points[k] < 2 * reach + 1 || lattice_.spacing[k] == 0.0))
+      throw input_error(fmt::format(
+          "a force acts along velocity direction {} (its {} velocities are not at least {} with equal "
+          "distances); use the set \"uniform\" there",
+          k + 1, lattice_.points[k], 2 * reach + 1));
   for (const double bound : acceleration_.largest)
     if (!(bound >= 0.0) || std::isinf(bound))
       throw input_error(
@@ -68,15 +72,18 @@ force::force(const model& equation, std::shared_ptr<domain> space, acceleration 
 
 double force::rate() const {
   double sum = 0.0;
-  for (int k = 0; k < lattice_.dimensions; ++k) sum += acceleration_.largest[size(k)] / lattice_.spacing;
+  for (std::size_t k = 0; k < lattice_.points.size(); ++k)
+    if (acceleration_.largest[k] > 0.0) sum += acceleration_.largest[k] / lattice_.spacing[k];
   return sum;
 }
 
 void force::add(double t, const field& u, std::span<const target<field, double>> targets) const {
-  const int lanes = equation_.components() / lattice_.points;
+  const auto [shortest, longest] = std::minmax_element(lattice_.points.begin(), lattice_.points.end());
+  const int lanes = equation_.components() / *shortest;
   const int together = std::max(1, enough_lanes / lanes);
+  const std::size_t line = size(*longest);
   workspaces_->prepare([&](workspace& here) {
-    const std::size_t width = size(together) * size(lanes), line = size(lattice_.points);
+    const std::size_t width = size(together) * size(lanes);
     here.values.assign((line + 2 * beyond) * width, 0.0);
     here.edges.resize((line + 2 * halo) * width);
     here.change.resize(line * width);
@@ -101,7 +108,7 @@ void force::load_acceleration(double t, int begin, int end, workspace& here) con
   for (int cell = begin; cell < end; ++cell) {
     auto& a = here.a[size(cell - begin)];
     a = acceleration_.value(t, space_->mesh().centre(cell));
-    for (std::size_t k = 0; k < size(lattice_.dimensions); ++k)
+    for (std::size_t k = 0; k < lattice_.points.size(); ++k)
       if (!(std::abs(a[k]) <= acceleration_.largest[k]))
         throw numerical_error(
             fmt::format(
@@ -116,16 +123,17 @@ void force::add_cells(double t, const field& u, std::span<const target<field, do
                       int end, workspace& here) const {
   load_acceleration(t, begin, end, here);
   std::fill(here.sum.begin(), here.sum.end(), 0.0);
-  for (int direction = 0; direction < lattice_.dimensions; ++direction)
+  for (int direction = 0; direction < static_cast<int>(lattice_.points.size()); ++direction)
     if (acceleration_.largest[size(direction)] > 0.0) add_direction(u, {direction, begin, end}, here);
   store(u, targets, begin, end, here);
 }
 
 void force::add_direction(const field& u, const place& at, workspace& here) const {
-  const int n = lattice_.points, lanes = equation_.components() / n, cells = at.end - at.begin;
+  const int n = lattice_.points[size(at.direction)], lanes = equation_.components() / n,
+            cells = at.end - at.begin;
   const int width = cells * lanes;
   std::ptrdiff_t apart = 1;
-  for (int k = at.direction + 1; k < lattice_.dimensions; ++k) apart *= n;
+  for (std::size_t k = size(at.direction) + 1; k < lattice_.points.size(); ++k) apart *= lattice_.points[k];
   // First component of a lane.
   const auto first_of = [&](int lane) { return (lane / apart) * apart * n + lane % apart; };
   double* values = here.values.data() + static_cast<std::ptrdiff_t>(beyond) * width;
@@ -137,7 +145,7 @@ void force::add_direction(const field& u, const place& at, workspace& here) cons
       const double* from = u.row(at.begin + cell) + first_of(lane);
       for (int i = 0; i < n; ++i) values[static_cast<std::ptrdiff_t>(i) * width + column] = from[i * apart];
       here.forward[size(column)] = a > 0.0 ? 1.0 : 0.0;
-      here.per_cell[size(column)] = std::abs(a) / lattice_.spacing;
+      here.per_cell[size(column)] = std::abs(a) / lattice_.spacing[size(at.direction)];
     }
   }
   for (int i = -beyond; i < n + beyond; ++i)

@@ -1,5 +1,10 @@
 #include <apsis/verify/outcome.hpp>
 
+#include <apsis/model/model_registry.hpp>
+
+#include <algorithm>
+#include <numeric>
+
 namespace apsis {
 
 outcome compute_outcome(const case_config& config, const study_control& control) {
@@ -17,8 +22,15 @@ outcome compute_outcome(const case_config& config, const study_control& control)
   out.state = run.state();
   out.exact = run.exact_state();
   if (run.has_space()) out.cell_volume = make_mesh(config).cell_volume();
-  // The velocities of a grid have equal weights; those of other models have no part in norms.
-  if (config.velocity.points > 0) out.component_weight = run.velocities().weights().front();
+  // That of a uniform velocity grid, or the mean; velocities of other models have no part in norms.
+  if (find_model(config.model.name)->has_velocity_grid) {
+    const auto weights = run.velocities().weights();
+    const bool equal =
+        std::all_of(weights.begin(), weights.end(), [&](double w) { return w == weights.front(); });
+    out.component_weight =
+        equal ? weights.front()
+              : std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
+  }
   return out;
 }
 

@@ -120,7 +120,7 @@ class es_bgk_model final : public gas_model {
     if (last > 0) outer = shape.covariance.topLeftCorner(last, last).inverse();
     thread_local std::vector<velocity_rows::gaussian> lines;
     lines.clear();
-    for (int first = 0; first < grid.size(); first += grid.points()) {
+    for (int first = 0; first < grid.size(); first += grid.last_line().points()) {
       double exponent = 0.0, shift = 0.0;
       for (Eigen::Index k = 0; k < last; ++k) {
         const auto speed = [&](Eigen::Index i) {
@@ -132,10 +132,11 @@ class es_bgk_model final : public gas_model {
       lines.push_back({height * std::exp(exponent), state.u[last] + shift, variance});
     }
     constexpr int together = most_line_states;
-    const int n = grid.points(), count = static_cast<int>(lines.size());
+    const velocity_line& line = grid.last_line();
+    const int n = line.points(), count = static_cast<int>(lines.size());
     for (int first = 0; first < count; first += together)
-      velocity_rows::gaussians({n, grid.spacing()}, lines.data() + first, std::min(together, count - first),
-                               row + static_cast<std::ptrdiff_t>(first) * n, n);
+      gaussians_on(line, lines.data() + first, std::min(together, count - first),
+                   row + static_cast<std::ptrdiff_t>(first) * n, n);
     if (!g.reduced()) return;
     const double energy = (g.degrees_of_freedom() - g.dimensions()) * shape.others;
     for (int j = 0; j < grid.size(); ++j) row[grid.size() + j] = energy * row[j];

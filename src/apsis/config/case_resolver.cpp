@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -35,6 +36,7 @@ class resolver {
     take_initial_data();
     read_boundary_values(text_, *checked_model(), config_);
     check_together();
+    choose_parameters();
     return config_;
   }
 
@@ -64,16 +66,21 @@ class resolver {
     return place;
   }
 
-  /// Adds the place of the key with which a message of the model begins.
-  std::unique_ptr<model> checked_model() const {
+  /// Returns body(), and adds the place of the key with which a message of the model begins.
+  template <class Body>
+  auto with_place_of_key(const Body& body) const {
     try {
-      return make_model(config_);
+      return body();
     } catch (const input_error& failure) {
       const std::string message = failure.what();
       const auto found = config_.places.find(message.substr(0, message.find(' ')));
       if (found == config_.places.end()) throw;
       throw input_error(found->second, message);
     }
+  }
+
+  std::unique_ptr<model> checked_model() const {
+    return with_place_of_key([this] { return make_model(config_); });
   }
 
   /// The table [initial], or a name of data of the model, by default its first.
@@ -83,6 +90,12 @@ class resolver {
     const bool named = !config_.model.initial.empty();
     if (config_.prescribed.empty()) {
       if (!named) config_.model.initial = initial_names(*model_).front();
+      if (equation->initial().empty())
+        throw input_error(
+            named ? find("model.initial")->place : table_place("model.name"),
+            fmt::format("the case has no initial data (model '{}' has data of a name only with its default "
+                        "options); add a table [initial]",
+                        model_->name));
       return;
     }
     if (named)
@@ -116,6 +129,7 @@ class resolver {
       if (applies(key, *model_)) paths.push_back(key.path);
     for (const model_parameter& p : model_->parameters) paths.push_back("model." + p.name);
     for (const model_text& t : model_->texts) paths.push_back("model." + t.name);
+    for (const model_list& l : model_->lists) paths.push_back("model." + l.name);
     return paths;
   }
 
@@ -194,8 +208,10 @@ class resolver {
   void take_parameters() {
     for (const model_parameter& p : model_->parameters) {
       double value = p.value;
-      if (const raw_value* raw = find("model." + p.name)) {
-        value = finite_number(*raw, "model." + p.name, type_text(key_type::number));
+      if (const raw_value* raw = find("model." + p.name); raw != nullptr && !is_automatic(p)) {
+        const std::string needed =
+            type_text(key_type::number) + (p.automatic ? fmt::format(" or \"{}\"", automatic_word) : "");
+        value = finite_number(*raw, "model." + p.name, needed);
         if (value < p.lowest || value > p.highest)
           refuse(*raw, "model." + p.name,
                  fmt::format("it must be from {} to {}: {}", p.lowest, p.highest, p.doc),
@@ -209,6 +225,57 @@ class resolver {
       const raw_value* raw = find("model." + t.name);
       config_.model.texts[t.name] = raw == nullptr ? t.value : to_text(t, *raw, config_.constants);
     }
+    for (const model_list& l : model_->lists) {
+      const raw_value* raw = find("model." + l.name);
+      const auto variables = config_.model.lists.find(l.variables);
+      config_.model.lists[l.name] =
+          raw == nullptr ? l.value
+                         : to_list(l, *raw,
+                                   variables == config_.model.lists.end() ? std::vector<std::string>{}
+                                                                          : variables->second,
+                                   config_.constants);
+    }
+  }
+
+  /// Whether the case leaves the parameter to the model.
+  bool is_automatic(const model_parameter& p) const {
+    const raw_value* raw = find("model." + p.name);
+    const auto* word = raw == nullptr ? nullptr : std::get_if<std::string>(&raw->value);
+    return p.automatic && (raw == nullptr || (word != nullptr && *word == automatic_word));
+  }
+
+  /// Parameters that the case leaves to the model, from its initial data.
+  void choose_parameters() {
+    for (const model_parameter& p : model_->parameters) {
+      if (!is_automatic(p)) continue;
+      const auto equation = checked_model();
+      const auto rows = sample_data(*equation);
+      config_.model.parameters[p.name] =
+          with_place_of_key([&] { return equation->automatic_value(p.name, rows); });
+    }
+  }
+
+  /// Rows of the initial data at points that do not depend on the mesh, so that the parameters of a study do
+  /// not either.
+  std::vector<std::vector<double>> sample_data(const model& equation) const {
+    const auto places = [this](const std::string& path) { return place_of(config_, path); };
+    std::optional<prescribed_data> given;
+    if (!config_.prescribed.empty()) given.emplace(config_, equation, places);
+    const auto& named = equation.initial();
+    const auto data = std::find_if(named.begin(), named.end(), [this](const initial_data& one) {
+      return one.name == config_.model.initial;
+    });
+    const int dimensions = equation.space_dimensions();
+    case_config sampled = config_;
+    sampled.space.cells.assign(static_cast<std::size_t>(dimensions), dimensions == 1 ? 2048 : 32);
+    const grid mesh = make_mesh(sampled);
+    std::vector<std::vector<double>> rows;
+    for (int cell = 0; cell < mesh.size(); ++cell) {
+      rows.emplace_back(static_cast<std::size_t>(equation.components()));
+      const position x = dimensions == 0 ? position{} : mesh.centre(cell);
+      given ? (*given)(x, rows.back()) : data->point_value(x, rows.back());
+    }
+    return rows;
   }
 
   void check_together() const {

@@ -75,6 +75,20 @@ TEST(system_flux, has_the_characteristic_speeds_of_a_gas_in_any_units) {
   });
 }
 
+TEST(system_flux, has_the_characteristic_speeds_of_more_than_three_variables) {
+  // A gas that carries two tracers: further eigenvalues v, of multiplicity three with that of the contact.
+  const system_flux flux({"rho", "a", "m", "E", "b"}, {"m", "a*m/rho", "m^2/rho + 0.4*(E - m^2/(2*rho))",
+                                                       "m/rho*(E + 0.4*(E - m^2/(2*rho)))", "b*m/rho"});
+  check_property("|v| + sqrt(gamma p/rho)", [&] {
+    const double rho = between(1e-3, 1e3), p = rho * between(1e-3, 1e7), c = std::sqrt(1.4 * p / rho);
+    const double v = signed_up_to(5.0) * c;
+    const double u[] = {rho, 0.3 * rho, rho * v, p / 0.4 + 0.5 * rho * v * v, -2.0 * rho};
+    const auto found = flux.characteristic_speeds(u);
+    RC_ASSERT(std::abs(found.speed - (std::abs(v) + c)) <= tolerance * (std::abs(v) + c));
+    RC_ASSERT(found.imaginary <= 1e-3 * c);  // the cube root of an error of 1e-9
+  });
+}
+
 TEST(system_flux, finds_where_a_law_is_not_hyperbolic) {
   // p-system with a pressure that increases with the volume (van der Waals): λ² = -p'(v).
   const system_flux flux({"v", "w"}, {"-w", "3*v^2"});

@@ -135,7 +135,7 @@ cfl = 0.5
 
 /// The largest error of p at the end. A mode e^{iπx} of the relaxation system, with u' = −iπ v and
 /// v' = −iπ a² u + (F u − v)/ε for its fluxes v, splits into those of the two characteristic variables p ± 2w
-/// with F = ±2: a linear system of two equations for each, of which the exponential is known.
+/// with F = ±2: two linear equations for each, solved by exponentials.
 double error_of_linear_waves(const overrides& changes, double epsilon) {
   using complex = std::complex<double>;
   const auto run = finished_run(linear_waves, changes);

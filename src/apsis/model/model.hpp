@@ -55,7 +55,7 @@ class model {
   virtual double reference_speed(int direction) const;
 
   /// Returns the factors of the sets of components on velocities() under a reflection of space: −1 for a set
-  /// of which the sum is a momentum; empty, the default: 1 for all. Throws input_error if they are unknown.
+  /// whose sum is a momentum; empty, the default: 1 for all. Throws input_error if they are unknown.
   virtual std::vector<double> reflection_signs() const { return {}; }
 
   /// Whether S(u) is not identically 0.
@@ -115,8 +115,8 @@ class model {
   /// Likewise for data whose macroscopic fields lie between these extremes.
   virtual unsupported_initial_data check_supported_range(const double* lowest, const double* highest) const;
 
-  /// Returns the value of an automatic parameter (model_parameter::automatic) for initial data of which
-  /// `rows` are samples. Throws input_error where none suits them.
+  /// Returns the value of an automatic parameter (model_parameter::automatic) for initial data with
+  /// the samples `rows`. Throws input_error where none suits them.
   virtual double automatic_value(const std::string& parameter,
                                  const std::vector<std::vector<double>>& rows) const;
 };

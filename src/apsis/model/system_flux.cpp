@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -39,15 +40,40 @@ void balance(square_matrix& a) {
   }
 }
 
+/// Characteristic speeds of two equations: λ = m ± √d.
+system_flux::waves waves_of_two(const square_matrix& a) {
+  const double mean = 0.5 * (a(0, 0) + a(1, 1)), half = 0.5 * (a(0, 0) - a(1, 1));
+  const double discriminant = half * half + a(0, 1) * a(1, 0), root = std::sqrt(std::abs(discriminant));
+  if (discriminant >= 0.0) return {std::abs(mean) + root, 0.0};
+  return {std::hypot(mean, root), root};
+}
+
+/// Characteristic speeds of three equations: λ = m + z, where m is the mean and z³ − 3pz − 2q = 0 (Viète and
+/// Cardano). Many times as fast as an iteration, and the coefficients do not depend on the units of
+/// variables.
+system_flux::waves waves_of_three(const square_matrix& a) {
+  const double mean = (a(0, 0) + a(1, 1) + a(2, 2)) / 3.0;
+  const Eigen::Matrix3d b = a - mean * Eigen::Matrix3d::Identity();
+  const double p = (b(0, 0) * b(0, 0) + b(1, 1) * b(1, 1) + b(2, 2) * b(2, 2) +
+                    2.0 * (b(0, 1) * b(1, 0) + b(0, 2) * b(2, 0) + b(1, 2) * b(2, 1))) /
+                   6.0,
+               q = 0.5 * b.determinant();
+  const double discriminant = q * q - p * p * p;
+  if (discriminant <= 0.0) {
+    const double r = 2.0 * std::sqrt(p),
+                 angle = std::acos(std::clamp(q / (p * std::sqrt(p)), -1.0, 1.0)) / 3.0;
+    const double largest = r * std::cos(angle), smallest = -r * std::cos(std::numbers::pi / 3.0 - angle);
+    return {p > 0.0 ? std::max(std::abs(mean + largest), std::abs(mean + smallest)) : std::abs(mean), 0.0};
+  }
+  const double t = std::cbrt(q + std::copysign(std::sqrt(discriminant), q)), z = t + p / t;
+  const double imaginary = std::sqrt(std::max(0.0, 0.75 * z * z - 3.0 * p));
+  return {std::max(std::abs(mean + z), std::hypot(mean - 0.5 * z, imaginary)), imaginary};
+}
+
 system_flux::waves waves_of(square_matrix a) {
   if (a.rows() == 1) return {std::abs(a(0, 0)), 0.0};
-  if (a.rows() == 2) {
-    const double mean = 0.5 * (a(0, 0) + a(1, 1)), half = 0.5 * (a(0, 0) - a(1, 1));
-    const double discriminant = half * half + a(0, 1) * a(1, 0);
-    const double root = std::sqrt(std::abs(discriminant));
-    if (discriminant >= 0.0) return {std::abs(mean) + root, 0.0};
-    return {std::hypot(mean, root), root};
-  }
+  if (a.rows() == 2) return waves_of_two(a);
+  if (a.rows() == 3) return waves_of_three(a);
   balance(a);
   const Eigen::EigenSolver<square_matrix> solver(a, false);
   system_flux::waves found;
@@ -87,7 +113,7 @@ void system_flux::evaluate(const double* u, int points, double* F) const {
 }
 
 /// slopes ← ∂F/∂u_k by Richardson extrapolation of central differences with steps h and 2h, whose difference
-/// estimates the error of the less accurate one. h starts at a thousandth of the scale of u and shrinks until
+/// estimates the error of the less accurate one. h starts at a small part of the scale of u and shrinks until
 /// the estimate is at most 1e-6 of the slope, so that the error, of order h⁴, is near its square, or until it
 /// is rounding or, where the slope vanishes, much smaller than at the start. A variable that is 0 (a momentum
 /// at rest) has no scale of its own, only that of the others, from which the right step may be far.
@@ -107,7 +133,7 @@ bool system_flux::differentiate(const double* u, int variable, double* slopes) c
   double scale = 0.0;
   for (std::size_t j = 0; j < n; ++j) scale = std::max(scale, std::abs(u[j]));
   scale = std::max(std::abs(u[k]), scale > 0.0 ? 0.1 * scale : 1.0);
-  double h = 1e-3 * scale;
+  double h = 2.5e-4 * scale;
   for (int shrinking = 0; shrinking < most_shrinkings; ++shrinking, h *= 0.125) {
     evaluate_at({h, -h, 2.0 * h, -2.0 * h});
     bool enough = true;

@@ -113,7 +113,7 @@ class law_model final : public relaxation_model {
   }
   void macroscopic(const double* f, double* values) const override { moments(f, values); }
   std::vector<field_name> further_fields() const override {
-    return {{wave_speed, "largest characteristic speed of the law (dimensionless)"}};
+    return {{wave_speed, "fastest wave of the law (dimensionless)"}};
   }
   void further_macroscopic(const double* f, double* values) const override { values[0] = speeds_of(f).speed; }
 
@@ -187,25 +187,37 @@ class law_model final : public relaxation_model {
     return flux_.characteristic_speeds(u.data());
   }
 
-  void add_data(const char* name, const char* description, std::array<double, 2> (*state)(double x),
-                std::vector<double> jumps) {
-    initial_.push_back(
-        {name,
-         description,
-         [this, state](const position& x, std::span<double> f) { equilibrium(state(x[0]).data(), f.data()); },
-         {},
-         std::move(jumps)});
+  static std::array<double, 2> smooth(double x) {
+    using std::numbers::pi;
+    return {0.16 + 0.04 * std::sin(pi * x), 0.02 * std::cos(pi * x)};
   }
 
+  /// Data of the default law; speeds and depths are such that a is near 1.
   void make_initial_data() {
-    add_data("smooth", "h = 1 + 0.2 sin(pi x), q = 0.3 cos(pi x)",
-             [](double x) {
-               using std::numbers::pi;
-               return std::array{1.0 + 0.2 * std::sin(pi * x), 0.3 * std::cos(pi * x)};
-             },
-             {});
-    add_data("dam-break", "h = 1 for x < 0, else 0.5; q = 0",
-             [](double x) { return std::array{x < 0.0 ? 1.0 : 0.5, 0.0}; }, {0.0});
+    initial_.push_back({"smooth",
+                        "h = 0.16 + 0.04 sin(pi x), q = 0.02 cos(pi x), out of equilibrium: fluxes F + 0.05 "
+                        "(cos(pi x), sin(pi x))",
+                        [this](const position& x, std::span<double> f) {
+                          equilibrium(smooth(x[0]).data(), f.data());
+                          const double phase = std::numbers::pi * x[0];
+                          const std::array away = {0.025 * std::cos(phase) / a_,
+                                                   0.025 * std::sin(phase) / a_};
+                          for (std::size_t k = 0; k < 2; ++k) {
+                            f[2 * k] += away[k];
+                            f[2 * k + 1] -= away[k];
+                          }
+                        }});
+    initial_.push_back(
+        {"smooth-consistent", "the local equilibrium of 'smooth'",
+         [this](const position& x, std::span<double> f) { equilibrium(smooth(x[0]).data(), f.data()); }});
+    initial_.push_back({"dam-break",
+                        "h = 0.25 for x < 0, else 0.1; q = 0",
+                        [this](const position& x, std::span<double> f) {
+                          const std::array<double, 2> state = {x[0] < 0.0 ? 0.25 : 0.1, 0.0};
+                          equilibrium(state.data(), f.data());
+                        },
+                        {},
+                        {0.0}});
   }
 
   system_flux flux_;
@@ -224,7 +236,7 @@ const model_entry model_conservation_law = {
     .description = "u_t + F(u)_x = 0 by relaxation: f+-_t +- a f+-_x = ((u +- F(u)/a)/2 - f+-)/epsilon",
     .source = "Jin, Xin (1995); Aregba-Driollet, Natalini, SIAM J. Numer. Anal. 37 (2000)",
     .parameters = {{.name = "speed",
-                    .value = 2.5,
+                    .value = 1.0,
                     .lowest = 1e-6,
                     .highest = 1e6,
                     .doc =

@@ -1,10 +1,6 @@
 // Runs of conservation laws of the user, compared with solutions known independently of the relaxation.
-#include "cases.hpp"
+#include "laws.hpp"
 
-#include <apsis/core/errors.hpp>
-#include <apsis/exec/parallel.hpp>
-
-#include <array>
 #include <cmath>
 #include <complex>
 #include <functional>
@@ -13,24 +9,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-using testing::HasSubstr;
-
 namespace {
-
-using overrides = std::vector<std::string>;
-
-apsis::simulation finished_run(const std::string& text, const overrides& changes) {
-  apsis::simulation run(apsis::parse_case(text, "law", changes));
-  finish(run);
-  return run;
-}
-
-apsis::simulation finished_case(const std::string& name, const overrides& changes) {
-  return finished_run(apsis::read_case("laws/" + name), changes);
-}
 
 /// Returns the root of a decreasing or increasing function by bisection.
 double root(double low, double high, const std::function<double(double)>& f) {
@@ -84,10 +65,6 @@ double mean_error(const apsis::simulation& run, const std::function<double(doubl
   for (std::size_t i = 0; i < fields.x.size(); ++i)
     sum += std::abs(fields.values[0][i] - exact(fields.x[i] / run.t()));
   return sum / static_cast<double>(fields.x.size());
-}
-
-std::string cells(int n) {
-  return fmt::format("space.cells={}", n);
 }
 
 // A simple wave of shallow water with g = 1, which runs to the right: u = 2(c − c₀), and c is constant along
@@ -156,15 +133,6 @@ double error_of_linear_waves(const overrides& changes, double epsilon) {
     worst = std::max(worst, std::abs(fields.values[0][i] - exact));
   }
   return worst;
-}
-
-std::string failure_of(const std::string& name, const overrides& changes) {
-  try {
-    finished_case(name, changes);
-  } catch (const apsis::numerical_error& e) {
-    return e.what();
-  }
-  return "kept its promises";
 }
 
 }  // namespace
@@ -253,19 +221,6 @@ TEST(law, diffuses_with_epsilon_times_a_squared_minus_lambda_squared) {
   EXPECT_NEAR(decay, 9.0 - 4.0, 0.02);
 }
 
-TEST(law, conserves_every_variable_to_rounding) {
-  for (const char* name : {"dam-break", "p-system", "euler-sod"}) {
-    // Inside walls the momentum is not conserved, but known: what crosses the faces.
-    for (const char* ends : {"periodic", "outflow", "symmetry"}) {
-      apsis::simulation run(apsis::load_case(fmt::format("laws/{}", name),
-                                             {cells(60), fmt::format("space.boundary={}", ends)}));
-      EXPECT_TRUE(run.promises().conservation);
-      finish(run);
-      for (const double defect : run.last().conservation_defect) EXPECT_LT(defect, 1e-13) << name << ends;
-    }
-  }
-}
-
 TEST(law, keeps_water_at_rest_between_walls_and_sends_waves_back) {
   const overrides walls = {"space.boundary=symmetry", "space.domain=[-1.0, 1.0]", cells(40)};
   overrides rest = walls;
@@ -305,89 +260,4 @@ TEST(law, of_one_variable_equals_the_scalar_relaxation_model) {
                                       "[initial]\nu1 = \"0.4 + 0.3*sin(pi*x)\"\n",
                                   {});
   EXPECT_EQ(one.state(), other.state());
-}
-
-TEST(law, gives_the_same_bits_on_any_number_of_threads) {
-  const overrides long_mesh = {cells(700), "time.end=0.02"};
-  apsis::set_threads(1);
-  const auto one = finished_case("euler-sod", long_mesh).state();
-  apsis::set_threads(3);
-  const auto three = finished_case("euler-sod", long_mesh).state();
-  apsis::set_threads(1);
-  EXPECT_EQ(one, three);
-}
-
-TEST(law, with_a_speed_that_the_data_exceed_is_refused) {
-  try {
-    const apsis::simulation run(apsis::load_case("laws/dam-break", {"model.speed=0.95"}));
-    FAIL() << "accepted";
-  } catch (const apsis::input_error& e) {
-    EXPECT_THAT(e.what(), testing::StartsWith(
-                              "override 'model.speed=0.95': model.speed = 0.95 is too small (an eigenvalue "
-                              "of F' is 1 in size at h = 1, q = 0, and the subcharacteristic condition is "
-                              "|lambda| <= speed); give at least 1 [cell 0]"));
-  }
-  // Equality is allowed: the speed of the deep side, exactly.
-  EXPECT_NO_THROW(apsis::simulation(apsis::load_case("laws/dam-break", {"model.speed=1"})));
-}
-
-TEST(law, with_waves_that_become_too_fast_ends_with_a_broken_promise) {
-  const std::string message = failure_of("dam-break", {"model.speed=1.1"});
-  EXPECT_THAT(message,
-              HasSubstr("broken promise: model.speed = 1.1 is too small (an eigenvalue of F' is 1."));
-  EXPECT_THAT(message,
-              HasSubstr("and the subcharacteristic condition is |lambda| <= speed); give at least 1."));
-  EXPECT_THAT(message, HasSubstr("[step "));
-  EXPECT_THAT(message, HasSubstr("cell 9"));  // behind the bore, which starts at cell 100
-  // The exact solution reaches 1.2572; wiggles of a percent.
-  EXPECT_EQ(failure_of("dam-break", {"model.speed=1.3"}), "kept its promises");
-  EXPECT_THAT(failure_of("p-system", {"model.speed=1.8"}), HasSubstr("broken promise: model.speed = 1.8"));
-}
-
-TEST(law, that_ceases_to_be_hyperbolic_ends_with_a_broken_promise) {
-  // A pressure p = v − v³/3 with λ² = −p' < 0 for v < 1: the collision compresses v from 1.3 below 1.
-  const char* const text = R"case([model]
-name = "conservation-law"
-variables = ["v", "w"]
-flux = ["-w", "v - v^3/3"]
-speed = 3
-epsilon = 0
-[initial]
-v = 1.3
-w = "x < 0 ? 0.3 : -0.3"
-[space]
-cells = 100
-domain = [-1.0, 1.0]
-boundary = "outflow"
-reconstruction = "upwind1"
-[time]
-method = "md-imex-3-2"
-end = 0.5
-cfl = 0.5
-)case";
-  EXPECT_NO_THROW(finished_run(text, {"initial.w=0"}));
-  try {
-    finished_run(text, {});
-    FAIL() << "accepted";
-  } catch (const apsis::numerical_error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("broken promise: model.flux is not hyperbolic at v = 0.9"));
-    EXPECT_THAT(e.what(), HasSubstr("perturbations of short wavelength grow without bound"));
-  }
-}
-
-TEST(law, promises_its_condition_and_no_positivity) {
-  const apsis::simulation run(apsis::load_case("laws/euler-sod"));
-  EXPECT_EQ(run.promises().text(), "promised at every step: conservation, subcharacteristic condition");
-  EXPECT_FALSE(run.promises().positivity);
-  EXPECT_THROW(apsis::simulation(apsis::load_case("laws/euler-sod", {"space.limiter=positivity"})),
-               apsis::input_error);
-}
-
-TEST(law, reports_its_largest_characteristic_speed_as_a_field) {
-  const auto fields = finished_case("dam-break", {"time.end=0.2", cells(50)}).fields();
-  ASSERT_EQ(fields.names, (std::vector<std::string>{"h", "q", "wave_speed"}));
-  for (std::size_t i = 0; i < fields.x.size(); ++i) {
-    const double h = fields.values[0][i], u = fields.values[1][i] / h;
-    EXPECT_NEAR(fields.values[2][i], std::abs(u) + std::sqrt(h), 1e-9);
-  }
 }

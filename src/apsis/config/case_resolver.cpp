@@ -3,6 +3,7 @@
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/data_samples.hpp>
 #include <apsis/config/initial_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/suggest.hpp>
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -249,33 +249,10 @@ class resolver {
     for (const model_parameter& p : model_->parameters) {
       if (!is_automatic(p)) continue;
       const auto equation = checked_model();
-      const auto rows = sample_data(*equation);
+      const auto rows = sample_data(config_, *equation);  // the same for every mesh of a study
       config_.model.parameters[p.name] =
           with_place_of_key([&] { return equation->automatic_value(p.name, rows); });
     }
-  }
-
-  /// Rows of the initial data at points that do not depend on the mesh, so that the parameters of a study do
-  /// not either.
-  std::vector<std::vector<double>> sample_data(const model& equation) const {
-    const auto places = [this](const std::string& path) { return place_of(config_, path); };
-    std::optional<prescribed_data> given;
-    if (!config_.prescribed.empty()) given.emplace(config_, equation, places);
-    const auto& named = equation.initial();
-    const auto data = std::find_if(named.begin(), named.end(), [this](const initial_data& one) {
-      return one.name == config_.model.initial;
-    });
-    const int dimensions = equation.space_dimensions();
-    case_config sampled = config_;
-    sampled.space.cells.assign(static_cast<std::size_t>(dimensions), dimensions == 1 ? 2048 : 32);
-    const grid mesh = make_mesh(sampled);
-    std::vector<std::vector<double>> rows;
-    for (int cell = 0; cell < mesh.size(); ++cell) {
-      rows.emplace_back(static_cast<std::size_t>(equation.components()));
-      const position x = dimensions == 0 ? position{} : mesh.centre(cell);
-      given ? (*given)(x, rows.back()) : data->point_value(x, rows.back());
-    }
-    return rows;
   }
 
   void check_together() const {

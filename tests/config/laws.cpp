@@ -98,6 +98,7 @@ TEST(law, lists_are_given_on_the_command_line) {
                                     "model.flux=[\"a*q/h\", \"q\", \"q^2/h + h^2/2\"]", "initial.a=1"});
   EXPECT_EQ(make_model(c)->components(), 6);
   EXPECT_EQ(make_model(c)->invariants(), (std::vector<std::string>{"a", "h", "q"}));
+  EXPECT_THAT(error_of(good, {"model.flux=[\"q\""}), HasSubstr("write for example [\"rho\", \"u\"]"));
   EXPECT_THAT(
       error_of(good, {"model.flux=q"}),
       StartsWith("override 'model.flux=q': 'model.flux' is the text 'q' (a list of texts is needed)"));

@@ -39,8 +39,10 @@ override_form form_of(const std::string& path, const std::string& value) {
       if ("model." + p.name == path)
         return {p.automatic && value == automatic_word,
                 type_advice(p.integer ? key_type::integer : key_type::number)};
-  const bool may_be_list = path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0 || is_list(path);
-  return {!may_be_list || value.find('[') != 0, type_advice(key_type::text)};
+  const bool list = is_list(path);
+  const bool may_be_list = list || path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0;
+  const bool bracket = may_be_list && value.find('[') == 0;
+  return {!bracket, type_advice(list && bracket ? key_type::text_list : key_type::text)};
 }
 
 /// Returns the text without surrounding spaces, which quoted arguments such as "space.cells = 80" have.

@@ -107,8 +107,10 @@ def models(program: Program) -> str:
             "source": plain(m["source"]),
             "tables of a case": ", ".join(f"`[{t}]`" for t in ("model", "space", "velocity", "time", "output") if m.get(t, True)),
             "initial data": ", ".join(f"`{name}`" for name in m["initial"])})
-        rows = [[f"`{p['name']}`", f"number, {p['lowest']:g} to {p['highest']:g}", f"`{p['default']:g}`", plain(p["doc"])]
-                for p in m["parameters"]]
+        rows = [[f"`{one['name']}`", f"list of formulas in `{one['formulas_in']}`" if one["formulas_in"] else "list of names",
+                 ", ".join(f"`{item}`" for item in one["default"]), plain(one["doc"])] for one in m["lists"]]
+        rows += [[f"`{p['name']}`", f"number, {p['lowest']:g} to {p['highest']:g}" + (" or `auto`" if p["automatic"] else ""),
+                  "`auto`" if p["automatic"] else f"`{p['default']:g}`", plain(p["doc"])] for p in m["parameters"]]
         rows += [[f"`{t['name']}`", ", ".join(f"`{c}`" for c in t["choices"])
                   + (f" or a formula in `{t['formula_in']}`" if t["formula_in"] else ""), f"`{t['default']}`", plain(t["doc"])]
                  for t in m["texts"]]

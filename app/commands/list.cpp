@@ -52,7 +52,14 @@ json models() {
                             {"default", p.value},
                             {"lowest", p.lowest},
                             {"highest", p.highest},
+                            {"automatic", p.automatic},
                             {"doc", p.doc}});
+    json lists = json::array();
+    for (const auto& l : m->lists)
+      lists.push_back({{"name", l.name},
+                       {"default", l.value},
+                       {"formulas_in", l.variables.empty() ? json(nullptr) : json(l.variables)},
+                       {"doc", l.doc}});
     json texts = json::array();
     for (const auto& t : m->texts)
       texts.push_back({{"name", t.name},
@@ -67,7 +74,8 @@ json models() {
                    {"velocity", m->has_velocity_grid},
                    {"initial", initial_names(*m)},
                    {"parameters", parameters},
-                   {"texts", texts}});
+                   {"texts", texts},
+                   {"lists", lists}});
   }
   return all;
 }

@@ -30,7 +30,7 @@ class KineticProblem:
     domain       (lower, upper); a sequence of such pairs, one for each space dimension
     velocities   (v_max, points): points midpoints on [-v_max, v_max] per velocity dimension, for models with a velocity grid
     epsilon      ε ≥ 0, a number or a function of the coordinates of a point; ε = 0 is the limit scheme
-    parameters   numbers and options of the model by name
+    parameters   numbers, options and lists of texts of the model by name
     boundary     kind of every face, or (lower, upper), or a sequence of such pairs
     formulation  "finite-volume" (cell averages) or "finite-difference" (point values)
     reconstruction, equilibrium   as in a case file
@@ -40,7 +40,7 @@ class KineticProblem:
 
     def __init__(self, model: str, *, cells: int | Sequence[int] = (), domain: Interval | Sequence[Interval] = (),
                  velocities: tuple[float, int] | None = None, epsilon: float | Callable[..., float] = 1.0,
-                 parameters: Mapping[str, Union[float, str]] | None = None,
+                 parameters: Mapping[str, Union[float, str, Sequence[str]]] | None = None,
                  boundary: str | Sequence[str] | Sequence[Sequence[str]] = "periodic",
                  reconstruction: str = "weno5-z", formulation: str = "finite-volume", equilibrium: str = "auto",
                  positivity: bool = False) -> None:
@@ -49,8 +49,9 @@ class KineticProblem:
         given = dict(parameters or {})
         v_max, points = velocities if velocities is not None else (0.0, 0)
         self._core = _core.KineticProblem(
-            model, {name: number(name, x) for name, x in given.items() if not isinstance(x, str)},
-            {name: x for name, x in given.items() if isinstance(x, str)}, number("velocities[0]", v_max),
+            model, {name: number(name, x) for name, x in given.items() if not isinstance(x, (str, list, tuple))},
+            {name: x for name, x in given.items() if isinstance(x, str)},
+            {name: [str(item) for item in x] for name, x in given.items() if isinstance(x, (list, tuple))}, number("velocities[0]", v_max),
             whole_number("velocities[1]", points), equilibrium, numbers_of_cells, _intervals(domain, directions),
             _faces(boundary, directions), reconstruction, formulation, bool(positivity),
             epsilon if callable(epsilon) else number("epsilon", epsilon))

@@ -49,6 +49,7 @@ struct description {
   std::string model;
   std::map<std::string, double> parameters;
   std::map<std::string, std::string> options;
+  std::map<std::string, std::vector<std::string>> lists;
   double velocity_max;
   int velocity_points;
   std::string equilibrium;
@@ -83,6 +84,12 @@ std::unique_ptr<model> make_equation(const description& of) {
           "unknown option '{1}' (model '{0}' has no such option); see: apsis list models", of.model, name));
     config.texts[name] = value;
   }
+  for (const auto& [name, value] : of.lists) {
+    if (!config.lists.contains(name))
+      throw input_error(fmt::format(
+          "unknown list '{1}' (model '{0}' has no such list); see: apsis list models", of.model, name));
+    config.lists[name] = value;
+  }
   if (entry.has_velocity_grid)
     config.velocity = {of.velocity_max, of.velocity_points,
                        choice_called<equilibrium_choice>("equilibrium", of.equilibrium)};
@@ -109,7 +116,8 @@ class kinetic_problem {
       builder_.on(make_grid(of));
       for (std::size_t k = 0; k < of.boundary.size(); ++k)
         for (const bool upper : {false, true})
-          builder_.with_boundary({static_cast<int>(k), upper}, make_boundary(of.boundary[k][upper ? 1 : 0]));
+          builder_.with_boundary({static_cast<int>(k), upper},
+                                 boundary_called(of.boundary[k][upper ? 1 : 0]));
       builder_.with_unknowns(choice_called<formulation>("formulation", of.formulation));
       if (of.positivity) builder_.with_positivity_limiter();
       builder_.with_reconstruction(
@@ -126,6 +134,11 @@ class kinetic_problem {
       builder_.with_epsilon([value = epsilon.cast<double>()](const position&) { return value; });
     }
     problem_ = builder_.build();
+  }
+
+  /// A kind without variables; it may depend on the model.
+  std::shared_ptr<const boundary> boundary_called(const std::string& kind) const {
+    return find_boundary(kind).variables == nullptr ? make_boundary(kind, *equation_) : make_boundary(kind);
   }
 
   int components() const { return equation_->components(); }
@@ -307,15 +320,17 @@ class kinetic_problem {
 void bind_kinetic(py::module_& m) {
   py::class_<kinetic_problem>(m, "KineticProblem")
       .def(py::init([](std::string model, std::map<std::string, double> parameters,
-                       std::map<std::string, std::string> options, double velocity_max, int velocity_points,
-                       std::string equilibrium, std::vector<int> cells,
+                       std::map<std::string, std::string> options,
+                       std::map<std::string, std::vector<std::string>> lists, double velocity_max,
+                       int velocity_points, std::string equilibrium, std::vector<int> cells,
                        std::vector<std::array<double, 2>> domain,
                        std::vector<std::array<std::string, 2>> boundary, std::string reconstruction,
                        std::string formulation, bool positivity, const py::object& epsilon) {
         return std::make_unique<kinetic_problem>(
-            description{std::move(model), std::move(parameters), std::move(options), velocity_max,
-                        velocity_points, std::move(equilibrium), std::move(cells), std::move(domain),
-                        std::move(boundary), std::move(reconstruction), std::move(formulation), positivity},
+            description{std::move(model), std::move(parameters), std::move(options), std::move(lists),
+                        velocity_max, velocity_points, std::move(equilibrium), std::move(cells),
+                        std::move(domain), std::move(boundary), std::move(reconstruction),
+                        std::move(formulation), positivity},
             epsilon);
       }))
       .def("shape", &kinetic_problem::shape)

@@ -80,6 +80,17 @@ def test_a_broken_promise_is_reported(tmp_path):
     assert "one was broken, see above" in page
 
 
+def test_the_condition_of_a_law_is_a_promise(tmp_path):
+    apsis.run("laws/dam-break", "space.cells=40", "time.end=0.1", out=tmp_path / "kept")
+    kept = page_of(tmp_path / "kept")
+    assert "subcharacteristic condition: every state satisfies this condition of the model" in kept
+    assert kept.count("kept at every step") == 2  # conservation and the condition
+    with pytest.raises(apsis.NumericalError):
+        apsis.run("laws/dam-break", "space.cells=40", "model.speed=1.1", out=tmp_path / "broken")
+    broken = page_of(tmp_path / "broken")
+    assert "broken promise: model.speed = 1.1 is too small" in broken and "one was broken, see above" in broken
+
+
 def test_a_run_without_space_shows_its_numbers(tmp_path):
     result = apsis.run("paper/ode", out=tmp_path)
     page = page_of(tmp_path)

@@ -48,8 +48,8 @@ def promises(manifest: dict[str, Any]) -> str:
     broken = str(manifest.get("message", "")).startswith("broken promise")
     rows = []
     for name, promised in manifest["promises"].items():
-        what, key, measured = PROMISES[name]
-        value = manifest["result"][key]
+        what, key, measured = PROMISES.get(name, ("every state satisfies this condition of the model", "", "only whether it holds"))
+        value = manifest["result"][key] if key else ""
         if not promised:
             kept = "not promised for this case"
         elif not broken:
@@ -58,7 +58,7 @@ def promises(manifest: dict[str, Any]) -> str:
             kept = verdict(manifest["result"]["negative_values"] == 0, ("kept", "broken"))
         else:
             kept = "one was broken, see above"
-        rows.append([f"{name}: {text(what)}", kept, "none offered" if value is None else f"{measured} {number(value)}"])
+        rows.append([f"{name}: {text(what)}", kept, "none offered" if value is None else f"{measured} {number(value) if key else ''}".strip()])
     return table(["promise", "verdict", "measured"], rows)
 
 

@@ -36,7 +36,7 @@ class face_quantity {
 /// Components of the variables of a boundary condition by name: "velocity" → {0, 0.1}.
 using face_quantities = std::map<std::string, std::vector<face_quantity>>;
 
-/// The model and the values from which a boundary condition is made. The model, null for kinds without
+/// The model and the values from which a boundary condition is made. The model, null only for kinds without
 /// variables, must outlive the boundary.
 struct boundary_source {
   const model* equation = nullptr;         ///< the model on whose components the condition acts

@@ -54,8 +54,10 @@ std::shared_ptr<const boundary> make_face(const case_config& config, const model
     for (const auto& formula : formulas)
       values[name].push_back(
           compile(formula, place_of(config, fmt::format("boundary.{}.{}", side, name)), kind));
-  return at_place(place_of(config, "boundary." + side),
-                  [&] { return make_boundary(kind_of(config, table), equation, values); });
+  source_place place = place_of(config, "boundary." + side);
+  if (place.file.empty())  // not a table of the file
+    place = place_of(config, table.kind ? "boundary." + side + ".kind" : "space.boundary");
+  return at_place(place, [&] { return make_boundary(kind_of(config, table), equation, values); });
 }
 
 }  // namespace

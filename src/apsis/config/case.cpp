@@ -18,6 +18,14 @@
 namespace apsis {
 namespace {
 
+/// Whether some model has a list of this path, whose name may be that of an option of another model.
+bool is_list(const std::string& path) {
+  for (const model_entry* entry : model_entries())
+    for (const model_list& list : entry->lists)
+      if ("model." + list.name == path) return true;
+  return false;
+}
+
 /// Returns the syntax of a key on the command line. Quotes are optional for unknown keys, so that the key is
 /// reported.
 override_form form_of(const std::string& path, const std::string& value) {
@@ -32,9 +40,12 @@ override_form form_of(const std::string& path, const std::string& value) {
   for (const model_entry* entry : model_entries())
     for (const model_parameter& p : entry->parameters)
       if ("model." + p.name == path)
-        return {false, type_advice(p.integer ? key_type::integer : key_type::number)};
-  const bool is_formula = path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0;
-  return {!is_formula || value.find('[') != 0, type_advice(key_type::text)};
+        return {p.automatic && value == automatic_word,
+                type_advice(p.integer ? key_type::integer : key_type::number)};
+  const bool list = is_list(path);
+  const bool may_be_list = list || path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0;
+  const bool bracket = may_be_list && value.find('[') == 0;
+  return {!bracket, type_advice(list && bracket ? key_type::text_list : key_type::text)};
 }
 
 /// Returns the text without surrounding spaces, which quoted arguments such as "space.cells = 80" have.
@@ -99,6 +110,7 @@ std::unique_ptr<model> make_model(const case_config& config) {
   model_config parts = default_config(*entry);
   for (const auto& [name, value] : config.model.parameters) parts.parameters[name] = value;
   for (const auto& [name, value] : config.model.texts) parts.texts[name] = value;
+  for (const auto& [name, value] : config.model.lists) parts.lists[name] = value;
   parts.constants = config.constants;
   parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium,
                     config.velocity.set};

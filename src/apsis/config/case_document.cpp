@@ -1,5 +1,6 @@
 // Documentation of the schema and cases as text, both generated from the table of keys.
 #include <apsis/config/case_schema.hpp>
+#include <apsis/config/case_value.hpp>
 #include <apsis/core/word_wrap.hpp>
 
 #include <cmath>
@@ -119,9 +120,16 @@ std::string describe(const model_entry& model) {
           fmt::format("{}, {}{}", v.name, v.doc, v.value ? fmt::format(" [{}]", *v.value) : ""));
     out += indented(fmt::format("[initial] ({}): {}", form.description, fmt::join(variables, "; ")));
   }
-  for (const model_parameter& p : model.parameters)
+  for (const model_list& l : model.lists)
     out += indented(
-        fmt::format("{} (number, {} to {}, default {}): {}", p.name, p.lowest, p.highest, p.value, p.doc));
+        fmt::format("{} (list of {}, default {}): {}", l.name,
+                    l.variables.empty() ? "names" : fmt::format("formulas in the names of '{}'", l.variables),
+                    to_toml(case_value(l.value)), l.doc));
+  for (const model_parameter& p : model.parameters)
+    out += indented(fmt::format("{} (number, {} to {}{}): {}", p.name, p.lowest, p.highest,
+                                p.automatic ? fmt::format(", or \"{0}\"; default \"{0}\"", automatic_word)
+                                            : fmt::format(", default {}", p.value),
+                                p.doc));
   for (const model_text& t : model.texts)
     out += indented(fmt::format(
         "{} (text, one of {}{}, default \"{}\"): {}", t.name, fmt::join(t.choices, ", "),
@@ -213,6 +221,8 @@ std::string to_toml(const case_config& config) {
     for (const auto& [name, value] : config.model.parameters)
       out += fmt::format("{} = {}\n", name, number_text(value));
     for (const auto& [name, value] : config.model.texts) out += fmt::format("{} = {}\n", name, quoted(value));
+    for (const auto& [name, value] : config.model.lists)
+      out += fmt::format("{} = {}\n", name, to_toml(case_value(value)));
   };
   const auto add_constants = [&] {
     if (config.constants.empty()) return;

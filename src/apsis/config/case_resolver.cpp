@@ -3,6 +3,7 @@
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/data_samples.hpp>
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/initial_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
@@ -36,6 +37,7 @@ class resolver {
     take_initial_data();
     read_boundary_values(text_, *checked_model(), config_);
     check_together();
+    choose_parameters();
     return config_;
   }
 
@@ -66,16 +68,21 @@ class resolver {
     return place;
   }
 
-  /// Adds the place of the key with which a message of the model begins.
-  std::unique_ptr<model> checked_model() const {
+  /// Returns body(), and adds the place of the key with which a message of the model begins.
+  template <class Body>
+  auto with_place_of_key(const Body& body) const {
     try {
-      return make_model(config_);
+      return body();
     } catch (const input_error& failure) {
       const std::string message = failure.what();
       const auto found = config_.places.find(message.substr(0, message.find(' ')));
       if (found == config_.places.end()) throw;
       throw input_error(found->second, message);
     }
+  }
+
+  std::unique_ptr<model> checked_model() const {
+    return with_place_of_key([this] { return make_model(config_); });
   }
 
   /// The table [initial], or a name of data of the model, by default its first.
@@ -85,6 +92,12 @@ class resolver {
     const bool named = !config_.model.initial.empty();
     if (config_.prescribed.empty()) {
       if (!named) config_.model.initial = initial_names(*model_).front();
+      if (equation->initial().empty())
+        throw input_error(
+            named ? find("model.initial")->place : table_place("model.name"),
+            fmt::format("the case has no initial data (model '{}' has data of a name only with its default "
+                        "options); add a table [initial]",
+                        model_->name));
       return;
     }
     if (named)
@@ -118,6 +131,7 @@ class resolver {
       if (applies(key, *model_)) paths.push_back(key.path);
     for (const model_parameter& p : model_->parameters) paths.push_back("model." + p.name);
     for (const model_text& t : model_->texts) paths.push_back("model." + t.name);
+    for (const model_list& l : model_->lists) paths.push_back("model." + l.name);
     return paths;
   }
 
@@ -196,8 +210,10 @@ class resolver {
   void take_parameters() {
     for (const model_parameter& p : model_->parameters) {
       double value = p.value;
-      if (const raw_value* raw = find("model." + p.name)) {
-        value = finite_number(*raw, "model." + p.name, type_text(key_type::number));
+      if (const raw_value* raw = find("model." + p.name); raw != nullptr && !is_automatic(p)) {
+        const std::string needed =
+            type_text(key_type::number) + (p.automatic ? fmt::format(" or \"{}\"", automatic_word) : "");
+        value = finite_number(*raw, "model." + p.name, needed);
         if (value < p.lowest || value > p.highest)
           refuse(*raw, "model." + p.name,
                  fmt::format("it must be from {} to {}: {}", p.lowest, p.highest, p.doc),
@@ -210,6 +226,34 @@ class resolver {
     for (const model_text& t : model_->texts) {
       const raw_value* raw = find("model." + t.name);
       config_.model.texts[t.name] = raw == nullptr ? t.value : to_text(t, *raw, config_.constants);
+    }
+    for (const model_list& l : model_->lists) {
+      const raw_value* raw = find("model." + l.name);
+      const auto variables = config_.model.lists.find(l.variables);
+      config_.model.lists[l.name] =
+          raw == nullptr ? l.value
+                         : to_list(l, *raw,
+                                   variables == config_.model.lists.end() ? std::vector<std::string>{}
+                                                                          : variables->second,
+                                   config_.constants);
+    }
+  }
+
+  /// Whether the case leaves the parameter to the model.
+  bool is_automatic(const model_parameter& p) const {
+    const raw_value* raw = find("model." + p.name);
+    const auto* word = raw == nullptr ? nullptr : std::get_if<std::string>(&raw->value);
+    return p.automatic && (raw == nullptr || (word != nullptr && *word == automatic_word));
+  }
+
+  /// Parameters that the case leaves to the model, from its initial data.
+  void choose_parameters() {
+    for (const model_parameter& p : model_->parameters) {
+      if (!is_automatic(p)) continue;
+      const auto equation = checked_model();
+      const auto rows = sample_data(config_, *equation);  // the same for every mesh of a study
+      config_.model.parameters[p.name] =
+          with_place_of_key([&] { return equation->automatic_value(p.name, rows); });
     }
   }
 

@@ -34,9 +34,12 @@ void check_size(std::string_view text, const std::string& file) {
   }
 }
 
-raw_value convert(const toml::node& node, const source_place& place) {
+/// Converts a value of the key at `place`; items of a list have places of their own in `file`, where it is
+/// known.
+raw_value convert(const toml::node& node, const source_place& place, const std::string& file = "") {
   raw_value raw;
   raw.place = place;
+  raw.value_place = file.empty() ? place : place_of(node.source(), file);
   if (const auto* integer = node.as_integer()) {
     raw.value = static_cast<long>(integer->get());
     raw.what = fmt::format("the integer {}", integer->get());
@@ -48,7 +51,7 @@ raw_value convert(const toml::node& node, const source_place& place) {
     raw.what = fmt::format("the text '{}'", shown(text->get()));
   } else if (const auto* array = node.as_array()) {
     raw_value::list items;
-    for (const auto& item : *array) items.push_back(convert(item, place));
+    for (const auto& item : *array) items.push_back(convert(item, place, file));
     raw.what = fmt::format("a list of {}", items.size());
     raw.value = std::move(items);
   } else if (node.is_boolean()) {
@@ -61,9 +64,7 @@ raw_value convert(const toml::node& node, const source_place& place) {
 
 void add_value(case_text& out, const std::string& path, const toml::key& key, const toml::node& node,
                const std::string& file) {
-  raw_value raw = convert(node, place_of(key.source(), file));
-  raw.value_place = place_of(node.source(), file);
-  out.values.emplace(path, std::move(raw));
+  out.values.emplace(path, convert(node, place_of(key.source(), file), file));
 }
 
 /// Levels of tables below one that may have them, [[initial.region.part]].
@@ -172,9 +173,7 @@ void apply_override(case_text& target, const std::string& path, const std::strin
     if (!bare && value.find_first_of("#\"'") != std::string::npos &&
         value[value.find_first_of("#\"'")] == '#')
       throw input_error(place, "the value is followed by '#' (comments are for files); remove the comment");
-    raw_value raw = convert(*root.get("value"), place);
-    raw.value_place = place;
-    target.values[path] = std::move(raw);
+    target.values[path] = convert(*root.get("value"), place);
   } catch (const toml::parse_error& e) {
     throw input_error(place, value.empty() ? fmt::format("the value is empty (nothing stands behind '='); {}",
                                                          form.suggestion)

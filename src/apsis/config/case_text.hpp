@@ -18,7 +18,7 @@ struct raw_value {
   std::variant<std::monostate, long, double, std::string, list> value;  ///< value in TOML
   std::string what;          ///< description for messages: "the integer 5", "a boolean"
   source_place place;        ///< place of the key or override; of the key for list elements
-  source_place value_place;  ///< place of the value
+  source_place value_place;  ///< place of the value; of the list element
 };
 
 /// Keys of a case by dotted path, and places of its tables. Items of a list of tables are numbered from 1.

@@ -169,6 +169,44 @@ std::string to_text(const model_text& text, const raw_value& raw, const formula_
   return *value;
 }
 
+namespace {
+
+/// Throws input_error unless the names can be variables of formulas, of the table [initial] and of
+/// boundaries.
+void check_names(const raw_value& raw, const std::string& path, const std::vector<std::string>& names,
+                 const formula_constants& constants) {
+  std::string why = why_not_variables(names, constants);
+  for (const char* key : {"kind", "part", "region", "weight", "where"})
+    if (why.empty() && std::find(names.begin(), names.end(), key) != names.end())
+      why = fmt::format("'{}' cannot be the name of a variable: it is a key of other tables", key);
+  if (!why.empty()) refuse(raw, path, shown(why, 200), "choose other names");
+}
+
+}  // namespace
+
+std::vector<std::string> to_list(const model_list& list, const raw_value& raw,
+                                 const std::vector<std::string>& variables,
+                                 const formula_constants& constants) {
+  const std::string path = "model." + list.name;
+  const auto* items = std::get_if<raw_value::list>(&raw.value);
+  if (items == nullptr)
+    refuse(raw, path, "a list of texts is needed",
+           list.variables.empty() ? "write for example [\"h\", \"q\"]"
+                                  : "write for example [\"q\", \"q^2/h + h^2/2\"]");
+  std::vector<std::string> texts;
+  for (const raw_value& item : *items) {
+    const auto* text = std::get_if<std::string>(&item.value);
+    if (text == nullptr) refuse(item, path, "a list of texts is needed", type_advice(key_type::text));
+    texts.push_back(*text);
+    if (list.variables.empty()) continue;
+    source_place place = item.value_place;
+    if (place.column > 0) ++place.column;  // after the quotation mark
+    const expression formula(*text, place, formula_kind{variables, false, constants});
+  }
+  if (list.variables.empty()) check_names(raw, path, texts, constants);
+  return texts;
+}
+
 case_value to_value(const case_key& key, const raw_value& raw, const case_config& so_far) {
   switch (key.type) {
     case key_type::integer:

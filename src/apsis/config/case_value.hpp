@@ -17,6 +17,15 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
 /// input_error at the place of the key, or within the formula.
 std::string to_text(const model_text& text, const raw_value& raw, const formula_constants& constants);
 
+/// The value of an automatic parameter that leaves it to the model.
+inline constexpr const char* automatic_word = "auto";
+
+/// Returns the value of a list of texts: names, or formulas in `variables`, which may use `constants`. Throws
+/// input_error at the place of the key, or within a formula.
+std::vector<std::string> to_list(const model_list& list, const raw_value& raw,
+                                 const std::vector<std::string>& variables,
+                                 const formula_constants& constants);
+
 /// Returns the suggestion with an example value of a type: "write for example 100".
 std::string type_advice(key_type type);
 

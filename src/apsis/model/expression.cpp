@@ -183,11 +183,14 @@ class parser_pool {
   /// The first parser, for the constructor of an expression.
   variable_parser& first() { return *slots_.front().parser; }
 
-  double evaluate(std::span<const double> variables) {
+  /// Evaluates the formula at results.size() points, whose variables follow each other.
+  void evaluate(std::span<const double> variables, std::span<double> results) {
     slot& mine = acquire();
     const release_at_exit release{mine};
     if (!mine.parser) mine.parser = std::make_unique<variable_parser>(text_, kind_);
-    return mine.parser->evaluate(variables);
+    const std::size_t count = kind_.variables.size();
+    for (std::size_t p = 0; p < results.size(); ++p)
+      results[p] = mine.parser->evaluate(variables.subspan(p * count));
   }
 
  private:
@@ -228,7 +231,10 @@ formula_kind formula_of_position(int dimensions, bool nonnegative, const formula
   return {{all.begin(), all.begin() + std::clamp(dimensions, 1, 3)}, nonnegative, constants};
 }
 
-std::string why_not_a_constant(const std::string& name) {
+namespace {
+
+/// Why no variable and no constant can have this name.
+std::string why_not_a_name(const std::string& name) {
   const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
   if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
       !std::all_of(name.begin(), name.end(), in_name))
@@ -236,8 +242,29 @@ std::string why_not_a_constant(const std::string& name) {
   const auto& language = names_of_the_language();
   if (std::find(language.begin(), language.end(), name) != language.end())
     return "formulas have a function or constant of this name";
+  return "";
+}
+
+}  // namespace
+
+std::string why_not_a_constant(const std::string& name) {
+  if (std::string why = why_not_a_name(name); !why.empty()) return why;
   for (const char* variable : {"x", "y", "z", "t", "u", "v", "v_x", "v_y", "v_z"})
     if (name == variable) return "it is a variable of formulas";
+  return "";
+}
+
+std::string why_not_variables(const std::vector<std::string>& names, const formula_constants& constants) {
+  const auto why_not = [&](std::vector<std::string>::const_iterator name) -> std::string {
+    if (std::string why = why_not_a_name(*name); !why.empty()) return why;
+    for (const char* coordinate : {"x", "y", "z", "t"})
+      if (*name == coordinate) return "it is a coordinate or time";
+    if (constants.contains(*name)) return "a parameter of the case has this name";
+    return std::find(names.begin(), name, *name) != name ? "it occurs twice" : "";
+  };
+  for (auto name = names.begin(); name != names.end(); ++name)
+    if (const std::string why = why_not(name); !why.empty())
+      return fmt::format("'{:.60}' cannot be the name of a variable: {}", *name, why);
   return "";
 }
 
@@ -275,8 +302,14 @@ expression::expression(expression&&) noexcept = default;
 expression& expression::operator=(expression&&) noexcept = default;
 
 double expression::value(std::span<const double> variables) const {
+  double result = 0.0;
+  values(variables, {&result, 1});
+  return result;
+}
+
+void expression::values(std::span<const double> variables, std::span<double> results) const {
   try {
-    return impl_->parsers.evaluate(variables);
+    impl_->parsers.evaluate(variables, results);
   } catch (const mu::ParserError& e) {
     fail(impl_->text, impl_->place, 0, e.GetMsg(), "check the formula");
   }

@@ -41,6 +41,10 @@ unsupported_initial_data model::check_supported_range(const double*, const doubl
   return {};
 }
 
+double model::automatic_value(const std::string&, const std::vector<std::vector<double>>&) const {
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 void relaxation_model::moments_of_rows(const double* u, std::ptrdiff_t pitch, int rows, double* omega) const {
   for (int p = 0; p < rows; ++p) moments(u + p * pitch, omega + p * moment_count());
 }
@@ -55,6 +59,7 @@ model_config default_config(const model_entry& entry) {
   model_config config;
   for (const auto& p : entry.parameters) config.parameters[p.name] = p.value;
   for (const auto& t : entry.texts) config.texts[t.name] = t.value;
+  for (const auto& l : entry.lists) config.lists[l.name] = l.value;
   if (entry.has_velocity_grid) config.velocity = {.max = 8.0, .points = 16};
   return config;
 }

@@ -62,6 +62,10 @@ class model {
   /// Returns v of the CFL number v Δt/Δx along a direction: by default the largest |speed|; 0 without space.
   virtual double reference_speed(int direction) const;
 
+  /// Returns the factors of the sets of components on velocities() under a reflection of space: −1 for a set
+  /// whose sum is a momentum; empty, the default: 1 for all. Throws input_error if they are unknown.
+  virtual std::vector<double> reflection_signs() const { return {}; }
+
   /// Whether S(u) is not identically 0.
   virtual bool has_source() const { return false; }
   /// s ← S(u), the explicit local source, part of the operator T; 0 by default.
@@ -104,7 +108,8 @@ class model {
   /// values ← the further fields of a row, in the order of further_fields().
   virtual void further_macroscopic(const double* u, double* values) const;
 
-  /// Returns the initial data, at least one; the first is the default.
+  /// Returns the initial data; the first is the default. A model of a registry has some with its default
+  /// options; where others leave none, a case needs a table [initial].
   virtual const std::vector<initial_data>& initial() const = 0;
   /// Returns the ways to prescribe a row by variables, the preferred one first; none by default. The model
   /// must outlive them.
@@ -112,8 +117,16 @@ class model {
 
   /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could.
   virtual unsupported_initial_data check_supported(const double* u) const;
+  /// Returns the name of the condition that check_supported() states, if a solution may violate it later, so
+  /// that a run checks it after every step: "subcharacteristic condition"; "" if there is none.
+  virtual std::string condition() const { return ""; }
   /// Likewise for data whose macroscopic fields lie between these extremes.
   virtual unsupported_initial_data check_supported_range(const double* lowest, const double* highest) const;
+
+  /// Returns the value of an automatic parameter (model_parameter::automatic) for initial data with
+  /// the samples `rows`. Throws input_error where none suits them.
+  virtual double automatic_value(const std::string& parameter,
+                                 const std::vector<std::vector<double>>& rows) const;
 };
 
 /// The coefficients of a stage v = u + A (…) + B (…) of a relaxation.

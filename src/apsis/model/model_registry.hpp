@@ -18,6 +18,9 @@ struct model_parameter {
   double highest;        ///< largest allowed value
   std::string doc;       ///< description with unit
   bool integer = false;  ///< integers only
+  /// Whether a case may have "auto" in its place, the default there: model::automatic_value() then chooses it
+  /// from the initial data. `value` is that of models made without data.
+  bool automatic = false;
 };
 
 /// A string option of a model: one of several names, or a formula.
@@ -27,6 +30,14 @@ struct model_text {
   std::vector<std::string> choices;  ///< predefined names
   std::string variable;  ///< variable of a formula, which may take any finite value; "": names only
   std::string doc;       ///< description
+};
+
+/// A list of texts of a model: names that the case chooses, or formulas.
+struct model_list {
+  std::string name;                ///< key in the table [model]
+  std::vector<std::string> value;  ///< default
+  std::string variables;           ///< list with the variables of formulas, declared before; "": names
+  std::string doc;                 ///< description
 };
 
 /// How a kinetic model computes its discrete equilibrium.
@@ -65,10 +76,11 @@ struct velocity_config {
 
 /// Configuration of a model.
 struct model_config {
-  std::map<std::string, double> parameters;  ///< complete: defaults filled in
-  std::map<std::string, std::string> texts;  ///< complete; each a choice or a valid formula
-  velocity_config velocity;                  ///< only where the entry has_velocity_grid
-  formula_constants constants = {};          ///< constants of formulas
+  std::map<std::string, double> parameters;                    ///< complete: defaults filled in
+  std::map<std::string, std::string> texts;                    ///< complete; each a choice or a valid formula
+  velocity_config velocity;                                    ///< only where the entry has_velocity_grid
+  formula_constants constants = {};                            ///< constants of formulas
+  std::map<std::string, std::vector<std::string>> lists = {};  ///< complete; valid names or formulas
 };
 
 /// One equation of the registry: a file of model/models/ defines `extern const model_entry model_<file>`.
@@ -79,6 +91,7 @@ struct model_entry {
   bool has_velocity_grid = false;                ///< made from the table [velocity]
   std::vector<model_parameter> parameters = {};  ///< in the order in which they are documented
   std::vector<model_text> texts = {};            ///< in the order in which they are documented
+  std::vector<model_list> lists = {};            ///< in the order in which they are documented
   /// Returns the model. Throws input_error if the velocity grid or a formula is invalid.
   std::unique_ptr<model> (*make)(const model_config&) = nullptr;
 };

@@ -70,6 +70,7 @@ nlohmann::ordered_json to_json(const case_config& config) {
   }
   for (const auto& [name, value] : config.model.parameters) out["model"][name] = value;
   for (const auto& [name, value] : config.model.texts) out["model"][name] = value;
+  for (const auto& [name, value] : config.model.lists) out["model"][name] = value;
   if (!config.constants.empty()) out["parameters"] = config.constants;
   if (!config.faces.left.values.empty()) out["boundary"]["left"].update(to_json(config.faces.left.values));
   if (!config.faces.right.values.empty()) out["boundary"]["right"].update(to_json(config.faces.right.values));

@@ -64,6 +64,7 @@ json manifest(const simulation& run, const session_record& session) {
   out["promises"] = {{"positivity", run.promises().positivity},
                      {"conservation", run.promises().conservation},
                      {"entropy", run.promises().entropy}};
+  if (!run.promises().condition.empty()) out["promises"][run.promises().condition] = true;
   out["result"] = numbers(run);
   out["build"] = build_info();
   out["machine"] = machine_info();

@@ -32,8 +32,10 @@ class compensated_sum {
 monitor::totals monitor::sum(const field& u) const {
   const std::size_t count = equation_.invariants().size();
   const auto cells = static_cast<std::size_t>(u.cells());
-  std::vector<double> densities(cells * count), entropies(cells), lowest(cells), scales(count);
+  std::vector<double> densities(cells * count), entropies(cells), lowest(cells), scales(cells * count);
   std::vector<long> negative(cells);
+  const bool conditional = !equation_.condition().empty();
+  std::vector<char> violates(conditional ? cells : 0);
   constexpr int block = 16;
   parallel_blocks(u.cells(), block, [&](int begin, int end) {
     const profile::section timed(kernel::monitor, static_cast<double>(end - begin) * u.stride(),
@@ -45,12 +47,18 @@ monitor::totals monitor::sum(const field& u) const {
       lowest[c] = low;
       negative[c] = below;
       equation_.invariant_densities(row, densities.data() + c * count);
+      equation_.invariant_scales(densities.data() + c * count, scales.data() + c * count);
+      if (conditional) violates[c] = equation_.check_supported(row).problem.empty() ? 0 : 1;
       if (equation_.has_entropy() && below == 0) entropies[c] = equation_.entropy(row);
     }
   });
 
-  totals t{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0), 0.0,
-           std::numeric_limits<double>::infinity(), 0};
+  totals t{std::vector<double>(count, 0.0),
+           std::vector<double>(count, 0.0),
+           0.0,
+           std::numeric_limits<double>::infinity(),
+           0,
+           -1};
   std::vector<compensated_sum> invariants(count), sizes(count);
   compensated_sum entropy;
   for (std::size_t c = 0; c < cells; ++c) {
@@ -61,11 +69,11 @@ monitor::totals monitor::sum(const field& u) const {
     t.lowest = std::min(t.lowest, lowest[c]);
     t.negative += negative[c];
     entropy.add(entropies[c]);
-    equation_.invariant_scales(densities.data() + c * count, scales.data());
     for (std::size_t k = 0; k < count; ++k) {
       invariants[k].add(densities[c * count + k]);
-      sizes[k].add(scales[k]);
+      sizes[k].add(scales[c * count + k]);
     }
+    if (conditional && t.violating < 0 && violates[c] != 0) t.violating = static_cast<long>(c);
   }
   for (std::size_t k = 0; k < count; ++k) {
     t.invariants[k] = volume_ * invariants[k].value();
@@ -98,6 +106,7 @@ step_record monitor::check(const field& u, double dt, const step_record& previou
   record.negative_values = t.negative;
   record.entropy = t.entropy;
   record.entropy_change = t.entropy - previous.entropy;
+  record.violation = violation_in(u, t);
   std::vector<double> gained = u.gains();
   gained.resize(faces_ * invariants_.size());
   record.received = previous.received;
@@ -107,6 +116,12 @@ step_record monitor::check(const field& u, double dt, const step_record& previou
   }
   compare(t, previous.total, gained, record);
   return record;
+}
+
+std::optional<condition_violation> monitor::violation_in(const field& u, const totals& t) const {
+  if (t.violating < 0) return std::nullopt;
+  const double* row = u.row(static_cast<int>(t.violating));
+  return condition_violation{t.violating, row[0], equation_.check_supported(row).problem};
 }
 
 void monitor::compare(const totals& t, const std::vector<double>& before, const std::vector<double>& gained,

@@ -5,6 +5,7 @@
 #include <apsis/run/simulation.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace apsis {
@@ -31,7 +32,9 @@ class monitor {
     std::vector<double> invariants, scales;
     double entropy, lowest;
     long negative;
+    long violating;  ///< first cell that violates the condition of the model; −1 if there is none
   };
+  std::optional<condition_violation> violation_in(const field& u, const totals& t) const;
   totals sum(const field& u) const;
   void compare(const totals& t, const std::vector<double>& before, const std::vector<double>& gained,
                step_record& record) const;

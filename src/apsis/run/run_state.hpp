@@ -5,9 +5,17 @@
 
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace apsis {
+
+/// A cell whose state violates the condition of its model (model::condition()).
+struct condition_violation {
+  long cell = -1;       ///< the first such cell
+  double value = 0.0;   ///< first component of its row
+  std::string problem;  ///< message of model::check_supported()
+};
 
 /// The checks after a step; one row of history.csv. Dimensionless.
 struct step_record {
@@ -32,6 +40,7 @@ struct step_record {
   /// |I − I₀ − received| of this step alone, relative to the same scales; not among the members that are
   /// kept.
   std::vector<double> defect_of_step = {};
+  std::optional<condition_violation> violation = {};  ///< as well not among the members that are kept
 
   /// Calls visit(name, member) for every member of `self`, in the order of the columns of the history.
   template <class Self, class Visitor>

@@ -23,9 +23,9 @@ namespace {
 /// Throws an input error at the place of a key, if it is known.
 [[noreturn]] void refuse(const case_config& config, const std::string& key, const std::string& message) {
   const bool prescribed = key == "model.initial" && !config.prescribed.empty();
-  const auto place = config.places.find(prescribed ? "initial" : key);
-  if (place == config.places.end()) throw input_error(message);
-  throw input_error(place->second, message);
+  const source_place place = place_of(config, prescribed ? "initial" : key);
+  if (place.file.empty()) throw input_error(message);
+  throw input_error(place, message);
 }
 
 /// Returns the smallest and the largest value of every macroscopic field.
@@ -246,6 +246,7 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
   const auto* relaxation = dynamic_cast<const relaxation_model*>(equation.get());
   const bool collisions = equation->collisions_keep_sign() &&
                           !(explicit_collision && relaxation != nullptr && relaxation->relaxing_count() > 0);
+  promises.condition = equation->condition();
   promises.positivity = equation->positive() && collisions && nonnegative && within && builder_.keeps_sign();
   // An equilibrium with other moments does not minimize the entropy among the states with those of the data.
   promises.entropy = equation->collisions_decrease_entropy() && nonnegative && closed && within &&

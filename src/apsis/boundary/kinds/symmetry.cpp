@@ -2,6 +2,8 @@
 #include <apsis/boundary/mirrored_components.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 namespace apsis {
 namespace {
@@ -11,24 +13,31 @@ namespace {
 /// face.
 class symmetry_boundary final : public boundary {
  public:
-  /// Without velocities: a description that prepared() turns into a boundary of a face.
-  symmetry_boundary() = default;
-  explicit symmetry_boundary(std::vector<int> mirrored) : mirrored_(std::move(mirrored)) {}
+  /// Without velocities: a description that prepared() turns into a boundary of a face. `signs` as in
+  /// model::reflection_signs().
+  explicit symmetry_boundary(std::vector<double> signs) : signs_of_sets_(std::move(signs)) {}
 
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override {
-    return std::make_shared<symmetry_boundary>(mirrored_components(velocities, where.direction));
+    auto own = std::make_shared<symmetry_boundary>(signs_of_sets_);
+    own->mirrored_ = mirrored_components(velocities, where.direction);
+    own->signs_.assign(own->mirrored_.size(), 1.0);
+    for (std::size_t k = 0; k < own->signs_.size() && !signs_of_sets_.empty(); ++k)
+      own->signs_[k] = signs_of_sets_[k / static_cast<std::size_t>(velocities.size())];
+    return own;
   }
 
   void fill(const face&, double, const pencil_end& rows) const override {
     for (std::size_t g = 0; g < rows.ghosts.size(); ++g) {
       const double* image = rows.inside[std::min(g, rows.inside.size() - 1)];
       double* ghost = rows.ghosts[g];
-      for (std::size_t k = 0; k < mirrored_.size(); ++k) ghost[k] = image[mirrored_[k]];
+      for (std::size_t k = 0; k < mirrored_.size(); ++k) ghost[k] = signs_[k] * image[mirrored_[k]];
     }
   }
 
  private:
+  std::vector<double> signs_of_sets_;
   std::vector<int> mirrored_;  ///< component whose normal velocity is opposite
+  std::vector<double> signs_;  ///< of every component
 };
 
 }  // namespace
@@ -38,8 +47,9 @@ const boundary_entry boundary_symmetry = {
     .name = "symmetry",
     .description =
         "plane of symmetry, or wall that reflects specularly: mirror images with reversed normal velocity",
-    .make = [](const boundary_source&) -> std::unique_ptr<boundary> {
-      return std::make_unique<symmetry_boundary>();
+    .make = [](const boundary_source& from) -> std::unique_ptr<boundary> {
+      return std::make_unique<symmetry_boundary>(from.equation != nullptr ? from.equation->reflection_signs()
+                                                                          : std::vector<double>{});
     }};
 
 }  // namespace apsis

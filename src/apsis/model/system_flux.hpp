@@ -1,0 +1,49 @@
+#pragma once
+
+#include <apsis/model/expression.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// F(u) of a system of conservation laws u_t + F(u)_x = 0 in n variables, one formula for each.
+/// Dimensionless. Thread-safe.
+class system_flux {
+ public:
+  /// Largest number of variables.
+  static constexpr int most_variables = 16;
+
+  /// Formulas of the fluxes in the variables and `constants`. Throws input_error: a formula that cannot be
+  /// read, more or fewer formulas than variables, or no or too many variables.
+  system_flux(std::vector<std::string> variables, const std::vector<std::string>& formulas,
+              const formula_constants& constants = {});
+
+  /// Returns n.
+  int size() const { return static_cast<int>(variables_.size()); }
+  /// Returns the names of the variables.
+  const std::vector<std::string>& variables() const { return variables_; }
+
+  /// F(u) at `points` states of n numbers each, one after the other: flux k at point p is F[k points + p],
+  /// NaN where the formula has no value.
+  void evaluate(const double* u, int points, double* F) const;
+
+  /// Characteristic speeds of a state.
+  struct waves {
+    double speed = 0.0,   ///< max |λ| over the eigenvalues λ of F'(u); NaN if F is not differentiable at u
+        imaginary = 0.0;  ///< max |Im λ|; 0 where the law is hyperbolic, up to rounding
+  };
+  /// Returns the characteristic speeds at u. F' is a fourth-order difference.
+  waves characteristic_speeds(const double* u) const;
+
+  /// Returns "h = 1, q = 0.5" for messages.
+  std::string text_of(const double* u) const;
+
+ private:
+  bool differentiate(const double* u, int variable, double* slopes) const;
+
+  std::vector<std::string> variables_;
+  std::vector<expression> formulas_;
+};
+
+}  // namespace apsis

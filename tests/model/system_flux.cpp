@@ -1,0 +1,151 @@
+// Fluxes of systems given as formulas: numerical characteristic speeds against those known in closed form.
+#include <apsis/model/system_flux.hpp>
+
+#include <apsis/core/errors.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <support/property.hpp>
+
+using apsis::system_flux;
+using testing::HasSubstr;
+
+namespace {
+
+const system_flux& shallow_water() {
+  static const system_flux flux({"h", "q"}, {"q", "q^2/h + g*h^2/2"}, {{"g", 9.81}});
+  return flux;
+}
+
+const system_flux& euler() {
+  static const system_flux flux(
+      {"rho", "m", "E"},
+      {"m", "m^2/rho + (G - 1)*(E - m^2/(2*rho))", "m/rho*(E + (G - 1)*(E - m^2/(2*rho)))"}, {{"G", 1.4}});
+  return flux;
+}
+
+std::string error_of(const std::vector<std::string>& variables, const std::vector<std::string>& formulas,
+                     const apsis::formula_constants& constants = {}) {
+  try {
+    const system_flux made(variables, formulas, constants);
+  } catch (const apsis::input_error& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+/// A positive number whose logarithm is uniform.
+double between(double lowest, double highest) {
+  return lowest * std::pow(highest / lowest, 1e-6 * *rc::gen::inRange(0, 1000001));
+}
+
+/// A number in [-size, size], 0 with probability 1/3.
+double signed_up_to(double size) {
+  return size * *rc::gen::element(0, 1, -1) * 1e-6 * *rc::gen::inRange(0, 1000001);
+}
+
+}  // namespace
+
+// The derivative has an error of 1e-11 or less in smooth formulas, and where one variable is much smaller
+// than the others its rounding is larger; 1e-8 is a hundredth of what the subcharacteristic condition allows.
+constexpr double tolerance = 1e-8;
+
+TEST(system_flux, has_the_characteristic_speeds_of_shallow_water_from_films_to_oceans) {
+  check_property("|q/h| + sqrt(g h)", [] {
+    const double h = between(1e-6, 1e4), c = std::sqrt(9.81 * h), velocity = signed_up_to(10.0) * c;
+    const double u[] = {h, h * velocity};
+    const auto found = shallow_water().characteristic_speeds(u);
+    RC_ASSERT(std::abs(found.speed - (std::abs(velocity) + c)) <= tolerance * (std::abs(velocity) + c));
+    RC_ASSERT(found.imaginary == 0.0);
+  });
+}
+
+TEST(system_flux, has_the_characteristic_speeds_of_a_gas_in_any_units) {
+  check_property("|v| + sqrt(gamma p/rho)", [] {
+    const double rho = between(1e-3, 1e3), p = rho * between(1e-3, 1e7), c = std::sqrt(1.4 * p / rho);
+    const double v = signed_up_to(5.0) * c;
+    const double u[] = {rho, rho * v, p / 0.4 + 0.5 * rho * v * v};
+    const auto found = euler().characteristic_speeds(u);
+    RC_ASSERT(std::abs(found.speed - (std::abs(v) + c)) <= tolerance * (std::abs(v) + c));
+    RC_ASSERT(found.imaginary <= tolerance * c);
+  });
+}
+
+TEST(system_flux, has_the_characteristic_speeds_of_more_than_three_variables) {
+  // A gas that carries two tracers: further eigenvalues v, of multiplicity three with that of the contact.
+  const system_flux flux({"rho", "a", "m", "E", "b"}, {"m", "a*m/rho", "m^2/rho + 0.4*(E - m^2/(2*rho))",
+                                                       "m/rho*(E + 0.4*(E - m^2/(2*rho)))", "b*m/rho"});
+  check_property("|v| + sqrt(gamma p/rho)", [&] {
+    const double rho = between(1e-3, 1e3), p = rho * between(1e-3, 1e7), c = std::sqrt(1.4 * p / rho);
+    const double v = signed_up_to(5.0) * c;
+    const double u[] = {rho, 0.3 * rho, rho * v, p / 0.4 + 0.5 * rho * v * v, -2.0 * rho};
+    const auto found = flux.characteristic_speeds(u);
+    RC_ASSERT(std::abs(found.speed - (std::abs(v) + c)) <= tolerance * (std::abs(v) + c));
+    RC_ASSERT(found.imaginary <= 1e-3 * c);  // the cube root of an error of 1e-9
+  });
+}
+
+TEST(system_flux, finds_where_a_law_is_not_hyperbolic) {
+  // p-system with a pressure that increases with the volume (van der Waals): λ² = -p'(v).
+  const system_flux flux({"v", "w"}, {"-w", "3*v^2"});
+  const double u[] = {0.5, 0.2};
+  const auto found = flux.characteristic_speeds(u);
+  EXPECT_NEAR(found.imaginary, std::sqrt(3.0), 1e-10);
+  const double hyperbolic[] = {-0.5, 0.2};
+  EXPECT_EQ(flux.characteristic_speeds(hyperbolic).imaginary, 0.0);
+  // In three variables as well: a rotation of two of them.
+  const system_flux three({"a", "b", "c"}, {"b", "-a", "5*c"});
+  const double any[] = {1.0, 2.0, 3.0};
+  EXPECT_NEAR(three.characteristic_speeds(any).imaginary, 1.0, 1e-10);
+  EXPECT_NEAR(three.characteristic_speeds(any).speed, 5.0, 1e-10);
+}
+
+TEST(system_flux, differentiates_where_slopes_vanish_or_formulas_end) {
+  const auto speed = [](const std::string& formula, double u) {
+    return system_flux({"u"}, {formula}).characteristic_speeds(&u).speed;
+  };
+  EXPECT_NEAR(speed("u^3", 0.0), 0.0, 1e-9);
+  EXPECT_NEAR(speed("cos(u)", 0.0), 0.0, 1e-12);
+  EXPECT_NEAR(speed("7", 2.0), 0.0, 1e-12);
+  EXPECT_NEAR(speed("u^2/2", 3.0), 3.0, 1e-11);
+  EXPECT_NEAR(speed("exp(u)", 2.0), std::exp(2.0), 1e-9);
+  EXPECT_NEAR(speed("1/u", 1e-9), 1e18, 1e9);
+  // Manning's formula for a film of water that has run dry: the slope 5/3 u^(2/3) at 0, from one side; its
+  // difference over steps of 1e-6 is 1e-4.
+  EXPECT_NEAR(speed("u^(5/3)", 0.0), 0.0, 2e-4);
+  EXPECT_TRUE(std::isnan(speed("sqrt(u)", -1.0)));
+  EXPECT_TRUE(std::isnan(speed("u", std::nan(""))));
+}
+
+TEST(system_flux, of_several_states_equals_that_of_each) {
+  const std::vector<double> u = {1.0, 0.5, 2.0, -0.25, 0.125, 3.0, 1e-3, 0.0};
+  std::vector<double> together(8), alone(2);
+  shallow_water().evaluate(u.data(), 4, together.data());
+  for (std::size_t p = 0; p < 4; ++p) {
+    shallow_water().evaluate(u.data() + 2 * p, 1, alone.data());
+    EXPECT_EQ(together[p], alone[0]);
+    EXPECT_EQ(together[4 + p], alone[1]);
+    EXPECT_DOUBLE_EQ(alone[1], u[2 * p + 1] * u[2 * p + 1] / u[2 * p] + 0.5 * 9.81 * u[2 * p] * u[2 * p]);
+  }
+}
+
+TEST(system_flux, refuses_names_and_numbers_of_formulas_that_do_not_fit) {
+  EXPECT_EQ(error_of({"h", "q"}, {"q", "h*q"}), "accepted");
+  EXPECT_THAT(error_of({"h", "q"}, {"q"}), HasSubstr("model.flux has 1 formula (each of the 2 variables h, q "
+                                                     "has one flux); give 2 formulas"));
+  EXPECT_THAT(error_of({}, {}), HasSubstr("model.variables has 0 names"));
+  EXPECT_THAT(error_of(std::vector<std::string>(17, "u"), {}), HasSubstr("model.variables has 17 names"));
+  EXPECT_THAT(error_of({"h", "h"}, {"h", "h"}), HasSubstr("it occurs twice"));
+  EXPECT_THAT(error_of({"x"}, {"1"}), HasSubstr("it is a coordinate or time"));
+  EXPECT_THAT(error_of({"t"}, {"1"}), HasSubstr("it is a coordinate or time"));
+  EXPECT_THAT(error_of({"pi"}, {"1"}), HasSubstr("formulas have a function or constant of this name"));
+  EXPECT_THAT(error_of({"sin"}, {"1"}), HasSubstr("formulas have a function or constant of this name"));
+  EXPECT_THAT(error_of({"2h"}, {"1"}), HasSubstr("a name is a letter followed by"));
+  EXPECT_THAT(error_of({""}, {"1"}), HasSubstr("a name is a letter followed by"));
+  EXPECT_THAT(error_of({"g"}, {"g"}, {{"g", 1.0}}), HasSubstr("a parameter of the case has this name"));
+  EXPECT_THAT(error_of({"h"}, {"k"}), HasSubstr("unknown name 'k'"));
+}

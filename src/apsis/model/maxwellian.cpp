@@ -14,26 +14,36 @@
 
 namespace apsis {
 
+void velocity_grid::check_size(std::span<const int> points) {
+  double velocities = 1.0;
+  for (const int n : points) velocities *= n;
+  const auto d = points.size();
+  if (velocities > most_velocities)
+    throw input_error(fmt::format(
+        "velocity.points = {} are {:.4g} velocities in {} dimension{} (more than {} cannot be numbered); "
+        "give at most {}",
+        points.front(), velocities, d, d == 1 ? "" : "s", most_velocities,
+        static_cast<int>(
+            std::floor(std::pow(most_velocities, 1.0 / static_cast<double>(d)) * (1.0 + 1e-12)))));
+}
+
 velocity_grid::velocity_grid(int dimensions, int points, double max)
     : velocity_grid([&] {
         if (dimensions < 1 || dimensions > 3)
           throw input_error(
               fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", dimensions));
-        return std::vector<velocity_line>(static_cast<std::size_t>(dimensions), velocity_line(points, max));
+        const std::vector<int> each(static_cast<std::size_t>(dimensions), points);
+        check_size(each);
+        return std::vector<velocity_line>(each.size(), velocity_line(points, max));
       }()) {}
 
 velocity_grid::velocity_grid(std::vector<velocity_line> lines) : lines_(std::move(lines)) {
   const int d = dimensions();
   if (d < 1 || d > 3)
     throw input_error(fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", d));
-  double velocities = 1.0;
-  for (const auto& line : lines_) velocities *= line.points();
-  if (velocities > most_velocities)
-    throw input_error(fmt::format(
-        "velocity.points = {} are {:.4g} velocities in {} dimension{} (more than {} cannot be numbered); "
-        "give at most {}",
-        lines_.front().points(), velocities, d, d == 1 ? "" : "s", most_velocities,
-        static_cast<int>(std::floor(std::pow(most_velocities, 1.0 / d) * (1.0 + 1e-12)))));
+  std::vector<int> points;
+  for (const auto& line : lines_) points.push_back(line.points());
+  check_size(points);
   for (const auto& line : lines_) {
     size_ *= line.points();
     uniform_ = uniform_ && line.uniform();

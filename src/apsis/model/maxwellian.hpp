@@ -26,6 +26,9 @@ class velocity_grid {
   /// Throws input_error unless there are 1 to 3 lines and at most most_velocities combinations.
   explicit velocity_grid(std::vector<velocity_line> lines);
 
+  /// Throws input_error if lines of these lengths have more than most_velocities combinations.
+  static void check_size(std::span<const int> points);
+
   int dimensions() const { return static_cast<int>(lines_.size()); }  ///< d
   int size() const { return size_; }                                  ///< number of velocities
   /// Returns the velocities of a direction.

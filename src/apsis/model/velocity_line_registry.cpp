@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/core/text_file.hpp>
+#include <apsis/model/maxwellian.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -112,10 +113,13 @@ std::vector<velocity_line> make_lines(const velocity_config& of, int dimensions)
     throw input_error(fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", dimensions));
   static const std::vector<std::string> uniform = {"uniform"};
   const auto& names = of.set.empty() ? uniform : of.set;
+  std::vector<int> points;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k)
+    points.push_back(item_of(of.points.each(), k, dimensions, "velocity.points"));
+  velocity_grid::check_size(points);  // before they are made
   std::vector<velocity_line> lines;
   for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k)
-    lines.push_back(make_line(of, item_of(names, k, dimensions, "velocity.set"),
-                              item_of(of.points.each(), k, dimensions, "velocity.points")));
+    lines.push_back(make_line(of, item_of(names, k, dimensions, "velocity.set"), points[k]));
   return lines;
 }
 

@@ -81,8 +81,7 @@ std::vector<double> random_row(int size) {
 }  // namespace
 
 TEST(velocity_line, integrates_maxwellians) {
-  // Moments up to the fourth of a Gaussian of temperature 1: 1, 0, 1, 0, 3. What lies beyond 8 is below
-  // 1e-12.
+  // Moments up to the fourth of a Gaussian of temperature 1: 1, 0, 1, 0, 3; its mass beyond 8 is 1e-15.
   for (const auto& name : names()) {
     const velocity_line line = find_velocity_line(name)->make(40, 8.0);
     const double exact[] = {1.0, 0.0, 1.0, 0.0, 3.0};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/model/dimension.hpp>
 #include <apsis/model/model_registry.hpp>
 
 #include <array>
@@ -25,6 +26,7 @@ enum class key_type {
   integer,    ///< long
   number,     ///< double; an integer of TOML too
   text,       ///< std::string
+  quantity,   ///< std::string: a number > 0 with a unit, "10 Pa"
   formula,    ///< std::string: a formula in x, y, z, or a number, written as text
   text_list,  ///< std::vector<std::string>
   integers,   ///< std::vector<long>: one for each direction; one alone is written without brackets
@@ -45,6 +47,7 @@ struct case_key {
   key_scope scope = key_scope::always;  ///< models that use it
   bool required = false;                ///< else the default is that of case_config
   std::string unit{};                   ///< "dimensionless", "steps", …; "" for text
+  dimension measure{};                  ///< with a table [gas], values with units of this dimension are valid
   double lowest = -infinite,            ///< smallest allowed number
       highest = infinite;               ///< largest allowed number
   bool lowest_excluded = false;         ///< only numbers above `lowest`

@@ -43,7 +43,7 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-/// Keys of which a case has those of one group only.
+/// Groups of keys that exclude each other.
 const std::vector<std::vector<std::vector<std::string>>>& exclusive_keys() {
   static const std::vector<std::vector<std::vector<std::string>>> all = {
       {{"time.dt"}, {"time.cfl"}, {"time.safety"}},

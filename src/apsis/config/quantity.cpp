@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
 #include <vector>
 
@@ -88,7 +89,7 @@ class unit_parser {
       skip_spaces();
       const quantity next = power(depth);
       all.value = divide ? all.value / next.value : all.value * next.value;
-      all.unit = divide ? all.unit / next.unit : all.unit * next.unit;
+      all.unit = bounded(divide ? all.unit / next.unit : all.unit * next.unit);
     }
   }
 
@@ -103,7 +104,7 @@ class unit_parser {
     quantity all{1.0, {}};
     for (int k = 0; k < std::abs(exponent); ++k) {
       all.value = exponent > 0 ? all.value * base.value : all.value / base.value;
-      all.unit = exponent > 0 ? all.unit * base.unit : all.unit / base.unit;
+      all.unit = bounded(exponent > 0 ? all.unit * base.unit : all.unit / base.unit);
     }
     return all;
   }
@@ -143,6 +144,13 @@ class unit_parser {
                           ? "degC is part of a unit (its zero is not that of K); give the temperature in K"
                           : fmt::format("unknown unit '{}' (no such symbol, with or without a prefix); {}",
                                         shown(name), suggest(std::string(name), known)));
+  }
+
+  /// No unit has exponents near these; larger ones would overflow in nested powers.
+  dimension bounded(const dimension& d) const {
+    for (const int exponent : {d.mass, d.length, d.time, d.temperature})
+      if (std::abs(exponent) > 99) refuse();
+    return d;
   }
 
   bool skip_spaces() {

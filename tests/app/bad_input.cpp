@@ -84,7 +84,10 @@ TEST_P(bad_inputs, give_one_message_and_leave_nothing) {
 }
 
 const std::vector<bad_input> all = {
-    {"no_command", {}, 2, "valid: run, converge, list, show, scales, check, reproduce, design, plot, report, info"},
+    {"no_command",
+     {},
+     2,
+     "valid: run, converge, list, show, scales, check, reproduce, design, plot, report, info"},
     {"unknown_command", {"rnu", "good.toml"}, 2, "did you mean 'run'?"},
     {"unknown_option", {"run", "good.toml", "--thread", "2"}, 2, "did you mean '--threads'?"},
     {"no_case", {"run"}, 2, "CASE"},

@@ -227,6 +227,7 @@ TEST(gas, of_ones_own_is_described_by_its_values) {
   const case_config named = parse(in_argon, {"gas.viscosity_exponent=0.5"});
   EXPECT_EQ(named.scales->gas().mass, 66.3e-27);
   EXPECT_EQ(named.model.parameters.at("viscosity_exponent"), 0.5);
+  EXPECT_EQ(parse(in_argon, {"gas.viscosity_exponent=0"}).model.parameters.at("viscosity_exponent"), 0.0);
   EXPECT_THAT(
       error_of(changed(own, "mass = \"40 u\"\n", "")),
       HasSubstr(
@@ -356,6 +357,9 @@ TEST(knudsen, what_is_wrong_is_refused) {
               HasSubstr("(it must be at least 0)"));
   EXPECT_THAT(with("knudsen = {value = \"x - 1\", mean_free_path = \"vhs\"}"), HasSubstr("c.toml:6:"));
   EXPECT_THAT(with("knudsen = {value = \"2*y\", mean_free_path = \"vhs\"}"), HasSubstr("unknown name 'y'"));
+  EXPECT_THAT(error_of(changed(changed(no_units, "0.81", "3"), "[parameters]",
+                               "knudsen = {value = 0.1, mean_free_path = \"vhs\"}\n[parameters]")),
+              HasSubstr("'model.viscosity_exponent' is the integer 3 (it must be from 0 to 2"));
   EXPECT_THAT(with("knudsen = \"from gas\""), HasSubstr("(there is no table [gas])"));
   EXPECT_THAT(with("rarefaction = 0"),
               HasSubstr("'model.rarefaction' is the integer 0 (it must be above 0)"));

@@ -115,10 +115,12 @@ std::optional<gas_scales> read_gas_scales(const case_text& text, const model_ent
   const double pressure = read_pressure(text, config, gas.mass, temperature);
   const gas_scales scales(std::move(gas), pressure, temperature, length);
   for (const auto& one : scales.quantities())
-    if (!std::isnormal(one.value))
-      throw input_error(place_of_table(text, config, "gas"),
-                        fmt::format("the table [gas] gives {} = {:g} (no normal double); change its values",
-                                    one.name, one.value));
+    if (!std::isnormal(one.value) && one.name != "viscosity_exponent")
+      throw input_error(
+          place_of_table(text, config, "gas"),
+          fmt::format(
+              "the table [gas] gives {} = {:g} (beyond the range of double precision); change its values",
+              one.name, one.value));
   return scales;
 }
 
@@ -257,12 +259,15 @@ class epsilon_reader {
            "add collision_rate = \"viscosity\" to [model], or give epsilon");
   }
 
+  /// That of the model; its default in place of a value out of range, which is refused with the others.
   double viscosity_exponent() const {
-    if (const raw_value* raw = find(text_, "model.viscosity_exponent"))
-      return finite_number(*raw, "model.viscosity_exponent", type_text(key_type::number));
-    for (const model_parameter& p : model_.parameters)
-      if (p.name == "viscosity_exponent") return p.value;
-    return 0.5;
+    const auto& all = model_.parameters;
+    const auto known = std::find_if(all.begin(), all.end(),
+                                    [](const model_parameter& p) { return p.name == "viscosity_exponent"; });
+    const raw_value* raw = find(text_, "model.viscosity_exponent");
+    if (raw == nullptr) return known->value;
+    const double given = finite_number(*raw, "model.viscosity_exponent", type_text(key_type::number));
+    return given >= known->lowest && given <= known->highest ? given : known->value;
   }
 
   void check_from_gas(const raw_value& raw) const {

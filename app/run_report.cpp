@@ -1,8 +1,11 @@
 #include "run_report.hpp"
+#include "scales_text.hpp"
 
 #include <apsis/model/model_registry.hpp>
+#include <apsis/run/result_units.hpp>
 
 #include <cmath>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,8 +19,11 @@ std::string summary_text(const simulation& run, run_end end) {
   const auto line = [&out](const std::string& name, const std::string& value) {
     out += fmt::format("  {:<22}{}\n", name, value);
   };
-  line("state",
-       fmt::format("{} at t = {:.10g} after {} steps of {}", to_string(end), s.t, s.steps, c.time.method));
+  const result_units units(c);
+  const double time = units.factor(dimensions::time);
+  const std::string of_time = units.suffix(dimensions::time);
+  line("state", fmt::format("{} at t = {:.10g}{} after {} steps of {}", to_string(end), s.t * time, of_time,
+                            s.steps, c.time.method));
   if (s.startup_steps > 0)
     line("start-up", s.startup_steps == 1 ? "not needed (no layer is thinner than the first step)"
                                           : fmt::format("{} steps instead of 1", s.startup_steps));
@@ -27,16 +33,22 @@ std::string summary_text(const simulation& run, run_end end) {
     line("steady state", fmt::format("{} (the state changes by {:.2g} per unit of time; time.steady = {:g})",
                                      run.last().change <= *c.time.steady ? "reached" : "not reached",
                                      run.last().change, *c.time.steady));
-  line("largest step", fmt::format("{:.6g}", s.dt));
+  line("largest step", fmt::format("{:.6g}{}", s.dt * time, of_time));
   line("smallest value", fmt::format("{:.6g} ({} negative)", s.min_value, s.negative_values));
   if (!run.invariants().empty())
     line("conservation defect", fmt::format("{:.2e} (relative)", s.conservation_defect));
   const auto faces = run.open_faces(), names = run.invariants();
+  const auto densities = run.invariant_measures();
   for (std::size_t f = 0; f < faces.size() && !names.empty(); ++f) {
     std::vector<std::string> amounts;
-    for (std::size_t k = 0; k < names.size(); ++k)
-      amounts.push_back(fmt::format("{} {:.6g}", names[k], run.last().flux[f * names.size() + k]));
-    line(faces[f] == "force" ? "given by the force" : fmt::format("flux through {}", faces[f]), fmt::format("{}", fmt::join(amounts, ", ")));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const dimension flux = densities[k] * dimensions::velocity;
+      amounts.push_back(fmt::format("{} {:.6g}{}", names[k],
+                                    run.last().flux[f * names.size() + k] * units.factor(flux),
+                                    units.suffix(flux)));
+    }
+    line(faces[f] == "force" ? "given by the force" : fmt::format("flux through {}", faces[f]),
+         fmt::format("{}", fmt::join(amounts, ", ")));
   }
   if (!std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));
@@ -44,6 +56,11 @@ std::string summary_text(const simulation& run, run_end end) {
     std::string values;
     for (const double x : run.state()) values += fmt::format("{}{:.17g}", values.empty() ? "" : "  ", x);
     line("solution", values);
+  }
+  if (c.scales) {
+    std::istringstream scales(scales_text(*c.scales) +
+                              knudsen_text(c.scales->epsilon(), c.scales->gas().viscosity_exponent));
+    for (std::string text; std::getline(scales, text);) out += "  " + text + "\n";
   }
   line("wall time", fmt::format("{:.2f} s ({:.3g} point stages per second)", s.wall_s, s.point_stages_per_s));
   return out;

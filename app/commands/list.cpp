@@ -10,6 +10,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/model/gas_species.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
@@ -155,6 +156,23 @@ json keys() {
   return all;
 }
 
+json gases() {
+  json all = json::array();
+  for (const gas_species& g : known_gases())
+    all.push_back(
+        {{"name", g.name},
+         {"description", fmt::format("m = {:g} kg, mu = {:g} Pa s at {:g} K, w = {:g}, D = {}, Pr = {:.4g}",
+                                     g.mass, g.viscosity, g.viscosity_temperature, g.viscosity_exponent,
+                                     g.degrees_of_freedom, g.prandtl)},
+         {"mass", g.mass},
+         {"viscosity", g.viscosity},
+         {"viscosity_temperature", g.viscosity_temperature},
+         {"viscosity_exponent", g.viscosity_exponent},
+         {"degrees_of_freedom", g.degrees_of_freedom},
+         {"prandtl", g.prandtl}});
+  return all;
+}
+
 std::string family_lines() {
   std::string out = "\nfamilies: every S of the range gives a method\n";
   for (const family_entry* f : family_entries())
@@ -177,9 +195,9 @@ std::string as_text(const std::string& what, const json& all) {
 
 const std::map<std::string, json (*)()>& lists() {
   static const std::map<std::string, json (*)()> all = {
-      {"methods", methods}, {"families", families},     {"models", models},
-      {"cases", cases},     {"schemes", schemes},       {"claims", claims},
-      {"keys", keys},       {"boundaries", boundaries}, {"quantities", quantities}};
+      {"methods", methods},       {"families", families}, {"models", models}, {"cases", cases},
+      {"schemes", schemes},       {"claims", claims},     {"keys", keys},     {"boundaries", boundaries},
+      {"quantities", quantities}, {"gases", gases}};
   return all;
 }
 

@@ -6,6 +6,7 @@
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/output/velocity_axes.hpp>
+#include <apsis/run/result_units.hpp>
 #include <apsis/run/session.hpp>
 
 #include <chrono>
@@ -101,10 +102,11 @@ py::dict result_of(const run_session& session, run_end end) {
   std::vector<double> f = run.state();
   add_velocities(run, f, out);
   out["f"] = to_array(std::move(f), {run.cells(), run.components()});
-  out["x"] = to_array(run.has_space() ? run.fields().x : std::vector<double>());
+  const result_units units(run.config());
+  field_series fields = units.convert(session.records().fields());
+  out["x"] = to_array(std::move(fields.x));
   out["epsilon"] = to_array(run.epsilon());
-  out["history"] = columns_of(session.records().history());
-  const auto& fields = session.records().fields();
+  out["history"] = columns_of(units.convert(session.records().history(), run));
   std::vector<double> times;
   for (const auto& one : fields.snapshots) times.push_back(one.t);
   out["t"] = to_array(std::move(times));

@@ -87,7 +87,7 @@ const std::vector<bad_input> all = {
     {"no_command",
      {},
      2,
-     "valid: run, converge, list, show, check, reproduce, validate, design, plot, report, info"},
+     "valid: run, converge, list, show, scales, check, reproduce, validate, design, plot, report, info"},
     {"unknown_command", {"rnu", "good.toml"}, 2, "did you mean 'run'?"},
     {"unknown_option", {"run", "good.toml", "--thread", "2"}, 2, "did you mean '--threads'?"},
     {"no_case", {"run"}, 2, "CASE"},

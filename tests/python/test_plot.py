@@ -46,6 +46,20 @@ def test_fields_of_a_run_are_in_the_order_of_the_model(tmp_path):
             np.testing.assert_array_equal(line.get_ydata(), values)
 
 
+def test_axes_of_results_in_si_units_have_these_units(tmp_path):
+    computed = run(tmp_path, "gas/micro-channel", "velocity.points=16", "time.end=0.2 ns")
+    result = read_result(tmp_path)
+    figure = fields_figure(result)
+    assert {a.get_xlabel() for a in figure.axes} == {"x (m)"}
+    assert "temperature (K)" in [a.get_ylabel() for a in figure.axes]
+    assert history_figure(result).axes[-1].get_xlabel() == "t (s)"
+    # The same numbers without a folder.
+    np.testing.assert_array_equal(computed.fields["T"][-1], result.fields["T"])
+    np.testing.assert_array_equal(computed.x, result.arrays["x"])
+    assert math.isclose(computed.t[-1], 2e-10) and 300 < result.fields["T"].mean() < 350
+    assert math.isclose(computed.history["t"][-1], 2e-10)
+
+
 def test_f_is_drawn_over_velocity_and_position(tmp_path):
     computed = run(tmp_path, "paper/bgk-mixed", *SMALL_BGK)
     figure = distribution_figure(read_result(tmp_path))

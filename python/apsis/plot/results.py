@@ -1,4 +1,4 @@
-"""Pictures of runs. All quantities are dimensionless."""
+"""Pictures of runs. Quantities are dimensionless unless the manifest of a run has units."""
 from __future__ import annotations
 
 import textwrap
@@ -39,7 +39,8 @@ def fields_figure(result: RunResult) -> Any:
             panel.plot(x, result.fields[name], color=BLUE, marker=".", markersize=4, linewidth=1, label=f"t = {end_of(result):.4g}")
         else:
             panel.plot(result.t, result.snapshots[name][:, 0], color=BLUE, marker=".", markersize=4, linewidth=1)
-        panel.set_xlabel("x (dimensionless)" if result.has_space else "t (dimensionless)")
+        axis = "x" if result.has_space else "t"
+        panel.set_xlabel(f"{axis} ({result.unit(axis)})")
         panel.set_ylabel(result.label(name))
         show_rounding_as_zero(panel, result, name)
     if result.has_space:
@@ -87,7 +88,7 @@ def comparison_figure(runs: Sequence[tuple[str, RunResult]]) -> Any:
                          "linestyle": "none", "fillstyle": "none", "markersize": 6}
                 others += 1
             panel.plot(run.arrays["x"], run.fields[name], label=label, **style)
-        panel.set_xlabel("x (dimensionless)")
+        panel.set_xlabel(f"x ({runs[0][1].unit('x')})")
         panel.set_ylabel(runs[0][1].label(name))
     axes[0].legend(fontsize=8)
     return figure
@@ -170,7 +171,7 @@ def distribution_figure(result: RunResult) -> Any:
     if with_epsilon:
         axes[1][0].semilogy(x, result.arrays["epsilon"], color=BLACK)
         axes[1][0].set_ylabel("ε (dimensionless)")
-    axes[-1][0].set_xlabel("x (dimensionless)")
+    axes[-1][0].set_xlabel(f"x ({result.unit('x')})")
     figure.suptitle(f"distribution function at t = {end_of(result):.4g}")
     return figure
 
@@ -198,9 +199,9 @@ def history_figure(result: RunResult) -> Any:
     if changing:
         panel = next(following)
         panel.semilogy(history["t"][1:], history["dt"][1:], color=BLUE)
-        panel.set_ylabel("Δt (dimensionless)")
+        panel.set_ylabel(f"Δt ({result.unit('dt')})")
     for panel in axes:
-        panel.set_xlabel("t (dimensionless)")
+        panel.set_xlabel(f"t ({result.unit('t')})")
     figure.suptitle(title_of(result))
     return figure
 

@@ -1,4 +1,4 @@
-"""Reads result folders for pictures and reports. All quantities are dimensionless."""
+"""Reads result folders for pictures and reports. Quantities are dimensionless unless the manifest has units."""
 from __future__ import annotations
 
 import csv
@@ -50,6 +50,10 @@ class RunResult:
 
     def label(self, name: str) -> str:
         return textwrap.fill(self.labels.get(name, f"{name} (dimensionless)"), 36)
+
+    def unit(self, name: str) -> str:
+        """Unit of a field, of x, or of a column of the history."""
+        return str(self.manifest.get("units", {}).get(name, "dimensionless"))
 
 
 def read_history(path: Path) -> dict[str, Array]:

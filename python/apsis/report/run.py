@@ -32,9 +32,10 @@ def caption(name: str, result: RunResult) -> tuple[str, str]:
 def summary(result: RunResult) -> str:
     manifest, numbers = result.manifest, result.manifest["result"]
     good = manifest["state"] == "complete"
+    units = "Quantities with a unit in their label are in SI units." if "units" in manifest else "All quantities are dimensionless."
     out = (f'<p>{verdict(good, (manifest["state"], manifest["state"]))} at t = {end_of(result):.10g} after {numbers["steps"]} steps of '
            f'<code>{text(manifest["method"])}</code> of length {number(numbers["dt"])} or less; '
-           f'{numbers["wall_s"]:.2f} s of computing. All quantities are dimensionless.</p>\n')
+           f'{numbers["wall_s"]:.2f} s of computing. {units}</p>\n')
     if manifest.get("message"):
         out += f'<p class="no">{text(manifest["message"])}</p>\n'
     if "state" in numbers:

@@ -5,6 +5,7 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_text.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/quantity.hpp>
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/core/text_file.hpp>
@@ -29,12 +30,14 @@ bool is_list(const std::string& path) {
 /// Returns the syntax of a key on the command line. Quotes are optional for unknown keys, so that the key is
 /// reported.
 override_form form_of(const std::string& path, const std::string& value) {
+  if (looks_like_quantity(value)) return {true, type_advice(key_type::quantity)};
   for (const case_key& key : case_schema())
     if (key.path == path && key.type == key_type::formulas)
       return {value.find('[') != 0, type_advice(key.type)};
   for (const case_key& key : case_schema())
     if (key.path == path)
-      return {key.type == key_type::text || key.type == key_type::formula, type_advice(key.type)};
+      return {key.type == key_type::text || key.type == key_type::formula || key.type == key_type::quantity,
+              type_advice(key.type)};
   if (path.rfind("parameters.", 0) == 0) return {false, type_advice(key_type::number)};
   // Names of numeric parameters and string options are disjoint over all models.
   for (const model_entry* entry : model_entries())
@@ -54,6 +57,33 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
+/// Groups of keys that exclude each other.
+const std::vector<std::vector<std::vector<std::string>>>& exclusive_keys() {
+  static const std::vector<std::vector<std::vector<std::string>>> all = {
+      {{"time.dt"}, {"time.cfl"}, {"time.safety"}},
+      {{"gas.pressure"}, {"gas.density"}, {"gas.number_density"}},
+      {{"model.epsilon"},
+       {"model.knudsen"},
+       {"model.knudsen.value", "model.knudsen.mean_free_path"},
+       {"model.rarefaction"}}};
+  return all;
+}
+
+/// A key on the command line replaces those in the file that exclude it.
+void erase_alternatives(case_text& text, const std::string& path) {
+  for (const auto& groups : exclusive_keys()) {
+    const auto contains = [&path](const std::vector<std::string>& group) {
+      return std::find(group.begin(), group.end(), path) != group.end();
+    };
+    if (std::none_of(groups.begin(), groups.end(), contains)) continue;
+    for (const auto& group : groups)
+      if (!contains(group))
+        for (const auto& key : group) text.values.erase(key);
+    if (path.rfind("model.", 0) == 0 && path.rfind("model.knudsen.", 0) != 0)
+      text.tables.erase("model.knudsen");
+  }
+}
+
 void apply_overrides(case_text& text, const std::vector<std::string>& overrides) {
   struct key_and_value {
     std::string path, value;
@@ -69,10 +99,7 @@ void apply_overrides(case_text& text, const std::vector<std::string>& overrides)
           place, "not of the form key=value (an override sets one key); write for example space.cells=80");
     all.push_back({path, trimmed(item.substr(equals + 1)), place});
   }
-  // A step key on the command line replaces the one in the file.
-  const auto sets_step = [](const key_and_value& item) { return is_step_key(item.path); };
-  if (std::any_of(all.begin(), all.end(), sets_step))
-    for (const auto& key : step_keys()) text.values.erase(key);
+  for (const auto& item : all) erase_alternatives(text, item.path);
   for (const auto& [path, value, place] : all) apply_override(text, path, value, form_of(path, value), place);
 }
 

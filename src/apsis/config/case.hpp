@@ -4,6 +4,7 @@
 #include <apsis/config/initial_table.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/expression.hpp>
+#include <apsis/model/gas_scales.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/phase/domain.hpp>
@@ -30,6 +31,14 @@ struct case_config {
   std::map<std::string, source_place> places;  ///< places of keys and tables, for later messages
   std::string title;                           ///< one line
   formula_constants constants;                 ///< table [parameters]: constants of all formulas
+  /// Table [gas], as given: quantities with units as text.
+  struct {
+    std::optional<std::string> name, mass, viscosity, viscosity_temperature;
+    std::optional<double> viscosity_exponent, prandtl;
+    std::optional<int> degrees_of_freedom;
+    std::optional<std::string> pressure, density, number_density, temperature, length;
+  } gas;
+  std::optional<gas_scales> scales;  ///< units of dimensionless quantities; with a table [gas]
   /// Table [model].
   struct {
     std::string name;
@@ -75,8 +84,9 @@ struct case_config {
   } time;
   /// Table [output].
   struct {
-    double every = 0.0;               ///< time between snapshots; 0: only the end
-    std::vector<std::string> fields;  ///< of the snapshot; empty: all of the model
+    double every = 0.0;                                ///< time between snapshots; 0: only the end
+    std::vector<std::string> fields;                   ///< of the snapshot; empty: all of the model
+    units_choice units = units_choice::dimensionless;  ///< of fields, history and report
     distribution_choice distribution = distribution_choice::end;
     int stride = 1;  ///< cells from one to the next in snapshots of the distribution
     precision_choice precision = precision_choice::double_precision;  ///< of snapshots of the distribution

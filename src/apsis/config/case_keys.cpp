@@ -3,6 +3,8 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
+#include <apsis/model/gas_species.hpp>
+#include <apsis/model/mean_free_path.hpp>
 #include <apsis/model/velocity_line_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
@@ -120,7 +122,7 @@ template <class At>
 case_key key(std::string path, At at, case_key facts) {
   using member = std::remove_cvref_t<decltype(at(std::declval<case_config&>()))>;
   facts.path = std::move(path);
-  if (facts.type != key_type::formula && facts.type != key_type::formulas)
+  if (facts.type != key_type::formula && facts.type != key_type::formulas && facts.type != key_type::quantity)
     facts.type = conversion<member>::type;
   facts.store = [at](case_config& c, const case_value& value) { conversion<member>::from(value, at(c)); };
   facts.load = [at](const case_config& c) { return conversion<member>::to(at(c)); };
@@ -157,6 +159,16 @@ bool no_set_is(const case_config& c, bool (*property)(const std::string&)) {
   return !c.velocity.set.empty() && std::none_of(c.velocity.set.begin(), c.velocity.set.end(), property);
 }
 
+/// A key from which the resolver derives model.epsilon, and which a resolved case does not have.
+case_key derived_key(std::string path, case_key facts) {
+  facts.path = std::move(path);
+  facts.scope = key_scope::velocity;
+  facts.store = [](case_config&, const case_value&) {};
+  facts.load = [](const case_config&) { return case_value(); };
+  if (facts.type == key_type::formula) facts.unit = "dimensionless";
+  return facts;
+}
+
 std::vector<case_key> model_keys() {
   return {key("title", [](auto& c) -> auto& { return c.title; },
               {.doc = "One line that says what the case shows."}),
@@ -167,9 +179,87 @@ std::vector<case_key> model_keys() {
                .lowest = 0.0,
                .doc = "Knudsen number (relaxation time): a number, or a formula in the coordinates x, y, z "
                       "as text. 0 is the limit system."}),
+          derived_key("model.knudsen",
+                      {.doc = "In place of epsilon, for a gas with collision_rate = \"viscosity\": a table "
+                              "{value, mean_free_path}, or \"from gas\", the default with a table [gas]."}),
+          derived_key("model.knudsen.value",
+                      {.type = key_type::formula,
+                       .lowest = 0.0,
+                       .doc = "Knudsen number lambda/L at rho = T = 1, a number or a formula as epsilon."}),
+          derived_key("model.knudsen.mean_free_path",
+                      {.choices = [](const case_config&) { return mean_free_path_names(); },
+                       .doc = "Definition of lambda (docs/scales.md)."}),
+          derived_key("model.rarefaction",
+                      {.type = key_type::formula,
+                       .lowest = 0.0,
+                       .lowest_excluded = true,
+                       .doc = "In place of epsilon, for a gas with collision_rate = \"viscosity\": the "
+                              "rarefaction parameter delta = p L/(mu sqrt(2 R T)) = 1/(sqrt(2) epsilon) at "
+                              "rho = T = 1, a number or a formula as epsilon."}),
           key("model.initial", [](auto& c) -> auto& { return c.model.initial; },
               {.choices = initial_choices,
                .doc = "Name of one of the model's initial data; the first of the model where not given."})};
+}
+
+/// A quantity of the table [gas].
+template <class At>
+case_key gas_quantity(std::string path, At at, dimension measure, std::string doc) {
+  return key(std::move(path), at,
+             {.type = key_type::quantity,
+              .scope = key_scope::velocity,
+              .unit = unit_of(measure),
+              .measure = measure,
+              .doc = std::move(doc)});
+}
+
+std::vector<case_key> gas_keys() {
+  return {
+      key("gas.name", [](auto& c) -> auto& { return c.gas.name; },
+          {.scope = key_scope::velocity,
+           .choices = [](const case_config&) { return gas_names(); },
+           .doc = "A known gas, whose mass, viscosity, viscosity exponent, Prandtl number and degrees of "
+                  "freedom hold unless given. A table [gas] permits units in all quantities of the case, and "
+                  "sets the model to this gas."}),
+      gas_quantity(
+          "gas.mass", [](auto& c) -> auto& { return c.gas.mass; }, dimensions::mass, "Mass of a molecule."),
+      gas_quantity(
+          "gas.viscosity", [](auto& c) -> auto& { return c.gas.viscosity; }, dimensions::viscosity,
+          "Viscosity at gas.viscosity_temperature."),
+      gas_quantity(
+          "gas.viscosity_temperature", [](auto& c) -> auto& { return c.gas.viscosity_temperature; },
+          dimensions::temperature,
+          "Temperature of the viscosity; gas.temperature where only gas.viscosity is given."),
+      key("gas.viscosity_exponent", [](auto& c) -> auto& { return c.gas.viscosity_exponent; },
+          {.scope = key_scope::velocity,
+           .lowest = 0.0,
+           .highest = 2.0,
+           .doc = "Exponent w of the viscosity mu ~ T^w."}),
+      key("gas.prandtl", [](auto& c) -> auto& { return c.gas.prandtl; },
+          {.scope = key_scope::velocity,
+           .lowest = 0.0,
+           .lowest_excluded = true,
+           .doc = "Prandtl number; that of Eucken's formula, 2/3 of a monatomic gas, where not given."}),
+      key("gas.degrees_of_freedom", [](auto& c) -> auto& { return c.gas.degrees_of_freedom; },
+          {.scope = key_scope::velocity,
+           .lowest = 1,
+           .highest = 100,
+           .doc = "Degrees of freedom of a molecule; 3 without a name."}),
+      gas_quantity(
+          "gas.pressure", [](auto& c) -> auto& { return c.gas.pressure; }, dimensions::pressure,
+          "Reference pressure. Exactly one of pressure, density and number_density is given."),
+      gas_quantity(
+          "gas.density", [](auto& c) -> auto& { return c.gas.density; }, dimensions::density,
+          "Reference density, in place of the pressure."),
+      gas_quantity(
+          "gas.number_density", [](auto& c) -> auto& { return c.gas.number_density; },
+          dimensions::number_density, "Reference number density, in place of the pressure."),
+      gas_quantity(
+          "gas.temperature", [](auto& c) -> auto& { return c.gas.temperature; }, dimensions::temperature,
+          "Reference temperature, required; in K, or in degC."),
+      gas_quantity(
+          "gas.length", [](auto& c) -> auto& { return c.gas.length; }, dimensions::length,
+          "Reference length, the unit of x; required."),
+  };
 }
 
 std::vector<case_key> space_keys() {
@@ -183,6 +273,7 @@ std::vector<case_key> space_keys() {
                   "direction."}),
       key("space.domain", [](auto& c) -> auto& { return c.space.domain; },
           {.scope = key_scope::space,
+           .measure = dimensions::length,
            .doc = "Lower and upper end of the domain, [lower, upper] with lower < upper; in several "
                   "dimensions a list of such pairs."}),
       key("space.formulation", [](auto& c) -> auto& { return c.space.formulation; },
@@ -232,6 +323,7 @@ std::vector<case_key> space_keys() {
           {.scope = key_scope::velocity,
            .required = true,
            .optional = [](const case_config& c) { return no_set_is(c, needs_max); },
+           .measure = dimensions::velocity,
            .lowest = 0.0,
            .highest = 1e6,
            .lowest_excluded = true,
@@ -262,9 +354,13 @@ std::vector<case_key> time_keys() {
                       "to where the program runs).",
                .also = check_method_outside_catalogue}),
           key("time.end", [](auto& c) -> auto& { return c.time.end; },
-              {.required = true, .lowest = 0.0, .doc = "Final time; the start is t = 0."}),
+              {.required = true,
+               .measure = dimensions::time,
+               .lowest = 0.0,
+               .doc = "Final time; the start is t = 0."}),
           key("time.dt", [](auto& c) -> auto& { return c.time.dt; },
-              {.lowest = 0.0,
+              {.measure = dimensions::time,
+               .lowest = 0.0,
                .lowest_excluded = true,
                .doc = "Step size. Exactly one of dt, cfl and safety is given."}),
           key("time.cfl", [](auto& c) -> auto& { return c.time.cfl; },
@@ -293,7 +389,8 @@ std::vector<case_key> time_keys() {
                       "(docs/methods.md). dt, cfl or safety then limits the step; startup = graded starts in "
                       "the initial layer. For methods with an embedded solution (apsis list methods)."}),
           key("time.steady", [](auto& c) -> auto& { return c.time.steady; },
-              {.lowest = 0.0,
+              {.measure = dimensions::none / dimensions::time,
+               .lowest = 0.0,
                .lowest_excluded = true,
                .doc = "The run ends as soon as the state is steady: its change per unit of time, relative to "
                       "its 2-norm, is at most this; time.end is then the latest end."})};
@@ -302,12 +399,18 @@ std::vector<case_key> time_keys() {
 std::vector<case_key> output_keys() {
   return {
       key("output.every", [](auto& c) -> auto& { return c.output.every; },
-          {.lowest = 0.0, .doc = "Time between snapshots of the fields; 0 keeps the final state only."}),
+          {.measure = dimensions::time,
+           .lowest = 0.0,
+           .doc = "Time between snapshots of the fields; 0 keeps the final state only."}),
       key("output.fields", [](auto& c) -> auto& { return c.output.fields; },
           {.doc =
                "Names of the macroscopic fields to write; empty writes the usual ones of the model. Further "
                "fields of a gas: p, mach, stress, heat_flux (with several velocity dimensions stress_xy, "
-               "heat_flux_x, ...), distance (to equilibrium)."}),
+               "heat_flux_x, ...), distance (to equilibrium), knudsen (local Knudsen number)."}),
+      key("output.units", [](auto& c) -> auto& { return c.output.units; },
+          {.scope = key_scope::velocity,
+           .doc = "Units of fields, history and report: dimensionless, or those of the SI, with a table "
+                  "[gas]. The distribution f, its velocities and checkpoints are dimensionless."}),
       key("output.distribution", [](auto& c) -> auto& { return c.output.distribution; },
           {.doc = "Where the unknowns themselves (f) are written: nowhere, at the end into solution.h5, or "
                   "also for every snapshot, into files of their own in snapshots/."}),
@@ -342,7 +445,7 @@ std::vector<case_key> output_keys() {
 const std::vector<case_key>& case_schema() {
   static const std::vector<case_key> schema = [] {
     std::vector<case_key> all;
-    for (auto* group : {model_keys, space_keys, time_keys, output_keys})
+    for (auto* group : {model_keys, gas_keys, space_keys, time_keys, output_keys})
       for (case_key& one : group()) all.push_back(std::move(one));
     return all;
   }();

@@ -5,6 +5,7 @@
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/data_samples.hpp>
 #include <apsis/config/force_reader.hpp>
+#include <apsis/config/gas_reader.hpp>
 #include <apsis/config/initial_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/suggest.hpp>
@@ -31,7 +32,10 @@ class resolver {
     check_tables();
     find_the_model();
     check_known();
+    take_gas();
     take_constants();
+    derive_epsilon(text_, *model_, config_);
+    note_places();  // of derived keys too
     for (const case_key& key : case_schema()) take(key);
     take_parameters();
     take_initial_data();
@@ -108,8 +112,8 @@ class resolver {
   }
 
   void check_tables() const {
-    std::vector<std::string> names = {"parameters", "model",    "initial", "space", "boundary",
-                                      "force",      "velocity", "time",    "output"};
+    std::vector<std::string> names = {"parameters", "gas",   "model",    "initial", "space",
+                                      "boundary",   "force", "velocity", "time",    "output"};
     for (const auto& [name, place] : text_.tables)
       if (std::find(names.begin(), names.end(), name.substr(0, name.find('.'))) == names.end())
         throw input_error(place, fmt::format("unknown table [{}] (a case has no such table); {}", shown(name),
@@ -195,6 +199,15 @@ class resolver {
                        key.type == key_type::integer || key.type == key_type::integers ? "100" : "1.0");
   }
 
+  /// The table [gas], and with it everything that has a unit.
+  void take_gas() {
+    for (const case_key& key : case_schema())
+      if (is_in(key.path, "gas")) take(key);
+    config_.scales = read_gas_scales(text_, *model_, config_);
+    remove_units(text_, *model_, config_.scales);
+    if (config_.scales) set_gas_of_model(text_, *model_, config_);
+  }
+
   /// The table [parameters].
   void take_constants() {
     for (const auto& [path, raw] : text_.values) {
@@ -262,6 +275,10 @@ class resolver {
     if (has_space(*model_)) check_mesh();
     check_epsilon();
     check_fields();
+    if (config_.output.units == units_choice::si && !config_.scales)
+      refuse(*find("output.units"), "output.units",
+             "the scales are those of a gas, and there is no table [gas]",
+             "add the table, or write units = \"dimensionless\"");
     const double snapshots = config_.output.every > 0.0 ? config_.time.end / config_.output.every : 0.0;
     if (snapshots > 1e5)
       refuse(*find("output.every"), "output.every",
@@ -373,6 +390,7 @@ class resolver {
     const auto equation = make_model(config_);
     for (const auto& field : equation->fields()) names.push_back(field.name);
     for (const auto& field : equation->further_fields()) names.push_back(field.name);
+    for (const auto& field : equation->gradient_fields()) names.push_back(field.name);
     for (const auto& name : config_.output.fields)
       if (std::find(names.begin(), names.end(), name) == names.end())
         throw input_error(

@@ -36,6 +36,8 @@ std::string type_text(key_type type) {
       return "a number";
     case key_type::text:
       return "a text";
+    case key_type::quantity:
+      return "a number with a unit";
     case key_type::formula:
       return "a number or a formula in x, y, z";
     case key_type::text_list:

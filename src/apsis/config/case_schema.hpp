@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/model/dimension.hpp>
 #include <apsis/model/model_registry.hpp>
 
 #include <array>
@@ -25,6 +26,7 @@ enum class key_type {
   integer,    ///< long
   number,     ///< double; an integer of TOML too
   text,       ///< std::string
+  quantity,   ///< std::string: a number > 0 with a unit, "10 Pa"
   formula,    ///< std::string: a formula in x, y, z, or a number, written as text
   text_list,  ///< std::vector<std::string>
   formulas,   ///< std::vector<std::string>: formulas or numbers, one alone is written without brackets
@@ -48,6 +50,7 @@ struct case_key {
   /// Whether the keys before make a required key optional.
   std::function<bool(const case_config&)> optional = {};
   std::string unit{};            ///< "dimensionless", "steps", …; "" for text
+  dimension measure{};           ///< with a table [gas], values with units of this dimension are valid
   double lowest = -infinite,     ///< smallest allowed number
       highest = infinite;        ///< largest allowed number
   bool lowest_excluded = false;  ///< only numbers above `lowest`

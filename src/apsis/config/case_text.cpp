@@ -143,10 +143,11 @@ case_text read_case_text(std::string_view text, const std::string& file) {
         continue;
       }
       out.tables.emplace(name, place_of(node.source(), file));
-      const bool nested = name == "boundary" || name == "initial";
-      for (const auto& [inner, value] : *table)
-        add_nested(out, fmt::format("{}.{}", name, inner.str()), inner, value, file,
-                   nested ? most_levels : 0);
+      for (const auto& [inner, value] : *table) {
+        const std::string path = fmt::format("{}.{}", name, inner.str());
+        const bool nested = name == "boundary" || name == "initial" || path == "model.knudsen";
+        add_nested(out, path, inner, value, file, nested ? most_levels : 0);
+      }
     }
   } catch (const toml::parse_error& e) {
     throw input_error(place_of(e.source(), file), syntax_message(e.description()));

@@ -1,5 +1,6 @@
 #include <apsis/config/case_value.hpp>
 
+#include <apsis/config/quantity.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/model/expression.hpp>
 
@@ -19,6 +20,8 @@ std::string type_advice(key_type type) {
       return "write for example 0.5";
     case key_type::text:
       return "put it in quotes";
+    case key_type::quantity:
+      return "write for example \"10 Pa\"";
     case key_type::formula:
       return "write for example 1e-3 or \"1e-3 + x^2\"";
     case key_type::text_list:
@@ -95,6 +98,20 @@ std::string formula(const case_key& key, const raw_value& raw) {
   if (std::holds_alternative<long>(raw.value) || std::holds_alternative<double>(raw.value))
     return fmt::format("{}", number(key, raw, key.path));
   refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+}
+
+std::string positive_quantity(const case_key& key, const raw_value& raw) {
+  const auto* text = std::get_if<std::string>(&raw.value);
+  const std::string unit = unit_of(key.measure);
+  if (text == nullptr || !looks_like_quantity(*text))
+    refuse(raw, key.path, "a number, a space and a unit are needed",
+           fmt::format("write for example \"1 {}\"", unit));
+  const quantity given = parse_quantity(*text, raw.place);
+  if (given.unit != key.measure)
+    refuse(raw, key.path, fmt::format("its unit is that of {}", unit_of(given.unit)),
+           fmt::format("give it in {}", unit));
+  if (!(given.value > 0.0)) refuse(raw, key.path, "it must be above 0", "give a positive number");
+  return *text;
 }
 
 std::vector<std::string> texts(const case_key& key, const raw_value& raw) {
@@ -218,6 +235,8 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
         refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
       check_choice(key, raw, so_far);
       return std::get<std::string>(raw.value);
+    case key_type::quantity:
+      return positive_quantity(key, raw);
     case key_type::formula:
       return formula(key, raw);
     case key_type::text_list:

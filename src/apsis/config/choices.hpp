@@ -32,6 +32,12 @@ enum class precision_choice {
   single_precision   ///< 4 bytes
 };
 
+/// Values of output.units.
+enum class units_choice {
+  dimensionless,  ///< the units of the case
+  si              ///< SI units by the table [gas]
+};
+
 /// The names of the enumerators in a case file, in the order of the enumerators.
 template <class Choice>
 inline constexpr std::array<const char*, 0> choice_names{};
@@ -44,6 +50,8 @@ template <>
 inline constexpr std::array choice_names<distribution_choice> = {"none", "end", "snapshots"};
 template <>
 inline constexpr std::array choice_names<precision_choice> = {"double", "single"};
+template <>
+inline constexpr std::array choice_names<units_choice> = {"dimensionless", "SI"};
 template <>
 inline constexpr std::array choice_names<formulation> = {"finite-volume", "finite-difference"};
 template <>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <apsis/model/dimension.hpp>
+
 #include <functional>
 #include <optional>
 #include <span>
@@ -14,6 +16,7 @@ struct data_variable {
   std::string doc;                   ///< meaning with unit
   int size = 1;                      ///< number of components of a vector
   std::optional<double> value = {};  ///< default of every component; the variable is required without it
+  dimension measure = {};            ///< its dimension in units of a gas (gas_scales.hpp)
 };
 
 /// One way to prescribe a row: a Maxwellian by density, velocity and temperature, or the components.

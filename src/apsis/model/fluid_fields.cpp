@@ -5,12 +5,13 @@
 namespace apsis {
 
 std::vector<field_name> fluid_fields(int dimensions) {
-  std::vector<field_name> fields = {{"rho", "density (dimensionless)"}};
+  std::vector<field_name> fields = {{"rho", "density (dimensionless)", dimensions::density}};
   for (int k = 0; k < dimensions; ++k) {
     const std::string along = dimensions == 1 ? "" : std::string(" along ") + "xyz"[k];
-    fields.push_back({component_name("u", k, dimensions), "bulk velocity" + along + " (dimensionless)"});
+    fields.push_back({component_name("u", k, dimensions), "bulk velocity" + along + " (dimensionless)",
+                      dimensions::velocity});
   }
-  fields.push_back({"T", "temperature (dimensionless)"});
+  fields.push_back({"T", "temperature (dimensionless)", dimensions::temperature});
   return fields;
 }
 

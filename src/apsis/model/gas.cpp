@@ -329,9 +329,9 @@ std::string gas::row_of(std::span<const double> given, std::span<double> row) co
 
 data_form gas::maxwellian_form() const {
   return {"Maxwellian",
-          {{"rho", "density > 0 (dimensionless)"},
-           {"u", "bulk velocity (dimensionless)", dimensions(), 0.0},
-           {"T", "temperature > 0 (dimensionless)"}},
+          {{"rho", "density > 0 (dimensionless)", 1, {}, dimensions::density},
+           {"u", "bulk velocity (dimensionless)", dimensions(), 0.0, dimensions::velocity},
+           {"T", "temperature > 0 (dimensionless)", 1, {}, dimensions::temperature}},
           [this](std::span<const double> given, std::span<double> row) { return row_of(given, row); }};
 }
 

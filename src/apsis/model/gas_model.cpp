@@ -74,6 +74,13 @@ std::vector<std::string> gas_model::invariants() const {
   return fluid_invariants(gas_.dimensions());
 }
 
+std::vector<dimension> gas_model::invariant_measures() const {
+  std::vector<dimension> all(static_cast<std::size_t>(gas_.moment_count()), dimensions::mass_flux);
+  all.front() = dimensions::density;
+  all.back() = dimensions::pressure;
+  return all;
+}
+
 void gas_model::invariant_scales(const double* densities, double* scales) const {
   relaxation_model::invariant_scales(densities, scales);
   const int d = gas_.dimensions();
@@ -94,13 +101,16 @@ void gas_model::macroscopic(const double* f, double* values) const {
 std::vector<field_name> gas_model::further_fields() const {
   const int d = gas_.dimensions();
   const std::string axes = "xyz";
-  std::vector<field_name> all = {{"p", "pressure (dimensionless)"}, {"mach", "Mach number"}};
+  std::vector<field_name> all = {{"p", "pressure (dimensionless)", dimensions::pressure},
+                                 {"mach", "Mach number"}};
   for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
     for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l) {
       const std::string pair = d == 1 ? "" : std::string("_") + axes[k] + axes[l];
-      all.push_back({"stress" + pair, "stress" + (d == 1 ? "" : " " + pair.substr(1)) + " (dimensionless)"});
+      all.push_back({"stress" + pair, "stress" + (d == 1 ? "" : " " + pair.substr(1)) + " (dimensionless)",
+                     dimensions::pressure});
     }
-  for (int k = 0; k < d; ++k) all.push_back({component_name("heat_flux", k, d), "heat flux (dimensionless)"});
+  for (int k = 0; k < d; ++k)
+    all.push_back({component_name("heat_flux", k, d), "heat flux (dimensionless)", dimensions::heat_flux});
   all.push_back({"distance", "distance to equilibrium, relative"});
   return all;
 }
@@ -128,6 +138,20 @@ void gas_model::further_macroscopic(const double* f, double* values) const {
       all += f[j];
     }
   *values = all > 0.0 ? difference / all : 0.0;
+}
+
+std::vector<field_name> gas_model::gradient_fields() const {
+  return {{"knudsen", "local Knudsen number"}};
+}
+
+void gas_model::gradient_macroscopic(const double* f, double epsilon, const double* gradients,
+                                     double* values) const {
+  double omega[5];
+  moments(f, omega);
+  const fluid_state s = gas_.state(omega);
+  const double viscosity_over_pressure = prandtl_ * epsilon / rate(omega);
+  const double path = viscosity_over_pressure * std::sqrt(0.5 * std::numbers::pi * s.T);
+  *values = s.admissible() ? path * gradients[0] / s.rho : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// f ← a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃], the form of all data of the paper, with ũ along x.

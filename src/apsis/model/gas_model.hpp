@@ -17,7 +17,8 @@ namespace apsis {
 /// the viscosity is ε T^s. Dimensionless.
 class gas_model : public relaxation_model {
  public:
-  /// `prandtl`: the factor of C by viscosity, 1 if the stress relaxes with the rate C.
+  /// `prandtl`: the factor of C by viscosity, p ε/C times which is the viscosity; 1 if the stress relaxes
+  /// with the rate C.
   explicit gas_model(const model_config& config, double prandtl = 1.0);
 
   /// Returns the parameters that all of these models have. `degrees_of_freedom`: their only number of them; 0
@@ -53,6 +54,7 @@ class gas_model : public relaxation_model {
   double entropy(const double* f) const override { return gas_.entropy(f); }
 
   std::vector<std::string> invariants() const override;
+  std::vector<dimension> invariant_measures() const override;
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
   /// Momenta cancel between particles of opposite velocities; Σ|v_k| f ≤ √(2ρ𝓔) by the Cauchy–Schwarz
   /// inequality.
@@ -64,6 +66,11 @@ class gas_model : public relaxation_model {
   /// ½ Σ c (|c|² g + h), and the distance Σ|f − M|/Σ f to equilibrium, of g if there are two functions.
   std::vector<field_name> further_fields() const override;
   void further_macroscopic(const double* f, double* values) const override;
+  /// The local Knudsen number λ|∇ρ|/ρ with the mean free path by viscosity, λ = μ √(πT/2)/p, and the
+  /// viscosity μ = p ε/C of the model, Pr p ε/C of the ellipsoidal one; NaN where the gas has no temperature.
+  std::vector<field_name> gradient_fields() const override;
+  void gradient_macroscopic(const double* f, double epsilon, const double* gradients,
+                            double* values) const override;
 
   const std::vector<initial_data>& initial() const override { return initial_; }
   std::vector<data_form> data_forms() const override { return {gas_.maxwellian_form()}; }

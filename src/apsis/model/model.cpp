@@ -85,6 +85,12 @@ const model_entry* find_model(const std::string& name) {
   return nullptr;
 }
 
+std::vector<dimension> model::invariant_measures() const {
+  return std::vector<dimension>(invariants().size());
+}
+
+void model::gradient_macroscopic(const double*, double, const double*, double*) const {}
+
 void model::further_macroscopic(const double*, double*) const {}
 
 void relaxation_model::relaxing_moments(const double*, const double*, double*) const {}

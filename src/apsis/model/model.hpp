@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/model/data_form.hpp>
+#include <apsis/model/dimension.hpp>
 #include <apsis/model/point_collision.hpp>
 #include <apsis/phase/position.hpp>
 #include <apsis/phase/velocity_set.hpp>
@@ -16,8 +17,9 @@ namespace apsis {
 
 /// A macroscopic field of the results.
 struct field_name {
-  std::string name;   ///< "rho"
-  std::string label;  ///< "density (dimensionless)"
+  std::string name;        ///< "rho"
+  std::string label;       ///< "density (dimensionless)"
+  dimension measure = {};  ///< its dimension in units of a gas (gas_scales.hpp)
 };
 
 /// Initial data and, if a formula is known, the exact solution.
@@ -94,6 +96,8 @@ class model {
   virtual std::vector<std::string> invariants() const = 0;
   /// densities ← the densities of the invariants of a row, in the order of invariants().
   virtual void invariant_densities(const double* u, double* densities) const = 0;
+  /// Returns the dimensions of the densities of the invariants in units of a gas; numbers by default.
+  virtual std::vector<dimension> invariant_measures() const;
   /// scales ← the sizes of the sums behind the invariants, to which rounding is relative; |densities| by
   /// default. A momentum may vanish by cancellation of particles that move in opposite directions.
   virtual void invariant_scales(const double* densities, double* scales) const;
@@ -107,6 +111,11 @@ class model {
   virtual std::vector<field_name> further_fields() const { return {}; }
   /// values ← the further fields of a row, in the order of further_fields().
   virtual void further_macroscopic(const double* u, double* values) const;
+  /// Returns further fields that depend on gradients, which the mesh has; none by default.
+  virtual std::vector<field_name> gradient_fields() const { return {}; }
+  /// values ← the fields of a row in the order of gradient_fields(); `gradients`: |∇φ| of the fields().
+  virtual void gradient_macroscopic(const double* u, double epsilon, const double* gradients,
+                                    double* values) const;
 
   /// Returns the initial data; the first is the default. A model of a registry has some with its default
   /// options; where others leave none, a case needs a table [initial].

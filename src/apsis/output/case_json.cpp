@@ -78,6 +78,14 @@ nlohmann::ordered_json to_json(const case_config& config) {
   return out;
 }
 
+nlohmann::ordered_json to_json(const gas_scales& scales) {
+  nlohmann::ordered_json out;
+  if (!scales.gas().name.empty()) out["gas"] = scales.gas().name;
+  for (const auto& one : scales.quantities())
+    out[one.name] = {{"value", one.value}, {"unit", unit_of(one.measure)}};
+  return out;
+}
+
 std::string json_text(const nlohmann::ordered_json& value) {
   return value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -9,6 +9,9 @@ namespace apsis {
 /// Returns the case as nested tables with the keys that its model uses, and "source".
 nlohmann::ordered_json to_json(const case_config& config);
 
+/// Returns the gas and its quantities(), each with "value" and "unit".
+nlohmann::ordered_json to_json(const gas_scales& scales);
+
 /// Returns the text of a JSON value; invalid UTF-8 (possible in file names) is replaced.
 std::string json_text(const nlohmann::ordered_json& value);
 

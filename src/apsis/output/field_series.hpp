@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/model/dimension.hpp>
 #include <apsis/output/table.hpp>
 
 #include <string>
@@ -8,17 +9,21 @@
 namespace apsis {
 
 /// Macroscopic fields on one mesh at one or several times. `x` is empty for a model without space (one cell).
-/// Dimensionless.
+/// Dimensionless unless `units` are given.
 struct field_series {
   /// The fields at one time.
   struct snapshot {
     double t = 0.0;                           ///< time
     std::vector<std::vector<double>> values;  ///< [field][cell]
   };
-  std::vector<double> x;            ///< cell centres
-  std::vector<std::string> names,   ///< field names: "rho"
-      labels;                       ///< for plots: "density (dimensionless)"
-  std::vector<snapshot> snapshots;  ///< in order of time
+  std::vector<double> x;                    ///< cell centres
+  std::vector<std::string> names,           ///< field names: "rho"
+      labels,                               ///< for plots: "density (dimensionless)"
+      units = {};                           ///< of the fields; empty if they are dimensionless
+  std::string unit_of_x = "dimensionless",  ///< unit of x
+      unit_of_t = "dimensionless";          ///< unit of times
+  std::vector<dimension> measures = {};     ///< dimensions of the fields in units of a gas
+  std::vector<snapshot> snapshots;          ///< in order of time
 };
 
 /// Returns one row per cell with columns x and the fields, preceded by t if there are several snapshots.

@@ -118,7 +118,7 @@ void hdf5_file::close() {
 }
 
 void hdf5_file::write(const std::string& name, const std::vector<double>& values, const shape& extents,
-                      const std::string& long_name, precision stored) {
+                      const std::string& long_name, precision stored, const std::string& units) {
   const std::vector<hsize_t> dims(extents.begin(), extents.end());
   const handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
   const handle properties = creation_properties(H5P_DATASET_CREATE);
@@ -128,7 +128,7 @@ void hdf5_file::write(const std::string& name, const std::vector<double>& values
                     H5Dclose);
   const bool written = with_groups && data.good() &&
                        H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0 &&
-                       write_text_attribute(data, "units", "dimensionless") &&
+                       write_text_attribute(data, "units", units) &&
                        (long_name.empty() || write_text_attribute(data, "long_name", long_name));
   if (!written || *error_ != 0) fail_to_write(fmt::format("'{}' cannot be written", name));
 }

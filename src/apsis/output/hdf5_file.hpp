@@ -29,9 +29,10 @@ class hdf5_file {
   hdf5_file& operator=(hdf5_file&&) = delete;
 
   /// Writes a dataset; parent groups of `name` ("fields/rho") are created as needed. Its attributes are
-  /// "units" = "dimensionless" and, if given, "long_name".
+  /// "units" and, if given, "long_name".
   void write(const std::string& name, const std::vector<double>& values, const shape& extents,
-             const std::string& long_name = "", precision stored = precision::float64);
+             const std::string& long_name = "", precision stored = precision::float64,
+             const std::string& units = "dimensionless");
   /// Writes text as a scalar UTF-8 dataset without attributes.
   void write(const std::string& name, const std::string& text);
   /// Writes a number as an attribute of the file.

@@ -35,20 +35,27 @@ void write_solution(const std::string& path, const solution& s) {
   if (!s.f.empty()) file.write("f", s.f, {s.cells, s.components}, "unknowns");
   write_velocities(file, s.velocities);
   if (!s.f.empty()) write_marginals(file, s.f, s.cells, s.velocities, precision::float64);
-  if (!s.fields.x.empty()) file.write("x", s.fields.x, {s.cells}, "cell centre");
+  const field_series& fields = s.fields;
+  constexpr auto doubles = precision::float64;
+  if (!fields.x.empty()) file.write("x", fields.x, {s.cells}, "cell centre", doubles, fields.unit_of_x);
   if (!s.epsilon.empty()) file.write("epsilon", s.epsilon, {s.epsilon.size()}, "Knudsen number");
-  const auto& snapshots = s.fields.snapshots;
-  for (std::size_t k = 0; k < s.fields.names.size() && !snapshots.empty(); ++k)
-    file.write("fields/" + s.fields.names[k], snapshots.back().values[k], {s.cells}, s.fields.labels[k]);
+  const auto& snapshots = fields.snapshots;
+  const auto unit = [&fields](std::size_t k) {
+    return fields.units.empty() ? "dimensionless" : fields.units[k];
+  };
+  for (std::size_t k = 0; k < fields.names.size() && !snapshots.empty(); ++k)
+    file.write("fields/" + fields.names[k], snapshots.back().values[k], {s.cells}, fields.labels[k], doubles,
+               unit(k));
   if (snapshots.size() > 1) {
     std::vector<double> times;
     for (const auto& snapshot : snapshots) times.push_back(snapshot.t);
-    file.write("snapshots/t", times, {times.size()}, "time");
-    for (std::size_t k = 0; k < s.fields.names.size(); ++k) {
+    file.write("snapshots/t", times, {times.size()}, "time", doubles, fields.unit_of_t);
+    for (std::size_t k = 0; k < fields.names.size(); ++k) {
       std::vector<double> all;
       for (const auto& snapshot : snapshots)
         all.insert(all.end(), snapshot.values[k].begin(), snapshot.values[k].end());
-      file.write("snapshots/" + s.fields.names[k], all, {snapshots.size(), s.cells}, s.fields.labels[k]);
+      file.write("snapshots/" + fields.names[k], all, {snapshots.size(), s.cells}, fields.labels[k], doubles,
+                 unit(k));
     }
   }
   file.close();

@@ -10,7 +10,8 @@
 
 namespace apsis {
 
-/// The content of solution.h5: the state at the end of a run. Dimensionless.
+/// The content of solution.h5: the state at the end of a run. Dimensionless, except for times and fields
+/// whose series has units.
 struct solution {
   std::string title;            ///< of the case
   std::string case_text;        ///< the resolved case as TOML
@@ -28,7 +29,7 @@ struct solution {
 /// Writes the datasets f, v, x, epsilon, fields/NAME; with several snapshots also snapshots/t and
 /// snapshots/NAME [snapshots][cells]. With two or three velocity dimensions v is [points][dimensions], and
 /// v_weights [points] are added; where the velocities are a tensor product, also the nodes v_x, v_y, v_z and,
-/// with f, its marginals/v_x, … [cells][nodes]. Every dataset has the attribute units = "dimensionless"; the
+/// with f, its marginals/v_x, … [cells][nodes]. Every dataset has the attribute units; the
 /// file has title, case (TOML) and manifest (JSON). Throws io_error.
 void write_solution(const std::string& path, const solution& s);
 

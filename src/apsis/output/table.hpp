@@ -6,7 +6,7 @@
 
 namespace apsis {
 
-/// Numbers in named columns: rows[k][column]. Dimensionless throughout.
+/// Numbers in named columns: rows[k][column].
 struct numeric_table {
   std::vector<std::string> columns;       ///< one name per entry of a row
   std::vector<std::vector<double>> rows;  ///< [row][column]

@@ -4,6 +4,7 @@
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/output/provenance.hpp>
+#include <apsis/run/result_units.hpp>
 
 #include <cmath>
 
@@ -18,9 +19,24 @@ json numbers(const simulation& run) {
   const run_summary s = run.summary();
   json out;
   run_summary::visit_members(s, [&out](const char* name, const auto& x) { out[name] = x; });
+  const result_units units(run.config());
+  for (const char* time : {"t", "dt"}) out[time] = out[time].get<double>() * units.factor(dimensions::time);
   if (std::isnan(run.initial_record().entropy)) out["max_entropy_increase"] = nullptr;
   if (!has_space(*find_model(run.config().model.name))) out["state"] = run.state();
   return out;
+}
+
+/// Adds the scales of a gas, and the units of history and fields if they have any.
+void add_units(json& out, const simulation& run) {
+  const auto& scales = run.config().scales;
+  if (!scales) return;
+  out["scales"] = apsis::to_json(*scales);
+  if (!result_units(run.config()).are_si()) return;
+  json names = {{"x", unit_of(dimensions::length)}};
+  for (const auto& [column, measure] : history_measures(run)) names[column] = unit_of(measure);
+  const field_table fields = run.fields();
+  for (std::size_t k = 0; k < fields.names.size(); ++k) names[fields.names[k]] = unit_of(fields.measures[k]);
+  out["units"] = names;
 }
 
 }  // namespace
@@ -43,12 +59,13 @@ json to_json(const simulation& run, const run_records& records) {
   json out = {{"case", apsis::to_json(run.config())}, {"method", run.config().time.method}};
   out.update(numbers(run));
   json fields = json::object();
-  const field_series& series = records.fields();
+  const field_series series = result_units(run.config()).convert(records.fields());
   if (!series.x.empty()) fields["x"] = series.x;
   if (!series.snapshots.empty())
     for (std::size_t k = 0; k < series.names.size(); ++k)
       fields[series.names[k]] = series.snapshots.back().values[k];
   out["fields"] = fields;
+  add_units(out, run);
   return out;
 }
 
@@ -66,6 +83,7 @@ json manifest(const simulation& run, const session_record& session) {
                      {"entropy", run.promises().entropy}};
   if (!run.promises().condition.empty()) out["promises"][run.promises().condition] = true;
   out["result"] = numbers(run);
+  add_units(out, run);
   out["build"] = build_info();
   out["machine"] = machine_info();
   out["machine"]["host"] = host_name();

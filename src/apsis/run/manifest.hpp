@@ -33,8 +33,8 @@ struct session_record {
   std::optional<std::string> restart;  ///< checkpoint of a restart, as given
 };
 
-/// Returns the content of manifest.json: resolved case, version, commit, command line, times, totals, build
-/// and machine.
+/// Returns the content of manifest.json: resolved case, version, commit, command line, times, totals, scales
+/// and units, build and machine.
 nlohmann::ordered_json manifest(const simulation& run, const session_record& session);
 
 }  // namespace apsis

@@ -3,6 +3,7 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/run/result_units.hpp>
 
 #include <algorithm>
 
@@ -161,6 +162,7 @@ void run_records::name_fields(const simulation& run) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), all.names[k]) == wanted.end()) continue;
     fields_.names.push_back(all.names[k]);
     fields_.labels.push_back(all.labels[k]);
+    fields_.measures.push_back(all.measures[k]);
   }
   if (has_space(run)) fields_.x = all.x;
 }
@@ -229,14 +231,15 @@ solution make_solution(const simulation& run, const run_records& records) {
   solution s;
   s.case_text = to_toml(run.config());
   s.title = run.config().title;
-  s.t = run.t();
+  const result_units units(run.config());
+  s.t = run.t() * units.factor(dimensions::time);
   s.step = run.step();
   s.cells = static_cast<std::uint64_t>(run.cells());
   s.components = static_cast<std::uint64_t>(run.components());
   if (run.config().output.distribution != distribution_choice::none) s.f = run.state();
   s.velocities = run.velocities();
   s.epsilon = run.epsilon();
-  s.fields = records.fields();
+  s.fields = units.convert(records.fields());
   return s;
 }
 

@@ -7,6 +7,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/run/memory_need.hpp>
+#include <apsis/run/result_units.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -27,13 +28,15 @@ precision stored_precision(const case_config& config) {
                                                                        : precision::float64;
 }
 
-std::vector<distribution_file> distribution_files(const result_folder& folder) {
+/// `unit_of_time`: that of the other times of the results, in which the files are not written.
+std::vector<distribution_file> distribution_files(const result_folder& folder, double unit_of_time) {
   std::vector<distribution_file> files;
   for (const auto& path : folder.files_of_series(snapshots)) {
     const hdf5_file file = hdf5_file::open(path.string());
     const auto extents = file.extents("f");
-    files.push_back({std::string(snapshots) + "/" + path.filename().string(), file.read_attribute("t"),
-                     extents.at(0), extents.at(1), file.has("x") && file.has("v"), file.stored("f")});
+    files.push_back({std::string(snapshots) + "/" + path.filename().string(),
+                     file.read_attribute("t") * unit_of_time, extents.at(0), extents.at(1),
+                     file.has("x") && file.has("v"), file.stored("f")});
   }
   return files;
 }
@@ -250,10 +253,13 @@ void run_session::write_results(result_folder& folder, run_end end, const std::s
       json_text(manifest(simulation_, {end, message, started_, options_.command, options_.restart})) + "\n";
   solution final_state = make_solution(simulation_, *shown_);
   final_state.manifest = about;
-  folder.prepare_text("history.csv", to_csv(shown_->history(), {"step", "negative_values"}));
-  folder.prepare_text("fields.csv", to_csv(to_table(shown_->fields())));
+  const result_units units(simulation_.config());
+  folder.prepare_text("history.csv",
+                      to_csv(units.convert(shown_->history(), simulation_), {"step", "negative_values"}));
+  folder.prepare_text("fields.csv", to_csv(to_table(final_state.fields)));
   folder.prepare("solution.h5", [&](const std::string& path) { write_solution(path, final_state); });
-  folder.prepare_text("solution.xdmf", solution_xdmf(final_state, distribution_files(folder)));
+  folder.prepare_text("solution.xdmf",
+                      solution_xdmf(final_state, distribution_files(folder, units.factor(dimensions::time))));
   if (end != run_end::failed)
     folder.prepare("checkpoint.h5", [this](const std::string& path) { write_checkpoint_of_end(path); });
   folder.prepare_text(result_folder::manifest, about);

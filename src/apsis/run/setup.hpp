@@ -43,6 +43,10 @@ class run_setup {
   bool has_space() const { return builder_.has_space(); }
   /// Returns the cell volume; 1 without space.
   double cell_volume() const { return has_space() ? builder_.mesh().cell_volume() : 1.0; }
+  /// Returns the mesh; a single cell without space.
+  const grid& mesh() const { return builder_.mesh(); }
+  /// Whether both ends along a direction are periodic.
+  bool periodic(int direction) const { return builder_.space().periodic(direction); }
   /// Returns the names of the faces that are not periodic, "left", "right", and "force" if there is one.
   std::vector<std::string> open_faces() const;
   /// Returns x of the cell centres; {0} without space.

@@ -5,6 +5,7 @@
 #include <apsis/exec/thread_clock.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/tolerance_forecast.hpp>
+#include <apsis/run/find_fields.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/promises.hpp>
@@ -171,6 +172,9 @@ const run_promises& simulation::promises() const {
 std::vector<std::string> simulation::invariants() const {
   return impl_->setup.equation->invariants();
 }
+std::vector<dimension> simulation::invariant_measures() const {
+  return impl_->setup.equation->invariant_measures();
+}
 std::vector<std::string> simulation::open_faces() const {
   return impl_->setup.open_faces();
 }
@@ -242,31 +246,7 @@ run_summary simulation::summary() const {
 }
 
 field_table simulation::fields() const {
-  const model& equation = *impl_->setup.equation;
-  field_table table;
-  for (const auto& name : equation.fields()) {
-    table.names.push_back(name.name);
-    table.labels.push_back(name.label);
-  }
-  const std::size_t usual = table.names.size();
-  const auto& wanted = config().output.fields;
-  const auto further = equation.further_fields();
-  if (std::any_of(further.begin(), further.end(), [&](const field_name& one) {
-        return std::find(wanted.begin(), wanted.end(), one.name) != wanted.end();
-      }))
-    for (const auto& one : further) {
-      table.names.push_back(one.name);
-      table.labels.push_back(one.label);
-    }
-  table.x = impl_->setup.centres();
-  table.values.assign(table.names.size(), {});
-  std::vector<double> values(table.names.size());
-  for (int cell = 0; cell < cells(); ++cell) {
-    equation.macroscopic(impl_->state.row(cell), values.data());
-    if (values.size() > usual) equation.further_macroscopic(impl_->state.row(cell), values.data() + usual);
-    for (std::size_t k = 0; k < values.size(); ++k) table.values[k].push_back(values[k]);
-  }
-  return table;
+  return find_fields(impl_->setup, impl_->state);
 }
 
 bool simulation::has_space() const {

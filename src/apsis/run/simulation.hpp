@@ -27,6 +27,7 @@ struct field_table {
   std::vector<std::string> names,           ///< field names: "rho"
       labels;                               ///< for plots: "density (dimensionless)"
   std::vector<std::vector<double>> values;  ///< [field][cell]
+  std::vector<dimension> measures = {};     ///< dimensions in units of a gas
 };
 
 /// One run of a case. The constructor checks everything that can be checked before the first step.
@@ -41,6 +42,8 @@ class simulation {
   const case_config& config() const;            ///< the case as given
   const run_promises& promises() const;         ///< promises checked after every step
   std::vector<std::string> invariants() const;  ///< names in the order of conservation_defect
+  /// Returns the dimensions of the densities of the invariants in units of a gas.
+  std::vector<dimension> invariant_measures() const;
   /// Returns the names of the faces that are not periodic and then "force", if there is one, in the order of
   /// step_record::received.
   std::vector<std::string> open_faces() const;

@@ -78,8 +78,9 @@ const boundary_entry boundary_diffuse = {
         [](const model& equation) {
           const int d = maxwellian_form(equation, "diffuse").variables[1].size;
           return std::vector<data_variable>{
-              {"T", "temperature of the wall, > 0 (dimensionless)", 1, 1.0},
-              {"velocity", "velocity of the wall, 0 along its normal (dimensionless)", d, 0.0},
+              {"T", "temperature of the wall, > 0 (dimensionless)", 1, 1.0, dimensions::temperature},
+              {"velocity", "velocity of the wall, 0 along its normal (dimensionless)", d, 0.0,
+               dimensions::velocity},
               {"accommodation", "fraction of molecules that is re-emitted, 0 to 1; the others are reflected",
                1, 1.0}};
         },

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/config/case_text.hpp>
+#include <apsis/model/model_registry.hpp>
+
+#include <optional>
+
+namespace apsis {
+
+/// Returns the scales of the table [gas], whose keys `config` has; nothing without the table. Throws
+/// input_error: a missing key, or more than one of pressure, density and number density.
+std::optional<gas_scales> read_gas_scales(const case_text& text, const model_entry& model,
+                                          const case_config& config);
+
+/// Replaces quantities with units in the values of a case by dimensionless numbers; those of [parameters] may
+/// have any dimension. Throws input_error at the place of a key: a unit without scales, or of another
+/// dimension than the key.
+void remove_units(case_text& text, const model_entry& model, const std::optional<gas_scales>& scales);
+
+/// Sets the options of the model that the scales in `config` determine: collision_rate, viscosity_exponent,
+/// prandtl, degrees_of_freedom. Throws input_error where the case gives another value, or the model cannot
+/// have it.
+void set_gas_of_model(case_text& text, const model_entry& model, const case_config& config);
+
+/// Sets model.epsilon from model.knudsen, model.rarefaction or the scales in `config`, whose constants hold.
+/// Throws input_error: more than one of them, a value that contradicts the scales, or a model whose viscosity
+/// is not ε T^s.
+void derive_epsilon(case_text& text, const model_entry& model, const case_config& config);
+
+}  // namespace apsis

@@ -1,0 +1,95 @@
+// Values with units become dimensionless before any formula is read.
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/case_schema.hpp>
+#include <apsis/config/case_value.hpp>
+#include <apsis/config/gas_reader.hpp>
+#include <apsis/config/quantity.hpp>
+
+#include <map>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+bool begins_with(const std::string& path, const char* head) {
+  return path.rfind(head, 0) == 0;
+}
+
+/// Dimensions of the variables of [initial] and of boundaries by name.
+std::map<std::string, dimension> measures_of_variables(const model& equation) {
+  std::map<std::string, dimension> measures;
+  const auto add = [&measures](const std::vector<data_variable>& variables) {
+    for (const auto& one : variables) measures[one.name] = one.measure;
+  };
+  for (const auto& form : equation.data_forms()) add(form.variables);
+  for (const boundary_entry* kind : boundary_entries()) {
+    if (kind->variables == nullptr) continue;
+    try {
+      add(kind->variables(equation));
+    } catch (const input_error&) {  // the model cannot have this kind
+    }
+  }
+  return measures;
+}
+
+class unit_remover {
+ public:
+  unit_remover(const model_entry& model, const std::optional<gas_scales>& scales)
+      : model_(model), scales_(scales), variables_(measures_of_variables(prototype(model))) {}
+
+  void convert(const std::string& path, raw_value& raw) const {
+    if (begins_with(path, "parameters.")) return convert(path, raw, nullptr);
+    if (const auto measure = measure_of(path)) convert(path, raw, &*measure);
+  }
+
+ private:
+  /// Returns the dimension of a numeric key; nothing of a key that takes text.
+  std::optional<dimension> measure_of(const std::string& path) const {
+    for (const case_key& key : case_schema())
+      if (key.path == path) {
+        const bool is_text =
+            key.type == key_type::text || key.type == key_type::text_list || key.type == key_type::quantity;
+        return is_text ? std::nullopt : std::optional(key.measure);
+      }
+    for (const model_parameter& p : model_.parameters)
+      if ("model." + p.name == path) return dimensions::none;
+    if (!begins_with(path, "initial.") && !begins_with(path, "boundary.")) return std::nullopt;
+    const auto variable = variables_.find(path.substr(path.rfind('.') + 1));
+    return variable == variables_.end() ? std::nullopt : std::optional(variable->second);
+  }
+
+  /// `measure`: of the key; null if any is valid.
+  void convert(const std::string& path, raw_value& raw, const dimension* measure) const {
+    if (auto* list = std::get_if<raw_value::list>(&raw.value)) {
+      for (raw_value& item : *list) convert(path, item, measure);
+      return;
+    }
+    const auto* text = std::get_if<std::string>(&raw.value);
+    if (text == nullptr || !looks_like_quantity(*text)) return;
+    quantity given = parse_quantity(*text, raw.place);
+    if (!scales_)
+      refuse(raw, path, "a unit needs the scales of a gas",
+             "add a table [gas], or give a dimensionless number");
+    if (measure != nullptr && *measure == dimensions::density && given.unit == dimensions::number_density)
+      given = {given.value * scales_->gas().mass, dimensions::density};
+    if (measure != nullptr && given.unit != *measure)
+      refuse(raw, path, fmt::format("its unit is that of {}", unit_of(given.unit)),
+             *measure == dimensions::none ? "give a number without a unit"
+                                          : fmt::format("give it in {}", unit_of(*measure)));
+    raw.value = given.value / scales_->unit(given.unit);
+  }
+
+  const model_entry& model_;
+  const std::optional<gas_scales>& scales_;
+  std::map<std::string, dimension> variables_;
+};
+
+}  // namespace
+
+void remove_units(case_text& text, const model_entry& model, const std::optional<gas_scales>& scales) {
+  const unit_remover remover(model, scales);
+  for (auto& [path, raw] : text.values) remover.convert(path, raw);
+}
+
+}  // namespace apsis

@@ -1,0 +1,73 @@
+#include <apsis/run/result_units.hpp>
+
+#include <algorithm>
+
+namespace apsis {
+namespace {
+
+/// "density (dimensionless)" with another unit.
+std::string with_unit(const std::string& label, const std::string& unit) {
+  const std::string none = "(dimensionless)";
+  const auto at = label.rfind(none);
+  return at == std::string::npos ? label : label.substr(0, at) + "(" + unit + ")";
+}
+
+void multiply(std::vector<double>& values, double factor) {
+  for (double& x : values) x *= factor;
+}
+
+}  // namespace
+
+result_units::result_units(const case_config& config)
+    : scales_(config.output.units == units_choice::si ? config.scales : std::nullopt) {}
+
+std::string result_units::suffix(const dimension& measure) const {
+  return are_si() && measure != dimensions::none ? " " + unit_of(measure) : "";
+}
+
+field_series result_units::convert(field_series fields) const {
+  if (!are_si()) return fields;
+  multiply(fields.x, factor(dimensions::length));
+  fields.unit_of_x = unit_of(dimensions::length);
+  fields.unit_of_t = unit_of(dimensions::time);
+  fields.units.clear();
+  for (std::size_t k = 0; k < fields.names.size(); ++k) {
+    const dimension& measure = fields.measures[k];
+    fields.units.push_back(unit_of(measure));
+    fields.labels[k] = with_unit(fields.labels[k], fields.units[k]);
+    for (auto& snapshot : fields.snapshots) multiply(snapshot.values[k], factor(measure));
+  }
+  for (auto& snapshot : fields.snapshots) snapshot.t *= factor(dimensions::time);
+  return fields;
+}
+
+numeric_table result_units::convert(numeric_table history, const simulation& run) const {
+  if (!are_si()) return history;
+  for (const auto& [name, measure] : history_measures(run)) {
+    const auto found = std::find(history.columns.begin(), history.columns.end(), name);
+    if (found == history.columns.end()) continue;
+    const auto column = static_cast<std::size_t>(found - history.columns.begin());
+    const double by = factor(measure);
+    for (auto& row : history.rows) row[column] *= by;
+  }
+  return history;
+}
+
+std::vector<std::pair<std::string, dimension>> history_measures(const simulation& run) {
+  using dimensions::length, dimensions::time;
+  std::vector<std::pair<std::string, dimension>> all = {
+      {"t", time}, {"dt", time}, {"change", dimensions::none / time}};
+  const auto names = run.invariants();
+  const auto densities = run.invariant_measures();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const dimension amount = densities[k] * length;
+    all.emplace_back("total_" + names[k], amount);
+    for (const auto& face : run.open_faces()) {
+      all.emplace_back("received_" + face + "_" + names[k], amount);
+      all.emplace_back("flux_" + face + "_" + names[k], amount / time);
+    }
+  }
+  return all;
+}
+
+}  // namespace apsis

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/output/field_series.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+
+/// The units of the results of a case, output.units: all quantities of a run are dimensionless, and converted
+/// where they are written.
+class result_units {
+ public:
+  /// Keeps what it needs of the case.
+  explicit result_units(const case_config& config);
+
+  /// Whether results are in SI units.
+  bool are_si() const { return scales_.has_value(); }
+  /// Returns the factor of dimensionless quantities of a dimension; 1 if results are dimensionless.
+  double factor(const dimension& measure) const { return scales_ ? scales_->unit(measure) : 1.0; }
+  /// Returns " Pa" with a leading space for reports; "" if there is no unit.
+  std::string suffix(const dimension& measure) const;
+
+  /// Returns the fields in these units, with the units in their labels.
+  field_series convert(field_series fields) const;
+  /// Returns the history of a run in these units.
+  numeric_table convert(numeric_table history, const simulation& run) const;
+
+ private:
+  std::optional<gas_scales> scales_;
+};
+
+/// Returns the dimensions of the columns of the history that have one, in units of a gas: times, and what is
+/// in the domain and crosses its faces per area.
+std::vector<std::pair<std::string, dimension>> history_measures(const simulation& run);
+
+}  // namespace apsis

@@ -1,0 +1,387 @@
+// Quantities with units, the table [gas] and Knudsen numbers in a case.
+#include <apsis/config/case.hpp>
+#include <apsis/config/case_schema.hpp>
+#include <apsis/config/quantity.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/model/expression.hpp>
+#include <apsis/model/mean_free_path.hpp>
+#include <apsis/model/model_registry.hpp>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+using namespace apsis;
+using testing::HasSubstr;
+
+namespace {
+
+// Line numbers below refer to this text.
+const std::string in_argon = R"toml([gas]
+name = "argon"
+pressure = "10 Pa"
+temperature = "300 K"
+length = "1 mm"
+[parameters]
+U = "50 m/s"
+[model]
+name = "shakhov"
+velocity_dimensions = 2
+[initial]
+rho = "4.82e20 1/m^3"
+T = "27 degC"
+u = [0, "U"]
+[space]
+cells = 20
+domain = ["-1 mm", "1e-3 m"]
+[boundary.left]
+kind = "diffuse"
+T = "350 K"
+velocity = [0, "20 m/s"]
+[boundary.right]
+kind = "diffuse"
+T = "1 + 0.1*sin(t)"
+[velocity]
+max = "1.5 km/s"
+points = 16
+[time]
+method = "md-imex-6-3"
+end = "2 us"
+safety = 1
+steady = "1e3 1/s"
+[output]
+every = "500 ns"
+units = "SI"
+)toml";
+
+const std::string no_units = R"toml([model]
+name = "bgk"
+degrees_of_freedom = 3
+collision_rate = "viscosity"
+viscosity_exponent = 0.81
+[parameters]
+kn = 0.1
+[space]
+cells = 20
+[velocity]
+max = 8.0
+points = 16
+[time]
+method = "md-imex-6-3"
+end = 0.1
+safety = 1
+)toml";
+
+case_config parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return parse_case(text, "c.toml", overrides);
+}
+
+std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    parse(text, overrides);
+  } catch (const error& e) {
+    EXPECT_EQ(e.code(), exit_code::input);
+    return e.what();
+  }
+  return "accepted";
+}
+
+std::string changed(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+double number(const std::string& formula, const formula_constants& constants = {}) {
+  return expression(formula, {}, {{"x"}, false, constants}).value(0.0);
+}
+
+TEST(quantities, are_read_in_units_of_the_si) {
+  const std::vector<std::pair<std::string, double>> same = {
+      {"0.1 mbar", 10.0},      {"1 atm", 101325.0},      {"760 Torr", 101325.0},   {"2 kPa", 2000.0},
+      {"1e3 hPa", 1e5},        {"1 kg/(m s^2)", 1.0},    {"3 N/m^2", 3.0},         {"5 J m^-3", 5.0},
+      {"7 kg m^-1 s^-2", 7.0}, {"2 W/(m^2 (m/s))", 2.0}, {" -1.5   MPa ", -1.5e6}, {"4 N / (m*m)", 4.0}};
+  for (const auto& [text, value] : same) {
+    const quantity q = parse_quantity(text, {});
+    EXPECT_EQ(q.unit, dimensions::pressure) << text;
+    EXPECT_NEAR(q.value, value, 1e-15 * std::abs(value)) << text;
+  }
+  EXPECT_EQ(parse_quantity("20 degC", {}).value, 293.15);
+  EXPECT_EQ(parse_quantity("20 \u00b0C", {}).unit, dimensions::temperature);
+  EXPECT_NEAR(parse_quantity("3 \u00b5m", {}).value, 3e-6, 1e-21);
+  EXPECT_NEAR(parse_quantity("3 um", {}).value, 3e-6, 1e-21);
+  EXPECT_NEAR(parse_quantity("1 u", {}).value, 1.66053906660e-27, 1e-42);
+  EXPECT_EQ(parse_quantity("1e20 1/m^3", {}).unit, dimensions::number_density);
+}
+
+TEST(quantities, formulas_are_no_quantities) {
+  for (const char* text : {"1 + 2", "1e-3", "x", "2*x", "1 - x", "1 > 2 ? 3 : 4", "", " ", "300", "300K",
+                           "K 3", "1 /m", "nan K", "1e999 K", "1 ^2"})
+    EXPECT_FALSE(looks_like_quantity(text)) << text;
+}
+
+TEST(quantities, wrong_ones_are_refused) {
+  const auto refused = [](const std::string& text) -> std::string {
+    try {
+      parse_quantity(text, {"c.toml", 3, 4});
+    } catch (const input_error& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refused("3"),
+            "c.toml:3:4: '3' is not a quantity (a number, a space and a unit are needed); write for "
+            "example \"10 Pa\"");
+  EXPECT_THAT(refused("3 pa"),
+              HasSubstr("unknown unit 'pa' (no such symbol, with or without a prefix); did you "
+                        "mean 'Pa'? valid: m, g, u, s, K,"));
+  EXPECT_THAT(refused("3 W/degC"), HasSubstr("degC is part of a unit (its zero is not that of K); give the "
+                                             "temperature in K"));
+  for (const char* text : {"3 m/", "3 m^", "3 m^x", "3 (m", "3 m)", "3 m//s", "3 ((((((((((m))))))))))",
+                           "3 m^99", "3 ((m^9)^9)^9"})
+    EXPECT_THAT(refused(text), HasSubstr("is not a unit")) << text;
+  EXPECT_THAT(refused("1e300 MPa MPa"), HasSubstr("is not finite"));
+}
+
+RC_GTEST_PROP(quantities, text_after_a_number_is_read_or_refused, ()) {
+  const auto tail =
+      *rc::gen::container<std::string>(rc::gen::elementOf(std::string("mskgPaKTor1/^-*() 29u")));
+  try {
+    const quantity q = parse_quantity("2 " + tail, {});
+    RC_ASSERT(std::isfinite(q.value));
+  } catch (const input_error&) {
+  }
+}
+
+TEST(gas, units_become_dimensionless_numbers) {
+  const case_config c = parse(in_argon);
+  ASSERT_TRUE(c.scales.has_value());
+  // Independent of the scales of the program: R = k_B/m of argon.
+  const double m = 66.3e-27, R = 1.380649e-23 / m, speed = std::sqrt(R * 300.0), time = 1e-3 / speed;
+  const auto expect = [](double x, double y) { EXPECT_NEAR(x, y, 1e-12 * std::abs(y)); };
+  expect(c.space.domain[0][0], -1.0);
+  expect(c.space.domain[0][1], 1.0);
+  expect(c.velocity.max, 1500.0 / speed);
+  expect(c.time.end, 2e-6 / time);
+  expect(*c.time.steady, 1e3 * time);
+  expect(c.output.every, 5e-7 / time);
+  expect(c.constants.at("U"), 50.0 / speed);
+  expect(number(c.prescribed.state.at("rho").front()), 4.82e20 * 1.380649e-23 * 300.0 / 10.0);
+  expect(number(c.prescribed.state.at("T").front()), 300.15 / 300.0);
+  EXPECT_EQ(c.prescribed.state.at("u").back(), "U");
+  expect(number(c.faces.left.values.at("T").front()), 350.0 / 300.0);
+  expect(number(c.faces.left.values.at("velocity").back()), 20.0 / speed);
+  EXPECT_EQ(c.faces.right.values.at("T").front(), "1 + 0.1*sin(t)");
+  // The gas sets the model.
+  const double mu = 2.117e-5 * std::pow(300.0 / 273.0, 0.81);
+  expect(number(c.model.epsilon), mu * speed / (10.0 * 1e-3));
+  EXPECT_EQ(c.model.texts.at("collision_rate"), "viscosity");
+  EXPECT_EQ(c.model.parameters.at("viscosity_exponent"), 0.81);
+  EXPECT_EQ(c.model.parameters.at("prandtl"), 2.0 / 3.0);
+  EXPECT_EQ(c.model.parameters.at("degrees_of_freedom"), 3.0);
+}
+
+TEST(gas, a_resolved_case_reads_back_unchanged) {
+  const std::string once = to_toml(parse(in_argon)), twice = to_toml(parse(once));
+  EXPECT_EQ(once, twice);
+  EXPECT_THAT(once, HasSubstr("[gas]\nname = \"argon\"\npressure = \"10 Pa\""));
+  const std::string without =
+      to_toml(parse(no_units, {"model.knudsen.value=kn", "model.knudsen.mean_free_path=vhs"}));
+  EXPECT_EQ(without, to_toml(parse(without)));
+}
+
+TEST(gas, pressure_density_and_number_density_are_equivalent) {
+  const case_config c = parse(in_argon);
+  const double n = 10.0 / (1.380649e-23 * 300.0);
+  for (const auto& [key, value] :
+       {std::pair<std::string, std::string>{"density", fmt::format("{} kg/m^3", 66.3e-27 * n)},
+        {"number_density", fmt::format("{} 1/cm^3", 1e-6 * n)}}) {
+    // On the command line a key replaces those that exclude it.
+    const case_config other = parse(in_argon, {"gas." + key + "=" + value});
+    EXPECT_FALSE(other.gas.pressure.has_value());
+    EXPECT_NEAR(other.scales->pressure(), 10.0, 1e-12);
+    EXPECT_NEAR(number(other.model.epsilon), number(c.model.epsilon), 1e-12 * number(c.model.epsilon));
+    EXPECT_THAT(
+        error_of(changed(in_argon, "name = \"argon\"", "name = \"argon\"\n" + key + " = \"" + value + "\"")),
+        HasSubstr("(exactly one of pressure, density and number_density sets the reference density)"));
+  }
+}
+
+TEST(gas, of_ones_own_is_described_by_its_values) {
+  const std::string own = changed(in_argon, "name = \"argon\"",
+                                  "mass = \"40 u\"\nviscosity = \"20 uPa s\"\nviscosity_exponent = 0.7");
+  const case_config c = parse(own);
+  EXPECT_NEAR(c.scales->viscosity(), 20e-6, 1e-20);  // at the reference temperature
+  EXPECT_EQ(c.scales->gas().prandtl, 2.0 / 3.0);
+  const case_config hot = parse(own, {"gas.viscosity_temperature=600 K", "gas.prandtl=0.7"});
+  EXPECT_NEAR(hot.scales->viscosity(), 20e-6 * std::pow(0.5, 0.7), 1e-18);
+  EXPECT_EQ(hot.model.parameters.at("prandtl"), 0.7);
+  const case_config named = parse(in_argon, {"gas.viscosity_exponent=0.5"});
+  EXPECT_EQ(named.scales->gas().mass, 66.3e-27);
+  EXPECT_EQ(named.model.parameters.at("viscosity_exponent"), 0.5);
+  EXPECT_EQ(parse(in_argon, {"gas.viscosity_exponent=0"}).model.parameters.at("viscosity_exponent"), 0.0);
+  EXPECT_THAT(
+      error_of(changed(own, "mass = \"40 u\"\n", "")),
+      HasSubstr(
+          "c.toml:1:1: key 'gas.mass' is missing (the gas has no name from which it is known); add name "
+          "= \"argon\", or mass = \"6.63e-26 kg\""));
+}
+
+TEST(gas, contradictions_and_wrong_units_are_refused_at_their_place) {
+  struct wrong {
+    std::string from, to, says;
+  };
+  const std::vector<wrong> all = {
+      {"T = \"350 K\"", "T = \"350 m\"",
+       "c.toml:20:1: 'boundary.left.T' is the text '350 m' (its unit is that of m); give it in K"},
+      {"velocity = [0, \"20 m/s\"]", "velocity = [0, \"20 K\"]",
+       "c.toml:21:1: 'boundary.left.velocity' is the text '20 K' (its unit is that of K); give it in m/s"},
+      {"T = \"350 K\"", "accommodation = \"1 m/m\"", "accepted"},
+      {"T = \"350 K\"", "accommodation = \"1 m\"",
+       "c.toml:20:1: 'boundary.left.accommodation' is the text '1 m' (its unit is that of m); give a number "
+       "without a "
+       "unit"},
+      {"end = \"2 us\"", "end = \"2 um\"",
+       "'time.end' is the text '2 um' (its unit is that of m); give it in s"},
+      {"end = \"2 us\"", "end = \"-2 us\"", "'time.end' is the text '-2 us' (it must be at least 0)"},
+      {"cells = 20", "cells = \"20 m\"",
+       "'space.cells' is the text '20 m' (its unit is that of m); give a number"},
+      {"\"1e-3 m\"", "\"1e-3 s\"",
+       "'space.domain' is the text '1e-3 s' (its unit is that of s); give it in m"},
+      {"\"300 K\"", "\"-300 degC\"", "'gas.temperature' is the text '-300 degC' (it must be above 0)"},
+      {"\"10 Pa\"", "\"10 K\"",
+       "c.toml:3:1: 'gas.pressure' is the text '10 K' (its unit is that of K); give it in Pa"},
+      {"\"10 Pa\"", "10",
+       "c.toml:3:1: 'gas.pressure' is the integer 10 (a number, a space and a unit are needed); "
+       "write for example \"1 Pa\""},
+      {"\"10 Pa\"", "\"0 Pa\"",
+       "'gas.pressure' is the text '0 Pa' (it must be above 0); give a positive number"},
+      {"length = \"1 mm\"\n", "", "c.toml:1:1: key 'gas.length' is missing"},
+      {"temperature = \"300 K\"\n", "", "key 'gas.temperature' is missing"},
+      {"pressure = \"10 Pa\"\n", "", "c.toml:1:1: no reference density is given"},
+      {"\"argon\"", "\"argn\"",
+       "'gas.name' is the text 'argn' (there is no such name); did you mean 'argon'?"},
+      {"\"argon\"", "\"nitrogen\"",
+       "c.toml:1:1: the table [gas] has degrees_of_freedom = 5 (model 'shakhov' takes 3 "
+       "to 3); choose another model or gas"},
+      {"velocity_dimensions = 2", "velocity_dimensions = 2\nepsilon = 0.1",
+       "c.toml:11:1: the Knudsen number contradicts the table [gas] (epsilon is 0.571"},
+      {"velocity_dimensions = 2", "velocity_dimensions = 2\nepsilon = \"0.57 + x\"",
+       "contradicts the table [gas]"},
+      {"velocity_dimensions = 2", "velocity_dimensions = 2\nrarefaction = 1", "contradicts the table [gas]"},
+      {"velocity_dimensions = 2", "velocity_dimensions = 2\nprandtl = 0.7",
+       "'model.prandtl' is the number 0.7 (the table [gas] has 0.666667); remove it, or change [gas]"},
+      {"velocity_dimensions = 2", "velocity_dimensions = 2\nviscosity_exponent = 0.5",
+       "'model.viscosity_exponent' is the number 0.5 (the table [gas] has 0.81)"},
+      {"velocity_dimensions = 2", "velocity_dimensions = 2\ncollision_rate = \"constant\"",
+       "'model.collision_rate' is the text 'constant' (a table [gas] gives the viscosity of the model)"},
+      {"velocity_dimensions = 2", "velocity_dimensions = 2\nknudsen = \"from gas\"", "accepted"},
+      {"\"10 Pa\"", "\"1e-320 Pa\"", "c.toml:1:1: the table [gas] gives pressure ="},
+  };
+  for (const auto& [from, to, says] : all)
+    EXPECT_THAT(error_of(changed(in_argon, from, to)), HasSubstr(says)) << to;
+}
+
+TEST(gas, units_need_it) {
+  EXPECT_THAT(
+      error_of(no_units, {"time.end=1 us"}),
+      HasSubstr("'time.end' is the text '1 us' (a unit needs the scales of a gas); add a table [gas], or "
+                "give a dimensionless number"));
+  EXPECT_THAT(
+      error_of(no_units, {"output.units=SI"}),
+      HasSubstr("'output.units' is the text 'SI' (the scales are those of a gas, and there is no table "
+                "[gas]); add the table, or write units = \"dimensionless\""));
+  EXPECT_EQ(error_of("title = \"2 mm of gas\"\n" + no_units), "accepted");
+  EXPECT_THAT(
+      error_of("[model]\nname = \"decay\"\n[gas]\n[time]\nmethod = \"md-imex-6-3\"\nend = 1\ndt = 0.1\n"),
+      HasSubstr("c.toml:3:1: the table [gas] is not used (model 'decay' is not a gas); remove it"));
+}
+
+TEST(knudsen, numbers_of_every_definition_give_epsilon) {
+  using std::numbers::pi;
+  // Kn/ε from λ/L with μ = ε, p = R T = L = 1, evaluated here on its own.
+  const std::vector<std::pair<std::string, double>> expected = {
+      {"viscosity", std::sqrt(pi / 2.0)},
+      {"mean-speed", std::sqrt(8.0 / pi)},
+      {"vhs", 2.0 * (7.0 - 1.62) * (5.0 - 1.62) / (15.0 * std::sqrt(2.0 * pi))},
+      {"hard-sphere", 3.2 / std::sqrt(2.0 * pi)},
+      {"equivalent", std::sqrt(2.0)}};
+  EXPECT_EQ(expected.size(), mean_free_paths().size());
+  for (const auto& [name, factor] : expected) {
+    const auto number_of = [&, &of = name](const std::string& value) {
+      const case_config c = parse(
+          changed(no_units, "[parameters]",
+                  fmt::format("knudsen = {{value = {}, mean_free_path = \"{}\"}}\n[parameters]", value, of)));
+      return expression(c.model.epsilon, {}, {{"x"}, true, c.constants}).value(0.5);
+    };
+    EXPECT_NEAR(number_of("0.1"), 0.1 / factor, 1e-15) << name;
+    EXPECT_NEAR(number_of("\"2*kn\""), 0.2 / factor, 1e-15) << name;
+    EXPECT_NEAR(number_of("\"kn + x\""), 0.6 / factor, 1e-15) << name;
+    EXPECT_EQ(number_of("0"), 0.0) << name;
+  }
+  EXPECT_NEAR(number(parse(no_units, {"model.rarefaction=3"}).model.epsilon), 1.0 / (3.0 * std::sqrt(2.0)),
+              1e-16);
+  const case_config varying = parse(no_units, {"model.rarefaction=1 + x"});
+  EXPECT_NEAR(expression(varying.model.epsilon).value(1.0), 1.0 / (2.0 * std::sqrt(2.0)), 1e-15);
+  // Without viscosity_exponent the default of the model, hard spheres, holds.
+  const case_config hard = parse(changed(no_units, "viscosity_exponent = 0.81", "rarefaction = 2"));
+  EXPECT_EQ(hard.model.parameters.at("viscosity_exponent"), 0.5);
+}
+
+TEST(knudsen, what_is_wrong_is_refused) {
+  const auto with = [](const std::string& line) {
+    return error_of(changed(no_units, "[parameters]", line + "\n[parameters]"));
+  };
+  EXPECT_THAT(
+      with("knudsen = 0.1"),
+      HasSubstr("c.toml:6:1: 'model.knudsen' is the number 0.1 (a Knudsen number needs the definition of its "
+                "mean free path); write for example knudsen = {value = 0.1, mean_free_path = \"vhs\"}"));
+  EXPECT_THAT(with("knudsen = {value = 0.1}"), HasSubstr("key 'model.knudsen.mean_free_path' is missing"));
+  EXPECT_THAT(with("knudsen = {mean_free_path = \"vhs\"}"),
+              HasSubstr("key 'model.knudsen.value' is missing"));
+  EXPECT_THAT(with("knudsen = {}"), HasSubstr("key 'model.knudsen.value' is missing"));
+  EXPECT_THAT(with("knudsen = {value = 0.1, mean_free_path = \"vhz\"}"),
+              HasSubstr("(there is no such name); did you mean 'vhs'? valid: viscosity, mean-speed, vhs, "
+                        "hard-sphere, equivalent"));
+  EXPECT_THAT(with("knudsen = {value = 0.1, mean_free_path = \"vhs\", mean = 1}"),
+              HasSubstr("unknown key 'model.knudsen.mean'"));
+  EXPECT_THAT(with("knudsen = {value = -0.1, mean_free_path = \"vhs\"}"),
+              HasSubstr("(it must be at least 0)"));
+  EXPECT_THAT(with("knudsen = {value = \"x - 1\", mean_free_path = \"vhs\"}"), HasSubstr("c.toml:6:"));
+  EXPECT_THAT(with("knudsen = {value = \"2*y\", mean_free_path = \"vhs\"}"), HasSubstr("unknown name 'y'"));
+  EXPECT_THAT(error_of(changed(changed(no_units, "0.81", "3"), "[parameters]",
+                               "knudsen = {value = 0.1, mean_free_path = \"vhs\"}\n[parameters]")),
+              HasSubstr("'model.viscosity_exponent' is the integer 3 (it must be from 0 to 2"));
+  EXPECT_THAT(with("knudsen = \"from gas\""), HasSubstr("(there is no table [gas])"));
+  EXPECT_THAT(with("rarefaction = 0"),
+              HasSubstr("'model.rarefaction' is the integer 0 (it must be above 0)"));
+  EXPECT_THAT(with("rarefaction = \"0*kn\""), HasSubstr("(epsilon is not finite)"));
+  EXPECT_THAT(
+      with("rarefaction = 2\nepsilon = 1"),
+      HasSubstr("'model.rarefaction' conflicts with 'model.epsilon' (each sets the Knudsen number); remove "
+                "one of them"));
+  EXPECT_THAT(with("knudsen = {value = 1, mean_free_path = \"vhs\"}\nepsilon = 1"),
+              HasSubstr("'model.knudsen.value' conflicts with 'model.epsilon'"));
+  EXPECT_THAT(
+      error_of(changed(no_units, "\"viscosity\"", "\"constant\"\nrarefaction = 2")),
+      HasSubstr(
+          "c.toml:5:1: 'model.rarefaction' is the integer 2 (a mean free path follows from the viscosity "
+          "epsilon T^s, which the model has only with collision_rate = \"viscosity\"); add "
+          "collision_rate = \"viscosity\" to [model], or give epsilon"));
+  // A key on the command line replaces those in the file that exclude it.
+  const std::string in_file =
+      changed(no_units, "[parameters]", "knudsen = {value = 1, mean_free_path = \"vhs\"}\n[parameters]");
+  EXPECT_EQ(parse(in_file, {"model.epsilon=0.25"}).model.epsilon, "0.25");
+  EXPECT_NE(parse(in_file, {"model.knudsen.value=2"}).model.epsilon, parse(in_file).model.epsilon);
+  EXPECT_EQ(error_of(in_file, {"model.rarefaction=2"}), "accepted");
+}
+
+}  // namespace

@@ -20,11 +20,14 @@ case_config mixed_case(const std::string& formulation, const std::string& method
 
 mixed_step::mixed_step(const std::string& formulation, const std::string& method, int cells,
                        std::vector<std::string> overrides)
-    : setup_(mixed_case(formulation, method, cells, std::move(overrides))),
+    : mixed_step(mixed_case(formulation, method, cells, std::move(overrides))) {}
+
+mixed_step::mixed_step(const case_config& config)
+    : setup_(config),
       problem_(setup_.make_problem()),
       stepper_(setup_.integrator(), *problem_),
       u_(setup_.initial_state()),
-      fuses_solves_(formulation == "finite-difference"),
+      fuses_solves_(config.space.formulation == formulation::finite_difference),
       dt_(0.9 * stepper_.r() * problem_->forward_euler_step(0.0, u_)) {
   take(1);  // allocates the buffers
 }

@@ -16,6 +16,8 @@ class mixed_step {
   /// `overrides` are additional keys of the case, "key=value".
   mixed_step(const std::string& formulation, const std::string& method, int cells,
              std::vector<std::string> overrides = {});
+  /// Steps of another case.
+  explicit mixed_step(const case_config& config);
 
   void take(int steps) {
     for (int k = 0; k < steps; ++k) stepper_.step(0.0, dt_, u_);

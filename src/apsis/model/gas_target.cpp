@@ -7,16 +7,73 @@
 namespace apsis {
 namespace {
 
-/// Calls body(first point, c without the last component) for every line of the last direction.
+/// Lines that a loop passes together.
+constexpr int together = 16;
+
+/// The components of c = v − u of some lines of the last direction but for the last, 0 from d − 1 on.
+struct line_batch {
+  int first, count;  ///< lines
+  std::array<std::array<double, 2>, together> c;
+};
+
+/// Calls body(line_batch) for all lines of the last direction.
 template <class Body>
 void for_lines(const velocity_grid& grid, const fluid_state& state, const Body& body) {
-  const int d = grid.dimensions(), n = grid.last_line().points();
-  for (int first = 0; first < grid.size(); first += n) {
-    std::array<double, 3> c{};
+  const int d = grid.dimensions();
+  line_batch some{};
+  for (some.first = 0; some.first < grid.lines(); some.first += together) {
+    some.count = std::min(together, grid.lines() - some.first);
     for (int k = 0; k + 1 < d; ++k)
-      c[static_cast<std::size_t>(k)] =
-          grid.component(k)[static_cast<std::size_t>(first)] - state.u[static_cast<std::size_t>(k)];
-    body(first, c);
+      for (int i = 0; i < some.count; ++i)
+        some.c[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
+            grid.component_of_lines(k)[some.first + i] - state.u[k];
+    body(some);
+  }
+}
+
+/// P along the last direction of d, the other components of c given.
+template <std::size_t d>
+target_rows::cubic along_last(const target_polynomial& p, const std::array<double, 2>& c) {
+  constexpr std::size_t last = d - 1;
+  double square = 0.0, along = 0.0;
+  target_rows::cubic of_line{p.k, p.l[last], p.a[last][last], p.w[last]};
+  for (std::size_t i = 0; i < last; ++i) {
+    square += c[i] * c[i];
+    along += p.w[i] * c[i];
+    of_line.k0 += p.l[i] * c[i];
+    of_line.k1 += 2.0 * p.a[i][last] * c[i];
+    for (std::size_t j = 0; j < last; ++j) of_line.k0 += p.a[i][j] * c[i] * c[j];
+  }
+  of_line.k0 += along * square;
+  of_line.k1 += p.w[last] * square;
+  of_line.k2 += along;
+  return of_line;
+}
+
+/// e ← max(base · P, −keep f) for one set of components.
+template <std::size_t d>
+void weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
+                 const double* base, const double* f, double keep, double* e) {
+  const int n = grid.last_line().points();
+  for_lines(grid, state, [&](const line_batch& some) {
+    std::array<target_rows::cubic, together> of_lines;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+    for (int i = 0; i < some.count; ++i)
+      of_lines[static_cast<std::size_t>(i)] = along_last<d>(p, some.c[static_cast<std::size_t>(i)]);
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(some.first) * n;
+    target_rows::weigh(base + first, grid.last_line().v().data(), state.u[d - 1], of_lines.data(), some.count,
+                       f + first, keep, n, e + first);
+  });
+}
+
+void weigh(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
+           const double* base, const double* f, double keep, double* e) {
+  switch (grid.dimensions()) {
+    case 1:
+      return weigh_lines<1>(grid, state, p, base, f, keep, e);
+    case 2:
+      return weigh_lines<2>(grid, state, p, base, f, keep, e);
+    default:
+      return weigh_lines<3>(grid, state, p, base, f, keep, e);
   }
 }
 
@@ -90,19 +147,26 @@ central_moments find_central_moments(const gas& of, const double* row, const flu
   thread_local aligned_vector<double> scratch_of_g, scratch_of_h;
   const double* of_g = grid.weighted(row, scratch_of_g);
   const double* of_h = of.reduced() ? grid.weighted(row + grid.size(), scratch_of_h) : nullptr;
-  for_lines(grid, state, [&](int first, const std::array<double, 3>& c) {
-    std::array<double, 4> g{}, h{};
-    target_rows::power_sums(of_g + first, grid.last_line().v().data(), state.u[last], n, g.data());
-    if (of.reduced())
-      target_rows::power_sums(of_h + first, grid.last_line().v().data(), state.u[last], n, h.data());
-    double square = 0.0;
-    for (std::size_t k = 0; k < last; ++k) square += c[k] * c[k];
-    m.stress[last][last] += g[2];
-    m.heat[last] += 0.5 * (square * g[1] + g[3] + h[1]);
-    for (std::size_t k = 0; k < last; ++k) {
-      m.heat[k] += 0.5 * c[k] * (square * g[0] + g[2] + h[0]);
-      m.stress[k][last] += c[k] * g[1];
-      for (std::size_t l = 0; l < last; ++l) m.stress[k][l] += c[k] * c[l] * g[0];
+  for_lines(grid, state, [&](const line_batch& some) {
+    std::array<target_rows::powers, together> sums_of_g{}, sums_of_h{};
+    const auto sum = [&](const double* from, std::array<target_rows::powers, together>& sums) {
+      target_rows::power_sums(from + static_cast<std::ptrdiff_t>(some.first) * n, grid.last_line().v().data(),
+                              state.u[last], some.count, n, sums.data());
+    };
+    sum(of_g, sums_of_g);
+    if (of.reduced()) sum(of_h, sums_of_h);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(some.count); ++i) {
+      const auto &g = sums_of_g[i], &h = sums_of_h[i];
+      const auto& c = some.c[i];
+      double square = 0.0;
+      for (std::size_t k = 0; k < last; ++k) square += c[k] * c[k];
+      m.stress[last][last] += g[2];
+      m.heat[last] += 0.5 * (square * g[1] + g[3] + h[1]);
+      for (std::size_t k = 0; k < last; ++k) {
+        m.heat[k] += 0.5 * c[k] * (square * g[0] + g[2] + h[0]);
+        m.stress[k][last] += c[k] * g[1];
+        for (std::size_t l = 0; l < last; ++l) m.stress[k][l] += c[k] * c[l] * g[0];
+      }
     }
   });
   for (std::size_t k = 0; k <= last; ++k) {
@@ -114,27 +178,10 @@ central_moments find_central_moments(const gas& of, const double* row, const flu
   return m;
 }
 
-target_rows::cubic target_polynomial::along_last(int dimensions, const std::array<double, 3>& c) const {
-  const auto last = static_cast<std::size_t>(dimensions - 1);
-  double square = 0.0, along = 0.0;
-  target_rows::cubic p{k, l[last], a[last][last], w[last]};
-  for (std::size_t i = 0; i < last; ++i) {
-    square += c[i] * c[i];
-    along += w[i] * c[i];
-    p.k0 += l[i] * c[i];
-    p.k1 += 2.0 * a[i][last] * c[i];
-    for (std::size_t j = 0; j < last; ++j) p.k0 += a[i][j] * c[i] * c[j];
-  }
-  p.k0 += along * square;
-  p.k1 += w[last] * square;
-  p.k2 += along;
-  return p;
-}
-
 bool conservative_target(const gas& of, const double* omega, const double* base, const target_shape& given,
                          const double* f, double keep, double* e) {
   const velocity_grid& grid = of.grid();
-  const int d = grid.dimensions(), n = grid.last_line().points();
+  const int d = grid.dimensions();
   const fluid_state state = of.state(omega);
   target_shape shape = given;
   if (!(shape.variance >= narrowest * widest_gap(grid, state))) return false;
@@ -142,15 +189,9 @@ bool conservative_target(const gas& of, const double* omega, const double* base,
   double best = 1e300;
   constexpr int most_corrections = 12;
   for (int iteration = 0; iteration < most_corrections; ++iteration) {
-    for_lines(grid, state, [&](int first, const std::array<double, 3>& c) {
-      const double* v = grid.last_line().v().data();
-      target_rows::weigh(base + first, v, state.u[d - 1], shape.of_g.along_last(d, c), f + first, keep, n,
-                         e + first);
-      if (!of.reduced() || iteration > 0) return;
-      const int of_h = grid.size() + first;
-      target_rows::weigh(base + of_h, v, state.u[d - 1], shape.of_h.along_last(d, c), f + of_h, keep, n,
-                         e + of_h);
-    });
+    weigh(grid, state, shape.of_g, base, f, keep, e);
+    if (of.reduced() && iteration == 0)
+      weigh(grid, state, shape.of_h, base + grid.size(), f + grid.size(), keep, e + grid.size());
     std::array<double, 5> after{};
     of.moments(e, 0, 1, after.data());
     const defect found = defect_of(after.data(), omega, state, d, shape.variance);

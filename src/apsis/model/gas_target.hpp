@@ -21,8 +21,6 @@ struct target_polynomial {
   std::array<double, 3> l{},                 ///< l
       w{};                                   ///< w
   std::array<std::array<double, 3>, 3> a{};  ///< A, symmetric
-  /// Returns the values along the last direction, the other components of c given.
-  target_rows::cubic along_last(int dimensions, const std::array<double, 3>& c) const;
 };
 
 /// The part of the temperature that a target has in its resolved directions, for the correction below.

@@ -68,6 +68,10 @@ velocity_grid::velocity_grid(std::vector<velocity_line> lines) : lines_(std::mov
       rest /= n;
     }
   }
+  of_lines_.resize(lines_.size() - 1);
+  for (std::size_t k = 0; k + 1 < lines_.size(); ++k)
+    for (std::size_t j = 0; j < total; j += static_cast<std::size_t>(last_line().points()))
+      of_lines_[k].push_back(components[k][j]);
   set_ = velocity_set(std::move(components), std::move(weights));
 }
 
@@ -148,7 +152,7 @@ line_sums sum_over_lines(const velocity_grid& grid, const double* f, int first, 
     const auto& row = rows[static_cast<std::size_t>(i)];
     double half_square = 0.0;
     for (std::size_t k = 0; k < outer; ++k) {
-      const double v = grid.component(static_cast<int>(k))[static_cast<std::size_t>(from + i * n)];
+      const double v = grid.component_of_lines(static_cast<int>(k))[first + i];
       sum.momentum[k] += v * row.mass;
       half_square += 0.5 * v * v;
     }
@@ -166,7 +170,7 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) 
   thread_local aligned_vector<double> scratch;
   const double* row = grid.weighted(f, scratch);
   if (d == 1) return moments_on_line(grid, row, 0, 1, omega);
-  const line_sums sum = sum_over_lines(grid, row, 0, grid.size() / grid.last_line().points());
+  const line_sums sum = sum_over_lines(grid, row, 0, grid.lines());
   omega[0] = grid.weight() * sum.mass;
   for (int k = 0; k < d; ++k) omega[1 + k] = grid.weight() * sum.momentum[static_cast<std::size_t>(k)];
   omega[1 + d] = grid.weight() * sum.energy;

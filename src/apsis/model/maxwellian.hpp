@@ -35,6 +35,10 @@ class velocity_grid {
   const velocity_line& line(int k) const { return lines_[static_cast<std::size_t>(k)]; }
   /// Returns those of the last direction, along which velocities are contiguous.
   const velocity_line& last_line() const { return lines_.back(); }
+  /// Returns the number of lines in the last direction, size()/last_line().points().
+  int lines() const { return size_ / last_line().points(); }
+  /// Returns component k < d − 1 of the velocities of every line in the last direction.
+  const double* component_of_lines(int k) const { return of_lines_[static_cast<std::size_t>(k)].data(); }
   /// Whether all lines are uniform. The weights are then equal.
   bool uniform() const { return uniform_; }
   double weight() const { return weight_; }  ///< Δv_1 ⋯ Δv_d, or 1 if not uniform
@@ -55,6 +59,7 @@ class velocity_grid {
   bool uniform_ = true;
   double weight_ = 1.0, unit_ = 0.0;
   aligned_vector<double> half_square_;
+  std::vector<std::vector<double>> of_lines_;
   velocity_set set_;
 };
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
+
 namespace apsis {
 
-/// Loops over the points of one velocity direction for targets that are a row times a polynomial, for the
-/// instruction set of this processor. c = v − u.
+/// Loops over lines of n points in one velocity direction, one behind the other, for targets that are a row
+/// times a polynomial, for the instruction set of this processor. c = v − u.
 namespace target_rows {
 
 /// k0 + k1 c + k2 c² + k3 c³.
@@ -14,12 +16,14 @@ struct cubic {
       k3 = 0.0;     ///< coefficient of c³
 };
 
-/// e ← max(m p(c), −keep f) at n points, f ≥ 0; keep = ∞ leaves m p(c).
-void weigh(const double* m, const double* v, double u, const cubic& p, const double* f, double keep, int n,
-           double* e);
+/// e ← max(m p(c), −keep f) with one polynomial for each line, f ≥ 0; keep = ∞ leaves m p(c).
+void weigh(const double* m, const double* v, double u, const cubic* of_lines, int lines, const double* f,
+           double keep, int n, double* e);
 
-/// sums[k] ← Σ f c^k, k = 0 … 3.
-void power_sums(const double* f, const double* v, double u, int n, double* sums);
+/// Σ f c^k, k = 0 … 3.
+using powers = std::array<double, 4>;
+/// Those of each line.
+void power_sums(const double* f, const double* v, double u, int lines, int n, powers* of_lines);
 
 }  // namespace target_rows
 }  // namespace apsis

@@ -1,12 +1,10 @@
 #include <apsis/core/errors.hpp>
+#include <apsis/model/correlated_gaussian.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/model/gas_target.hpp>
-#include <apsis/model/velocity_rows.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
+#include <vector>
 
 #include <Eigen/Dense>
 
@@ -14,6 +12,14 @@ namespace apsis {
 namespace {
 
 using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+
+direction_matrix plain(const matrix& of) {
+  direction_matrix same{};
+  for (Eigen::Index k = 0; k < of.rows(); ++k)
+    for (Eigen::Index l = 0; l < of.cols(); ++l)
+      same[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] = of(k, l);
+  return same;
+}
 
 /// The Gaussian of covariance Θ̂ in the resolved directions and T̂ in each of the others.
 struct gaussian_shape {
@@ -106,40 +112,14 @@ class es_bgk_model final : public gas_model {
     return conservative_target(g, omega, base.data(), target, f, keep, e);
   }
 
-  /// row ← G, line by line of the last direction: there it is a Gaussian about a mean that depends on the
-  /// other components.
+  /// row ← G.
   void fill(const fluid_state& state, const gaussian_shape& shape, double* row) const {
     const gas& g = molecules();
-    const velocity_grid& grid = g.grid();
-    const auto last = static_cast<Eigen::Index>(size()) - 1;
-    const double variance = 1.0 / shape.inverse(last, last);
-    const double height =
-        state.rho / std::sqrt(std::pow(2.0 * std::numbers::pi, static_cast<double>(last + 1)) *
-                              shape.covariance.determinant());
-    matrix outer;
-    if (last > 0) outer = shape.covariance.topLeftCorner(last, last).inverse();
-    thread_local std::vector<velocity_rows::gaussian> lines;
-    lines.clear();
-    for (int first = 0; first < grid.size(); first += grid.last_line().points()) {
-      double exponent = 0.0, shift = 0.0;
-      for (Eigen::Index k = 0; k < last; ++k) {
-        const auto speed = [&](Eigen::Index i) {
-          return grid.component(static_cast<int>(i))[static_cast<std::size_t>(first)] - state.u[i];
-        };
-        shift -= shape.inverse(last, k) * variance * speed(k);
-        for (Eigen::Index l = 0; l < last; ++l) exponent -= 0.5 * speed(k) * outer(k, l) * speed(l);
-      }
-      lines.push_back({height * std::exp(exponent), state.u[last] + shift, variance});
-    }
-    constexpr int together = most_line_states;
-    const velocity_line& line = grid.last_line();
-    const int n = line.points(), count = static_cast<int>(lines.size());
-    for (int first = 0; first < count; first += together)
-      gaussians_on(line, lines.data() + first, std::min(together, count - first),
-                   row + static_cast<std::ptrdiff_t>(first) * n, n);
+    const int points = g.grid().size();
+    correlated_gaussian(g.grid(), state, plain(shape.covariance), plain(shape.inverse), row);
     if (!g.reduced()) return;
     const double energy = (g.degrees_of_freedom() - g.dimensions()) * shape.others;
-    for (int j = 0; j < grid.size(); ++j) row[grid.size() + j] = energy * row[j];
+    for (int j = 0; j < points; ++j) row[points + j] = energy * row[j];
   }
 
   double rate_of_stress_;  ///< λ = 1/Pr

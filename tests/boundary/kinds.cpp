@@ -26,7 +26,7 @@ class copied final : public apsis::boundary {
     of_->fill(where, t, rows);
   }
   bool periodic() const override { return of_->periodic(); }
-  bool closed() const override { return of_->closed(); }
+  std::optional<std::vector<double>> entropy_bound() const override { return of_->entropy_bound(); }
 
  private:
   std::shared_ptr<const apsis::boundary> of_;
@@ -152,12 +152,12 @@ TEST(boundary, every_name_is_found_and_an_unknown_one_gets_a_suggestion) {
             "inflow, outflow, periodic, symmetry");
 }
 
-TEST(boundary, a_domain_is_closed_where_all_its_faces_are) {
+TEST(boundary, the_entropy_of_a_domain_is_bounded_where_that_of_all_its_faces_is) {
   const grid mesh(2, {2, 2, 1}, {0, 0, 0}, {1, 1, 1});
   const auto periodic = apsis::make_boundary("periodic"), outflow = apsis::make_boundary("outflow");
-  EXPECT_TRUE(domain(mesh, {{periodic, periodic}, {periodic, periodic}}).closed());
-  EXPECT_FALSE(domain(mesh, {{periodic, periodic}, {outflow, outflow}}).closed());
-  EXPECT_TRUE(domain::point().closed());
+  EXPECT_TRUE(domain(mesh, {{periodic, periodic}, {periodic, periodic}}).entropy_bounds().has_value());
+  EXPECT_FALSE(domain(mesh, {{periodic, periodic}, {outflow, outflow}}).entropy_bounds().has_value());
+  EXPECT_TRUE(domain::point().entropy_bounds().has_value());
 }
 
 }  // namespace

@@ -52,8 +52,10 @@ class boundary {
                         double* incoming) const;
   /// Whether the domain continues at the opposite face; both faces of a direction must agree.
   virtual bool periodic() const { return false; }
-  /// Whether no invariant crosses the face.
-  virtual bool closed() const { return false; }
+  /// Returns c such that the entropy that enters through the face in a sweep of first order is at most Σ_k
+  /// c_k F_k with the amounts F_k of the invariants that enter; {} means c = 0. Returns nothing, the default,
+  /// if no such bound is known.
+  virtual std::optional<std::vector<double>> entropy_bound() const { return std::nullopt; }
 };
 
 /// A boundary condition whose ghost rows are rows of interior cells.

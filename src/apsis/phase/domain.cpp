@@ -58,9 +58,16 @@ bool domain::periodic(int direction) const {
   return side({direction, false}).periodic();
 }
 
-bool domain::closed() const {
-  return std::all_of(sides_.begin(), sides_.end(),
-                     [](const faces& pair) { return pair[0]->closed() && pair[1]->closed(); });
+std::optional<std::vector<std::vector<double>>> domain::entropy_bounds() const {
+  std::vector<std::vector<double>> all;
+  for (const faces& pair : sides_)
+    for (const auto& one : pair) {
+      if (one->periodic()) continue;
+      auto bound = one->entropy_bound();
+      if (!bound) return std::nullopt;
+      all.push_back(std::move(*bound));
+    }
+  return all;
 }
 
 bool domain::repeats(const face& where) const {

@@ -33,8 +33,8 @@ class domain {
   position meeting_point(const face& where, int pencil) const;
   /// Whether the direction is periodic.
   bool periodic(int direction) const;
-  /// Whether no invariant crosses any face.
-  bool closed() const;
+  /// Returns boundary::entropy_bound() of every face that is not periodic; nothing if one of them has none.
+  std::optional<std::vector<std::vector<double>>> entropy_bounds() const;
 
   /// Allocates `width` ghost rows of `components` numbers beyond every face.
   void reserve(int components, int width);

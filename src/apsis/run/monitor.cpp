@@ -109,6 +109,8 @@ step_record monitor::check(const field& u, double dt, const step_record& previou
   record.violation = violation_in(u, t);
   std::vector<double> gained = u.gains();
   gained.resize(faces_ * invariants_.size());
+  for (std::size_t k = 0; k < entropy_bounds_.size(); ++k)
+    record.entropy_change -= entropy_bounds_[k] * gained[k];
   record.received = previous.received;
   for (std::size_t k = 0; k < gained.size(); ++k) {
     record.received[k] += gained[k];

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -16,8 +17,9 @@ class monitor {
  public:
   /// `volume` is the cell volume (1 for an ordinary differential equation), `faces` the number of faces that
   /// are not periodic.
-  monitor(const model& equation, double volume, std::size_t faces)
-      : equation_(equation), volume_(volume), faces_(faces) {}
+  /// `entropy_bounds` as those of run_setup; empty if there are none.
+  monitor(const model& equation, double volume, std::size_t faces, std::vector<double> entropy_bounds = {})
+      : equation_(equation), volume_(volume), faces_(faces), entropy_bounds_(std::move(entropy_bounds)) {}
 
   /// Sets the reference state of conservation and returns its record: defects are relative to Σ_cells volume
   /// · model::invariant_scales().
@@ -42,6 +44,7 @@ class monitor {
   const model& equation_;
   double volume_;
   std::size_t faces_;
+  std::vector<double> entropy_bounds_;       ///< of what is received, [face][invariant]
   std::vector<double> invariants_, scales_;  ///< of the initial state
 };
 

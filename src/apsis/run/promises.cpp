@@ -82,8 +82,8 @@ void check_promises(const run_promises& promises, const step_record& last, const
              last, change);
   }
   if (promises.entropy && last.entropy_change > 1e-13 * (1.0 + std::abs(last.entropy)))
-    broken("the entropy increased (first-order upwind within r dt_FE entails decay)", last,
-           last.entropy_change);
+    broken("the entropy increased by more than walls give (first-order upwind within r dt_FE entails decay)",
+           last, last.entropy_change);
 }
 
 }  // namespace apsis

@@ -27,8 +27,10 @@ struct step_record {
   /// |I − I₀ − received| for each invariant, relative to the largest of its scales at the start, of the state
   /// and of what crossed the faces.
   std::vector<double> conservation_defect;
-  double entropy = 0.0;         ///< NaN where the model has none, or an unknown is < 0
-  double entropy_change = 0.0;  ///< S^{n+1} − S^n; NaN without entropy, and at the start
+  double entropy = 0.0;  ///< NaN where the model has none, or an unknown is < 0
+  /// S^{n+1} − S^n less what walls may give, boundary::entropy_bound(); NaN without entropy, and at the
+  /// start.
+  double entropy_change = 0.0;
   /// ‖u^{n+1} − u^n‖₂/(Δt ‖u^{n+1}‖₂), the relative change per unit of time; NaN at the start, and without
   /// time.steady.
   double change = std::numeric_limits<double>::quiet_NaN();

@@ -160,6 +160,20 @@ std::vector<std::string> run_setup::open_faces() const {
   return open;
 }
 
+std::optional<std::vector<double>> run_setup::entropy_bounds() const {
+  std::vector<double> all;
+  if (!has_space()) return all;
+  if (config_.force.acceleration) return std::nullopt;
+  const auto of_faces = builder_.space().entropy_bounds();
+  if (!of_faces) return std::nullopt;
+  const std::size_t count = equation->invariants().size();
+  for (std::vector<double> one : *of_faces) {
+    one.resize(count);
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return all;
+}
+
 std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
   return builder_.build();
 }
@@ -236,8 +250,6 @@ double run_setup::equilibrium_defect(const field& u) const {
 void run_setup::decide_promises(run_promises& promises, double dt, double limit, bool nonnegative,
                                 bool exact_equilibrium) const {
   const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
-  // Entropy crosses open ends; what crosses them of the invariants is known.
-  const bool closed = builder_.space().closed();
   // An explicit Q/epsilon beyond its step limit amplifies its rounding in the invariants by dt/epsilon.
   const bool explicit_collision = schedule(method_->coefficients<double>()).collision_evaluations() > 0;
   promises.conservation =
@@ -249,8 +261,8 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
   promises.condition = equation->condition();
   promises.positivity = equation->positive() && collisions && nonnegative && within && builder_.keeps_sign();
   // An equilibrium with other moments does not minimize the entropy among the states with those of the data.
-  promises.entropy = equation->collisions_decrease_entropy() && nonnegative && closed && within &&
-                     builder_.first_order() && exact_equilibrium;
+  promises.entropy = equation->collisions_decrease_entropy() && nonnegative && within &&
+                     builder_.first_order() && exact_equilibrium && entropy_bounds().has_value();
 }
 
 }  // namespace apsis

@@ -49,6 +49,9 @@ class run_setup {
   bool periodic(int direction) const { return builder_.space().periodic(direction); }
   /// Returns the names of the faces that are not periodic, "left", "right", and "force" if there is one.
   std::vector<std::string> open_faces() const;
+  /// Returns boundary::entropy_bound() of the open faces, [face][invariant]; nothing if the entropy that one
+  /// of them, or the force, gives is not bounded.
+  std::optional<std::vector<double>> entropy_bounds() const;
   /// Returns x of the cell centres; {0} without space.
   std::vector<double> centres() const;
   /// Returns ε at the cell centres.

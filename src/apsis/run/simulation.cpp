@@ -52,7 +52,8 @@ struct simulation::impl {
         problem(setup.make_problem()),
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
-        watch(*setup.equation, setup.cell_volume(), setup.open_faces().size()),
+        watch(*setup.equation, setup.cell_volume(), setup.open_faces().size(),
+              setup.entropy_bounds().value_or(std::vector<double>{})),
         rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
         state(setup.initial_state()),
         march(times_of(setup)) {

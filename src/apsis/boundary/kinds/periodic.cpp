@@ -8,7 +8,6 @@ class periodic_boundary final : public repeating_boundary {
  public:
   std::optional<int> repeated_cell(int ghost, int cells) const override { return cells - 1 - ghost % cells; }
   bool periodic() const override { return true; }
-  bool closed() const override { return true; }
 };
 
 }  // namespace

@@ -34,6 +34,13 @@ class symmetry_boundary final : public boundary {
     }
   }
 
+  /// What arrives leaves with the same entropy.
+  std::optional<std::vector<double>> entropy_bound() const override {
+    if (std::any_of(signs_.begin(), signs_.end(), [](double sign) { return sign != 1.0; }))
+      return std::nullopt;
+    return std::vector<double>{};
+  }
+
  private:
   std::vector<double> signs_of_sets_;
   std::vector<int> mirrored_;  ///< component whose normal velocity is opposite

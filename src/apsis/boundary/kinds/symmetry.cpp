@@ -34,7 +34,7 @@ class symmetry_boundary final : public boundary {
     }
   }
 
-  /// What arrives leaves with the same entropy.
+  /// Mirrored components have the same entropy.
   std::optional<std::vector<double>> entropy_bound() const override {
     if (std::any_of(signs_.begin(), signs_.end(), [](double sign) { return sign != 1.0; }))
       return std::nullopt;

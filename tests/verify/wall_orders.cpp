@@ -61,3 +61,21 @@ TEST(walls, slow_have_third_order_in_cell_averages_next_to_them_at_small_epsilon
   EXPECT_GT(slope("benchmarks/carried-gas", "20,40", error_norm::linf, {"space.formulation=finite-volume"}),
             inside);
 }
+
+TEST(walls, have_the_limit_scheme_as_epsilon_vanishes_in_steps_that_do_not_depend_on_it) {
+  for (const char* model : {"bgk", "shakhov", "es-bgk"}) {
+    const convergence_study study{.case_name = "benchmarks/heated-wall",
+                                  .overrides = {std::string("model.name=") + model, "space.cells=20"},
+                                  .vary = {parse_vary("model.epsilon=1e-4,1e-5,1e-6,1e-8,1e-12")},
+                                  .reference = parse_reference("model.epsilon=0"),
+                                  .norm = error_norm::l1};
+    const auto rows = converge(study).blocks.front().rows;
+    for (std::size_t k = 1; k + 1 < rows.size(); ++k) {
+      EXPECT_NEAR(rows[k].rate, 1.0, k == 1 ? 0.1 : 0.02) << model << rows[k].values.front();
+      EXPECT_EQ(rows[k].steps, rows[0].steps) << model;
+    }
+    // 1e-12 times the factor of the other rows is below the rounding of sixty steps.
+    EXPECT_LT(rows.back().error, 2e-11) << model;
+    EXPECT_EQ(rows.back().steps, rows[0].steps) << model;
+  }
+}

@@ -144,12 +144,15 @@ TEST(boundary, every_name_is_found_and_an_unknown_one_gets_a_suggestion) {
   const auto gas = apsis::find_model("bgk")->make(parts);
   for (const auto& name : apsis::boundary_names()) {
     apsis::face_quantities values;
-    if (name == "inflow") values = {{"rho", {1.0}}, {"T", {1.0}}};
+    if (name == "inflow" || name == "far-field") values = {{"rho", {1.0}}, {"T", {1.0}}};
+    if (name == "pressure") values = {{"p", {1.0}}};
+    if (name == "given") values = {{"f", {0.1}}};
     EXPECT_NE(apsis::make_boundary(name, *gas, values), nullptr) << name;
   }
   EXPECT_EQ(message_of([] { apsis::make_boundary("outfow"); }),
             "unknown boundary 'outfow' (there is no such kind); did you mean 'outflow'? valid: diffuse, "
-            "inflow, outflow, periodic, symmetry");
+            "far-field, given, "
+            "inflow, outflow, periodic, pressure, symmetry");
 }
 
 TEST(boundary, the_entropy_of_a_domain_is_bounded_where_that_of_all_its_faces_is) {

@@ -42,7 +42,7 @@ class generator {
         "[space]\ncells = {}\nformulation = \"{}\"\nlimiter = \"positivity\"\nreconstruction = \"{}\"\n",
         d == 1 ? 10 + below(40) : 8 + below(12), pick({"finite-volume", "finite-difference"}),
         pick({"weno5-z", "weno5-js", "upwind1", "upwind5"}));
-    for (const char* side : {"left", "right"}) text += boundary(side, d);
+    for (const char* side : {"left", "right"}) text += boundary(side, d, degrees);
     text += fmt::format("[velocity]\nset = \"{}\"\npoints = {}\nmax = 9\n", pick({"uniform", "graded"}),
                         d == 1 ? 40 : 24);
     return text + fmt::format("[time]\nmethod = \"{}\"\nsafety = 1\nend = 1e9\n", method);
@@ -62,14 +62,20 @@ class generator {
     return d == 1 ? fmt::format("{:.3f}", first) : fmt::format("[{:.3f}, 0.2]", first);
   }
 
-  std::string boundary(const std::string& side, int d) {
-    const std::string kind = pick({"diffuse", "diffuse", "inflow", "symmetry", "outflow"});
+  std::string boundary(const std::string& side, int d, int degrees) {
+    const std::string kind =
+        pick({"diffuse", "diffuse", "inflow", "symmetry", "outflow", "far-field", "pressure", "given"});
     std::string text = fmt::format("[boundary.{}]\nkind = \"{}\"\n", side, kind);
     if (kind == "diffuse") {
       text += fmt::format("T = \"{:.3f} + 0.3*sin({:.3f}*t)\"\naccommodation = {:.3f}\n", number(0.8, 2.0),
                           number(0.0, 200.0), below(4) == 0 ? 1.0 : number(0.0, 1.0));
       if (d == 2) text += fmt::format("velocity = [0, \"{:.3f}*cos(30*t)\"]\n", number(-1.0, 1.0));
-    } else if (kind == "inflow") {
+    } else if (kind == "pressure") {
+      text += fmt::format("p = {:.3g}\nT = {:.3f}\n", number(0.1, 2.0), number(0.5, 2.0));
+    } else if (kind == "given") {
+      const std::string g = fmt::format("{:.3g}*exp(-abs(v_x)^3)", number(0.0, 2.0));
+      text += d < degrees ? fmt::format("g = \"{0}\"\nh = \"0.5*{0}\"\n", g) : fmt::format("f = \"{}\"\n", g);
+    } else if (kind == "inflow" || kind == "far-field") {
       text += fmt::format("rho = {:.3g}\nu = {}\nT = {:.3f}\n", std::pow(10.0, number(-14.0, 1.0)),
                           vector(d, number(-1.0, 1.0)), number(0.5, 2.0));
     }

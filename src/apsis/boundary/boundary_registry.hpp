@@ -13,24 +13,33 @@
 
 namespace apsis {
 
-/// A quantity at a face: a number, or a function of time and of the position on the face. Dimensionless.
+/// A quantity at a face: a number, or a function of time and of the position on the face, and of the velocity
+/// where it is a variable of_velocity. Dimensionless.
 class face_quantity {
  public:
   /// A function of t and x, which may be called concurrently.
   using function = std::function<double(double t, const position& at)>;
+  /// A function of t, x and the velocity v, which may be called concurrently.
+  using velocity_function = std::function<double(double t, const position& at, const position& v)>;
   /// A number.
   face_quantity(double value = 0.0) : number_(value) {}
   /// A function.
-  face_quantity(function value) : function_(std::move(value)) {}
+  face_quantity(function value)
+      : function_(
+            [of = std::move(value)](double t, const position& at, const position&) { return of(t, at); }) {}
+  /// A function of the velocity too.
+  face_quantity(velocity_function value) : function_(std::move(value)) {}
 
-  /// Returns the value at time t at a point of the face.
-  double at(double t, const position& x) const { return function_ ? function_(t, x) : number_; }
+  /// Returns the value at time t at a point of the face, for a velocity.
+  double at(double t, const position& x, const position& v = {}) const {
+    return function_ ? function_(t, x, v) : number_;
+  }
   /// Whether it is a number.
   bool is_constant() const { return !function_; }
 
  private:
   double number_ = 0.0;
-  function function_;
+  velocity_function function_;
 };
 
 /// Components of the variables of a boundary condition by name: "velocity" → {0, 0.1}.

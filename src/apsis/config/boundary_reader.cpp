@@ -45,15 +45,43 @@ face_quantity compile(const std::string& text, const source_place& place, const 
   });
 }
 
+/// A formula in t, the position and the velocity v_x, v_y, v_z.
+face_quantity compile_of_velocity(const std::string& text, const source_place& place, formula_kind kind,
+                                  int dimensions) {
+  static const std::array<const char*, 3> names = {"v_x", "v_y", "v_z"};
+  const std::size_t of_place = kind.variables.size() - 1, d = static_cast<std::size_t>(dimensions);
+  kind.variables.insert(kind.variables.end(), names.begin(), names.begin() + dimensions);
+  const auto formula = std::make_shared<const expression>(text, place, kind);
+  if (formula->is_constant()) return formula->evaluate(std::array<double, 7>{});
+  return face_quantity([formula, of_place, d](double t, const position& x, const position& v) {
+    std::array<double, 7> values{t};
+    std::copy_n(x.begin(), of_place, values.begin() + 1);
+    std::copy_n(v.begin(), d, values.begin() + 1 + static_cast<std::ptrdiff_t>(of_place));
+    return formula->evaluate(values);
+  });
+}
+
+/// Whether a variable of a kind of boundary is a function of the velocity.
+bool is_of_velocity(const std::string& kind, const model& equation, const std::string& variable) {
+  const boundary_entry& entry = find_boundary(kind);
+  if (entry.variables == nullptr) return false;
+  const auto all = entry.variables(equation);
+  return std::any_of(all.begin(), all.end(),
+                     [&](const data_variable& one) { return one.name == variable && one.of_velocity; });
+}
+
 std::shared_ptr<const boundary> make_face(const case_config& config, const model& equation,
                                           const std::string& side, const face_table& table) {
   formula_kind kind = formula_of_position(equation.space_dimensions(), false, config.constants);
   kind.variables.insert(kind.variables.begin(), "t");
   face_quantities values;
   for (const auto& [name, formulas] : table.values)
-    for (const auto& formula : formulas)
-      values[name].push_back(
-          compile(formula, place_of(config, fmt::format("boundary.{}.{}", side, name)), kind));
+    for (const auto& formula : formulas) {
+      const source_place at = place_of(config, fmt::format("boundary.{}.{}", side, name));
+      values[name].push_back(is_of_velocity(kind_of(config, table), equation, name)
+                                 ? compile_of_velocity(formula, at, kind, equation.velocities().dimensions())
+                                 : compile(formula, at, kind));
+    }
   source_place place = place_of(config, "boundary." + side);
   if (place.file.empty())  // not a table of the file
     place = place_of(config, table.kind ? "boundary." + side + ".kind" : "space.boundary");

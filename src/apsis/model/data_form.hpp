@@ -17,6 +17,7 @@ struct data_variable {
   int size = 1;                      ///< number of components of a vector
   std::optional<double> value = {};  ///< default of every component; the variable is required without it
   dimension measure = {};            ///< its dimension in units of a gas (gas_scales.hpp)
+  bool of_velocity = false;          ///< a function of the velocity too
 };
 
 /// One way to prescribe a row: a Maxwellian by density, velocity and temperature, or the components.

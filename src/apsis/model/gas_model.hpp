@@ -28,6 +28,7 @@ class gas_model : public relaxation_model {
   /// Returns also that of models whose target may be negative in its tails.
   static std::vector<model_text> texts_with_tails();
 
+  const gas& molecules() const { return gas_; }  ///< the rows of the gas
   int components() const override { return gas_.velocities().components(); }
   int space_dimensions() const override { return 1; }
   const velocity_set& velocities() const override { return gas_.velocities(); }
@@ -77,8 +78,6 @@ class gas_model : public relaxation_model {
   unsupported_initial_data check_supported(const double* f) const override { return gas_.check_supported(f); }
 
  protected:
-  /// The rows of the gas.
-  const gas& molecules() const { return gas_; }
   /// Returns `keep` of target(), or ∞ with signed tails.
   double bound_of_tails(double keep) const {
     return signed_tails_ ? std::numeric_limits<double>::infinity() : keep;

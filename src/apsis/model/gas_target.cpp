@@ -77,9 +77,9 @@ void weigh(const velocity_grid& grid, const fluid_state& state, const target_pol
   }
 }
 
-/// Relative size of a defect that counts as rounding, that of a target that is good enough where corrections
-/// no longer reduce it, and the largest bound on an energy that is a difference of large numbers.
-constexpr double rounding = 4.5e-16, useful = 1e-14, largest_bound = 1e-12;
+/// Relative size of a defect that counts as rounding, and the largest bound on an energy that is a difference
+/// of large numbers. Where corrections no longer reduce a defect, target_accuracy is enough.
+constexpr double rounding = 4.5e-16, largest_bound = 1e-12;
 /// Smallest variance of a base in units of Δv²: below it, a Gaussian at points has other moments.
 constexpr double narrowest = 0.25;
 
@@ -198,11 +198,11 @@ bool conservative_target(const gas& of, const double* omega, const double* base,
     const double size = found.size();
     if (size <= enough) return true;
     // Corrections contract as long as little of the row is cut off.
-    if (!(size < 0.7 * best)) return size <= std::max(useful, enough);
+    if (!(size < 0.7 * best)) return size <= std::max(target_accuracy, enough);
     best = size;
     correct(found, d, shape.variance, shape.of_g);
   }
-  return best <= std::max(useful, enough);
+  return best <= std::max(target_accuracy, enough);
 }
 
 }  // namespace apsis

@@ -30,6 +30,9 @@ struct target_shape {
   double variance = 1.0;   ///< of one resolved component of the base
 };
 
+/// Largest relative difference of the moments of conservative_target() from ω.
+inline constexpr double target_accuracy = 1e-14;
+
 /// e ← max(base · P, −keep f) for a row f ≥ 0, where P is corrected by α + β·c + γ|c|² in g until e has the
 /// moments ω: a combination of f and e stays nonnegative and conservative, also where P is negative in the
 /// tails. Returns false if that is

@@ -165,6 +165,9 @@ class relaxation_model : public model {
   virtual int equilibria(const double* omega, int rows, double* e, std::ptrdiff_t pitch) const;
   /// Returns the length of s; 0 if the target is the equilibrium.
   virtual int relaxing_count() const { return 0; }
+  /// Returns the largest relative difference of the moments of an equilibrium or a target from ω: four
+  /// roundings.
+  virtual double moment_accuracy() const { return 4.5e-16; }
   /// s ← the relaxing moments of a row with moments ω.
   virtual void relaxing_moments(const double* u, const double* omega, double* s) const;
   /// s ← those of the solution of a stage whose explicit part has s, σ/(1 + λA + λ²B), and what target()

@@ -51,6 +51,11 @@ struct continuation {
 
 void boundary::incoming(const face&, double, const position&, const double*, double*) const {}
 
+void boundary::incoming_beside(const face& where, double t, const position& at, const double* outgoing,
+                               std::span<const double* const>, double* values) const {
+  incoming(where, t, at, outgoing, values);
+}
+
 std::vector<double> entering_components(const face& where, const velocity_set& velocities) {
   std::vector<double> enters;
   for (const double v : velocities.speeds(where.direction))

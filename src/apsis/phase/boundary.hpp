@@ -50,6 +50,10 @@ class boundary {
   /// Called concurrently for different pencils.
   virtual void incoming(const face& where, double t, const position& at, const double* outgoing,
                         double* incoming) const;
+  /// The same for conditions that depend on the whole state inside: `ghosts` are the rows of fill(), counted
+  /// outwards. Calls incoming() unless it is overridden.
+  virtual void incoming_beside(const face& where, double t, const position& at, const double* outgoing,
+                               std::span<const double* const> ghosts, double* incoming) const;
   /// Whether the domain continues at the opposite face; both faces of a direction must agree.
   virtual bool periodic() const { return false; }
   /// Returns c such that the entropy that enters through the face in a sweep of first order is at most Σ_k

@@ -125,6 +125,11 @@ const double* domain::ghost_row(const field& u, const face& where, int pencil, i
   return ghosts(where).row(pencil * width_ + ghost);
 }
 
+void domain::ghost_rows(const face& where, int pencil, std::vector<const double*>& rows) const {
+  rows.resize(at(width_));
+  for (int g = 0; g < width_; ++g) rows[at(g)] = ghosts(where).row(pencil * width_ + g);
+}
+
 void domain::pencil_rows(const field& u, int direction, int pencil, int begin, int end,
                          std::vector<const double*>& rows) const {
   const int n = mesh().cells(direction), first = mesh().first_cell(direction, pencil),

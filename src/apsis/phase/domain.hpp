@@ -41,6 +41,10 @@ class domain {
   /// Fills the ghost rows of u at time t.
   void fill_ghosts(double t, const field& u);
 
+  /// rows ← the ghost rows of a pencil beyond a face, counted outwards, of the last fill_ghosts(). The
+  /// boundary of the face must fill them.
+  void ghost_rows(const face& where, int pencil, std::vector<const double*>& rows) const;
+
   /// rows[i − begin] ← pointer to the row of cell i of a pencil, i = begin … end−1. Cells outside 0 … n−1 are
   /// ghost cells within the reserved width, with the values of the last fill_ghosts().
   void pencil_rows(const field& u, int direction, int pencil, int begin, int end,

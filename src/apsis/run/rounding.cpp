@@ -22,7 +22,10 @@ double root_of_chain(int n) {
 }  // namespace
 
 rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equation) {
-  const double of_moments = root_of_chain(equation.components()), of_collision = 4.0 + of_moments;
+  const double of_moments = root_of_chain(equation.components());
+  const auto* relaxation = dynamic_cast<const relaxation_model*>(&equation);
+  const double of_target = relaxation != nullptr ? relaxation->moment_accuracy() / unit_roundoff : 4.0;
+  const double of_collision = of_target + of_moments;
   const auto initial = initial_weights(m);
   std::vector<double> error(m.stages(), 0.0);
   for (std::size_t i = 0; i < m.stages(); ++i) {

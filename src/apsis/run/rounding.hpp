@@ -15,8 +15,9 @@ struct rounding_bound {
 };
 
 /// Returns the bound for a step of a method. With u = 2⁻⁵³ and L the longest chain of additions in a moment
-/// ℛu, stage i carries e_i = Σ_j |α_ij| e_j + u (2 + √m_i + c_i (4 + √L)) Σ_j |α_ij|, where α_ij are its m_i
-/// weights and c_i is the number of collisions that it solves or evaluates; of_step is e of the last stage.
+/// ℛu, stage i carries e_i = Σ_j |α_ij| e_j + u (2 + √m_i + c_i (a/u + √L)) Σ_j |α_ij|, where α_ij are its
+/// m_i weights, c_i is the number of collisions that it solves or evaluates, and a is
+/// relaxation_model::moment_accuracy(); of_step is e of the last stage.
 rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equation);
 
 }  // namespace apsis

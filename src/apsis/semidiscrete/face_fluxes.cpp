@@ -48,7 +48,10 @@ void face_fluxes::complete(const face& where, int pencil, double t,
     for (std::size_t k = 0; k < here.inward.size(); ++k)
       if (!(here.inward[k] < 0.0)) values[k] = 0.0;
     double* incoming = here.incoming.row(pencil);
-    space_->side(where).incoming(where, t, space_->meeting_point(where, pencil), values, incoming);
+    thread_local std::vector<const double*> ghosts;
+    space_->ghost_rows(where, pencil, ghosts);
+    space_->side(where).incoming_beside(where, t, space_->meeting_point(where, pencil), values, ghosts,
+                                        incoming);
     const int last = mesh.cells(where.direction) - 1;
     const int cell =
         mesh.first_cell(where.direction, pencil) + (where.upper ? last : 0) * mesh.stride(where.direction);

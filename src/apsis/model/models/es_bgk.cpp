@@ -47,6 +47,8 @@ class es_bgk_model final : public gas_model {
 
   int relaxing_count() const override { return pairs() + 1; }
 
+  double moment_accuracy() const override { return target_accuracy; }
+
   /// s = (Θ_kl − T δ_kl for k ≤ l, weight of the derivative).
   void relaxing_moments(const double* f, const double* omega, double* s) const override {
     std::fill_n(s, relaxing_count(), 0.0);

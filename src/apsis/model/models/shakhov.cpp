@@ -28,6 +28,8 @@ class shakhov_model final : public gas_model {
 
   int relaxing_count() const override { return molecules().dimensions() + 1; }
 
+  double moment_accuracy() const override { return target_accuracy; }
+
   /// s = (q, weight of the derivative).
   void relaxing_moments(const double* f, const double* omega, double* s) const override {
     const int d = molecules().dimensions();

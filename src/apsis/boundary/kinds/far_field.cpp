@@ -1,0 +1,56 @@
+#include <apsis/boundary/gas_end.hpp>
+#include <apsis/boundary/prescribed_state.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace apsis {
+namespace {
+
+/// A gas that is at rest or in uniform motion far away. The Riemann invariants of the Euler equations that
+/// leave, u_n + 2a/(γ − 1), are those of the gas inside, the one that enters, u_n − 2a/(γ − 1), that of the
+/// state far away; entropy and tangential velocity come from where the gas comes from. Waves leave with
+/// little reflection; in uniform gas it is the boundary condition inflow.
+class far_field final : public gas_end {
+ public:
+  far_field(const model& equation, std::vector<face_quantity> values)
+      : gas_end(equation, "far-field"), values_(std::move(values)) {}
+
+ private:
+  fluid_state outside(const fluid_state& inside, const face& where, double t,
+                      const position& at) const override {
+    fluid_state far;
+    far.rho = values_.front().at(t, at);
+    for (std::size_t k = 1; k + 1 < values_.size(); ++k) far.u[k - 1] = values_[k].at(t, at);
+    far.T = values_.back().at(t, at);
+    if (!far.admissible() || !inside.admissible()) return far;
+    const double un_inside = outward(inside, where), un_far = outward(far, where),
+                 rise = 2.0 / (gamma() - 1.0);
+    if (un_inside >= sound(inside.T)) return inside;
+    if (un_far <= -sound(far.T)) return far;
+    const double leaving = un_inside + rise * sound(inside.T), entering = un_far - rise * sound(far.T);
+    const double speed = 0.5 * (leaving + entering), a = (leaving - entering) / (2.0 * rise);
+    if (!(a > 0.0)) return far;  // the gas inside recedes faster than it can expand: vacuum
+    fluid_state state = speed > 0.0 ? inside : far;
+    const double T = a * a / gamma();
+    state.rho *= std::pow(T / state.T, 1.0 / (gamma() - 1.0));  // the entropy p/ρ^γ is kept
+    state.T = T;
+    set_outward(state, where, speed);
+    return state;
+  }
+
+  std::vector<face_quantity> values_;
+};
+
+}  // namespace
+
+extern const boundary_entry boundary_far_field;
+const boundary_entry boundary_far_field = {
+    .name = "far-field",
+    .description = "gas in a given state far away: waves leave with little reflection",
+    .variables = [](const model& equation) { return maxwellian_form(equation, "far-field").variables; },
+    .make = [](const boundary_source& from) -> std::unique_ptr<boundary> {
+      return std::make_unique<far_field>(*from.equation, from.values);
+    }};
+
+}  // namespace apsis

@@ -305,7 +305,7 @@ initial_table_file::line_ends initial_table_file::ends(int cells) const {
     refuse(fmt::format("'x' has {} numbers and the state has {} cells; give one for each cell", x.size(),
                        cells));
   if (x.size() < 2) refuse("it has one row (the width of a cell is not known from it); give several");
-  constexpr double digits = 1e-3;  // of a cell, for centres written with few digits
+  constexpr double digits = 1e-2;  // of a cell, for centres written with few digits
   const double width = (x.back() - x.front()) / (cells - 1);
   for (std::size_t k = 1; k < x.size(); ++k) {
     if (!(x[k] > x[k - 1]))

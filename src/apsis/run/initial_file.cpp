@@ -133,7 +133,8 @@ field copied(const line_rows& rows) {
 
 }  // namespace
 
-field sample_initial_file(const case_config& config, const model& equation, const problem_builder& builder) {
+state_of_file sample_initial_file(const case_config& config, const model& equation,
+                                  const problem_builder& builder) {
   const grid& mesh = builder.mesh();
   const auto [rows, equilibrium] = reader(config, equation).read();
   const bool on_line = builder.has_space();
@@ -143,7 +144,7 @@ field sample_initial_file(const case_config& config, const model& equation, cons
        rows.lower == config.space.domain.front()[0] && rows.upper == config.space.domain.front()[1]);
   const bool points = config.space.formulation == formulation::finite_difference;
   if (same_mesh && config.prescribed.regions.empty() && (!equilibrium || points || !on_line))
-    return copied(rows);
+    return {copied(rows), !equilibrium};
   const cell_polynomials between(rows, equation.positive());
   const bool project_rows = equilibrium;
   const prescribed_data data(
@@ -155,7 +156,8 @@ field sample_initial_file(const case_config& config, const model& equation, cons
   std::vector<double> jumps = between.jumps();
   for (const double x : data.jumps(mesh)) jumps.push_back(x);
   std::sort(jumps.begin(), jumps.end());
-  return builder.sample([&data](const position& x, std::span<double> u) { data(x, u); }, jumps);
+  return {builder.sample([&data](const position& x, std::span<double> u) { data(x, u); }, jumps),
+          !equilibrium && config.prescribed.regions.empty()};
 }
 
 }  // namespace apsis

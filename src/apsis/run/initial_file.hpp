@@ -7,6 +7,13 @@
 
 namespace apsis {
 
+/// Initial data from a file.
+struct state_of_file {
+  field state;  ///< on the mesh of the case
+  /// Whether all of it is the distribution of an earlier result, which ran on the same velocities.
+  bool from_result = false;
+};
+
 /// Returns the initial state of a case with `initial.file`, with its regions on top.
 ///
 /// The file is an earlier result (solution.h5, fields.csv), or a table with x and the variables of a form of
@@ -18,6 +25,7 @@ namespace apsis {
 ///
 /// Throws input_error at the place of the key: a file that cannot be read, of another model or other units,
 /// without a column, with a value from which no row can be made, or that does not cover the domain.
-field sample_initial_file(const case_config& config, const model& equation, const problem_builder& builder);
+state_of_file sample_initial_file(const case_config& config, const model& equation,
+                                  const problem_builder& builder);
 
 }  // namespace apsis

@@ -4,6 +4,7 @@
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/convexity.hpp>
 #include <apsis/model/expression.hpp>
@@ -192,14 +193,19 @@ field run_setup::initial_state() const {
     refuse(config_, "initial.from",
            "the case has no initial data (they were given in Python); run it with apsis.run(case, "
            "initial=...), or continue from a checkpoint");
-  return checked(config_.prescribed.file.empty() ? builder_.sample(data().point_value, data().jumps)
-                                                 : sample_initial_file(config_, *equation, builder_));
+  if (config_.prescribed.file.empty()) return checked(builder_.sample(data().point_value, data().jumps));
+  state_of_file read = sample_initial_file(config_, *equation, builder_);
+  return checked(std::move(read.state), read.from_result);
 }
 
-field run_setup::checked(field u) const {
+field run_setup::checked(field u, bool computed) const {
   for (int cell = 0; cell < u.cells(); ++cell) {
     const unsupported_initial_data found = equation->check_supported(u.row(cell));
-    if (!found.problem.empty()) refuse(config_, found.key, fmt::format("{} [cell {}]", found.problem, cell));
+    if (found.problem.empty()) continue;
+    const std::string problem = fmt::format("{} [cell {}]", found.problem, cell);
+    if (!computed || found.key.rfind("velocity.", 0) != 0) refuse(config_, found.key, problem);
+    log::warning(problem);
+    break;
   }
   const auto [lowest, highest] = extremes_of_fields(*equation, u);
   const unsupported_initial_data found = equation->check_supported_range(lowest.data(), highest.data());

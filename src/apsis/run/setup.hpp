@@ -35,8 +35,9 @@ class run_setup {
   /// input_error if the velocity grid does not support them.
   field initial_state() const;
   /// Returns a state given in place of the initial data of the case. Throws input_error if the model or the
-  /// velocity grid does not support it.
-  field checked(field u) const;
+  /// velocity grid does not support it; `computed`: a velocity grid on which the state was computed is not
+  /// refused, but a warning given.
+  field checked(field u, bool computed = false) const;
   /// Returns the builder of the problem, which samples functions of position on the mesh.
   const problem_builder& builder() const { return builder_; }
   /// Returns the exact solution at time t in the same form; nothing if no formula is known.

@@ -33,18 +33,16 @@ class KineticProblem:
 
     cells        number of cells; a sequence with one number for each space dimension
     domain       (lower, upper); a sequence of such pairs, one for each space dimension
-    velocities   of models with a velocity grid: (v_max, points), points midpoints of equal intervals of [-v_max, v_max] in each
-                 velocity dimension; a mapping as the table [velocity] of a case, {"set": ["graded", "uniform"], "max": 6,
-                 "points": [32, 12]}; or arrays (v, weights) for all dimensions, or a list of such pairs, one for each
+    velocities   (v_max, points): points midpoints of equal intervals of [-v_max, v_max] per velocity dimension, for models with a
+    velocity grid; or a mapping as the table [velocity] of a case, {"set": ["graded", "uniform"], "max": 6, "points": [32, 12]}; or
+    arrays (v, weights) for all dimensions, or a list of such pairs, one for each
     epsilon      ε ≥ 0, a number or a function of the coordinates of a point; ε = 0 is the limit scheme
     parameters   numbers, options and lists of texts of the model by name
-    boundary     kind of every face, or (lower, upper), or a sequence of such pairs, or {"left": …, "right": …} with "bottom", "top",
-                 "back" and "front" for further directions. A face is a kind, or a mapping of the kind and its variables,
-                 {"kind": "diffuse", "T": lambda t, x: 1 + 0.1 * np.sin(t), "velocity": [0, 0.1]}: numbers, functions of the time
-                 and the coordinates, or lists of them for vectors
-    acceleration of the molecules: a number or a function of the time and the coordinates, or a list of them, one for each velocity
-                 dimension
-    largest_acceleration   bound of |acceleration| for functions, a number or one for each dimension
+    boundary     of every face, or (lower, upper), or a sequence of such pairs, or {"left": …, "right": …} with "bottom", "top", "back"
+    and "front" for further directions. A face is a kind, or a mapping of the kind and its variables, {"kind": "diffuse", "T": lambda t,
+    x: 1 + 0.1 * t, "velocity": [0, 0.1]}: numbers, functions of the time and the coordinates, or lists of them for vectors
+    acceleration of the molecules: a number or a function of the time and the coordinates, or a list of them for each dimension
+    largest_acceleration   bound of the absolute values of functions, a number or one for each dimension
     formulation  "finite-volume" (cell averages) or "finite-difference" (point values)
     reconstruction, equilibrium   as in a case file
     positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE

@@ -36,9 +36,11 @@ class initial_table_file {
   /// Returns the names of all columns.
   std::vector<std::string> columns() const;
 
-  /// The line that the cells cover, and the uncertainty of its ends in cell widths.
+  /// The line that the cells cover, and the uncertainty of its ends.
   struct line_ends {
-    double lower, upper, tolerance;
+    double lower,   ///< lower end
+        upper,      ///< upper end
+        tolerance;  ///< in cell widths
   };
   /// Returns the ends: those of the domain of a result, or from the centres `x`, which must be equidistant.
   line_ends ends(int cells) const;

@@ -9,7 +9,8 @@ namespace apsis {
 
 /// Rows on equal cells of a line, [cells][components]: cell averages or values at the centres.
 struct line_rows {
-  double lower = 0.0, upper = 1.0;                    ///< ends of the line
+  double lower = 0.0,                                 ///< lower end of the line
+      upper = 1.0;                                    ///< upper end
   int cells = 0;                                      ///< number of cells
   int components = 0;                                 ///< numbers of a row
   std::vector<double> values;                         ///< row by row

@@ -113,7 +113,7 @@ class KineticProblem:
         A variable is a number, a function of the coordinates, or an array with a value for each cell; a vector is a list of
         these, a function that returns all components, or an array [cells, components]. Functions give averages as in sample(), or
         point values; arrays are the averages, or the point values, of cells. Raises InputError with the point or the cell."""
-        return self._core.state(variables, [number("jumps", x) for x in jumps])
+        return self._core.state(variables, sorted(number("jumps", x) for x in jumps))
 
     def fields(self, u: ArrayLike) -> dict[str, Array]:
         """Returns the macroscopic fields of a state by name, [cells] each."""

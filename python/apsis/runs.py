@@ -126,7 +126,7 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     got = _core.run(text, "case" if text is not None else str(case), everything, _path(out), _path(restart),
                     None if wall is None else number("wall", wall, positive=True),
                     None if threads is None else whole_number("threads", threads), progress,
-                    dict(initial) if isinstance(initial, Mapping) else initial, [number("jumps", x) for x in jumps])
+                    dict(initial) if isinstance(initial, Mapping) else initial, sorted(number("jumps", x) for x in jumps))
     return Result(summary=json.loads(got.pop("json")), **got)
 
 

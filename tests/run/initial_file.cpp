@@ -384,6 +384,22 @@ TEST(initial_file, that_cannot_be_used_is_refused_with_the_key_the_place_and_a_r
               HasSubstr("'rho' has the unit kg/m^3 (the case has no table [gas]"));
 }
 
+TEST(initial_file, that_is_truncated_anywhere_is_refused) {
+  const test_folder files;
+  const std::string folder = run(gas(sod), files / "r", {"output.every=0.01", "space.cells=8"});
+  const std::string whole = apsis::read_text_file(folder + "/solution.h5", 10'000'000, "result");
+  for (std::size_t k = 0; k < 60; ++k) {
+    apsis::write_text_file(files / "short.h5", whole.substr(0, k * 7919 % whole.size()));
+    EXPECT_THAT(refused(gas(from(files / "short.h5"))), HasSubstr("c.toml:5:9: initial.file = ")) << k;
+  }
+  // A table has lost rows at its end, or a part of the last one.
+  const std::string table_text = "x,rho,u,T\n0.25,1.5,0.25,1.25\n0.75,1.5,0.25,1.25\n";
+  for (std::size_t length = 0; length + 5 < table_text.size(); ++length) {
+    apsis::write_text_file(files / "short.csv", table_text.substr(0, length));
+    EXPECT_THAT(refused(gas(from(files / "short.csv"))), HasSubstr("c.toml:5:9: initial.file = ")) << length;
+  }
+}
+
 TEST(initial_file, conflicts_with_other_initial_data) {
   const std::string file = from("nowhere.csv");
   EXPECT_THAT(

@@ -151,6 +151,7 @@ void initial_table_file::read_fields(const hdf5_file& file) {
   std::optional<std::size_t> earlier;  // a snapshot before the end
   std::vector<double> times = {result ? file.read_attribute("t") : 0.0};
   if (several) times = file.read("snapshots/t");
+  if (times.empty()) refuse("it has no snapshots (damaged file); give another file");
   units_["t"] = several ? file.units("snapshots/t") : units_["t"];
   if (units_["t"].empty() && result && at(manifest_, {"units", "t"}).is_string())
     units_["t"] = at(manifest_, {"units", "t"}).get<std::string>();
@@ -165,6 +166,9 @@ void initial_table_file::read_fields(const hdf5_file& file) {
     if (column.find('/') != std::string::npos || not_columns.contains(column)) continue;
     const auto shape = file.extents(name);
     if (shape.size() != (earlier && in_group ? 2U : 1U)) continue;
+    if (earlier && in_group && shape[0] != times.size())
+      refuse(fmt::format("'{}' has {} snapshots of {} (damaged file); give another file", name, shape[0],
+                         times.size()));
     std::vector<double> values = file.read(name);
     if (earlier && in_group) {
       const auto cells = static_cast<std::ptrdiff_t>(shape[1]);
@@ -201,7 +205,8 @@ void initial_table_file::read_snapshot_of_state(double t) {
     const auto cells = at(manifest_, {"case", "space", "cells"});
     const double wanted = t * unit;
     if (std::abs(file.read_attribute("t") - wanted) > 1e-12 * (1.0 + std::abs(wanted)) ||
-        file.stored("f") != precision::float64 || cells != file.extents("f").front())
+        file.stored("f") != precision::float64 || file.extents("f").size() != 2 ||
+        cells != file.extents("f").front())
       continue;
     return read_state(file);
   }
@@ -291,7 +296,7 @@ std::vector<double> initial_table_file::column(const std::vector<std::string>& n
 
 initial_table_file::line_ends initial_table_file::ends(int cells) const {
   const auto domain = at(manifest_, {"case", "space", "domain"});
-  if (domain.is_array() && domain.size() == 2 && domain[0].is_number()) {
+  if (domain.is_array() && domain.size() == 2 && domain[0].is_number() && domain[1].is_number()) {
     const auto theirs = at(manifest_, {"scales", "length", "value"});
     const double unit =
         theirs.is_number() && config_.scales && theirs != config_.scales->unit(dimensions::length)

@@ -13,6 +13,11 @@ from .errors import InputError
 
 Array = NDArray[np.float64]
 Interval = Sequence[float]
+Quantity = Union[float, Callable[..., float]]
+Face = Union[str, Mapping[str, Union[str, Quantity, Sequence[Quantity]]]]
+Velocities = Union[tuple[float, Union[int, Sequence[int]]], Mapping[str, Any], tuple[ArrayLike, ArrayLike], Sequence[tuple[ArrayLike, ArrayLike]]]
+
+FACES = (("left", "right"), ("bottom", "top"), ("back", "front"))
 
 
 class KineticProblem:
@@ -28,32 +33,41 @@ class KineticProblem:
 
     cells        number of cells; a sequence with one number for each space dimension
     domain       (lower, upper); a sequence of such pairs, one for each space dimension
-    velocities   (v_max, points): points midpoints on [-v_max, v_max] per velocity dimension, for models with a velocity grid
+    velocities   (v_max, points): points midpoints of equal intervals of [-v_max, v_max] per velocity dimension, for models with a
+    velocity grid; or a mapping as the table [velocity] of a case, {"set": ["graded", "uniform"], "max": 6, "points": [32, 12]}; or
+    arrays (v, weights) for all dimensions, or a list of such pairs, one for each
     epsilon      ε ≥ 0, a number or a function of the coordinates of a point; ε = 0 is the limit scheme
     parameters   numbers, options and lists of texts of the model by name
-    boundary     kind of every face, or (lower, upper), or a sequence of such pairs
+    boundary     of every face, or (lower, upper), or a sequence of such pairs, or {"left": …, "right": …} with "bottom", "top", "back"
+    and "front" for further directions. A face is a kind, or a mapping of the kind and its variables, {"kind": "diffuse", "T": lambda t,
+    x: 1 + 0.1 * t, "velocity": [0, 0.1]}: numbers, functions of the time and the coordinates, or lists of them for vectors
+    acceleration of the molecules: a number or a function of the time and the coordinates, or a list of them for each dimension
+    largest_acceleration   bound of the absolute values of functions, a number or one for each dimension
     formulation  "finite-volume" (cell averages) or "finite-difference" (point values)
     reconstruction, equilibrium   as in a case file
     positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE
 
+    Functions of the time are called by the threads of a step, one after the other; their exceptions end an integration.
+
     Raises InputError if these are inconsistent."""
 
     def __init__(self, model: str, *, cells: int | Sequence[int] = (), domain: Interval | Sequence[Interval] = (),
-                 velocities: tuple[float, int] | None = None, epsilon: float | Callable[..., float] = 1.0,
+                 velocities: Velocities | None = None, epsilon: float | Callable[..., float] = 1.0,
                  parameters: Mapping[str, Union[float, str, Sequence[str]]] | None = None,
-                 boundary: str | Sequence[str] | Sequence[Sequence[str]] = "periodic",
+                 boundary: Face | Sequence[Face] | Sequence[Sequence[Face]] = "periodic",
+                 acceleration: Quantity | Sequence[Quantity] = (), largest_acceleration: float | Sequence[float] = (),
                  reconstruction: str = "weno5-z", formulation: str = "finite-volume", equilibrium: str = "auto",
                  positivity: bool = False) -> None:
         numbers_of_cells = [whole_number("cells", n) for n in (cells if isinstance(cells, (Sequence, np.ndarray)) else [cells])]
         directions = len(numbers_of_cells)
         given = dict(parameters or {})
-        v_max, points = velocities if velocities is not None else (0.0, 0)
+        v_max, points, sets, lines = _velocities(velocities)
         self._core = _core.KineticProblem(
             model, {name: number(name, x) for name, x in given.items() if not isinstance(x, (str, list, tuple))},
             {name: x for name, x in given.items() if isinstance(x, str)},
-            {name: [str(item) for item in x] for name, x in given.items() if isinstance(x, (list, tuple))}, number("velocities[0]", v_max),
-            whole_number("velocities[1]", points), equilibrium, numbers_of_cells, _intervals(domain, directions),
-            _faces(boundary, directions), reconstruction, formulation, bool(positivity),
+            {name: [str(item) for item in x] for name, x in given.items() if isinstance(x, (list, tuple))}, v_max, points, sets, lines, equilibrium, numbers_of_cells, _intervals(domain, directions),
+            _faces(boundary, directions), _listed(acceleration),
+            [number("largest_acceleration", x) for x in _listed(largest_acceleration)], reconstruction, formulation, bool(positivity),
             epsilon if callable(epsilon) else number("epsilon", epsilon))
         self.model = model
 
@@ -90,6 +104,17 @@ class KineticProblem:
             raise InputError(f"initial is a {type(initial).__name__} (a name or a function of the coordinates is needed); give one")
         return self._core.sample_function(initial, [number("jumps", x) for x in jumps])
 
+    def state(self, *, jumps: Sequence[float] = (), **variables: ArrayLike | Callable[..., ArrayLike] | Sequence[Any]) -> Array:
+        """Returns the state with these variables of the model; of a gas the Maxwellians of density, velocity and temperature.
+
+            problem.state(rho=lambda x: 1 + 0.1 * np.sin(x), T=1)
+            0.7 * problem.state(rho=rho, u=1, T=1) + 0.3 * problem.state(rho=rho, u=-1, T=1)
+
+        A variable is a number, a function of the coordinates, or an array with a value for each cell; a vector is a list of
+        these, a function that returns all components, or an array [cells, components]. Functions give averages as in sample(), or
+        point values; arrays are the averages, or the point values, of cells. Raises InputError with the point or the cell."""
+        return self._core.state(variables, sorted(number("jumps", x) for x in jumps))
+
     def fields(self, u: ArrayLike) -> dict[str, Array]:
         """Returns the macroscopic fields of a state by name, [cells] each."""
         return self._core.fields(real_array("u", u))
@@ -124,11 +149,61 @@ def _intervals(domain: Any, directions: int) -> list[list[float]]:
     return [[float(lower), float(upper)] for lower, upper in pairs]
 
 
-def _faces(boundary: Any, directions: int) -> list[list[str]]:
+def _listed(given: Any) -> list[Any]:
+    return list(given) if isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str) else [given]
+
+
+def _velocities(given: Any) -> tuple[float, list[int], list[str], list[tuple[list[float], list[float]]]]:
+    """Largest velocity, points and sets as in a case, and lines of velocities and weights."""
+    if given is None:
+        return 0.0, [0], [], []
+    if isinstance(given, Mapping):
+        for name in given:
+            if name not in ("set", "max", "points"):
+                raise InputError(f"unknown key {name!r} in velocities (set, max and points are valid); remove it")
+        sets = [str(name) for name in _listed(given.get("set", ()))]
+        points = [whole_number("velocities['points']", n) for n in _listed(given.get("points", 0))]
+        return number("velocities['max']", given.get("max", 0.0)), points, sets, []
+    if not isinstance(given, (Sequence, np.ndarray)) or isinstance(given, str) or len(given) == 0:
+        raise InputError(f"velocities is {given!r} ((v_max, points), a mapping or arrays are needed); give for example (8, 32)")
+    if len(given) == 2 and np.ndim(given[0]) == 0:
+        points = [whole_number("velocities[1]", n) for n in _listed(given[1])]
+        return number("velocities[0]", given[0]), points, [], []
+    pairs = [given] if len(given) == 2 and np.ndim(given[0][0]) == 0 else list(given)
+    lines = []
+    for pair in pairs:
+        if len(pair) != 2:
+            raise InputError(f"velocities has {len(pair)} arrays for a direction (velocities and weights are needed); give two")
+        v, weights = (real_array("velocities", one) for one in pair)
+        if v.ndim != 1 or v.shape != weights.shape:
+            raise InputError(f"velocities has the shape {v.shape} and weights {weights.shape} (as many weights as velocities are "
+                             "needed); give (v, weights)")
+        lines.append((v.tolist(), weights.tolist()))
+    return 0.0, [0], [], lines
+
+
+def _face(given: Any, name: str) -> tuple[str, dict[str, list[Any]]]:
+    """Kind and values of a face; a value is the list of its components."""
+    if isinstance(given, str):
+        return given, {}
+    if not isinstance(given, Mapping) or not isinstance(given.get("kind"), str):
+        raise InputError(f"{name} is {given!r} (a kind, or a mapping with a kind, is needed); give for example \"outflow\", or "
+                         "{\"kind\": \"diffuse\", \"T\": 1.1}")
+    return given["kind"], {str(key): _listed(value) for key, value in given.items() if key != "kind"}
+
+
+def _faces(boundary: Any, directions: int) -> list[list[tuple[str, dict[str, list[Any]]]]]:
     if isinstance(boundary, str):
-        return [[boundary, boundary]] * directions
-    pairs = [boundary] if all(isinstance(one, str) for one in boundary) else list(boundary)
-    if len(pairs) != directions or any(len(pair) != 2 or not all(isinstance(kind, str) for kind in pair) for pair in pairs):
+        return [[(boundary, {})] * 2] * directions
+    names = [name for pair in FACES[:directions] for name in pair]
+    if isinstance(boundary, Mapping):
+        if "kind" in boundary:
+            return [[_face(boundary, "boundary")] * 2] * directions
+        if set(boundary) != set(names):
+            raise InputError(f"boundary has the faces {sorted(map(str, boundary))} ({', '.join(names)} are needed); give each of them")
+        return [[_face(boundary[name], f"boundary[{name!r}]") for name in pair] for pair in FACES[:directions]]
+    pairs = [boundary] if all(isinstance(one, (str, Mapping)) for one in boundary) else list(boundary)
+    if len(pairs) != directions or any(isinstance(pair, (str, Mapping)) or len(pair) != 2 for pair in pairs):
         raise InputError(f"boundary is {boundary!r} (a kind, or a pair of kinds for each direction, is needed); give for example "
                          "(\"outflow\", \"outflow\")")
-    return [list(pair) for pair in pairs]
+    return [[_face(one, "boundary") for one in pair] for pair in pairs]

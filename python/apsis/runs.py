@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Callable, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import number, whole_number
@@ -18,6 +18,7 @@ from .methods import html_table
 Array = NDArray[np.float64]
 Case = Union[str, Path, Mapping[str, Any]]
 Progress = Callable[[int, int, float, float], Any]
+Initial = Union[ArrayLike, Callable[..., ArrayLike], Mapping[str, Union[ArrayLike, Callable[..., ArrayLike]]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,12 +99,20 @@ def cases() -> list[str]:
 
 
 def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str | Path | None = None,
-        wall: float | None = None, threads: int | None = None, progress: Progress | None = None) -> Result:
+        wall: float | None = None, threads: int | None = None, progress: Progress | None = None,
+        initial: Initial | None = None, jumps: Sequence[float] = ()) -> Result:
     """Runs a case: the name of a built-in one, a file, or a mapping such as {"model": {"name": "bgk"}, …}.
 
     overrides are "key=value" ("space.cells=80"). `out` is a folder for the results, `restart` a checkpoint to continue from, `wall`
     a limit in seconds. progress(step, steps, t, smallest) is called about 20 times a second; False ends the run, with a checkpoint in
-    `out`. `threads`: 0 for all processors; default: OMP_NUM_THREADS, else all for a large case and 1 for a small one.
+    `out`.
+
+    `initial` replaces the initial data of the case: an array [cells, components]; a function of x, in a model with a velocity grid
+    of (x, v), that returns all components; or a mapping of the variables of the model, {"rho": lambda x: 1 + x, "T": 1}: numbers,
+    functions of x, or arrays with a value for each cell. Functions are averaged over cells as formulas are, exactly between their
+    `jumps`. The results and a restart refer to the data as `from = "python"`; a restart takes the state of the checkpoint.
+
+    `threads`: 0 for all processors; default: OMP_NUM_THREADS, else all for a large case and 1 for a small one.
     Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
     if not isinstance(case, (str, Path, Mapping)):
         raise InputError(f"case is a {type(case).__name__} (it must be a name, a file or a mapping); see apsis.cases()")
@@ -113,9 +122,11 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     if progress is not None and not callable(progress):
         raise InputError(f"progress is a {type(progress).__name__} (it must be callable); give a function")
     text = to_toml(case) if isinstance(case, Mapping) else None
-    got = _core.run(text, "case" if text is not None else str(case), list(overrides), _path(out), _path(restart),
+    everything = list(overrides) + ([] if initial is None else ["initial.from=python"])
+    got = _core.run(text, "case" if text is not None else str(case), everything, _path(out), _path(restart),
                     None if wall is None else number("wall", wall, positive=True),
-                    None if threads is None else whole_number("threads", threads), progress)
+                    None if threads is None else whole_number("threads", threads), progress,
+                    dict(initial) if isinstance(initial, Mapping) else initial, sorted(number("jumps", x) for x in jumps))
     return Result(summary=json.loads(got.pop("json")), **got)
 
 

@@ -26,6 +26,8 @@ class callback {
     return function_(std::forward<Arguments>(arguments)...);
   }
 
+  /// Returns the name of the parameter.
+  const std::string& name() const { return name_; }
   /// `returned` as real numbers of this shape, in C order. One number may come in any shape of one element.
   void numbers(const py::object& returned, const std::vector<py::ssize_t>& shape,
                std::vector<double>& out) const;

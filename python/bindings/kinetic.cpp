@@ -1,6 +1,8 @@
 #include "arrays.hpp"
 #include "callback.hpp"
+#include "given_data.hpp"
 #include "march.hpp"
+#include "quantities.hpp"
 
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/choices.hpp>
@@ -44,6 +46,11 @@ Choice choice_called(const std::string& what, const std::string& name) {
                                 suggest(name, {names.begin(), names.end()})));
 }
 
+/// A boundary: its kind, and the values of its variables, lists of numbers and functions.
+using given_face = std::pair<std::string, py::dict>;
+/// Velocities and weights of a direction.
+using given_line = std::pair<std::vector<double>, std::vector<double>>;
+
 /// Description of a problem by names and numbers.
 struct description {
   std::string model;
@@ -51,11 +58,15 @@ struct description {
   std::map<std::string, std::string> options;
   std::map<std::string, std::vector<std::string>> lists;
   double velocity_max;
-  int velocity_points;
+  std::vector<int> velocity_points;
+  std::vector<std::string> velocity_sets;
+  std::vector<given_line> velocity_lines;
   std::string equilibrium;
   std::vector<int> cells;
   std::vector<std::array<double, 2>> domain;
-  std::vector<std::array<std::string, 2>> boundary;
+  std::vector<std::array<given_face, 2>> boundary;
+  std::vector<py::object> acceleration;      ///< numbers and functions
+  std::vector<double> largest_acceleration;  ///< of functions; empty if unknown
   std::string reconstruction, formulation;
   bool positivity;
 };
@@ -90,10 +101,61 @@ std::unique_ptr<model> make_equation(const description& of) {
           "unknown list '{1}' (model '{0}' has no such list); see: apsis list models", of.model, name));
     config.lists[name] = value;
   }
-  if (entry.has_velocity_grid)
+  if (entry.has_velocity_grid) {
     config.velocity = {of.velocity_max, of.velocity_points,
-                       choice_called<equilibrium_choice>("equilibrium", of.equilibrium)};
+                       choice_called<equilibrium_choice>("equilibrium", of.equilibrium), of.velocity_sets};
+    for (const auto& line : of.velocity_lines) config.velocity.lines.emplace_back(line.first, line.second);
+  }
   return entry.make(config);
+}
+
+/// The boundary of a face; `name` is that of its argument.
+std::shared_ptr<const boundary> make_face(const given_face& of, const model& equation,
+                                          const std::string& name) {
+  face_quantities values;
+  for (const auto& [key, list] : of.second) {
+    const std::string variable = py::str(key);
+    const std::string own = fmt::format("{}['{}']", name, variable);
+    for (const auto item : list) {
+      quantity_in_time value = to_quantity(item, own, equation.space_dimensions());
+      values[variable].push_back(value.function ? face_quantity(std::move(value.function))
+                                                : face_quantity(value.number));
+    }
+  }
+  return make_boundary(of.first, equation, values);
+}
+
+std::optional<acceleration> make_acceleration(const description& of, const model& equation) {
+  if (of.acceleration.empty()) return std::nullopt;
+  const auto possible = static_cast<std::size_t>(equation.velocities().dimensions());
+  if (of.acceleration.size() > possible)
+    throw input_error(
+        fmt::format("acceleration has {} components (the model has {} velocity dimensions); give {}",
+                    of.acceleration.size(), possible, possible));
+  const auto& bounds = of.largest_acceleration;
+  if (bounds.size() > 1 && bounds.size() != of.acceleration.size())
+    throw input_error(
+        fmt::format("largest_acceleration has {} components and acceleration {}; give one for each",
+                    bounds.size(), of.acceleration.size()));
+  acceleration force;
+  std::vector<quantity_in_time> components;
+  for (std::size_t k = 0; k < of.acceleration.size(); ++k) {
+    components.push_back(to_quantity(of.acceleration[k], "acceleration", equation.space_dimensions()));
+    if (components[k].function && bounds.empty())
+      throw input_error(
+          "largest_acceleration is missing (acceleration is a function, whose largest value limits the "
+          "step); "
+          "give a bound of |acceleration|");
+    force.largest[k] = components[k].function ? bounds.size() == 1 ? bounds.front() : bounds[k]
+                                              : std::abs(components[k].number);
+  }
+  force.value = [components](double t, const position& x) {
+    std::array<double, 3> a{};
+    for (std::size_t k = 0; k < components.size(); ++k)
+      a[k] = components[k].function ? components[k].function(t, x) : components[k].number;
+    return a;
+  };
+  return force;
 }
 
 grid make_grid(const description& of) {
@@ -107,6 +169,9 @@ grid make_grid(const description& of) {
   return {static_cast<int>(of.cells.size()), cells, lower, upper};
 }
 
+constexpr std::array<std::array<const char*, 2>, 3> face_names = {
+    {{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
+
 /// A model on a mesh, by the problem_builder of the library.
 class kinetic_problem {
  public:
@@ -117,7 +182,9 @@ class kinetic_problem {
       for (std::size_t k = 0; k < of.boundary.size(); ++k)
         for (const bool upper : {false, true})
           builder_.with_boundary({static_cast<int>(k), upper},
-                                 boundary_called(of.boundary[k][upper ? 1 : 0]));
+                                 make_face(of.boundary[k][upper ? 1 : 0], *equation_,
+                                           fmt::format("boundary['{}']", face_names[k][upper ? 1 : 0])));
+      if (auto force = make_acceleration(of, *equation_)) builder_.with_force(std::move(*force));
       builder_.with_unknowns(choice_called<formulation>("formulation", of.formulation));
       if (of.positivity) builder_.with_positivity_limiter();
       builder_.with_reconstruction(
@@ -134,11 +201,6 @@ class kinetic_problem {
       builder_.with_epsilon([value = epsilon.cast<double>()](const position&) { return value; });
     }
     problem_ = builder_.build();
-  }
-
-  /// A kind without variables; it may depend on the model.
-  std::shared_ptr<const boundary> boundary_called(const std::string& kind) const {
-    return find_boundary(kind).variables == nullptr ? make_boundary(kind, *equation_) : make_boundary(kind);
   }
 
   int components() const { return equation_->components(); }
@@ -189,6 +251,10 @@ class kinetic_problem {
         jumps));
   }
 
+  py::array_t<double> state(const py::dict& variables, const std::vector<double>& jumps) const {
+    return checked(make_state(variables, *equation_, builder_, jumps, "state"));
+  }
+
   py::dict fields(const array& u) const {
     const field state = to_field(u);
     const auto names = equation_->fields();
@@ -208,7 +274,7 @@ class kinetic_problem {
     field result = to_field(u);
     const field state = result;
     const target<field, double> to{&result, 0.0, 1.0, true};
-    problem_->add_transport(t, state, {&to, 1});
+    without_gil([&] { problem_->add_transport(t, state, {&to, 1}); });
     return from_field(result);
   }
 
@@ -216,17 +282,22 @@ class kinetic_problem {
     field result = to_field(u);
     const field state = result;
     const target<field, double> to{&result, 0.0, 1.0, true};
-    problem_->add_collision(t, state, {&to, 1});
+    without_gil([&] { problem_->add_collision(t, state, {&to, 1}); });
     return from_field(result);
   }
 
   py::array_t<double> solve_collision(const array& u, double a, double b, double t) {
     field state = to_field(u);
-    problem_->solve_collision(t, a, b, state);
+    without_gil([&] { problem_->solve_collision(t, a, b, state); });
     return from_field(state);
   }
 
-  double forward_euler_step(const array& u) const { return problem_->forward_euler_step(0.0, to_field(u)); }
+  double forward_euler_step(const array& u) const {
+    const field state = to_field(u);
+    double dt = 0.0;
+    without_gil([&] { dt = problem_->forward_euler_step(0.0, state); });
+    return dt;
+  }
 
   py::tuple integrate(const array& u0, const std::vector<double>& t, const method& m,
                       const step_choice& choice, std::optional<int> threads) {
@@ -255,6 +326,13 @@ class kinetic_problem {
   }
 
  private:
+  /// Threads of `body` call functions of the user, which need the GIL.
+  template <class Body>
+  static void without_gil(const Body& body) {
+    const py::gil_scoped_release others;
+    body();
+  }
+
   static py::tuple coordinates(const position& x, int dimensions) {
     py::tuple all(static_cast<std::size_t>(dimensions));
     for (int k = 0; k < dimensions; ++k) all[static_cast<std::size_t>(k)] = x[static_cast<std::size_t>(k)];
@@ -322,15 +400,19 @@ void bind_kinetic(py::module_& m) {
       .def(py::init([](std::string model, std::map<std::string, double> parameters,
                        std::map<std::string, std::string> options,
                        std::map<std::string, std::vector<std::string>> lists, double velocity_max,
-                       int velocity_points, std::string equilibrium, std::vector<int> cells,
-                       std::vector<std::array<double, 2>> domain,
-                       std::vector<std::array<std::string, 2>> boundary, std::string reconstruction,
+                       std::vector<int> velocity_points, std::vector<std::string> velocity_sets,
+                       std::vector<given_line> velocity_lines, std::string equilibrium,
+                       std::vector<int> cells, std::vector<std::array<double, 2>> domain,
+                       std::vector<std::array<given_face, 2>> boundary, std::vector<py::object> acceleration,
+                       std::vector<double> largest_acceleration, std::string reconstruction,
                        std::string formulation, bool positivity, const py::object& epsilon) {
         return std::make_unique<kinetic_problem>(
             description{std::move(model), std::move(parameters), std::move(options), std::move(lists),
-                        velocity_max, velocity_points, std::move(equilibrium), std::move(cells),
-                        std::move(domain), std::move(boundary), std::move(reconstruction),
-                        std::move(formulation), positivity},
+                        velocity_max, std::move(velocity_points), std::move(velocity_sets),
+                        std::move(velocity_lines), std::move(equilibrium), std::move(cells),
+                        std::move(domain), std::move(boundary), std::move(acceleration),
+                        std::move(largest_acceleration), std::move(reconstruction), std::move(formulation),
+                        positivity},
             epsilon);
       }))
       .def("shape", &kinetic_problem::shape)
@@ -339,6 +421,7 @@ void bind_kinetic(py::module_& m) {
       .def("epsilon", &kinetic_problem::epsilon)
       .def("sample_named", &kinetic_problem::sample_named)
       .def("sample_function", &kinetic_problem::sample_function)
+      .def("state", &kinetic_problem::state)
       .def("fields", &kinetic_problem::fields)
       .def("transport", &kinetic_problem::transport)
       .def("collision", &kinetic_problem::collision)

@@ -1,4 +1,5 @@
 #include "arrays.hpp"
+#include "given_data.hpp"
 
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/version.hpp>
@@ -8,6 +9,7 @@
 #include <apsis/output/velocity_axes.hpp>
 #include <apsis/run/result_units.hpp>
 #include <apsis/run/session.hpp>
+#include <apsis/run/setup.hpp>
 
 #include <chrono>
 #include <optional>
@@ -120,7 +122,8 @@ py::dict result_of(const run_session& session, run_end end) {
 py::dict run_case(const std::optional<std::string>& text, const std::string& name,
                   const std::vector<std::string>& overrides, const std::optional<std::string>& out,
                   const std::optional<std::string>& restart, std::optional<double> wall,
-                  std::optional<int> threads, const progress_function& progress) {
+                  std::optional<int> threads, const progress_function& progress, const py::object& initial,
+                  const std::vector<double>& jumps) {
   case_config config = text ? parse_case(*text, name, overrides) : load_case(name, overrides);
   set_threads(threads.value_or(threads_for(config)));
   attendant asks(progress);
@@ -130,6 +133,11 @@ py::dict run_case(const std::optional<std::string>& text, const std::string& nam
   how.wall = wall;
   how.watch = [&asks](const simulation& run) { asks.watch(run); };
   how.stop = [&asks] { return asks.stopped(); };
+  if (!initial.is_none())
+    how.initial = [&initial, &jumps](const run_setup& setup) {
+      const py::gil_scoped_acquire python;
+      return setup.checked(make_state(initial, *setup.equation, setup.builder(), jumps, "initial"));
+    };
   std::unique_ptr<run_session> session;
   run_end end{};
   {

@@ -69,8 +69,20 @@ const std::vector<std::vector<std::vector<std::string>>>& exclusive_keys() {
   return all;
 }
 
+/// Initial data from a file, or from the caller, replace all others.
+void erase_initial_data(case_text& text) {
+  const auto in_table = [](const auto& entry) {
+    return entry.first == "initial" || entry.first.rfind("initial.", 0) == 0;
+  };
+  std::erase_if(text.values, in_table);
+  std::erase_if(text.tables, in_table);
+  text.values.erase("model.initial");
+}
+
 /// A key on the command line replaces those in the file that exclude it.
 void erase_alternatives(case_text& text, const std::string& path) {
+  const bool file = path == "initial.file" && !text.values.contains(path);
+  if (file || path == "initial.from") erase_initial_data(text);
   for (const auto& groups : exclusive_keys()) {
     const auto contains = [&path](const std::vector<std::string>& group) {
       return std::find(group.begin(), group.end(), path) != group.end();

@@ -163,6 +163,12 @@ std::string schema_text() {
       "\n[initial], in place of model.initial\n"
       "  rho, u, T, … (number or formula in x, y, z; a list for a vector)\n"
       "      The variables of the model, listed below with their defaults in brackets.\n"
+      "  file (text)\n"
+      "      In place of the variables: an earlier result (solution.h5, fields.csv), or a table of yours, "
+      ".csv\n"
+      "      or .h5, with x and the variables as cell averages (relative to where the program runs).\n"
+      "  time (number)\n"
+      "      Time of the snapshot of the file, the last one if not given.\n"
       "  [[initial.part]]: weight (formula, default 1) and variables\n"
       "      A term of a sum of states; a sum replaces the variables of [initial].\n"
       "  [[initial.region]]: where (condition, \"x < 0.5\") and variables or [[initial.region.part]]\n"
@@ -194,6 +200,9 @@ void add_parts(std::string& out, const std::string& table, const std::vector<ini
 void add_initial_table(std::string& out, const initial_table& initial) {
   if (initial.empty()) return;
   out += "\n[initial]\n";
+  if (initial.from_python) out += "from = \"python\"\n";
+  if (!initial.file.empty()) out += fmt::format("file = {}\n", quoted(initial.file));
+  if (initial.time) out += fmt::format("time = {}\n", number_text(*initial.time));
   add_state(out, initial.state);
   add_parts(out, "initial", initial.parts);
   for (const auto& region : initial.regions) {

@@ -92,7 +92,7 @@ class resolver {
   /// The table [initial], or a name of data of the model, by default its first.
   void take_initial_data() {
     const auto equation = checked_model();
-    config_.prescribed = read_initial_table(text_, *equation, model_->name);
+    config_.prescribed = read_initial_table(text_, *equation, model_->name, config_.constants);
     const bool named = !config_.model.initial.empty();
     if (config_.prescribed.empty()) {
       if (!named) config_.model.initial = initial_names(*model_).front();
@@ -263,6 +263,12 @@ class resolver {
   void choose_parameters() {
     for (const model_parameter& p : model_->parameters) {
       if (!is_automatic(p)) continue;
+      if (config_.prescribed.given_elsewhere())
+        throw input_error(
+            place_of(config_, "initial"),
+            fmt::format("'model.{}' cannot be chosen automatically (the initial data are not in "
+                        "the case); give a number",
+                        p.name));
       const auto equation = checked_model();
       const auto rows = sample_data(config_, *equation);  // the same for every mesh of a study
       config_.model.parameters[p.name] =

@@ -32,7 +32,8 @@ class reader {
       for (const auto& variable : form.variables) variables_.push_back(variable.name);
   }
 
-  initial_table read() {
+  initial_table read(const formula_constants& constants) {
+    constants_ = &constants;
     for (const auto& [path, raw] : text_.values) {
       if (path.rfind("initial.", 0) != 0) continue;
       if (variables_.empty())
@@ -41,6 +42,7 @@ class reader {
                                                  shown(path), model_name_));
       take(path, parts_of(path), raw);
     }
+    check_source();
     return std::move(table_);
   }
 
@@ -48,7 +50,9 @@ class reader {
   using words = std::vector<std::string>;
 
   void take(const std::string& path, const words& key, const raw_value& raw) {
-    if (key.size() == 2) return take_variable(path, key[1], raw, table_.state, {"part", "region"});
+    if (key.size() == 2 && !is_variable(key[1]) && take_source(path, key[1], raw)) return;
+    if (key.size() == 2)
+      return take_variable(path, key[1], raw, table_.state, {"part", "region", "file", "time"});
     if (key[1] == "part") return take_part(path, key, 2, raw, table_.parts);
     if (key[1] != "region") unknown(path, raw, key[1], {"part", "region"});
     initial_region& region = item(path, key, 2, raw, table_.regions);
@@ -60,6 +64,61 @@ class reader {
       if (key[3] != "part") unknown(path, raw, key[3], {"where", "part"});
       take_part(path, key, 4, raw, region.parts);
     }
+  }
+
+  bool is_variable(const std::string& name) const {
+    return std::find(variables_.begin(), variables_.end(), name) != variables_.end();
+  }
+
+  /// The keys of data that are not in the case; false for other keys.
+  bool take_source(const std::string& path, const std::string& name, const raw_value& raw) {
+    const auto* text = std::get_if<std::string>(&raw.value);
+    if (name == "file") {
+      if (text == nullptr || text->empty())
+        refuse(raw, path, "it must be a text", "write for example file = \"results/earlier/solution.h5\"");
+      table_.file = *text;
+    } else if (name == "from") {
+      if (text == nullptr || *text != "python")
+        refuse(raw, path, "it must be \"python\"", "remove it, or write file = \"…\" for data of a file");
+      table_.from_python = true;
+    } else if (name == "time") {
+      const expression value(formula_texts(raw, path).front(), raw.value_place,
+                             formula_of_position(0, false, *constants_));
+      if (!value.is_constant()) refuse(raw, path, "it depends on x", "give a number");
+      table_.time = value.evaluate(position{});
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  /// Data come from one place.
+  void check_source() const {
+    const raw_value* time = find("initial.time");
+    if (time != nullptr && table_.time && table_.file.empty())
+      throw input_error(
+          time->place,
+          "'initial.time' has no meaning (it is the time of a snapshot in initial.file, which is "
+          "not given); add file = \"results/earlier/solution.h5\", or remove it");
+    if (!table_.given_elsewhere()) return;
+    const char* source = table_.file.empty() ? "initial.from" : "initial.file";
+    if (table_.from_python && (!table_.file.empty() || !table_.regions.empty()))
+      throw input_error(find("initial.from")->place,
+                        "'initial.from' conflicts with the rest of [initial] (the data are given in Python); "
+                        "remove one of them");
+    for (const auto& [path, raw] : text_.values) {
+      if (path.rfind("initial.", 0) != 0 || path.rfind("initial.region.", 0) == 0 || path == source ||
+          (path == "initial.time" && !is_variable("time")))
+        continue;
+      throw input_error(raw.place, fmt::format("'{}' conflicts with '{}' (both give the state); remove one "
+                                               "of them, or move it into [[initial.region]]",
+                                               path, source));
+    }
+  }
+
+  const raw_value* find(const std::string& path) const {
+    const auto found = text_.values.find(path);
+    return found == text_.values.end() ? nullptr : &found->second;
   }
 
   void take_part(const std::string& path, const words& key, std::size_t at, const raw_value& raw,
@@ -112,13 +171,15 @@ class reader {
   const case_text& text_;
   std::string model_name_;
   words variables_;
+  const formula_constants* constants_ = nullptr;
   initial_table table_;
 };
 
 }  // namespace
 
-initial_table read_initial_table(const case_text& text, const model& equation, const std::string& name) {
-  return reader(text, equation, name).read();
+initial_table read_initial_table(const case_text& text, const model& equation, const std::string& name,
+                                 const formula_constants& constants) {
+  return reader(text, equation, name).read(constants);
 }
 
 }  // namespace apsis

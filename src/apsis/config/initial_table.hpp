@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,15 +23,20 @@ struct initial_region {
   std::vector<initial_part> parts;  ///< replaces the state below, if there are any
 };
 
-/// Table [initial]: a state as formulas of the position, or a sum of states, with regions on top of each
-/// other, the last one uppermost. Empty if the case takes data of the model by name.
+/// Table [initial]: a state as formulas of the position, a sum of states, or a file, with regions on top of
+/// each other, the last one uppermost. Empty if the case takes data of the model by name.
 struct initial_table {
-  state_formulas state;                 ///< variables outside all regions
-  std::vector<initial_part> parts;      ///< terms of a sum, in place of `state`
+  std::string file;                 ///< result, CSV or HDF5 file, in place of `state`; "" if there is none
+  std::optional<double> time;       ///< of the snapshot in the file (dimensionless); the last one by default
+  bool from_python = false;         ///< whether the data are given by the caller of a run
+  state_formulas state;             ///< variables outside all regions
+  std::vector<initial_part> parts;  ///< terms of a sum, in place of `state`
   std::vector<initial_region> regions;  ///< from the lowest to the uppermost
 
   /// Whether the table is missing.
-  bool empty() const { return state.empty() && parts.empty() && regions.empty(); }
+  bool empty() const { return !given_elsewhere() && state.empty() && parts.empty() && regions.empty(); }
+  /// Whether the state below all regions is not in the case.
+  bool given_elsewhere() const { return from_python || !file.empty(); }
 };
 
 }  // namespace apsis

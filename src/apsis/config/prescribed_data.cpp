@@ -60,6 +60,7 @@ class prescribed_data::compiler {
         kind_(formula_of_position(equation.space_dimensions(), false, config.constants)) {}
 
   state base() const {
+    if (table_.given_elsewhere()) return {};
     const data_form form = layers_form();
     state made = make("initial", table_.state, table_.parts, form);
     if (made.parts.empty()) complete(made, "initial", "no region lies below");
@@ -69,7 +70,7 @@ class prescribed_data::compiler {
   std::vector<region> regions() const {
     std::vector<region> made;
     const data_form form = layers_form();
-    bool above_parts = !table_.parts.empty();
+    bool above_parts = !table_.parts.empty() || table_.given_elsewhere();
     for (std::size_t k = 0; k < table_.regions.size(); ++k) {
       const initial_region& given = table_.regions[k];
       const std::string path = fmt::format("initial.region.{}", k + 1);
@@ -85,7 +86,10 @@ class prescribed_data::compiler {
             place_of_(path),
             fmt::format("the region '{}' changes nothing (it has no variables); add one", given.where));
       state own = make(path, given.state, given.parts, form);
-      if (above_parts && own.parts.empty()) complete(own, path, "a sum of parts lies below the region");
+      if (above_parts && own.parts.empty())
+        complete(own, path,
+                 table_.given_elsewhere() ? "the data below the region are those of a file"
+                                          : "a sum of parts lies below the region");
       above_parts = above_parts || !own.parts.empty();
       made.push_back({compile(path + ".where", given.where), place_of_(path + ".where"), std::move(own)});
     }
@@ -209,8 +213,9 @@ class prescribed_data::compiler {
   formula_kind kind_;
 };
 
-prescribed_data::prescribed_data(const case_config& config, const model& equation, const places& place_of)
-    : dimensions_(equation.space_dimensions()) {
+prescribed_data::prescribed_data(const case_config& config, const model& equation, const places& place_of,
+                                 row_function below)
+    : below_(std::move(below)), dimensions_(equation.space_dimensions()) {
   const compiler from(config, equation, place_of);
   base_ = std::make_unique<state>(from.base());
   regions_ = from.regions();
@@ -220,6 +225,8 @@ prescribed_data::~prescribed_data() = default;
 prescribed_data::prescribed_data(prescribed_data&&) noexcept = default;
 
 void prescribed_data::operator()(const position& x, std::span<double> u) const {
+  const auto covers = [&x](const region& one) { return one.contains(x); };
+  if (below_ && std::none_of(regions_.begin(), regions_.end(), covers)) return below_(x, u);
   const state* top = base_.get();  // of parts, or of the form of all layers
   std::vector<const expression*> values(base_->values.size());
   source_place place = base_->place;

@@ -18,10 +18,15 @@ class prescribed_data {
   /// Returns the place of a key of the case, "initial.region.1.T".
   using places = std::function<source_place(const std::string& path)>;
 
+  /// u ← the row at x.
+  using row_function = std::function<void(const position& x, std::span<double> u)>;
+
   /// Compiles the formulas of a case with a table [initial]; `equation`, its model, must outlive this object.
+  /// `below`: the state below all regions where the case does not give it (initial_table::given_elsewhere).
   /// Throws input_error: a formula that cannot be read, or variables that are unknown, missing, or of the
   /// wrong size.
-  prescribed_data(const case_config& config, const model& equation, const places& place_of);
+  prescribed_data(const case_config& config, const model& equation, const places& place_of,
+                  row_function below = {});
   ~prescribed_data();
   prescribed_data(prescribed_data&&) noexcept;  ///< the source can then only be destroyed
 
@@ -39,6 +44,7 @@ class prescribed_data {
   struct state;
   struct region;
   std::unique_ptr<state> base_;
+  row_function below_;  ///< in place of `base_`, if it is set
   std::vector<region> regions_;
   int dimensions_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -11,14 +12,16 @@ namespace apsis {
 
 std::string read_text_file(const std::string& path, std::size_t longest, const std::string& kind) {
   std::ifstream in(path, std::ios::binary);
-  std::string text(longest + 1, '\0');
-  if (in) in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::string text, block(std::size_t{1} << 16U, '\0');
+  while (in.good() && text.size() <= longest) {
+    in.read(block.data(), static_cast<std::streamsize>(std::min(block.size(), longest + 1 - text.size())));
+    text.append(block, 0, static_cast<std::size_t>(in.gcount()));
+  }
   std::error_code ignored;
   // A read may fail after the file was opened; a partial content is not used.
   if (in.bad() || !in.is_open() || std::filesystem::is_directory(path, ignored))
     throw io_error(
         fmt::format("cannot read '{}' (it is a folder or not readable); give a readable {}", path, kind));
-  text.resize(static_cast<std::size_t>(in.gcount()));
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <apsis/model/expression.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/model/velocity_line.hpp>
 
 #include <map>
 #include <memory>
@@ -72,6 +73,8 @@ struct velocity_config {
   /// Names of velocity lines or files (velocity_line_registry.hpp): one for all directions, or one for each;
   /// none stands for "uniform".
   std::vector<std::string> set = {};
+  /// Lines of velocities of all directions, or of each, in place of the members above.
+  std::vector<velocity_line> lines = {};
 };
 
 /// Configuration of a model.

@@ -111,6 +111,14 @@ velocity_line read_velocity_line(const std::string& path) {
 std::vector<velocity_line> make_lines(const velocity_config& of, int dimensions) {
   if (dimensions < 1 || dimensions > 3)
     throw input_error(fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", dimensions));
+  if (!of.lines.empty()) {
+    std::vector<int> points;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k)
+      points.push_back(item_of(of.lines, k, dimensions, "the list of velocities").points());
+    velocity_grid::check_size(points);
+    return of.lines.size() == 1 ? std::vector(static_cast<std::size_t>(dimensions), of.lines.front())
+                                : of.lines;
+  }
   static const std::vector<std::string> uniform = {"uniform"};
   const auto& names = of.set.empty() ? uniform : of.set;
   std::vector<int> points;

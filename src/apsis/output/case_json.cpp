@@ -40,6 +40,9 @@ void add_parts(nlohmann::ordered_json& out, const std::vector<initial_part>& par
 
 nlohmann::ordered_json to_json(const initial_table& initial) {
   nlohmann::ordered_json out = to_json(initial.state);
+  if (initial.from_python) out["from"] = "python";
+  if (!initial.file.empty()) out["file"] = initial.file;
+  if (initial.time) out["time"] = *initial.time;
   add_parts(out, initial.parts);
   for (const auto& region : initial.regions) {
     nlohmann::ordered_json one = {{"where", region.where}};

@@ -182,6 +182,31 @@ precision hdf5_file::stored(const std::string& name) const {
   return H5Tget_size(type) == sizeof(float) ? precision::float32 : precision::float64;
 }
 
+std::string hdf5_file::units(const std::string& name) const {
+  const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!data.good() || H5Aexists(data, "units") <= 0) return "";
+  const handle attribute(H5Aopen(data, "units", H5P_DEFAULT), H5Aclose);
+  const handle type(H5Aget_type(attribute), H5Tclose);
+  const handle space(H5Aget_space(attribute), H5Sclose);
+  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1 ||
+      H5Tget_size(type) > longest_text)
+    fail(fmt::format("the attribute 'units' of '{}' is not text; remove it", name));
+  if (H5Tis_variable_str(type) <= 0) {
+    std::string text(H5Tget_size(type), '\0');
+    if (H5Aread(attribute, type, text.data()) < 0)
+      fail(fmt::format("the attribute 'units' of '{}' cannot be read (damaged file); give another file",
+                       name));
+    return text.substr(0, text.find('\0'));
+  }
+  // As other programs write text, of any length.
+  char* found = nullptr;
+  if (H5Aread(attribute, type, &found) < 0 || found == nullptr)
+    fail(fmt::format("the attribute 'units' of '{}' cannot be read (damaged file); give another file", name));
+  std::string text = found;
+  H5free_memory(found);
+  return text;
+}
+
 std::vector<double> hdf5_file::read(const std::string& name) const {
   std::uint64_t count = 1;
   for (const std::uint64_t n : extents(name)) {

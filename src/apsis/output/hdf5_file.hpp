@@ -48,6 +48,8 @@ class hdf5_file {
   shape extents(const std::string& name) const;
   /// Returns the storage type of a dataset.
   precision stored(const std::string& name) const;
+  /// Returns the attribute "units" of a dataset; "" if it has none.
+  std::string units(const std::string& name) const;
   /// Returns all numbers of a dataset in row-major order. Throws if the dataset is incomplete.
   std::vector<double> read(const std::string& name) const;
   /// Returns text written by write().

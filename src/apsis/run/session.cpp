@@ -43,10 +43,37 @@ std::vector<distribution_file> distribution_files(const result_folder& folder, d
 
 constexpr long many_steps = 100'000'000;
 
+[[noreturn]] void refuse_size(const std::string& path, const checkpoint& saved, int cells, int components) {
+  throw input_error(fmt::format(
+      "'{}' holds {} x {} unknowns (the case has {} x {}); restart with the case it was written for", path,
+      saved.cells, saved.components, cells, components));
+}
+
 /// Returns the case if the state, its checkpoint and solution.h5 fit into memory together.
 case_config with_room_for_results(case_config config, const session_options& options) {
   if (options.out) check_memory(config, run_setup(config), 2);
   return config;
+}
+
+/// The state of a checkpoint as that from which a run starts.
+state_source state_of_checkpoint(const std::string& path) {
+  return [path](const run_setup& setup) {
+    const checkpoint saved = read_checkpoint(path);
+    field u(setup.mesh().size(), setup.equation->components());
+    const auto components = static_cast<std::size_t>(u.components());
+    if (saved.state.size() != static_cast<std::size_t>(u.cells()) * components)
+      refuse_size(path, saved, u.cells(), u.components());
+    for (int cell = 0; cell < u.cells(); ++cell)
+      std::copy_n(saved.state.begin() + static_cast<std::ptrdiff_t>(cell) * u.components(), u.components(),
+                  u.row(cell));
+    return u;
+  };
+}
+
+/// Where a run starts: data that are not in the case are not needed by a restart.
+state_source start_of(const case_config& config, const session_options& options) {
+  if (!options.restart) return options.initial;
+  return config.prescribed.given_elsewhere() ? state_of_checkpoint(*options.restart) : state_source{};
 }
 
 std::string duration(double seconds) {
@@ -96,7 +123,8 @@ int threads_for(const case_config& config) {
 }
 
 run_session::run_session(case_config configured, session_options options)
-    : options_(std::move(options)), simulation_(with_room_for_results(std::move(configured), options_)) {
+    : options_(std::move(options)),
+      simulation_(with_room_for_results(configured, options_), start_of(configured, options_)) {
   // Locked first: a checkpoint in a folder that another run writes into must not be read.
   if (options_.out) folder_ = std::make_unique<result_folder>(*options_.out);
   if (options_.restart)
@@ -129,9 +157,7 @@ void run_session::resume(const std::string& path) {
   check_same_case(simulation_.config(), saved.case_text, path);
   if (saved.cells != static_cast<std::uint64_t>(simulation_.cells()) ||
       saved.components != static_cast<std::uint64_t>(simulation_.components()))
-    throw input_error(fmt::format(
-        "'{}' holds {} x {} unknowns (the case has {} x {}); restart with the case it was written for", path,
-        saved.cells, saved.components, simulation_.cells(), simulation_.components()));
+    refuse_size(path, saved, simulation_.cells(), simulation_.components());
   const run_state state = to_run_state(saved);
   if (!(state.march.t < simulation_.config().time.end))
     throw input_error(fmt::format("'{}' is already at t = {} (time.end is {}); give a later time.end", path,

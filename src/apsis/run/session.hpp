@@ -26,6 +26,7 @@ struct session_options {
   std::function<bool()> stop;          ///< called before every step; true stops with a checkpoint
   /// Called after every step, and once before the first.
   std::function<void(const simulation&)> watch;
+  state_source initial;           ///< initial state in place of that of the case; not used by a restart
   std::function<void()> stepped;  ///< called once after the last step, before reporting
 };
 

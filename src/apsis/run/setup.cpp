@@ -4,9 +4,11 @@
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/convexity.hpp>
 #include <apsis/model/expression.hpp>
+#include <apsis/run/initial_file.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <algorithm>
@@ -179,7 +181,7 @@ std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
 }
 
 void run_setup::set_prescribed_data() {
-  if (config_.prescribed.empty()) return;
+  if (config_.prescribed.empty() || config_.prescribed.given_elsewhere()) return;
   const auto given = std::make_shared<const prescribed_data>(
       config_, *equation, [this](const std::string& path) { return place_of(config_, path); });
   const std::vector<double> jumps = has_space() ? given->jumps(builder_.mesh()) : std::vector<double>{};
@@ -191,7 +193,7 @@ void run_setup::set_prescribed_data() {
 }
 
 const initial_data& run_setup::data() const {
-  if (!config_.prescribed.empty()) return prescribed_;
+  if (!config_.prescribed.empty()) return prescribed_;  // without functions if given elsewhere
   const auto& all = equation->initial();
   const auto found = std::find_if(all.begin(), all.end(), [this](const auto& item) {
     return config_.model.initial.empty() || item.name == config_.model.initial;
@@ -201,10 +203,23 @@ const initial_data& run_setup::data() const {
 }
 
 field run_setup::initial_state() const {
-  field u = builder_.sample(data().point_value, data().jumps);
+  if (config_.prescribed.from_python)
+    refuse(config_, "initial.from",
+           "the case has no initial data (they were given in Python); run it with apsis.run(case, "
+           "initial=...), or continue from a checkpoint");
+  if (config_.prescribed.file.empty()) return checked(builder_.sample(data().point_value, data().jumps));
+  state_of_file read = sample_initial_file(config_, *equation, builder_);
+  return checked(std::move(read.state), read.from_result);
+}
+
+field run_setup::checked(field u, bool computed) const {
   for (int cell = 0; cell < u.cells(); ++cell) {
     const unsupported_initial_data found = equation->check_supported(u.row(cell));
-    if (!found.problem.empty()) refuse(config_, found.key, fmt::format("{} [cell {}]", found.problem, cell));
+    if (found.problem.empty()) continue;
+    const std::string problem = fmt::format("{} [cell {}]", found.problem, cell);
+    if (!computed || found.key.rfind("velocity.", 0) != 0) refuse(config_, found.key, problem);
+    log::warning(problem);
+    break;
   }
   const auto [lowest, highest] = extremes_of_fields(*equation, u);
   const unsupported_initial_data found = equation->check_supported_range(lowest.data(), highest.data());

@@ -34,6 +34,12 @@ class run_setup {
   /// Returns cell averages (finite volume) or point values (finite difference) of the initial data. Throws
   /// input_error if the velocity grid does not support them.
   field initial_state() const;
+  /// Returns a state given in place of the initial data of the case. Throws input_error if the model or the
+  /// velocity grid does not support it; `computed`: a velocity grid on which the state was computed is not
+  /// refused, but a warning given.
+  field checked(field u, bool computed = false) const;
+  /// Returns the builder of the problem, which samples functions of position on the mesh.
+  const problem_builder& builder() const { return builder_; }
   /// Returns the exact solution at time t in the same form; nothing if no formula is known.
   std::optional<field> exact_state(double t) const;
   /// Whether the exact solution is known.

@@ -46,7 +46,7 @@ run_setup setup_that_fits(const case_config& config) {
 }  // namespace
 
 struct simulation::impl {
-  explicit impl(case_config configured)
+  impl(case_config configured, const state_source& start)
       : config(std::move(configured)),
         setup(setup_that_fits(config)),
         problem(setup.make_problem()),
@@ -55,7 +55,7 @@ struct simulation::impl {
         watch(*setup.equation, setup.cell_volume(), setup.open_faces().size(),
               setup.entropy_bounds().value_or(std::vector<double>{})),
         rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
-        state(setup.initial_state()),
+        state(start ? start(setup) : setup.initial_state()),
         march(times_of(setup)) {
     if (setup.has_tolerance()) control.emplace(*config.time.tolerance, setup.integrator().embedded->order);
     first = last = watch.start(state);
@@ -159,7 +159,8 @@ std::vector<double> without_padding(const field& u) {
 }
 }  // namespace
 
-simulation::simulation(case_config config) : impl_(std::make_unique<impl>(std::move(config))) {}
+simulation::simulation(case_config config, const state_source& start)
+    : impl_(std::make_unique<impl>(std::move(config), start)) {}
 simulation::~simulation() = default;
 simulation::simulation(simulation&&) noexcept = default;
 simulation& simulation::operator=(simulation&&) noexcept = default;

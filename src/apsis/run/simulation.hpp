@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/phase/field.hpp>
 #include <apsis/phase/velocity_set.hpp>
 #include <apsis/run/run_state.hpp>
 
@@ -30,11 +31,17 @@ struct field_table {
   std::vector<dimension> measures = {};     ///< dimensions in units of a gas
 };
 
+class run_setup;
+
+/// Returns the state from which a run starts in place of the initial data of its case.
+using state_source = std::function<field(const run_setup& setup)>;
+
 /// One run of a case. The constructor checks everything that can be checked before the first step.
 class simulation {
  public:
   /// Throws input_error (for example: v_max too small for the data, mesh smaller than the stencil).
-  explicit simulation(case_config config);
+  /// `start`: the initial state, if it is not that of the case.
+  explicit simulation(case_config config, const state_source& start = {});
   ~simulation();
   simulation(simulation&&) noexcept;             ///< leaves the source empty
   simulation& operator=(simulation&&) noexcept;  ///< leaves the source empty

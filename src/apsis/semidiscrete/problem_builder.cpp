@@ -4,6 +4,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/scheme/quartic.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -21,8 +22,9 @@ struct interval {
 /// rounding, cuts nothing.
 std::vector<interval> smooth_parts(const std::vector<double>& jumps, double centre, double half) {
   std::vector<double> ends = {centre - half};
-  for (const double jump : jumps)  // in increasing order
-    if (std::abs(jump - centre) < (1.0 - 1e-9) * half) ends.push_back(jump);
+  for (auto jump = std::lower_bound(jumps.begin(), jumps.end(), centre - half);
+       jump != jumps.end() && *jump < centre + half; ++jump)
+    if (std::abs(*jump - centre) < (1.0 - 1e-9) * half) ends.push_back(*jump);
   if (ends.size() == 1) return {{centre, half}};
   ends.push_back(centre + half);
   std::vector<interval> parts;

@@ -1,0 +1,163 @@
+#include <apsis/run/initial_file.hpp>
+
+#include <apsis/config/prescribed_data.hpp>
+#include <apsis/core/log.hpp>
+#include <apsis/run/initial_table_file.hpp>
+#include <apsis/scheme/cell_polynomials.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+namespace {
+
+std::size_t size(int n) {
+  return static_cast<std::size_t>(n);
+}
+
+/// Names of the columns of a variable, in the order of preference.
+std::vector<std::string> columns_of(const data_variable& variable, int k) {
+  static const char* const axes[] = {"_x", "_y", "_z"};
+  if (variable.size > 1) return {variable.name + axes[k]};
+  return {variable.name, variable.name + "_x"};  // of a vector along a line
+}
+
+class reader {
+ public:
+  reader(const case_config& config, const model& equation)
+      : config_(config), equation_(equation), source_(config, equation) {}
+
+  /// Reads the rows, and whether they stand for the equilibria of their moments.
+  std::pair<line_rows, bool> read() {
+    line_rows rows;
+    rows.components = equation_.components();
+    rows.unknowns = source_.unknowns();
+    bool equilibrium = false;
+    if (source_.has_state()) {
+      rows.values = source_.state();
+      rows.cells = static_cast<int>(rows.values.size() / size(rows.components));
+    } else {
+      equilibrium = make_rows(rows);
+    }
+    if (equation_.space_dimensions() > 0)
+      set_ends(rows);
+    else if (rows.cells != 1)
+      source_.refuse(fmt::format("it has {} rows (the model has no space); give one", rows.cells));
+    log::info(fmt::format("initial data: {} of '{}', {} cells",
+                          equilibrium ? "equilibria with the fields" : "the state", config_.prescribed.file,
+                          rows.cells));
+    return {std::move(rows), equilibrium};
+  }
+
+ private:
+  /// The form with most variables that the file has: the others describe equilibria.
+  data_form form_in_file() const {
+    std::optional<data_form> best;
+    std::vector<std::string> missing;
+    for (const auto& form : equation_.data_forms()) {
+      bool complete = true;
+      for (const auto& variable : form.variables)
+        for (int k = 0; k < variable.size; ++k)
+          if (!source_.has_any(columns_of(variable, k))) {
+            if (complete && missing.empty()) missing = columns_of(variable, k);
+            complete = false;
+          }
+      if (complete && (!best || form.variables.size() > best->variables.size())) best = form;
+    }
+    if (!best)
+      source_.refuse(missing.empty() ? std::string("the model has only named data; write model.initial")
+                                     : fmt::format("it has no column '{}' (its columns are {}); add it",
+                                                   missing.front(), fmt::join(source_.columns(), ", ")));
+    return *best;
+  }
+
+  bool make_rows(line_rows& rows) const {
+    const data_form form = form_in_file();
+    std::vector<std::vector<double>> given;
+    for (const auto& variable : form.variables)
+      for (int k = 0; k < variable.size; ++k)
+        given.push_back(source_.column(columns_of(variable, k), variable.measure));
+    rows.cells = static_cast<int>(given.front().size());
+    std::vector<double> numbers(given.size()), row(size(rows.components));
+    for (int cell = 0; cell < rows.cells; ++cell) {
+      for (std::size_t k = 0; k < given.size(); ++k) numbers[k] = given[k][size(cell)];
+      const std::string problem = form.row(numbers, row);
+      if (!problem.empty())
+        source_.refuse(fmt::format("{} has no {} ({}); change its numbers", source_.place_of_row(size(cell)),
+                                   form.description, problem));
+      rows.values.insert(rows.values.end(), row.begin(), row.end());
+    }
+    return static_cast<int>(given.size()) < rows.components;
+  }
+
+  /// Sets the ends of the line, those of the domain where they agree up to the digits of the file.
+  void set_ends(line_rows& rows) const {
+    const auto [lower, upper, tolerance] = source_.ends(rows.cells);
+    const auto [first, last] = config_.space.domain.front();
+    const double near = tolerance * (upper - lower) / rows.cells;
+    rows.lower = std::abs(lower - first) <= near ? first : lower;
+    rows.upper = std::abs(upper - last) <= near ? last : upper;
+    if (rows.lower > first || rows.upper < last)
+      source_.refuse(
+          fmt::format("its cells cover [{:.10g}, {:.10g}] (the domain is [{:.10g}, {:.10g}]); change "
+                      "space.domain, or give data on all of it",
+                      lower, upper, first, last));
+  }
+
+  const case_config& config_;
+  const model& equation_;
+  initial_table_file source_;
+};
+
+/// u ← E(ℛu), so that data that are given as equilibria are so at every point.
+void project(const model& equation, std::span<double> u) {
+  const auto* relaxation = dynamic_cast<const relaxation_model*>(&equation);
+  if (relaxation == nullptr) return;
+  std::vector<double> omega(size(relaxation->moment_count()));
+  relaxation->moments(u.data(), omega.data());
+  relaxation->equilibrium(omega.data(), u.data());
+}
+
+field copied(const line_rows& rows) {
+  field u(rows.cells, rows.components);
+  for (int cell = 0; cell < rows.cells; ++cell)
+    std::copy_n(rows.values.begin() + static_cast<std::ptrdiff_t>(cell) * rows.components, rows.components,
+                u.row(cell));
+  return u;
+}
+
+}  // namespace
+
+state_of_file sample_initial_file(const case_config& config, const model& equation,
+                                  const problem_builder& builder) {
+  const grid& mesh = builder.mesh();
+  const auto [rows, equilibrium] = reader(config, equation).read();
+  const bool on_line = builder.has_space();
+  const bool same_mesh =
+      !on_line ||
+      (rows.cells == mesh.size() && rows.unknowns == config.space.formulation &&
+       rows.lower == config.space.domain.front()[0] && rows.upper == config.space.domain.front()[1]);
+  const bool points = config.space.formulation == formulation::finite_difference;
+  if (same_mesh && config.prescribed.regions.empty() && (!equilibrium || points || !on_line))
+    return {copied(rows), !equilibrium};
+  const cell_polynomials between(rows, equation.positive());
+  const bool project_rows = equilibrium;
+  const prescribed_data data(
+      config, equation, [&config](const std::string& path) { return place_of(config, path); },
+      [&between, &equation, project_rows](const position& x, std::span<double> u) {
+        between(x[0], u);
+        if (project_rows) project(equation, u);
+      });
+  std::vector<double> jumps = between.jumps();
+  for (const double x : data.jumps(mesh)) jumps.push_back(x);
+  std::sort(jumps.begin(), jumps.end());
+  return {builder.sample([&data](const position& x, std::span<double> u) { data(x, u); }, jumps),
+          !equilibrium && config.prescribed.regions.empty()};
+}
+
+}  // namespace apsis

@@ -1,0 +1,328 @@
+#include <apsis/run/initial_table_file.hpp>
+
+#include <apsis/config/quantity.hpp>
+#include <apsis/core/log.hpp>
+#include <apsis/core/text_file.hpp>
+#include <apsis/output/case_json.hpp>
+#include <apsis/output/velocity_axes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+namespace {
+
+const std::string none = "dimensionless";
+
+/// Datasets of a result that are no columns.
+const std::set<std::string> not_columns = {"f", "v", "v_weights", "v_x", "v_y", "v_z", "t"};
+
+/// Member of a JSON object by dotted path; null where there is none.
+nlohmann::ordered_json at(const nlohmann::ordered_json& object, std::initializer_list<const char*> path) {
+  const nlohmann::ordered_json* found = &object;
+  for (const char* name : path) {
+    if (!found->is_object() || !found->contains(name)) return nullptr;
+    found = &(*found)[name];
+  }
+  return *found;
+}
+
+bool is_hdf5(const std::string& path) {
+  return path.ends_with(".h5") || path.ends_with(".hdf5");
+}
+
+}  // namespace
+
+initial_table_file::initial_table_file(const case_config& config, const model& equation)
+    : config_(config), equation_(equation), path_(config.prescribed.file) {
+  if (!is_hdf5(path_) && !path_.ends_with(".csv"))
+    refuse("its kind is not known (neither .h5 nor .csv); give for example results/earlier/solution.h5");
+  std::error_code ignored;
+  if (!std::filesystem::exists(path_, ignored))
+    refuse("it does not exist (paths are relative to where the program runs); give an existing file");
+  try {
+    is_hdf5(path_) ? read_hdf5() : read_csv();
+  } catch (const io_error& problem) {
+    refuse(problem.what());
+  }
+  for (const auto& [name, values] : columns_)
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (!std::isfinite(values[k]))
+        refuse(fmt::format("'{}' is {} in {} (a finite number is needed); change it", name, values[k],
+                           place_of_row(k)));
+  for (const double value : state_)
+    if (!std::isfinite(value)) refuse("its state has values that are not finite; give another file");
+}
+
+void initial_table_file::refuse(const std::string& problem) const {
+  const source_place place = place_of(config_, "initial.file");
+  const std::string message = fmt::format("initial.file = '{}' cannot be used: {}", path_, problem);
+  if (place.file.empty()) throw input_error(message);
+  throw input_error(place, message);
+}
+
+std::string initial_table_file::place_of_row(std::size_t row) const {
+  return row < lines_.size() ? fmt::format("line {}", lines_[row]) : fmt::format("cell {}", row);
+}
+
+/// Of an earlier result: its model, units and formulation.
+void initial_table_file::take_manifest(const std::string& text) {
+  manifest_ = json::parse(text, nullptr, false);
+  const auto name = at(manifest_, {"case", "model", "name"});
+  if (!name.is_string()) refuse("its manifest cannot be read (damaged file); give another file");
+  const model_entry *mine = find_model(config_.model.name), *theirs = find_model(name.get<std::string>());
+  const bool gases = theirs != nullptr && mine->has_velocity_grid && theirs->has_velocity_grid;
+  const bool same_variables =
+      at(manifest_, {"case", "model", "variables"}) == at(to_json(config_), {"model", "variables"});
+  if (!gases && (theirs != mine || !same_variables))
+    refuse(fmt::format(
+        "it is a result of model '{}'{} (the case has model '{}'); give a result of this model",
+        name.get<std::string>(), theirs == mine ? " with other variables" : "", config_.model.name));
+  if (at(manifest_, {"case", "space", "formulation"}) == choice_name(formulation::finite_difference))
+    unknowns_ = formulation::finite_difference;
+  const auto scales = at(manifest_, {"scales"});
+  const bool in_si = at(manifest_, {"case", "output", "units"}) == choice_name(units_choice::si);
+  if (!scales.is_null() && config_.scales && !in_si && scales != to_json(*config_.scales))
+    refuse(
+        "its units are those of another table [gas]; write it with output.units = \"SI\", or use the same "
+        "reference state");
+}
+
+void initial_table_file::read_csv() {
+  try {
+    column_file table = read_columns(path_);
+    columns_ = std::move(table.columns);
+    lines_ = std::move(table.lines);
+  } catch (const input_error& problem) {
+    refuse(problem.what());
+  }
+  // The table of a result has its units and its mesh beside it.
+  const auto manifest = std::filesystem::path(path_).parent_path() / "manifest.json";
+  if (std::filesystem::path(path_).filename() == "fields.csv" && std::filesystem::exists(manifest)) {
+    constexpr std::size_t longest = 100'000'000;
+    take_manifest(read_text_file(manifest.string(), longest, "manifest"));
+    const json units = at(manifest_, {"units"});
+    for (const auto& [name, unit] : units.items())
+      if (unit.is_string()) units_[name] = unit.get<std::string>();
+  }
+  const auto found = columns_.find("t");
+  if (found == columns_.end()) {
+    if (config_.prescribed.time) refuse("it has no times (no column 't'); remove initial.time");
+    return;
+  }
+  std::vector<double> times = found->second;
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  const double t = times[chosen(times)];
+  std::map<std::string, std::vector<double>> kept;
+  std::vector<int> lines;
+  const std::vector<double> all = found->second;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k] != t) continue;
+    for (const auto& [name, values] : columns_) kept[name].push_back(values[k]);
+    lines.push_back(lines_[k]);
+  }
+  columns_ = std::move(kept);
+  lines_ = std::move(lines);
+}
+
+void initial_table_file::read_hdf5() {
+  const hdf5_file file = hdf5_file::open(path_);
+  std::string manifest;
+  try {
+    manifest = file.read_text_attribute("manifest");
+  } catch (const io_error&) {  // not a result
+  }
+  if (!manifest.empty()) take_manifest(manifest);
+  if (config_.prescribed.time && manifest_.is_null())
+    refuse("it has no times (it is not a result); remove initial.time");
+  read_fields(file);
+}
+
+void initial_table_file::read_fields(const hdf5_file& file) {
+  const bool several = !manifest_.is_null() && file.has("snapshots") && file.has("snapshots/t");
+  const bool result = !manifest_.is_null();
+  const auto names = file.datasets();
+  std::optional<std::size_t> earlier;  // a snapshot before the end
+  std::vector<double> times = {result ? file.read_attribute("t") : 0.0};
+  if (several) times = file.read("snapshots/t");
+  if (times.empty()) refuse("it has no snapshots (damaged file); give another file");
+  units_["t"] = several ? file.units("snapshots/t") : units_["t"];
+  if (units_["t"].empty() && result && at(manifest_, {"units", "t"}).is_string())
+    units_["t"] = at(manifest_, {"units", "t"}).get<std::string>();
+  if (result) {
+    const std::size_t k = chosen(times);
+    if (k + 1 < times.size()) earlier = k;
+  }
+  const std::string group = earlier ? "snapshots/" : "fields/";
+  for (const auto& name : names) {
+    const bool in_group = name.rfind(group, 0) == 0;
+    const std::string column = in_group ? name.substr(group.size()) : name;
+    if (column.find('/') != std::string::npos || not_columns.contains(column)) continue;
+    const auto shape = file.extents(name);
+    if (shape.size() != (earlier && in_group ? 2U : 1U)) continue;
+    if (earlier && in_group && shape[0] != times.size())
+      refuse(fmt::format("'{}' has {} snapshots of {} (damaged file); give another file", name, shape[0],
+                         times.size()));
+    std::vector<double> values = file.read(name);
+    if (earlier && in_group) {
+      const auto cells = static_cast<std::ptrdiff_t>(shape[1]);
+      const auto first = values.begin() + static_cast<std::ptrdiff_t>(*earlier) * cells;
+      values = std::vector<double>(first, first + cells);
+    }
+    columns_[column] = std::move(values);
+    units_[column] = file.units(name);
+  }
+  if (!earlier) return read_state(file);
+  read_snapshot_of_state(times[*earlier]);
+}
+
+void initial_table_file::read_state(const hdf5_file& file) {
+  if (!file.has("f")) return;
+  if (same_unknowns(file))
+    state_ = file.read("f");
+  else
+    log::warning(
+        fmt::format("initial data: the distribution of '{}' is not used (its velocities or units are "
+                    "others); the run begins in equilibrium with its fields",
+                    path_));
+}
+
+/// The distribution of an earlier time is in a file of its own, if it was written in every cell.
+void initial_table_file::read_snapshot_of_state(double t) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(path_).parent_path() / "snapshots";
+  const double unit = factor("t", units_["t"], dimensions::time);
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() != ".h5") continue;
+    const hdf5_file file = hdf5_file::open(entry.path().string());
+    const auto cells = at(manifest_, {"case", "space", "cells"});
+    const double wanted = t * unit;
+    if (std::abs(file.read_attribute("t") - wanted) > 1e-12 * (1.0 + std::abs(wanted)) ||
+        file.stored("f") != precision::float64 || file.extents("f").size() != 2 ||
+        cells != file.extents("f").front())
+      continue;
+    return read_state(file);
+  }
+}
+
+bool initial_table_file::same_unknowns(const hdf5_file& file) const {
+  const auto shape = file.extents("f");
+  if (shape.size() != 2 || shape[1] != static_cast<std::uint64_t>(equation_.components())) return false;
+  const velocity_set& mine = equation_.velocities();
+  if (mine.dimensions() > 0 && (!file.has("v") || file.read("v") != velocity_points(mine))) return false;
+  if (manifest_.is_null()) return true;
+  const auto scales = at(manifest_, {"scales"});
+  if (!scales.is_null() && config_.scales && scales != to_json(*config_.scales)) return false;
+  const char* const kept = "degrees_of_freedom";
+  const auto mine_of = config_.model.parameters.find(kept);
+  return mine_of == config_.model.parameters.end() ||
+         at(manifest_, {"case", "model", kept}) == mine_of->second;
+}
+
+/// Index of initial.time among times in the units of the file; the last one if no time is given.
+std::size_t initial_table_file::chosen(const std::vector<double>& times) const {
+  if (!config_.prescribed.time) return times.size() - 1;
+  const auto unit_of_t = units_.find("t");
+  const double unit = factor("t", unit_of_t == units_.end() ? "" : unit_of_t->second, dimensions::time);
+  const double wanted = *config_.prescribed.time;
+  for (std::size_t k = 0; k < times.size(); ++k)
+    if (std::abs(times[k] * unit - wanted) <= 1e-9 * (1.0 + std::abs(wanted))) return k;
+  std::vector<std::string> known;
+  for (const double t : times) known.push_back(fmt::format("{:.10g}", t * unit));
+  if (known.size() > 6) {
+    known.erase(known.begin() + 3, known.end() - 2);
+    known.insert(known.begin() + 3, "...");
+  }
+  refuse(fmt::format("it has no snapshot at initial.time = {:.10g} (its times are {}); give one of these",
+                     wanted, fmt::join(known, ", ")));
+}
+
+bool initial_table_file::has_any(const std::vector<std::string>& names) const {
+  return std::any_of(names.begin(), names.end(),
+                     [this](const auto& name) { return columns_.contains(name); });
+}
+
+std::vector<std::string> initial_table_file::columns() const {
+  std::vector<std::string> names;
+  for (const auto& [name, values] : columns_) names.push_back(name);
+  return names;
+}
+
+/// The unit of a column of the file in units of the case.
+double initial_table_file::factor(const std::string& name, const std::string& unit,
+                                  const dimension& measure) const {
+  if (unit.empty() || unit == none) return 1.0;
+  if (!config_.scales)
+    refuse(
+        fmt::format("'{}' has the unit {} (the case has no table [gas] with the scales of its quantities); "
+                    "add the table",
+                    name, unit));
+  quantity one;
+  try {
+    one = parse_quantity("1 " + unit, {});
+  } catch (const input_error& problem) {
+    refuse(fmt::format("the unit of '{}': {}", name, problem.what()));
+  }
+  if (measure == dimensions::density && one.unit == dimensions::number_density)
+    one = {one.value * config_.scales->gas().mass, dimensions::density};
+  if (one.unit != measure)
+    refuse(
+        fmt::format("'{}' has the unit {} (that of {} is needed); change it", name, unit, unit_of(measure)));
+  return one.value / config_.scales->unit(measure);
+}
+
+std::vector<double> initial_table_file::column(const std::vector<std::string>& names,
+                                               const dimension& measure) const {
+  const auto name =
+      std::find_if(names.begin(), names.end(), [this](const auto& one) { return columns_.contains(one); });
+  std::vector<double> values = columns_.at(*name);
+  const std::size_t rows = columns_.contains("x") ? columns_.at("x").size() : values.size();
+  if (values.size() != rows || values.empty())
+    refuse(fmt::format("'{}' has {} numbers and 'x' has {}; give one for each cell", *name, values.size(),
+                       rows));
+  const auto unit = units_.find(*name);
+  const double by = factor(*name, unit == units_.end() ? "" : unit->second, measure);
+  if (by != 1.0)
+    for (double& value : values) value *= by;
+  return values;
+}
+
+initial_table_file::line_ends initial_table_file::ends(int cells) const {
+  const auto domain = at(manifest_, {"case", "space", "domain"});
+  if (domain.is_array() && domain.size() == 2 && domain[0].is_number() && domain[1].is_number()) {
+    const auto theirs = at(manifest_, {"scales", "length", "value"});
+    const double unit =
+        theirs.is_number() && config_.scales && theirs != config_.scales->unit(dimensions::length)
+            ? theirs.get<double>() / config_.scales->unit(dimensions::length)
+            : 1.0;
+    return {domain[0].get<double>() * unit, domain[1].get<double>() * unit, 1e-9};
+  }
+  if (!columns_.contains("x")) refuse("it has no column 'x' (centres of the cells); add it");
+  const std::vector<double> x = column({"x"}, dimensions::length);
+  if (x.size() != static_cast<std::size_t>(cells))
+    refuse(fmt::format("'x' has {} numbers and the state has {} cells; give one for each cell", x.size(),
+                       cells));
+  if (x.size() < 2) refuse("it has one row (the width of a cell is not known from it); give several");
+  constexpr double digits = 1e-2;  // of a cell, for centres written with few digits
+  const double width = (x.back() - x.front()) / (cells - 1);
+  for (std::size_t k = 1; k < x.size(); ++k) {
+    if (!(x[k] > x[k - 1]))
+      refuse(fmt::format("x does not increase in {} ({:.10g} after {:.10g}); sort the rows", place_of_row(k),
+                         x[k], x[k - 1]));
+    if (std::abs(x[k] - (x.front() + static_cast<double>(k) * width)) > digits * width)
+      refuse(fmt::format(
+          "x is not equidistant in {} ({:.10g}, where equal cells have {:.10g}); interpolate the data "
+          "to equal cells",
+          place_of_row(k), x[k], x.front() + static_cast<double>(k) * width));
+  }
+  return {x.front() - 0.5 * width, x.back() + 0.5 * width, digits};
+}
+
+}  // namespace apsis

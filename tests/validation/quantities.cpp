@@ -86,6 +86,21 @@ TEST(quantities, depend_on_their_parameters_as_the_limits_say) {
   EXPECT_NEAR(stress, std::sqrt(3.14159265358979) / (14.0 + 2.032382), 1e-3 * stress);
 }
 
+TEST(quantities, have_the_heat_flux_of_the_linear_solver) {
+  // The solver has 0.640853; the difference of second order in the temperatures is 1e-4.
+  EXPECT_NEAR(compute_quantity(find_quantity("heat"), {"delta=1"}), 0.640853, 1e-4);
+}
+
+TEST(quantities, approach_the_slip_and_the_layer_of_kramers_with_second_order) {
+  // With a quarter of the cells the error of the slip, 2.5e-4, is 16 times as large, and twice that with the
+  // steps.
+  const quantity_entry& kramers = find_quantity("kramers");
+  const std::string coarse = "space.cells=35";
+  EXPECT_NEAR(compute_quantity(kramers, {coarse}), 1.01619, 8e-3);
+  EXPECT_NEAR(compute_quantity(kramers, {coarse, "value=layer", "distance=1"}), 0.07175, 3e-3);
+  EXPECT_NEAR(compute_quantity(kramers, {coarse, "value=layer", "distance=0"}), 0.30908, 8e-3);
+}
+
 TEST(quantities, refuse_what_they_do_not_know) {
   EXPECT_THAT(refusal("couet", {}),
               AllOf(HasSubstr("unknown quantity 'couet'"), HasSubstr("did you mean 'couette'")));
@@ -95,6 +110,9 @@ TEST(quantities, refuse_what_they_do_not_know) {
   for (const char* bad : {"delta=", "delta=0", "delta=-1", "delta=1x", "delta=nan", "delta=inf"})
     EXPECT_THAT(refusal("couette", {bad}), HasSubstr("is not a number > 0")) << bad;
   EXPECT_THAT(refusal("couette", {"model=bkg"}), HasSubstr("bgk"));
+  for (const char* bad : {"distance=", "distance=-0.1", "distance=5.1", "distance=nan", "distance=1x"})
+    EXPECT_THAT(refusal("kramers", {bad}), HasSubstr("is not a number from 0 to 5")) << bad;
+  EXPECT_THAT(refusal("kramers", {"value=slit"}), HasSubstr("did you mean 'slip'"));
   EXPECT_THAT(refusal("couette", {"space.cels=3"}), HasSubstr("space.cells"));
 }
 
@@ -141,6 +159,16 @@ TEST(compared_value, is_drawn_over_the_first_parameter_where_there_are_several) 
   const auto document = to_json(couette, values);
   EXPECT_EQ(document["values"].size(), values.size());
   EXPECT_EQ(document["pictures"].size(), 1U);
+  EXPECT_TRUE(picture.panels[0].log_x);
   values.resize(2);
   EXPECT_TRUE(apsis::quantity_picture(couette, values).panels.empty());
+}
+
+TEST(compared_value, is_drawn_at_distance_0_too) {
+  const quantity_entry& kramers = find_quantity("kramers");
+  std::vector<compared_value> values;
+  for (const auto& one : kramers.published) values.push_back({&kramers, &one, one.value, 1.0});
+  const auto picture = apsis::quantity_picture(kramers, values);
+  ASSERT_EQ(picture.panels.size(), 2U);
+  EXPECT_FALSE(picture.panels[0].log_x);  // where 0 would be omitted
 }

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <support/shock_tube.hpp>
 #include <validation/comparison.hpp>
 #include <validation/quantity.hpp>
 
@@ -101,6 +102,31 @@ TEST(quantities, approach_the_slip_and_the_layer_of_kramers_with_second_order) {
   EXPECT_NEAR(compute_quantity(kramers, {coarse, "value=layer", "distance=0"}), 0.30908, 8e-3);
 }
 
+TEST(quantities, have_the_states_of_the_exact_riemann_problem) {
+  for (const auto& printed : find_quantity("riemann").published) {
+    const double D = std::stod(printed.at.at("degrees_of_freedom"));
+    const test_support::shock_tube tube((D + 2.0) / D, 1.0, 1.0, 0.125, 0.1);
+    const std::string& value = printed.at.at("value");
+    const double exact = value == "velocity"       ? tube.velocity()
+                         : value == "pressure"     ? tube.pressure()
+                         : value == "density-left" ? tube.density_left()
+                                                   : tube.density_right();
+    EXPECT_NEAR(printed.value, exact, 5e-6) << value << " " << D;  // printed with five decimals
+  }
+}
+
+TEST(quantities, find_the_plateaus_of_a_gas_that_nobody_has_printed) {
+  // A gas of six degrees of freedom. With a quarter of the cells the density oscillates by some 1e-3.
+  const test_support::shock_tube tube(8.0 / 6.0, 1.0, 1.0, 0.125, 0.1);
+  const auto computed = [](const std::string& value) {
+    return compute_quantity(find_quantity("riemann"),
+                            {"degrees_of_freedom=6", "space.cells=200", "value=" + value});
+  };
+  EXPECT_NEAR(computed("velocity"), tube.velocity(), 1e-3 * tube.velocity());
+  EXPECT_NEAR(computed("density-left"), tube.density_left(), 2e-3 * tube.density_left());
+  EXPECT_NEAR(computed("density-right"), tube.density_right(), 4e-3 * tube.density_right());
+}
+
 TEST(quantities, refuse_what_they_do_not_know) {
   EXPECT_THAT(refusal("couet", {}),
               AllOf(HasSubstr("unknown quantity 'couet'"), HasSubstr("did you mean 'couette'")));
@@ -112,6 +138,8 @@ TEST(quantities, refuse_what_they_do_not_know) {
   EXPECT_THAT(refusal("couette", {"model=bkg"}), HasSubstr("bgk"));
   for (const char* bad : {"distance=", "distance=-0.1", "distance=5.1", "distance=nan", "distance=1x"})
     EXPECT_THAT(refusal("kramers", {bad}), HasSubstr("is not a number from 0 to 5")) << bad;
+  EXPECT_THAT(refusal("riemann", {"degrees_of_freedom=0.5"}), HasSubstr("is not a number from 1 to 100"));
+  EXPECT_THAT(refusal("riemann", {"space.cells=20"}), HasSubstr("give more space.cells"));
   EXPECT_THAT(refusal("kramers", {"value=slit"}), HasSubstr("did you mean 'slip'"));
   EXPECT_THAT(refusal("couette", {"space.cels=3"}), HasSubstr("space.cells"));
 }

@@ -127,6 +127,26 @@ TEST(quantities, find_the_plateaus_of_a_gas_that_nobody_has_printed) {
   EXPECT_NEAR(computed("density-right"), tube.density_right(), 4e-3 * tube.density_right());
 }
 
+TEST(quantities, have_the_density_behind_a_shock_of_any_mach_number) {
+  for (const std::string model : {"bgk", "shakhov", "es-bgk"}) {
+    // Rankine–Hugoniot: 4 · 9/(9 + 3). The plateau is flat to 1e-4; half the cells leave 1e-3.
+    const double ratio =
+        compute_quantity(find_quantity("shock"), {"mach=3", "model=" + model, "space.cells=100"});
+    EXPECT_NEAR(ratio, 3.0, 3e-3) << model;
+  }
+}
+
+TEST(quantities, have_constant_fluxes_in_a_shock_only_between_states_that_belong_together) {
+  const quantity_entry& shock = find_quantity("shock");
+  const std::vector<std::string> coarse = {"mach=3", "value=energy", "space.cells=150"};
+  const double steady = compute_quantity(shock, coarse);
+  EXPECT_NEAR(steady, 1.0, 4e-3);  // third order or better: less than 2³ times the tolerance with 300 cells
+  EXPECT_LE(steady, 1.0);
+  std::vector<std::string> wrong = coarse;
+  wrong.push_back("boundary.right.T=4.5");  // for 3.667: the shock moves
+  EXPECT_LT(compute_quantity(shock, wrong), 0.97);
+}
+
 TEST(quantities, refuse_what_they_do_not_know) {
   EXPECT_THAT(refusal("couet", {}),
               AllOf(HasSubstr("unknown quantity 'couet'"), HasSubstr("did you mean 'couette'")));
@@ -140,6 +160,9 @@ TEST(quantities, refuse_what_they_do_not_know) {
     EXPECT_THAT(refusal("kramers", {bad}), HasSubstr("is not a number from 0 to 5")) << bad;
   EXPECT_THAT(refusal("riemann", {"degrees_of_freedom=0.5"}), HasSubstr("is not a number from 1 to 100"));
   EXPECT_THAT(refusal("riemann", {"space.cells=20"}), HasSubstr("give more space.cells"));
+  for (const char* bad : {"mach=1", "mach=11", "mach=-2", "mach=nan", "mach=two"})
+    EXPECT_THAT(refusal("shock", {bad}), HasSubstr("is not a number from 1.1 to 10")) << bad;
+  EXPECT_THAT(refusal("shock", {"model=shakov"}), HasSubstr("shakhov"));
   EXPECT_THAT(refusal("kramers", {"value=slit"}), HasSubstr("did you mean 'slip'"));
   EXPECT_THAT(refusal("couette", {"space.cels=3"}), HasSubstr("space.cells"));
 }

@@ -22,7 +22,7 @@ struct end_states {
 std::vector<std::string> velocities(const end_states& states) {
   const double max =
       std::ceil(std::max(states.before + 6.0, states.behind + 6.0 * std::sqrt(states.temperature)));
-  return {fmt::format("velocity.max={}", max), fmt::format("velocity.points={}", 4.0 * max)};
+  return {fmt::format("velocity.max={}", max), fmt::format("velocity.points={}", 3.0 * max)};
 }
 
 simulation make_run(const std::string& name, const quantity_values& parameters, const end_states& states,
@@ -52,9 +52,11 @@ double density_behind(const quantity_values& parameters, const end_states& state
 /// The smallest value over the largest one of a flux through a shock at rest.
 double constancy(const std::string& flux, const quantity_values& parameters, const end_states& states,
                  double width, const quantity_run& make) {
+  // Fast molecules of the hot gas run far into the stream.
+  const double upstream = width + 6.0 * states.before;
   const simulation run = make_run("gas/shock", parameters, states,
-                                  {fmt::format("space.domain=[{}, {}]", -width, width), "space.cells=200",
-                                   fmt::format("time.end={}", 20.0 * width), "time.steady=1e-6"},
+                                  {fmt::format("space.domain=[{}, {}]", -upstream, width), "space.cells=300",
+                                   fmt::format("time.end={}", 2.0 * width), "time.steady=1e-5"},
                                   make);
   const auto rho = field_values(run, "rho"), u = field_values(run, "u"), T = field_values(run, "T"),
              stress = field_values(run, "stress"), heat = field_values(run, "heat_flux");
@@ -92,18 +94,23 @@ const quantity_entry quantity_shock = {
     .parameters = {{"mach", "2", "Mach number of the shock, from 1.1 to 10"},
                    {"value", "density", "density, mass, momentum or energy"},
                    {"model", "bgk", "bgk, shakhov or es-bgk"}},
-    .published = {{{{"mach", "1.2"}, {"value", "density"}}, 1.2972973},
-                  {{{"mach", "2"}, {"value", "density"}}, 2.2857143},
-                  {{{"mach", "4"}, {"value", "density"}}, 3.3684211},
-                  {{{"mach", "8"}, {"value", "density"}}, 3.8208955},
-                  {{{"mach", "4"}, {"value", "density"}, {"model", "shakhov"}}, 3.3684211},
-                  {{{"mach", "4"}, {"value", "density"}, {"model", "es-bgk"}}, 3.3684211},
-                  {{{"mach", "2"}, {"value", "mass"}}, 1.0},
-                  {{{"mach", "2"}, {"value", "momentum"}}, 1.0},
-                  {{{"mach", "2"}, {"value", "energy"}}, 1.0},
-                  {{{"mach", "8"}, {"value", "energy"}}, 1.0},
-                  {{{"mach", "8"}, {"value", "energy"}, {"model", "shakhov"}}, 1.0},
-                  {{{"mach", "8"}, {"value", "energy"}, {"model", "es-bgk"}}, 1.0}},
+    .published =
+        {{{{"mach", "1.2"}, {"value", "density"}}, 1.2972973},
+         {{{"mach", "2"}, {"value", "density"}}, 2.2857143},
+         {{{"mach", "4"}, {"value", "density"}}, 3.3684211},
+         {{{"mach", "8"}, {"value", "density"}}, 3.8208955},
+         {{{"mach", "4"}, {"value", "density"}, {"model", "shakhov"}}, 3.3684211},
+         {{{"mach", "4"}, {"value", "density"}, {"model", "es-bgk"}}, 3.3684211},
+         {{{"mach", "1.2"}, {"value", "energy"}}, 1.0},
+         {{{"mach", "2"}, {"value", "mass"}}, 1.0},
+         {{{"mach", "2"}, {"value", "momentum"}}, 1.0},
+         {{{"mach", "2"}, {"value", "energy"}}, 1.0},
+         {{{"mach", "8"}, {"value", "mass"}}, 1.0},
+         {{{"mach", "8"}, {"value", "momentum"}}, 1.0},
+         {{{"mach", "8"}, {"value", "energy"}}, 1.0},
+         // The target of Shakhov's model is negative in parts of this shock, which never comes to rest.
+         {{{"mach", "8"}, {"value", "energy"}, {"model", "shakhov"}}, 1.0, 3e-3},
+         {{{"mach", "8"}, {"value", "energy"}, {"model", "es-bgk"}}, 1.0}},
     .compute = compute};
 
 }  // namespace apsis

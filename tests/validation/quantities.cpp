@@ -159,9 +159,12 @@ TEST(quantities, refuse_what_they_do_not_know) {
   for (const char* bad : {"distance=", "distance=-0.1", "distance=5.1", "distance=nan", "distance=1x"})
     EXPECT_THAT(refusal("kramers", {bad}), HasSubstr("is not a number from 0 to 5")) << bad;
   EXPECT_THAT(refusal("riemann", {"degrees_of_freedom=0.5"}), HasSubstr("is not a number from 1 to 100"));
+  EXPECT_THAT(refusal("riemann", {"initial.u=-3", "space.cells=40", "velocity.max=10"}),
+              HasSubstr("give more space.cells"));  // nothing moves to the right
   EXPECT_THAT(refusal("riemann", {"space.cells=20"}), HasSubstr("give more space.cells"));
   for (const char* bad : {"mach=1", "mach=11", "mach=-2", "mach=nan", "mach=two"})
     EXPECT_THAT(refusal("shock", {bad}), HasSubstr("is not a number from 1.1 to 10")) << bad;
+  EXPECT_THAT(refusal("shock", {"time.end=0.1"}), HasSubstr("it has not left the wall"));
   EXPECT_THAT(refusal("shock", {"model=shakov"}), HasSubstr("shakhov"));
   EXPECT_THAT(refusal("kramers", {"value=slit"}), HasSubstr("did you mean 'slip'"));
   EXPECT_THAT(refusal("couette", {"space.cels=3"}), HasSubstr("space.cells"));

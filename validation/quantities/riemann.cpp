@@ -31,20 +31,18 @@ double mean_between(const std::vector<double>& x, const std::vector<double>& val
 plateaus plateaus_of(const simulation& run) {
   const std::vector<double> x = run.fields().x, u = field_values(run, "u"), p = field_values(run, "p"),
                             rho = field_values(run, "rho");
-  const auto first_above = [&](double limit) {
-    return x[static_cast<std::size_t>(std::find_if(u.begin(), u.end(), [=](double v) { return v > limit; }) -
-                                      u.begin())];
-  };
   const double top = *std::max_element(u.begin(), u.end());
-  double end = x.front();
-  for (std::size_t i = 0; i < x.size(); ++i)
+  // Where the rarefaction ends and the shock stands.
+  double start = x.back(), end = x.front();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (u[i] > 0.98 * top) start = std::min(start, x[i]);
     if (u[i] > 0.5 * top) end = x[i];
+  }
   // The middle half between two waves is clear of both.
   const auto middle = [&](const std::vector<double>& values, double low, double high) {
     return mean_between(x, values, low + 0.25 * (high - low), high - 0.25 * (high - low));
   };
   plateaus out;
-  const double start = first_above(0.98 * top);
   out.velocity = middle(u, start, end);
   out.pressure = middle(p, start, end);
   const double contact = out.velocity * run.t();

@@ -1,5 +1,8 @@
+#include <apsis/core/errors.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <validation/quantity.hpp>
@@ -44,9 +47,13 @@ double density_behind(const quantity_values& parameters, const end_states& state
   const std::vector<double> x = run.fields().x, u = field_values(run, "u"), rho = field_values(run, "rho");
   const double half = 0.5 * *std::min_element(u.begin(), u.end());
   const auto front = std::find_if(u.begin(), u.end(), [=](double v) { return v < half; }) - u.begin();
-  double sum = 0.0, cells = 0.0;
-  for (auto i = front / 2; i < front * 4 / 5; ++i, cells += 1.0) sum += rho[static_cast<std::size_t>(i)];
-  return sum / cells;
+  const auto first = front / 2, last = front * 4 / 5;
+  if (last - first < 4)
+    throw input_error(
+        "there are fewer than 4 cells behind the shock (it has not left the wall); give more space.cells or "
+        "a later "
+        "time.end");
+  return std::accumulate(rho.begin() + first, rho.begin() + last, 0.0) / static_cast<double>(last - first);
 }
 
 /// The smallest value over the largest one of a flux through a shock at rest.

@@ -118,7 +118,10 @@ std::vector<double> field_values(const simulation& run, const std::string& name)
 }
 
 double mean_of_field(const simulation& run, const std::string& name) {
-  const std::vector<double> values = field_values(run, name);
+  return mean_of_cells(field_values(run, name));
+}
+
+double mean_of_cells(const std::vector<double>& values) {
   const std::size_t n = values.size();
   double sum = 0.0;
   for (std::size_t i = 0; i < n; ++i) {

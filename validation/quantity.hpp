@@ -70,6 +70,10 @@ const std::string& one_of(const quantity_values& parameters, const std::string& 
 /// Δt/ε where that is of order 1 (docs/validation.md).
 double steady_safety(double delta);
 
+/// Returns the mean over the domain of a smooth function from its values at the cell centres, of fourth
+/// order.
+double mean_of_cells(const std::vector<double>& values);
+
 /// Returns the mean of a field in x over the domain from its values at the cell centres, of fourth order.
 /// Throws std::out_of_range for an unknown name.
 double mean_of_field(const simulation& run, const std::string& name);

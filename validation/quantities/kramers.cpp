@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <validation/graded_plates.hpp>
 #include <validation/quantity.hpp>
 
 namespace apsis {
@@ -9,24 +10,16 @@ namespace {
 
 /// Distance of the plates in units of μ v₀/p: the layers change each other by exp(−3 (δ/2)^(2/3)) = 1e-6.
 constexpr double separation = 20.0;
-/// A steady flow depends on x through ∫ dx/ε only. With ε that grows towards the plates the cells there are
-/// thinner in units of μ v₀/p than in the middle, by this factor at the plates themselves.
-constexpr double thinning = 0.02;
-/// Distance of x from the plate at 0 is δ [b x + (1 − b)(3x² − 2x³)], b = thinning · 3/2.
-constexpr double linear_part = 1.5 * thinning;
-
-double distance_at(double x) {
-  return separation * (linear_part * x + (1.0 - linear_part) * x * x * (3.0 - 2.0 * x));
-}
+/// The velocity has the term x log x at a plate.
+constexpr double thinning = 0.03;
 
 std::vector<std::string> deck(const std::string& model) {
-  const std::string place = fmt::format("({0}*x + {1}*(3*x^2 - 2*x^3))", linear_part, 1.0 - linear_part);
+  const graded_plates cells(thinning);
   return {fmt::format("parameters.delta={}", separation),
           "parameters.U=0.003",  // U² is below the accuracy
           "model.name=" + model,
-          fmt::format("model.epsilon=1/(sqrt(2)*delta*({} + {}*x*(1 - x)))", linear_part,
-                      6.0 * (1.0 - linear_part)),
-          fmt::format("initial.u=[0, \"U*(2*{} - 1)*delta/(delta + 2)\"]", place),
+          fmt::format("model.epsilon=1/(sqrt(2)*delta*{})", cells.slope_formula()),
+          fmt::format("initial.u=[0, \"U*(2*{} - 1)*delta/(delta + 2)\"]", cells.place_formula()),
           "space.cells=140",
           "time.steady=1e-8",
           "output.fields=[\"u_y\"]"};
@@ -64,7 +57,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   if (value == "slip") return slip;
   std::vector<double> y = run.fields().x, defect = field_values(run, "u_y");
   for (std::size_t i = 0; i < y.size(); ++i) {
-    y[i] = distance_at(y[i]);
+    y[i] = separation * graded_plates(thinning).place(y[i]);
     defect[i] = y[i] + slip - (1.0 + defect[i] / U) / slope;
   }
   return interpolated(y, defect, distance);

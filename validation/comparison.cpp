@@ -83,6 +83,7 @@ picture quantity_picture(const quantity_entry& quantity, const std::vector<compa
   picture out{
       quantity.name, quantity.name, quantity.description + ". Published: " + quantity.source + ".", {}};
   if (abscissae.size() < 3) return out;
+  shown.log_x = differences.log_x = *abscissae.begin() > 0.0;
   int colour = 0;
   for (const auto& [label, of] : groups) {
     const std::string prefix = label.empty() ? "" : label + ", ";

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <system_error>
 
@@ -25,6 +26,14 @@ std::size_t place_in(const std::vector<std::string>& names, const std::string& n
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) throw std::out_of_range("no '" + name + "' in the run");
   return static_cast<std::size_t>(found - names.begin());
+}
+
+/// Returns the number that is all of a text, NaN if there is none.
+double number_of(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? value
+                                                                  : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -75,22 +84,44 @@ double compute_quantity(const quantity_entry& quantity, const std::vector<std::s
 }
 
 double positive_number(const quantity_values& parameters, const std::string& name) {
-  const std::string& text = parameters.at(name);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0) || std::isinf(value))
-    throw input_error(
-        fmt::format("{} = '{}' is not a number > 0; write for example {}=1", name, text.substr(0, 60), name));
+  const double value = number_of(parameters.at(name));
+  if (!(value > 0.0) || std::isinf(value))
+    throw input_error(fmt::format("{} = '{}' is not a number > 0; write for example {}=1", name,
+                                  parameters.at(name).substr(0, 60), name));
   return value;
+}
+
+double number_between(const quantity_values& parameters, const std::string& name, double low, double high) {
+  const double value = number_of(parameters.at(name));
+  if (!(value >= low && value <= high))
+    throw input_error(fmt::format("{} = '{}' is not a number from {} to {}; write for example {}={}", name,
+                                  parameters.at(name).substr(0, 60), low, high, name, high));
+  return value;
+}
+
+const std::string& one_of(const quantity_values& parameters, const std::string& name,
+                          const std::vector<std::string>& words) {
+  const std::string& text = parameters.at(name);
+  if (std::find(words.begin(), words.end(), text) == words.end())
+    throw input_error(fmt::format("{} = '{}' is unknown (the quantity has no such choice); {}", name,
+                                  text.substr(0, 60), suggest(text, words)));
+  return text;
 }
 
 double steady_safety(double delta) {
   return std::min(1.0, 25.0 / delta);
 }
 
-double mean_of_field(const simulation& run, const std::string& name) {
+std::vector<double> field_values(const simulation& run, const std::string& name) {
   const field_table fields = run.fields();
-  const auto& values = fields.values.at(place_in(fields.names, name));
+  return fields.values.at(place_in(fields.names, name));
+}
+
+double mean_of_field(const simulation& run, const std::string& name) {
+  return mean_of_cells(field_values(run, name));
+}
+
+double mean_of_cells(const std::vector<double>& values) {
   const std::size_t n = values.size();
   double sum = 0.0;
   for (std::size_t i = 0; i < n; ++i) {

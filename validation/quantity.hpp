@@ -59,13 +59,27 @@ struct quantity_interrupted {};
 /// Returns a parameter as a number > 0. Throws input_error for any other text.
 double positive_number(const quantity_values& parameters, const std::string& name);
 
+/// Returns a parameter as a number in [low, high]. Throws input_error for any other text.
+double number_between(const quantity_values& parameters, const std::string& name, double low, double high);
+
+/// Returns a parameter that is one of the words. Throws input_error with the nearest for any other text.
+const std::string& one_of(const quantity_values& parameters, const std::string& name,
+                          const std::vector<std::string>& words);
+
 /// Returns the part of r Δt_FE with which a steady state is accurate to 2e-4 at rarefaction δ: it depends on
 /// Δt/ε where that is of order 1 (docs/validation.md).
 double steady_safety(double delta);
 
+/// Returns the mean over the domain of a smooth function from its values at the cell centres, of fourth
+/// order.
+double mean_of_cells(const std::vector<double>& values);
+
 /// Returns the mean of a field in x over the domain from its values at the cell centres, of fourth order.
 /// Throws std::out_of_range for an unknown name.
 double mean_of_field(const simulation& run, const std::string& name);
+
+/// Returns a field at the cell centres. Throws std::out_of_range for an unknown name.
+std::vector<double> field_values(const simulation& run, const std::string& name);
 
 /// Returns the flux of an invariant through a face of a run in its last step, into the gas. Throws
 /// std::out_of_range for unknown names.

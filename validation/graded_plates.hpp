@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+namespace apsis {
+
+/// Cells between plates at x = 0 and 1 that are thinner at the plates. A steady flow depends on x through s,
+/// ds/dx ∝ 1/ε(x), only, so that uniform cells in x with ε that grows towards the plates are graded cells in
+/// s:
+///     s(x) = b x + (1 − b)(3x² − 2x³),   ε = ε₀/s'(x).
+/// A force per length in s is s'(x) times as large in x.
+class graded_plates {
+ public:
+  /// b: width of the cells at the plates in s over that in x, in (0, 1].
+  explicit graded_plates(double b) : b_(b) {}
+
+  /// Returns s at x.
+  double place(double x) const { return b_ * x + (1.0 - b_) * x * x * (3.0 - 2.0 * x); }
+  /// Returns s' at x.
+  double slope(double x) const { return b_ + 6.0 * (1.0 - b_) * x * (1.0 - x); }
+  /// Returns s as a formula of a case.
+  std::string place_formula() const;
+  /// Returns s' as a formula of a case.
+  std::string slope_formula() const;
+
+ private:
+  double b_;
+};
+
+}  // namespace apsis

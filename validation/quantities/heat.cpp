@@ -1,0 +1,39 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <validation/quantity.hpp>
+
+namespace apsis {
+namespace {
+
+/// The temperatures of the plates are 1 ± this: its square is below the accuracy.
+constexpr double heat = 0.01;
+
+double compute(const quantity_values& parameters, const quantity_run& make) {
+  const double safety = steady_safety(positive_number(parameters, "delta"));
+  const simulation run = make(
+      "gas/fourier", {"parameters.delta=" + parameters.at("delta"), fmt::format("parameters.heat={}", heat),
+                      "model.name=" + parameters.at("model"), fmt::format("time.safety={}", safety)});
+  const double flux = 0.5 * (last_flux(run, "left", "energy") - last_flux(run, "right", "energy"));
+  // Half Maxwellians of both temperatures that carry equal masses: ρ √(2T/π) for each unit of the difference.
+  const double free_molecular = 2.0 * heat * std::sqrt(2.0 / std::numbers::pi);
+  return flux / free_molecular;
+}
+
+}  // namespace
+
+extern const quantity_entry quantity_heat;
+const quantity_entry quantity_heat = {
+    .name = "heat",
+    .description = "heat flux between plates over its free-molecular value, linear, diffuse walls",
+    .source = "linearized BGK equation, the dense solver of tests/validation/linear_plates.hpp",
+    .parameters = {{"delta", "1", "rarefaction p L/(mu v0), v0 = sqrt(2 R T)"},
+                   {"model", "bgk", "bgk, shakhov or es-bgk"}},
+    .published = {{{{"delta", "0.01"}}, 0.992484},
+                  {{{"delta", "0.1"}}, 0.935159},
+                  {{{"delta", "1"}}, 0.640853},
+                  {{{"delta", "10"}}, 0.175788}},
+    .compute = compute};
+
+}  // namespace apsis

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -263,6 +264,22 @@ TEST(walls, a_steady_state_ends_the_run) {
   finish(second);
   EXPECT_EQ(second.step(), run.step());
   EXPECT_EQ(second.state(), run.state());
+}
+
+TEST(walls, a_sliver_before_the_end_has_no_change_of_its_own) {
+  const auto last_change = [](const std::string& end, long steps) {
+    simulation run = run_of({"boundary.left.T=1.2", "time.steady=1e-12", "time.end=" + end});
+    finish(run);
+    EXPECT_EQ(run.summary().steps, steps);
+    return run.last().change;
+  };
+  simulation step = run_of({"boundary.left.T=1.2", "time.end=1e9"});
+  step.advance();
+  const double dt = step.last().dt;
+  const double whole = last_change(fmt::format("{:.17g}", 50.0 * dt), 50),
+               with_sliver = last_change(fmt::format("{:.17g}", 50.0 * dt * (1.0 + 1e-13)), 51);
+  EXPECT_GT(whole, 1e-6);
+  EXPECT_NEAR(with_sliver, whole, 1e-9);  // 3e-2 with the rounding of a step of 1e-13
 }
 
 TEST(walls, fields_of_a_steady_gas_are_the_fluxes_through_its_walls) {

@@ -8,23 +8,6 @@
 namespace apsis {
 namespace {
 
-/// Distance of the plates in units of μ v₀/p: the layers change each other by exp(−3 (δ/2)^(2/3)) = 1e-6.
-constexpr double separation = 20.0;
-/// The velocity has the term x log x at a plate.
-constexpr double thinning = 0.03;
-
-std::vector<std::string> deck(const std::string& model) {
-  const graded_plates cells(thinning);
-  return {fmt::format("parameters.delta={}", separation),
-          "parameters.U=0.003",  // U² is below the accuracy
-          "model.name=" + model,
-          fmt::format("model.epsilon=1/(sqrt(2)*delta*{})", cells.slope_formula()),
-          fmt::format("initial.u=[0, \"U*(2*{} - 1)*delta/(delta + 2)\"]", cells.place_formula()),
-          "space.cells=140",
-          "time.steady=1e-8",
-          "output.fields=[\"u_y\"]"};
-}
-
 /// Values of a smooth function with the term y log y of a layer at y = 0, from its values at y_i.
 double interpolated(const std::vector<double>& y, const std::vector<double>& values, double at) {
   const auto singular = [](double s) { return s > 0.0 ? s * std::log(s) : 0.0; };
@@ -47,8 +30,11 @@ double interpolated(const std::vector<double>& y, const std::vector<double>& val
 double compute(const quantity_values& parameters, const quantity_run& make) {
   const std::string& value = one_of(parameters, "value", {"slip", "layer"});
   const double distance = number_between(parameters, "distance", 0.0, 5.0);
-  const simulation run = make("gas/couette", deck(parameters.at("model")));
-  const double U = run.config().constants.at("U");
+  const simulation run =
+      make("gas/kramers", {"model.name=" + parameters.at("model"), "output.fields=[\"u_y\"]"});
+  const auto& constants = run.config().constants;
+  const double U = constants.at("U"), separation = constants.at("delta");
+  const graded_plates cells(constants.at("thin"));
   // Far from both plates u' = stress/μ with μ = ε, and u = 0 in the middle: the slip is where this line meets
   // the plate. In units of U and μ v₀/p, v₀ = √2, the slope is √2 stress/U.
   const double stress = 0.5 * (last_flux(run, "right", "momentum_y") - last_flux(run, "left", "momentum_y"));
@@ -57,7 +43,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   if (value == "slip") return slip;
   std::vector<double> y = run.fields().x, defect = field_values(run, "u_y");
   for (std::size_t i = 0; i < y.size(); ++i) {
-    y[i] = separation * graded_plates(thinning).place(y[i]);
+    y[i] = separation * cells.place(y[i]);
     defect[i] = y[i] + slip - (1.0 + defect[i] / U) / slope;
   }
   return interpolated(y, defect, distance);
@@ -72,7 +58,8 @@ const quantity_entry quantity_kramers = {
         "viscous slip s, and layer I(x), of u = k [x + s - I(x)] in a sheared gas at a diffuse wall, "
         "x in units of mu v0/p",
     .source =
-        "Loyalka, Phys. Fluids 18 (1975), and Siewert; distances 0.3 and 3: linearized BGK equation, "
+        "Albertoni, Cercignani & Gotusso, Phys. Fluids 6 (1963); Loyalka, Petrellis & Storvick, Phys. Fluids "
+        "18 (1975); distances 0.3 and 3: linearized BGK equation, "
         "the dense solver of tests/validation/linear_plates.hpp",
     .parameters = {{"distance", "1", "from the wall, in units of mu v0/p, at most 5"},
                    {"value", "slip", "slip or layer"},

@@ -47,7 +47,8 @@ std::string summary_text(const simulation& run, run_end end) {
                                     run.last().flux[f * names.size() + k] * units.factor(flux),
                                     units.suffix(flux)));
     }
-    line(faces[f] == "force" ? "given by the force" : fmt::format("flux through {}", faces[f]),
+    line(faces[f] == "force" || faces[f] == "source" ? fmt::format("given by the {}", faces[f])
+                                                     : fmt::format("flux through {}", faces[f]),
          fmt::format("{}", fmt::join(amounts, ", ")));
   }
   if (!std::isnan(run.initial_record().entropy))

@@ -2,6 +2,7 @@
 
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/space_time_formula.hpp>
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
@@ -36,29 +37,13 @@ std::vector<std::string> variables_of(const std::string& kind, const model& equa
   return names;
 }
 
-/// A formula in t and the position, a number where it is constant.
-face_quantity compile(const std::string& text, const source_place& place, const formula_kind& kind) {
-  const auto formula = std::make_shared<const expression>(text, place, kind);
-  if (formula->is_constant()) return formula->evaluate(std::array<double, 4>{});
-  return face_quantity([formula](double t, const position& x) {
-    return formula->evaluate(std::array<double, 4>{t, x[0], x[1], x[2]});
-  });
-}
-
-/// A formula in t, the position and the velocity v_x, v_y, v_z.
-face_quantity compile_of_velocity(const std::string& text, const source_place& place, formula_kind kind,
-                                  int dimensions) {
-  static const std::array<const char*, 3> names = {"v_x", "v_y", "v_z"};
-  const std::size_t of_place = kind.variables.size() - 1, d = static_cast<std::size_t>(dimensions);
-  kind.variables.insert(kind.variables.end(), names.begin(), names.begin() + dimensions);
-  const auto formula = std::make_shared<const expression>(text, place, kind);
-  if (formula->is_constant()) return formula->evaluate(std::array<double, 7>{});
-  return face_quantity([formula, of_place, d](double t, const position& x, const position& v) {
-    std::array<double, 7> values{t};
-    std::copy_n(x.begin(), of_place, values.begin() + 1);
-    std::copy_n(v.begin(), d, values.begin() + 1 + static_cast<std::ptrdiff_t>(of_place));
-    return formula->evaluate(values);
-  });
+/// A formula in t, the position and `velocity` components of the velocity, a number where it is constant.
+face_quantity compile(const std::string& text, const source_place& place, const case_config& config,
+                      const model& equation, int velocity) {
+  const space_time_formula formula(text, place, config.constants, equation.space_dimensions(), velocity);
+  if (formula.is_constant()) return formula.at(0.0, {});
+  return face_quantity(
+      [formula](double t, const position& x, const position& v) { return formula.at(t, x, v); });
 }
 
 /// Whether a variable of a kind of boundary is a function of the velocity.
@@ -72,15 +57,13 @@ bool is_of_velocity(const std::string& kind, const model& equation, const std::s
 
 std::shared_ptr<const boundary> make_face(const case_config& config, const model& equation,
                                           const std::string& side, const face_table& table) {
-  formula_kind kind = formula_of_position(equation.space_dimensions(), false, config.constants);
-  kind.variables.insert(kind.variables.begin(), "t");
   face_quantities values;
   for (const auto& [name, formulas] : table.values)
     for (const auto& formula : formulas) {
       const source_place at = place_of(config, fmt::format("boundary.{}.{}", side, name));
-      values[name].push_back(is_of_velocity(kind_of(config, table), equation, name)
-                                 ? compile_of_velocity(formula, at, kind, equation.velocities().dimensions())
-                                 : compile(formula, at, kind));
+      const bool of_velocity = is_of_velocity(kind_of(config, table), equation, name);
+      values[name].push_back(
+          compile(formula, at, config, equation, of_velocity ? equation.velocities().dimensions() : 0));
     }
   source_place place = place_of(config, "boundary." + side);
   if (place.file.empty())  // not a table of the file

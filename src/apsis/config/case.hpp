@@ -66,6 +66,9 @@ struct case_config {
   struct {
     std::optional<std::vector<std::string>> acceleration;  ///< formulas in t and the position
   } force;
+  /// Table [source], of models with space: variables of the model per unit of time, formulas in t and the
+  /// position.
+  state_formulas source_term;
   /// Table [velocity], of models with a velocity grid.
   struct {
     double max = 0.0;         ///< 0 where the set chooses it

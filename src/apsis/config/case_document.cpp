@@ -173,6 +173,12 @@ std::string schema_text() {
       "      A term of a sum of states; a sum replaces the variables of [initial].\n"
       "  [[initial.region]]: where (condition, \"x < 0.5\") and variables or [[initial.region.part]]\n"
       "      Replaces variables of the state below where the condition holds; the last region is uppermost.\n"
+      "\n[source], of models with space\n"
+      "  rho, u, T, … (number or formula in t and x; a list for a vector)\n"
+      "      Variables of the model per unit of time: rho is the mass that enters with the velocity u and the\n"
+      "      temperature T.\n"
+      "  f (formula in t, x and v_x, v_y, v_z)\n"
+      "      In place of them, of a gas; g and h where degrees_of_freedom exceeds velocity_dimensions.\n"
       "\nModels, and the parameters that [model] takes for them\n";
   for (const model_entry* model : model_entries()) out += describe(*model);
   return out;
@@ -255,6 +261,10 @@ std::string to_toml(const case_config& config) {
   add_initial_table(out, config.prescribed);
   add_face(out, "left", config.faces.left);
   add_face(out, "right", config.faces.right);
+  if (!config.source_term.empty()) {
+    out += "\n[source]\n";
+    add_state(out, config.source_term);
+  }
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <apsis/config/gas_reader.hpp>
 #include <apsis/config/initial_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
+#include <apsis/config/source_reader.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/model/expression.hpp>
 
@@ -40,6 +41,7 @@ class resolver {
     take_parameters();
     take_initial_data();
     read_boundary_values(text_, *checked_model(), config_);
+    read_source_values(text_, *checked_model(), config_);
     check_together();
     choose_parameters();
     return config_;
@@ -60,9 +62,10 @@ class resolver {
   void note_places() {
     for (const auto& [name, place] : text_.tables) config_.places[name] = place;
     for (const auto& [path, raw] : text_.values)
-      config_.places[path] = is_in(path, "initial") || is_in(path, "boundary") || is_in(path, "force")
-                                 ? place_of_formula(raw)
-                                 : raw.place;
+      config_.places[path] =
+          is_in(path, "initial") || is_in(path, "boundary") || is_in(path, "force") || is_in(path, "source")
+              ? place_of_formula(raw)
+              : raw.place;
   }
 
   /// A formula begins after its quotation mark; other text has no columns.
@@ -112,8 +115,8 @@ class resolver {
   }
 
   void check_tables() const {
-    std::vector<std::string> names = {"parameters", "gas",   "model",    "initial", "space",
-                                      "boundary",   "force", "velocity", "time",    "output"};
+    std::vector<std::string> names = {"parameters", "gas",    "model",    "initial", "space", "boundary",
+                                      "force",      "source", "velocity", "time",    "output"};
     for (const auto& [name, place] : text_.tables)
       if (std::find(names.begin(), names.end(), name.substr(0, name.find('.'))) == names.end())
         throw input_error(place, fmt::format("unknown table [{}] (a case has no such table); {}", shown(name),
@@ -143,7 +146,8 @@ class resolver {
     const auto valid = valid_paths();
     for (const auto& [path, raw] : text_.values) {
       if (std::find(valid.begin(), valid.end(), path) != valid.end() || is_in(path, "parameters") ||
-          is_in(path, "initial") || (is_in(path, "boundary") && has_space(*model_)))
+          is_in(path, "initial") ||
+          ((is_in(path, "boundary") || is_in(path, "source")) && has_space(*model_)))
         continue;
       for (const case_key& key : case_schema())
         if (key.path == path)

@@ -77,6 +77,7 @@ nlohmann::ordered_json to_json(const case_config& config) {
   if (!config.constants.empty()) out["parameters"] = config.constants;
   if (!config.faces.left.values.empty()) out["boundary"]["left"].update(to_json(config.faces.left.values));
   if (!config.faces.right.values.empty()) out["boundary"]["right"].update(to_json(config.faces.right.values));
+  if (!config.source_term.empty()) out["source_term"] = to_json(config.source_term);
   if (!config.prescribed.empty()) out["initial"] = to_json(config.prescribed);
   return out;
 }

@@ -3,6 +3,7 @@
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
+#include <apsis/config/source_reader.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/integrate/schedule.hpp>
@@ -78,6 +79,7 @@ void run_setup::build_space() {
     for (const bool upper : {false, true})
       builder_.with_boundary({direction, upper}, sides[static_cast<std::size_t>(direction)][upper ? 1 : 0]);
   if (auto of = make_acceleration(config_, *equation)) builder_.with_force(std::move(*of));
+  if (auto rate = make_source(config_, *equation)) builder_.with_source(std::move(*rate));
   at_key(config_, "space.limiter", [&] {
     if (space.limiter == limiter_choice::positivity) builder_.with_positivity_limiter();
   });
@@ -159,13 +161,14 @@ std::vector<std::string> run_setup::open_faces() const {
     for (const char* name : names[static_cast<std::size_t>(direction)])
       if (!space.periodic(direction)) open.emplace_back(name);
   if (config_.force.acceleration) open.emplace_back("force");
+  if (!config_.source_term.empty()) open.emplace_back("source");
   return open;
 }
 
 std::optional<std::vector<double>> run_setup::entropy_bounds() const {
   std::vector<double> all;
   if (!has_space()) return all;
-  if (config_.force.acceleration) return std::nullopt;
+  if (config_.force.acceleration || !config_.source_term.empty()) return std::nullopt;
   const auto of_faces = builder_.space().entropy_bounds();
   if (!of_faces) return std::nullopt;
   const std::size_t count = equation->invariants().size();

@@ -53,10 +53,11 @@ class run_setup {
   const grid& mesh() const { return builder_.mesh(); }
   /// Whether both ends along a direction are periodic.
   bool periodic(int direction) const { return builder_.space().periodic(direction); }
-  /// Returns the names of the faces that are not periodic, "left", "right", and "force" if there is one.
+  /// Returns the names of the faces that are not periodic, "left", "right", and "force" and "source"
+  /// if there are any.
   std::vector<std::string> open_faces() const;
   /// Returns boundary::entropy_bound() of the open faces, [face][invariant]; nothing if the entropy that one
-  /// of them, or the force, gives is not bounded.
+  /// of them, the force or the source gives is not bounded.
   std::optional<std::vector<double>> entropy_bounds() const;
   /// Returns x of the cell centres; {0} without space.
   std::vector<double> centres() const;

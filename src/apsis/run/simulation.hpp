@@ -51,8 +51,8 @@ class simulation {
   std::vector<std::string> invariants() const;  ///< names in the order of conservation_defect
   /// Returns the dimensions of the densities of the invariants in units of a gas.
   std::vector<dimension> invariant_measures() const;
-  /// Returns the names of the faces that are not periodic and then "force", if there is one, in the order of
-  /// step_record::received.
+  /// Returns the names of the faces that are not periodic, "force" and "source" if there are any, in the
+  /// order of step_record::received.
   std::vector<std::string> open_faces() const;
   double t() const;          ///< time reached
   double dt() const;         ///< length of the next step

@@ -73,8 +73,8 @@ void face_fluxes::complete(const face& where, int pencil, double t,
 }
 
 void face_fluxes::add_gains(const field& u, std::span<const target<field, double>> targets, bool moved,
-                            std::span<const double> of_force) const {
-  if ((!open_ && of_force.empty()) || !moved) return combine_gains(u, targets);
+                            std::span<const double> inside) const {
+  if ((!open_ && inside.empty()) || !moved) return combine_gains(u, targets);
   std::vector<double> rates;
   for (const auto& pair : sides_)
     for (const side& one : pair) {
@@ -84,7 +84,7 @@ void face_fluxes::add_gains(const field& u, std::span<const target<field, double
         for (std::size_t k = 0; k < invariants_; ++k) sum[k] += received[k];
       rates.insert(rates.end(), sum.begin(), sum.end());
     }
-  rates.insert(rates.end(), of_force.begin(), of_force.end());
+  rates.insert(rates.end(), inside.begin(), inside.end());
   for (const auto& to : targets) {
     std::vector<double>& gains = to.acc->gains();
     gains.resize(rates.size());

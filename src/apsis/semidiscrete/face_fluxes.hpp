@@ -34,9 +34,9 @@ class face_fluxes {
   void complete(const face& where, int pencil, double t, std::span<const target<field, double>> targets);
 
   /// acc ← (fresh ? 0 : acc) + α u + β (flux) for the gains of every target; with `moved`, the fluxes are
-  /// those of complete(), else 0. `of_force` is what a force gives, after all faces; empty without force.
+  /// those of complete(), else 0. `inside` is what a force and a source give, after all faces.
   void add_gains(const field& u, std::span<const target<field, double>> targets, bool moved,
-                 std::span<const double> of_force = {}) const;
+                 std::span<const double> inside = {}) const;
 
  private:
   struct side {

@@ -96,6 +96,12 @@ problem_builder& problem_builder::with_force(acceleration of) {
   return *this;
 }
 
+problem_builder& problem_builder::with_source(source_rate rate) {
+  if (!has_space()) throw input_error("a source needs a model with space; leave it out");
+  source_ = std::move(rate);
+  return *this;
+}
+
 /// Collision on the unknowns themselves: point values, or first order, where the quartic would be too much.
 bool problem_builder::pointwise() const {
   return !has_space() || first_order() || unknowns_ == formulation::finite_difference;
@@ -146,6 +152,7 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, complete_discretization(),
                                                         make_collision(space));
   if (force_) problem->set_force(*force_);
+  if (source_) problem->set_source(*source_, unknowns_);
   if (explicit_collision_) problem->treat_collision_explicitly();
   return problem;
 }

@@ -50,6 +50,8 @@ class problem_builder {
   problem_builder& with_epsilon(scale epsilon);
   /// Adds the force −a·∇_v f of an acceleration, on models whose velocities are a lattice.
   problem_builder& with_force(acceleration of);
+  /// Adds a source S(t, x) of rows, on models with space.
+  problem_builder& with_source(source_rate rate);
   /// For methods that treat T and Q explicitly: forward_euler_step() is then that of T + Q/ε.
   problem_builder& with_explicit_collision();
 
@@ -88,6 +90,7 @@ class problem_builder {
   bool limited_ = false, explicit_collision_ = false;
   scale epsilon_;
   std::optional<acceleration> force_;
+  std::optional<source_rate> source_;
 };
 
 }  // namespace apsis

@@ -25,6 +25,11 @@ class semidiscrete_problem {
   /// Adds a force to the transport. Throws input_error as force does.
   void set_force(acceleration of) { transport_.set_force(std::move(of)); }
 
+  /// Adds a source to the transport, of a model with space.
+  void set_source(source_rate rate, formulation unknowns) {
+    transport_.set_source(std::move(rate), unknowns);
+  }
+
   /// For methods that treat T and Q explicitly and preserve what u + Δt (T + Q) preserves: with 1/Δt = 1/Δt_T
   /// + 1/Δt_Q that is a convex combination of forward Euler steps of T and of Q.
   void treat_collision_explicitly() { explicit_collision_ = true; }

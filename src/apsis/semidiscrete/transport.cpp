@@ -286,6 +286,10 @@ void transport::set_force(acceleration of) {
   force_ = std::make_unique<force>(equation_, space_, std::move(of), discretization_);
 }
 
+void transport::set_source(source_rate rate, formulation unknowns) {
+  source_ = std::make_unique<source>(equation_, space_, std::move(rate), unknowns);
+}
+
 double transport::forward_euler_step() const {
   double rate = force_ ? force_->rate() : 0.0;  // 1/0 is the infinity of a model without space
   for (const auto& line : speeds_) rate += *std::max_element(line.per_cell.begin(), line.per_cell.end());
@@ -310,11 +314,18 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   for (int direction = 0; direction + 1 < dimensions; ++direction)
     add_direction(t, u, targets, direction, {});
   // Cells are complete pencil by pencil only where one direction is all there is.
-  const bool alone = dimensions == 1 && !force_;
+  const bool alone = dimensions == 1 && !force_ && !source_;
   const bool done = add_direction(t, u, targets, dimensions - 1, alone ? then : cells_job());
-  if (force_) force_->add(t, u, targets);
-  faces_->add_gains(u, targets, true,
-                    force_ ? std::span<const double>(force_->given()) : std::span<const double>());
+  std::vector<double> given;  // inside the domain
+  if (force_) {
+    force_->add(t, u, targets);
+    given = force_->given();
+  }
+  if (source_) {
+    source_->add(t, targets);
+    given.insert(given.end(), source_->given().begin(), source_->given().end());
+  }
+  faces_->add_gains(u, targets, true, given);
   return done;
 }
 

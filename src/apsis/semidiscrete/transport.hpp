@@ -4,6 +4,7 @@
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/force.hpp>
+#include <apsis/semidiscrete/source.hpp>
 #include <apsis/semidiscrete/sweep.hpp>
 
 #include <memory>
@@ -35,6 +36,8 @@ class transport {
 
   /// Adds a force. Throws input_error as force does.
   void set_force(acceleration of);
+  /// Adds a source.
+  void set_source(source_rate rate, formulation unknowns);
 
   /// Δt_FE = κ / Σ_k (max|v_k|/Δx_k + max|a_k|/Δv): κ = 1/12 with the positivity limiter (Zhang & Shu 2010),
   /// else 1, which for first-order upwind keeps positivity, total variation and entropy. +infinity without
@@ -56,7 +59,8 @@ class transport {
   std::shared_ptr<domain> space_;
   spatial_discretization discretization_;
   std::unique_ptr<face_fluxes> faces_;
-  std::unique_ptr<force> force_;  ///< null without
+  std::unique_ptr<force> force_;    ///< null without
+  std::unique_ptr<source> source_;  ///< null without
   struct line_speeds {
     aligned_vector<double> per_cell;  ///< |v|/Δx per component
     aligned_vector<double> forward;   ///< 1 if v > 0, else 0

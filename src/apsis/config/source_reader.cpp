@@ -1,0 +1,172 @@
+#include <apsis/config/source_reader.hpp>
+
+#include <apsis/config/case_value.hpp>
+#include <apsis/config/space_time_formula.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/model/gas_model.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+namespace {
+
+data_form form_of(const model& equation, const source_place& place) {
+  auto forms = equation.data_forms();
+  if (forms.empty())
+    throw input_error(place,
+                      "a source cannot be used (the model has no variables that prescribe a state); "
+                      "remove the table [source]");
+  return std::move(forms.front());
+}
+
+/// Names of functions of the velocity that a gas takes in place of the variables: f, or g and h.
+std::vector<std::string> functions_of(const model& equation) {
+  const auto* gas = dynamic_cast<const gas_model*>(&equation);
+  if (gas == nullptr) return {};
+  return gas->molecules().reduced() ? std::vector<std::string>{"g", "h"} : std::vector<std::string>{"f"};
+}
+
+bool by_functions(const case_config& config, const model& equation) {
+  const auto names = functions_of(equation);
+  return std::any_of(names.begin(), names.end(),
+                     [&](const auto& name) { return config.source_term.contains(name); });
+}
+
+[[noreturn]] void fail(double t, const position& x, const std::string& why) {
+  throw numerical_error(fmt::format("there is no source at x = {:.6g} ({}); change its formulas", x[0], why),
+                        {-1, t, -1, std::numeric_limits<double>::quiet_NaN()});
+}
+
+space_time_formula compile(const case_config& config, const model& equation, const std::string& name,
+                           std::size_t k, int velocity = 0) {
+  return {config.source_term.at(name)[k], place_of(config, "source." + name), config.constants,
+          equation.space_dimensions(), velocity};
+}
+
+/// A row by functions of the velocity, one for each set of components.
+source_rate rate_by_functions(const case_config& config, const model& equation) {
+  const velocity_set velocities = equation.velocities();
+  std::vector<space_time_formula> formulas;
+  const auto names = functions_of(equation);
+  for (const auto& [name, texts] : config.source_term)
+    if (std::find(names.begin(), names.end(), name) == names.end() || texts.size() != 1)
+      throw input_error(
+          place_of(config, "source." + name),
+          fmt::format("'source.{}' does not go with a function of the velocity (which is one formula "
+                      "for each of: {}); remove one of them",
+                      name, fmt::join(names, ", ")));
+  for (const auto& name : names) {
+    if (!config.source_term.contains(name))
+      throw input_error(place_of(config, "source"),
+                        fmt::format("the table [source] has no '{}' (rows of this gas are {}); add it", name,
+                                    fmt::join(names, ", ")));
+    formulas.push_back(compile(config, equation, name, 0, velocities.dimensions()));
+  }
+  const bool steady =
+      std::all_of(formulas.begin(), formulas.end(), [](const auto& one) { return one.is_steady(); });
+  const auto value = [formulas, velocities, names](double t, const position& x, std::span<double> row) {
+    const auto n = static_cast<std::size_t>(velocities.size());
+    for (std::size_t set = 0; set < formulas.size(); ++set)
+      for (std::size_t j = 0; j < n; ++j) {
+        position v{};
+        for (int k = 0; k < velocities.dimensions(); ++k)
+          v[static_cast<std::size_t>(k)] = velocities.speeds(k)[j];
+        double& one = row[set * n + j];
+        one = formulas[set].at(t, x, v);
+        if (one < 0.0) fail(t, x, fmt::format("{} is {:.6g} at v_x = {:.6g}", names[set], one, v[0]));
+      }
+  };
+  return {value, steady};
+}
+
+/// The formulas of all components of the variables; none for those at their defaults.
+struct compiled {
+  data_form form;
+  std::vector<std::optional<space_time_formula>> formulas;
+  std::vector<double> defaults;
+};
+
+compiled compile_variables(const case_config& config, const model& equation) {
+  const source_place table = place_of(config, "source");
+  compiled all{form_of(equation, table), {}, {}};
+  for (const auto& variable : all.form.variables) {
+    const auto given = config.source_term.find(variable.name);
+    if (given == config.source_term.end() && !variable.value)
+      throw input_error(table, fmt::format("the table [source] has no '{}' (it is the {}); add it",
+                                           variable.name, variable.doc));
+    const std::size_t size = static_cast<std::size_t>(variable.size),
+                      known = given == config.source_term.end() ? 0 : given->second.size();
+    if (known > size)
+      throw input_error(place_of(config, "source." + variable.name),
+                        fmt::format("'source.{}' has {} components (the model has {}); give {}",
+                                    variable.name, known, size, size));
+    for (std::size_t k = 0; k < size; ++k) {
+      all.defaults.push_back(variable.value.value_or(0.0));
+      all.formulas.emplace_back(k < known ? std::optional(compile(config, equation, variable.name, k))
+                                          : std::nullopt);
+    }
+  }
+  return all;
+}
+
+/// A row by the variables of the model. A Maxwellian is `rho` times that of density 1.
+source_rate rate_by_variables(const case_config& config, const model& equation) {
+  const compiled all = compile_variables(config, equation);
+  const auto& names = all.form.variables;
+  const bool scales = names.size() == 3 && names.front().name == "rho" && names.back().name == "T";
+  const bool steady = std::all_of(all.formulas.begin(), all.formulas.end(),
+                                  [](const auto& one) { return !one || one->is_steady(); });
+  const auto value = [all, scales](double t, const position& x, std::span<double> row) {
+    std::vector<double> values = all.defaults;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (all.formulas[k]) values[k] = all.formulas[k]->at(t, x);
+    const double rate = scales ? std::exchange(values.front(), 1.0) : 1.0;
+    if (rate < 0.0) fail(t, x, fmt::format("the rate of density {:.6g} is negative", rate));
+    if (rate == 0.0) return std::fill(row.begin(), row.end(), 0.0);
+    if (const std::string problem = all.form.row(values, row); !problem.empty()) fail(t, x, problem);
+    for (double& one : row) one *= rate;
+  };
+  return {value, steady};
+}
+
+}  // namespace
+
+void read_source_values(const case_text& text, const model& equation, case_config& config) {
+  const std::string head = "source.";
+  for (const auto& [path, raw] : text.values) {
+    if (path.rfind(head, 0) != 0) continue;
+    const std::string name = path.substr(head.size());
+    std::vector<std::string> names;
+    for (const auto& variable : form_of(equation, raw.place).variables) names.push_back(variable.name);
+    for (const auto& function : functions_of(equation)) names.push_back(function);
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw input_error(raw.place, fmt::format("unknown key '{}' (a source has no such variable); {}",
+                                               shown(path), suggest(name, names)));
+    config.source_term[name] = formula_texts(raw, path);
+  }
+}
+
+std::optional<source_rate> make_source(const case_config& config, const model& equation) {
+  if (config.source_term.empty()) return std::nullopt;
+  source_rate rate = by_functions(config, equation) ? rate_by_functions(config, equation)
+                                                    : rate_by_variables(config, equation);
+  std::vector<double> row(static_cast<std::size_t>(equation.components()));
+  const grid mesh = make_mesh(config);
+  for (int cell = 0; cell < mesh.size(); ++cell) try {
+      rate.value(0.0, mesh.centre(cell), row);
+    } catch (const numerical_error& failure) {
+      throw input_error(place_of(config, "source"), failure.problem());
+    }
+  return rate;
+}
+
+}  // namespace apsis

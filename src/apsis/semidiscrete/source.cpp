@@ -1,0 +1,71 @@
+#include <apsis/semidiscrete/source.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/scheme/quartic.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis {
+
+source::source(const model& equation, std::shared_ptr<domain> space, source_rate rate, formulation unknowns)
+    : equation_(equation),
+      space_(std::move(space)),
+      rate_(std::move(rate)),
+      averages_(unknowns == formulation::finite_volume),
+      values_(space_->mesh().size(), equation.components()) {}
+
+void source::compute_cell(double t, int cell, std::vector<double>& row) {
+  const grid& mesh = space_->mesh();
+  double* sum = values_.row(cell);
+  std::fill_n(sum, values_.components(), 0.0);
+  const auto points = averages_ ? std::size_t{gauss3::points} : std::size_t{1};
+  for (std::size_t q = 0; q < points; ++q) {
+    position x = mesh.centre(cell);
+    if (averages_) x[0] += gauss3::xi[q] * mesh.spacing(0);
+    rate_.value(t, x, row);
+    const double weight = averages_ ? gauss3::weight[q] : 1.0;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      if (!std::isfinite(row[k]) || (row[k] < 0.0 && equation_.positive()))
+        throw numerical_error(
+            fmt::format("the source is {:g} at x = {:.6g} (it must be finite{}); change its formulas", row[k],
+                        x[0], equation_.positive() ? " and not negative" : ""),
+            {-1, t, cell, row[k]});
+      sum[k] += weight * row[k];
+    }
+  }
+}
+
+void source::compute(double t) {
+  constexpr int block = 8;
+  parallel_blocks(values_.cells(), block, [&](int begin, int end) {
+    std::vector<double> row(static_cast<std::size_t>(values_.components()));
+    for (int cell = begin; cell < end; ++cell) compute_cell(t, cell, row);
+  });
+  given_.assign(equation_.invariants().size(), 0.0);
+  std::vector<double> densities(given_.size());
+  for (int cell = 0; cell < values_.cells(); ++cell) {
+    equation_.invariant_densities(values_.row(cell), densities.data());
+    for (std::size_t k = 0; k < given_.size(); ++k) given_[k] += space_->mesh().cell_volume() * densities[k];
+  }
+  known_ = rate_.steady;
+}
+
+void source::add(double t, std::span<const target<field, double>> targets) {
+  if (!known_) compute(t);
+  constexpr int block = 64;
+  parallel_blocks(values_.cells(), block, [&](int begin, int end) {
+    for (const auto& to : targets)
+      for (int cell = begin; cell < end; ++cell) {
+        const double* s = values_.row(cell);
+        double* acc = to.acc->row(cell);
+        for (int k = 0; k < values_.components(); ++k) acc[k] += to.beta * s[k];
+      }
+  });
+}
+
+}  // namespace apsis

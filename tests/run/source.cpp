@@ -1,0 +1,201 @@
+// Sources: balances, order in time and space, limits, refusals.
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using apsis::simulation;
+using testing::HasSubstr;
+
+const std::string gas = R"toml(
+[model]
+name = "bgk"
+degrees_of_freedom = 3
+epsilon = 0.1
+[initial]
+rho = 1
+T = 1
+[space]
+cells = 12
+limiter = "positivity"
+[velocity]
+max = 8
+points = 24
+[time]
+method = "md-imex-6-3"
+safety = 1
+end = 0.5
+)toml";
+
+simulation run_of(const std::string& more, const std::vector<std::string>& overrides = {}) {
+  return simulation(apsis::parse_case(gas + more, "source.toml", overrides));
+}
+
+void finish(simulation& run) {
+  while (!run.finished()) run.advance();
+}
+
+double received(const simulation& run, const std::string& from, const std::string& invariant) {
+  const auto names = run.invariants(), faces = run.open_faces();
+  const auto k = std::find(names.begin(), names.end(), invariant) - names.begin(),
+             f = std::find(faces.begin(), faces.end(), from) - faces.begin();
+  return run.last().received[static_cast<std::size_t>(f) * names.size() + static_cast<std::size_t>(k)];
+}
+
+std::string error_of(const std::string& more) {
+  try {
+    run_of(more);
+  } catch (const apsis::input_error& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(source, gives_its_mass_momentum_and_energy) {
+  for (const char* formulation : {"finite-volume", "finite-difference"}) {
+    simulation run = run_of("[source]\nrho = \"1 + sin(2*pi*x)\"\nu = 0.4\nT = 1.5\n",
+                            {std::string("space.formulation=") + formulation});
+    EXPECT_TRUE(run.promises().positivity);
+    EXPECT_FALSE(run.promises().entropy);
+    finish(run);
+    EXPECT_LT(run.summary().conservation_defect, 1e-14);
+    // Of a rate that is constant in time; sines have no sum over equidistant cells.
+    EXPECT_NEAR(received(run, "source", "mass"), 0.5, 1e-14);
+    EXPECT_NEAR(received(run, "source", "momentum"), 0.5 * 0.4, 1e-14);
+    EXPECT_NEAR(received(run, "source", "energy"), 0.5 * 0.5 * (0.16 + 3.0 * 1.5), 1e-14);
+  }
+}
+
+TEST(source, closes_the_balance_with_a_force_and_heated_walls) {
+  simulation run = run_of(
+      "[source]\nrho = \"x > 0.5 ? 0.5*t : 0\"\nT = 1\n[force]\nacceleration = \"0.3*cos(5*t)\"\n"
+      "[boundary.left]\nkind = \"diffuse\"\nT = \"1 + 0.2*sin(9*t)\"\n[boundary.right]\nkind = "
+      "\"diffuse\"\n");
+  finish(run);
+  EXPECT_EQ(run.open_faces(), (std::vector<std::string>{"left", "right", "force", "source"}));
+  EXPECT_LT(run.summary().conservation_defect, 1e-13);
+  EXPECT_GT(received(run, "source", "mass"), 0.03);
+  EXPECT_GT(std::abs(received(run, "force", "momentum")), 0.01);
+  EXPECT_EQ(run.summary().negative_values, 0);
+}
+
+TEST(source, has_the_order_of_the_method_in_time) {
+  // The mass of the gas is the integral of the source, by the quadrature of the stages.
+  const auto error = [](int steps) {
+    simulation run = run_of("[source]\nrho = \"(1 - exp(-4*t))^2\"\nT = 1\n",
+                            {fmt::format("time.dt={:.17g}", 0.5 / steps), "space.limiter=none"});
+    finish(run);
+    const double exact = 0.5 - (1.0 - std::exp(-2.0)) / 2.0 + (1.0 - std::exp(-4.0)) / 8.0;
+    return std::abs(received(run, "source", "mass") - exact);
+  };
+  // The next term changes the slope by a tenth at these steps.
+  EXPECT_NEAR(std::log2(error(40) / error(80)), 3.0, 0.15);
+}
+
+TEST(source, has_its_limit_solution_with_third_order) {
+  // As ε → 0 a gas at rest stays so if its pressure is uniform: with the rate s = 1 + sin(2πx)/2 at the
+  // temperature 1/s the pressure is 1 + t, and the density 1 + 0.3 cos(2πx) + ts.
+  const std::string more = "[source]\nrho = \"1 + sin(2*pi*x)/2\"\nT = \"1/(1 + sin(2*pi*x)/2)\"\n";
+  const auto error = [&](int cells) {
+    simulation run =
+        run_of(more, {"model.epsilon=1e-9", "initial.rho=\"1 + 0.3*cos(2*pi*x)\"",
+                      "initial.T=\"1/(1 + 0.3*cos(2*pi*x))\"", fmt::format("space.cells={}", cells),
+                      "velocity.max=9", "velocity.points=30", "space.formulation=finite-difference"});
+    finish(run);
+    const auto fields = run.fields();
+    double sum = 0.0;
+    for (int i = 0; i < cells; ++i) {
+      const double phase = 2.0 * std::numbers::pi * (i + 0.5) / cells,
+                   exact = 1.0 + 0.3 * std::cos(phase) + 0.5 * (1.0 + 0.5 * std::sin(phase));
+      sum += std::abs(fields.values.front()[static_cast<std::size_t>(i)] - exact) / cells;
+    }
+    return sum;
+  };
+  const double coarse = error(16), fine = error(32);
+  EXPECT_LT(fine, 2e-4);
+  EXPECT_GT(std::log2(coarse / fine), 2.8);
+}
+
+TEST(source, flows_out_at_its_rate_in_the_steady_state) {
+  simulation run = run_of(
+      "[source]\nrho = 0.3\nT = 1\n[boundary.left]\nkind = \"inflow\"\nrho = 1e-9\nT = 1\n"
+      "[boundary.right]\nkind = \"inflow\"\nrho = 1e-9\nT = 1\n",
+      {"model.epsilon=1e12", "time.end=300", "time.steady=1e-7"});
+  finish(run);
+  const auto& flux = run.last().flux;  // [face][invariant] of three invariants
+  EXPECT_NEAR(flux[0] + flux[3], -0.3, 1e-6);
+  EXPECT_NEAR(flux[0], flux[3], 1e-7);
+  EXPECT_NEAR(flux[6], 0.3, 1e-14);
+}
+
+TEST(source, is_a_function_of_the_velocity) {
+  // By the formula of a Maxwellian in g and h it is the source of its moments, up to the mass beyond the
+  // grid.
+  simulation f = run_of(
+                 "[source]\ng = \"(1 + t)*exp(-(v_x - 0.3)^2/2)/sqrt(2*pi)\"\nh = \"2*(1 + t)*exp(-(v_x - "
+                 "0.3)^2/2)/sqrt(2*pi)\"\n"),
+             moments = run_of("[source]\nrho = \"1 + t\"\nu = 0.3\nT = 1\n");
+  finish(f);
+  finish(moments);
+  for (const char* invariant : {"mass", "momentum", "energy"})
+    EXPECT_NEAR(received(f, "source", invariant), received(moments, "source", invariant), 1e-11) << invariant;
+  EXPECT_THAT(error_of("[source]\ng = \"exp(-v_x^2) - 0.1\"\nh = 1\n"),
+              HasSubstr("(g is -0.1 at v_x = -7.66667)"));
+  EXPECT_THAT(error_of("[source]\ng = 1\n"),
+              HasSubstr("the table [source] has no 'h' (rows of this gas are g, h); add it"));
+  EXPECT_THAT(error_of("[source]\ng = 1\nh = 1\nT = 1\n"),
+              HasSubstr("'source.T' does not go with a function of the velocity"));
+}
+
+TEST(source, that_is_none_is_refused) {
+  EXPECT_THAT(error_of("[source]\nrho = 1\n"),
+              HasSubstr("the table [source] has no 'T' (it is the temperature"));
+  EXPECT_THAT(
+      error_of("[source]\nrho = \"x - 0.5\"\nT = 1\n"),
+      HasSubstr("source.toml:19:1: there is no source at x = 0.0416667 (the rate of density -0.458333 is "
+                "negative); change its formulas"));
+  EXPECT_THAT(error_of("[source]\nrho = 1\nT = \"x - 0.5\"\n"),
+              HasSubstr("temperature -0.458333 is not positive"));
+  EXPECT_THAT(error_of("[source]\nrate = 1\nT = 1\n"),
+              HasSubstr("unknown key 'source.rate' (a source has no such variable); valid: rho, u, T, g, h"));
+  EXPECT_THAT(error_of("[source]\nrho = \"q*x\"\nT = 1\n"), HasSubstr("source.toml:20:8: expression 'q*x'"));
+  EXPECT_THAT(error_of("[source]\nrho = 1\nu = [0, 1]\nT = 1\n"),
+              HasSubstr("'source.u' has 2 components (the model has 1); give 1"));
+  // At a later time only the run can know.
+  simulation run = run_of("[source]\nrho = \"0.01 - t\"\nT = 1\n");
+  EXPECT_THROW(finish(run), apsis::numerical_error);
+}
+
+TEST(source, of_a_conservation_law_is_that_of_its_variables) {
+  simulation run(apsis::parse_case(R"toml(
+[model]
+name = "relaxation"
+[initial]
+u1 = 1
+[source]
+u1 = "1 + x"
+[space]
+cells = 20
+[time]
+method = "md-imex-3-2"
+safety = 0.5
+end = 0.4
+)toml",
+                                   "law.toml"));
+  finish(run);
+  EXPECT_NEAR(run.last().total[0], 1.0 + 0.4 * 1.5, 1e-13);
+  EXPECT_LT(run.summary().conservation_defect, 1e-12);
+}

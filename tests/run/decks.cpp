@@ -1,0 +1,95 @@
+// The figures that built-in cases name as those to trust, on smaller meshes, against independent formulas.
+#include <apsis/config/case.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using apsis::simulation;
+constexpr double pi = std::numbers::pi;
+
+simulation run_of(const std::string& name, const std::vector<std::string>& overrides) {
+  return simulation(apsis::load_case(name, overrides));
+}
+
+void finish(simulation& run) {
+  while (!run.finished()) run.advance();
+}
+
+/// Mean of the density in the cells between two points.
+double mean_density(const simulation& run, double from, double to) {
+  const auto fields = run.fields();
+  double sum = 0.0, cells = 0.0;
+  for (std::size_t i = 0; i < fields.x.size(); ++i)
+    if (fields.x[i] > from && fields.x[i] < to) {
+      sum += fields.values.front()[i];
+      cells += 1.0;
+    }
+  return sum / cells;
+}
+
+/// Complex amplitude of the stress on the oscillating plate over U in the last period of two.
+std::complex<double> stress_on_plate(const std::string& kn) {
+  simulation run = run_of("gas/oscillating-wall", {"parameters.kn=" + kn, "space.cells=30",
+                                                   "velocity.points=[16, 10]", "velocity.max=6"});
+  const double U = run.config().constants.at("U");
+  std::complex<double> sum = 0.0;
+  while (!run.finished()) {
+    run.advance();
+    const auto& last = run.last();
+    if (last.t - last.dt < 2.0 * pi * 0.9999999) continue;
+    const double stress = last.flux[2];  // mass, momentum_x, momentum_y through the left face
+    sum += stress * std::exp(std::complex<double>(0.0, -(last.t - 0.5 * last.dt))) * last.dt;
+  }
+  return sum / (pi * U);
+}
+
+}  // namespace
+
+TEST(decks, oscillating_wall_has_the_stress_of_stokes_with_slip) {
+  const std::complex<double> i(0.0, 1.0);
+  const double epsilon = 0.01, slip = 1.0162 * std::numbers::sqrt2 * epsilon;
+  const auto exact = std::sqrt(i * epsilon) / (1.0 + slip * std::sqrt(i / epsilon));
+  const auto found = stress_on_plate("0.01");
+  // The slip is that of a steady shear: its error is of the order epsilon ω; cells resolve the layer with
+  // four.
+  EXPECT_NEAR(std::abs(found), std::abs(exact), 0.02 * std::abs(exact));
+  EXPECT_NEAR(std::arg(found), std::arg(exact), 0.03);
+}
+
+TEST(decks, oscillating_wall_has_the_stress_of_free_molecules) {
+  const auto found = stress_on_plate("100");
+  // Sixteen velocities have 1/√(2π) to a percent; a hundredth of a collision.
+  EXPECT_NEAR(std::abs(found), 1.0 / std::sqrt(2.0 * pi), 0.01);
+  EXPECT_NEAR(std::arg(found), 0.0, 0.02);
+}
+
+TEST(decks, evaporation_has_the_pressure_drop_of_the_knudsen_layers) {
+  simulation run = run_of("gas/evaporation", {"parameters.kn=0.02", "space.cells=30", "time.steady=1e-6"});
+  finish(run);
+  const double h = run.config().constants.at("h"), mass = run.last().flux[0];
+  // Sone (2007): p falls by 2.13204 u/√(2RT) in each layer; the layers take a few percent of the gap.
+  EXPECT_NEAR(mass / h, std::numbers::sqrt2 / 2.13204, 0.01);
+  EXPECT_NEAR(run.last().flux[3], -mass, 1e-3 * mass);
+}
+
+TEST(decks, beams_have_the_density_of_two_shocks_or_of_both_beams) {
+  simulation dense = run_of("gas/beams", {"space.cells=100", "time.end=0.4"});
+  finish(dense);
+  // The piston of speed 2 in a gas of γ = 5/3: M = s + √(s² + 1) with s = (γ + 1)/4 · 2/a.
+  const double s = 2.0 / 3.0 * 2.0 / std::sqrt(5.0 / 3.0), mach = s + std::sqrt(s * s + 1.0),
+               ratio = 4.0 * mach * mach / (mach * mach + 3.0);
+  EXPECT_NEAR(mean_density(dense, 0.1, 0.25), ratio, 0.01 * ratio);
+  simulation free = run_of("gas/beams", {"space.cells=40", "time.end=0.2", "parameters.kn=1e12"});
+  finish(free);
+  const double both = 1.0 + std::erf(2.0 / std::numbers::sqrt2);
+  EXPECT_NEAR(mean_density(free, -0.05, 0.05), both, 5e-3 * both);
+}

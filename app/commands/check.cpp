@@ -13,6 +13,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,10 +21,23 @@
 namespace apsis::app {
 namespace {
 
+/// A case in place of a method is worth a message of its own.
+void refuse_case(const std::string& text, const std::string& path) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number)
+    if (line.rfind("[model]", 0) == 0)
+      throw input_error(
+          {path, number, 1},
+          "a case is no method (it has a table [model]); apsis run checks a case before its first step");
+}
+
 // Parses without certifying: a method whose claims fail is reported, not rejected. A modified copy of a
 // catalogue file may retain its name here; a run rejects it.
 method read_method(const std::string& path) {
-  method m = parse_method(read_method_text(path), path);
+  const std::string text = read_method_text(path);
+  refuse_case(text, path);
+  method m = parse_method(text, path);
   if (const auto problem = taken_name(m); !problem.empty()) log::warning(path + ": " + problem);
   return m;
 }

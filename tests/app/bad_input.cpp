@@ -155,7 +155,7 @@ const std::vector<bad_input> all = {
      "its header is missing or damaged"},
     {"wrong_claim", {"check", "wrong_claim.toml"}, 5, "do not hold"},
     {"wrong_claim_json", {"check", "wrong_claim.toml", "--json"}, 5, "do not hold"},
-    {"case_as_method", {"check", "good.toml"}, 2, "good.toml:"},
+    {"case_as_method", {"check", "good.toml"}, 2, ": a case is no method (it has a table [model])"},
     {"truncated_method", {"check", "truncated_method.toml"}, 2, "truncated_method.toml:"},
     {"garbage_method", {"check", "garbage.toml"}, 2, "garbage.toml"},
     {"empty_method", {"check", "empty.toml"}, 2, "empty.toml"},

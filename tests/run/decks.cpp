@@ -2,6 +2,7 @@
 #include <apsis/config/case.hpp>
 #include <apsis/run/simulation.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -92,4 +93,25 @@ TEST(decks, beams_have_the_density_of_two_shocks_or_of_both_beams) {
   finish(free);
   const double both = 1.0 + std::erf(2.0 / std::numbers::sqrt2);
   EXPECT_NEAR(mean_density(free, -0.05, 0.05), both, 5e-3 * both);
+}
+
+TEST(decks, shock_has_the_slope_of_beckers_solution_as_the_mach_number_tends_to_1) {
+  // Navier–Stokes equations with Pr = 3/4 and constant viscosity μ = ε = 1 conserve h + u²/2 along a shock,
+  // and (4/3) μ u u' = m (γ + 1)/(2γ) (u − u₁)(u − u₂) (Becker, Z. Phys. 8, 1922). It is steepest at √(u₁u₂).
+  const double M = 1.2, gamma = 5.0 / 3.0, before = M * std::sqrt(gamma),
+               behind = before * (M * M + 3.0) / (4.0 * M * M), middle = std::sqrt(before * behind),
+               exact = before * (gamma + 1.0) / (2.0 * gamma) * (before - middle) * (middle - behind) /
+                       (4.0 / 3.0 * middle);
+  simulation run =
+      run_of("gas/shock", {"parameters.M=1.2", "model.name=es-bgk", "model.prandtl=0.75",
+                           "model.viscosity_exponent=0", "space.domain=[-60, 60]", "space.cells=100",
+                           "velocity.max=8", "velocity.points=28", "time.end=2000", "time.steady=2e-6"});
+  finish(run);
+  const auto fields = run.fields();
+  double steepest = 0.0;
+  for (std::size_t i = 0; i + 1 < fields.x.size(); ++i)
+    steepest =
+        std::max(steepest, (fields.values[1][i] - fields.values[1][i + 1]) / (fields.x[i + 1] - fields.x[i]));
+  // Burnett terms are of the size (M − 1)².
+  EXPECT_NEAR(steepest, exact, 0.02 * exact);
 }

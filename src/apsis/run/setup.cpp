@@ -1,6 +1,7 @@
 #include <apsis/run/setup.hpp>
 
 #include <apsis/config/boundary_reader.hpp>
+#include <apsis/config/boundary_support.hpp>
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/config/source_reader.hpp>
@@ -210,6 +211,8 @@ field run_setup::initial_state() const {
     refuse(config_, "initial.from",
            "the case has no initial data (they were given in Python); run it with apsis.run(case, "
            "initial=...), or continue from a checkpoint");
+  if (const std::string problem = unsupported_boundary(config_, *equation); !problem.empty())
+    log::warning(problem);
   if (config_.prescribed.file.empty()) return checked(builder_.sample(data().point_value, data().jumps));
   state_of_file read = sample_initial_file(config_, *equation, builder_);
   return checked(std::move(read.state), read.from_result);

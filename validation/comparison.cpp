@@ -84,16 +84,19 @@ picture quantity_picture(const quantity_entry& quantity, const std::vector<compa
       quantity.name, quantity.name, quantity.description + ". Published: " + quantity.source + ".", {}};
   if (abscissae.size() < 3) return out;
   shown.log_x = differences.log_x = *abscissae.begin() > 0.0;
+  // Several groups have names of their own; lines are computed values then, open markers published ones.
+  const bool alone = groups.size() == 1;
   int colour = 0;
   for (const auto& [label, of] : groups) {
-    const std::string prefix = label.empty() ? "" : label + ", ";
-    shown.curves.push_back({prefix + "computed", of.x, of.computed, curve_style::line, colour});
-    shown.curves.push_back({prefix + "published", of.x, of.published, curve_style::markers, colour});
+    const std::string name = label.empty() ? "default" : label;
+    shown.curves.push_back({alone ? "computed" : name, of.x, of.computed, curve_style::line, colour});
+    shown.curves.push_back({alone ? "published" : "", of.x, of.published, curve_style::markers, colour});
     differences.curves.push_back(
-        {prefix + "difference", of.x, of.difference, curve_style::line_and_markers, colour});
-    differences.curves.push_back({prefix + "tolerance", of.x, of.tolerance, curve_style::dashed, colour});
+        {alone ? "difference" : name, of.x, of.difference, curve_style::line_and_markers, colour});
+    differences.curves.push_back({alone ? "tolerance" : "", of.x, of.tolerance, curve_style::dashed, colour});
     ++colour;
   }
+  if (!alone) out.caption += " Lines: computed; open markers: published; dashed: tolerance.";
   out.panels = {shown, differences};
   return out;
 }

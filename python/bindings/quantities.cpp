@@ -17,10 +17,10 @@ shared_callback::shared_callback(py::function function, std::string name)
 
 double shared_callback::at(double t, const position& x, int dimensions) const {
   const py::gil_scoped_acquire python;
-  py::tuple arguments(static_cast<std::size_t>(1 + dimensions));
+  const py::tuple arguments(static_cast<std::size_t>(1 + dimensions));
   arguments[0] = t;
   for (int k = 0; k < dimensions; ++k)
-    arguments[static_cast<std::size_t>(k + 1)] = x[static_cast<std::size_t>(k)];
+    arguments[static_cast<std::size_t>(k) + 1] = x[static_cast<std::size_t>(k)];
   const double value = held_->number((*held_)(*arguments));
   if (!std::isfinite(value))
     throw input_error(fmt::format("{} returned {} at t = {:.10g} (a finite number is needed); return one",

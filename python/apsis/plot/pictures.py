@@ -132,10 +132,12 @@ def finish(axes: Any, panel: Document, y_label: str) -> None:
     axes.set_xlabel(panel["x_label"])
     axes.set_ylabel(y_label)
     axes.set_title(panel["title"], fontsize=10)
-    if any(curve["label"] for curve in panel["curves"]):
-        # Triangles and curves leave no corner empty in every study, so that the legend goes below the panel.
-        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2)} if with_slopes and panel["slopes"] else {}
-        axes.legend(fontsize=7, ncols=2 if len(panel["curves"]) > 6 else 1, handlelength=3, **below)
+    labels = sum(bool(curve["label"]) for curve in panel["curves"])
+    if labels:
+        # Triangles and curves leave no corner empty in every study, and a long legend none at all: it goes below the panel.
+        crowded = (with_slopes and panel["slopes"]) or labels > 6
+        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2)} if crowded else {}
+        axes.legend(fontsize=7, ncols=2 if labels > 6 else 1, handlelength=3, **below)
 
 
 def draw(picture: Document) -> Any:

@@ -203,13 +203,13 @@ std::vector<case_key> model_keys() {
 
 /// A quantity of the table [gas].
 template <class At>
-case_key gas_quantity(std::string path, At at, dimension measure, std::string doc) {
+case_key gas_quantity(std::string path, At at, dimension measure, const std::string& doc) {
   return key(std::move(path), at,
              {.type = key_type::quantity,
               .scope = key_scope::velocity,
               .unit = unit_of(measure),
               .measure = measure,
-              .doc = std::move(doc)});
+              .doc = doc});
 }
 
 std::vector<case_key> gas_keys() {

@@ -113,7 +113,7 @@ void gas::moments(const double* row, std::ptrdiff_t pitch, int rows, double* ome
     const int some = std::min(most_line_states, rows - first);
     kinetic_moments(grid_, row + first * pitch + grid_.size(), pitch, some, of_h.data());
     for (int p = 0; p < some; ++p)
-      omega[(first + p) * (d + 2) + d + 1] += 0.5 * of_h[static_cast<std::size_t>(p * (d + 2))];
+      omega[(first + p) * (d + 2) + d + 1] += 0.5 * of_h[static_cast<std::size_t>(p) * static_cast<std::size_t>(d + 2)];
   }
 }
 
@@ -130,7 +130,7 @@ double gas::moments_of_g(const double* omega, double* of_g) const {
   const int d = dimensions();
   const fluid_state s = state(omega);
   double square = 0.0, least = 0.0, greatest = 0.0;
-  for (int k = 0; k <= d; ++k) of_g[k] = omega[k];
+  std::copy_n(omega, d + 1, of_g);
   for (int k = 0; k < d; ++k) {
     square += s.u[k] * s.u[k];
     const auto [nearest, farthest] = variances_at(grid_.line(k), s.u[k]);

@@ -94,7 +94,8 @@ void face_fluxes::add_gains(const field& u, std::span<const target<field, double
 }
 
 void combine_gains(const field& u, std::span<const target<field, double>> targets) {
-  const std::vector<double> of_u = u.gains();  // an accumulator may be u itself
+  // A copy: an accumulator may be u itself.
+  const std::vector<double> of_u = u.gains();  // NOLINT(performance-unnecessary-copy-initialization)
   for (const auto& to : targets) {
     std::vector<double>& gains = to.acc->gains();
     if (to.fresh) gains.clear();

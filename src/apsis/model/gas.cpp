@@ -113,7 +113,8 @@ void gas::moments(const double* row, std::ptrdiff_t pitch, int rows, double* ome
     const int some = std::min(most_line_states, rows - first);
     kinetic_moments(grid_, row + first * pitch + grid_.size(), pitch, some, of_h.data());
     for (int p = 0; p < some; ++p)
-      omega[(first + p) * (d + 2) + d + 1] += 0.5 * of_h[static_cast<std::size_t>(p) * static_cast<std::size_t>(d + 2)];
+      omega[(first + p) * (d + 2) + d + 1] +=
+          0.5 * of_h[static_cast<std::size_t>(p) * static_cast<std::size_t>(d + 2)];
   }
 }
 

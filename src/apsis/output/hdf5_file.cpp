@@ -162,6 +162,10 @@ bool hdf5_file::has(const std::string& name) const {
   return H5Lexists(id_, name.c_str(), H5P_DEFAULT) > 0;
 }
 
+bool hdf5_file::has_attribute(const std::string& name) const {
+  return H5Aexists(id_, name.c_str()) > 0;
+}
+
 hdf5_file::shape hdf5_file::extents(const std::string& name) const {
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!data.good())
@@ -200,7 +204,7 @@ std::string hdf5_file::units(const std::string& name) const {
   }
   // As other programs write text, of any length.
   char* found = nullptr;
-  if (H5Aread(attribute, type, &found) < 0 || found == nullptr)
+  if (H5Aread(attribute, type, static_cast<void*>(&found)) < 0 || found == nullptr)
     fail(fmt::format("the attribute 'units' of '{}' cannot be read (damaged file); give another file", name));
   std::string text = found;
   H5free_memory(found);

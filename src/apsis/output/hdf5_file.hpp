@@ -44,6 +44,8 @@ class hdf5_file {
 
   /// Whether a dataset or group of this name exists.
   bool has(const std::string& name) const;
+  /// Whether the file has an attribute of this name.
+  bool has_attribute(const std::string& name) const;
   /// Returns the extents of a dataset; empty for a scalar.
   shape extents(const std::string& name) const;
   /// Returns the storage type of a dataset.

@@ -26,7 +26,10 @@ void add_squares(const grid& mesh, int direction, bool periodic, const std::vect
   const int n = mesh.cells(direction), stride = mesh.stride(direction);
   for (int pencil = 0; pencil < mesh.pencils(direction); ++pencil) {
     const int first = mesh.first_cell(direction, pencil);
-    const auto at = [&](int k) { return static_cast<std::size_t>(first + k * stride); };
+    const auto at = [&](int k) {
+      const int cell = first + k * stride;
+      return static_cast<std::size_t>(cell);
+    };
     for (int k = 0; k < n; ++k) {
       const int below = k > 0 ? k - 1 : (periodic ? n - 1 : 0);
       const int above = k < n - 1 ? k + 1 : (periodic ? 0 : n - 1);

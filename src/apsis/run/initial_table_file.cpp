@@ -133,12 +133,7 @@ void initial_table_file::read_csv() {
 
 void initial_table_file::read_hdf5() {
   const hdf5_file file = hdf5_file::open(path_);
-  std::string manifest;
-  try {
-    manifest = file.read_text_attribute("manifest");
-  } catch (const io_error&) {  // not a result
-  }
-  if (!manifest.empty()) take_manifest(manifest);
+  if (file.has_attribute("manifest")) take_manifest(file.read_text_attribute("manifest"));
   if (config_.prescribed.time && manifest_.is_null())
     refuse("it has no times (it is not a result); remove initial.time");
   read_fields(file);

@@ -36,10 +36,10 @@ struct column_writer {
   void operator()(const char* name, const std::vector<double>&) const {
     const std::string head = name;
     if (head == "conservation" || head == "total") return add(head);
-    for (const auto& face : faces) add(head + "_" + face);
+    for (const auto& face : faces) add(fmt::format("{}_{}", head, face));
   }
   void add(const std::string& head) const {
-    for (const auto& invariant : invariants) columns.push_back(head + "_" + invariant);
+    for (const auto& invariant : invariants) columns.push_back(fmt::format("{}_{}", head, invariant));
   }
 };
 

@@ -177,9 +177,9 @@ TEST(gas, units_become_dimensionless_numbers) {
   expect(number(c.prescribed.state.at("rho").front()), 4.82e20 * 1.380649e-23 * 300.0 / 10.0);
   expect(number(c.prescribed.state.at("T").front()), 300.15 / 300.0);
   EXPECT_EQ(c.prescribed.state.at("u").back(), "U");
-  expect(number(c.faces.left.values.at("T").front()), 350.0 / 300.0);
-  expect(number(c.faces.left.values.at("velocity").back()), 20.0 / speed);
-  EXPECT_EQ(c.faces.right.values.at("T").front(), "1 + 0.1*sin(t)");
+  expect(number(c.faces[0].values.at("T").front()), 350.0 / 300.0);
+  expect(number(c.faces[0].values.at("velocity").back()), 20.0 / speed);
+  EXPECT_EQ(c.faces[1].values.at("T").front(), "1 + 0.1*sin(t)");
   // The gas sets the model.
   const double mu = 2.117e-5 * std::pow(300.0 / 273.0, 0.81);
   expect(number(c.model.epsilon), mu * speed / (10.0 * 1e-3));

@@ -88,7 +88,7 @@ def test_an_ordinary_differential_equation_needs_no_mesh():
     (lambda: bgk(epsilon=-1), "a finite number >= 0 is needed"),
     (lambda: bgk(epsilon=lambda x: "a"), "epsilon returned"),
     (lambda: bgk(parameters={"velocity_dimension": 2}), "unknown parameter 'velocity_dimension' (model 'bgk'"),
-    (lambda: bgk(parameters={"velocity_dimensions": 1.5}), "an integer from 1 to 3"),
+    (lambda: bgk(parameters={"velocity_dimensions": 1.5}), "an integer from 0 to 3"),
     (lambda: bgk(velocities=None), "velocity.points is missing"),
     (lambda: apsis.KineticProblem("bkg"), "did you mean 'bgk'?"),
     (lambda: bgk().sample("mixed"), "unknown initial data 'mixed'"),

@@ -146,10 +146,11 @@ TEST(problem_builder, refuses_inconsistent_parts) {
   EXPECT_THAT(message_of([&] {
                 problem_builder(plane)
                     .on(grid(2, {9, 9, 1}, {0, 0, 0}, {1, 1, 1}))
+                    .with_unknowns(apsis::formulation::finite_volume)
                     .with_reconstruction(weno())
                     .build();
               }),
-              HasSubstr("one space dimension only"));
+              HasSubstr("cell averages in 2 space dimensions"));
 }
 
 TEST(problem_builder, an_equation_without_space_needs_no_mesh) {

@@ -80,15 +80,23 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
     const auto dot = path.find('.', head.size());
     const std::string side = path.substr(head.size(), dot == std::string::npos ? dot : dot - head.size());
     const std::string name = dot == std::string::npos ? "" : path.substr(dot + 1);
-    const bool known = side == "left" || side == "right";
+    const auto found = std::find(face_names.begin(), face_names.end(), side);
+    const bool known = found != face_names.end();
     if (name.empty() || !known)
-      throw input_error(raw.place, fmt::format("unknown key '{}' (a face is a table [boundary.left] or "
-                                               "[boundary.right]); {}",
-                                               shown(path),
-                                               known ? fmt::format("write [boundary.{}]", side)
-                                                     : suggest(side, {"left", "right"})));
+      throw input_error(
+          raw.place,
+          fmt::format("unknown key '{}' (a face is a table [boundary.left], [boundary.right], …); {}",
+                      shown(path),
+                      known ? fmt::format("write [boundary.{}]", side)
+                            : suggest(side, {face_names.begin(), face_names.end()})));
+    const auto index = static_cast<std::size_t>(found - face_names.begin());
+    if (face_of(index).direction >= equation.space_dimensions())
+      throw input_error(
+          raw.place,
+          fmt::format("key '{}' is not used (the case has {} space dimension{}); remove it", shown(path),
+                      equation.space_dimensions(), equation.space_dimensions() == 1 ? "" : "s"));
     if (name == "kind") continue;
-    face_table& table = side == "left" ? config.faces.left : config.faces.right;
+    face_table& table = config.faces[index];
     const std::string& kind = kind_of(config, table);
     auto names = at_place(raw.place, [&] { return variables_of(kind, equation); });
     if (std::find(names.begin(), names.end(), name) == names.end()) {
@@ -101,13 +109,10 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
 }
 
 std::vector<domain::faces> make_boundaries(const case_config& config, const model& equation) {
-  const face_table common;
   std::vector<domain::faces> sides;
-  for (std::size_t k = 0; k < config.space.cells.size(); ++k) {
-    const bool along_x = k == 0;
-    sides.push_back({make_face(config, equation, "left", along_x ? config.faces.left : common),
-                     make_face(config, equation, "right", along_x ? config.faces.right : common)});
-  }
+  for (std::size_t k = 0; k < 2 * config.space.cells.size(); k += 2)
+    sides.push_back({make_face(config, equation, face_names[k], config.faces[k]),
+                     make_face(config, equation, face_names[k + 1], config.faces[k + 1])});
   return sides;
 }
 

@@ -62,23 +62,40 @@ std::string problem_of(const face_values& face, const data_form& form, const mod
   return equation.check_supported(row.data()).problem;
 }
 
+/// Points on a face at the ends, the middle and the quarters of its sides.
+std::vector<position> points_of_face(const case_config& config, const face& where) {
+  constexpr int parts = 4;
+  std::vector<position> points = {position{}};
+  for (std::size_t k = 0; k < config.space.domain.size(); ++k) {
+    const auto [lower, upper] = config.space.domain[k];
+    const bool normal = k == static_cast<std::size_t>(where.direction);
+    std::vector<position> more;
+    for (position x : points)
+      for (int part = 0; part <= (normal ? 0 : parts); ++part) {
+        x[k] = normal ? (where.upper ? upper : lower) : lower + (upper - lower) * part / parts;
+        more.push_back(x);
+      }
+    points = std::move(more);
+  }
+  return points;
+}
+
 }  // namespace
 
 std::string unsupported_boundary(const case_config& config, const model& equation) {
   const auto form = maxwellians(equation);
-  if (!form || config.space.cells.size() != 1) return "";
-  for (const bool upper : {false, true}) {
-    const face_table& table = upper ? config.faces.right : config.faces.left;
-    const face_values face(config, equation, table);
-    if (table.values.empty()) continue;
-    const position x = {config.space.domain.front()[upper ? 1 : 0], 0.0, 0.0};
+  if (!form || config.space.cells.empty()) return "";
+  for (std::size_t k = 0; k < 2 * config.space.cells.size(); ++k) {
+    if (config.faces[k].values.empty()) continue;
+    const face_values face(config, equation, config.faces[k]);
     const int last = face.steady() ? 0 : intervals;
-    for (int n = 0; n <= last; ++n) {
-      const double t = last == 0 ? 0.0 : config.time.end * n / last;
-      if (const std::string problem = problem_of(face, *form, equation, t, x); !problem.empty())
-        return fmt::format("the velocities do not hold the gas of [boundary.{}] at t = {:.4g}: {}",
-                           upper ? "right" : "left", t, problem);
-    }
+    for (const position& x : points_of_face(config, face_of(k)))
+      for (int n = 0; n <= last; ++n) {
+        const double t = last == 0 ? 0.0 : config.time.end * n / last;
+        if (const std::string problem = problem_of(face, *form, equation, t, x); !problem.empty())
+          return fmt::format("the velocities do not hold the gas of [boundary.{}] at t = {:.4g}: {}",
+                             face_names[k], t, problem);
+      }
   }
   return "";
 }

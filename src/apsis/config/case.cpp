@@ -151,6 +151,7 @@ std::unique_ptr<model> make_model(const case_config& config) {
   for (const auto& [name, value] : config.model.texts) parts.texts[name] = value;
   for (const auto& [name, value] : config.model.lists) parts.lists[name] = value;
   parts.constants = config.constants;
+  parts.space_dimensions = static_cast<int>(config.space.cells.size());
   parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium,
                     config.velocity.set};
   return entry->make(parts);

@@ -18,7 +18,7 @@
 
 namespace apsis {
 
-/// Tables [boundary.left] and [boundary.right]: the boundary condition of a face.
+/// A table [boundary.left], [boundary.right], …: the boundary condition of a face.
 struct face_table {
   std::optional<std::string> kind;  ///< space.boundary where it is not set
   state_formulas values;            ///< of the variables of the kind, formulas in t and the position
@@ -58,10 +58,7 @@ struct case_config {
     limiter_choice limiter = limiter_choice::none;
     std::string boundary = "periodic";  ///< kind of every face without one of its own
   } space;
-  /// Tables [boundary.left] and [boundary.right], of models with space.
-  struct {
-    face_table left, right;  ///< at the lower and the upper end in x
-  } faces;
+  std::array<face_table, 6> faces;  ///< tables [boundary.NAME], by face::index(), of models with space
   /// Table [force], of models with a velocity grid.
   struct {
     std::optional<std::vector<std::string>> acceleration;  ///< formulas in t and the position

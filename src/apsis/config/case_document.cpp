@@ -260,8 +260,7 @@ std::string to_toml(const case_config& config) {
     out += fmt::format("{} = {}\n", name_of(key.path), to_toml(value));
   }
   add_initial_table(out, config.prescribed);
-  add_face(out, "left", config.faces.left);
-  add_face(out, "right", config.faces.right);
+  for (std::size_t k = 0; k < config.faces.size(); ++k) add_face(out, face_names[k], config.faces[k]);
   if (!config.source_term.empty()) {
     out += "\n[source]\n";
     add_state(out, config.source_term);

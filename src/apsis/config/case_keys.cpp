@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace apsis {
 namespace {
 
@@ -293,20 +295,6 @@ std::vector<case_key> space_keys() {
            .choices = names_in(boundary_entries),
            .doc = "Boundary condition at every end of the domain (apsis list boundaries). Entropy decay is "
                   "promised for periodic ends only."}),
-      key("boundary.left.kind", [](auto& c) -> auto& { return c.faces.left.kind; },
-          {.scope = key_scope::space,
-           .choices = names_in(boundary_entries),
-           .doc =
-               "Boundary condition at the lower end in x, where it differs from space.boundary. Further keys "
-               "of the table [boundary.left] are the variables of the kind (apsis list boundaries), "
-               "numbers or formulas in t and x."}),
-      key("boundary.right.kind", [](auto& c) -> auto& { return c.faces.right.kind; },
-          {.scope = key_scope::space,
-           .choices = names_in(boundary_entries),
-           .doc =
-               "Boundary condition at the upper end in x, where it differs from space.boundary. Further keys "
-               "of the table [boundary.right] are the variables of the kind (apsis list boundaries), "
-               "numbers or formulas in t and x."}),
       key("force.acceleration", [](auto& c) -> auto& { return c.force.acceleration; },
           {.type = key_type::formulas,
            .scope = key_scope::velocity,
@@ -345,6 +333,21 @@ std::vector<case_key> space_keys() {
                   "grid); auto measures which is needed."})};
 }
 
+/// The kinds of the faces; the other keys of their tables are variables of the kinds.
+std::vector<case_key> face_keys() {
+  std::vector<case_key> all;
+  for (std::size_t k = 0; k < face_names.size(); ++k)
+    all.push_back(
+        key("boundary." + face_names[k] + ".kind", [k](auto& c) -> auto& { return c.faces[k].kind; },
+            {.scope = key_scope::space,
+             .choices = names_in(boundary_entries),
+             .doc = fmt::format("Boundary condition at the {} end in {}, where it differs from "
+                                "space.boundary. Further keys of the table [boundary.{}] are the variables "
+                                "of the kind (apsis list boundaries), numbers or formulas in t and x.",
+                                k % 2 == 0 ? "lower" : "upper", "xyz"[k / 2], face_names[k])}));
+  return all;
+}
+
 std::vector<case_key> time_keys() {
   return {key("time.method", [](auto& c) -> auto& { return c.time.method; },
               {.required = true,
@@ -367,7 +370,9 @@ std::vector<case_key> time_keys() {
               {.scope = key_scope::space,
                .lowest = 0.0,
                .lowest_excluded = true,
-               .doc = "Step size as dt = cfl * dx / v_max. Exactly one of dt, cfl and safety is given."}),
+               .doc = "Step size as dt = cfl * dx / v_max, in several dimensions cfl / sum_k (v_max,k / "
+                      "dx_k). Exactly "
+                      "one of dt, cfl and safety is given."}),
           key("time.safety", [](auto& c) -> auto& { return c.time.safety; },
               {.scope = key_scope::space,
                .lowest = 0.0,
@@ -445,7 +450,7 @@ std::vector<case_key> output_keys() {
 const std::vector<case_key>& case_schema() {
   static const std::vector<case_key> schema = [] {
     std::vector<case_key> all;
-    for (auto* group : {model_keys, gas_keys, space_keys, time_keys, output_keys})
+    for (auto* group : {model_keys, gas_keys, space_keys, face_keys, time_keys, output_keys})
       for (case_key& one : group()) all.push_back(std::move(one));
     return all;
   }();

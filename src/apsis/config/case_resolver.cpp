@@ -38,6 +38,7 @@ class resolver {
     derive_epsilon(text_, *model_, config_);
     note_places();  // of derived keys too
     for (const case_key& key : case_schema()) take(key);
+    complete_space();
     take_parameters();
     take_initial_data();
     read_boundary_values(text_, *checked_model(), config_);
@@ -212,6 +213,15 @@ class resolver {
     if (config_.scales) set_gas_of_model(text_, *model_, config_);
   }
 
+  /// Chooses keys that the case leaves out by the number of dimensions.
+  void complete_space() {
+    const std::size_t dimensions = config_.space.cells.size();
+    if (find("space.domain") == nullptr)
+      config_.space.domain.assign(dimensions, config_.space.domain.front());
+    if (dimensions > 1 && find("space.formulation") == nullptr)
+      config_.space.formulation = formulation::finite_difference;
+  }
+
   /// The table [parameters].
   void take_constants() {
     for (const auto& [path, raw] : text_.values) {
@@ -320,6 +330,7 @@ class resolver {
     check_dimensions();
     for (std::size_t k = 0; k < config_.space.domain.size(); ++k)
       check_interval(config_.space.domain[k], config_.space.cells[k]);
+    check_formulation();
     check_faces();
     make_acceleration(config_, *checked_model());
     const int of_line = config_.velocity.points;
@@ -360,12 +371,21 @@ class resolver {
              "give a domain nearer to 0 or fewer cells");
   }
 
+  void check_formulation() const {
+    if (config_.space.cells.size() > 1 && config_.space.formulation == formulation::finite_volume)
+      refuse(*find("space.formulation"), "space.formulation",
+             "cell averages collide at the Gauss points of intervals: one space dimension only",
+             "write \"finite-difference\", or leave it out");
+  }
+
   void check_faces() const {
     const auto equation = make_model(config_);
     const auto sides = make_boundaries(config_, *equation);
-    for (const auto& [lower, upper] : sides) {
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      const auto& [lower, upper] = sides[k];
       if (lower->periodic() == upper->periodic()) continue;
-      const char* own = config_.faces.left.kind ? "boundary.left.kind" : "boundary.right.kind";
+      const std::string own =
+          "boundary." + face_names[config_.faces[2 * k].kind ? 2 * k : 2 * k + 1] + ".kind";
       refuse(*find(own), own, "only one of the two ends is periodic",
              "write space.boundary = \"periodic\" alone, or give both ends another kind");
     }

@@ -15,6 +15,17 @@
 namespace apsis {
 namespace {
 
+int velocity_dimensions_of(const model_config& config) {
+  const int given = static_cast<int>(config.parameters.at("velocity_dimensions"));
+  if (given == 0) return config.space_dimensions;
+  if (given < config.space_dimensions)
+    throw input_error(
+        fmt::format("model.velocity_dimensions = {} is below the {} space dimensions (molecules move along "
+                    "all of them); give at least {}",
+                    given, config.space_dimensions, config.space_dimensions));
+  return given;
+}
+
 int degrees_of(const model_config& config, int dimensions) {
   const int given = static_cast<int>(config.parameters.at("degrees_of_freedom"));
   if (given == 0) return dimensions;
@@ -80,7 +91,7 @@ velocity_set points_of(const velocity_grid& grid, int sets) {
 }  // namespace
 
 gas::gas(const model_config& config)
-    : grid_(make_lines(config.velocity, static_cast<int>(config.parameters.at("velocity_dimensions")))),
+    : grid_(make_lines(config.velocity, velocity_dimensions_of(config))),
       degrees_(degrees_of(config, grid_.dimensions())),
       choice_(config.velocity.equilibrium),
       velocities_(points_of(grid_, reduced() ? 2 : 1)) {}
@@ -88,10 +99,10 @@ gas::gas(const model_config& config)
 std::vector<model_parameter> gas::parameters() {
   return {
       {.name = "velocity_dimensions",
-       .value = 1.0,
-       .lowest = 1.0,
+       .value = 0.0,
+       .lowest = 0.0,
        .highest = 3.0,
-       .doc = "number of velocity dimensions (an integer)",
+       .doc = "number of velocity dimensions, 0: as many as space dimensions",
        .integer = true},
       {.name = "degrees_of_freedom",
        .value = 0.0,

@@ -12,6 +12,7 @@ namespace apsis {
 
 gas_model::gas_model(const model_config& config, double prandtl)
     : gas_(config),
+      space_dimensions_(config.space_dimensions),
       by_viscosity_(config.texts.at("collision_rate") == "viscosity"),
       exponent_(1.0 - config.parameters.at("viscosity_exponent")),
       prandtl_(prandtl),

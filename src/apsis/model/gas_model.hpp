@@ -12,9 +12,9 @@
 
 namespace apsis {
 
-/// A gas that relaxes to a Maxwellian, in one space dimension: everything that BGK, Shakhov and ES-BGK models
-/// share. f_t + v·∇_x f = (C/ε)(target − f), ω = (ρ, ρu, 𝓔), rows as in gas.hpp, E = M. With C = Pr ρ T^{1−s}
-/// the viscosity is ε T^s. Dimensionless.
+/// A gas that relaxes to a Maxwellian, in one to three space dimensions: everything that BGK, Shakhov and
+/// ES-BGK models share. f_t + v·∇_x f = (C/ε)(target − f), ω = (ρ, ρu, 𝓔), rows as in gas.hpp, E = M. With C
+/// = Pr ρ T^{1−s} the viscosity is ε T^s. Dimensionless.
 class gas_model : public relaxation_model {
  public:
   /// `prandtl`: the factor of C by viscosity, p ε/C times which is the viscosity; 1 if the stress relaxes
@@ -30,7 +30,7 @@ class gas_model : public relaxation_model {
 
   const gas& molecules() const { return gas_; }  ///< the rows of the gas
   int components() const override { return gas_.velocities().components(); }
-  int space_dimensions() const override { return 1; }
+  int space_dimensions() const override { return space_dimensions_; }
   const velocity_set& velocities() const override { return gas_.velocities(); }
   velocity_lattice lattice() const override;
   /// Returns the end of the velocity line, that of a uniform one half an interval beyond its last point.
@@ -89,6 +89,7 @@ class gas_model : public relaxation_model {
   void make_initial_data();
 
   gas gas_;
+  int space_dimensions_;
   bool by_viscosity_;
   double exponent_, prandtl_;
   bool signed_tails_;

@@ -84,6 +84,7 @@ struct model_config {
   velocity_config velocity;                                    ///< only where the entry has_velocity_grid
   formula_constants constants = {};                            ///< constants of formulas
   std::map<std::string, std::vector<std::string>> lists = {};  ///< complete; valid names or formulas
+  int space_dimensions = 1;  ///< D, of models that are possible in several dimensions
 };
 
 /// One equation of the registry: a file of model/models/ defines `extern const model_entry model_<file>`.

@@ -75,8 +75,9 @@ nlohmann::ordered_json to_json(const case_config& config) {
   for (const auto& [name, value] : config.model.texts) out["model"][name] = value;
   for (const auto& [name, value] : config.model.lists) out["model"][name] = value;
   if (!config.constants.empty()) out["parameters"] = config.constants;
-  if (!config.faces.left.values.empty()) out["boundary"]["left"].update(to_json(config.faces.left.values));
-  if (!config.faces.right.values.empty()) out["boundary"]["right"].update(to_json(config.faces.right.values));
+  for (std::size_t k = 0; k < config.faces.size(); ++k)
+    if (!config.faces[k].values.empty())
+      out["boundary"][face_names[k]].update(to_json(config.faces[k].values));
   if (!config.source_term.empty()) out["source_term"] = to_json(config.source_term);
   if (!config.prescribed.empty()) out["initial"] = to_json(config.prescribed);
   return out;

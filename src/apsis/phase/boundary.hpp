@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/phase/face.hpp>
 #include <apsis/phase/position.hpp>
 #include <apsis/phase/velocity_set.hpp>
 
@@ -9,12 +10,6 @@
 #include <vector>
 
 namespace apsis {
-
-/// A face of the domain: the lower or the upper end of a direction.
-struct face {
-  int direction = 0;   ///< 0, 1 or 2
-  bool upper = false;  ///< at the largest coordinate
-};
 
 /// The rows on both sides of a face along one pencil.
 struct pencil_end {

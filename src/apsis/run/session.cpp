@@ -122,7 +122,7 @@ int threads_for(const case_config& config) {
   return unknowns < large ? 1 : default_threads();
 }
 
-run_session::run_session(case_config configured, session_options options)
+run_session::run_session(const case_config& configured, session_options options)
     : options_(std::move(options)),
       simulation_(with_room_for_results(configured, options_), start_of(configured, options_)) {
   // Locked first: a checkpoint in a folder that another run writes into must not be read.

@@ -34,7 +34,7 @@ struct session_options {
 class run_session {
  public:
   /// Checks the case and prepares the folder. Throws input_error or io_error without leaving files behind.
-  run_session(case_config config, session_options options);
+  run_session(const case_config& config, session_options options);
 
   /// Runs to the end, to a stop, or to the wall-time limit, and writes the results. Rethrows a
   /// numerical_error after saving the results so far.

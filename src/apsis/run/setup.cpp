@@ -14,7 +14,6 @@
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -153,14 +152,11 @@ std::vector<double> run_setup::centres() const {
 }
 
 std::vector<std::string> run_setup::open_faces() const {
-  static const std::array<std::array<const char*, 2>, 3> names = {
-      {{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
   std::vector<std::string> open;
   if (!has_space()) return open;
   const domain space = builder_.space();
-  for (int direction = 0; direction < builder_.mesh().dimensions(); ++direction)
-    for (const char* name : names[static_cast<std::size_t>(direction)])
-      if (!space.periodic(direction)) open.emplace_back(name);
+  for (std::size_t k = 0; k < 2 * static_cast<std::size_t>(mesh().dimensions()); ++k)
+    if (!space.periodic(face_of(k).direction)) open.push_back(face_names[k]);
   if (config_.force.acceleration) open.emplace_back("force");
   if (!config_.source_term.empty()) open.emplace_back("source");
   return open;
@@ -241,7 +237,9 @@ std::optional<field> run_setup::exact_state(double t) const {
 
 double run_setup::cfl_length() const {
   if (!has_space()) throw input_error("time.cfl needs a mesh (the model has no space); give time.dt");
-  return builder_.mesh().spacing(0) / equation->reference_speed(0);
+  double rate = 0.0;
+  for (int k = 0; k < mesh().dimensions(); ++k) rate += equation->reference_speed(k) / mesh().spacing(k);
+  return 1.0 / rate;
 }
 
 double run_setup::equilibrium_defect(const field& u) const {

@@ -67,7 +67,7 @@ class run_setup {
   std::optional<double> given_dt() const { return has_tolerance() ? std::nullopt : config_.time.dt; }
   /// Whether the step size is controlled by time.tolerance.
   bool has_tolerance() const { return config_.time.tolerance.has_value(); }
-  /// Returns Δx/v_max, so that Δt = cfl Δx/v_max.
+  /// Returns 1/Σ_k (v_max,k/Δx_k), so that Δt is cfl times this.
   double cfl_length() const;
   /// Whether the first step is divided to resolve the initial layer (time.startup).
   bool has_graded_start() const { return config_.time.startup == startup_choice::graded; }

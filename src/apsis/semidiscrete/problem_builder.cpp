@@ -102,16 +102,21 @@ problem_builder& problem_builder::with_source(source_rate rate) {
   return *this;
 }
 
+formulation problem_builder::unknowns() const {
+  return unknowns_.value_or(mesh_.dimensions() > 1 ? formulation::finite_difference
+                                                   : formulation::finite_volume);
+}
+
 /// Collision on the unknowns themselves: point values, or first order, where the quartic would be too much.
 bool problem_builder::pointwise() const {
-  return !has_space() || first_order() || unknowns_ == formulation::finite_difference;
+  return !has_space() || first_order() || unknowns() == formulation::finite_difference;
 }
 
 spatial_discretization problem_builder::complete_discretization() const {
   spatial_discretization discretization = discretization_;
   if (limited_ && !first_order())
     discretization.positivity =
-        unknowns_ == formulation::finite_volume ? limiter_kind::edges : limiter_kind::fluxes;
+        unknowns() == formulation::finite_volume ? limiter_kind::edges : limiter_kind::fluxes;
   return discretization;
 }
 
@@ -148,11 +153,16 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   if (has_space() && sides_.empty()) throw input_error("no mesh (the model has space); call on()");
   if (has_space() && !discretization_.scheme)
     throw input_error("no reconstruction (the model has space); call with_reconstruction()");
+  if (has_space() && mesh_.dimensions() > 1 && unknowns() == formulation::finite_volume)
+    throw input_error(fmt::format(
+        "cell averages in {} space dimensions (they are collided at the Gauss points of intervals); "
+        "use the finite difference formulation",
+        mesh_.dimensions()));
   const auto space = std::make_shared<domain>(this->space());
   auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, complete_discretization(),
                                                         make_collision(space));
   if (force_) problem->set_force(*force_);
-  if (source_) problem->set_source(*source_, unknowns_);
+  if (source_) problem->set_source(*source_, unknowns());
   if (explicit_collision_) problem->treat_collision_explicitly();
   return problem;
 }
@@ -160,7 +170,7 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
 field problem_builder::sample(const data& value, const std::vector<double>& jumps) const {
   field u(mesh_.size(), equation_->components());
   std::vector<double> values(static_cast<std::size_t>(u.components()));
-  const bool averages = has_space() && unknowns_ == formulation::finite_volume;
+  const bool averages = has_space() && unknowns() == formulation::finite_volume;
   for (int cell = 0; cell < u.cells(); ++cell) {
     const position centre = has_space() ? mesh_.centre(cell) : position{};
     const double half = 0.5 * mesh_.spacing(0);

@@ -22,8 +22,8 @@ namespace apsis {
 ///                      .with_epsilon([](const position& x) { return 1e-3 + x[0] * x[0]; })
 ///                      .build();
 ///
-/// Defaults: cell averages, periodic faces, no limiter, ε = 1. A model without space needs no mesh. All
-/// quantities are dimensionless.
+/// Defaults: cell averages on a line, point values in several dimensions, periodic faces, no limiter, ε = 1.
+/// A model without space needs no mesh. All quantities are dimensionless.
 class problem_builder {
  public:
   /// ε at a point of space, finite and ≥ 0; 0 is the limit system.
@@ -41,7 +41,7 @@ class problem_builder {
   /// Sets the reconstruction scheme. Throws input_error if the mesh, which must be set before, is smaller
   /// than its stencil.
   problem_builder& with_reconstruction(std::shared_ptr<const reconstruction> scheme);
-  /// Sets the meaning of the unknowns: cell averages or point values.
+  /// Sets the meaning of the unknowns: cell averages, on a line only, or point values.
   problem_builder& with_unknowns(formulation unknowns);
   /// Keeps nonnegative data nonnegative for steps up to r Δt_FE. Throws input_error if the unknowns of the
   /// model may be negative.
@@ -77,6 +77,7 @@ class problem_builder {
   std::vector<double> epsilon_at_centres() const;
 
  private:
+  formulation unknowns() const;
   bool pointwise() const;
   spatial_discretization complete_discretization() const;
   std::vector<double> epsilon_at(std::span<const double> offsets) const;
@@ -86,7 +87,7 @@ class problem_builder {
   grid mesh_;
   std::vector<domain::faces> sides_;
   spatial_discretization discretization_;
-  formulation unknowns_ = formulation::finite_volume;
+  std::optional<formulation> unknowns_;
   bool limited_ = false, explicit_collision_ = false;
   scale epsilon_;
   std::optional<acceleration> force_;

@@ -6,6 +6,7 @@
 #include <apsis/config/case_text.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/quantity.hpp>
+#include <apsis/config/solid_reader.hpp>
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/core/text_file.hpp>
@@ -46,7 +47,8 @@ override_form form_of(const std::string& path, const std::string& value) {
         return {p.automatic && value == automatic_word,
                 type_advice(p.integer ? key_type::integer : key_type::number)};
   const bool list = is_list(path);
-  const bool may_be_list = list || path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0;
+  const bool may_be_list = list || path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0 ||
+                           path.rfind("space.solid.", 0) == 0;
   const bool bracket = may_be_list && value.find('[') == 0;
   return {!bracket, type_advice(list && bracket ? key_type::text_list : key_type::text)};
 }
@@ -175,7 +177,8 @@ grid make_mesh(const case_config& config) {
     lower[k] = config.space.domain.at(k)[0];
     upper[k] = config.space.domain.at(k)[1];
   }
-  return {static_cast<int>(config.space.cells.size()), cells, lower, upper};
+  const grid mesh(static_cast<int>(config.space.cells.size()), cells, lower, upper);
+  return config.solids.empty() ? mesh : mesh.with_solids(solid_boxes(config, mesh));
 }
 
 std::vector<std::string> case_names() {

@@ -173,6 +173,13 @@ std::string schema_text() {
       "      A term of a sum of states; a sum replaces the variables of [initial].\n"
       "  [[initial.region]]: where (condition, \"x < 0.5\") and variables or [[initial.region.part]]\n"
       "      Replaces variables of the state below where the condition holds; the last region is uppermost.\n"
+      "\n[[space.solid]], of models with space\n"
+      "  from, to (list of numbers or formulas without variables)\n"
+      "      Lower and upper corner of a solid box, on edges of cells. Boxes may touch and overlap.\n"
+      "  kind (text, default \"diffuse\") and its variables (apsis list boundaries)\n"
+      "      Boundary condition at the faces of the box, with numbers or formulas in t and the position.\n"
+      "  name (text, default \"solid-1\", …)\n"
+      "      Names the columns of the history for what its walls give to the gas.\n"
       "\n[source], of models with space\n"
       "  rho, u, T, … (number or formula in t and x; a list for a vector)\n"
       "      Variables of the model per unit of time: rho is the mass that enters with the velocity u and "
@@ -219,6 +226,12 @@ void add_initial_table(std::string& out, const initial_table& initial) {
   }
 }
 
+std::string numbers_text(const std::vector<double>& numbers) {
+  std::vector<std::string> texts;
+  for (const double x : numbers) texts.push_back(number_text(x));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 void add_face(std::string& out, const std::string& side, const face_table& table) {
   if (!table.kind && table.values.empty()) return;
   out += fmt::format("\n[boundary.{}]\n", side);
@@ -261,6 +274,12 @@ std::string to_toml(const case_config& config) {
   }
   add_initial_table(out, config.prescribed);
   for (std::size_t k = 0; k < config.faces.size(); ++k) add_face(out, face_names[k], config.faces[k]);
+  for (const auto& solid : config.solids) {
+    out +=
+        fmt::format("\n[[space.solid]]\nname = {}\nfrom = [{}]\nto = [{}]\nkind = {}\n", quoted(solid.name),
+                    numbers_text(solid.from), numbers_text(solid.to), quoted(solid.kind));
+    add_state(out, solid.values);
+  }
   if (!config.source_term.empty()) {
     out += "\n[source]\n";
     add_state(out, config.source_term);

@@ -7,6 +7,7 @@
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/gas_reader.hpp>
 #include <apsis/config/initial_reader.hpp>
+#include <apsis/config/output_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/config/source_reader.hpp>
 #include <apsis/core/suggest.hpp>
@@ -44,6 +45,7 @@ class resolver {
     read_boundary_values(text_, *checked_model(), config_);
     read_source_values(text_, *checked_model(), config_);
     check_together();
+    read_output_tables(text_, *model_, config_);
     choose_parameters();
     return config_;
   }
@@ -147,7 +149,8 @@ class resolver {
     const auto valid = valid_paths();
     for (const auto& [path, raw] : text_.values) {
       if (std::find(valid.begin(), valid.end(), path) != valid.end() || is_in(path, "parameters") ||
-          is_in(path, "initial") ||
+          is_in(path, "initial") || path == "output.probe" || is_in(path, "output.probe") ||
+          path == "output.slice" || is_in(path, "output.slice") ||
           ((is_in(path, "boundary") || is_in(path, "source")) && has_space(*model_)))
         continue;
       for (const case_key& key : case_schema())

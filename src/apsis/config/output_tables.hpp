@@ -11,6 +11,12 @@ struct line_probe {
   std::vector<double> from,  ///< first point
       to;                    ///< last point
   int points = 101;          ///< equidistant points, both ends included
+
+  /// Multiplies the coordinates by a unit of length.
+  void scale(double unit) {
+    for (auto* end : {&from, &to})
+      for (double& x : *end) x *= unit;
+  }
 };
 
 /// A plane on which the fields are written, a table [[output.slice]].

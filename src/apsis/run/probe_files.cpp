@@ -21,8 +21,7 @@ void add_text(result_folder& folder, const std::string& series, const std::strin
 void write_probes(const case_config& config, const field_series& fields, double unit_of_length,
                   result_folder& folder) {
   for (line_probe line : config.output.probes) {
-    for (auto* end : {&line.from, &line.to})
-      for (double& x : *end) x *= unit_of_length;
+    line.scale(unit_of_length);
     add_text(folder, "probes", line.name + ".csv", to_csv(to_table(fields, line)));
   }
   for (plane_slice plane : config.output.slices) {

@@ -80,12 +80,19 @@ double memory_need::bytes(double cells, double components) const {
   return sizeof(double) * cells * (padded + copies_ * components + snapshots_ * fields_);
 }
 
+std::string memory_need::unknowns() const {
+  const std::string of_cell = fmt::format("{:.0f} unknowns", components_);
+  return shape_.empty() ? of_cell : fmt::format("{} cells x {}", fmt::join(shape_, " x "), of_cell);
+}
+
 std::string memory_need::text() const {
+  return fmt::format("{} of memory ({})", in_units(bytes()), unknowns());
+}
+
+std::string memory_need::details() const {
   return fmt::format(
-      "{} of memory ({} cells x {:.0f} unknowns in {} buffers of method '{}', {} copies for results, {:.0f} "
-      "snapshots of the fields)",
-      in_units(bytes()), shape_.empty() ? "1" : fmt::format("{}", fmt::join(shape_, " x ")), components_,
-      buffers_, method_, copies_, snapshots_);
+      "{} of memory ({} in {} buffers of method '{}', {} copies for results, {:.0f} snapshots of the fields)",
+      in_units(bytes()), unknowns(), buffers_, method_, copies_, snapshots_);
 }
 
 std::vector<int> memory_need::cells_that_fit(double limit) const {

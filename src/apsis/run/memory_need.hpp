@@ -16,8 +16,10 @@ class memory_need {
 
   /// Returns the number of bytes.
   double bytes() const { return bytes(cells_, components_); }
-  /// Returns "1.2 GB (16 x 12 cells x 144 unknowns in 9 buffers of method 'NAME', …)".
+  /// Returns "1.2 GB of memory (16 x 12 cells x 144 unknowns)".
   std::string text() const;
+  /// Returns the same with the numbers of buffers, copies and snapshots.
+  std::string details() const;
 
   /// Returns the largest space.cells of the same shape that fits into `limit` bytes; empty if none does.
   std::vector<int> cells_that_fit(double limit) const;
@@ -27,6 +29,7 @@ class memory_need {
 
  private:
   double bytes(double cells, double components) const;
+  std::string unknowns() const;
 
   std::vector<int> shape_,           ///< cells in each direction; empty without space
       points_;                       ///< velocities of each direction, or of all; empty without

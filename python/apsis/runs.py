@@ -26,7 +26,9 @@ class Result:
     """The result of a run. Arrays are not copied.
 
     f[cell, component] is the state at the end, x the cell centres, v[component] the speeds of the components, epsilon the Knudsen
-    number at the centres (empty where the model has none). With two or three velocity dimensions v[component, dimension] are
+    number at the centres (empty where the model has none). In two and three space dimensions y and z are the centres in the other
+    directions, and [cell] stands for [i, j] or [i, j, k], the numbers of the cell along x, y and z: a field has the shape (nt, nx, ny).
+    probes[name] has the columns of probes/NAME.csv. With two or three velocity dimensions v[component, dimension] are
     the velocities, v_weights[component] their quadrature weights, so that f @ v_weights is the density; where they are a tensor
     product, axes["v_x"], … are its nodes and marginals["v_x"][cell, node], … f integrated over the other components. fields[name][k, cell] are the macroscopic fields at the times t[k], ending with
     the final time, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
@@ -45,6 +47,9 @@ class Result:
     v_weights: Array = field(default_factory=lambda: np.zeros(0))
     axes: dict[str, Array] = field(default_factory=dict)
     marginals: dict[str, Array] = field(default_factory=dict)
+    y: Array = field(default_factory=lambda: np.zeros(0))
+    z: Array = field(default_factory=lambda: np.zeros(0))
+    probes: dict[str, dict[str, Array]] = field(default_factory=dict)
 
     @property
     def title(self) -> str:
@@ -52,7 +57,8 @@ class Result:
         return str(self.summary.get("case", {}).get("title", ""))
 
     def _size(self) -> str:
-        cells, components = self.f.shape
+        *shape, components = self.f.shape
+        cells = " x ".join(str(n) for n in shape)
         return f"{cells} cells, {components} components" if len(self.x) else f"{components} components"
 
     def __repr__(self) -> str:
@@ -70,7 +76,7 @@ class Result:
         v_x, or "history". Raises InputError if there is nothing to draw."""
         from .plot.results import figures  # needs Matplotlib, which runs do not
         from .plot.run_result import RunResult
-        every = {"f": self.f, "x": self.x, "v": self.v, "v_weights": self.v_weights, "epsilon": self.epsilon, **self.axes}
+        every = {"f": self.f, "x": self.x, "y": self.y, "z": self.z, "v": self.v, "v_weights": self.v_weights, "epsilon": self.epsilon, **self.axes}
         arrays = {name: value for name, value in every.items() if value.size}
         last = {name: values[-1] for name, values in self.fields.items()}
         stored = RunResult(Path("run"), {"case": self.summary.get("case", {})}, last, {**self.fields, "t": self.t}, arrays, self.history,
@@ -86,11 +92,13 @@ class Result:
             return False
         def same(a: Mapping[str, Array], b: Mapping[str, Array]) -> bool:
             return a.keys() == b.keys() and all(np.array_equal(a[name], b[name], equal_nan=True) for name in a)
-        arrays = ("f", "x", "v", "v_weights", "epsilon", "t")
+        arrays = ("f", "x", "y", "z", "v", "v_weights", "epsilon", "t")
         return (self.state == other.state and self.summary.get("case") == other.summary.get("case")
                 and same({name: getattr(self, name) for name in arrays}, {name: getattr(other, name) for name in arrays})
                 and same(self.fields, other.fields) and same(self.history, other.history)
-                and same(self.axes, other.axes) and same(self.marginals, other.marginals))
+                and same(self.axes, other.axes) and same(self.marginals, other.marginals)
+                and self.probes.keys() == other.probes.keys()
+                and all(same(columns, other.probes[name]) for name, columns in self.probes.items()))
 
 
 def cases() -> list[str]:

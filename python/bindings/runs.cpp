@@ -6,6 +6,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/case_json.hpp>
+#include <apsis/output/probe.hpp>
 #include <apsis/output/velocity_axes.hpp>
 #include <apsis/run/result_units.hpp>
 #include <apsis/run/session.hpp>
@@ -63,21 +64,30 @@ py::dict columns_of(const numeric_table& rows) {
   return columns;
 }
 
-/// Snapshots of every field: [snapshots][cells].
-py::dict fields_of(const field_series& series, std::size_t cells) {
+/// Returns the shape of an array with numbers before and after those of the mesh: [first…][nx][ny][last…].
+std::vector<py::ssize_t> shape_of(const std::vector<mesh_axis>& axes, std::vector<py::ssize_t> first,
+                                  const std::vector<py::ssize_t>& last = {}) {
+  for (const auto n : mesh_shape(axes)) first.push_back(static_cast<py::ssize_t>(n));
+  first.insert(first.end(), last.begin(), last.end());
+  return first;
+}
+
+/// Snapshots of every field: [snapshots][nx][ny].
+py::dict fields_of(const field_series& series) {
   py::dict fields;
   for (std::size_t k = 0; k < series.names.size(); ++k) {
     std::vector<double> all;
     for (const auto& one : series.snapshots)
       all.insert(all.end(), one.values[k].begin(), one.values[k].end());
-    fields[py::str(series.names[k])] = to_array(
-        std::move(all), {static_cast<py::ssize_t>(series.snapshots.size()), static_cast<py::ssize_t>(cells)});
+    fields[py::str(series.names[k])] =
+        to_array(std::move(all), shape_of(series.axes, {static_cast<py::ssize_t>(series.snapshots.size())}));
   }
   return fields;
 }
 
 /// Velocities as in solution.h5, with weights, axes and marginals of f where there are several dimensions.
-void add_velocities(const simulation& run, const std::vector<double>& f, py::dict& out) {
+void add_velocities(const simulation& run, const std::vector<mesh_axis>& mesh, const std::vector<double>& f,
+                    py::dict& out) {
   const velocity_set& velocities = run.velocities();
   py::dict axes, marginal_values;
   if (velocities.dimensions() < 2) {
@@ -89,8 +99,8 @@ void add_velocities(const simulation& run, const std::vector<double>& f, py::dic
     out["v_weights"] = to_array(std::vector<double>(weights.begin(), weights.end()));
     for (auto& axis : velocity_axes(velocities)) axes[py::str(axis.name)] = to_array(std::move(axis.nodes));
     for (auto& one : marginals(f, static_cast<std::uint64_t>(run.cells()), velocities))
-      marginal_values[py::str(one.axis.name)] =
-          to_array(std::move(one.values), {run.cells(), static_cast<py::ssize_t>(one.axis.nodes.size())});
+      marginal_values[py::str(one.axis.name)] = to_array(
+          std::move(one.values), shape_of(mesh, {}, {static_cast<py::ssize_t>(one.axis.nodes.size())}));
   }
   out["axes"] = axes;
   out["marginals"] = marginal_values;
@@ -102,12 +112,15 @@ py::dict result_of(const run_session& session, run_end end) {
   out["state"] = to_string(end);
   out["json"] = to_json(run, session.records()).dump();
   std::vector<double> f = run.state();
-  add_velocities(run, f, out);
-  out["f"] = to_array(std::move(f), {run.cells(), run.components()});
   const result_units units(run.config());
-  field_series fields = units.convert(session.records().fields());
-  out["x"] = to_array(std::move(fields.x));
-  out["epsilon"] = to_array(run.epsilon());
+  const field_series fields = units.convert(session.records().fields());
+  add_velocities(run, fields.axes, f, out);
+  out["f"] = to_array(std::move(f), shape_of(fields.axes, {}, {run.components()}));
+  for (const std::string name : {"x", "y", "z"}) out[py::str(name)] = to_array(std::vector<double>());
+  for (const auto& axis : fields.axes) out[py::str(axis.name)] = to_array(std::vector<double>(axis.centres));
+  std::vector<double> epsilon = run.epsilon();
+  out["epsilon"] = epsilon.empty() ? to_array(std::move(epsilon))
+                                   : to_array(std::move(epsilon), shape_of(fields.axes, {}));
   out["history"] = columns_of(units.convert(session.records().history(), run));
   std::vector<double> times;
   for (const auto& one : fields.snapshots) times.push_back(one.t);
@@ -115,7 +128,13 @@ py::dict result_of(const run_session& session, run_end end) {
   py::dict labels;
   for (std::size_t k = 0; k < fields.names.size(); ++k) labels[py::str(fields.names[k])] = fields.labels[k];
   out["labels"] = labels;
-  out["fields"] = fields_of(fields, static_cast<std::size_t>(run.cells()));
+  out["fields"] = fields_of(fields);
+  py::dict probes;
+  for (line_probe line : run.config().output.probes) {
+    line.scale(units.factor(dimensions::length));
+    probes[py::str(line.name)] = columns_of(to_table(fields, line));
+  }
+  out["probes"] = probes;
   return out;
 }
 

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <support/instruction_sets.hpp>
 
@@ -50,8 +51,13 @@ std::vector<std::string> small_version(const std::string& name) {
   const case_config whole = load_case(name);
   std::vector<std::string> overrides;
   // Enough for the widest stencil and for the jumps of the data to be several cells apart.
-  if (whole.places.contains("space.cells"))
-    overrides.push_back(fmt::format("space.cells={}", std::min(whole.space.cells.front(), 24)));
+  if (whole.places.contains("space.cells") && whole.solids.empty()) {
+    const int most = whole.space.cells.size() == 1 ? 24 : 12;
+    std::vector<int> cells;
+    for (const int n : whole.space.cells) cells.push_back(std::min(n, most));
+    overrides.push_back(cells.size() == 1 ? fmt::format("space.cells={}", cells.front())
+                                          : fmt::format("space.cells=[{}]", fmt::join(cells, ",")));
+  }
   // Δv = 1/2: the equilibria of temperatures near 1 are resolved.
   if (whole.places.contains("velocity.points"))
     overrides.push_back(fmt::format(

@@ -28,6 +28,11 @@ bool is_list(const std::string& path) {
   return false;
 }
 
+/// Whether the key is one of a table [[output.probe]] or [[output.slice]].
+bool is_output_table(const std::string& path) {
+  return path.rfind("output.probe.", 0) == 0 || path.rfind("output.slice.", 0) == 0;
+}
+
 /// Returns the syntax of a key on the command line. Quotes are optional for unknown keys, so that the key is
 /// reported.
 override_form form_of(const std::string& path, const std::string& value) {
@@ -46,6 +51,8 @@ override_form form_of(const std::string& path, const std::string& value) {
       if ("model." + p.name == path)
         return {p.automatic && value == automatic_word,
                 type_advice(p.integer ? key_type::integer : key_type::number)};
+  if (is_output_table(path))
+    return {path.ends_with(".name") || path.ends_with(".normal"), "write for example 0.5 or [0.5, 0.2]"};
   const bool list = is_list(path);
   const bool may_be_list = list || path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0 ||
                            path.rfind("space.solid.", 0) == 0;

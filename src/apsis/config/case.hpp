@@ -2,6 +2,7 @@
 
 #include <apsis/config/choices.hpp>
 #include <apsis/config/initial_table.hpp>
+#include <apsis/config/output_tables.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/model/gas_scales.hpp>
@@ -97,11 +98,14 @@ struct case_config {
     std::vector<std::string> fields;                   ///< of the snapshot; empty: all of the model
     units_choice units = units_choice::dimensionless;  ///< of fields, history and report
     distribution_choice distribution = distribution_choice::end;
-    int stride = 1;  ///< cells from one to the next in snapshots of the distribution
+    std::vector<std::vector<double>> distribution_at;  ///< points whose cells are written; empty: all cells
+    int stride = 1;  ///< cells from one to the next, in each direction, in snapshots of the distribution
     precision_choice precision = precision_choice::double_precision;  ///< of snapshots of the distribution
     int checkpoint_every = 0;                                         ///< steps; 0: not by steps
     double checkpoint_minutes = 10.0;                                 ///< 0: not by time
     int history_rows = 100000;                                        ///< most rows of the history
+    std::vector<line_probe> probes;                                   ///< tables [[output.probe]]
+    std::vector<plane_slice> slices;                                  ///< tables [[output.slice]]
   } output;
 };
 

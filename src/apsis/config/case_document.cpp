@@ -51,6 +51,16 @@ struct to_toml_visitor {
       items.push_back(fmt::format("[{}, {}]", number_text(lower), number_text(upper)));
     return items.size() == 1 ? items.front() : fmt::format("[{}]", fmt::join(items, ", "));
   }
+  std::string operator()(const std::vector<double>& x) const {
+    std::vector<std::string> items;
+    for (const double item : x) items.push_back(number_text(item));
+    return fmt::format("[{}]", fmt::join(items, ", "));
+  }
+  std::string operator()(const std::vector<std::vector<double>>& x) const {
+    std::vector<std::string> items;
+    for (const auto& item : x) items.push_back((*this)(item));
+    return fmt::format("[{}]", fmt::join(items, ", "));
+  }
 };
 
 std::string table_of(const std::string& path) {
@@ -180,6 +190,12 @@ std::string schema_text() {
       "      Boundary condition at the faces of the box, with numbers or formulas in t and the position.\n"
       "  name (text, default \"solid-1\", …)\n"
       "      Names the columns of the history for what its walls give to the gas.\n"
+      "\n[[output.probe]], of models with space\n"
+      "  name (text, default \"probe-1\", ...), from, to (points [x, y, z]), points (integer, default 101)\n"
+      "      The fields along the line between two points, interpolated linearly, in probes/NAME.csv.\n"
+      "\n[[output.slice]], in two and three space dimensions\n"
+      "  name (text, default \"slice-1\", ...), normal (\"x\", \"y\" or \"z\"), at (number)\n"
+      "      The fields on a plane, in slices/NAME.h5 and slices/NAME.xdmf.\n"
       "\n[source], of models with space\n"
       "  rho, u, T, … (number or formula in t and x; a list for a vector)\n"
       "      Variables of the model per unit of time: rho is the mass that enters with the velocity u and "
@@ -239,6 +255,16 @@ void add_face(std::string& out, const std::string& side, const face_table& table
   add_state(out, table.values);
 }
 
+void add_output_tables(std::string& out, const case_config& config) {
+  const to_toml_visitor text;
+  for (const auto& probe : config.output.probes)
+    out += fmt::format("\n[[output.probe]]\nname = {}\nfrom = {}\nto = {}\npoints = {}\n", quoted(probe.name),
+                       text(probe.from), text(probe.to), probe.points);
+  for (const auto& slice : config.output.slices)
+    out += fmt::format("\n[[output.slice]]\nname = {}\nnormal = \"{}\"\nat = {}\n", quoted(slice.name),
+                       "xyz"[slice.direction], number_text(slice.at));
+}
+
 }  // namespace
 
 std::string to_toml(const case_config& config) {
@@ -284,6 +310,7 @@ std::string to_toml(const case_config& config) {
     out += "\n[source]\n";
     add_state(out, config.source_term);
   }
+  add_output_tables(out, config);
   return out;
 }
 

@@ -69,6 +69,10 @@ struct conversion<std::vector<interval>> : plain_conversion<std::vector<interval
   static constexpr key_type type = key_type::intervals;
 };
 template <>
+struct conversion<std::vector<std::vector<double>>> : plain_conversion<std::vector<std::vector<double>>> {
+  static constexpr key_type type = key_type::points;
+};
+template <>
 struct conversion<int> {
   static constexpr key_type type = key_type::integer;
   static case_value to(int member) { return long{member}; }
@@ -134,7 +138,8 @@ case_key key(std::string path, At at, case_key facts) {
     };
   const bool numeric = facts.type == key_type::integer || facts.type == key_type::number ||
                        facts.type == key_type::formula || facts.type == key_type::formulas ||
-                       facts.type == key_type::integers || facts.type == key_type::intervals;
+                       facts.type == key_type::integers || facts.type == key_type::intervals ||
+                       facts.type == key_type::points;
   if (numeric && facts.unit.empty()) facts.unit = "dimensionless";
   return facts;
 }
@@ -144,7 +149,8 @@ case_key if_given(case_key of) {
   of.load = [load = std::move(of.load)](const case_config& c) -> case_value {
     case_value value = load(c);
     if (value == case_value(0.0) || value == case_value(std::vector<long>{0}) ||
-        value == case_value(std::vector<std::string>{}))
+        value == case_value(std::vector<std::string>{}) ||
+        value == case_value(std::vector<std::vector<double>>{}))
       return {};
     return value;
   };
@@ -419,11 +425,17 @@ std::vector<case_key> output_keys() {
       key("output.distribution", [](auto& c) -> auto& { return c.output.distribution; },
           {.doc = "Where the unknowns themselves (f) are written: nowhere, at the end into solution.h5, or "
                   "also for every snapshot, into files of their own in snapshots/."}),
+      if_given(key("output.distribution_at", [](auto& c) -> auto& { return c.output.distribution_at; },
+                   {.scope = key_scope::space,
+                    .measure = dimensions::length,
+                    .doc = "Points [[x, y], ...]: f is written in the cells that contain them, as points/f "
+                           "of the file, and not in all cells."})),
       key("output.stride", [](auto& c) -> auto& { return c.output.stride; },
           {.unit = "cells",
            .lowest = 1,
            .highest = 10'000'000,
-           .doc = "Snapshots of f contain every stride-th cell, beginning with the first."}),
+           .doc =
+               "Snapshots of f contain every stride-th cell in each direction, beginning with the first."}),
       key("output.precision", [](auto& c) -> auto& { return c.output.precision; },
           {.doc = "Precision of snapshots of f. In single precision numbers have 7 digits and are 0 below "
                   "1e-45. The end and checkpoints have every digit."}),

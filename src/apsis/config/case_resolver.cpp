@@ -7,6 +7,7 @@
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/gas_reader.hpp>
 #include <apsis/config/initial_reader.hpp>
+#include <apsis/config/output_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/config/solid_reader.hpp>
 #include <apsis/config/source_reader.hpp>
@@ -47,6 +48,7 @@ class resolver {
     read_boundary_values(text_, *checked_model(), config_);
     read_source_values(text_, *checked_model(), config_);
     check_together();
+    read_output_tables(text_, *model_, config_);
     choose_parameters();
     return config_;
   }
@@ -151,7 +153,8 @@ class resolver {
     const auto valid = valid_paths();
     for (const auto& [path, raw] : text_.values) {
       if (std::find(valid.begin(), valid.end(), path) != valid.end() || is_in(path, "parameters") ||
-          is_in(path, "initial") ||
+          is_in(path, "initial") || path == "output.probe" || is_in(path, "output.probe") ||
+          path == "output.slice" || is_in(path, "output.slice") ||
           ((is_in(path, "boundary") || is_in(path, "source") || is_in(path, "space.solid")) &&
            has_space(*model_)))
         continue;

@@ -48,6 +48,8 @@ std::string type_text(key_type type) {
       return "an integer or a list of up to 3 integers";
     case key_type::intervals:
       return "a pair of numbers or a list of up to 3 pairs";
+    case key_type::points:
+      return "a list of points, lists of coordinates";
   }
   return "";
 }

@@ -19,7 +19,7 @@ using interval = std::array<double, 2>;
 
 /// Value of a key, and nothing where an optional key is not set.
 using case_value = std::variant<std::monostate, long, double, std::string, std::vector<std::string>,
-                                std::vector<long>, std::vector<interval>>;
+                                std::vector<long>, std::vector<interval>, std::vector<std::vector<double>>>;
 
 /// Which values a key takes.
 enum class key_type {
@@ -31,7 +31,8 @@ enum class key_type {
   text_list,  ///< std::vector<std::string>
   formulas,   ///< std::vector<std::string>: formulas or numbers, one alone is written without brackets
   integers,   ///< std::vector<long>: one for each direction; one alone is written without brackets
-  intervals   ///< std::vector<interval>: one for each direction; one alone is written without outer brackets
+  intervals,  ///< std::vector<interval>: one for each direction; one alone is written without outer brackets
+  points      ///< std::vector<std::vector<double>>: lists of coordinates
 };
 
 /// Which models a key belongs to; a key that the model does not use is an error, not ignored.

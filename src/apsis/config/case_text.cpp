@@ -145,8 +145,8 @@ case_text read_case_text(std::string_view text, const std::string& file) {
       out.tables.emplace(name, place_of(node.source(), file));
       for (const auto& [inner, value] : *table) {
         const std::string path = fmt::format("{}.{}", name, inner.str());
-        const bool nested =
-            name == "boundary" || name == "initial" || path == "model.knudsen" || path == "space.solid";
+        const bool nested = name == "boundary" || name == "initial" || path == "model.knudsen" ||
+                            path == "space.solid" || path == "output.probe" || path == "output.slice";
         add_nested(out, path, inner, value, file, nested ? most_levels : 0);
       }
     }

@@ -32,6 +32,8 @@ std::string type_advice(key_type type) {
       return "write for example 100, or [100, 50] in two dimensions";
     case key_type::intervals:
       return "write for example [0.0, 2.0], or [[0.0, 2.0], [0.0, 1.0]] in two dimensions";
+    case key_type::points:
+      return "write for example [[0.5], [0.7]], or [[0.5, 0.2], [0.7, 0.2]] in two dimensions";
   }
   return "";
 }
@@ -161,6 +163,20 @@ std::vector<interval> intervals(const case_key& key, const raw_value& raw) {
   return out;
 }
 
+std::vector<std::vector<double>> points(const case_key& key, const raw_value& raw) {
+  const auto* items = std::get_if<raw_value::list>(&raw.value);
+  if (items == nullptr) refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+  std::vector<std::vector<double>> out;
+  for (const auto& item : *items) {
+    const auto* coordinates = std::get_if<raw_value::list>(&item.value);
+    if (coordinates == nullptr)
+      refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+    std::vector<double>& x = out.emplace_back();
+    for (const auto& one : *coordinates) x.push_back(finite_number(one, key.path, type_text(key.type)));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string to_text(const model_text& text, const raw_value& raw, const formula_constants& constants) {
@@ -247,6 +263,8 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
       return integers(key, raw);
     case key_type::intervals:
       return intervals(key, raw);
+    case key_type::points:
+      return points(key, raw);
   }
   return {};
 }

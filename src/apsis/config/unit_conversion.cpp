@@ -54,6 +54,10 @@ class unit_remover {
       }
     for (const model_parameter& p : model_.parameters)
       if ("model." + p.name == path) return dimensions::none;
+    if (begins_with(path, "output.probe.") || begins_with(path, "output.slice."))
+      return path.ends_with(".from") || path.ends_with(".to") || path.ends_with(".at")
+                 ? std::optional(dimensions::length)
+                 : std::nullopt;
     if (path == "initial.time" && !variables_.contains("time")) return dimensions::time;
     const bool solid = begins_with(path, "space.solid.");
     if (solid && (path.ends_with(".from") || path.ends_with(".to"))) return dimensions::length;

@@ -86,6 +86,12 @@ nlohmann::ordered_json to_json(const case_config& config) {
   }
   if (!config.source_term.empty()) out["source_term"] = to_json(config.source_term);
   if (!config.prescribed.empty()) out["initial"] = to_json(config.prescribed);
+  for (const auto& probe : config.output.probes)
+    out["output"]["probe"].push_back(
+        {{"name", probe.name}, {"from", probe.from}, {"to", probe.to}, {"points", probe.points}});
+  for (const auto& slice : config.output.slices)
+    out["output"]["slice"].push_back(
+        {{"name", slice.name}, {"normal", std::string(1, "xyz"[slice.direction])}, {"at", slice.at}});
   return out;
 }
 

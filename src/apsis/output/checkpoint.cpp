@@ -72,7 +72,8 @@ void write_checkpoint(const std::string& path, const checkpoint& c) {
   write_rows(file, "history/rows", c.history.rows, c.history.columns.size());
   file.write("fields/names", joined(c.fields.names));
   file.write("fields/labels", joined(c.fields.labels));
-  if (!c.fields.x.empty()) file.write("fields/x", c.fields.x, {c.fields.x.size()});
+  for (const auto& axis : c.fields.axes)
+    file.write("fields/" + axis.name, axis.centres, {axis.centres.size()});
   std::vector<std::vector<double>> snapshots;
   for (const auto& snapshot : c.fields.snapshots) {
     std::vector<double> row = {snapshot.t};
@@ -101,7 +102,8 @@ checkpoint read_checkpoint(const std::string& path) {
   if (c.history.rows.empty()) damaged(path, "its history is empty");
   c.fields.names = split(file.read_text("fields/names"));
   c.fields.labels = split(file.read_text("fields/labels"));
-  if (file.has("fields/x")) c.fields.x = file.read("fields/x");
+  for (const std::string name : {"x", "y", "z"})
+    if (file.has("fields/" + name)) c.fields.axes.push_back({name, file.read("fields/" + name)});
   if (!file.has("fields/snapshots")) return c;
   const std::size_t fields = c.fields.names.size();
   for (const auto& row : read_rows(file, path, "fields/snapshots", 1 + fields * c.cells)) {

@@ -5,6 +5,14 @@
 namespace apsis {
 namespace {
 
+using shape = hdf5_file::shape;
+
+/// Returns the extents of `last` numbers in every cell.
+shape with(shape cells, std::uint64_t last) {
+  cells.push_back(last);
+  return cells;
+}
+
 void write_velocities(hdf5_file& file, const velocity_set& velocities) {
   const auto points = static_cast<std::uint64_t>(velocities.size());
   const auto dimensions = static_cast<std::uint64_t>(velocities.dimensions());
@@ -17,10 +25,60 @@ void write_velocities(hdf5_file& file, const velocity_set& velocities) {
     file.write(axis.name, axis.nodes, {axis.nodes.size()}, "velocity component");
 }
 
-void write_marginals(hdf5_file& file, const std::vector<double>& f, std::uint64_t cells,
+void write_marginals(hdf5_file& file, const std::vector<double>& f, const std::vector<mesh_axis>& axes,
                      const velocity_set& velocities, precision stored) {
-  for (const auto& one : marginals(f, cells, velocities))
-    file.write("marginals/" + one.axis.name, one.values, {cells, one.axis.nodes.size()}, one.label, stored);
+  for (const auto& one : marginals(f, mesh_size(axes), velocities))
+    file.write("marginals/" + one.axis.name, one.values, with(mesh_shape(axes), one.axis.nodes.size()),
+               one.label, stored);
+}
+
+void write_coordinates(hdf5_file& file, const std::string& group, const std::vector<mesh_axis>& axes,
+                       const std::string& unit) {
+  for (const auto& axis : axes)
+    file.write(group + axis.name, axis.centres, {axis.centres.size()}, "cell centre", precision::float64,
+               unit);
+}
+
+void write_points(hdf5_file& file, const distribution_at_points& points, std::uint64_t components,
+                  precision stored, const std::string& unit) {
+  if (points.f.empty()) return;
+  file.write("points/f", points.f, {points.f.size() / components, components}, "unknowns", stored);
+  write_coordinates(file, "points/", points.centres, unit);
+}
+
+/// The points of a structured grid, since readers take the first axis of a rectilinear one for the fastest.
+void write_geometry(hdf5_file& file, const field_series& fields) {
+  if (fields.axes.size() < 2) return;
+  std::vector<double> points;
+  for (std::size_t cell = 0; cell < mesh_size(fields.axes); ++cell)
+    for (std::size_t k = 0; k < 3; ++k)
+      points.push_back(k < fields.axes.size() ? centre_of_cell(fields.axes, cell, k) : 0.0);
+  file.write("geometry/centres", points, with(mesh_shape(fields.axes), 3), "cell centre", precision::float64,
+             fields.unit_of_x);
+}
+
+void write_series(hdf5_file& file, const field_series& fields) {
+  const auto cells = mesh_shape(fields.axes);
+  const auto& snapshots = fields.snapshots;
+  constexpr auto doubles = precision::float64;
+  const auto unit = [&fields](std::size_t k) {
+    return fields.units.empty() ? "dimensionless" : fields.units[k];
+  };
+  for (std::size_t k = 0; k < fields.names.size() && !snapshots.empty(); ++k)
+    file.write("fields/" + fields.names[k], snapshots.back().values[k], cells, fields.labels[k], doubles,
+               unit(k));
+  if (snapshots.size() < 2) return;
+  std::vector<double> times;
+  for (const auto& snapshot : snapshots) times.push_back(snapshot.t);
+  file.write("snapshots/t", times, {times.size()}, "time", doubles, fields.unit_of_t);
+  shape of_all = {snapshots.size()};
+  of_all.insert(of_all.end(), cells.begin(), cells.end());
+  for (std::size_t k = 0; k < fields.names.size(); ++k) {
+    std::vector<double> all;
+    for (const auto& snapshot : snapshots)
+      all.insert(all.end(), snapshot.values[k].begin(), snapshot.values[k].end());
+    file.write("snapshots/" + fields.names[k], all, of_all, fields.labels[k], doubles, unit(k));
+  }
 }
 
 }  // namespace
@@ -32,32 +90,24 @@ void write_solution(const std::string& path, const solution& s) {
   file.write_attribute("manifest", s.manifest);
   file.write_attribute("t", s.t);
   file.write_attribute("step", static_cast<double>(s.step));
-  if (!s.f.empty()) file.write("f", s.f, {s.cells, s.components}, "unknowns");
+  const auto& axes = s.fields.axes;
+  if (!s.f.empty()) file.write("f", s.f, with(mesh_shape(axes), s.components), "unknowns");
+  write_points(file, s.points, s.components, precision::float64, s.fields.unit_of_x);
   write_velocities(file, s.velocities);
-  if (!s.f.empty()) write_marginals(file, s.f, s.cells, s.velocities, precision::float64);
-  const field_series& fields = s.fields;
-  constexpr auto doubles = precision::float64;
-  if (!fields.x.empty()) file.write("x", fields.x, {s.cells}, "cell centre", doubles, fields.unit_of_x);
-  if (!s.epsilon.empty()) file.write("epsilon", s.epsilon, {s.epsilon.size()}, "Knudsen number");
-  const auto& snapshots = fields.snapshots;
-  const auto unit = [&fields](std::size_t k) {
-    return fields.units.empty() ? "dimensionless" : fields.units[k];
-  };
-  for (std::size_t k = 0; k < fields.names.size() && !snapshots.empty(); ++k)
-    file.write("fields/" + fields.names[k], snapshots.back().values[k], {s.cells}, fields.labels[k], doubles,
-               unit(k));
-  if (snapshots.size() > 1) {
-    std::vector<double> times;
-    for (const auto& snapshot : snapshots) times.push_back(snapshot.t);
-    file.write("snapshots/t", times, {times.size()}, "time", doubles, fields.unit_of_t);
-    for (std::size_t k = 0; k < fields.names.size(); ++k) {
-      std::vector<double> all;
-      for (const auto& snapshot : snapshots)
-        all.insert(all.end(), snapshot.values[k].begin(), snapshot.values[k].end());
-      file.write("snapshots/" + fields.names[k], all, {snapshots.size(), s.cells}, fields.labels[k], doubles,
-                 unit(k));
-    }
-  }
+  if (!s.f.empty()) write_marginals(file, s.f, axes, s.velocities, precision::float64);
+  write_coordinates(file, "", axes, s.fields.unit_of_x);
+  if (!s.epsilon.empty()) file.write("epsilon", s.epsilon, mesh_shape(axes), "Knudsen number");
+  write_geometry(file, s.fields);
+  write_series(file, s.fields);
+  file.close();
+}
+
+void write_fields(const std::string& path, const std::string& title, const field_series& fields) {
+  hdf5_file file = hdf5_file::create(path);
+  file.write_attribute("title", title);
+  write_coordinates(file, "", fields.axes, fields.unit_of_x);
+  write_geometry(file, fields);
+  write_series(file, fields);
   file.close();
 }
 
@@ -65,10 +115,13 @@ void write_distribution(const std::string& path, const distribution_snapshot& s,
   hdf5_file file = hdf5_file::create(path);
   file.write_attribute("t", s.t);
   file.write_attribute("step", static_cast<double>(s.step));
-  file.write("f", s.f, {s.cells, s.components}, "unknowns", stored);
+  if (!s.f.empty()) file.write("f", s.f, with(mesh_shape(s.axes), s.components), "unknowns", stored);
+  write_points(file, s.points, s.components, stored, "dimensionless");
   write_velocities(file, s.velocities);
-  write_marginals(file, s.f, s.cells, s.velocities, stored);
-  if (!s.x.empty()) file.write("x", s.x, {s.x.size()}, "cell centre");
+  if (!s.f.empty()) {
+    write_marginals(file, s.f, s.axes, s.velocities, stored);
+    write_coordinates(file, "", s.axes, "dimensionless");
+  }
   file.close();
 }
 

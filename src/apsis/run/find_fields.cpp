@@ -1,6 +1,7 @@
 #include <apsis/run/find_fields.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -83,6 +84,18 @@ void add_gradient_fields(const run_setup& setup, const field& u, std::size_t usu
   }
 }
 
+void add_centres(const run_setup& setup, field_table& table) {
+  const grid& mesh = setup.mesh();
+  table.x = setup.centres();
+  const std::array further = {&table.y, &table.z};
+  for (int direction = 0; direction < mesh.dimensions(); ++direction) {
+    table.shape.push_back(mesh.cells(direction));
+    if (direction == 0) continue;
+    std::vector<double>& centres = *further.at(static_cast<std::size_t>(direction) - 1);
+    for (int cell = 0; cell < mesh.size(); ++cell) centres.push_back(mesh.centre(cell, direction));
+  }
+}
+
 }  // namespace
 
 field_table find_fields(const run_setup& setup, const field& u) {
@@ -92,7 +105,7 @@ field_table find_fields(const run_setup& setup, const field& u) {
   add_names(table, equation.fields());
   const std::size_t usual = table.names.size();
   if (names_one_of(wanted, equation.further_fields())) add_names(table, equation.further_fields());
-  table.x = setup.centres();
+  add_centres(setup, table);
   table.values.assign(table.names.size(), {});
   std::vector<double> values(table.names.size());
   for (int cell = 0; cell < u.cells(); ++cell) {

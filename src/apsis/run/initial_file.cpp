@@ -44,7 +44,9 @@ class reader {
     } else {
       equilibrium = make_rows(rows);
     }
-    if (equation_.space_dimensions() > 0)
+    if (equation_.space_dimensions() > 1)
+      source_.check_cells(make_mesh(config_), rows.cells);
+    else if (equation_.space_dimensions() > 0)
       set_ends(rows);
     else if (rows.cells != 1)
       source_.refuse(fmt::format("it has {} rows (the model has no space); give one", rows.cells));
@@ -131,12 +133,33 @@ field copied(const line_rows& rows) {
   return u;
 }
 
+/// The rows of the file on the mesh of the case, in several dimensions, with the regions of the case above
+/// them.
+state_of_file on_the_same_mesh(const case_config& config, const model& equation,
+                               const problem_builder& builder, const line_rows& rows, bool equilibrium) {
+  if (config.prescribed.regions.empty()) return {copied(rows), !equilibrium};
+  const grid& mesh = builder.mesh();
+  const prescribed_data data(
+      config, equation, [&config](const std::string& path) { return place_of(config, path); },
+      [&](const position& x, std::span<double> u) {
+        int cell = 0;  // point values are sampled at centres alone
+        for (int k = 0; k < mesh.dimensions(); ++k)
+          cell += mesh.stride(k) *
+                  std::clamp(static_cast<int>((x[size(k)] - mesh.centre(0, k)) / mesh.spacing(k) + 0.5), 0,
+                             mesh.cells(k) - 1);
+        std::copy_n(rows.values.begin() + static_cast<std::ptrdiff_t>(cell) * rows.components,
+                    rows.components, u.begin());
+      });
+  return {builder.sample([&data](const position& x, std::span<double> u) { data(x, u); }, {}), false};
+}
+
 }  // namespace
 
 state_of_file sample_initial_file(const case_config& config, const model& equation,
                                   const problem_builder& builder) {
   const grid& mesh = builder.mesh();
   const auto [rows, equilibrium] = reader(config, equation).read();
+  if (mesh.dimensions() > 1) return on_the_same_mesh(config, equation, builder, rows, equilibrium);
   const bool on_line = builder.has_space();
   const bool same_mesh =
       !on_line ||

@@ -4,6 +4,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/core/text_file.hpp>
 #include <apsis/output/case_json.hpp>
+#include <apsis/output/mesh_axis.hpp>
 #include <apsis/output/velocity_axes.hpp>
 
 #include <algorithm>
@@ -31,6 +32,12 @@ nlohmann::ordered_json at(const nlohmann::ordered_json& object, std::initializer
     found = &(*found)[name];
   }
   return *found;
+}
+
+/// The cells of a dataset [cells…][components] as in a case: a number, or a list.
+nlohmann::ordered_json cells_as_value(const hdf5_file::shape& extents) {
+  if (extents.size() == 2) return extents.front();
+  return std::vector<std::uint64_t>(extents.begin(), extents.end() - 1);
 }
 
 bool is_hdf5(const std::string& path) {
@@ -160,21 +167,69 @@ void initial_table_file::read_fields(const hdf5_file& file) {
     const std::string column = in_group ? name.substr(group.size()) : name;
     if (column.find('/') != std::string::npos || not_columns.contains(column)) continue;
     const auto shape = file.extents(name);
-    if (shape.size() != (earlier && in_group ? 2U : 1U)) continue;
+    if (shape.size() != mesh_rank() + (earlier && in_group ? 1U : 0U)) continue;
     if (earlier && in_group && shape[0] != times.size())
       refuse(fmt::format("'{}' has {} snapshots of {} (damaged file); give another file", name, shape[0],
                          times.size()));
     std::vector<double> values = file.read(name);
     if (earlier && in_group) {
-      const auto cells = static_cast<std::ptrdiff_t>(shape[1]);
+      const auto cells = static_cast<std::ptrdiff_t>(values.size() / shape[0]);
       const auto first = values.begin() + static_cast<std::ptrdiff_t>(*earlier) * cells;
       values = std::vector<double>(first, first + cells);
     }
     columns_[column] = std::move(values);
     units_[column] = file.units(name);
   }
+  expand_coordinates(file);
   if (!earlier) return read_state(file);
   read_snapshot_of_state(times[*earlier]);
+}
+
+/// Dimensions of the datasets with a number for each cell.
+std::size_t initial_table_file::mesh_rank() const {
+  return static_cast<std::size_t>(std::max(equation_.space_dimensions(), 1));
+}
+
+/// In several dimensions the file has a coordinate for each axis: repeats them for every cell.
+void initial_table_file::expand_coordinates(const hdf5_file& file) {
+  if (mesh_rank() < 2) return;
+  std::vector<mesh_axis> axes;
+  for (std::size_t k = 0; k < mesh_rank(); ++k) {
+    const std::string name(1, "xyz"[k]);
+    if (!file.has(name)) return;
+    axes.push_back({name, file.read(name)});
+    units_[name] = file.units(name);
+  }
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    std::vector<double>& column = columns_[axes[k].name];
+    column.clear();
+    for (std::size_t cell = 0; cell < mesh_size(axes); ++cell)
+      column.push_back(centre_of_cell(axes, cell, k));
+  }
+}
+
+void initial_table_file::check_cells(const grid& mesh, int rows) const {
+  if (rows != mesh.size())
+    refuse(
+        fmt::format("it has {} cells and the case {} (in several space dimensions data are not "
+                    "interpolated); use its space.cells and space.domain",
+                    rows, mesh.size()));
+  constexpr double digits = 1e-2;  // of a cell, for centres written with few digits
+  for (int k = 0; k < mesh.dimensions(); ++k) {
+    const std::string name(1, "xyz"[k]);
+    if (!columns_.contains(name))
+      refuse(fmt::format("it has no column '{}' (centres of the cells); add it", name));
+    const std::vector<double> centres = column({name}, dimensions::length);
+    for (int cell = 0; cell < mesh.size(); ++cell) {
+      const double found = centres[static_cast<std::size_t>(cell)], wanted = mesh.centre(cell, k);
+      if (std::abs(found - wanted) > digits * mesh.spacing(k))
+        refuse(
+            fmt::format("{} = {:.10g} in {} (the cell of the case there has {:.10g}; in several space "
+                        "dimensions data are not interpolated); use its space.cells and space.domain, "
+                        "with x slowest",
+                        name, found, place_of_row(static_cast<std::size_t>(cell)), wanted));
+    }
+  }
 }
 
 void initial_table_file::read_state(const hdf5_file& file) {
@@ -199,17 +254,19 @@ void initial_table_file::read_snapshot_of_state(double t) {
     const hdf5_file file = hdf5_file::open(entry.path().string());
     const auto cells = at(manifest_, {"case", "space", "cells"});
     const double wanted = t * unit;
-    if (std::abs(file.read_attribute("t") - wanted) > 1e-12 * (1.0 + std::abs(wanted)) ||
-        file.stored("f") != precision::float64 || file.extents("f").size() != 2 ||
-        cells != file.extents("f").front())
+    if (std::abs(file.read_attribute("t") - wanted) > 1e-12 * (1.0 + std::abs(wanted)) || !file.has("f") ||
+        file.stored("f") != precision::float64)
       continue;
+    const auto shape = file.extents("f");
+    if (shape.size() != mesh_rank() + 1 || cells != cells_as_value(shape)) continue;
     return read_state(file);
   }
 }
 
 bool initial_table_file::same_unknowns(const hdf5_file& file) const {
   const auto shape = file.extents("f");
-  if (shape.size() != 2 || shape[1] != static_cast<std::uint64_t>(equation_.components())) return false;
+  if (shape.size() != mesh_rank() + 1 || shape.back() != static_cast<std::uint64_t>(equation_.components()))
+    return false;
   const velocity_set& mine = equation_.velocities();
   if (mine.dimensions() > 0 && (!file.has("v") || file.read("v") != velocity_points(mine))) return false;
   if (manifest_.is_null()) return true;

@@ -45,6 +45,10 @@ class initial_table_file {
   /// Returns the ends: those of the domain of a result, or from the centres `x`, which must be equidistant.
   line_ends ends(int cells) const;
 
+  /// Checks in several space dimensions that the rows are those of the cells of a mesh, by the columns x, y
+  /// and z of their centres.
+  void check_cells(const grid& mesh, int rows) const;
+
   /// Returns "line 7" or "cell 5", for messages.
   std::string place_of_row(std::size_t row) const;
   /// Throws input_error with the place of the key and "initial.file = 'FILE' cannot be used: problem".
@@ -57,6 +61,8 @@ class initial_table_file {
   void read_state(const hdf5_file& file);
   void read_fields(const hdf5_file& file);
   void read_snapshot_of_state(double t);
+  void expand_coordinates(const hdf5_file& file);
+  std::size_t mesh_rank() const;
   void take_manifest(const std::string& text);
   bool same_unknowns(const hdf5_file& file) const;
   std::size_t chosen(const std::vector<double>& times) const;

@@ -15,6 +15,20 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
+/// Returns numbers in row-major order as nested lists of a shape.
+json nested(const std::vector<double>& values, const std::vector<std::uint64_t>& shape) {
+  std::vector<json> items(values.begin(), values.end());
+  for (std::size_t k = shape.size(); k-- > 1;) {
+    std::vector<json> outer;
+    for (std::size_t first = 0; first < items.size(); first += shape[k]) {
+      const auto begin = items.begin() + static_cast<std::ptrdiff_t>(first);
+      outer.emplace_back(json::array_t(begin, begin + static_cast<std::ptrdiff_t>(shape[k])));
+    }
+    items = std::move(outer);
+  }
+  return items;
+}
+
 json numbers(const simulation& run) {
   const run_summary s = run.summary();
   json out;
@@ -32,7 +46,9 @@ void add_units(json& out, const simulation& run) {
   if (!scales) return;
   out["scales"] = apsis::to_json(*scales);
   if (!result_units(run.config()).are_si()) return;
-  json names = {{"x", unit_of(dimensions::length)}};
+  json names = json::object();
+  for (int k = 0; k < run.mesh().dimensions(); ++k)
+    names[std::string(1, "xyz"[k])] = unit_of(dimensions::length);
   for (const auto& [column, measure] : history_measures(run)) names[column] = unit_of(measure);
   const field_table fields = run.fields();
   for (std::size_t k = 0; k < fields.names.size(); ++k) names[fields.names[k]] = unit_of(fields.measures[k]);
@@ -60,10 +76,11 @@ json to_json(const simulation& run, const run_records& records) {
   out.update(numbers(run));
   json fields = json::object();
   const field_series series = result_units(run.config()).convert(records.fields());
-  if (!series.x.empty()) fields["x"] = series.x;
+  for (const auto& axis : series.axes) fields[axis.name] = axis.centres;
+  const auto shape = mesh_shape(series.axes);
   if (!series.snapshots.empty())
     for (std::size_t k = 0; k < series.names.size(); ++k)
-      fields[series.names[k]] = series.snapshots.back().values[k];
+      fields[series.names[k]] = nested(series.snapshots.back().values[k], shape);
   out["fields"] = fields;
   add_units(out, run);
   return out;

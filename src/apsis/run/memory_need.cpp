@@ -5,12 +5,16 @@
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/phase/field.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace apsis {
 namespace {
+
+constexpr int fewest_points = 4;  ///< of velocity.points
 
 int buffers_of(const run_setup& setup) {
   const method& m = setup.integrator();
@@ -21,28 +25,104 @@ int buffers_of(const run_setup& setup) {
 }
 
 std::string in_units(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(bytes / 1e3));
   return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
+}
+
+/// The list as in a case file: "40" or "[16, 12]".
+std::string as_value(const std::vector<int>& numbers) {
+  return numbers.size() == 1 ? fmt::format("{}", numbers.front())
+                             : fmt::format("[{}]", fmt::join(numbers, ", "));
+}
+
+double product(const std::vector<int>& numbers) {
+  double all = 1.0;
+  for (const int n : numbers) all *= n;
+  return all;
+}
+
+/// Returns the numbers multiplied by a factor ≤ 1 and rounded down, but at least `lowest`.
+std::vector<int> scaled(std::vector<int> numbers, double factor, int lowest) {
+  for (int& n : numbers) n = std::max(lowest, static_cast<int>(std::floor(n * factor)));
+  return numbers;
+}
+
+std::string advice(const memory_need& need, double limit) {
+  std::vector<std::string> sizes;
+  if (const auto cells = need.cells_that_fit(limit); !cells.empty())
+    sizes.push_back("space.cells = " + as_value(cells));
+  if (const auto points = need.points_that_fit(limit); !points.empty())
+    sizes.push_back("velocity.points = " + as_value(points));
+  return sizes.empty()
+             ? "use fewer cells or velocities"
+             : fmt::format("use fewer cells or velocities: {} would fit", fmt::join(sizes, ", or "));
 }
 
 }  // namespace
 
+memory_need::memory_need(const case_config& config, const run_setup& setup, int copies)
+    : components_(setup.equation->components()),
+      velocity_dimensions_(setup.equation->velocities().dimensions()),
+      buffers_(buffers_of(setup)),
+      copies_(copies),
+      snapshots_(1.0 + (config.output.every > 0.0 ? config.time.end / config.output.every : 0.0)),
+      fields_(static_cast<double>(config.output.fields.empty() ? setup.equation->fields().size()
+                                                               : config.output.fields.size())),
+      method_(setup.integrator().name) {
+  if (setup.has_space()) shape_ = config.space.cells;
+  cells_ = product(shape_);
+  const auto& points = config.velocity.points;
+  if (points > 0 && velocity_dimensions_ > 0) points_ = points.each();
+}
+
+double memory_need::bytes(double cells, double components) const {
+  const double padded = buffers_ * field::padded(static_cast<int>(std::min(components, 1e9)));
+  return sizeof(double) * cells * (padded + copies_ * components + snapshots_ * fields_);
+}
+
+std::string memory_need::unknowns() const {
+  const std::string of_cell = fmt::format("{:.0f} unknowns", components_);
+  return shape_.empty() ? of_cell : fmt::format("{} cells x {}", fmt::join(shape_, " x "), of_cell);
+}
+
+std::string memory_need::text() const {
+  return fmt::format("{} of memory ({})", in_units(bytes()), unknowns());
+}
+
+std::string memory_need::details() const {
+  return fmt::format(
+      "{} of memory ({} in {} buffers of method '{}', {} copies for results, {:.0f} snapshots of the fields)",
+      in_units(bytes()), unknowns(), buffers_, method_, copies_, snapshots_);
+}
+
+std::vector<int> memory_need::cells_that_fit(double limit) const {
+  if (shape_.empty() || !(limit > 0.0)) return {};
+  const double share = limit / bytes(1.0, components_) / cells_;
+  const double factor = std::min(1.0, std::pow(share, 1.0 / static_cast<double>(shape_.size())));
+  std::vector<int> cells = scaled(shape_, factor, 1);
+  return bytes(product(cells), components_) <= limit ? cells : std::vector<int>{};
+}
+
+std::vector<int> memory_need::points_that_fit(double limit) const {
+  if (points_.empty() || !(limit > 0.0)) return {};
+  const double of_each = points_.size() > 1 ? 1.0 : velocity_dimensions_;
+  const double sets = components_ / std::pow(product(points_), of_each);
+  std::vector<int> best;
+  // The number of components is not linear in the memory: rows are padded.
+  for (int most = *std::max_element(points_.begin(), points_.end()); most >= fewest_points; --most) {
+    const double factor = static_cast<double>(most) / *std::max_element(points_.begin(), points_.end());
+    best = scaled(points_, factor, fewest_points);
+    if (bytes(cells_, sets * std::pow(product(best), of_each)) <= limit) return best;
+  }
+  return {};
+}
+
 void check_memory(const case_config& config, const run_setup& setup, int copies) {
-  const double cells = setup.has_space() ? make_mesh(config).size() : 1.0;
-  const int components = setup.equation->components(), buffers = buffers_of(setup);
-  const double state = cells * sizeof(double);
-  const double snapshots = 1.0 + (config.output.every > 0.0 ? config.time.end / config.output.every : 0.0);
-  const auto fields = static_cast<double>(config.output.fields.empty() ? setup.equation->fields().size()
-                                                                       : config.output.fields.size());
-  const double needed =
-      state * (buffers * field::padded(components) + copies * components + snapshots * fields);
+  const memory_need need(config, setup, copies);
   const memory_limit limit = available_memory();
-  if (needed <= limit.bytes) return;
-  const std::string message = fmt::format(
-      "the run needs at least {} of memory and {} are left ({:.0f} cells x {} unknowns in {} buffers of "
-      "method "
-      "'{}', {} copies for results, {:.0f} snapshots of the fields; {}); use fewer cells or velocities",
-      in_units(needed), in_units(limit.bytes), cells, components, buffers, setup.integrator().name, copies,
-      snapshots, limit.source);
+  if (need.bytes() <= limit.bytes) return;
+  const std::string message = fmt::format("the run needs at least {}, and {} are left ({}); {}", need.text(),
+                                          in_units(limit.bytes), limit.source, advice(need, limit.bytes));
   const auto place = config.places.find("space.cells");
   if (place == config.places.end()) throw input_error(message);
   throw input_error(place->second, message);

@@ -2,11 +2,46 @@
 
 #include <apsis/run/setup.hpp>
 
+#include <string>
+#include <vector>
+
 namespace apsis {
 
-/// Throws input_error, before anything large is allocated, if the buffers of a step, `copies` additional
-/// copies of the state and the snapshots of the fields exceed the available memory (available_memory).
-/// Smaller allocations are not counted, so that a case that fits is never refused.
+/// The large allocations of a run: buffers of a step, copies of the state for results, and snapshots of the
+/// fields. Smaller ones are not counted, so that a case that fits is never refused.
+class memory_need {
+ public:
+  /// Counts those of a case with `copies` copies of the state.
+  memory_need(const case_config& config, const run_setup& setup, int copies);
+
+  /// Returns the number of bytes.
+  double bytes() const { return bytes(cells_, components_); }
+  /// Returns "1.2 GB of memory (16 x 12 cells x 144 unknowns)".
+  std::string text() const;
+  /// Returns the same with the numbers of buffers, copies and snapshots.
+  std::string details() const;
+
+  /// Returns the largest space.cells of the same shape that fits into `limit` bytes; empty if none does.
+  std::vector<int> cells_that_fit(double limit) const;
+  /// Returns the largest velocity.points of the same shape that fit into `limit` bytes; empty if fewer than 4
+  /// would, or the case has none.
+  std::vector<int> points_that_fit(double limit) const;
+
+ private:
+  double bytes(double cells, double components) const;
+  std::string unknowns() const;
+
+  std::vector<int> shape_,           ///< cells in each direction; empty without space
+      points_;                       ///< velocities of each direction, or of all; empty without
+  double cells_ = 1.0, components_;  ///< in all
+  int velocity_dimensions_ = 0, buffers_, copies_;
+  double snapshots_, fields_;
+  std::string method_;
+};
+
+/// Throws input_error at the place of space.cells, with the numbers of cells and of velocities that would
+/// fit, before anything large is allocated, if a run needs more than the available memory
+/// (available_memory).
 void check_memory(const case_config& config, const run_setup& setup, int copies);
 
 }  // namespace apsis

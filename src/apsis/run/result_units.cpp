@@ -27,7 +27,7 @@ std::string result_units::suffix(const dimension& measure) const {
 
 field_series result_units::convert(field_series fields) const {
   if (!are_si()) return fields;
-  multiply(fields.x, factor(dimensions::length));
+  for (auto& axis : fields.axes) multiply(axis.centres, factor(dimensions::length));
   fields.unit_of_x = unit_of(dimensions::length);
   fields.unit_of_t = unit_of(dimensions::time);
   fields.units.clear();

@@ -7,6 +7,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/run/memory_need.hpp>
+#include <apsis/run/probe_files.hpp>
 #include <apsis/run/result_units.hpp>
 
 #include <algorithm>
@@ -33,10 +34,11 @@ std::vector<distribution_file> distribution_files(const result_folder& folder, d
   std::vector<distribution_file> files;
   for (const auto& path : folder.files_of_series(snapshots)) {
     const hdf5_file file = hdf5_file::open(path.string());
-    const auto extents = file.extents("f");
+    if (!file.has("f") || !file.has("x") || !file.has("v")) continue;  // f of chosen cells, or without axes
+    auto extents = file.extents("f");
+    extents.pop_back();
     files.push_back({std::string(snapshots) + "/" + path.filename().string(),
-                     file.read_attribute("t") * unit_of_time, extents.at(0), extents.at(1),
-                     file.has("x") && file.has("v"), file.stored("f")});
+                     file.read_attribute("t") * unit_of_time, extents, file.stored("f")});
   }
   return files;
 }
@@ -49,9 +51,13 @@ constexpr long many_steps = 100'000'000;
       saved.cells, saved.components, cells, components));
 }
 
-/// Returns the case if the state, its checkpoint and solution.h5 fit into memory together.
+/// Returns the case if the state and, for results, its checkpoint and solution.h5 fit into memory together;
+/// reports what it needs.
 case_config with_room_for_results(case_config config, const session_options& options) {
-  if (options.out) check_memory(config, run_setup(config), 2);
+  const run_setup setup(config);
+  const int copies = options.out ? 2 : 0;
+  check_memory(config, setup, copies);
+  log::info(fmt::format("{}: needs {}", config.source, memory_need(config, setup, copies).text()));
   return config;
 }
 
@@ -137,6 +143,8 @@ run_session::run_session(const case_config& configured, session_options options)
     resume_snapshots(*options_.restart);
   else if (simulation_.step() == 0 && config.output.every > 0.0)
     write_distribution_snapshot();
+  if (const auto& output = config.output; !folder_ && !(output.probes.empty() && output.slices.empty()))
+    log::warning("no probes and slices are written (they need a folder); give one with --out");
   if (!folder_ && config.output.checkpoint_every > 0)
     log::warning("no checkpoints are written (output.checkpoint_every needs a folder); give one with --out");
   if (config.output.distribution == distribution_choice::snapshots && !(folder_ && config.output.every > 0.0))
@@ -197,7 +205,7 @@ void run_session::take_snapshot() {
 void run_session::write_distribution_snapshot() {
   const auto& output = simulation_.config().output;
   if (!folder_ || output.distribution != distribution_choice::snapshots) return;
-  const distribution_snapshot now = make_distribution_snapshot(simulation_, output.stride);
+  const distribution_snapshot now = make_distribution_snapshot(simulation_);
   folder_->add_to_series(snapshots, fmt::format("f-{:09}.h5", now.step), [&](const std::string& path) {
     write_distribution(path, now, stored_precision(simulation_.config()));
   });
@@ -283,6 +291,7 @@ void run_session::write_results(result_folder& folder, run_end end, const std::s
   folder.prepare_text("history.csv",
                       to_csv(units.convert(shown_->history(), simulation_), {"step", "negative_values"}));
   folder.prepare_text("fields.csv", to_csv(to_table(final_state.fields)));
+  write_probes(simulation_.config(), final_state.fields, units.factor(dimensions::length), folder);
   folder.prepare("solution.h5", [&](const std::string& path) { write_solution(path, final_state); });
   folder.prepare_text("solution.xdmf",
                       solution_xdmf(final_state, distribution_files(folder, units.factor(dimensions::time))));

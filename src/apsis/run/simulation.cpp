@@ -157,6 +157,7 @@ struct simulation::impl {
 namespace {
 std::vector<double> without_padding(const field& u) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(u.cells()) * static_cast<std::size_t>(u.components()));
   for (int cell = 0; cell < u.cells(); ++cell)
     values.insert(values.end(), u.row(cell), u.row(cell) + u.components());
   return values;
@@ -258,6 +259,12 @@ field_table simulation::fields() const {
 bool simulation::has_space() const {
   return impl_->setup.has_space();
 }
+const grid& simulation::mesh() const {
+  return impl_->setup.mesh();
+}
+bool simulation::periodic(int direction) const {
+  return impl_->setup.periodic(direction);
+}
 int simulation::cells() const {
   return impl_->state.cells();
 }
@@ -267,6 +274,10 @@ int simulation::components() const {
 
 std::vector<double> simulation::state() const {
   return without_padding(impl_->state);
+}
+
+std::span<const double> simulation::row(int cell) const {
+  return {impl_->state.row(cell), static_cast<std::size_t>(components())};
 }
 
 std::vector<double> simulation::exact_state() const {

@@ -2,12 +2,14 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/phase/field.hpp>
+#include <apsis/phase/grid.hpp>
 #include <apsis/phase/velocity_set.hpp>
 #include <apsis/run/run_state.hpp>
 
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,13 +24,16 @@ struct run_promises {
   std::string text() const;   ///< returns one line for the log
 };
 
-/// Macroscopic fields on the mesh at one time: values[field][cell].
+/// Macroscopic fields on the mesh at one time: values[field][cell], the last direction of space fastest.
 struct field_table {
-  std::vector<double> x;                    ///< cell centres; {0} without space
+  std::vector<double> x;                    ///< of the centre of every cell; {0} without space
   std::vector<std::string> names,           ///< field names: "rho"
       labels;                               ///< for plots: "density (dimensionless)"
   std::vector<std::vector<double>> values;  ///< [field][cell]
   std::vector<dimension> measures = {};     ///< dimensions in units of a gas
+  std::vector<double> y = {},               ///< of the centre of every cell; empty in one dimension
+      z = {};                               ///< of the centre of every cell; empty in fewer than three
+  std::vector<int> shape = {};              ///< number of cells along x, y, z; {1} without space
 };
 
 class run_setup;
@@ -76,11 +81,15 @@ class simulation {
   const step_record& last() const;  ///< record of the last step, or of the initial state
   run_summary summary() const;      ///< totals of all steps so far
 
-  field_table fields() const;         ///< macroscopic fields of the current state
-  bool has_space() const;             ///< whether the model has a mesh
-  int cells() const;                  ///< number of cells; 1 without space
-  int components() const;             ///< unknowns per cell
-  std::vector<double> state() const;  ///< [cells][components], contiguous
+  field_table fields() const;          ///< macroscopic fields of the current state
+  bool has_space() const;              ///< whether the model has a mesh
+  const grid& mesh() const;            ///< the mesh; a single cell without space
+  bool periodic(int direction) const;  ///< whether both ends of the mesh along a direction are periodic
+  int cells() const;                   ///< number of cells; 1 without space
+  int components() const;              ///< unknowns per cell
+  std::vector<double> state() const;   ///< [cells][components], contiguous
+  /// Returns the unknowns of a cell, valid until the next step.
+  std::span<const double> row(int cell) const;
   /// Returns the exact solution at t() in the form of state(); empty if no formula is known.
   std::vector<double> exact_state() const;
   const velocity_set& velocities() const;  ///< velocities of the components; empty without space

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <apsis/config/output_tables.hpp>
+#include <apsis/output/field_series.hpp>
+#include <apsis/output/table.hpp>
+
+namespace apsis {
+
+/// Returns the fields along a line: a row for each point with columns s (distance from the first point), the
+/// coordinates and the fields, preceded by t if there are several snapshots. The fields are interpolated
+/// linearly in each direction between the centres of the cells, and extrapolated linearly in the outer half
+/// of the cells at the ends that are not periodic; next to a cell with NaN (inside a solid) the value of the
+/// nearer cell holds. The line is in the units of the axes.
+numeric_table to_table(const field_series& fields, const line_probe& line);
+
+/// Returns the fields on a plane, interpolated in the same way: a mesh with a single point along the normal.
+/// The plane is in the units of the axes.
+field_series slice_of(const field_series& fields, const plane_slice& plane);
+
+}  // namespace apsis

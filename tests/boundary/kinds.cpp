@@ -67,7 +67,7 @@ TEST(boundary, periodic_ghosts_wrap_even_when_wider_than_the_mesh) {
   const domain space = apsis::make_domain(grid::line(3, 0.0, 1.0), "periodic");
   const field u(3, 1);
   std::vector<const double*> rows;
-  space.pencil_rows(u, 0, 0, -4, 7, rows);
+  space.segment_rows(u, 0, 0, -4, 7, rows);
   for (int i = -4; i < 7; ++i)
     EXPECT_EQ(rows[static_cast<std::size_t>(i + 4)], u.row(((i % 3) + 3) % 3)) << i;
 }
@@ -76,7 +76,7 @@ TEST(boundary, outflow_ghosts_repeat_the_nearest_cell_inside) {
   const domain space = apsis::make_domain(grid::line(3, 0.0, 1.0), "outflow");
   const field u(3, 1);
   std::vector<const double*> rows;
-  space.pencil_rows(u, 0, 0, -4, 7, rows);
+  space.segment_rows(u, 0, 0, -4, 7, rows);
   const std::vector<int> inside = {0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2};
   for (std::size_t k = 0; k < rows.size(); ++k) EXPECT_EQ(rows[k], u.row(inside[k])) << k;
 }
@@ -101,8 +101,8 @@ TEST(boundary, computed_rows_give_the_results_of_repeated_rows) {
         for (int pencil = 0; pencil < mesh.pencils(direction); ++pencil) {
           const int n = mesh.cells(direction);
           std::vector<const double*> a, b;
-          repeated.pencil_rows(u, direction, pencil, -4, n + 4, a);
-          computed.pencil_rows(u, direction, pencil, -4, n + 4, b);
+          repeated.segment_rows(u, direction, pencil, -4, n + 4, a);
+          computed.segment_rows(u, direction, pencil, -4, n + 4, b);
           for (std::size_t i = 0; i < a.size(); ++i)
             EXPECT_EQ(std::vector<double>(a[i], a[i] + 9), std::vector<double>(b[i], b[i] + 9))
                 << name << " " << mesh.dimensions() << " " << direction << " " << pencil << " " << i;
@@ -119,7 +119,7 @@ TEST(boundary, receives_face_time_and_position_of_every_pencil) {
   space.fill_ghosts(0.25, u);
   const auto ghost = [&](int direction, int pencil, int i) {
     std::vector<const double*> rows;
-    space.pencil_rows(u, direction, pencil, i, i + 1, rows);
+    space.segment_rows(u, direction, pencil, i, i + 1, rows);
     return std::vector<double>(rows[0], rows[0] + 7);
   };
   // Cells are numbered with the last direction fastest: (x, y) is cell 3x + y, its row begins with 100 (3x +

@@ -86,7 +86,7 @@ TEST(symmetry, ghost_rows_are_mirror_images_at_both_faces) {
   space.reserve(3, 3);
   space.fill_ghosts(0.0, u);
   std::vector<const double*> rows;
-  space.pencil_rows(u, 0, 0, -3, 7, rows);
+  space.segment_rows(u, 0, 0, -3, 7, rows);
   const auto row = [&](int i) {
     return std::vector<double>(rows[static_cast<std::size_t>(i + 3)],
                                rows[static_cast<std::size_t>(i + 3)] + 3);

@@ -131,7 +131,7 @@ const std::vector<bad_case> all = {
     {"unknown_parameter", "epsilon = 1e-2", "epsilon = 1e-2\ngamma = 1.4", "4:1",
      "unknown key 'model.gamma'"},
     {"parameter_out_of_range", "epsilon = 1e-2", "epsilon = 1e-2\nvelocity_dimensions = 7", "4:1",
-     "from 1 to 3"},
+     "from 0 to 3"},
     {"duplicate_key", "cells = 40", "cells = 40\ncells = 41", "7:", "not valid TOML"},
     {"no_value", "cells = 40", "cells = ", "6:", "not valid TOML"},
     {"open_string", "\"bgk\"", "\"bgk", "2:", "not valid TOML"},
@@ -155,11 +155,14 @@ TEST(bad_case, boundaries_of_ends_exist_and_are_periodic_in_pairs) {
       StartsWith("c.toml:19:1: 'boundary.left.kind' is the text 'outflow' (only one of the two ends is "
                  "periodic); write "));
   EXPECT_THAT(error_of(good + "[boundary.top]\nkind = \"outflow\"\n"),
-              StartsWith("c.toml:19:1: unknown key 'boundary.top.kind' (a face is a table [boundary.left] "
-                         "or [boundary.right]); valid: left, right"));
+              StartsWith("c.toml:19:1: key 'boundary.top.kind' is not used (the case has 1 space dimension); "
+                         "remove it"));
+  EXPECT_THAT(error_of(good + "[boundary.lift]\nkind = \"outflow\"\n"),
+              StartsWith("c.toml:19:1: unknown key 'boundary.lift.kind' (a face is a table [boundary.left], "
+                         "[boundary.right], …); did you mean 'left'?"));
   EXPECT_THAT(error_of(good + "[boundary]\nleft = \"outflow\"\n"),
-              StartsWith("c.toml:19:1: unknown key 'boundary.left' (a face is a table [boundary.left] or "
-                         "[boundary.right]); write [boundary.left]"));
+              StartsWith("c.toml:19:1: unknown key 'boundary.left' (a face is a table [boundary.left], "
+                         "[boundary.right], …); write [boundary.left]"));
 }
 
 TEST(bad_case, the_text_that_the_table_changes_is_valid) {

@@ -1,4 +1,4 @@
-"""A boundary, model, reconstruction, command, claim, case and method are one file each.
+"""A boundary, model, reconstruction, command, claim, quantity, case and method are one file each.
 
 The files of planted/ are laid over a copy of the sources, without a change to any other file; the program that is built
 from them lists and uses them all.
@@ -15,7 +15,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
 PARTS = ("CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "app", "cases", "cmake", "methods", "paper", "python",
-         "scripts", "src")
+         "scripts", "src", "validation")
 
 
 def output_of(*command: str, folder: str | None = None) -> str:
@@ -75,6 +75,10 @@ class OneFile(unittest.TestCase):
 
     def test_a_claim_is_reproduced(self):
         self.assertIn("C99", output_of(self.program, "reproduce", "C99", folder=self.folder.name))
+
+    def test_a_quantity_is_computed(self):
+        value = json.loads(output_of(self.program, "validate", "planted-density", "epsilon=0.2", "--json"))["value"]
+        self.assertAlmostEqual(value, 0.5, delta=2e-3)
 
 
 if __name__ == "__main__":

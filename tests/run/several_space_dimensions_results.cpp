@@ -1,6 +1,7 @@
 // Results in two and three space dimensions: layout of the files, chosen cells, initial data and memory.
 #include "cases_in_space.hpp"
 #include "support/folder.hpp"
+#include "xdmf_grids.hpp"
 
 #include <apsis/output/column_file.hpp>
 #include <apsis/output/hdf5_file.hpp>
@@ -8,6 +9,7 @@
 #include <apsis/run/memory_need.hpp>
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -202,4 +204,32 @@ TEST(results_in_space, are_initial_data_of_another_run_on_the_same_mesh) {
   EXPECT_THAT(refused({from, "space.cells=[8, 6]"}), HasSubstr("it has 42 cells and the case 48"));
   EXPECT_THAT(refused({from, "space.cells=[6, 7]"}), HasSubstr("use its space.cells and space.domain"));
   EXPECT_THAT(refused({from, "space.domain=[[0, 2], [-1, 1]]"}), HasSubstr("x = "));
+}
+
+TEST(results_in_space, around_a_solid_box_have_no_values_inside_and_start_another_run) {
+  const test_folder folder;
+  const std::vector<std::string> box = {"space.cells=[8, 6]", "space.solid.1.from=[0.25, -1]",
+                                        "space.solid.1.to=[0.5, 0]", "space.solid.1.T=1"};
+  std::vector<std::string> with_probe = box;
+  with_probe.emplace_back("output.probe.1.from=[0, -0.5]");
+  with_probe.emplace_back("output.probe.1.to=[1, -0.5]");
+  run_into(folder / "o", in_plane, with_probe);
+  const auto rho = hdf5_file::open(folder / "o/solution.h5").read("fields/rho");
+  for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t j = 0; j < 6; ++j)
+      EXPECT_EQ(std::isnan(rho[6 * i + j]), (i == 2 || i == 3) && j < 3) << i << " " << j;
+  const std::string probe = text_of(folder / "o/probes/probe-1.csv");
+  EXPECT_THAT(probe, HasSubstr("nan"));
+  std::vector<std::string> from = box;
+  from.push_back("initial.file=" + (folder / "o/solution.h5"));
+  const auto again = simulation(parse_case(in_plane, "case.toml", from)).fields();
+  for (std::size_t cell = 0; cell < 48; ++cell) {
+    EXPECT_EQ(std::isnan(again.values[0][cell]), std::isnan(rho[cell]));
+    if (!std::isnan(rho[cell])) {
+      EXPECT_EQ(again.values[0][cell], rho[cell]);
+    }
+  }
+  std::vector<std::string> inside = box;
+  inside.emplace_back("output.distribution_at=[[0.3, -0.9]]");
+  EXPECT_THAT(refusal(in_plane, inside), HasSubstr("has a point inside a solid ([0.3, -0.9])"));
 }

@@ -55,23 +55,29 @@ bool is_of_velocity(const std::string& kind, const model& equation, const std::s
                      [&](const data_variable& one) { return one.name == variable && one.of_velocity; });
 }
 
-std::shared_ptr<const boundary> make_face(const case_config& config, const model& equation,
-                                          const std::string& side, const face_table& table) {
-  face_quantities values;
-  for (const auto& [name, formulas] : table.values)
-    for (const auto& formula : formulas) {
-      const source_place at = place_of(config, fmt::format("boundary.{}.{}", side, name));
-      const bool of_velocity = is_of_velocity(kind_of(config, table), equation, name);
-      values[name].push_back(
-          compile(formula, at, config, equation, of_velocity ? equation.velocities().dimensions() : 0));
-    }
-  source_place place = place_of(config, "boundary." + side);
-  if (place.file.empty())  // not a table of the file
-    place = place_of(config, table.kind ? "boundary." + side + ".kind" : "space.boundary");
-  return at_place(place, [&] { return make_boundary(kind_of(config, table), equation, values); });
+}  // namespace
+
+std::vector<std::string> boundary_variables(const std::string& kind, const model& equation,
+                                            const source_place& place) {
+  return at_place(place, [&] { return variables_of(kind, equation); });
 }
 
-}  // namespace
+std::shared_ptr<const boundary> make_wall(const case_config& config, const model& equation,
+                                          const std::string& path, const std::string& kind,
+                                          const state_formulas& values) {
+  face_quantities compiled;
+  for (const auto& [name, formulas] : values)
+    for (const auto& formula : formulas) {
+      const source_place at = place_of(config, fmt::format("{}.{}", path, name));
+      const bool of_velocity = is_of_velocity(kind, equation, name);
+      compiled[name].push_back(
+          compile(formula, at, config, equation, of_velocity ? equation.velocities().dimensions() : 0));
+    }
+  source_place place = place_of(config, path);
+  if (place.file.empty())  // not a table of the file
+    place = place_of(config, config.places.contains(path + ".kind") ? path + ".kind" : "space.boundary");
+  return at_place(place, [&] { return make_boundary(kind, equation, compiled); });
+}
 
 void read_boundary_values(const case_text& text, const model& equation, case_config& config) {
   const std::string head = "boundary.";
@@ -98,7 +104,7 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
     if (name == "kind") continue;
     face_table& table = config.faces[index];
     const std::string& kind = kind_of(config, table);
-    auto names = at_place(raw.place, [&] { return variables_of(kind, equation); });
+    auto names = boundary_variables(kind, equation, raw.place);
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       names.emplace_back("kind");
       throw input_error(raw.place, fmt::format("unknown key '{}' (boundary '{}' has no such variable); {}",
@@ -110,9 +116,11 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
 
 std::vector<domain::faces> make_boundaries(const case_config& config, const model& equation) {
   std::vector<domain::faces> sides;
-  for (std::size_t k = 0; k < 2 * config.space.cells.size(); k += 2)
-    sides.push_back({make_face(config, equation, face_names[k], config.faces[k]),
-                     make_face(config, equation, face_names[k + 1], config.faces[k + 1])});
+  const auto made = [&](std::size_t k) {
+    const face_table& table = config.faces[k];
+    return make_wall(config, equation, "boundary." + face_names[k], kind_of(config, table), table.values);
+  };
+  for (std::size_t k = 0; k < 2 * config.space.cells.size(); k += 2) sides.push_back({made(k), made(k + 1)});
   return sides;
 }
 

@@ -3,6 +3,8 @@
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_text.hpp>
 
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace apsis {
@@ -11,6 +13,17 @@ namespace apsis {
 /// Throws input_error at the place of a key: no such side, a variable that the kind does not have, no
 /// formula, or a model that cannot have the kind.
 void read_boundary_values(const case_text& text, const model& equation, case_config& config);
+
+/// Returns the names of the variables of a kind of boundary. Throws input_error at a place if there is no
+/// such kind, or the model cannot have it.
+std::vector<std::string> boundary_variables(const std::string& kind, const model& equation,
+                                            const source_place& place);
+
+/// Returns the boundary of a kind with formulas for its variables, which are the keys "path.NAME". Throws
+/// input_error at the place of the table or the formula that is wrong.
+std::shared_ptr<const boundary> make_wall(const case_config& config, const model& equation,
+                                          const std::string& path, const std::string& kind,
+                                          const state_formulas& values);
 
 /// Returns the boundaries at both ends of every direction. Throws input_error at the place of the table or
 /// the formula that is wrong.

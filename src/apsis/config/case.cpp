@@ -6,6 +6,7 @@
 #include <apsis/config/case_text.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/quantity.hpp>
+#include <apsis/config/solid_reader.hpp>
 #include <apsis/core/embedded.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/core/text_file.hpp>
@@ -53,7 +54,8 @@ override_form form_of(const std::string& path, const std::string& value) {
   if (is_output_table(path))
     return {path.ends_with(".name") || path.ends_with(".normal"), "write for example 0.5 or [0.5, 0.2]"};
   const bool list = is_list(path);
-  const bool may_be_list = list || path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0;
+  const bool may_be_list = list || path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0 ||
+                           path.rfind("space.solid.", 0) == 0;
   const bool bracket = may_be_list && value.find('[') == 0;
   return {!bracket, type_advice(list && bracket ? key_type::text_list : key_type::text)};
 }
@@ -182,7 +184,8 @@ grid make_mesh(const case_config& config) {
     lower[k] = config.space.domain.at(k)[0];
     upper[k] = config.space.domain.at(k)[1];
   }
-  return {static_cast<int>(config.space.cells.size()), cells, lower, upper};
+  const grid mesh(static_cast<int>(config.space.cells.size()), cells, lower, upper);
+  return config.solids.empty() ? mesh : mesh.with_solids(solid_boxes(config, mesh));
 }
 
 std::vector<std::string> case_names() {

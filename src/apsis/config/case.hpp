@@ -25,6 +25,14 @@ struct face_table {
   state_formulas values;            ///< of the variables of the kind, formulas in t and the position
 };
 
+/// A table [[space.solid]]: a solid box and its wall.
+struct solid_table {
+  std::string name;              ///< in the history of what its walls receive
+  std::vector<double> from, to;  ///< its corners, on edges of cells
+  std::string kind = "diffuse";  ///< boundary condition at its faces
+  state_formulas values;         ///< of the variables of the kind, formulas in t and the position
+};
+
 /// A resolved case: every key has a value, every name exists. Keys are documented in case_keys.cpp (`apsis
 /// show case`).
 struct case_config {
@@ -60,6 +68,7 @@ struct case_config {
     std::string boundary = "periodic";  ///< kind of every face without one of its own
   } space;
   std::array<face_table, 6> faces;  ///< tables [boundary.NAME], by face::index(), of models with space
+  std::vector<solid_table> solids;  ///< tables [[space.solid]]
   /// Table [force], of models with a velocity grid.
   struct {
     std::optional<std::vector<std::string>> acceleration;  ///< formulas in t and the position
@@ -117,7 +126,8 @@ std::unique_ptr<model> make_model(const case_config& config);
 /// Returns the place of a key, or of the innermost known table around it; nowhere if there is none.
 source_place place_of(const case_config& config, const std::string& path);
 
-/// The mesh of the table [space]. Throws input_error as grid does.
+/// The mesh of the table [space] with its solid boxes. Throws input_error as grid does, and where a box does
+/// not fit.
 grid make_mesh(const case_config& config);
 
 /// Names of the built-in cases, sorted.

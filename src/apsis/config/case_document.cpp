@@ -183,6 +183,13 @@ std::string schema_text() {
       "      A term of a sum of states; a sum replaces the variables of [initial].\n"
       "  [[initial.region]]: where (condition, \"x < 0.5\") and variables or [[initial.region.part]]\n"
       "      Replaces variables of the state below where the condition holds; the last region is uppermost.\n"
+      "\n[[space.solid]], of models with space\n"
+      "  from, to (list of numbers or formulas without variables)\n"
+      "      Lower and upper corner of a solid box, on edges of cells. Boxes may touch and overlap.\n"
+      "  kind (text, default \"diffuse\") and its variables (apsis list boundaries)\n"
+      "      Boundary condition at the faces of the box, with numbers or formulas in t and the position.\n"
+      "  name (text, default \"solid-1\", …)\n"
+      "      Names the columns of the history for what its walls give to the gas.\n"
       "\n[[output.probe]], of models with space\n"
       "  name (text, default \"probe-1\", ...), from, to (points [x, y, z]), points (integer, default 101)\n"
       "      The fields along the line between two points, interpolated linearly, in probes/NAME.csv.\n"
@@ -233,6 +240,12 @@ void add_initial_table(std::string& out, const initial_table& initial) {
     add_state(out, region.state);
     add_parts(out, "initial.region", region.parts);
   }
+}
+
+std::string numbers_text(const std::vector<double>& numbers) {
+  std::vector<std::string> texts;
+  for (const double x : numbers) texts.push_back(number_text(x));
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 void add_face(std::string& out, const std::string& side, const face_table& table) {
@@ -287,6 +300,12 @@ std::string to_toml(const case_config& config) {
   }
   add_initial_table(out, config.prescribed);
   for (std::size_t k = 0; k < config.faces.size(); ++k) add_face(out, face_names[k], config.faces[k]);
+  for (const auto& solid : config.solids) {
+    out +=
+        fmt::format("\n[[space.solid]]\nname = {}\nfrom = [{}]\nto = [{}]\nkind = {}\n", quoted(solid.name),
+                    numbers_text(solid.from), numbers_text(solid.to), quoted(solid.kind));
+    add_state(out, solid.values);
+  }
   if (!config.source_term.empty()) {
     out += "\n[source]\n";
     add_state(out, config.source_term);

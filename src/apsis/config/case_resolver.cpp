@@ -9,6 +9,7 @@
 #include <apsis/config/initial_reader.hpp>
 #include <apsis/config/output_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
+#include <apsis/config/solid_reader.hpp>
 #include <apsis/config/source_reader.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/model/expression.hpp>
@@ -41,6 +42,8 @@ class resolver {
     for (const case_key& key : case_schema()) take(key);
     complete_space();
     take_parameters();
+    if (has_space(*model_)) check_dimensions();
+    read_solids(text_, *checked_model(), config_);
     take_initial_data();
     read_boundary_values(text_, *checked_model(), config_);
     read_source_values(text_, *checked_model(), config_);
@@ -65,10 +68,11 @@ class resolver {
   void note_places() {
     for (const auto& [name, place] : text_.tables) config_.places[name] = place;
     for (const auto& [path, raw] : text_.values)
-      config_.places[path] =
-          is_in(path, "initial") || is_in(path, "boundary") || is_in(path, "force") || is_in(path, "source")
-              ? place_of_formula(raw)
-              : raw.place;
+      config_.places[path] = is_in(path, "initial") || is_in(path, "boundary") ||
+                                     is_in(path, "space.solid") || is_in(path, "force") ||
+                                     is_in(path, "source")
+                                 ? place_of_formula(raw)
+                                 : raw.place;
   }
 
   /// A formula begins after its quotation mark; other text has no columns.
@@ -151,7 +155,8 @@ class resolver {
       if (std::find(valid.begin(), valid.end(), path) != valid.end() || is_in(path, "parameters") ||
           is_in(path, "initial") || path == "output.probe" || is_in(path, "output.probe") ||
           path == "output.slice" || is_in(path, "output.slice") ||
-          ((is_in(path, "boundary") || is_in(path, "source")) && has_space(*model_)))
+          ((is_in(path, "boundary") || is_in(path, "source") || is_in(path, "space.solid")) &&
+           has_space(*model_)))
         continue;
       for (const case_key& key : case_schema())
         if (key.path == path)
@@ -251,6 +256,7 @@ class resolver {
         if (p.integer && value != std::floor(value))
           refuse(*raw, "model." + p.name, fmt::format("it must be an integer: {}", p.doc), "give an integer");
       }
+      if (p.of_space && value == 0.0) value = static_cast<double>(config_.space.cells.size());
       config_.model.parameters[p.name] = value;
     }
     for (const model_text& t : model_->texts) {
@@ -335,6 +341,7 @@ class resolver {
       check_interval(config_.space.domain[k], config_.space.cells[k]);
     check_formulation();
     check_faces();
+    if (!config_.solids.empty()) check_solids();
     make_acceleration(config_, *checked_model());
     const int of_line = config_.velocity.points;
     double points = std::max(1, of_line);
@@ -348,7 +355,7 @@ class resolver {
 
   /// One number of cells and one interval for each dimension of the model.
   void check_dimensions() const {
-    const auto wanted = static_cast<std::size_t>(make_model(config_)->space_dimensions());
+    const auto wanted = static_cast<std::size_t>(checked_model()->space_dimensions());
     const auto check = [&](const std::string& path, std::size_t given, const char* what) {
       if (given == wanted) return;
       const raw_value* raw = find(path);
@@ -379,6 +386,20 @@ class resolver {
       refuse(*find("space.formulation"), "space.formulation",
              "cell averages collide at the Gauss points of intervals: one space dimension only",
              "write \"finite-difference\", or leave it out");
+  }
+
+  void check_solids() const {
+    make_mesh(config_);
+    const auto walls = make_solid_walls(config_, *checked_model());
+    for (std::size_t k = 0; k < walls.size(); ++k)
+      if (walls[k]->periodic())
+        throw input_error(place_of(config_, fmt::format("space.solid.{}.kind", k + 1)),
+                          "a solid box cannot be periodic (nothing lies behind its faces); give it a wall, "
+                          "for example kind = \"diffuse\"");
+    if (config_.space.formulation == formulation::finite_volume)
+      throw input_error(place_of(config_, "space.solid.1"),
+                        "solid boxes need point values (cell averages are collided on whole lines); write "
+                        "space.formulation = \"finite-difference\"");
   }
 
   void check_faces() const {

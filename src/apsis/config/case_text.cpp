@@ -146,7 +146,7 @@ case_text read_case_text(std::string_view text, const std::string& file) {
       for (const auto& [inner, value] : *table) {
         const std::string path = fmt::format("{}.{}", name, inner.str());
         const bool nested = name == "boundary" || name == "initial" || path == "model.knudsen" ||
-                            path == "output.probe" || path == "output.slice";
+                            path == "space.solid" || path == "output.probe" || path == "output.slice";
         add_nested(out, path, inner, value, file, nested ? most_levels : 0);
       }
     }

@@ -59,7 +59,9 @@ class unit_remover {
                  ? std::optional(dimensions::length)
                  : std::nullopt;
     if (path == "initial.time" && !variables_.contains("time")) return dimensions::time;
-    if (!begins_with(path, "initial.") && !begins_with(path, "boundary.")) return std::nullopt;
+    const bool solid = begins_with(path, "space.solid.");
+    if (solid && (path.ends_with(".from") || path.ends_with(".to"))) return dimensions::length;
+    if (!begins_with(path, "initial.") && !begins_with(path, "boundary.") && !solid) return std::nullopt;
     const auto variable = variables_.find(path.substr(path.rfind('.') + 1));
     return variable == variables_.end() ? std::nullopt : std::optional(variable->second);
   }

@@ -22,6 +22,7 @@ struct model_parameter {
   /// Whether a case may have "auto" in its place, the default there: model::automatic_value() then chooses it
   /// from the initial data. `value` is that of models made without data.
   bool automatic = false;
+  bool of_space = false;  ///< 0 stands for the number of space dimensions, which a resolved case has
 };
 
 /// A string option of a model: one of several names, or a formula.

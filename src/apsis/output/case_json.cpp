@@ -78,6 +78,12 @@ nlohmann::ordered_json to_json(const case_config& config) {
   for (std::size_t k = 0; k < config.faces.size(); ++k)
     if (!config.faces[k].values.empty())
       out["boundary"][face_names[k]].update(to_json(config.faces[k].values));
+  for (const auto& solid : config.solids) {
+    nlohmann::ordered_json one = {
+        {"name", solid.name}, {"from", solid.from}, {"to", solid.to}, {"kind", solid.kind}};
+    if (!solid.values.empty()) one.update(to_json(solid.values));
+    out["space"]["solid"].push_back(std::move(one));
+  }
   if (!config.source_term.empty()) out["source_term"] = to_json(config.source_term);
   if (!config.prescribed.empty()) out["initial"] = to_json(config.prescribed);
   for (const auto& probe : config.output.probes)

@@ -1,6 +1,8 @@
 #include <apsis/phase/grid.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,6 +26,7 @@ grid::grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower
   }
   check_size();
   global_ = cells_;
+  find_fluid();
 }
 
 grid grid::block(std::array<int, 3> first, std::array<int, 3> cells) const {
@@ -37,7 +40,65 @@ grid grid::block(std::array<int, 3> first, std::array<int, 3> cells) const {
     part.cells_[at(k)] = count;
     part.first_[at(k)] = first_[at(k)] + begin;
   }
+  part.solids_.clear();
+  part.solid_.reset();
+  part.find_fluid();
+  std::vector<cell_box> inside;
+  for (cell_box box : solids_) {
+    bool meets = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int begin = std::max(box.first[k] - first[k], 0),
+                end = std::min(box.first[k] + box.cells[k] - first[k], cells[k]);
+      meets = meets && begin < end;
+      box.first[k] = begin;
+      box.cells[k] = end - begin;
+    }
+    // Kept in their order, so that boxes of all blocks have the same numbers.
+    if (!meets) box.cells = {0, 0, 0};
+    inside.push_back(box);
+  }
+  if (!inside.empty()) part.set_solids(std::move(inside));
   return part;
+}
+
+grid grid::with_solids(std::vector<cell_box> boxes) const {
+  for (const cell_box& box : boxes)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (box.first[k] < 0 || box.cells[k] < 1 || box.first[k] > cells_[k] - box.cells[k])
+        throw input_error(fmt::format(
+            "a solid box of {} cells from cell {} on (direction {} has {} cells); give one inside",
+            box.cells[k], box.first[k], k + 1, cells_[k]));
+  grid made = *this;
+  made.set_solids(std::move(boxes));
+  if (made.fluid_.empty()) throw input_error("no cell is left (all are solid); give smaller boxes");
+  return made;
+}
+
+void grid::set_solids(std::vector<cell_box> boxes) {
+  solids_ = std::move(boxes);
+  solid_ = std::make_shared<std::vector<int>>(at(size()), -1);
+  for (std::size_t number = 0; number < solids_.size(); ++number) {
+    const auto& [first, cells] = solids_[number];
+    for (int i = first[0]; i < first[0] + cells[0]; ++i)
+      for (int j = first[1]; j < first[1] + cells[1]; ++j)
+        std::fill_n(
+            solid_->begin() + ((static_cast<std::ptrdiff_t>(i) * cells_[1] + j) * cells_[2] + first[2]),
+            cells[2], static_cast<int>(number));
+  }
+  find_fluid();
+}
+
+void grid::find_fluid() {
+  fluid_.clear();
+  if (!solid_) {
+    fluid_.push_back({0, size()});
+    return;
+  }
+  for (int cell = 0; cell < size(); ++cell) {
+    if (solid(cell) >= 0) continue;
+    if (fluid_.empty() || fluid_.back().end != cell) fluid_.push_back({cell, cell});
+    ++fluid_.back().end;
+  }
 }
 
 void grid::check_size() const {

@@ -3,14 +3,38 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/phase/position.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
+#include <vector>
 
 namespace apsis {
 
+/// Cells first … first + cells − 1 of each direction.
+struct cell_box {
+  std::array<int, 3> first = {0, 0, 0},  ///< first cell of each direction
+      cells = {1, 1, 1};                 ///< numbers of cells
+};
+
+/// Cells begin … end−1.
+struct cell_range {
+  int begin, end;
+};
+
+/// body(first, last) for the parts of increasing `ranges` among the cells begin … end−1.
+template <class Body>
+void for_cells_in(const std::vector<cell_range>& ranges, int begin, int end, const Body& body) {
+  auto one = std::upper_bound(ranges.begin(), ranges.end(), begin,
+                              [](int cell, const cell_range& range) { return cell < range.end; });
+  for (; one != ranges.end() && one->begin < end; ++one)
+    body(std::max(begin, one->begin), std::min(end, one->end));
+}
+
 /// Uniform cells on a box in D = 1, 2 or 3 dimensions, the last direction fastest. Unused directions have one
-/// cell. A grid may be a block of a larger one, whose cells it shares bit for bit: cell numbers are local,
-/// coordinates are those of the global grid. Dimensionless lengths.
+/// cell. Boxes of cells may be solid: they have numbers, but no gas. A grid may be a block of a larger one,
+/// whose cells it shares bit for bit: cell numbers are local, coordinates are those of the global grid.
+/// Dimensionless lengths.
 class grid {
  public:
   /// Largest number of cells; cell numbers, including ghost cells, then fit into int.
@@ -26,6 +50,10 @@ class grid {
   /// input_error unless it has cells and lies inside.
   grid block(std::array<int, 3> first, std::array<int, 3> cells) const;
 
+  /// This grid with solid boxes, which may overlap. Throws input_error unless every box has cells and lies
+  /// inside, and some cell is not solid.
+  grid with_solids(std::vector<cell_box> boxes) const;
+
   int dimensions() const { return dimensions_; }  ///< D
   int cells(int direction) const {
     return cells_[at(direction)];
@@ -35,6 +63,10 @@ class grid {
   int first(int direction) const { return first_[at(direction)]; }          ///< global number of local cell 0
   double spacing(int direction) const { return spacing_[at(direction)]; }   ///< Δx along a direction
   double cell_volume() const;                                               ///< Π Δx over the D directions
+  /// Returns the coordinate of the lower edge of a cell 0 … n along a direction, counted along it.
+  double edge(int direction, int cell) const {
+    return lower_[at(direction)] + spacing(direction) * (first(direction) + cell);
+  }
   /// Returns the coordinate of the centre of a cell along a direction.
   double centre(int cell, int direction) const;
   /// Returns the centre of a cell.
@@ -48,13 +80,24 @@ class grid {
   /// Returns the first cell of pencil 0 … pencils(direction) − 1.
   int first_cell(int direction, int pencil) const;
 
+  const std::vector<cell_box>& solids() const { return solids_; }  ///< the solid boxes
+  /// Returns the number of the last of the solid boxes that contain a cell; −1 if none does.
+  int solid(int cell) const { return solid_ ? (*solid_)[at(cell)] : -1; }
+  /// Returns all cells that are not solid, in increasing order.
+  const std::vector<cell_range>& fluid() const { return fluid_; }
+
  private:
   void check_size() const;
+  void set_solids(std::vector<cell_box> boxes);
+  void find_fluid();
   static std::size_t at(int direction) { return static_cast<std::size_t>(direction); }
 
   int dimensions_;
   std::array<int, 3> cells_, global_, first_;
   std::array<double, 3> lower_, spacing_;
+  std::vector<cell_box> solids_;
+  std::shared_ptr<std::vector<int>> solid_;  ///< of every cell; null without solid boxes
+  std::vector<cell_range> fluid_;
 };
 
 }  // namespace apsis

@@ -1,7 +1,7 @@
 #include <apsis/run/distribution_rows.hpp>
 
-#include <algorithm>
-#include <cmath>
+#include <apsis/config/output_tables.hpp>
+
 #include <utility>
 #include <vector>
 
@@ -33,18 +33,6 @@ thinned_mesh thinned(const simulation& run, int stride) {
   return kept;
 }
 
-/// Returns the cell that contains a point of the domain; of two, the upper one.
-int cell_at(const simulation& run, const std::vector<double>& x) {
-  const grid& mesh = run.mesh();
-  int cell = 0;
-  for (int k = 0; k < mesh.dimensions(); ++k) {
-    const auto [lower, upper] = run.config().space.domain[static_cast<std::size_t>(k)];
-    const double i = std::floor((x[static_cast<std::size_t>(k)] - lower) / (upper - lower) * mesh.cells(k));
-    cell += mesh.stride(k) * static_cast<int>(std::clamp(i, 0.0, mesh.cells(k) - 1.0));
-  }
-  return cell;
-}
-
 std::vector<double> rows_of(const simulation& run, const std::vector<int>& cells) {
   std::vector<double> rows;
   rows.reserve(cells.size() * static_cast<std::size_t>(run.components()));
@@ -61,7 +49,7 @@ distribution_at_points rows_at_points(const simulation& run, double unit_of_leng
   distribution_at_points chosen;
   const auto& points = run.config().output.distribution_at;
   std::vector<int> cells;
-  for (const auto& x : points) cells.push_back(cell_at(run, x));
+  for (const auto& x : points) cells.push_back(cell_at(run.mesh(), x));
   chosen.f = rows_of(run, cells);
   for (int k = 0; k < run.mesh().dimensions() && !points.empty(); ++k) {
     mesh_axis& axis = chosen.centres.emplace_back();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace apsis {
 namespace {
@@ -13,6 +14,9 @@ bool names_one_of(const std::vector<std::string>& wanted, const std::vector<fiel
   });
 }
 
+/// The fields of solid cells.
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
 void add_names(field_table& table, const std::vector<field_name>& names) {
   for (const auto& one : names) {
     table.names.push_back(one.name);
@@ -21,21 +25,26 @@ void add_names(field_table& table, const std::vector<field_name>& names) {
   }
 }
 
-/// Adds the squares of the derivatives of φ along a direction.
-void add_squares(const grid& mesh, int direction, bool periodic, const std::vector<double>& phi,
+/// Adds the squares of the derivatives of φ along a direction, within the segments of its pencils.
+void add_squares(const domain& space, int direction, const std::vector<double>& phi,
                  std::vector<double>& sum) {
-  const int n = mesh.cells(direction), stride = mesh.stride(direction);
-  for (int pencil = 0; pencil < mesh.pencils(direction); ++pencil) {
-    const int first = mesh.first_cell(direction, pencil);
-    const auto at = [&](int k) {
-      const int cell = first + k * stride;
-      return static_cast<std::size_t>(cell);
+  const int stride = space.mesh().stride(direction);
+  for (const segment& one : space.segments().along(direction)) {
+    const int n = one.cells;
+    const auto at = [&](int k) { return static_cast<std::size_t>(one.first + k * stride); };
+    // The cell beyond an end across periodic faces, or the one at the end.
+    const auto beyond = [&](bool upper) {
+      const auto& [surface, place] = one.ends[upper ? 1 : 0];
+      if (surface >= 0) return at(upper ? n - 1 : 0);
+      const segment& next = space.segment_at(direction, place);
+      return static_cast<std::size_t>(next.first + (upper ? 0 : (next.cells - 1) * stride));
     };
     for (int k = 0; k < n; ++k) {
-      const int below = k > 0 ? k - 1 : (periodic ? n - 1 : 0);
-      const int above = k < n - 1 ? k + 1 : (periodic ? 0 : n - 1);
-      const double distance = (periodic || (k > 0 && k < n - 1) ? 2.0 : 1.0) * mesh.spacing(direction);
-      const double slope = (phi[at(above)] - phi[at(below)]) / distance;
+      const std::size_t below = k > 0 ? at(k - 1) : beyond(false),
+                        above = k < n - 1 ? at(k + 1) : beyond(true);
+      const int intervals = (below == at(k) ? 0 : 1) + (above == at(k) ? 0 : 1);
+      const double slope =
+          intervals == 0 ? 0.0 : (phi[above] - phi[below]) / (intervals * space.mesh().spacing(direction));
       sum[at(k)] += slope * slope;
     }
   }
@@ -44,9 +53,11 @@ void add_squares(const grid& mesh, int direction, bool periodic, const std::vect
 /// Returns |∇φ| of every cell.
 std::vector<double> size_of_gradient(const run_setup& setup, const std::vector<double>& phi) {
   std::vector<double> sum(phi.size(), 0.0);
-  if (setup.has_space())
+  if (setup.has_space()) {
+    const domain space = setup.builder().space();
     for (int direction = 0; direction < setup.mesh().dimensions(); ++direction)
-      add_squares(setup.mesh(), direction, setup.periodic(direction), phi, sum);
+      add_squares(space, direction, phi, sum);
+  }
   for (double& x : sum) x = std::sqrt(x);
   return sum;
 }
@@ -63,6 +74,10 @@ void add_gradient_fields(const run_setup& setup, const field& u, std::size_t usu
   std::vector<double> gradients(usual), values(names.size());
   for (int cell = 0; cell < u.cells(); ++cell) {
     const auto c = static_cast<std::size_t>(cell);
+    if (setup.mesh().solid(cell) >= 0) {
+      for (std::size_t k = 0; k < values.size(); ++k) table.values[first + k].push_back(undefined);
+      continue;
+    }
     for (std::size_t k = 0; k < usual; ++k) gradients[k] = sizes[k][c];
     equation.gradient_macroscopic(u.row(cell), epsilon[c], gradients.data(), values.data());
     for (std::size_t k = 0; k < values.size(); ++k) table.values[first + k].push_back(values[k]);
@@ -94,6 +109,10 @@ field_table find_fields(const run_setup& setup, const field& u) {
   table.values.assign(table.names.size(), {});
   std::vector<double> values(table.names.size());
   for (int cell = 0; cell < u.cells(); ++cell) {
+    if (setup.mesh().solid(cell) >= 0) {
+      for (auto& column : table.values) column.push_back(undefined);
+      continue;
+    }
     equation.macroscopic(u.row(cell), values.data());
     if (values.size() > usual) equation.further_macroscopic(u.row(cell), values.data() + usual);
     for (std::size_t k = 0; k < values.size(); ++k) table.values[k].push_back(values[k]);

@@ -32,12 +32,14 @@ class compensated_sum {
 monitor::totals monitor::sum(const field& u) const {
   const std::size_t count = equation_.invariants().size();
   const auto cells = static_cast<std::size_t>(u.cells());
-  std::vector<double> densities(cells * count), entropies(cells), lowest(cells), scales(cells * count);
+  std::vector<double> densities(cells * count), entropies(cells), scales(cells * count),
+      lowest(cells, std::numeric_limits<double>::infinity());  // of solid cells
   std::vector<long> negative(cells);
   const bool conditional = !equation_.condition().empty();
   std::vector<char> violates(conditional ? cells : 0);
   constexpr int block = 16;
-  parallel_blocks(u.cells(), block, [&](int begin, int end) {
+  const std::vector<cell_range> all = {{0, u.cells()}};
+  const auto check = [&](int begin, int end) {
     const profile::section timed(kernel::monitor, static_cast<double>(end - begin) * u.stride(),
                                  {0.0, sizeof(double)});
     for (int cell = begin; cell < end; ++cell) {
@@ -51,6 +53,9 @@ monitor::totals monitor::sum(const field& u) const {
       if (conditional) violates[c] = equation_.check_supported(row).problem.empty() ? 0 : 1;
       if (equation_.has_entropy() && below == 0) entropies[c] = equation_.entropy(row);
     }
+  };
+  parallel_blocks(u.cells(), block, [&](int begin, int end) {
+    for_cells_in(cells_.empty() ? all : cells_, begin, end, check);
   });
 
   totals t{std::vector<double>(count, 0.0),

@@ -16,10 +16,15 @@ namespace apsis {
 class monitor {
  public:
   /// `volume` is the cell volume (1 for an ordinary differential equation), `faces` the number of faces that
-  /// are not periodic.
+  /// are not periodic, and `cells` those of the gas, all if there are none.
   /// `entropy_bounds` as those of run_setup; empty if there are none.
-  monitor(const model& equation, double volume, std::size_t faces, std::vector<double> entropy_bounds = {})
-      : equation_(equation), volume_(volume), faces_(faces), entropy_bounds_(std::move(entropy_bounds)) {}
+  monitor(const model& equation, double volume, std::size_t faces, std::vector<double> entropy_bounds = {},
+          std::vector<cell_range> cells = {})
+      : equation_(equation),
+        volume_(volume),
+        faces_(faces),
+        entropy_bounds_(std::move(entropy_bounds)),
+        cells_(std::move(cells)) {}
 
   /// Sets the reference state of conservation and returns its record: defects are relative to Σ_cells volume
   /// · model::invariant_scales().
@@ -44,7 +49,8 @@ class monitor {
   const model& equation_;
   double volume_;
   std::size_t faces_;
-  std::vector<double> entropy_bounds_;       ///< of what is received, [face][invariant]
+  std::vector<double> entropy_bounds_;  ///< of what is received, [face][invariant]
+  std::vector<cell_range> cells_;
   std::vector<double> invariants_, scales_;  ///< of the initial state
 };
 

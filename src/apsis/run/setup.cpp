@@ -4,6 +4,7 @@
 #include <apsis/config/boundary_support.hpp>
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
+#include <apsis/config/solid_reader.hpp>
 #include <apsis/config/source_reader.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
@@ -33,11 +34,12 @@ namespace {
 
 /// Returns the smallest and the largest value of every macroscopic field.
 std::pair<std::vector<double>, std::vector<double>> extremes_of_fields(const model& equation,
-                                                                       const field& u) {
+                                                                       const grid& mesh, const field& u) {
   std::vector<double> values(equation.fields().size());
   std::vector<double> lowest(values.size(), std::numeric_limits<double>::infinity()), highest(values.size());
   for (double& value : highest) value = -std::numeric_limits<double>::infinity();
   for (int cell = 0; cell < u.cells(); ++cell) {
+    if (mesh.solid(cell) >= 0) continue;
     equation.macroscopic(u.row(cell), values.data());
     for (std::size_t k = 0; k < values.size(); ++k) {
       lowest[k] = std::min(lowest[k], values[k]);
@@ -78,6 +80,8 @@ void run_setup::build_space() {
   for (int direction = 0; direction < static_cast<int>(sides.size()); ++direction)
     for (const bool upper : {false, true})
       builder_.with_boundary({direction, upper}, sides[static_cast<std::size_t>(direction)][upper ? 1 : 0]);
+  const auto walls = make_solid_walls(config_, *equation);
+  for (std::size_t k = 0; k < walls.size(); ++k) builder_.with_solid(static_cast<int>(k), walls[k]);
   if (auto of = make_acceleration(config_, *equation)) builder_.with_force(std::move(*of));
   if (auto rate = make_source(config_, *equation)) builder_.with_source(std::move(*rate));
   at_key(config_, "space.limiter", [&] {
@@ -155,8 +159,9 @@ std::vector<std::string> run_setup::open_faces() const {
   std::vector<std::string> open;
   if (!has_space()) return open;
   const domain space = builder_.space();
-  for (std::size_t k = 0; k < 2 * static_cast<std::size_t>(mesh().dimensions()); ++k)
-    if (!space.periodic(face_of(k).direction)) open.push_back(face_names[k]);
+  for (const opening& one : space.openings())
+    open.push_back(one.solid < 0 ? face_names[one.where.index()]
+                                 : config_.solids[static_cast<std::size_t>(one.solid)].name);
   if (config_.force.acceleration) open.emplace_back("force");
   if (!config_.source_term.empty()) open.emplace_back("source");
   return open;
@@ -216,6 +221,7 @@ field run_setup::initial_state() const {
 
 field run_setup::checked(field u, bool computed) const {
   for (int cell = 0; cell < u.cells(); ++cell) {
+    if (mesh().solid(cell) >= 0) continue;
     const unsupported_initial_data found = equation->check_supported(u.row(cell));
     if (found.problem.empty()) continue;
     const std::string problem = fmt::format("{} [cell {}]", found.problem, cell);
@@ -223,7 +229,7 @@ field run_setup::checked(field u, bool computed) const {
     log::warning(problem);
     break;
   }
-  const auto [lowest, highest] = extremes_of_fields(*equation, u);
+  const auto [lowest, highest] = extremes_of_fields(*equation, mesh(), u);
   const unsupported_initial_data found = equation->check_supported_range(lowest.data(), highest.data());
   if (!found.problem.empty()) refuse(config_, found.key, found.problem);
   return u;
@@ -250,6 +256,7 @@ double run_setup::equilibrium_defect(const field& u) const {
   std::vector<double> e(static_cast<std::size_t>(u.components()));
   std::vector<double> before(count), after(count), scales(count), missed(count), all(count);
   for (int cell = 0; cell < u.cells(); ++cell) {
+    if (mesh().solid(cell) >= 0) continue;
     relaxation->moments(u.row(cell), omega.data());
     if (!relaxation->equilibrium(omega.data(), e.data())) continue;  // reported by the first step
     equation->invariant_densities(u.row(cell), before.data());

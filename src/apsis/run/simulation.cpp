@@ -53,7 +53,7 @@ struct simulation::impl {
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
         watch(*setup.equation, setup.cell_volume(), setup.open_faces().size(),
-              setup.entropy_bounds().value_or(std::vector<double>{})),
+              setup.entropy_bounds().value_or(std::vector<double>{}), setup.mesh().fluid()),
         rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
         state(start ? start(setup) : setup.initial_state()),
         march(times_of(setup)) {

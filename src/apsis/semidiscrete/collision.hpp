@@ -41,9 +41,11 @@ class cellwise_collision : public collision {
 };
 
 /// Returns the collision operator of point values, which is local to each cell. `epsilon` has one value per
-/// cell. `keeps_sign` as in model::make_collision().
+/// cell. `keeps_sign` as in model::make_collision(); `cells`: those of the gas, in increasing order, all if
+/// there are none.
 std::unique_ptr<collision> make_pointwise_collision(const model& equation, std::vector<double> epsilon,
-                                                    bool keeps_sign = false);
+                                                    bool keeps_sign = false,
+                                                    std::vector<cell_range> cells = {});
 
 /// Returns the collision operator of cell averages in one space dimension: stages are solved at the three
 /// Gauss–Legendre points of every cell, on the quartic through the reconstructed edges and the neighbouring

@@ -13,12 +13,15 @@ namespace {
 
 class pointwise_collision final : public cellwise_collision {
  public:
-  pointwise_collision(const model& equation, std::vector<double> epsilon, bool keeps_sign)
-      : equation_(equation), epsilon_(std::move(epsilon)), keeps_sign_(keeps_sign) {}
+  pointwise_collision(const model& equation, std::vector<double> epsilon, bool keeps_sign,
+                      std::vector<cell_range> cells)
+      : equation_(equation), cells_(std::move(cells)), epsilon_(std::move(epsilon)), keeps_sign_(keeps_sign) {
+    if (cells_.empty()) cells_.push_back({0, static_cast<int>(epsilon_.size())});
+  }
 
   void solve(double, double a, double b, field& u) override {
     prepare(u);
-    parallel_blocks(u.cells(), points_per_batch(u.stride()), [&](int begin, int end) {
+    for_blocks(u, [&](int begin, int end) {
       scratch_.here().local->solve_stage(a, b, batch(u, begin, end), u.row(begin));
     });
   }
@@ -47,7 +50,7 @@ class pointwise_collision final : public cellwise_collision {
       own.rates.resize(static_cast<std::size_t>(length) * static_cast<std::size_t>(u.stride()));
       own.rows.reserve(targets.size());
     });
-    parallel_blocks(u.cells(), length, [&](int begin, int end) {
+    for_blocks(u, [&](int begin, int end) {
       auto& own = scratch_.here();
       own.local->evaluate(batch(u, begin, end), u.row(begin), own.rates.data());
       for (int cell = begin; cell < end; ++cell) {
@@ -73,15 +76,24 @@ class pointwise_collision final : public cellwise_collision {
         .count = end - begin, .pitch = u.stride(), .epsilon = epsilon_.data() + begin, .first_cell = begin};
   }
 
+  /// body(begin, end) for blocks of cells that make a batch, on all threads.
+  template <class Body>
+  void for_blocks(const field& u, const Body& body) const {
+    parallel_blocks(u.cells(), points_per_batch(u.stride()),
+                    [&](int begin, int end) { for_cells_in(cells_, begin, end, body); });
+  }
+
   double smallest(const field& u, double (point_collision::*time)(const double*, double)) const {
     const auto local = equation_.make_collision({1, u.stride(), keeps_sign_});
     double result = std::numeric_limits<double>::infinity();
-    for (int cell = 0; cell < u.cells(); ++cell)
-      result = std::min(result, ((*local).*time)(u.row(cell), epsilon_[static_cast<std::size_t>(cell)]));
+    for (const auto& [begin, end] : cells_)
+      for (int cell = begin; cell < end; ++cell)
+        result = std::min(result, ((*local).*time)(u.row(cell), epsilon_[static_cast<std::size_t>(cell)]));
     return result;
   }
 
   const model& equation_;
+  std::vector<cell_range> cells_;
   std::vector<double> epsilon_;
   bool keeps_sign_;
   struct scratch {
@@ -95,8 +107,8 @@ class pointwise_collision final : public cellwise_collision {
 }  // namespace
 
 std::unique_ptr<collision> make_pointwise_collision(const model& equation, std::vector<double> epsilon,
-                                                    bool keeps_sign) {
-  return std::make_unique<pointwise_collision>(equation, std::move(epsilon), keeps_sign);
+                                                    bool keeps_sign, std::vector<cell_range> cells) {
+  return std::make_unique<pointwise_collision>(equation, std::move(epsilon), keeps_sign, std::move(cells));
 }
 
 }  // namespace apsis

@@ -15,46 +15,38 @@ std::size_t index(int k) {
 
 face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
     : equation_(equation), space_(std::move(space)), invariants_(equation.invariants().size()) {
-  const grid& mesh = space_->mesh();
-  if (equation.space_dimensions() == 0) return;
-  sides_.resize(index(mesh.dimensions()));
-  for (int direction = 0; direction < mesh.dimensions(); ++direction)
-    for (const bool upper : {false, true}) {
-      const face where{direction, upper};
-      if (!records(where)) continue;
-      open_ = true;
-      side& made = at(where);
-      for (const double v : equation.speeds(direction)) made.inward.push_back(upper ? -v : v);
-      made.values = field(mesh.pencils(direction), equation.components());
-      made.incoming = field(prescribes(where) ? mesh.pencils(direction) : 0, equation.components());
-      made.received.assign(index(mesh.pencils(direction)), std::vector<double>(invariants_));
+  sides_.resize(space_->surfaces().size());
+  for (const opening& one : space_->openings())
+    for (const int surface : one.surfaces) {
+      const auto& of = space_->surfaces()[index(surface)];
+      side& made = at(surface);
+      for (const double v : equation.speeds(of.where.direction))
+        made.inward.push_back(of.where.upper ? -v : v);
+      const auto ends = of.segments.size();
+      made.values = field(static_cast<int>(ends), equation.components());
+      made.incoming = field(prescribes(surface) ? static_cast<int>(ends) : 0, equation.components());
+      made.received.assign(ends, std::vector<double>(invariants_));
     }
 }
 
-face_fluxes::side& face_fluxes::at(const face& where) {
-  return sides_[index(where.direction)][where.upper ? 1 : 0];
+double* face_fluxes::recorded(int surface, int place) {
+  return at(surface).values.row(place);
 }
 
-double* face_fluxes::recorded(const face& where, int pencil) {
-  return at(where).values.row(pencil);
-}
-
-void face_fluxes::complete(const face& where, int pencil, double t,
-                           std::span<const target<field, double>> targets) {
-  side& here = at(where);
+void face_fluxes::complete(int surface, int place, double t, std::span<const target<field, double>> targets) {
+  side& here = at(surface);
   const grid& mesh = space_->mesh();
-  double* values = here.values.row(pencil);
-  if (prescribes(where)) {
+  const face where = space_->surfaces()[index(surface)].where;
+  double* values = here.values.row(place);
+  if (prescribes(surface)) {
     for (std::size_t k = 0; k < here.inward.size(); ++k)
       if (!(here.inward[k] < 0.0)) values[k] = 0.0;
-    double* incoming = here.incoming.row(pencil);
+    double* incoming = here.incoming.row(place);
     thread_local std::vector<const double*> ghosts;
-    space_->ghost_rows(where, pencil, ghosts);
-    space_->side(where).incoming_beside(where, t, space_->meeting_point(where, pencil), values, ghosts,
-                                        incoming);
-    const int last = mesh.cells(where.direction) - 1;
-    const int cell =
-        mesh.first_cell(where.direction, pencil) + (where.upper ? last : 0) * mesh.stride(where.direction);
+    space_->ghost_rows(surface, place, ghosts);
+    space_->side(surface)->incoming_beside(where, t, space_->meeting_point(surface, place), values, ghosts,
+                                           incoming);
+    const int cell = space_->cell_at(surface, place);
     for (std::size_t k = 0; k < here.inward.size(); ++k)
       if (here.inward[k] > 0.0) values[k] = incoming[k];
     for (const auto& to : targets) {
@@ -66,7 +58,7 @@ void face_fluxes::complete(const face& where, int pencil, double t,
   }
   // The row becomes that of the fluxes; invariants are linear functions of a row.
   for (std::size_t k = 0; k < here.inward.size(); ++k) values[k] *= here.inward[k];
-  std::vector<double>& received = here.received[index(pencil)];
+  std::vector<double>& received = here.received[index(place)];
   equation_.invariant_densities(values, received.data());
   const double area = mesh.cell_volume() / mesh.spacing(where.direction);
   for (double& one : received) one *= area;
@@ -74,16 +66,15 @@ void face_fluxes::complete(const face& where, int pencil, double t,
 
 void face_fluxes::add_gains(const field& u, std::span<const target<field, double>> targets, bool moved,
                             std::span<const double> inside) const {
-  if ((!open_ && inside.empty()) || !moved) return combine_gains(u, targets);
+  if ((space_->openings().empty() && inside.empty()) || !moved) return combine_gains(u, targets);
   std::vector<double> rates;
-  for (const auto& pair : sides_)
-    for (const side& one : pair) {
-      if (one.received.empty()) continue;  // periodic
-      std::vector<double> sum(invariants_);
-      for (const auto& received : one.received)
+  for (const opening& one : space_->openings()) {
+    std::vector<double> sum(invariants_);
+    for (const int surface : one.surfaces)
+      for (const auto& received : sides_[index(surface)].received)
         for (std::size_t k = 0; k < invariants_; ++k) sum[k] += received[k];
-      rates.insert(rates.end(), sum.begin(), sum.end());
-    }
+    rates.insert(rates.end(), sum.begin(), sum.end());
+  }
   rates.insert(rates.end(), inside.begin(), inside.end());
   for (const auto& to : targets) {
     std::vector<double>& gains = to.acc->gains();

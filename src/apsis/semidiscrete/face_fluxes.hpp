@@ -5,53 +5,50 @@
 #include <apsis/phase/domain.hpp>
 #include <apsis/phase/field.hpp>
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace apsis {
 
-/// Fluxes through the faces of a domain that are not periodic. Sweeps of the transport record the upwind
-/// values at a face; where the boundary prescribes the incoming components, it computes them here from the
-/// outgoing ones, after the sweep: beyond such a face a sweep sees vacuum, so that what enters is added to a
-/// state that is nonnegative without it. The invariants that pass are collected in field::gains().
+/// Fluxes through the surfaces of a domain: its faces that are not periodic, and those of solid boxes. Sweeps
+/// of the transport record the upwind values at a surface; where its boundary prescribes the incoming
+/// components, it computes them here from the outgoing ones, after the sweep: beyond such a surface a sweep
+/// sees vacuum, so that what enters is added to a state that is nonnegative without it. The invariants that
+/// pass are collected in field::gains().
 class face_fluxes {
  public:
   /// `equation` must outlive the object.
   face_fluxes(const model& equation, std::shared_ptr<domain> space);
 
-  /// Whether the fluxes through a face are recorded.
-  bool records(const face& where) const { return !space_->periodic(where.direction); }
-  /// Whether the boundary prescribes the incoming components.
-  bool prescribes(const face& where) const { return space_->side(where).prescribes_incoming(); }
-  /// Returns the row that takes the upwind values at a face, of outgoing components alone if the boundary
-  /// prescribes the others.
-  double* recorded(const face& where, int pencil);
+  /// Whether the boundary of a surface prescribes the incoming components.
+  bool prescribes(int surface) const { return space_->side(surface)->prescribes_incoming(); }
+  /// Returns the row that takes the upwind values at an end of a segment, of outgoing components alone if the
+  /// boundary prescribes the others.
+  double* recorded(int surface, int place);
 
-  /// Completes a pencil at a face whose components are all recorded: incoming fluxes are added to the
-  /// targets. Concurrent calls must differ in pencil or face.
-  void complete(const face& where, int pencil, double t, std::span<const target<field, double>> targets);
+  /// Completes an end of a segment whose components are all recorded: incoming fluxes are added to the
+  /// targets. Concurrent calls must differ in the cell at the end.
+  void complete(int surface, int place, double t, std::span<const target<field, double>> targets);
 
   /// acc ← (fresh ? 0 : acc) + α u + β (flux) for the gains of every target; with `moved`, the fluxes are
-  /// those of complete(), else 0. `inside` is what a force and a source give, after all faces.
+  /// those of complete(), else 0. `inside` is what a force and a source give, after all openings.
   void add_gains(const field& u, std::span<const target<field, double>> targets, bool moved,
                  std::span<const double> inside = {}) const;
 
  private:
   struct side {
     std::vector<double> inward;                 ///< velocity towards the inside of every component
-    field values;                               ///< [pencil], recorded upwind values
-    field incoming;                             ///< [pencil], what the boundary prescribes
-    std::vector<std::vector<double>> received;  ///< [pencil][invariant], per unit of time
+    field values;                               ///< [place], recorded upwind values
+    field incoming;                             ///< [place], what the boundary prescribes
+    std::vector<std::vector<double>> received;  ///< [place][invariant], per unit of time
   };
-  side& at(const face& where);
+  side& at(int surface) { return sides_[static_cast<std::size_t>(surface)]; }
 
   const model& equation_;
   std::shared_ptr<domain> space_;
-  std::vector<std::array<side, 2>> sides_;  ///< [direction][upper]
+  std::vector<side> sides_;  ///< [surface]
   std::size_t invariants_ = 0;
-  bool open_ = false;  ///< whether any face is recorded
 };
 
 /// The part of add_gains() without fluxes, for operations that conserve the invariants.

@@ -94,8 +94,10 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
     here.target.reserve(1);
   });
   parallel_blocks(u.cells(), std::max(together, cells_of_task), [&](int begin, int end) {
-    for (int first = begin; first < end; first += together)
-      add_cells(t, u, targets, first, std::min(end, first + together), workspaces_->here());
+    for_cells_in(space_->mesh().fluid(), begin, end, [&](int from, int to) {
+      for (int first = from; first < to; first += together)
+        add_cells(t, u, targets, first, std::min(to, first + together), workspaces_->here());
+    });
   });
   // In the order of the cells, whatever the number of threads.
   std::fill(given_.begin(), given_.end(), 0.0);

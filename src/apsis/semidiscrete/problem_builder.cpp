@@ -46,6 +46,7 @@ problem_builder& problem_builder::on(const grid& mesh) {
   mesh_ = mesh;
   const auto periodic = make_boundary("periodic");
   sides_.assign(static_cast<std::size_t>(mesh.dimensions()), {periodic, periodic});
+  solids_.assign(mesh.solids().size(), nullptr);
   return *this;
 }
 
@@ -54,6 +55,14 @@ problem_builder& problem_builder::with_boundary(const face& where, std::shared_p
     throw input_error(fmt::format("no face in direction {} (the mesh has {} dimensions); call on() first",
                                   where.direction + 1, sides_.size()));
   sides_[static_cast<std::size_t>(where.direction)][where.upper ? 1 : 0] = std::move(side);
+  return *this;
+}
+
+problem_builder& problem_builder::with_solid(int number, std::shared_ptr<const boundary> wall) {
+  if (number < 0 || static_cast<std::size_t>(number) >= solids_.size())
+    throw input_error(
+        fmt::format("no solid box {} (the mesh has {}); call on() first", number, solids_.size()));
+  solids_[static_cast<std::size_t>(number)] = std::move(wall);
   return *this;
 }
 
@@ -121,7 +130,9 @@ spatial_discretization problem_builder::complete_discretization() const {
 }
 
 domain problem_builder::space() const {
-  return has_space() ? domain({mesh_, equation_->velocities()}, sides_) : domain::point();
+  for (std::size_t k = 0; k < solids_.size(); ++k)
+    if (!solids_[k]) throw input_error(fmt::format("solid box {} has no wall; call with_solid()", k));
+  return has_space() ? domain({mesh_, equation_->velocities()}, sides_, solids_) : domain::point();
 }
 
 /// In every cell at the points `offsets` · Δx from its centre, along the first direction.
@@ -145,7 +156,8 @@ std::vector<double> problem_builder::epsilon_at_centres() const {
 }
 
 std::unique_ptr<collision> problem_builder::make_collision(const std::shared_ptr<domain>& space) const {
-  if (pointwise()) return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign());
+  if (pointwise())
+    return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign(), mesh_.fluid());
   return make_cell_average_collision(*equation_, space, complete_discretization(), epsilon_at(gauss3::xi));
 }
 
@@ -158,6 +170,10 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
         "cell averages in {} space dimensions (they are collided at the Gauss points of intervals); "
         "use the finite difference formulation",
         mesh_.dimensions()));
+  if (!mesh_.solids().empty() && !pointwise())
+    throw input_error(
+        "solid boxes with cell averages (they are collided on whole lines); use the finite difference "
+        "formulation");
   const auto space = std::make_shared<domain>(this->space());
   auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, complete_discretization(),
                                                         make_collision(space));
@@ -172,6 +188,7 @@ field problem_builder::sample(const data& value, const std::vector<double>& jump
   std::vector<double> values(static_cast<std::size_t>(u.components()));
   const bool averages = has_space() && unknowns() == formulation::finite_volume;
   for (int cell = 0; cell < u.cells(); ++cell) {
+    if (mesh_.solid(cell) >= 0) continue;
     const position centre = has_space() ? mesh_.centre(cell) : position{};
     const double half = 0.5 * mesh_.spacing(0);
     double* row = u.row(cell);

@@ -38,6 +38,8 @@ class problem_builder {
   problem_builder& on(const grid& mesh);
   /// Sets the boundary of one face of the mesh, which must be set before; the default is periodic.
   problem_builder& with_boundary(const face& where, std::shared_ptr<const boundary> side);
+  /// Sets the boundary at a solid box of the mesh, which must be set before; every box needs one.
+  problem_builder& with_solid(int number, std::shared_ptr<const boundary> wall);
   /// Sets the reconstruction scheme. Throws input_error if the mesh, which must be set before, is smaller
   /// than its stencil.
   problem_builder& with_reconstruction(std::shared_ptr<const reconstruction> scheme);
@@ -59,8 +61,8 @@ class problem_builder {
   /// number ≥ 0, only one face of a direction is periodic, cell averages have more than one space dimension,
   /// or the force is not possible (force.hpp).
   std::unique_ptr<semidiscrete_problem> build() const;
-  /// Returns cell averages or point values of data, [cells][components]; averages are exact to rounding if
-  /// the data are smooth between the `jumps` (in increasing order).
+  /// Returns cell averages or point values of data, [cells][components], 0 in solid cells; averages are exact
+  /// to rounding if the data are smooth between the `jumps` (in increasing order).
   field sample(const data& value, const std::vector<double>& jumps = {}) const;
 
   /// Whether the model has space.
@@ -86,6 +88,7 @@ class problem_builder {
   const model* equation_;
   grid mesh_;
   std::vector<domain::faces> sides_;
+  std::vector<std::shared_ptr<const boundary>> solids_;
   spatial_discretization discretization_;
   std::optional<formulation> unknowns_;
   bool limited_ = false, explicit_collision_ = false;

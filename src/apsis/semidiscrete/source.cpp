@@ -44,7 +44,8 @@ void source::compute(double t) {
   constexpr int block = 8;
   parallel_blocks(values_.cells(), block, [&](int begin, int end) {
     std::vector<double> row(static_cast<std::size_t>(values_.components()));
-    for (int cell = begin; cell < end; ++cell) compute_cell(t, cell, row);
+    for (int cell = begin; cell < end; ++cell)
+      if (space_->mesh().solid(cell) < 0) compute_cell(t, cell, row);
   });
   given_.assign(equation_.invariants().size(), 0.0);
   std::vector<double> densities(given_.size());

@@ -14,13 +14,13 @@ void pencil_block::reserve(const spatial_discretization& discretization, int cel
 }
 
 void pencil_block::load(const field& u, const domain& space, const spatial_discretization& discretization,
-                        int direction, int pencil, int begin, int end, int halo) {
+                        int direction, int segment, int begin, int end, int halo) {
   const int ghosts = discretization.scheme->ghost_width();
   const int count = end - begin + 2 * halo;
   width = u.stride();
   first_edge = begin - halo;
   first_row = first_edge - ghosts;
-  space.pencil_rows(u, direction, pencil, first_row, end + halo + ghosts, rows);
+  space.segment_rows(u, direction, segment, first_row, end + halo + ghosts, rows);
   reserve(discretization, end - begin, halo, width);
   discretization.scheme->edges(rows.data() + ghosts, count, width, left.data(), right.data());
 }

@@ -45,11 +45,11 @@ struct pencil_block {
   /// Allocates buffers for load() with the given number of cells.
   void reserve(const spatial_discretization& discretization, int cells, int halo, int stride);
 
-  /// Computes the edge values of cells begin−halo … end−1+halo of a pencil.
+  /// Computes the edge values of cells begin−halo … end−1+halo of a segment.
   void load(const field& u, const domain& space, const spatial_discretization& discretization, int direction,
-            int pencil, int begin, int end, int halo);
+            int segment, int begin, int end, int halo);
 
-  /// Returns the row of a cell or ghost cell of the pencil.
+  /// Returns the row of a cell or ghost cell of the segment.
   const double* row(int cell) const { return rows[static_cast<std::size_t>(cell - first_row)]; }
   /// Returns the row of values at the lower edge of a cell begin−halo … end−1+halo.
   double* left_edge(int cell) { return left.data() + offset(cell); }

@@ -4,23 +4,20 @@
 #include <apsis/exec/profile.hpp>
 #include <apsis/model/vector_math.hpp>
 #include <apsis/scheme/limiter.hpp>
+#include <apsis/semidiscrete/block_sweep.hpp>
+#include <apsis/semidiscrete/tiling.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace apsis {
 namespace {
 
 using targets_view = std::span<const target<field, double>>;
-
-/// Returns the number of cells that are joined into one row, so that rows of few components fill vectors.
-int cells_of_a_row(int stride) {
-  constexpr int enough = 64;
-  return std::max(1, enough / std::max(stride, 1));
-}
 
 /// Largest number of components per sweep: with some dozens of cells, its buffers fit into the first-level
 /// cache.
@@ -30,24 +27,6 @@ constexpr int least_columns = 16, least_cells = 16;
 /// Limits on the length of a row and the tasks of a loop, so that sums with a few others fit into int.
 constexpr int longest_row = 1 << 30, most_tasks = 1 << 30;
 
-/// Returns the memory traffic of the accumulators per number: a write, and a read unless they are fresh.
-kernel_work traffic(targets_view targets) {
-  kernel_work each;
-  for (const auto& to : targets) each.bytes += sizeof(double) * (to.fresh ? 1.0 : 2.0);
-  return each;
-}
-
-/// Returns the number of cells beyond a block whose edges are needed: one for the flux, one more for its
-/// limiter.
-int halo_of(const spatial_discretization& discretization) {
-  return discretization.positivity == limiter_kind::fluxes ? 2 : 1;
-}
-
-/// Returns the number of cells on either side on which edges and limiter of a cell depend.
-int reach_of(const spatial_discretization& discretization) {
-  return std::max(discretization.scheme->ghost_width(), halo_of(discretization));
-}
-
 /// Returns the first component of column 0 … columns of a row; columns are multiples of vectors.
 int first_component(int width, int columns, int column) {
   if (column == columns) return width;
@@ -56,205 +35,21 @@ int first_component(int width, int columns, int column) {
 
 }  // namespace
 
-/// T along one direction for some components of some cells of a pencil.
-class transport::block_sweep {
- public:
-  struct place {
-    int direction, pencil, begin, end;  ///< cells of the pencil
-    int first, last;                    ///< components
-  };
-
-  /// Allocates buffers for `cells` cells of at most `width` components.
-  void reserve(const transport& from, int cells, int width, std::size_t targets) {
-    find_reach(from);
-    const auto rows = static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_ + reach_);
-    rows_.reserve(rows);
-    joined_.reserve(rows);
-    targets_.reserve(targets);
-    make_room(from, cells, width);
-  }
-
-  void run(const transport& from, const field& u, const place& at, targets_view targets) {
-    if (at.begin == at.end) return;
-    prepare(from, u, at);
-    const double numbers = static_cast<double>(at.end - at.begin) * width_;
-    {
-      const profile::section timed(kernel::edges, numbers,
-                                   {from.discretization_.scheme->operations(both_edges()), sizeof(double)});
-      for (int i = at.begin - halo_; i < at.end + halo_;) {
-        const run_of_cells run = run_from(i, at.end + halo_ - i);
-        make_edges(i, run);
-        i += run.cells * run.joined;
-      }
-    }
-    for (const bool upper : {false, true})
-      if (touches({at.direction, upper}, at) && from.faces_->prescribes({at.direction, upper}))
-        empty_beyond(upper ? at.end : -1, upper ? 1 : -1);
-    const profile::section timed(kernel::fluxes, numbers, work_of(targets));
-    for (int i = at.begin; i < at.end;) {
-      const run_of_cells run = run_from(i, at.end - i);
-      add(i, run, at, targets);
-      i += run.cells * run.joined;
-    }
-    for (const bool upper : {false, true})
-      if (touches({at.direction, upper}, at)) record({at.direction, upper}, at);
-  }
-
- private:
-  /// Either separate cells, or cells that are contiguous in memory, as are their neighbours, and form a
-  /// single "cell" for the kernels.
-  struct run_of_cells {
-    int cells, joined;
-  };
-
-  /// Whether a block ends at a face that is not periodic.
-  bool touches(const face& where, const place& at) const {
-    return (where.upper ? at.end == from_->mesh().cells(at.direction) : at.begin == 0) &&
-           from_->faces_->records(where);
-  }
-
-  /// Replaces the ghost cells from `first` outwards, as the fluxes see them, by vacuum.
-  void empty_beyond(int first, int outwards) {
-    vacuum_.resize(std::max(vacuum_.size(), static_cast<std::size_t>(width_)));
-    for (int k = 0; k < halo_; ++k) {
-      const int ghost = first + k * outwards;
-      rows_[static_cast<std::size_t>(ghost - first_row_)] = vacuum_.data();
-      std::fill_n(left_.data() + offset(ghost), width_, 0.0);
-      std::fill_n(right_.data() + offset(ghost), width_, 0.0);
-    }
-  }
-
-  /// Stores the upwind values at a face.
-  void record(const face& where, const place& at) {
-    const int cell = where.upper ? at.end - 1 : 0;
-    const auto width = static_cast<std::size_t>(width_);
-    in_.resize(std::max(in_.size(), width));
-    out_.resize(std::max(out_.size(), width));
-    const double* right = right_.data() + offset(cell);
-    const upwind::cells one{row(cell),
-                            both_edges() ? left_.data() + offset(cell) : right,
-                            right,
-                            width_,
-                            1,
-                            width_,
-                            line_->forward.data() + at.first,
-                            line_->per_cell.data() + at.first,
-                            nullptr};
-    upwind::fluxes_of_cell(one, from_->discretization_.positivity == limiter_kind::fluxes, in_.data(),
-                           out_.data());
-    double* values = from_->faces_->recorded(where, at.pencil) + at.first;
-    for (std::size_t k = 0; k < width; ++k)
-      values[k] =
-          (line_->forward[k + static_cast<std::size_t>(at.first)] != 0.0) == where.upper ? out_[k] : in_[k];
-  }
-
-  bool both_edges() const { return from_->discretization_.positivity == limiter_kind::edges; }
-
-  kernel_work work_of(targets_view targets) const {
-    kernel_work each = traffic(targets);
-    each.operations = upwind::operations(from_->discretization_.positivity == limiter_kind::fluxes) +
-                      upwind::operations_of_target * static_cast<double>(targets.size());
-    return each;
-  }
-
-  void prepare(const transport& from, const field& u, const place& at) {
-    from_ = &from;
-    line_ = &from.speeds_[static_cast<std::size_t>(at.direction)];
-    width_ = at.last - at.first;
-    first_component_ = at.first;
-    whole_rows_ = width_ == u.stride();
-    find_reach(from);
-    first_edge_ = at.begin - halo_;
-    const int beyond = halo_ + reach_;
-    first_row_ = at.begin - beyond;
-    from.space_->pencil_rows(u, at.direction, at.pencil, first_row_, at.end + beyond, rows_);
-    joined_.assign(rows_.size(), 1);
-    if (cells_of_a_row(u.stride()) > 1)
-      for (std::size_t j = rows_.size() - 1; j-- > 0;)
-        if (rows_[j] + width_ == rows_[j + 1]) joined_[j] = joined_[j + 1] + 1;
-    for (auto& row : rows_) row += at.first;
-    make_room(from, at.end - at.begin, width_);
-  }
-
-  void find_reach(const transport& from) {
-    halo_ = halo_of(from.discretization_);
-    reach_ = reach_of(from.discretization_);
-  }
-
-  /// Where neighbours are joined, a row of edges ends beyond its last cell.
-  void make_room(const transport& from, int cells, int width) {
-    const auto numbers = (static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_)) *
-                         static_cast<std::size_t>(width);
-    for (auto* edges : {&left_, &right_})
-      if (edges->size() < numbers) edges->resize(numbers);
-    if (from.equation_.has_source() && source_.size() < numbers) source_.resize(numbers);
-  }
-
-  const double* const* row(int i) const { return rows_.data() + (i - first_row_); }
-  std::size_t offset(int i) const {
-    return static_cast<std::size_t>(i - first_edge_) * static_cast<std::size_t>(width_);
-  }
-
-  run_of_cells run_from(int i, int most) const {
-    const int long_enough = cells_of_a_row(width_);
-    if (!whole_rows_ || long_enough == 1) return {most, 1};
-    const int together = joined_[static_cast<std::size_t>(i - reach_ - first_row_)] - 2 * reach_;
-    return {1, std::max(1, std::min({long_enough, most, together}))};
-  }
-
-  void make_edges(int i, const run_of_cells& run) {
-    const auto& scheme = *from_->discretization_.scheme;
-    const int width = run.joined * width_;
-    double *left = left_.data() + offset(i), *right = right_.data() + offset(i);
-    if (!both_edges())
-      return scheme.outflow_edges(row(i), run.cells, width, line_->forward.data() + first_component_, right);
-    scheme.edges(row(i), run.cells, width, left, right);
-    for (int j = 0; j < run.cells; ++j)
-      limiter::apply(*row(i + j), width, left + static_cast<std::ptrdiff_t>(j) * width,
-                     right + static_cast<std::ptrdiff_t>(j) * width);
-  }
-
-  const double* source(int i, const run_of_cells& run) {
-    for (int j = i; j < i + run.cells * run.joined; ++j)
-      from_->equation_.source(*row(j), source_.data() + offset(j));
-    return source_.data() + offset(i);
-  }
-
-  void add(int i, const run_of_cells& run, const place& at, targets_view targets) {
-    const bool first = at.direction == 0;
-    const auto& mesh = from_->mesh();
-    const int apart = mesh.stride(at.direction), cell = mesh.first_cell(at.direction, at.pencil) + i * apart;
-    upwind::rows_of(targets, cell, targets_, {at.first, apart, first});
-    const double* right = right_.data() + offset(i);
-    const upwind::cells some{row(i),
-                             both_edges() ? left_.data() + offset(i) : right,
-                             right,
-                             width_,
-                             run.cells,
-                             run.joined * width_,
-                             line_->forward.data() + at.first,
-                             line_->per_cell.data() + at.first,
-                             first && from_->equation_.has_source() ? source(i, run) : nullptr};
-    if (from_->discretization_.positivity == limiter_kind::fluxes) {
-      upwind::add_limited(some, targets_);
-    } else {
-      upwind::add(some, targets_);
-    }
-  }
-
-  const transport* from_ = nullptr;
-  const line_speeds* line_ = nullptr;
-  std::vector<const double*> rows_;
-  std::vector<int> joined_;
-  std::vector<upwind::row_target> targets_;
-  aligned_vector<double> left_, right_, source_, vacuum_, in_, out_;
-  int width_ = 0, first_component_ = 0, halo_ = 0, reach_ = 0, first_row_ = 0, first_edge_ = 0;
-  bool whole_rows_ = false;
-};
-
 struct transport::scratch {
   per_thread<block_sweep> sweeps;
   per_thread<std::vector<upwind::row_target>> rows;
+
+  /// The boxes of a mesh, which are made again only for another width or number of threads.
+  const tiling& boxes(const grid& mesh, int longest, int parts) {
+    if (!made || longest != longest_made || parts != parts_made) made.emplace(mesh, longest, parts);
+    longest_made = longest;
+    parts_made = parts;
+    return *made;
+  }
+
+ private:
+  std::optional<tiling> made;
+  int longest_made = 0, parts_made = 0;
 };
 
 transport::~transport() = default;
@@ -268,18 +63,8 @@ transport::transport(const model& equation, std::shared_ptr<domain> space,
       scratch_(std::make_unique<scratch>()) {
   faces_ = std::make_unique<face_fluxes>(equation_, space_);
   if (equation.space_dimensions() == 0) return;
-  space_->reserve(equation.components(), halo_of(discretization_) + reach_of(discretization_));
-  const field layout(1, equation.components());
-  for (int direction = 0; direction < mesh().dimensions(); ++direction) {
-    line_speeds line;
-    const auto v = equation.speeds(direction);
-    for (int cell = 0; cell < cells_of_a_row(layout.stride()); ++cell)
-      for (std::size_t k = 0; k < static_cast<std::size_t>(layout.stride()); ++k) {
-        line.per_cell.push_back(k < v.size() ? std::abs(v[k]) / mesh().spacing(direction) : 0.0);
-        line.forward.push_back(k < v.size() && v[k] > 0.0 ? 1.0 : 0.0);
-      }
-    speeds_.push_back(std::move(line));
-  }
+  space_->reserve(equation.components(), sweep_ghosts(discretization_));
+  speeds_ = line_speeds::of(equation, mesh());
 }
 
 void transport::set_force(acceleration of) {
@@ -310,12 +95,9 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
     return false;
   }
   space_->fill_ghosts(t, u);
-  const int dimensions = mesh().dimensions();
-  for (int direction = 0; direction + 1 < dimensions; ++direction)
-    add_direction(t, u, targets, direction, {});
-  // Cells are complete pencil by pencil only where one direction is all there is.
-  const bool alone = dimensions == 1 && !force_ && !source_;
-  const bool done = add_direction(t, u, targets, dimensions - 1, alone ? then : cells_job());
+  // Cells are complete box by box only where sweeps are all there is.
+  const bool alone = !force_ && !source_;
+  const bool done = sweep(t, u, targets, alone ? then : cells_job());
   std::vector<double> given;  // inside the domain
   if (force_) {
     force_->add(t, u, targets);
@@ -327,10 +109,6 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   }
   faces_->add_gains(u, targets, true, given);
   return done;
-}
-
-void transport::complete_face(const face& where, int pencil, double t, targets_view targets) const {
-  if (faces_->records(where)) faces_->complete(where, pencil, t, targets);
 }
 
 void transport::add_source(const field& u, targets_view targets) const {
@@ -364,49 +142,97 @@ void transport::add_weighted(const field& u, targets_view targets, const cells_j
   });
 }
 
-bool transport::add_direction(double t, const field& u, targets_view targets, int direction,
-                              const cells_job& then) const {
-  const int n = mesh().cells(direction), pencils = mesh().pencils(direction), width = u.stride();
+/// body(segment, begin, end) for the cells of a box along a direction, as cells of segments.
+template <class Body>
+void transport::for_segments(int direction, const cell_box& box, const Body& body) const {
+  const auto k = static_cast<std::size_t>(direction);
+  const int inner = mesh().stride(direction), first = box.first[k], last = first + box.cells[k];
+  const auto& table = space_->segments();
+  cell_box lines = box;
+  lines.cells[k] = 1;
+  for (int a = 0; a < lines.cells[0]; ++a)
+    for (int b = 0; b < lines.cells[1]; ++b)
+      for (int c = 0; c < lines.cells[2]; ++c) {
+        std::array<int, 3> at = {box.first[0] + a, box.first[1] + b, box.first[2] + c};
+        at[k] = 0;
+        const int start = (at[0] * mesh().cells(1) + at[1]) * mesh().cells(2) + at[2];
+        const int pencil = start / (inner * mesh().cells(direction)) * inner + start % inner;
+        for (int s = table.first_of(direction, pencil); s < table.first_of(direction, pencil + 1); ++s) {
+          const segment& one = space_->segment_at(direction, s);
+          const int begin = std::max(first - one.offset, 0), end = std::min(last - one.offset, one.cells);
+          if (begin < end) body(s, begin, end);
+        }
+      }
+}
+
+void transport::sweep_box(const field& u, targets_view targets, const cell_box& box, int first,
+                          int last) const {
+  const block_sweep::context all{equation_, *space_, discretization_, speeds_, *faces_};
+  for (int direction = 0; direction < mesh().dimensions(); ++direction)
+    for_segments(direction, box, [&](int segment, int begin, int end) {
+      scratch_->sweeps.here().run(all, u, {direction, segment, begin, end, first, last}, targets);
+    });
+}
+
+/// Adds what enters through surfaces at the cells of a box.
+void transport::complete_box(double t, targets_view targets, const cell_box& box) const {
+  if (space_->openings().empty()) return;
+  for (int direction = 0; direction < mesh().dimensions(); ++direction)
+    for_segments(direction, box, [&](int number, int begin, int end) {
+      const segment& one = space_->segment_at(direction, number);
+      for (const bool upper : {false, true}) {
+        const auto& [surface, place] = one.ends[upper ? 1 : 0];
+        if (surface >= 0 && (upper ? end == one.cells : begin == 0))
+          faces_->complete(surface, place, t, targets);
+      }
+    });
+}
+
+void transport::finish_box(const cell_box& box, const cells_job& then) const {
+  const int direction = mesh().dimensions() - 1;
+  for_segments(direction, box, [&](int number, int begin, int end) {
+    const int first = space_->segment_at(direction, number).first;
+    then(first + begin, first + end);
+  });
+}
+
+bool transport::sweep(double t, const field& u, targets_view targets, const cells_job& then) const {
+  const int n = mesh().cells(0), width = u.stride();
+  const bool on_a_line = mesh().dimensions() == 1;
   // A source is a function of all components of a cell.
   const bool whole_cells = equation_.has_source();
   int columns = whole_cells ? 1 : (width + most_columns - 1) / most_columns;
-  // Parts of one pencil for all threads, or pencils, or parts of rows.
-  const bool by_cells = pencils == 1 && n / least_cells >= threads();
-  const part_blocks blocks(n, sweep_block_length(std::min(width, most_columns)), by_cells ? threads() : 1);
+  const int longest = sweep_block_length(std::min(width, most_columns));
   // So many parts that threads of different speed end at about the same time.
   const int enough = threads() == 1 ? 1 : 4 * threads();
-  const long pieces = static_cast<long>(pencils) * blocks.count();
-  if (!whole_cells && !by_cells && pieces * columns < enough)
+  const bool parts_of_a_line = on_a_line && n / least_cells >= threads();
+  const tiling& boxes = scratch_->boxes(mesh(), longest, parts_of_a_line ? threads() : 1);
+  const bool by_boxes = on_a_line ? parts_of_a_line : boxes.count() >= enough;
+  if (!whole_cells && !by_boxes && static_cast<long>(boxes.count()) * columns < enough)
     columns = std::max(columns, width / least_columns);
-  if (!by_cells) columns = static_cast<int>(std::clamp<long>(most_tasks / pieces, 1, columns));
+  if (!by_boxes) columns = static_cast<int>(std::clamp<long>(most_tasks / boxes.count(), 1, columns));
   const auto component = [&](int column) { return first_component(width, columns, column); };
-  const int longest = std::min(n, sweep_block_length(std::min(width, most_columns)));
   const int widest = (width / packet_length / columns + 1) * packet_length;
+  const block_sweep::context all{equation_, *space_, discretization_, speeds_, *faces_};
   scratch_->sweeps.prepare([&](auto& sweep) {
-    sweep.reserve(*this, longest, std::min(width, widest + width % packet_length), targets.size());
+    sweep.reserve(all, std::min(std::max({mesh().cells(0), mesh().cells(1), mesh().cells(2)}), longest),
+                  std::min(width, widest + width % packet_length), targets.size());
   });
-  const auto sweep = [&](int pencil, int block, int column) {
-    scratch_->sweeps.here().run(
-        *this, u,
-        {direction, pencil, blocks.begin(block), blocks.end(block), component(column), component(column + 1)},
-        targets);
-  };
-  if (by_cells) {
-    parallel_for(blocks.count(), [&](int block) {
-      for (int column = 0; column < columns; ++column) sweep(0, block, column);
-      const bool cells = blocks.begin(block) < blocks.end(block);
-      if (cells && blocks.begin(block) == 0) complete_face({direction, false}, 0, t, targets);
-      if (cells && blocks.end(block) == n) complete_face({direction, true}, 0, t, targets);
-      if (then) then(blocks.begin(block), blocks.end(block));
+  if (by_boxes) {
+    parallel_for(boxes.count(), [&](int number) {
+      const cell_box box = boxes.box(number);
+      for (int column = 0; column < columns; ++column)
+        sweep_box(u, targets, box, component(column), component(column + 1));
+      complete_box(t, targets, box);
+      if (then) finish_box(box, then);
     });
     return static_cast<bool>(then);
   }
-  parallel_for(static_cast<int>(pieces) * columns, [&](int task) {
-    sweep(task / columns / blocks.count(), task / columns % blocks.count(), task % columns);
+  parallel_for(boxes.count() * columns, [&](int task) {
+    const int column = task % columns;
+    sweep_box(u, targets, boxes.box(task / columns), component(column), component(column + 1));
   });
-  parallel_for(pencils, [&](int pencil) {
-    for (const bool upper : {false, true}) complete_face({direction, upper}, pencil, t, targets);
-  });
+  parallel_for(boxes.count(), [&](int number) { complete_box(t, targets, boxes.box(number)); });
   return false;
 }
 

@@ -2,6 +2,8 @@
 
 #include <apsis/integrate/problem.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/phase/domain.hpp>
+#include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/force.hpp>
 #include <apsis/semidiscrete/source.hpp>
@@ -48,10 +50,14 @@ class transport {
   void add_source(const field& u, std::span<const target<field, double>> targets) const;
   void add_weighted(const field& u, std::span<const target<field, double>> targets,
                     const cells_job& then) const;
-  bool add_direction(double t, const field& u, std::span<const target<field, double>> targets, int direction,
-                     const cells_job& then) const;
-  void complete_face(const face& where, int pencil, double t,
-                     std::span<const target<field, double>> targets) const;
+  bool sweep(double t, const field& u, std::span<const target<field, double>> targets,
+             const cells_job& then) const;
+  void sweep_box(const field& u, std::span<const target<field, double>> targets, const cell_box& box,
+                 int first, int last) const;
+  void complete_box(double t, std::span<const target<field, double>> targets, const cell_box& box) const;
+  void finish_box(const cell_box& box, const cells_job& then) const;
+  template <class Body>
+  void for_segments(int direction, const cell_box& box, const Body& body) const;
 
   const grid& mesh() const { return space_->mesh(); }
 
@@ -61,13 +67,8 @@ class transport {
   std::unique_ptr<face_fluxes> faces_;
   std::unique_ptr<force> force_;    ///< null without
   std::unique_ptr<source> source_;  ///< null without
-  struct line_speeds {
-    aligned_vector<double> per_cell;  ///< |v|/Δx per component
-    aligned_vector<double> forward;   ///< 1 if v > 0, else 0
-  };
-  class block_sweep;
   struct scratch;
-  std::vector<line_speeds> speeds_;
+  std::vector<line_speeds> speeds_;   ///< of each direction
   std::unique_ptr<scratch> scratch_;  ///< scratch memory of loops; one loop at a time
 };
 

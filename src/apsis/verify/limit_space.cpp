@@ -71,7 +71,7 @@ limit_space::pencil limit_space::reconstruct(const field& u) const {
   const int ghosts = scheme_->ghost_width(), count = cells() + 2 * halo;
   p.first_row = -halo - ghosts;
   p.width = static_cast<std::size_t>(u.stride());
-  space_.pencil_rows(u, 0, 0, p.first_row, cells() + halo + ghosts, p.rows);
+  space_.segment_rows(u, 0, 0, p.first_row, cells() + halo + ghosts, p.rows);
   p.left_edges.resize(static_cast<std::size_t>(count) * p.width);
   p.right_edges.resize(static_cast<std::size_t>(count) * p.width);
   scheme_->edges(p.rows.data() + ghosts, count, u.stride(), p.left_edges.data(), p.right_edges.data());

@@ -1,0 +1,179 @@
+#include <apsis/config/solid_reader.hpp>
+
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/boundary_reader.hpp>
+#include <apsis/config/case_value.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/model/expression.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+namespace {
+
+constexpr int most_boxes = 1000;
+const std::string head = "space.solid.";
+
+std::string path_of(std::size_t box) {
+  return fmt::format("{}{}", head, box + 1);
+}
+
+bool is_name(const std::string& text) {
+  return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0 &&
+         std::all_of(text.begin(), text.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
+}
+
+/// A corner of a box: one number, or constant formula, for each direction.
+std::vector<double> corner(const raw_value& raw, const std::string& path, const case_config& config) {
+  const auto texts = formula_texts(raw, path);
+  const std::size_t wanted = config.space.cells.size();
+  if (texts.size() != wanted)
+    refuse(raw, path, fmt::format("it has {} numbers, the space {} dimensions", texts.size(), wanted),
+           fmt::format("give {}", wanted));
+  std::vector<double> numbers;
+  for (const auto& text : texts) {
+    const expression value(text, raw.value_place, formula_of_position(0, false, config.constants));
+    if (!value.is_constant()) refuse(raw, path, "it depends on x", "give numbers");
+    numbers.push_back(value.evaluate(position{}));
+  }
+  return numbers;
+}
+
+/// The cell edge at a coordinate along a direction. Throws input_error if there is none.
+int edge_at(const case_config& config, const grid& mesh, const std::string& path, int direction, double x) {
+  const double from_start = (x - mesh.edge(direction, 0)) / mesh.spacing(direction);
+  const int n = mesh.cells(direction);
+  const double nearest = std::round(from_start);
+  // Coordinates and edges are rounded numbers.
+  constexpr double tolerance = 1e-6;
+  if (std::abs(from_start - nearest) < tolerance && nearest >= 0.0 && nearest <= n)
+    return static_cast<int>(nearest);
+  const int below = static_cast<int>(std::clamp(std::floor(from_start), 0.0, n - 1.0));
+  throw input_error(
+      place_of(config, path),
+      fmt::format("'{}' = {:g} along {} is not on an edge of the cells (the nearest are {:.6g} and {:.6g}); "
+                  "move it, or change space.cells",
+                  path, x, "xyz"[direction], mesh.edge(direction, below), mesh.edge(direction, below + 1)));
+}
+
+class reader {
+ public:
+  reader(const case_text& text, const model& equation, case_config& config)
+      : text_(text), equation_(equation), config_(config) {}
+
+  void read() {
+    config_.solids.clear();
+    // Kinds first: they decide which other keys there are.
+    for (const bool kinds : {true, false})
+      for (const auto& [path, raw] : text_.values)
+        if (path.rfind(head, 0) == 0) take(path, raw, kinds);
+    for (std::size_t box = 0; box < config_.solids.size(); ++box) complete(box);
+  }
+
+ private:
+  void take(const std::string& path, const raw_value& raw, bool kinds) {
+    const auto dot = path.find('.', head.size());
+    const std::string number = path.substr(head.size(), dot == std::string::npos ? dot : dot - head.size());
+    int box = 0;
+    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), box);
+    if (error != std::errc{} || stop != number.data() + number.size() || box < 1 || box > most_boxes ||
+        dot == std::string::npos)
+      throw input_error(raw.place, fmt::format("unknown key '{}' (solid boxes are a list of tables); write "
+                                               "[[space.solid]]",
+                                               shown(path)));
+    if (config_.solids.size() < static_cast<std::size_t>(box))
+      config_.solids.resize(static_cast<std::size_t>(box));
+    solid_table& here = config_.solids[static_cast<std::size_t>(box - 1)];
+    const std::string key = path.substr(dot + 1);
+    if ((key == "kind") != kinds) return;
+    if (key == "kind" || key == "name") {
+      const auto* text = std::get_if<std::string>(&raw.value);
+      if (text == nullptr) refuse(raw, path, "it must be a text", "write for example kind = \"diffuse\"");
+      (key == "kind" ? here.kind : here.name) = *text;
+    } else if (key == "from" || key == "to") {
+      (key == "from" ? here.from : here.to) = corner(raw, path, config_);
+    } else {
+      take_variable(path, key, raw, here);
+    }
+  }
+
+  void take_variable(const std::string& path, const std::string& key, const raw_value& raw,
+                     solid_table& here) {
+    auto names = boundary_variables(here.kind, equation_, raw.place);
+    if (std::find(names.begin(), names.end(), key) == names.end()) {
+      names.insert(names.end(), {"name", "from", "to", "kind"});
+      throw input_error(raw.place, fmt::format("unknown key '{}' (boundary '{}' has no such variable); {}",
+                                               shown(path), here.kind, suggest(key, names)));
+    }
+    here.values[key] = formula_texts(raw, path);
+  }
+
+  void complete(std::size_t box) {
+    solid_table& here = config_.solids[box];
+    const std::string path = path_of(box);
+    if (here.name.empty()) here.name = fmt::format("solid-{}", box + 1);
+    std::vector<std::string> taken(face_names.begin(), face_names.end());
+    taken.insert(taken.end(), {"force", "source"});
+    for (std::size_t other = 0; other < box; ++other) taken.push_back(config_.solids[other].name);
+    if (!is_name(here.name) || std::find(taken.begin(), taken.end(), here.name) != taken.end())
+      throw input_error(
+          place_of(config_, path + ".name"),
+          fmt::format("'{}.name' = \"{}\" cannot be used ({}); choose another name", path, shown(here.name),
+                      is_name(here.name) ? "it is taken" : "letters, digits, - and _ only"));
+    for (const char* key : {"from", "to"})
+      if ((key[0] == 'f' ? here.from : here.to).empty())
+        throw input_error(
+            place_of(config_, path),
+            fmt::format("key '{}.{}' is missing (a box needs two corners); add for example "
+                        "{} = [{}]",
+                        path, key, key, fmt::join(std::vector<int>(config_.space.cells.size(), 0), ", ")));
+  }
+
+  const case_text& text_;
+  const model& equation_;
+  case_config& config_;
+};
+
+}  // namespace
+
+void read_solids(const case_text& text, const model& equation, case_config& config) {
+  reader(text, equation, config).read();
+}
+
+std::vector<cell_box> solid_boxes(const case_config& config, const grid& mesh) {
+  std::vector<cell_box> boxes;
+  for (std::size_t k = 0; k < config.solids.size(); ++k) {
+    const solid_table& solid = config.solids[k];
+    cell_box box;
+    for (int direction = 0; direction < mesh.dimensions(); ++direction) {
+      const auto d = static_cast<std::size_t>(direction);
+      const int begin = edge_at(config, mesh, path_of(k) + ".from", direction, solid.from[d]),
+                end = edge_at(config, mesh, path_of(k) + ".to", direction, solid.to[d]);
+      if (begin >= end)
+        throw input_error(place_of(config, path_of(k) + ".to"),
+                          fmt::format("'{}' has no extent along {} ({:g} to {:g}); give from < to",
+                                      path_of(k), "xyz"[d], solid.from[d], solid.to[d]));
+      box.first[d] = begin;
+      box.cells[d] = end - begin;
+    }
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+std::vector<std::shared_ptr<const boundary>> make_solid_walls(const case_config& config,
+                                                              const model& equation) {
+  std::vector<std::shared_ptr<const boundary>> walls;
+  for (std::size_t k = 0; k < config.solids.size(); ++k)
+    walls.push_back(make_wall(config, equation, path_of(k), config.solids[k].kind, config.solids[k].values));
+  return walls;
+}
+
+}  // namespace apsis

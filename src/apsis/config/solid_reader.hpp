@@ -1,0 +1,24 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/config/case_text.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace apsis {
+
+/// Reads the tables [[space.solid]] into `config`, whose mesh is known. Throws input_error at the place of a
+/// key: no box inside the domain with its faces on edges of cells, a name that occurs twice, or a variable
+/// that the kind of wall does not have.
+void read_solids(const case_text& text, const model& equation, case_config& config);
+
+/// Returns the solid boxes of a case as cells of its mesh. Throws input_error where they do not fit.
+std::vector<cell_box> solid_boxes(const case_config& config, const grid& mesh);
+
+/// Returns the wall of each solid box. Throws input_error at the place of the table or the formula that is
+/// wrong.
+std::vector<std::shared_ptr<const boundary>> make_solid_walls(const case_config& config,
+                                                              const model& equation);
+
+}  // namespace apsis

@@ -1,0 +1,81 @@
+#include <apsis/phase/segments.hpp>
+
+namespace apsis {
+namespace {
+
+std::size_t at(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+}  // namespace
+
+segment_table::segment_table(const grid& mesh, const std::array<bool, 3>& periodic) {
+  const int dimensions = mesh.dimensions(), solids = static_cast<int>(mesh.solids().size());
+  for (int solid = -1; solid < solids; ++solid)
+    for (std::size_t k = 0; k < 2 * at(dimensions); ++k) {
+      face where = face_of(k);
+      if (solid >= 0) where.upper = !where.upper;  // segments end at the lower face with their upper end
+      surfaces_.push_back({where, solid, {}});
+    }
+  for (int direction = 0; direction < dimensions; ++direction) {
+    cut(mesh, direction);
+    link(direction, periodic[at(direction)], mesh);
+  }
+}
+
+void segment_table::cut(const grid& mesh, int direction) {
+  const int n = mesh.cells(direction), stride = mesh.stride(direction);
+  auto& made = along_[at(direction)];
+  auto& first_of = first_of_[at(direction)];
+  for (int pencil = 0; pencil < mesh.pencils(direction); ++pencil) {
+    first_of.push_back(static_cast<int>(made.size()));
+    const int first = mesh.first_cell(direction, pencil);
+    bool inside = false;
+    for (int i = 0; i < n; ++i) {
+      const bool fluid = mesh.solid(first + i * stride) < 0;
+      if (fluid && !inside) made.push_back({first + i * stride, i, 0, {}});
+      if (fluid) ++made.back().cells;
+      inside = fluid;
+    }
+  }
+  first_of.push_back(static_cast<int>(made.size()));
+}
+
+/// Finds what lies beyond both ends of every segment.
+void segment_table::link(int direction, bool periodic, const grid& mesh) {
+  const int n = mesh.cells(direction), stride = mesh.stride(direction), faces = 2 * mesh.dimensions();
+  auto& segments = along_[at(direction)];
+  for (int pencil = 0; pencil < mesh.pencils(direction); ++pencil) {
+    const int begin = first_of(direction, pencil), end = first_of(direction, pencil + 1);
+    const int pencil_first = mesh.first_cell(direction, pencil);
+    for (int number = begin; number < end; ++number)
+      for (const bool upper : {false, true}) {
+        segment& one = segments[at(number)];
+        int beside = upper ? one.offset + one.cells : one.offset - 1;
+        const int at_face = static_cast<int>(face{direction, upper}.index());
+        if (beside < 0 || beside >= n) {
+          if (!periodic) {
+            end_at(at_face, direction, number, upper);
+            continue;
+          }
+          beside = upper ? 0 : n - 1;
+          const int opposite = upper ? begin : end - 1;
+          if (mesh.solid(pencil_first + beside * stride) < 0) {
+            one.ends[upper ? 1 : 0] = {-1, opposite};
+            continue;
+          }
+        }
+        const int solid = mesh.solid(pencil_first + beside * stride);
+        // The face of the box that looks at the segment.
+        end_at(faces * (solid + 1) + 2 * direction + (upper ? 0 : 1), direction, number, upper);
+      }
+  }
+}
+
+void segment_table::end_at(int surface, int direction, int number, bool upper) {
+  auto& ends = surfaces_[at(surface)].segments;
+  along_[at(direction)][at(number)].ends[upper ? 1 : 0] = {surface, static_cast<int>(ends.size())};
+  ends.push_back(number);
+}
+
+}  // namespace apsis

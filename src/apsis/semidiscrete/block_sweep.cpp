@@ -1,0 +1,219 @@
+#include <apsis/semidiscrete/block_sweep.hpp>
+
+#include <apsis/scheme/limiter.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace apsis {
+namespace {
+
+/// Returns the number of cells that are joined into one row, so that rows of few components fill vectors.
+int cells_of_a_row(int stride) {
+  constexpr int enough = 64;
+  return std::max(1, enough / std::max(stride, 1));
+}
+
+/// Returns the number of cells on either side on which edges and limiter of a cell depend.
+int reach_of(const spatial_discretization& discretization) {
+  return std::max(discretization.scheme->ghost_width(), halo_of(discretization));
+}
+
+}  // namespace
+
+kernel_work traffic(block_sweep::targets_view targets) {
+  kernel_work each;
+  for (const auto& to : targets) each.bytes += sizeof(double) * (to.fresh ? 1.0 : 2.0);
+  return each;
+}
+
+int halo_of(const spatial_discretization& discretization) {
+  return discretization.positivity == limiter_kind::fluxes ? 2 : 1;
+}
+
+int sweep_ghosts(const spatial_discretization& discretization) {
+  return halo_of(discretization) + reach_of(discretization);
+}
+
+std::vector<line_speeds> line_speeds::of(const model& equation, const grid& mesh) {
+  std::vector<line_speeds> all;
+  const field layout(1, equation.components());
+  for (int direction = 0; direction < mesh.dimensions(); ++direction) {
+    line_speeds line;
+    const auto v = equation.speeds(direction);
+    for (int cell = 0; cell < cells_of_a_row(layout.stride()); ++cell)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(layout.stride()); ++k) {
+        line.per_cell.push_back(k < v.size() ? std::abs(v[k]) / mesh.spacing(direction) : 0.0);
+        line.forward.push_back(k < v.size() && v[k] > 0.0 ? 1.0 : 0.0);
+      }
+    all.push_back(std::move(line));
+  }
+  return all;
+}
+
+void block_sweep::reserve(const context& of, int cells, int width, std::size_t targets) {
+  of_ = &of;
+  halo_ = halo_of(of.discretization);
+  reach_ = reach_of(of.discretization);
+  const auto rows = static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_ + reach_);
+  rows_.reserve(rows);
+  joined_.reserve(rows);
+  targets_.reserve(targets);
+  make_room(cells, width);
+}
+
+void block_sweep::run(const context& of, const field& u, const place& at, targets_view targets) {
+  if (at.begin == at.end) return;
+  prepare(of, u, at);
+  const double numbers = static_cast<double>(at.end - at.begin) * width_;
+  {
+    const profile::section timed(kernel::edges, numbers,
+                                 {of.discretization.scheme->operations(both_edges()), sizeof(double)});
+    for (int i = at.begin - halo_; i < at.end + halo_;) {
+      const run_of_cells run = run_from(i, at.end + halo_ - i);
+      make_edges(i, run);
+      i += run.cells * run.joined;
+    }
+  }
+  for (const bool upper : {false, true})
+    if (const segment_end* end = surface_at(upper, at); end != nullptr && of.faces.prescribes(end->surface))
+      empty_beyond(upper ? at.end : -1, upper ? 1 : -1);
+  const profile::section timed(kernel::fluxes, numbers, work_of(targets));
+  for (int i = at.begin; i < at.end;) {
+    const run_of_cells run = run_from(i, at.end - i);
+    add(i, run, at, targets);
+    i += run.cells * run.joined;
+  }
+  for (const bool upper : {false, true})
+    if (const segment_end* end = surface_at(upper, at)) record(*end, upper, at);
+}
+
+/// The surface at which a block ends; null where it does not end at one.
+const segment_end* block_sweep::surface_at(bool upper, const place& at) const {
+  const segment_end& end = segment_->ends[upper ? 1 : 0];
+  const bool there = upper ? at.end == segment_->cells : at.begin == 0;
+  return there && end.surface >= 0 ? &end : nullptr;
+}
+
+/// Replaces the ghost cells from `first` outwards, as the fluxes see them, by vacuum.
+void block_sweep::empty_beyond(int first, int outwards) {
+  vacuum_.resize(std::max(vacuum_.size(), static_cast<std::size_t>(width_)));
+  for (int k = 0; k < halo_; ++k) {
+    const int ghost = first + k * outwards;
+    rows_[static_cast<std::size_t>(ghost - first_row_)] = vacuum_.data();
+    std::fill_n(left_.data() + offset(ghost), width_, 0.0);
+    std::fill_n(right_.data() + offset(ghost), width_, 0.0);
+  }
+}
+
+/// Stores the upwind values at a surface.
+void block_sweep::record(const segment_end& end, bool upper, const place& at) {
+  const int cell = upper ? at.end - 1 : 0;
+  const auto width = static_cast<std::size_t>(width_);
+  in_.resize(std::max(in_.size(), width));
+  out_.resize(std::max(out_.size(), width));
+  const double* right = right_.data() + offset(cell);
+  const upwind::cells one{row(cell),
+                          both_edges() ? left_.data() + offset(cell) : right,
+                          right,
+                          width_,
+                          1,
+                          width_,
+                          line_->forward.data() + at.first,
+                          line_->per_cell.data() + at.first,
+                          nullptr};
+  upwind::fluxes_of_cell(one, of_->discretization.positivity == limiter_kind::fluxes, in_.data(),
+                         out_.data());
+  double* values = of_->faces.recorded(end.surface, end.place) + at.first;
+  for (std::size_t k = 0; k < width; ++k)
+    values[k] = (line_->forward[k + static_cast<std::size_t>(at.first)] != 0.0) == upper ? out_[k] : in_[k];
+}
+
+bool block_sweep::both_edges() const {
+  return of_->discretization.positivity == limiter_kind::edges;
+}
+
+kernel_work block_sweep::work_of(targets_view targets) const {
+  kernel_work each = traffic(targets);
+  each.operations = upwind::operations(of_->discretization.positivity == limiter_kind::fluxes) +
+                    upwind::operations_of_target * static_cast<double>(targets.size());
+  return each;
+}
+
+void block_sweep::prepare(const context& of, const field& u, const place& at) {
+  of_ = &of;
+  line_ = &of.speeds[static_cast<std::size_t>(at.direction)];
+  segment_ = &of.space.segment_at(at.direction, at.segment);
+  width_ = at.last - at.first;
+  first_component_ = at.first;
+  whole_rows_ = width_ == u.stride();
+  halo_ = halo_of(of.discretization);
+  reach_ = reach_of(of.discretization);
+  first_edge_ = at.begin - halo_;
+  const int beyond = halo_ + reach_;
+  first_row_ = at.begin - beyond;
+  of.space.segment_rows(u, at.direction, at.segment, first_row_, at.end + beyond, rows_);
+  joined_.assign(rows_.size(), 1);
+  if (cells_of_a_row(u.stride()) > 1)
+    for (std::size_t j = rows_.size() - 1; j-- > 0;)
+      if (rows_[j] + width_ == rows_[j + 1]) joined_[j] = joined_[j + 1] + 1;
+  for (auto& row : rows_) row += at.first;
+  make_room(at.end - at.begin, width_);
+}
+
+/// Where neighbours are joined, a row of edges ends beyond its last cell.
+void block_sweep::make_room(int cells, int width) {
+  const auto numbers = (static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_)) *
+                       static_cast<std::size_t>(width);
+  for (auto* edges : {&left_, &right_})
+    if (edges->size() < numbers) edges->resize(numbers);
+  if (of_->equation.has_source() && source_.size() < numbers) source_.resize(numbers);
+}
+
+block_sweep::run_of_cells block_sweep::run_from(int i, int most) const {
+  const int long_enough = cells_of_a_row(width_);
+  if (!whole_rows_ || long_enough == 1) return {most, 1};
+  const int together = joined_[static_cast<std::size_t>(i - reach_ - first_row_)] - 2 * reach_;
+  return {1, std::max(1, std::min({long_enough, most, together}))};
+}
+
+void block_sweep::make_edges(int i, const run_of_cells& run) {
+  const auto& scheme = *of_->discretization.scheme;
+  const int width = run.joined * width_;
+  double *left = left_.data() + offset(i), *right = right_.data() + offset(i);
+  if (!both_edges())
+    return scheme.outflow_edges(row(i), run.cells, width, line_->forward.data() + first_component_, right);
+  scheme.edges(row(i), run.cells, width, left, right);
+  for (int j = 0; j < run.cells; ++j)
+    limiter::apply(*row(i + j), width, left + static_cast<std::ptrdiff_t>(j) * width,
+                   right + static_cast<std::ptrdiff_t>(j) * width);
+}
+
+const double* block_sweep::source(int i, const run_of_cells& run) {
+  for (int j = i; j < i + run.cells * run.joined; ++j)
+    of_->equation.source(*row(j), source_.data() + offset(j));
+  return source_.data() + offset(i);
+}
+
+void block_sweep::add(int i, const run_of_cells& run, const place& at, targets_view targets) {
+  const bool first = at.direction == 0;
+  const int apart = of_->space.mesh().stride(at.direction), cell = segment_->first + i * apart;
+  upwind::rows_of(targets, cell, targets_, {at.first, apart, first});
+  const double* right = right_.data() + offset(i);
+  const upwind::cells some{row(i),
+                           both_edges() ? left_.data() + offset(i) : right,
+                           right,
+                           width_,
+                           run.cells,
+                           run.joined * width_,
+                           line_->forward.data() + at.first,
+                           line_->per_cell.data() + at.first,
+                           first && of_->equation.has_source() ? source(i, run) : nullptr};
+  if (of_->discretization.positivity == limiter_kind::fluxes) {
+    upwind::add_limited(some, targets_);
+  } else {
+    upwind::add(some, targets_);
+  }
+}
+
+}  // namespace apsis

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <apsis/exec/aligned.hpp>
+#include <apsis/exec/profile.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/semidiscrete/face_fluxes.hpp>
+#include <apsis/semidiscrete/sweep.hpp>
+#include <apsis/semidiscrete/upwind_rows.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// Speeds of the components along a direction, for as many cells as are joined into one row.
+struct line_speeds {
+  aligned_vector<double> per_cell;  ///< |v|/Δx per component
+  aligned_vector<double> forward;   ///< 1 if v > 0, else 0
+
+  /// Returns the speeds along each direction of a mesh.
+  static std::vector<line_speeds> of(const model& equation, const grid& mesh);
+};
+
+/// Returns the number of cells beyond a block whose edges are needed: one for the flux, one more for its
+/// limiter.
+int halo_of(const spatial_discretization& discretization);
+/// Returns the number of ghost rows that sweeps read beyond the end of a segment.
+int sweep_ghosts(const spatial_discretization& discretization);
+
+/// T along one direction for some components of some cells of a segment. A workspace of one thread.
+class block_sweep {
+ public:
+  /// What all sweeps of a transport share.
+  struct context {
+    const model& equation;                         ///< equation
+    const domain& space;                           ///< cells and ghost rows
+    const spatial_discretization& discretization;  ///< edges and limiter
+    const std::vector<line_speeds>& speeds;        ///< of each direction
+    face_fluxes& faces;                            ///< takes the fluxes at surfaces
+  };
+  /// The part of the phase space that a sweep changes.
+  struct place {
+    int direction, segment, begin, end;  ///< cells of the segment
+    int first, last;                     ///< components
+  };
+  /// Targets of a sweep: acc ← (fresh ? 0 : acc) + α u + β T, α u with the first direction alone.
+  using targets_view = std::span<const target<field, double>>;
+
+  /// Allocates buffers for `cells` cells of at most `width` components.
+  void reserve(const context& of, int cells, int width, std::size_t targets);
+  /// Adds T along a direction to the targets. Surfaces at the ends get their upwind values.
+  void run(const context& of, const field& u, const place& at, targets_view targets);
+
+ private:
+  /// Either separate cells, or cells that are contiguous in memory, as are their neighbours, and form a
+  /// single "cell" for the kernels.
+  struct run_of_cells {
+    int cells, joined;
+  };
+
+  const segment_end* surface_at(bool upper, const place& at) const;
+  void empty_beyond(int first, int outwards);
+  void record(const segment_end& end, bool upper, const place& at);
+  bool both_edges() const;
+  kernel_work work_of(targets_view targets) const;
+  void prepare(const context& of, const field& u, const place& at);
+  void make_room(int cells, int width);
+  const double* const* row(int i) const { return rows_.data() + (i - first_row_); }
+  std::size_t offset(int i) const {
+    return static_cast<std::size_t>(i - first_edge_) * static_cast<std::size_t>(width_);
+  }
+  run_of_cells run_from(int i, int most) const;
+  void make_edges(int i, const run_of_cells& run);
+  const double* source(int i, const run_of_cells& run);
+  void add(int i, const run_of_cells& run, const place& at, targets_view targets);
+
+  const context* of_ = nullptr;
+  const segment* segment_ = nullptr;
+  const line_speeds* line_ = nullptr;
+  std::vector<const double*> rows_;
+  std::vector<int> joined_;
+  std::vector<upwind::row_target> targets_;
+  aligned_vector<double> left_, right_, source_, vacuum_, in_, out_;
+  int width_ = 0, first_component_ = 0, halo_ = 0, reach_ = 0, first_row_ = 0, first_edge_ = 0;
+  bool whole_rows_ = false;
+};
+
+/// Returns the memory traffic of the accumulators per number: a write, and a read unless they are fresh.
+kernel_work traffic(block_sweep::targets_view targets);
+
+}  // namespace apsis

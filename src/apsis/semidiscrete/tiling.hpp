@@ -1,0 +1,28 @@
+#pragma once
+
+#include <apsis/exec/parallel.hpp>
+#include <apsis/phase/grid.hpp>
+
+#include <array>
+#include <vector>
+
+namespace apsis {
+
+/// A mesh cut into boxes of cells. The sweeps along all directions change one box before they go on to the
+/// next, so that its states pass through the second-level cache once.
+class tiling {
+ public:
+  /// On a line, blocks of at most `longest` cells, in `parts` parts of equal length; in several dimensions
+  /// boxes of some hundred cells.
+  tiling(const grid& mesh, int longest, int parts);
+
+  /// Returns the number of boxes.
+  int count() const;
+  /// Returns box 0 … count() − 1, the last direction fastest; on a line it may be empty.
+  cell_box box(int number) const;
+
+ private:
+  std::array<std::vector<int>, 3> cuts_;  ///< first cells of the boxes of each direction, and its end
+};
+
+}  // namespace apsis

@@ -202,7 +202,13 @@ class reader {
     const auto given = text_.values.find("output.distribution_at");
     if (given == text_.values.end()) return;
     const std::string& path = given->first;
-    for (const auto& x : output.distribution_at) check_point(given->second, path, x);
+    for (const auto& x : output.distribution_at) {
+      check_point(given->second, path, x);
+      if (const grid mesh = make_mesh(config_); mesh.solid(cell_at(mesh, x)) >= 0)
+        throw input_error(given->second.place,
+                          fmt::format("'{}' has a point inside a solid ([{}]); give a point in the gas", path,
+                                      fmt::join(x, ", ")));
+    }
     const char* with = output.distribution == distribution_choice::none ? "output.distribution = \"none\""
                        : output.stride > 1                              ? "output.stride"
                                                                         : nullptr;

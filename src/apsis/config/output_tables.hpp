@@ -1,5 +1,8 @@
 #pragma once
 
+#include <apsis/phase/grid.hpp>
+
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,5 +28,8 @@ struct plane_slice {
   int direction = 0;  ///< of the normal
   double at = 0.0;    ///< coordinate along the normal
 };
+
+/// Returns the cell that contains a point of the domain; of two, the upper one.
+int cell_at(const grid& mesh, std::span<const double> x);
 
 }  // namespace apsis

@@ -85,9 +85,14 @@ class reader {
       for (int k = 0; k < variable.size; ++k)
         given.push_back(source_.column(columns_of(variable, k), variable.measure));
     rows.cells = static_cast<int>(given.front().size());
+    const std::vector<bool> solid = source_.solid_rows(given.front().size());
     std::vector<double> numbers(given.size()), row(size(rows.components));
     for (int cell = 0; cell < rows.cells; ++cell) {
       for (std::size_t k = 0; k < given.size(); ++k) numbers[k] = given[k][size(cell)];
+      if (solid[size(cell)]) {
+        rows.values.insert(rows.values.end(), row.size(), 0.0);
+        continue;
+      }
       const std::string problem = form.row(numbers, row);
       if (!problem.empty())
         source_.refuse(fmt::format("{} has no {} ({}); change its numbers", source_.place_of_row(size(cell)),
@@ -142,11 +147,7 @@ state_of_file on_the_same_mesh(const case_config& config, const model& equation,
   const prescribed_data data(
       config, equation, [&config](const std::string& path) { return place_of(config, path); },
       [&](const position& x, std::span<double> u) {
-        int cell = 0;  // point values are sampled at centres alone
-        for (int k = 0; k < mesh.dimensions(); ++k)
-          cell += mesh.stride(k) *
-                  std::clamp(static_cast<int>((x[size(k)] - mesh.centre(0, k)) / mesh.spacing(k) + 0.5), 0,
-                             mesh.cells(k) - 1);
+        const int cell = cell_at(mesh, x);  // point values are sampled at centres alone
         std::copy_n(rows.values.begin() + static_cast<std::ptrdiff_t>(cell) * rows.components,
                     rows.components, u.begin());
       });

@@ -58,11 +58,13 @@ initial_table_file::initial_table_file(const case_config& config, const model& e
   } catch (const io_error& problem) {
     refuse(problem.what());
   }
-  for (const auto& [name, values] : columns_)
+  for (const auto& [name, values] : columns_) {
+    const std::vector<bool> solid = solid_rows(values.size());
     for (std::size_t k = 0; k < values.size(); ++k)
-      if (!std::isfinite(values[k]))
+      if (!std::isfinite(values[k]) && !solid[k])
         refuse(fmt::format("'{}' is {} in {} (a finite number is needed); change it", name, values[k],
                            place_of_row(k)));
+  }
   for (const double value : state_)
     if (!std::isfinite(value)) refuse("its state has values that are not finite; give another file");
 }
@@ -206,6 +208,15 @@ void initial_table_file::expand_coordinates(const hdf5_file& file) {
     for (std::size_t cell = 0; cell < mesh_size(axes); ++cell)
       column.push_back(centre_of_cell(axes, cell, k));
   }
+}
+
+std::vector<bool> initial_table_file::solid_rows(std::size_t rows) const {
+  std::vector<bool> solid(rows, false);
+  if (mesh_rank() < 2 || config_.solids.empty()) return solid;
+  const grid mesh = make_mesh(config_);
+  for (std::size_t k = 0; k < rows && k < static_cast<std::size_t>(mesh.size()); ++k)
+    solid[k] = mesh.solid(static_cast<int>(k)) >= 0;
+  return solid;
 }
 
 void initial_table_file::check_cells(const grid& mesh, int rows) const {

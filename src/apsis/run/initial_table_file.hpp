@@ -45,6 +45,8 @@ class initial_table_file {
   /// Returns the ends: those of the domain of a result, or from the centres `x`, which must be equidistant.
   line_ends ends(int cells) const;
 
+  /// Whether each of the rows is that of a cell of the case inside a solid, in several space dimensions.
+  std::vector<bool> solid_rows(std::size_t rows) const;
   /// Checks in several space dimensions that the rows are those of the cells of a mesh, by the columns x, y
   /// and z of their centres.
   void check_cells(const grid& mesh, int rows) const;

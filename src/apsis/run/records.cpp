@@ -3,10 +3,10 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/run/distribution_rows.hpp>
 #include <apsis/run/result_units.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -210,89 +210,6 @@ run_state to_run_state(const checkpoint& c) {
   saved.initial = from_row(c.history.columns, c.history.rows.front());
   saved.last = from_row(c.history.columns, c.history.rows.back());
   return saved;
-}
-
-namespace {
-
-/// Every stride-th cell of a mesh in each direction.
-struct thinned_mesh {
-  std::vector<mesh_axis> axes;
-  std::vector<int> cells;  ///< numbers in the whole mesh
-};
-
-thinned_mesh thinned(const simulation& run, int stride) {
-  if (!run.has_space()) return {{}, {0}};
-  const grid& mesh = run.mesh();
-  thinned_mesh kept{mesh_axes(mesh), {}};
-  for (auto& axis : kept.axes) {
-    std::vector<double> centres;
-    for (std::size_t i = 0; i < axis.centres.size(); i += static_cast<std::size_t>(stride))
-      centres.push_back(axis.centres[i]);
-    axis.centres = std::move(centres);
-  }
-  for (int cell = 0; cell < mesh.size(); ++cell) {
-    bool keep = true;
-    for (int k = 0; k < mesh.dimensions(); ++k)
-      keep = keep && cell / mesh.stride(k) % mesh.cells(k) % stride == 0;
-    if (keep) kept.cells.push_back(cell);
-  }
-  return kept;
-}
-
-/// Returns the cell that contains a point of the domain; of two, the upper one.
-int cell_at(const simulation& run, const std::vector<double>& x) {
-  const grid& mesh = run.mesh();
-  int cell = 0;
-  for (int k = 0; k < mesh.dimensions(); ++k) {
-    const auto [lower, upper] = run.config().space.domain[static_cast<std::size_t>(k)];
-    const double i = std::floor((x[static_cast<std::size_t>(k)] - lower) / (upper - lower) * mesh.cells(k));
-    cell += mesh.stride(k) * static_cast<int>(std::clamp(i, 0.0, mesh.cells(k) - 1.0));
-  }
-  return cell;
-}
-
-std::vector<double> rows_of(const simulation& run, const std::vector<int>& cells) {
-  std::vector<double> rows;
-  rows.reserve(cells.size() * static_cast<std::size_t>(run.components()));
-  for (const int cell : cells) {
-    const auto row = run.row(cell);
-    rows.insert(rows.end(), row.begin(), row.end());
-  }
-  return rows;
-}
-
-/// The rows of output.distribution_at, whose coordinates are multiplied by a unit of length.
-distribution_at_points rows_at_points(const simulation& run, double unit_of_length) {
-  distribution_at_points chosen;
-  const auto& points = run.config().output.distribution_at;
-  std::vector<int> cells;
-  for (const auto& x : points) cells.push_back(cell_at(run, x));
-  chosen.f = rows_of(run, cells);
-  for (int k = 0; k < run.mesh().dimensions() && !points.empty(); ++k) {
-    mesh_axis& axis = chosen.centres.emplace_back();
-    axis.name = "xyz"[k];
-    for (const int cell : cells) axis.centres.push_back(run.mesh().centre(cell, k) * unit_of_length);
-  }
-  return chosen;
-}
-
-}  // namespace
-
-distribution_snapshot make_distribution_snapshot(const simulation& run) {
-  const auto& output = run.config().output;
-  distribution_snapshot now;
-  now.t = run.t();
-  now.step = run.step();
-  now.components = static_cast<std::uint64_t>(run.components());
-  now.velocities = run.velocities();
-  if (output.distribution_at.empty()) {
-    thinned_mesh kept = thinned(run, output.stride);
-    now.axes = std::move(kept.axes);
-    now.f = rows_of(run, kept.cells);
-  } else {
-    now.points = rows_at_points(run, 1.0);
-  }
-  return now;
 }
 
 solution make_solution(const simulation& run, const run_records& records) {

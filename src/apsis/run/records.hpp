@@ -42,10 +42,6 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records);
 /// Returns the state of a run in a checkpoint. Throws io_error if a number is missing or invalid.
 run_state to_run_state(const checkpoint& c);
 
-/// Returns the unknowns of every stride-th cell (output.stride), or of those at chosen points
-/// (output.distribution_at).
-distribution_snapshot make_distribution_snapshot(const simulation& run);
-
 /// Returns the content of solution.h5 except the manifest.
 solution make_solution(const simulation& run, const run_records& records);
 

@@ -6,6 +6,7 @@
 #include <apsis/core/version.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
+#include <apsis/run/distribution_rows.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/probe_files.hpp>
 #include <apsis/run/result_units.hpp>

@@ -1,0 +1,290 @@
+// Fields along lines and on planes.
+#include "cases_in_space.hpp"
+#include "support/folder.hpp"
+#include "support/property.hpp"
+
+#include <apsis/config/case_schema.hpp>
+#include <apsis/output/case_json.hpp>
+#include <apsis/output/column_file.hpp>
+#include <apsis/output/hdf5_file.hpp>
+#include <apsis/output/probe.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+using namespace apsis;
+using namespace in_several_dimensions;
+using testing::ElementsAre;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+namespace {
+
+using shape = hdf5_file::shape;
+
+/// An affine function of the position on a mesh of 5 × 4 × 3 cells of the unit cube.
+field_series affine(const std::vector<double>& slopes, bool periodic = false) {
+  field_series fields;
+  const std::vector<int> cells = {5, 4, 3};
+  for (std::size_t k = 0; k < slopes.size(); ++k) {
+    mesh_axis axis{std::string(1, "xyz"[k]), {}, periodic};
+    for (int i = 0; i < cells[k]; ++i) axis.centres.push_back((i + 0.5) / cells[k]);
+    fields.axes.push_back(axis);
+  }
+  fields.names = fields.labels = {"phi"};
+  std::vector<double> values;
+  for (std::size_t cell = 0; cell < mesh_size(fields.axes); ++cell) {
+    double value = 1.0;
+    for (std::size_t k = 0; k < slopes.size(); ++k) value += slopes[k] * centre_of_cell(fields.axes, cell, k);
+    values.push_back(value);
+  }
+  fields.snapshots = {{0.0, {values}}};
+  return fields;
+}
+
+}  // namespace
+
+TEST(a_probe, is_exact_for_affine_functions_also_in_the_outer_half_of_cells_at_the_ends) {
+  check_property("affine functions", [] {
+    const auto d = *rc::gen::inRange<std::size_t>(1, 4);
+    const auto number = [] { return 0.001 * *rc::gen::inRange(0, 1001); };
+    std::vector<double> slopes;
+    line_probe line{"p", {}, {}, 7};
+    for (std::size_t k = 0; k < d; ++k) {
+      slopes.push_back(number() - 0.5);
+      line.from.push_back(number());
+      line.to.push_back(number());
+    }
+    const numeric_table table = to_table(affine(slopes), line);
+    RC_ASSERT(table.rows.size() == 7U);
+    for (std::size_t row = 0; row < 7; ++row) {
+      double expected = 1.0, square = 0.0;
+      for (std::size_t k = 0; k < d; ++k) {
+        const double x = line.from[k] + (line.to[k] - line.from[k]) * static_cast<double>(row) / 6.0;
+        RC_ASSERT(std::abs(table.rows[row][1 + k] - x) < 1e-15);
+        expected += slopes[k] * x;
+        square += (x - line.from[k]) * (x - line.from[k]);
+      }
+      // Differences of numbers near 1, extrapolated over half a cell.
+      RC_ASSERT(std::abs(table.rows[row].back() - expected) < 1e-13);
+      RC_ASSERT(std::abs(table.rows[row][0] - std::sqrt(square)) < 1e-15);
+    }
+    for (std::size_t k = 0; k < d; ++k) RC_ASSERT(table.rows.back()[1 + k] == line.to[k]);
+  });
+}
+
+TEST(a_probe, continues_across_a_periodic_end) {
+  // Between the last cell, centre 0.9, and the first one at 1.1: 1 + 0.9 s and 1 + 0.1 s have the mean 1.5 at
+  // x = 1 and at x = 0.
+  const field_series fields = affine({1.0}, true);
+  const auto table = to_table(fields, line_probe{"p", {0.0}, {1.0}, 11});
+  EXPECT_NEAR(table.rows.front().back(), 1.5, 1e-14);
+  EXPECT_NEAR(table.rows.back().back(), 1.5, 1e-14);
+  EXPECT_NEAR(table.rows[5].back(), 1.5, 1e-14);
+}
+
+TEST(a_probe, beside_cells_without_values_has_those_of_the_nearer_cells) {
+  field_series fields = affine({0.0, 0.0});
+  auto& values = fields.snapshots[0].values[0];
+  for (std::size_t j = 0; j < 4; ++j) values[2 * 4 + j] = std::numeric_limits<double>::quiet_NaN();
+  const auto table = to_table(fields, line_probe{"p", {0.0, 0.3}, {1.0, 0.3}, 101});
+  for (const auto& row : table.rows) {
+    const double x = row[1];
+    if (std::abs(x - 0.4) < 1e-9 || std::abs(x - 0.6) < 1e-9) continue;  // on the side of a cell
+    EXPECT_EQ(std::isnan(row.back()), x > 0.4 && x < 0.6) << x;
+    if (std::isnan(row.back())) continue;
+    EXPECT_NEAR(row.back(), 1.0, 1e-15);
+  }
+}
+
+TEST(a_probe, is_written_at_every_snapshot_and_agrees_with_the_fields) {
+  const test_folder folder;
+  run_into(folder / "o", in_space + R"toml(
+[[output.probe]]
+name = "along-z"
+from = [0.3125, 0.5, 0.0]
+to = [0.3125, 0.5, 2.0]
+points = 10
+[[output.probe]]
+from = [0, 0, 0]
+to = [1, 1, 1]
+)toml");
+  const auto table = read_columns(folder / "o/probes/along-z.csv");
+  ASSERT_EQ(table.columns.at("t").size(), 30U);
+  EXPECT_EQ(table.columns.size(), 7U);  // t, s, x, y, z, rho, T
+  const auto rho = hdf5_file::open(folder / "o/solution.h5").read("snapshots/rho");
+  // The first two coordinates are the centre of cell (2, 3); along z the points are on the sides of cells.
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t point = 1; point < 9; ++point) {
+      const std::size_t cell = (2 * 7 + 3) * 9 + point;
+      const double expected = 0.5 * (rho[k * 504 + cell - 1] + rho[k * 504 + cell]);
+      EXPECT_NEAR(table.columns.at("rho")[10 * k + point], expected, 1e-14) << k << " " << point;
+    }
+  EXPECT_EQ(read_columns(folder / "o/probes/probe-2.csv").lines.size(), 303U);
+}
+
+TEST(a_slice, is_the_mean_of_two_layers_between_them) {
+  const test_folder folder;
+  run_into(folder / "o", in_space,
+           {"output.slice.1.normal=y", "output.slice.1.at=2/7", "output.slice.1.name=low"});
+  const auto whole = hdf5_file::open(folder / "o/solution.h5"),
+             slice = hdf5_file::open(folder / "o/slices/low.h5");
+  EXPECT_EQ(slice.extents("fields/rho"), (shape{8, 1, 9}));
+  EXPECT_EQ(slice.extents("snapshots/T"), (shape{3, 8, 1, 9}));
+  EXPECT_THAT(slice.read("y"), ElementsAre(2.0 / 7.0));
+  EXPECT_EQ(slice.read("z"), whole.read("z"));
+  const auto all = whole.read("fields/rho"), cut = slice.read("fields/rho");
+  for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t l = 0; l < 9; ++l)
+      EXPECT_NEAR(cut[i * 9 + l], 0.5 * (all[(i * 7 + 1) * 9 + l] + all[(i * 7 + 2) * 9 + l]), 1e-14);
+  EXPECT_TRUE(fs::exists(folder / "o/slices/low.xdmf"));
+}
+
+TEST(probes_and_slices, of_an_earlier_run_are_removed) {
+  const test_folder folder;
+  const std::string probe = "output.probe.1.from=[0,0]";
+  run_into(folder / "o", in_plane,
+           {probe, "output.probe.1.to=[1,1]", "output.slice.1.normal=x", "output.slice.1.at=0.5"});
+  EXPECT_TRUE(fs::exists(folder / "o/probes/probe-1.csv"));
+  EXPECT_TRUE(fs::exists(folder / "o/slices/slice-1.h5"));
+  run_into(folder / "o", in_plane);
+  EXPECT_FALSE(fs::exists(folder / "o/probes"));
+  EXPECT_FALSE(fs::exists(folder / "o/slices"));
+}
+
+TEST(probes_and_slices, are_read_back_from_their_case) {
+  const std::string text = in_plane + R"toml(
+[output]
+distribution_at = [[0.5, 0.25], [1, -1]]
+probe = [{from = [0, -1], to = [1, 1]}, {name = "b_2", from = [0.5, 0], to = [0.5, 1], points = 3}]
+[[output.slice]]
+normal = "y"
+at = 0
+)toml";
+  const case_config once = parse_case(text, "case.toml"), twice = parse_case(to_toml(once), "again");
+  EXPECT_EQ(to_toml(once), to_toml(twice));
+  ASSERT_EQ(twice.output.probes.size(), 2U);
+  EXPECT_EQ(twice.output.probes[0].name, "probe-1");
+  EXPECT_EQ(twice.output.probes[0].points, 101);
+  EXPECT_EQ(twice.output.probes[1].name, "b_2");
+  EXPECT_THAT(twice.output.probes[1].to, ElementsAre(0.5, 1.0));
+  EXPECT_EQ(twice.output.slices.at(0).direction, 1);
+  EXPECT_THAT(twice.output.distribution_at, ElementsAre(ElementsAre(0.5, 0.25), ElementsAre(1.0, -1.0)));
+  const auto json = to_json(once);
+  EXPECT_EQ(json["output"]["probe"][1]["points"], 3);
+  EXPECT_EQ(json["output"]["slice"][0]["normal"], "y");
+}
+
+TEST(probes_and_slices, that_are_not_possible_are_refused_with_their_key) {
+  const std::string probe = in_plane + "[[output.probe]]\nfrom = [0, 0]\nto = [1, 1]\n";
+  EXPECT_EQ(refusal(probe), "accepted");
+  EXPECT_THAT(refusal(probe, {"output.probe.1.to=[1, 1.5]"}),
+              HasSubstr("'output.probe.1.to' is outside the domain (y = 1.5 is not in [-1, 1])"));
+  EXPECT_THAT(refusal(probe, {"output.probe.1.to=[1, 1, 1]"}), HasSubstr("a point has 2 coordinates here"));
+  EXPECT_THAT(refusal(probe, {"output.probe.1.to=[nan, 1]"}), HasSubstr("it must be finite"));
+  EXPECT_THAT(refusal(probe, {"output.probe.1.to=[0, 0]"}), HasSubstr("the same point as 'from'"));
+  EXPECT_THAT(refusal(probe, {"output.probe.1.points=1"}), HasSubstr("at least 2 and at most 1000000"));
+  EXPECT_THAT(refusal(probe, {"output.probe.1.name=../x"}), HasSubstr("the name of a file is needed"));
+  EXPECT_THAT(refusal(probe, {"output.probe.1.form=[0, 0]"}), HasSubstr("did you mean 'from'"));
+  EXPECT_THAT(refusal(probe, {"output.probe.2.from=[0, 0]"}),
+              HasSubstr("key 'output.probe.2.to' is missing"));
+  EXPECT_THAT(refusal(probe, {"output.probe.x.from=[0, 0]"}), HasSubstr("numbered from 1 to at most 1000"));
+  EXPECT_THAT(refusal(probe + "name = \"a\"\n[[output.probe]]\nname = \"a\"\nfrom = [0, 0]\nto = [1, 1]\n"),
+              HasSubstr("two tables [[output.probe]] have the name 'a'"));
+  EXPECT_THAT(refusal(in_plane + "[output]\nprobe = 5\n"), HasSubstr("write [[output.probe]]"));
+  EXPECT_THAT(refusal(in_plane, {"output.slice.1.normal=z", "output.slice.1.at=0"}),
+              HasSubstr("it must be one of x, y"));
+  EXPECT_THAT(refusal(in_plane, {"output.slice.1.normal=x", "output.slice.1.at=2"}),
+              HasSubstr("'output.slice.1.at' is outside the domain (x = 2 is not in [0, 1])"));
+  EXPECT_THAT(refusal(in_plane, {"output.distribution_at=[[0.5, 3]]"}), HasSubstr("outside the domain"));
+  EXPECT_THAT(refusal(in_plane, {"output.distribution_at=[0.5, 0.5]"}), HasSubstr("a list of points"));
+  EXPECT_THAT(refusal(in_plane, {"output.distribution_at=[[0.5, 0]]", "output.stride=2"}),
+              HasSubstr("conflicts with output.stride"));
+  EXPECT_THAT(refusal(in_plane, {"output.distribution_at=[[0.5, 0]]", "output.distribution=none"}),
+              HasSubstr("conflicts with output.distribution"));
+}
+
+TEST(probes_and_slices, are_in_the_units_of_the_results) {
+  const test_folder folder;
+  const std::string gas = R"toml(
+[gas]
+name = "argon"
+pressure = "10 Pa"
+temperature = "300 K"
+length = "1 mm"
+[model]
+name = "bgk"
+[initial]
+rho = "1 + 0.1*x"
+T = "300 K"
+[space]
+cells = [10, 8]
+domain = [["0 mm", "2 mm"], ["0 mm", "1 mm"]]
+boundary = "outflow"
+[velocity]
+max = 7
+points = 12
+[time]
+method = "md-imex-3-2"
+end = 0.0
+dt = 0.001
+[output]
+distribution_at = [["0.5 mm", "0.55 mm"]]
+[[output.probe]]
+from = ["0.5 mm", "0.25 mm"]
+to = ["1.5 mm", "0.75 mm"]
+points = 3
+[[output.slice]]
+normal = "x"
+at = "1 mm"
+)toml";
+  run_into(folder / "own", gas);
+  run_into(folder / "si", gas, {"output.units=SI"});
+  const auto own = read_columns(folder / "own/probes/probe-1.csv"),
+             si = read_columns(folder / "si/probes/probe-1.csv");
+  const double density = parse_case(gas, "case.toml").scales->unit(dimensions::density);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double x = 0.5 + 0.5 * static_cast<double>(k);  // in mm, the unit of length of the case
+    EXPECT_NEAR(own.columns.at("x")[k], x, 1e-15);
+    EXPECT_NEAR(si.columns.at("x")[k], 1e-3 * x, 1e-18);
+    EXPECT_NEAR(own.columns.at("rho")[k], 1.0 + 0.1 * x, 1e-12);
+    EXPECT_NEAR(si.columns.at("rho")[k] / density, 1.0 + 0.1 * x, 1e-12);
+  }
+  const auto slice = hdf5_file::open(folder / "si/slices/slice-1.h5");
+  EXPECT_THAT(slice.read("x"), ElementsAre(testing::DoubleEq(1e-3)));
+  EXPECT_EQ(slice.units("x"), "m");
+  const auto solution = hdf5_file::open(folder / "si/solution.h5");
+  EXPECT_THAT(solution.read("points/y"), ElementsAre(testing::DoubleEq(4.5 / 8.0 * 1e-3)));
+  EXPECT_EQ(solution.units("points/y"), "m");
+}
+
+TEST(probes_and_slices, of_a_continued_run_are_those_of_an_uninterrupted_one) {
+  const test_folder folder;
+  const std::string text = in_space + R"toml(
+[[output.probe]]
+from = [0.1, 0.2, 0.3]
+to = [0.9, 0.8, 1.7]
+[[output.slice]]
+normal = "x"
+at = 0.3
+)toml";
+  run_into(folder / "whole", text);
+  run_into(folder / "first", text, {"time.end=0.001"});
+  session_options how;
+  how.out = folder / "second";
+  how.restart = folder / "first/checkpoint.h5";
+  run_session(parse_case(text, "case.toml"), how).run();
+  const auto whole = read_columns(folder / "whole/probes/probe-1.csv"),
+             second = read_columns(folder / "second/probes/probe-1.csv");
+  EXPECT_EQ(whole.columns.at("t").size(), 303U);
+  EXPECT_EQ(whole.columns, second.columns);
+  const auto a = hdf5_file::open(folder / "whole/slices/slice-1.h5"),
+             b = hdf5_file::open(folder / "second/slices/slice-1.h5");
+  EXPECT_EQ(a.read("snapshots/rho"), b.read("snapshots/rho"));
+  EXPECT_EQ(a.read("snapshots/t"), b.read("snapshots/t"));
+}

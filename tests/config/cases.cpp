@@ -111,9 +111,10 @@ TEST(cases, lists_of_one_entry_are_written_without_brackets) {
 }
 
 TEST(cases, cells_and_domain_of_several_dimensions_make_a_mesh) {
-  case_config c = load_case("paper/bgk-mixed");
-  c.space.cells = {4, 5, 6};
-  c.space.domain = {{0.0, 4.0}, {-1.0, 1.0}, {0.0, 3.0}};
+  const case_config c =
+      load_case("paper/bgk-mixed", {"space.cells=[4,5,6]", "space.domain=[[0,4],[-1,1],[0,3]]",
+                                    "space.formulation=finite-difference", "velocity.points=40"});
+  EXPECT_EQ(c.model.parameters.at("velocity_dimensions"), 3.0);
   const apsis::grid mesh = make_mesh(c);
   EXPECT_EQ(mesh.dimensions(), 3);
   EXPECT_EQ(mesh.size(), 120);

@@ -66,8 +66,11 @@ std::vector<std::string> small_version(const std::string& name) {
   return overrides;
 }
 
-norms norms_of(const std::vector<double>& u) {
+/// Values that are not numbers count as 0: fields have none in solid cells, and one that lost a number has
+/// another mean.
+norms norms_of(std::vector<double> u) {
   norms n{};
+  std::replace_if(u.begin(), u.end(), [](double x) { return std::isnan(x); }, 0.0);
   for (std::size_t k = 0; k < u.size(); ++k) {
     n[0] += std::abs(u[k]);
     n[1] += u[k] * u[k];

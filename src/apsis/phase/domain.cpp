@@ -128,7 +128,7 @@ void domain::fill_ghosts(double t, const field& u) {
     if (!repeats(surface)) fill_surface(surface, t, u);
 }
 
-/// A segment that crosses periodic faces goes on in another one of its pencil, or in itself.
+/// A segment that crosses periodic faces continues in another one of its pencil, or in itself.
 const double* domain::ghost_row(const field& u, int direction, int number, bool upper, int ghost) const {
   const int stride = mesh().stride(direction);
   for (;;) {

@@ -43,7 +43,7 @@ class segment_table {
   const std::vector<segment>& along(int direction) const {
     return along_[static_cast<std::size_t>(direction)];
   }
-  /// Returns the number of the first segment of pencil 0 … pencils, of which the last has none.
+  /// Returns the number of the first segment of pencil 0 … n; pencil n, beyond the last one, has none.
   int first_of(int direction, int pencil) const {
     return first_of_[static_cast<std::size_t>(direction)][static_cast<std::size_t>(pencil)];
   }

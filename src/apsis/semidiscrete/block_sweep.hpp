@@ -31,7 +31,7 @@ int sweep_ghosts(const spatial_discretization& discretization);
 /// T along one direction for some components of some cells of a segment. A workspace of one thread.
 class block_sweep {
  public:
-  /// What all sweeps of a transport share.
+  /// The objects that all sweeps of a transport share.
   struct context {
     const model& equation;                         ///< equation
     const domain& space;                           ///< cells and ghost rows

@@ -8,7 +8,7 @@
 
 namespace apsis {
 
-/// A mesh cut into boxes of cells. The sweeps along all directions change one box before they go on to the
+/// A mesh cut into boxes of cells. The sweeps along all directions change one box before they proceed to the
 /// next, so that its states pass through the second-level cache once.
 class tiling {
  public:

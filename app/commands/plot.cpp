@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 struct options {
   std::vector<std::string> what;
-  std::string out, format = "png", compare;
+  std::string out, format = "png", compare, slice;
+  bool frames = false;
 };
 
 /// Writes a method as the file from which the pictures are drawn.
@@ -45,6 +46,8 @@ int plot(const options& given) {
   }
   arguments.insert(arguments.end(), {"--format", given.format});
   if (!given.out.empty()) arguments.insert(arguments.end(), {"--out", given.out});
+  if (!given.slice.empty()) arguments.insert(arguments.end(), {"--slice", given.slice});
+  if (given.frames) arguments.emplace_back("--frames");
   if (!given.compare.empty()) arguments.insert(arguments.end(), {"--compare", given.compare});
   const int status = pictures.run("plot", arguments, false);
   if (status < 0) throw io_error("drawing failed (Python ended without a status); try again");
@@ -65,6 +68,10 @@ action define(CLI::App& command) {
   command.add_option("--compare", given->compare,
                      "draw these runs of one model into one picture of this name, and print their distance "
                      "from the one with most cells");
+  command.add_option("--slice", given->slice,
+                     "of a result in space: the plane AXIS=PLACE, z=0.5, in place of those through the middle");
+  command.add_flag("--frames", given->frames,
+                   "also every snapshot as frame-NUMBER, with one range of colours, for an animation");
   return [given] { return plot(*given); };
 }
 

@@ -26,6 +26,8 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
                         "with --compare also LABEL=FOLDER")
     parser.add_argument("--out", type=Path, help="folder for the pictures")
     parser.add_argument("--format", choices=FORMATS, default="png")
+    parser.add_argument("--slice", metavar="AXIS=PLACE", help="of a result in space: this plane in place of those through the middle")
+    parser.add_argument("--frames", action="store_true", help="also every snapshot as frame-NUMBER, with one range of colours")
     parser.add_argument("--compare", metavar="NAME", help="one picture NAME of all these runs")
     return parser.parse_args(arguments)
 
@@ -61,14 +63,14 @@ def of_document(document: dict[str, Any], path: Path) -> Iterable[tuple[str, Any
             raise PictureError(f"'{path}' holds a damaged picture ({type(problem).__name__}: {problem}); make it anew") from problem
 
 
-def drawn(what: str) -> tuple[Path, Iterable[tuple[str, Any]]]:
+def drawn(what: str, options: argparse.Namespace) -> tuple[Path, Iterable[tuple[str, Any]]]:
     """Returns the folder for the pictures of a result, and the pictures."""
     path = Path(what)
     if path.is_dir():
         for name in ("picture.json", "reproduce.json", "validate.json"):
             if (path / name).exists():
                 return path / "pictures", of_document(run_result.read_json(path / name), path / name)
-        return path / "pictures", results.figures(run_result.read_result(path)).items()
+        return path / "pictures", results.figures(run_result.read_result(path), options.slice, options.frames)
     if path.suffix == ".json":
         document = run_result.read_json(path)
         return Path() if "A_hat" in document else path.parent / "pictures", of_document(document, path)
@@ -90,7 +92,7 @@ def draw_all(options: argparse.Namespace) -> None:
         print(save(compare(options.what), (options.out or Path()) / f"{options.compare}.{options.format}"))
         return
     for what in options.what:
-        folder, figures = drawn(what)
+        folder, figures = drawn(what, options)
         for name, figure in figures:
             if Path(name).name != name or name.startswith("."):  # a name from a file that apsis did not write
                 raise PictureError(f"'{what}' names a picture '{name}' (it must be a file name without folder); correct the name")

@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
+from . import maps
 from .run_result import Array, RunResult
 from .style import BLACK, BLUE, COLOURS, GREY, MARKERS, PictureError, plt
 
@@ -23,9 +24,13 @@ def panels(count: int, width: float = 4.2, height: float = 3.6) -> tuple[Any, li
     return figure, list(grid.flat[:count])
 
 
-def fields_figure(result: RunResult) -> Any:
-    """A panel for each macroscopic field: over x at the end and, thin, at earlier snapshots; without space over t. None if
-    there is nothing to draw."""
+def fields_figure(result: RunResult, slice_at: str | None = None) -> Any:
+    """A panel for each macroscopic field: over x at the end and, thin, at earlier snapshots; without space over t; in several dimensions
+    a map, on planes through the middle or at "z=0.5". None if there is nothing to draw."""
+    if maps.dimensions(result) > 1:
+        return maps.maps_figure(result, title_of(result), end_of(result), slice_at)
+    if slice_at is not None:
+        raise PictureError(f"the slice '{slice_at}' has no meaning (the result is not in space); leave it out", 2)
     if not result.fields or (not result.has_space and len(result.t) < 2):
         return None
     figure, axes = panels(len(result.fields))
@@ -69,7 +74,8 @@ def title_of(result: RunResult) -> str:
 def comparison_figure(runs: Sequence[tuple[str, RunResult]]) -> Any:
     """A panel for each field that all runs have: the run with most cells as a line, the others with markers; runs with equally many
     as lines."""
-    names = [name for name in runs[0][1].fields if all(name in run.fields and run.has_space for _, run in runs)]
+    names = [name for name in runs[0][1].fields
+             if all(name in run.fields and run.has_space and maps.dimensions(run) == 1 for _, run in runs)]
     if not names:
         raise PictureError("nothing to compare (the runs share no field over x); give runs of one model")
     finest = finest_of(runs)
@@ -225,7 +231,10 @@ def draw_defects(panel: Any, history: dict[str, Array], defects: list[str]) -> N
     panel.legend(fontsize=8)
 
 
-def figures(result: RunResult) -> dict[str, Any]:
-    """Returns all pictures of a run by name: fields, distribution, history."""
-    made = {"fields": fields_figure(result), "distribution": distribution_figure(result), "history": history_figure(result)}
-    return {name: figure for name, figure in made.items() if figure is not None}
+def figures(result: RunResult, slice_at: str | None = None, frames: bool = False) -> Iterator[tuple[str, Any]]:
+    """Yields all pictures of a run with their names: fields, distribution, history, profiles along probes, and frames if asked for."""
+    made = {"fields": fields_figure(result, slice_at), "distribution": distribution_figure(result), "history": history_figure(result)}
+    yield from ((name, figure) for name, figure in made.items() if figure is not None)
+    yield from maps.probe_figures(result)
+    if frames:
+        yield from maps.frames(result, title_of(result), slice_at)

@@ -1,0 +1,159 @@
+"""Content of the pictures of runs in two and three dimensions, from results with known numbers."""
+import apsis
+import numpy as np
+import pytest
+from apsis.plot import __main__ as command
+from apsis.plot import fields_figure, history_figure, read_result
+from apsis.plot.maps import frames, probe_figures
+from apsis.plot.style import PictureError, plt
+
+PLANE = """
+title = "Gas around a box"
+[model]
+name = "bgk"
+epsilon = 0.05
+[initial]
+rho = "1 + 0.3*x + 0.1*y"
+u = ["-0.3*(y - 0.5)", "0.3*(x - 1)"]
+T = 1
+[space]
+cells = [16, 8]
+domain = [[0, 2], [0, 1]]
+boundary = "symmetry"
+[[space.solid]]
+from = [1.5, 0]
+to = [2, 0.25]
+[[output.probe]]
+name = "middle"
+from = [0.1, 0.5]
+to = [1.9, 0.5]
+points = 7
+[velocity]
+max = 7
+points = 14
+[time]
+method = "md-imex-3-2"
+dt = 0.001
+end = 0.002
+[output]
+every = 0.001
+"""
+
+
+@pytest.fixture(autouse=True)
+def _closed_figures():
+    yield
+    plt.close("all")
+
+
+@pytest.fixture(scope="module")
+def plane(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("plane")
+    (folder / "plane.toml").write_text(PLANE)
+    apsis.run(str(folder / "plane.toml"), out=folder / "run")
+    return folder / "run"
+
+
+@pytest.fixture(scope="module")
+def space(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("space")
+    text = PLANE.replace("[16, 8]", "[8, 7, 9]").replace("[[0, 2], [0, 1]]", "[[0, 2], [0, 1], [0, 3]]")
+    text = text.replace('"0.3*(x - 1)"]', '"0.3*(x - 1)", 0]').replace("0.1*y", "0.1*y + 0.2*z")
+    solid, probe = text.index("[[space.solid]]"), text.index("[velocity]")
+    (folder / "space.toml").write_text(text[:solid] + text[probe:].replace("points = 14", "points = 12"))
+    apsis.run(str(folder / "space.toml"), out=folder / "run")
+    return folder / "run"
+
+
+def maps(figure):
+    """The maps of a figure by the label of their colour bars."""
+    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    bars = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
+    return [(bar.get_ylabel().replace("\n", " "), axes) for axes, bar in zip(panels, bars)]
+
+
+def test_maps_show_the_fields_with_x_across_and_y_up(plane):
+    result = read_result(plane)
+    drawn = maps(fields_figure(result))
+    assert [label.partition(" (")[0] for label, _ in drawn] == ["density", "bulk velocity along x", "bulk velocity along y",
+                                                                "temperature", "speed"]
+    for (_, axes), name in zip(drawn, ("rho", "u_x", "u_y", "T")):
+        mesh = axes.collections[0]
+        np.testing.assert_array_equal(mesh.get_array().filled(np.nan).reshape(8, 16), result.fields[name].T)
+        np.testing.assert_allclose([axes.dataLim.x0, axes.dataLim.x1, axes.dataLim.y0, axes.dataLim.y1], [0, 2, 0, 1], atol=1e-15)
+        assert axes.get_aspect() == 1.0
+        # The box is blank.
+        assert mesh.get_array().mask.sum() == 4 * 2
+    # Both signs: symmetric about 0.
+    low, high = drawn[1][1].collections[0].get_clim()
+    assert low == -high < 0.0
+    assert history_figure(result) is not None
+
+
+def test_streamlines_turn_as_the_gas_does(plane):
+    result = read_result(plane)
+    speed = maps(fields_figure(result))[-1][1]
+    arrows = [patch for patch in speed.patches]
+    assert arrows
+    # u = 0.3 (-(y - 1/2), x - 1) turns counter-clockwise about (1, 1/2): so does every arrow.
+    for arrow in arrows:
+        (x0, y0), (x1, y1) = arrow._posA_posB
+        middle = np.array([0.5 * (x0 + x1) - 1.0, 0.5 * (y0 + y1) - 0.5])
+        if np.hypot(*middle) > 0.2 and x0 < 1.4:
+            assert middle[0] * (y1 - y0) - middle[1] * (x1 - x0) > 0.0
+
+
+def test_frames_share_the_range_of_colours(plane):
+    result = read_result(plane)
+    made = list(frames(result, "title"))
+    assert [name for name, _ in made] == ["frame-0001", "frame-0002", "frame-0003"]
+    ranges = [[axes.collections[0].get_clim() for _, axes in maps(figure)] for _, figure in made]
+    assert ranges[0] == ranges[1] == ranges[2]
+    density = result.snapshots["rho"]
+    np.testing.assert_allclose(ranges[0][0], (np.nanmin(density), np.nanmax(density)))
+
+
+def test_profiles_along_probes_are_those_of_the_table(plane):
+    (name, figure), = probe_figures(read_result(plane))
+    assert name == "probe-middle"
+    table = np.genfromtxt(plane / "probes" / "middle.csv", delimiter=",", names=True)
+    last = table["t"] == table["t"].max()
+    line = figure.axes[0].lines[-1]
+    np.testing.assert_array_equal(line.get_xdata(), table["s"][last])
+    np.testing.assert_array_equal(line.get_ydata(), table["rho"][last])
+
+
+def test_space_is_drawn_on_planes_through_the_middle_or_the_chosen_one(space):
+    result = read_result(space)
+    rho = result.fields["rho"]
+    drawn = maps(fields_figure(result))
+    assert [axes.get_title() for _, axes in drawn[:3]] == ["z = 1.5", "y = 0.5", "x = 1.125"]
+    for (_, axes), cut in zip(drawn[:3], (rho[:, :, 4], rho[:, 3, :], rho[4])):
+        np.testing.assert_array_equal(axes.collections[0].get_array().filled(np.nan).reshape(cut.T.shape), cut.T)
+    chosen = maps(fields_figure(result, "z=0.2"))[0][1]
+    np.testing.assert_array_equal(chosen.collections[0].get_array().filled(np.nan).reshape(7, 8), rho[:, :, 0].T)
+
+
+@pytest.mark.parametrize("options, message", [
+    (["--slice", "q=1"], "'q=1' is no slice (an axis and a number are needed); write for example z=0.5"),
+    (["--slice", "z=x"], "'z=x' is no slice"),
+    (["--slice", "z=9"], "the slice 'z=9' is outside of the domain (z from 0 to 3); give a place inside")])
+def test_wrong_slices_are_refused(space, tmp_path, capsys, options, message):
+    assert command.main([str(space), "--out", str(tmp_path), *options]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_plane_has_no_slices_and_one_snapshot_no_frames(plane, tmp_path):
+    with pytest.raises(PictureError, match="the result has two dimensions"):
+        fields_figure(read_result(plane), "z=0.5")
+    apsis.run("paper/bgk-mixed", "space.cells=12", "velocity.points=48", "time.end=0.01", out=tmp_path / "line")
+    with pytest.raises(PictureError, match="there is nothing to animate"):
+        list(frames(read_result(tmp_path / "line"), "title"))
+    with pytest.raises(PictureError, match="the result is not in space"):
+        fields_figure(read_result(tmp_path / "line"), "z=0.5")
+
+
+def test_the_command_writes_maps_profiles_and_frames(plane, tmp_path):
+    assert command.main([str(plane), "--out", str(tmp_path), "--frames"]) == 0
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == ["fields.png", "frame-0001.png", "frame-0002.png", "frame-0003.png", "history.png", "probe-middle.png"]

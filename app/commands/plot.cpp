@@ -68,8 +68,9 @@ action define(CLI::App& command) {
   command.add_option("--compare", given->compare,
                      "draw these runs of one model into one picture of this name, and print their distance "
                      "from the one with most cells");
-  command.add_option("--slice", given->slice,
-                     "of a result in space: the plane AXIS=PLACE, z=0.5, in place of those through the middle");
+  command.add_option(
+      "--slice", given->slice,
+      "of a result in space: the plane AXIS=PLACE, z=0.5, in place of those through the middle");
   command.add_flag("--frames", given->frames,
                    "also every snapshot as frame-NUMBER, with one range of colours, for an animation");
   return [given] { return plot(*given); };

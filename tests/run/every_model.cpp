@@ -180,8 +180,9 @@ TEST(every_model, reads_its_resolved_case_back_with_any_parameters) {
       case_config c = case_of(*entry, "imdrk-1-2", "dt = 0.1", {});
       for (const auto& p : entry->parameters) {
         const double part = 1e-6 * *rc::gen::inRange(0, 1000001);
-        const double value =
-            std::max(p.lowest, std::min(p.highest, p.lowest * (1.0 - part) + p.highest * part));
+        // A resolved case has the number of dimensions in place of 0.
+        const double lowest = p.of_space ? std::max(p.lowest, 1.0) : p.lowest;
+        const double value = std::max(lowest, std::min(p.highest, lowest * (1.0 - part) + p.highest * part));
         c.model.parameters[p.name] = p.integer ? std::floor(value) : value;
       }
       for (const auto& t : entry->texts) {

@@ -4,6 +4,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -70,7 +71,9 @@ def drawn(what: str, options: argparse.Namespace) -> tuple[Path, Iterable[tuple[
         for name in ("picture.json", "reproduce.json", "validate.json"):
             if (path / name).exists():
                 return path / "pictures", of_document(run_result.read_json(path / name), path / name)
-        return path / "pictures", results.figures(run_result.read_result(path), options.slice, options.frames)
+        result = run_result.read_result(path)
+        made = results.figures(result, options.slice).items()
+        return path / "pictures", chain(made, results.frames(result, options.slice)) if options.frames else made
     if path.suffix == ".json":
         document = run_result.read_json(path)
         return Path() if "A_hat" in document else path.parent / "pictures", of_document(document, path)

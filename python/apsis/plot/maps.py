@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .run_result import Array, RunResult, read_history
+from .run_result import Array, RunResult
 from .style import BLACK, BLUE, COLOURS, PictureError, plt
 
 AXES = ("x", "y", "z")
@@ -88,10 +88,14 @@ def limits_of(values: Array) -> tuple[float, float, str]:
     return low, high, "viridis"
 
 
+def without_solids(values: Array) -> Any:
+    return np.ma.masked_invalid(values)  # type: ignore[no-untyped-call]
+
+
 def draw_map(figure: Any, panel: Any, result: RunResult, name: str, values: Array, plane: Plane, colours: tuple[float, float, str]) -> None:
     """Draws values[x, y(, z)] on a plane; cells without a value, those of solid boxes, stay blank with an outline."""
     across, up = result.arrays[plane.across], result.arrays[plane.up]
-    shown = np.ma.masked_invalid(plane.cut(values))
+    shown = without_solids(plane.cut(values))
     low, high, name_of_map = colours
     panel.grid(False)
     panel.set_aspect("equal")
@@ -114,7 +118,7 @@ def draw_streamlines(panel: Any, result: RunResult, fields: dict[str, Array], pl
     u, v = (plane.cut(fields[f"u_{axis}"]) for axis in (plane.across, plane.up))
     moves = np.nan_to_num(np.hypot(u, v)).max() > 0.0
     if moves and min(u.shape) > 1:
-        panel.streamplot(across, up, np.ma.masked_invalid(u), np.ma.masked_invalid(v), color=BLACK, linewidth=0.6, arrowsize=0.7,
+        panel.streamplot(across, up, without_solids(u), without_solids(v), color=BLACK, linewidth=0.6, arrowsize=0.7,
                          density=1.1)
 
 
@@ -166,8 +170,7 @@ def frames(result: RunResult, title: str, slice_at: str | None = None) -> Iterat
 
 def probe_figures(result: RunResult) -> Iterator[tuple[str, Any]]:
     """Names and figures of the profiles along the probes of a run, the last one in blue over earlier ones."""
-    for path in sorted((result.folder / "probes").glob("*.csv")):
-        columns = read_history(path)
+    for probe, columns in result.probes.items():
         names = [name for name in columns if name not in ("t", "s", *AXES)]
         times = columns.get("t", np.zeros(len(columns["s"])))
         count = min(len(names), 3)
@@ -183,5 +186,5 @@ def probe_figures(result: RunResult) -> Iterator[tuple[str, Any]]:
             panel.set_ylabel(result.label(name))
         for unused in grid.flat[len(names):]:
             unused.remove()
-        figure.suptitle(f"probe {path.stem}")
-        yield f"probe-{path.stem}", figure
+        figure.suptitle(f"probe {probe}")
+        yield f"probe-{probe}", figure

@@ -231,10 +231,13 @@ def draw_defects(panel: Any, history: dict[str, Array], defects: list[str]) -> N
     panel.legend(fontsize=8)
 
 
-def figures(result: RunResult, slice_at: str | None = None, frames: bool = False) -> Iterator[tuple[str, Any]]:
-    """Yields all pictures of a run with their names: fields, distribution, history, profiles along probes, and frames if asked for."""
-    made = {"fields": fields_figure(result, slice_at), "distribution": distribution_figure(result), "history": history_figure(result)}
-    yield from ((name, figure) for name, figure in made.items() if figure is not None)
-    yield from maps.probe_figures(result)
-    if frames:
-        yield from maps.frames(result, title_of(result), slice_at)
+def figures(result: RunResult, slice_at: str | None = None) -> dict[str, Any]:
+    """Returns all pictures of a run by name: fields, distribution, history, profiles along probes."""
+    made = {"fields": fields_figure(result, slice_at), "distribution": distribution_figure(result), "history": history_figure(result),
+            **dict(maps.probe_figures(result))}
+    return {name: figure for name, figure in made.items() if figure is not None}
+
+
+def frames(result: RunResult, slice_at: str | None = None) -> Iterator[tuple[str, Any]]:
+    """Names and pictures of all snapshots (maps.frames)."""
+    return maps.frames(result, title_of(result), slice_at)

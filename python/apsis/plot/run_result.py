@@ -22,7 +22,8 @@ class RunResult:
     """The content of a result folder. fields[name][cell] are the macroscopic fields at the end, snapshots[name][k, cell] at the times t[k];
     arrays has those of f[cell, component], x, v, epsilon that the model has, and with several velocity dimensions v_weights and
     the nodes v_x, v_y, v_z; history[column][step] the checks of every step; labels the axis labels; case the case file;
-    marginals[axis][cell, node] f integrated over the other velocity components."""
+    marginals[axis][cell, node] f integrated over the other velocity components; probes[name][column] the fields along lines. In several
+    space dimensions [cell] stands for [x, y(, z)]."""
 
     folder: Path
     manifest: dict[str, Any]
@@ -33,6 +34,7 @@ class RunResult:
     labels: dict[str, str]
     case: str
     marginals: dict[str, Array] = field(default_factory=dict)
+    probes: dict[str, dict[str, Array]] = field(default_factory=dict)
 
     @property
     def t(self) -> Array:
@@ -115,7 +117,8 @@ def read_result(folder: str | Path) -> RunResult:
         raise PictureError(f"cannot read '{path}' ({problem}); run the case again with --out") from problem
     fields = groups["fields"]
     in_order = {name: fields[name] for name in (*columns_of(folder / "fields.csv"), *fields) if name in fields}
-    return RunResult(folder, manifest, in_order, groups["snapshots"], arrays, history, labels, case, groups["marginals"])
+    return RunResult(folder, manifest, in_order, groups["snapshots"], arrays, history, labels, case, groups["marginals"],
+                     {table.stem: read_history(table) for table in sorted((folder / "probes").glob("*.csv"))})
 
 
 def columns_of(path: Path) -> list[str]:

@@ -79,7 +79,7 @@ def report(folder: Path) -> str:
     result = read_result(folder)
     manifest = result.manifest
     pictures = "".join(page.embedded(figure, name, *caption(name, result), folder / "pictures")
-                       for name, figure in figures(result))
+                       for name, figure in figures(result).items())
     rest = {key: value for key, value in manifest.items() if key not in ("case", "message")}
     body = (summary(result) + "<h2>Promises</h2>\n" + promises(manifest)
             + ("<h2>Pictures</h2>\n" + pictures if pictures else "")

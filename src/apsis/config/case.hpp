@@ -28,7 +28,8 @@ struct face_table {
 /// A table [[space.solid]]: a solid box and its wall.
 struct solid_table {
   std::string name;              ///< in the history of what its walls receive
-  std::vector<double> from, to;  ///< its corners, on edges of cells
+  std::vector<double> from;      ///< lower corner, on edges of cells
+  std::vector<double> to;        ///< upper corner, on edges of cells
   std::string kind = "diffuse";  ///< boundary condition at its faces
   state_formulas values;         ///< of the variables of the kind, formulas in t and the position
 };

@@ -19,7 +19,8 @@ struct cell_box {
 
 /// Cells begin … end−1.
 struct cell_range {
-  int begin, end;
+  int begin;  ///< first cell
+  int end;    ///< one past the last cell
 };
 
 /// body(first, last) for the parts of increasing `ranges` among the cells begin … end−1.

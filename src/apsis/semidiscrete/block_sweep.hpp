@@ -41,8 +41,12 @@ class block_sweep {
   };
   /// The part of the phase space that a sweep changes.
   struct place {
-    int direction, segment, begin, end;  ///< cells of the segment
-    int first, last;                     ///< components
+    int direction;  ///< of the sweep
+    int segment;    ///< number of the segment
+    int begin;      ///< first cell of the segment
+    int end;        ///< one past its last cell
+    int first;      ///< first component
+    int last;       ///< one past the last component
   };
   /// Targets of a sweep: acc ← (fresh ? 0 : acc) + α u + β T, α u with the first direction alone.
   using targets_view = std::span<const target<field, double>>;

@@ -1,6 +1,7 @@
 #include <apsis/config/boundary_reader.hpp>
 
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/at_place.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/space_time_formula.hpp>
 #include <apsis/core/suggest.hpp>
@@ -16,16 +17,6 @@ namespace {
 
 const std::string& kind_of(const case_config& config, const face_table& table) {
   return table.kind ? *table.kind : config.space.boundary;
-}
-
-/// Calls body() and adds a place to its input errors.
-template <class Body>
-auto at_place(const source_place& place, const Body& body) {
-  try {
-    return body();
-  } catch (const input_error& failure) {
-    throw input_error(place, failure.what());
-  }
 }
 
 /// Names of the variables of a kind of boundary.

@@ -89,9 +89,10 @@ class resolver {
       return body();
     } catch (const input_error& failure) {
       const std::string message = failure.what();
-      const auto found = config_.places.find(message.substr(0, message.find(' ')));
-      if (found == config_.places.end()) throw;
-      throw input_error(found->second, message);
+      const std::string key = message.substr(0, message.find(' '));
+      const source_place place = key.find('.') == std::string::npos ? source_place{} : place_of(config_, key);
+      if (place.file.empty()) throw;
+      throw input_error(place, message);
     }
   }
 

@@ -65,6 +65,13 @@ velocity_lattice gas_model::lattice() const {
   return found;
 }
 
+double gas_model::crossing_rate(std::span<const double> spacing) const {
+  double rate = 0.0;
+  for (std::size_t k = 0; k < spacing.size(); ++k)
+    rate += gas_.grid().line(static_cast<int>(k)).max() / spacing[k];
+  return rate;
+}
+
 double gas_model::rate(const double* omega) const {
   if (!by_viscosity_) return 1.0;
   const double T = omega[0] > 0.0 ? gas_.state(omega).T : 0.0;

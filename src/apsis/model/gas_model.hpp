@@ -33,8 +33,9 @@ class gas_model : public relaxation_model {
   int space_dimensions() const override { return space_dimensions_; }
   const velocity_set& velocities() const override { return gas_.velocities(); }
   velocity_lattice lattice() const override;
-  /// Returns the end of the velocity line, that of a uniform one half an interval beyond its last point.
-  double reference_speed(int k) const override { return gas_.grid().line(k).max(); }
+  /// Returns Σ_k v_max,k/Δx_k with the ends of the velocity lines, that of a uniform one half an interval
+  /// beyond its last point.
+  double crossing_rate(std::span<const double> spacing) const override;
   bool positive() const override { return true; }
   bool collisions_keep_sign() const override { return !signed_tails_; }
 

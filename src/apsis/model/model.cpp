@@ -1,6 +1,8 @@
 #include <apsis/model/model_registry.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <memory>
@@ -17,8 +19,15 @@ const velocity_set& model::velocities() const {
   return none;
 }
 
-double model::reference_speed(int direction) const {
-  return velocities().largest_speed(direction);
+double model::crossing_rate(std::span<const double> spacing) const {
+  double fastest = 0.0;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(velocities().size()); ++j) {
+    double rate = 0.0;
+    for (std::size_t k = 0; k < spacing.size(); ++k)
+      rate += std::abs(speeds(static_cast<int>(k))[j]) / spacing[k];
+    fastest = std::max(fastest, rate);
+  }
+  return fastest;
 }
 
 void model::source(const double*, double* s) const {

@@ -61,12 +61,14 @@ class model {
   std::span<const double> speeds(int direction) const { return velocities().speeds(direction); }
   /// Returns the lattice of the velocities, along which forces act; none by default.
   virtual velocity_lattice lattice() const { return {}; }
-  /// Returns v of the CFL number v Δt/Δx along a direction: by default the largest |speed|; 0 without space.
-  virtual double reference_speed(int direction) const;
+  /// Returns R of the CFL number R Δt on cells of the given sizes Δx_k: by default max_j Σ_k |v_jk|/Δx_k,
+  /// since every component moves with one velocity.
+  virtual double crossing_rate(std::span<const double> spacing) const;
 
-  /// Returns the factors of the sets of components on velocities() under a reflection of space: −1 for a set
-  /// whose sum is a momentum; empty, the default: 1 for all. Throws input_error if they are unknown.
-  virtual std::vector<double> reflection_signs() const { return {}; }
+  /// Returns the factors of the sets of components on velocities() under a reflection of a direction of
+  /// space: −1 for a set whose sum is a momentum along it; empty, the default: 1 for all. Throws input_error
+  /// if they are unknown.
+  virtual std::vector<double> reflection_signs(int /*direction*/) const { return {}; }
 
   /// Whether S(u) is not identically 0.
   virtual bool has_source() const { return false; }

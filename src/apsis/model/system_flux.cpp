@@ -89,7 +89,7 @@ system_flux::waves waves_of(square_matrix a) {
 }  // namespace
 
 system_flux::system_flux(std::vector<std::string> variables, const std::vector<std::string>& formulas,
-                         const formula_constants& constants)
+                         const formula_constants& constants, const std::string& key)
     : variables_(std::move(variables)) {
   if (variables_.empty() || variables_.size() > static_cast<std::size_t>(most_variables))
     throw input_error(
@@ -99,10 +99,10 @@ system_flux::system_flux(std::vector<std::string> variables, const std::vector<s
   if (const std::string why = why_not_variables(variables_, constants); !why.empty())
     throw input_error(fmt::format("model.variables cannot be used ({}); choose other names", why));
   if (formulas.size() != variables_.size())
-    throw input_error(fmt::format(
-        "model.flux has {} formula{} (each of the {} variables {} has one flux); give {} formulas",
-        formulas.size(), formulas.size() == 1 ? "" : "s", variables_.size(), fmt::join(variables_, ", "),
-        variables_.size()));
+    throw input_error(
+        fmt::format("{} has {} formula{} (each of the {} variables {} has one flux); give {} formulas", key,
+                    formulas.size(), formulas.size() == 1 ? "" : "s", variables_.size(),
+                    fmt::join(variables_, ", "), variables_.size()));
   for (const auto& formula : formulas)
     formulas_.emplace_back(formula, source_place{}, formula_kind{variables_, false, constants});
 }

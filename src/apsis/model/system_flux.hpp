@@ -14,10 +14,11 @@ class system_flux {
   /// Largest number of variables.
   static constexpr int most_variables = 16;
 
-  /// Formulas of the fluxes in the variables and `constants`. Throws input_error: a formula that cannot be
-  /// read, more or fewer formulas than variables, or no or too many variables.
+  /// Formulas of the fluxes in the variables and `constants`, and the key of a case that messages name.
+  /// Throws input_error: a formula that cannot be read, more or fewer formulas than variables, or no or too
+  /// many variables.
   system_flux(std::vector<std::string> variables, const std::vector<std::string>& formulas,
-              const formula_constants& constants = {});
+              const formula_constants& constants = {}, const std::string& key = "model.flux");
 
   /// Returns n.
   int size() const { return static_cast<int>(variables_.size()); }

@@ -243,9 +243,9 @@ std::optional<field> run_setup::exact_state(double t) const {
 
 double run_setup::cfl_length() const {
   if (!has_space()) throw input_error("time.cfl needs a mesh (the model has no space); give time.dt");
-  double rate = 0.0;
-  for (int k = 0; k < mesh().dimensions(); ++k) rate += equation->reference_speed(k) / mesh().spacing(k);
-  return 1.0 / rate;
+  std::vector<double> spacing;
+  for (int k = 0; k < mesh().dimensions(); ++k) spacing.push_back(mesh().spacing(k));
+  return 1.0 / equation->crossing_rate(spacing);
 }
 
 double run_setup::equilibrium_defect(const field& u) const {

@@ -77,7 +77,13 @@ void transport::set_source(source_rate rate, formulation unknowns) {
 
 double transport::forward_euler_step() const {
   double rate = force_ ? force_->rate() : 0.0;  // 1/0 is the infinity of a model without space
-  for (const auto& line : speeds_) rate += *std::max_element(line.per_cell.begin(), line.per_cell.end());
+  double fastest = 0.0;                         // every component moves with one velocity
+  for (std::size_t k = 0; !speeds_.empty() && k < speeds_.front().per_cell.size(); ++k) {
+    double each = 0.0;
+    for (const auto& line : speeds_) each += line.per_cell[k];
+    fastest = std::max(fastest, each);
+  }
+  rate += fastest;
   return rounding_allowance * (discretization_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) /
          rate;
 }

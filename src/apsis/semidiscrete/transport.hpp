@@ -41,9 +41,9 @@ class transport {
   /// Adds a source.
   void set_source(source_rate rate, formulation unknowns);
 
-  /// Δt_FE = κ / Σ_k (max|v_k|/Δx_k + max|a_k|/Δv): κ = 1/12 with the positivity limiter (Zhang & Shu 2010),
-  /// else 1, which for first-order upwind keeps positivity, total variation and entropy. +infinity without
-  /// space.
+  /// Δt_FE = κ / (max_j Σ_k |v_jk|/Δx_k + Σ_k max|a_k|/Δv): κ = 1/12 with the positivity limiter (Zhang & Shu
+  /// 2010), else 1, which for first-order upwind keeps positivity, total variation and entropy. +infinity
+  /// without space.
   double forward_euler_step() const;
 
  private:

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
+#include <vector>
 
 namespace apsis {
 namespace {
@@ -13,16 +13,18 @@ namespace {
 /// face.
 class symmetry_boundary final : public boundary {
  public:
-  /// Without velocities: a description that prepared() turns into a boundary of a face. `signs` as in
-  /// model::reflection_signs().
-  explicit symmetry_boundary(std::vector<double> signs) : signs_of_sets_(std::move(signs)) {}
+  /// A description that prepared() turns into a boundary of a face; without a model, all sets of components
+  /// keep their signs.
+  explicit symmetry_boundary(const model* equation) : equation_(equation) {}
 
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override {
-    auto own = std::make_shared<symmetry_boundary>(signs_of_sets_);
+    auto own = std::make_shared<symmetry_boundary>(nullptr);
     own->mirrored_ = mirrored_components(velocities, where.direction);
     own->signs_.assign(own->mirrored_.size(), 1.0);
-    for (std::size_t k = 0; k < own->signs_.size() && !signs_of_sets_.empty(); ++k)
-      own->signs_[k] = signs_of_sets_[k / static_cast<std::size_t>(velocities.size())];
+    const auto of_sets =
+        equation_ != nullptr ? equation_->reflection_signs(where.direction) : std::vector<double>{};
+    for (std::size_t k = 0; k < own->signs_.size() && !of_sets.empty(); ++k)
+      own->signs_[k] = of_sets[k / static_cast<std::size_t>(velocities.size())];
     return own;
   }
 
@@ -42,7 +44,7 @@ class symmetry_boundary final : public boundary {
   }
 
  private:
-  std::vector<double> signs_of_sets_;
+  const model* equation_;
   std::vector<int> mirrored_;  ///< component whose normal velocity is opposite
   std::vector<double> signs_;  ///< of every component
 };
@@ -55,8 +57,10 @@ const boundary_entry boundary_symmetry = {
     .description =
         "plane of symmetry, or wall that reflects specularly: mirror images with reversed normal velocity",
     .make = [](const boundary_source& from) -> std::unique_ptr<boundary> {
-      return std::make_unique<symmetry_boundary>(from.equation != nullptr ? from.equation->reflection_signs()
-                                                                          : std::vector<double>{});
+      // On a line the only mirror is known here, where errors have a place.
+      if (from.equation != nullptr && from.equation->space_dimensions() == 1)
+        from.equation->reflection_signs(0);
+      return std::make_unique<symmetry_boundary>(from.equation);
     }};
 
 }  // namespace apsis

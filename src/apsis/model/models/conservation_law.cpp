@@ -19,52 +19,102 @@ namespace {
 const std::vector<std::string> default_variables = {"h", "q"};
 const std::vector<std::string> default_flux = {"q", "q^2/h + h^2/2"};
 
-/// Relaxation of u_t + F(u)_x = 0 with n variables (Jin, Xin, Comm. Pure Appl. Math. 48, 1995; in diagonal
-/// form Aregba-Driollet, Natalini, SIAM J. Numer. Anal. 37, 2000): f±_t ± a f±_x = (E±(u) − f±)/ε with
-/// u = f₊ + f₋ and E± = (u ± F(u)/a)/2. As ε → 0, u_t + F(u)_x = ε((a² − F'(u)²) u_x)_x + O(ε²), which is
-/// stable if F' has real eigenvalues |λ| ≤ a, the subcharacteristic condition. A row has f₊ and f₋ of each
-/// variable in turn. Dimensionless.
+/// Names of the lists with the fluxes along x, y, z, and of the variables that a mirror across them changes.
+constexpr std::array<const char*, 3> flux_lists = {"flux", "flux_y", "flux_z"};
+constexpr std::array<const char*, 3> odd_lists = {"odd", "odd_y", "odd_z"};
+
+/// Returns the fluxes along the directions of space.
+std::vector<system_flux> fluxes_of(const model_config& config) {
+  std::vector<system_flux> fluxes;
+  const auto D = static_cast<std::size_t>(config.space_dimensions);
+  for (std::size_t k = 0; k < flux_lists.size(); ++k) {
+    const auto& formulas = config.lists.at(flux_lists[k]);
+    if (k < D) {
+      if (k > 0 && formulas.empty())
+        throw input_error(
+            fmt::format("model.{} is missing (space has {} dimensions); give the flux along {}, one "
+                        "formula for each variable",
+                        flux_lists[k], D, "xyz"[k]));
+      fluxes.emplace_back(config.lists.at("variables"), formulas, config.constants,
+                          fmt::format("model.{}", flux_lists[k]));
+    } else if (!formulas.empty() || !config.lists.at(odd_lists[k]).empty()) {
+      throw input_error(
+          fmt::format("model.{} is not used (space has {} dimension{}); remove it, or give space.cells "
+                      "more numbers",
+                      formulas.empty() ? odd_lists[k] : flux_lists[k], D, D == 1 ? "" : "s"));
+    }
+  }
+  return fluxes;
+}
+
+/// The velocities ±a along each of D directions.
+velocity_set speeds_along(int D, double a, int sets) {
+  const auto directions = static_cast<std::size_t>(D);
+  std::vector<aligned_vector<double>> v(directions, aligned_vector<double>(2 * directions));
+  for (std::size_t k = 0; k < directions; ++k) {
+    v[k][2 * k] = a;
+    v[k][2 * k + 1] = -a;
+  }
+  return {std::move(v), std::vector<double>(2 * directions, 1.0), sets};
+}
+
+/// Relaxation of u_t + Σ_k F_k(u)_xk = 0 with n variables in D dimensions (Jin, Xin, Comm. Pure Appl. Math.
+/// 48, 1995; in diagonal form Aregba-Driollet, Natalini, SIAM J. Numer. Anal. 37, 2000): for the velocities
+/// ±a along each direction, f_k±,t ± a f_k±,xk = (E_k±(u) − f_k±)/ε with u = Σ f_k± and E_k± = (u/D ±
+/// F_k(u)/a)/2. As ε → 0, u_t + Σ F_k(u)_xk = ε Σ_kl ((a² δ_kl/D − F_k'F_l') u_xl)_xk + O(ε²). That is stable
+/// if the derivatives of all E_k± have eigenvalues ≥ 0 (Bouchut, J. Stat. Phys. 95, 1999): those of F_k' are
+/// real and |λ| ≤ a/D, the subcharacteristic condition. A row has f₁₊, f₁₋, f₂₊, … of each variable in turn.
+/// Dimensionless.
 class law_model final : public relaxation_model {
  public:
   explicit law_model(const model_config& config)
-      : flux_(config.lists.at("variables"), config.lists.at("flux"), config.constants),
-        n_(flux_.size()),
+      : fluxes_(fluxes_of(config)),
+        n_(fluxes_.front().size()),
+        D_(config.space_dimensions),
         a_(config.parameters.at("speed")),
         margin_(config.parameters.at("speed_margin")),
-        velocities_({{a_, -a_}}, {1.0, 1.0}, n_) {
-    if (config.lists.at("variables") == default_variables && config.lists.at("flux") == default_flux)
+        velocities_(speeds_along(D_, a_, n_)) {
+    const auto& variables = fluxes_.front().variables();
+    if (D_ == 1 && config.lists.at("variables") == default_variables &&
+        config.lists.at("flux") == default_flux)
       make_initial_data();
-    for (const auto& name : flux_.variables())
+    for (const auto& name : variables)
       if (name == wave_speed)
         throw input_error(
             fmt::format("model.variables has '{}' (results have a field of this name); choose "
                         "another name",
                         name));
-    for (const auto& name : config.lists.at("odd")) {
-      const auto& all = flux_.variables();
-      const auto found = std::find(all.begin(), all.end(), name);
-      if (found == all.end())
-        throw input_error(fmt::format("model.odd has '{:.60}' (it is no variable of the law); {}", name,
-                                      suggest(name, all)));
-      signs_.resize(all.size(), 1.0);
-      signs_[static_cast<std::size_t>(found - all.begin())] = -1.0;
-    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(D_); ++k)
+      for (const auto& name : config.lists.at(odd_lists[k])) {
+        const auto found = std::find(variables.begin(), variables.end(), name);
+        if (found == variables.end())
+          throw input_error(fmt::format("model.{} has '{:.60}' (it is no variable of the law); {}",
+                                        odd_lists[k], name, suggest(name, variables)));
+        signs_[k].resize(variables.size(), 1.0);
+        signs_[k][static_cast<std::size_t>(found - variables.begin())] = -1.0;
+      }
   }
 
-  int components() const override { return 2 * n_; }
-  int space_dimensions() const override { return 1; }
+  int components() const override { return 2 * D_ * n_; }
+  int space_dimensions() const override { return D_; }
   const velocity_set& velocities() const override { return velocities_; }
-  std::vector<double> reflection_signs() const override {
-    if (signs_.empty())
-      throw input_error(
-          "boundary 'symmetry' cannot be used (model.odd does not say which variables change their sign in a "
-          "mirror); name them there, for example odd = [\"q\"], or choose another kind");
-    return signs_;
+  std::vector<double> reflection_signs(int direction) const override {
+    const auto& signs = signs_.at(static_cast<std::size_t>(direction));
+    if (signs.empty())
+      throw input_error(fmt::format(
+          "boundary 'symmetry' cannot be used (model.{0} does not say which variables change their sign in a "
+          "mirror); name them there, for example {0} = [\"q\"], or choose another kind",
+          odd_lists.at(static_cast<std::size_t>(direction))));
+    return signs;
   }
 
   int moment_count() const override { return n_; }
   void moments(const double* f, double* omega) const override {
-    for (int k = 0; k < n_; ++k) omega[k] = f[2 * k] + f[2 * k + 1];
+    for (int k = 0; k < n_; ++k) {
+      const double* of = f + 2 * D_ * k;
+      omega[k] = of[0] + of[1];
+      for (int pair = 1; pair < D_; ++pair) omega[k] += of[2 * pair] + of[2 * pair + 1];
+    }
   }
   bool equilibrium(const double* omega, double* e) const override {
     return equilibria(omega, 1, e, components()) == 1;
@@ -73,18 +123,24 @@ class law_model final : public relaxation_model {
   int equilibria(const double* omega, int rows, double* e, std::ptrdiff_t pitch) const override {
     constexpr int together = 32;
     std::array<double, together * system_flux::most_variables> F;
+    const double D = static_cast<double>(D_);
     for (int done = 0; done < rows; done += together) {
       const int count = std::min(together, rows - done);
-      flux_.evaluate(omega + done * n_, count, F.data());
-      for (int p = 0; p < count; ++p) {
-        const double* u = omega + (done + p) * n_;
-        double* row = e + (done + p) * pitch;
-        for (int k = 0; k < n_; ++k) {
-          const double over_a = F[static_cast<std::size_t>(k * count + p)] / a_;
-          row[2 * k] = 0.5 * (u[k] + over_a);
-          row[2 * k + 1] = 0.5 * (u[k] - over_a);
+      for (int direction = 0; direction < D_; ++direction) {
+        fluxes_[static_cast<std::size_t>(direction)].evaluate(omega + done * n_, count, F.data());
+        for (int p = 0; p < count; ++p) {
+          const double* u = omega + (done + p) * n_;
+          double* row = e + (done + p) * pitch + 2 * direction;
+          for (int k = 0; k < n_; ++k, row += 2 * D_) {
+            const double share = u[k] / D, over_a = F[static_cast<std::size_t>(k * count + p)] / a_;
+            row[0] = 0.5 * (share + over_a);
+            row[1] = 0.5 * (share - over_a);
+          }
         }
-        if (!std::all_of(row, row + 2 * n_, [](double value) { return std::isfinite(value); }))
+      }
+      for (int p = 0; p < count; ++p) {
+        const double* row = e + (done + p) * pitch;
+        if (!std::all_of(row, row + components(), [](double value) { return std::isfinite(value); }))
           return done + p;
       }
     }
@@ -92,68 +148,54 @@ class law_model final : public relaxation_model {
   }
   double rate(const double*) const override { return 1.0; }
   std::string why_inadmissible(const double* omega) const override {
-    return fmt::format("the flux is not finite at {}", flux_.text_of(omega));
+    return fmt::format("the flux is not finite at {}", text_of(omega));
   }
 
-  std::vector<std::string> invariants() const override { return flux_.variables(); }
+  std::vector<std::string> invariants() const override { return variables(); }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
-  /// f± have the size of u ± F/a, also where u vanishes, as the momentum of water at rest.
+  /// f± have the size of u/D ± F/a, also where u vanishes, as the momentum of water at rest.
   void invariant_scales(const double* densities, double* scales) const override {
-    flux_.evaluate(densities, 1, scales);
-    for (int k = 0; k < n_; ++k) {
-      const double size = std::abs(densities[k]), from_flux = std::abs(scales[k]) / a_;
-      scales[k] = std::isfinite(from_flux) ? size + from_flux : size;
+    std::array<double, system_flux::most_variables> F;
+    for (int k = 0; k < n_; ++k) scales[k] = std::abs(densities[k]);
+    for (const auto& flux : fluxes_) {
+      flux.evaluate(densities, 1, F.data());
+      for (std::size_t k = 0; k < static_cast<std::size_t>(n_); ++k)
+        if (const double size = std::abs(F[k]) / a_; std::isfinite(size)) scales[k] += size;
     }
   }
 
   std::vector<field_name> fields() const override {
     std::vector<field_name> all;
-    for (const auto& name : flux_.variables()) all.push_back({name, name + " (dimensionless)"});
+    for (const auto& name : variables()) all.push_back({name, name + " (dimensionless)"});
     return all;
   }
   void macroscopic(const double* f, double* values) const override { moments(f, values); }
   std::vector<field_name> further_fields() const override {
     return {{wave_speed, "fastest wave of the law (dimensionless)"}};
   }
-  void further_macroscopic(const double* f, double* values) const override { values[0] = speeds_of(f).speed; }
+  void further_macroscopic(const double* f, double* values) const override { values[0] = fastest_wave(f); }
 
   const std::vector<initial_data>& initial() const override { return initial_; }
   std::vector<data_form> data_forms() const override {
     data_form form{"equilibrium", {}, [this](std::span<const double> given, std::span<double> f) {
                      return equilibrium(given.data(), f.data()) ? "" : why_inadmissible(given.data());
                    }};
-    for (const auto& name : flux_.variables())
+    for (const auto& name : variables())
       form.variables.push_back({name, "conserved quantity (dimensionless)"});
     return {form};
   }
 
   std::string condition() const override { return "subcharacteristic condition"; }
   unsupported_initial_data check_supported(const double* f) const override {
-    const auto waves = speeds_of(f);
-    if (waves.speed <= a_ * (1.0 + rounding) && waves.imaginary <= not_real * a_) return {};
-    std::array<double, system_flux::most_variables> u{};
-    moments(f, u.data());
-    const std::string at = flux_.text_of(u.data());
-    if (!std::isfinite(waves.speed))
-      return {"model.flux", fmt::format("model.flux has no finite derivative at {}; change the formulas or "
-                                        "the data",
-                                        at)};
-    if (waves.imaginary > not_real * a_)
-      return {"model.flux",
-              fmt::format("model.flux is not hyperbolic at {} (F' has an eigenvalue with the imaginary part "
-                          "{:.6g}, and perturbations of short wavelength grow without bound); change the "
-                          "formulas or the data",
-                          at, waves.imaginary)};
-    return {"model.speed",
-            fmt::format("model.speed = {:g} is too small (an eigenvalue of F' is {:.6g} in size at {}, and "
-                        "the subcharacteristic condition is |lambda| <= speed); give at least {:g}",
-                        a_, waves.speed, at, rounded_up(waves.speed))};
+    for (std::size_t k = 0; k < fluxes_.size(); ++k)
+      if (const auto found = check_waves(f, k); !found.problem.empty()) return found;
+    return {};
   }
 
   double automatic_value(const std::string&, const std::vector<std::vector<double>>& rows) const override {
     double fastest = 0.0;
     for (const auto& row : rows) {
-      const double speed = speeds_of(row.data()).speed;
+      const double speed = fastest_wave(row.data());
       if (!std::isfinite(speed)) {
         const auto problem = check_supported(row.data());
         throw input_error(problem.problem);
@@ -163,7 +205,7 @@ class law_model final : public relaxation_model {
     if (!(fastest > 0.0))
       throw input_error(
           "model.speed cannot be chosen (every eigenvalue of F' is 0 for the initial data); give a number");
-    return rounded_up(margin_ * fastest);
+    return rounded_up(margin_ * D_ * fastest);
   }
 
  private:
@@ -181,10 +223,48 @@ class law_model final : public relaxation_model {
     return digits > 0.0 ? std::ceil(x * unit * exact) / unit : std::ceil(x / unit * exact) * unit;
   }
 
-  system_flux::waves speeds_of(const double* f) const {
+  const std::vector<std::string>& variables() const { return fluxes_.front().variables(); }
+  std::string text_of(const double* u) const { return fluxes_.front().text_of(u); }
+
+  /// Characteristic speeds along a direction.
+  system_flux::waves speeds_of(const double* f, std::size_t direction) const {
     std::array<double, system_flux::most_variables> u{};
     moments(f, u.data());
-    return flux_.characteristic_speeds(u.data());
+    return fluxes_[direction].characteristic_speeds(u.data());
+  }
+
+  /// The largest speed of all directions; NaN where a flux is not differentiable.
+  double fastest_wave(const double* f) const {
+    double fastest = 0.0;
+    for (std::size_t k = 0; k < fluxes_.size(); ++k) {
+      const double speed = speeds_of(f, k).speed;
+      if (!(speed <= fastest)) fastest = speed;
+      if (std::isnan(speed)) break;
+    }
+    return fastest;
+  }
+
+  unsupported_initial_data check_waves(const double* f, std::size_t direction) const {
+    const auto waves = speeds_of(f, direction);
+    const double D = static_cast<double>(D_);
+    if (waves.speed * D <= a_ * (1.0 + rounding) && waves.imaginary <= not_real * a_) return {};
+    std::array<double, system_flux::most_variables> u{};
+    moments(f, u.data());
+    const std::string at = text_of(u.data()), key = fmt::format("model.{}", flux_lists.at(direction));
+    if (!std::isfinite(waves.speed))
+      return {key,
+              fmt::format("{} has no finite derivative at {}; change the formulas or the data", key, at)};
+    if (waves.imaginary > not_real * a_)
+      return {key,
+              fmt::format("{} is not hyperbolic at {} (F' has an eigenvalue with the imaginary part "
+                          "{:.6g}, and perturbations of short wavelength grow without bound); change the "
+                          "formulas or the data",
+                          key, at, waves.imaginary)};
+    return {"model.speed",
+            fmt::format("model.speed = {:g} is too small (an eigenvalue of F' is {:.6g} in size at {}, and "
+                        "the subcharacteristic condition is |lambda| <= speed{}); give at least {:g}",
+                        a_, waves.speed, at, D_ == 1 ? "" : fmt::format("/{} in {} dimensions", D_, D_),
+                        rounded_up(D * waves.speed))};
   }
 
   static std::array<double, 2> smooth(double x) {
@@ -220,11 +300,12 @@ class law_model final : public relaxation_model {
                         {0.0}});
   }
 
-  system_flux flux_;
-  int n_;
+  std::vector<system_flux> fluxes_;  ///< of each direction
+  int n_, D_;
   double a_, margin_;
   velocity_set velocities_;
-  std::vector<double> signs_;  ///< of the variables in a mirror; empty if unknown
+  std::array<std::vector<double>, 3>
+      signs_;  ///< of the variables in a mirror across a direction; empty if unknown
   std::vector<initial_data> initial_;
 };
 
@@ -233,21 +314,24 @@ class law_model final : public relaxation_model {
 extern const model_entry model_conservation_law;
 const model_entry model_conservation_law = {
     .name = "conservation-law",
-    .description = "u_t + F(u)_x = 0 by relaxation: f+-_t +- a f+-_x = ((u +- F(u)/a)/2 - f+-)/epsilon",
+    .description =
+        "u_t + F(u)_x + ... = 0 by relaxation: f+-_t +- a f+-_x = ((u/D +- F(u)/a)/2 - f+-)/epsilon in "
+        "each of D directions",
     .source = "Jin, Xin (1995); Aregba-Driollet, Natalini, SIAM J. Numer. Anal. 37 (2000)",
     .parameters = {{.name = "speed",
                     .value = 1.0,
                     .lowest = 1e-6,
                     .highest = 1e6,
                     .doc =
-                        "a, the speed of the waves; |lambda| <= a is required of every eigenvalue of F' at "
-                        "every step",
+                        "a, the speed of the waves; |lambda| <= a/D is required of every eigenvalue of F' at "
+                        "every step, D being the number of dimensions",
                     .automatic = true},
                    {.name = "speed_margin",
                     .value = 2.0,
                     .lowest = 1.0,
                     .highest = 1e3,
-                    .doc = "speed = \"auto\" is the largest |lambda| of the initial data times this"}},
+                    .doc =
+                        "speed = \"auto\" is D times the largest |lambda| of the initial data times this"}},
     .lists = {{.name = "variables",
                .value = default_variables,
                .variables = "",
@@ -256,12 +340,19 @@ const model_entry model_conservation_law = {
               {.name = "flux",
                .value = default_flux,
                .variables = "variables",
-               .doc = "F(u), one formula for each variable; the default is shallow water with g = 1"},
+               .doc = "F(u) along x, one formula for each variable; the default is shallow water with g = 1"},
+              {.name = "flux_y",
+               .value = {},
+               .variables = "variables",
+               .doc = "the flux along y, in two and three dimensions"},
+              {.name = "flux_z", .value = {}, .variables = "variables", .doc = "the flux along z"},
               {.name = "odd",
                .value = {},
                .variables = "",
-               .doc = "variables that change their sign in a mirror, as a momentum; the boundary 'symmetry' "
-                      "needs them"}},
+               .doc = "variables that change their sign in a mirror across x, as a momentum; the boundary "
+                      "'symmetry' needs them"},
+              {.name = "odd_y", .value = {}, .variables = "", .doc = "the same in a mirror across y"},
+              {.name = "odd_z", .value = {}, .variables = "", .doc = "the same in a mirror across z"}},
     .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<law_model>(config);
     }};

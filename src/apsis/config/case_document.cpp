@@ -131,10 +131,12 @@ std::string describe(const model_entry& model) {
     out += indented(fmt::format("[initial] ({}): {}", form.description, fmt::join(variables, "; ")));
   }
   for (const model_list& l : model.lists)
-    out += indented(
-        fmt::format("{} (list of {}, default {}): {}", l.name,
-                    l.variables.empty() ? "names" : fmt::format("formulas in the names of '{}'", l.variables),
-                    to_toml(case_value(l.value)), l.doc));
+    out += indented(fmt::format("{} (list of {}, default {}): {}", l.name,
+                                l.tuples ? "lists of numbers"
+                                : l.variables.empty()
+                                    ? "names"
+                                    : fmt::format("formulas in the names of '{}'", l.variables),
+                                to_toml(case_value(l.value)), l.doc));
   for (const model_parameter& p : model.parameters)
     out += indented(fmt::format("{} (number, {} to {}{}): {}", p.name, p.lowest, p.highest,
                                 p.automatic ? fmt::format(", or \"{0}\"; default \"{0}\"", automatic_word)

@@ -1,8 +1,10 @@
 #include <apsis/config/case_value.hpp>
 
+#include <apsis/config/at_place.hpp>
 #include <apsis/config/quantity.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/model/expression.hpp>
+#include <apsis/model/number_tuples.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -217,10 +219,44 @@ void check_names(const raw_value& raw, const std::string& path, const std::vecto
 
 }  // namespace
 
+namespace {
+
+std::string formula_text(const raw_value& raw, const std::string& path) {
+  if (const auto* text = std::get_if<std::string>(&raw.value)) return *text;
+  if (std::holds_alternative<long>(raw.value) || std::holds_alternative<double>(raw.value))
+    return fmt::format("{}", finite_number(raw, path, "a number"));
+  refuse(raw, path, "a number or a formula is needed", "write for example \"1 + 0.2*sin(pi*x)\"");
+}
+
+/// Lists of numbers and formulas of constants, as texts "1, 0".
+std::vector<std::string> to_tuples(const std::string& path, const raw_value& raw,
+                                   const formula_constants& constants) {
+  const auto* items = std::get_if<raw_value::list>(&raw.value);
+  const std::string advice = "write for example [[1, 0], [0.5, \"sqrt(3)/2\"]]";
+  if (items == nullptr) refuse(raw, path, "a list of lists of numbers is needed", advice);
+  std::vector<std::string> tuples;
+  for (const raw_value& item : *items) {
+    std::string& text = tuples.emplace_back();
+    if (const auto* numbers = std::get_if<raw_value::list>(&item.value)) {
+      for (const raw_value& one : *numbers) text += (text.empty() ? "" : ", ") + formula_text(one, path);
+    } else if (const auto* given = std::get_if<std::string>(&item.value)) {
+      text = *given;
+    } else {
+      refuse(item, path, "a list of lists of numbers is needed", advice);
+    }
+    if (text.empty()) refuse(item, path, "it is an empty list", advice);
+    at_place(item.place, [&] { return number_tuples({text}, constants); });
+  }
+  return tuples;
+}
+
+}  // namespace
+
 std::vector<std::string> to_list(const model_list& list, const raw_value& raw,
                                  const std::vector<std::string>& variables,
                                  const formula_constants& constants) {
   const std::string path = "model." + list.name;
+  if (list.tuples) return to_tuples(path, raw, constants);
   const auto* items = std::get_if<raw_value::list>(&raw.value);
   if (items == nullptr)
     refuse(raw, path, "a list of texts is needed",
@@ -268,17 +304,6 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
   }
   return {};
 }
-
-namespace {
-
-std::string formula_text(const raw_value& raw, const std::string& path) {
-  if (const auto* text = std::get_if<std::string>(&raw.value)) return *text;
-  if (std::holds_alternative<long>(raw.value) || std::holds_alternative<double>(raw.value))
-    return fmt::format("{}", finite_number(raw, path, "a number"));
-  refuse(raw, path, "a number or a formula is needed", "write for example \"1 + 0.2*sin(pi*x)\"");
-}
-
-}  // namespace
 
 std::vector<std::string> formula_texts(const raw_value& raw, const std::string& path) {
   const auto* list = std::get_if<raw_value::list>(&raw.value);

@@ -40,6 +40,8 @@ struct model_list {
   std::vector<std::string> value;  ///< default
   std::string variables;           ///< list with the variables of formulas, declared before; "": names
   std::string doc;                 ///< description
+  /// Whether an entry is a list of numbers, or of formulas of constants; it then is a text as "1, 0".
+  bool tuples = false;
 };
 
 /// How a kinetic model computes its discrete equilibrium.

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace apsis {
+
+/// Particles i and j become k and l, and reversely; numbered from 0.
+struct binary_collision {
+  int i, j, k, l;
+  double rate = 1.0;  ///< A > 0 of A (f_k f_l − f_i f_j) (dimensionless)
+};
+
+/// Elastic collisions of a gas of n velocities v_j (Gatignol, Théorie cinétique des gaz à répartition
+/// discrète de vitesses, Lecture Notes in Physics 36, 1975):
+///   Q(f) = Σ_c R_c(f) n_c,   R_c = A_c (f_i f_j − f_k f_l),   n_c = e_k + e_l − e_i − e_j.
+/// All quantities are dimensionless. Immutable; thread-safe.
+class binary_collisions {
+ public:
+  /// Largest number of velocities.
+  static constexpr int most_velocities = 256;
+
+  /// `velocities[j]` are the components of v_j. Without `collisions`, all elastic ones with the rate 1.
+  /// Throws input_error: no or too many velocities, a velocity that is not finite, has another number of
+  /// components or occurs twice; a collision that names no velocity, changes nothing, occurs twice, has a
+  /// rate that is not a finite number > 0, or does not conserve momentum and energy; no collisions.
+  explicit binary_collisions(std::vector<std::vector<double>> velocities,
+                             std::vector<binary_collision> collisions = {});
+
+  int size() const { return static_cast<int>(velocities_.size()); }                   ///< n
+  int dimensions() const { return static_cast<int>(velocities_.front().size()); }     ///< of a velocity
+  const std::vector<std::vector<double>>& velocities() const { return velocities_; }  ///< v_j
+  const std::vector<binary_collision>& collisions() const { return collisions_; }     ///< all of them
+
+  /// Σ_j φ_j f_j, which collisions conserve.
+  struct invariant {
+    std::string name;         ///< "mass", "momentum_x", "energy", "spurious_1"
+    Eigen::VectorXd weights;  ///< φ_j
+  };
+  /// Returns a basis of the collision invariants: mass, the components of momentum, and energy, as far as
+  /// they differ from the ones before, then spurious ones, which a gas does not have and which show that
+  /// collisions are too few (Bobylev, Cercignani, J. Stat. Phys. 97, 1999).
+  const std::vector<invariant>& invariants() const { return invariants_; }
+  /// Returns Σ_j φ_j f_j of all invariants.
+  Eigen::VectorXd moments(const double* f) const { return functionals_ * vector(f); }
+  /// Returns an orthonormal basis B of the span of all n_c, n × r, r = n − the number of invariants.
+  const Eigen::MatrixXd& reachable() const { return reachable_; }
+
+  /// q ← Q(f), n numbers each.
+  void change(const double* f, double* q) const;
+  /// result ← Bᵀ Q'(f) B, r × r. `scratch` keeps its memory between calls.
+  void derivative(const double* f, Eigen::MatrixXd& scratch, Eigen::MatrixXd& result) const;
+  /// Returns max_i Σ_c A_c |f_partner|, the largest frequency of the collisions of a particle. For f ≥ 0,
+  /// f + Δt Q(f) ≥ 0 where Δt times it is at most 1.
+  double frequency(const double* f) const;
+
+  /// e ← exp(Σ_k λ_k φ_k) with the moments Σ_j φ_kj e_j = moments[k] of the first moments.size() invariants,
+  /// to a few roundings of max_j |φ_kj| Σ_j e_j: the minimum of Σ e log e among nonnegative rows with these
+  /// moments. Where the minimum has zeros, they become positive numbers below rounding. Returns false if
+  /// there is none.
+  bool minimize_entropy(const Eigen::VectorXd& moments, double* e) const;
+
+ private:
+  Eigen::Map<const Eigen::VectorXd> vector(const double* f) const { return {f, size()}; }
+  void check_velocities() const;
+  void check_collision(const binary_collision& one) const;
+  void add_elastic_collisions();
+  bool elastic(const binary_collision& one) const;
+  void find_invariants();
+
+  std::vector<std::vector<double>> velocities_;
+  std::vector<binary_collision> collisions_;
+  std::vector<invariant> invariants_;
+  Eigen::MatrixXd functionals_;  ///< φ_kj, one row for each invariant
+  Eigen::MatrixXd reachable_;    ///< B
+  Eigen::MatrixXd projected_;    ///< Bᵀ n_c, one column for each collision
+};
+
+}  // namespace apsis

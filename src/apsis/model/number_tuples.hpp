@@ -1,0 +1,15 @@
+#pragma once
+
+#include <apsis/model/expression.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// Returns the numbers of texts such as "1, 0" or "cos(pi/3), sin(pi/3)": formulas of `constants`, separated
+/// by commas. Throws input_error where one has no finite value.
+std::vector<std::vector<double>> number_tuples(const std::vector<std::string>& texts,
+                                               const formula_constants& constants);
+
+}  // namespace apsis

@@ -166,6 +166,18 @@ TEST(discrete_velocity, stages_keep_the_invariants_to_rounding_and_approach_the_
     }
 }
 
+TEST(discrete_velocity, stages_without_a_second_derivative_are_nonnegative_in_floating_point) {
+  const auto equation = nine_velocities();
+  apsis::random_source random(12);
+  for (const double epsilon : {1e3, 1.0, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-300, 0.0})
+    for (int repetition = 0; repetition < 100; ++repetition) {
+      auto u = random_row(9, random);
+      for (double& value : u)
+        if (random.uniform(0.0, 1.0) < 0.3) value *= std::pow(10.0, random.uniform(-300.0, 0.0));
+      for (const double value : stage(*equation, 0.3, 0.0, epsilon, u)) EXPECT_GE(value, 0.0) << epsilon;
+    }
+}
+
 TEST(discrete_velocity, equilibria_are_maxwellians_also_at_the_boundary) {
   const auto equation = nine_velocities();
   apsis::random_source random(9);
@@ -211,8 +223,8 @@ TEST(discrete_velocity, invariants_are_found_and_spurious_ones_named) {
   EXPECT_THAT(nine_velocities()->invariants(), ElementsAre("mass", "momentum_x", "momentum_y", "energy"));
   // One speed: energy is half of the mass.
   EXPECT_THAT(gas(plane)->invariants(), ElementsAre("mass", "momentum_x", "momentum_y"));
-  // Head-on collisions alone keep the differences of opposite densities, one of which is no moment (Gatignol
-  // 1975).
+  // Head-on collisions alone keep the differences of opposite densities: two momenta and one invariant more
+  // (Gatignol 1975).
   EXPECT_THAT(gas(hexagon)->invariants(), ElementsAre("mass", "momentum_x", "momentum_y", "spurious_1"));
   const texts octahedron = {"1, 0, 0", "-1, 0, 0", "0, 1, 0", "0, -1, 0", "0, 0, 1", "0, 0, -1"};
   EXPECT_THAT(gas(octahedron, {}, 3)->invariants(),

@@ -43,6 +43,9 @@ class binary_collision_solver final : public point_collision {
         fail(weights.of_u == 0.0 ? "there is no equilibrium with these moments"
                                  : "Newton's method does not converge",
              p, at);
+      // Without Q̇ the solution is nonnegative, and so are its roundings.
+      if (share == 0.0 && weights.of_u > 0.0)
+        collisions_.gain_over_loss(u_.data(), of.first / of.zeroth, v_.data());
       std::copy_n(v_.data(), n_, row);
     }
   }

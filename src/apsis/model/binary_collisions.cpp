@@ -184,7 +184,7 @@ void binary_collisions::find_invariants() {
     Eigen::VectorXd rest = q.col(k);
     for (int repetition = 0; repetition < 2; ++repetition)
       for (const auto& one : basis) rest -= one.dot(rest) * one;
-    // What is left of a column in the span of the basis is rounding.
+    // Columns in the span of the basis leave rounding errors only.
     if (rest.norm() > 1e-7) add(fmt::format("spurious_{}", ++spurious), rest.normalized());
   }
   functionals_.resize(static_cast<Eigen::Index>(invariants_.size()), n);
@@ -225,6 +225,25 @@ double binary_collisions::frequency(const double* f) const {
     meet(c.k, c.l);
   }
   return *std::max_element(each.begin(), each.begin() + size());
+}
+
+void binary_collisions::gain_over_loss(const double* u, double alpha, double* v) const {
+  if (!std::isfinite(alpha)) return;
+  std::array<double, most_velocities> gain{}, loss{};
+  const auto at = [&](int j) { return std::max(v[j], 0.0); };
+  for (const auto& c : collisions_) {
+    const auto become = [&](int a, int b, int to, int and_to) {
+      for (const int j : {to, and_to}) gain[static_cast<std::size_t>(j)] += c.rate * (at(a) * at(b));
+      loss[static_cast<std::size_t>(a)] += c.rate * at(b);
+      loss[static_cast<std::size_t>(b)] += c.rate * at(a);
+    };
+    become(c.i, c.j, c.k, c.l);
+    become(c.k, c.l, c.i, c.j);
+  }
+  for (std::size_t j = 0; j < static_cast<std::size_t>(size()); ++j) {
+    const double whole = 1.0 + alpha * loss[j], next = u[j] / whole + alpha * gain[j] / whole;
+    if (std::isfinite(whole) && std::isfinite(next)) v[j] = next;
+  }
 }
 
 namespace {

@@ -143,7 +143,7 @@ std::vector<experiment> experiments_for(const method& m) {
   for (const auto& model : all_models()) {
     if (!has_space(*model.entry)) continue;
     if (model.equation->collisions_decrease_entropy()) all.push_back(entropy(m, model.entry->name, stiff));
-    if (model.equation->positive())
+    if (model.equation->collisions_keep_sign())
       for (const char* form : {"finite-volume", "finite-difference"})
         all.push_back(positive_weno(m, model, form, stiff));
   }

@@ -56,6 +56,11 @@ class binary_collisions {
   /// f + Δt Q(f) ≥ 0 where Δt times it is at most 1.
   double frequency(const double* f) const;
 
+  /// v ← (u + α G(v⁺))/(1 + α L(v⁺)) with Q = G − L f, G and L being the sums of gains and of frequencies: a
+  /// fixed point for the solution of v = u + α Q(v), and nonnegative in floating point for u ≥ 0. Leaves v as
+  /// it is where α is not finite.
+  void gain_over_loss(const double* u, double alpha, double* v) const;
+
   /// e ← exp(Σ_k λ_k φ_k) with the moments Σ_j φ_kj e_j = moments[k] of the first moments.size() invariants,
   /// to a few roundings of max_j |φ_kj| Σ_j e_j: the minimum of Σ e log e among nonnegative rows with these
   /// moments. Where the minimum has zeros, they become positive numbers below rounding. Returns false if

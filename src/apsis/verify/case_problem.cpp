@@ -66,7 +66,7 @@ kept_property<field> positivity() {
 std::vector<std::string> all_entropy_models() {
   std::vector<std::string> names;
   for (const auto& m : all_models())
-    if (has_space(*m.entry) && m.equation->has_entropy()) names.push_back(m.entry->name);
+    if (has_space(*m.entry) && m.equation->collisions_decrease_entropy()) names.push_back(m.entry->name);
   return names;
 }
 

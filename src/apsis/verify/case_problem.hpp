@@ -28,7 +28,7 @@ case_config small_case(const std::string& model, const std::string& method, doub
 /// `vacuum`, or is in equilibrium; with `zeros`, a tenth of the disturbed unknowns is exactly 0.
 std::vector<field> adversarial_states(case_problem& problem, int random, double vacuum, bool zeros);
 
-/// Names of the models with space and an entropy.
+/// Names of the models with space whose collisions decrease an entropy.
 std::vector<std::string> all_entropy_models();
 
 /// Σ_cells |cell| S(row); NaN if an unknown is negative.

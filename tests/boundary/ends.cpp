@@ -108,6 +108,23 @@ TEST(far_field, faster_than_sound_is_the_state_upstream) {
   EXPECT_NEAR(moment(*gas, entering(*gas, "far-field", stream, {2.0, 0.0, 1.0}, true), 0), 0.7, 1e-12);
 }
 
+TEST(far_field, lets_gas_into_a_vacuum_and_out_of_it_at_the_speed_of_sound) {
+  const auto gas = monatomic_gas();
+  // In a rarefaction of gas at rest u = a where a + 3a is the invariant 3√γ: a = 3/4 √γ, T = 9/16, ρ =
+  // T^(3/2).
+  const double a = 0.75 * std::sqrt(heat_ratio), T = 0.5625, rho = 0.75 * T;
+  const face_quantities still = {{"rho", {1.0}}, {"T", {1.0}}},
+                        thin = {{"rho", {1e-6}}, {"u", {2.0}}, {"T", {1.0}}};
+  const std::vector<double> receding = {1e-6, -2.0, 1.0};
+  const auto in = entering(*gas, "far-field", still, receding, true);
+  EXPECT_NEAR(moment(*gas, in, 0), rho, 1e-12);
+  EXPECT_NEAR(moment(*gas, in, 1), -rho * a, 1e-12);
+  EXPECT_NEAR(moment(*gas, in, 2), 0.5 * rho * (a * a + 3.0 * T), 1e-12);
+  const auto out = entering(*gas, "far-field", thin, {1.0, 0.0, 1.0}, true);
+  EXPECT_NEAR(moment(*gas, out, 0), rho, 1e-12);
+  EXPECT_NEAR(moment(*gas, out, 1), rho * a, 1e-12);
+}
+
 TEST(pressure_end, has_its_pressure_and_lets_the_outgoing_characteristic_pass) {
   const auto gas = monatomic_gas(2);
   const double rho = 1.2, u = 0.3, uy = 0.4, T = 1.1, p_inside = rho * T, a = std::sqrt(heat_ratio * T),
@@ -161,7 +178,7 @@ TEST(gas_ends, values_without_a_gas_are_refused) {
   EXPECT_THAT(message("far-field", {{"rho", {1.0}}, {"u", {0.0}}, {"T", {0.0}}}),
               HasSubstr("outside of a boundary 'far-field' (density 1, normal velocity 0, temperature 0)"));
   EXPECT_THAT(message("far-field", {{"rho", {1.0}}, {"u", {-30.0}}, {"T", {1.0}}}),
-              HasSubstr("widen velocity.max"));
+              HasSubstr("use more velocity.points or a larger velocity.max"));
   const auto broadwell = apsis::find_model("broadwell");
   const auto other = broadwell->make(apsis::default_config(*broadwell));
   for (const char* kind : {"pressure", "far-field"})

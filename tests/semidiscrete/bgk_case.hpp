@@ -16,8 +16,10 @@
 #include <support/property.hpp>
 
 /// A small BGK model for tests of the operators.
-inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, double max = 8.0) {
+inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, double max = 8.0,
+                                                          int dimensions = 1) {
   apsis::model_config config = apsis::default_config(*apsis::find_model("bgk"));
+  config.space_dimensions = dimensions;
   config.velocity = {max, points, apsis::equilibrium_choice::automatic};
   auto made = apsis::find_model("bgk")->make(config);
   return std::unique_ptr<apsis::relaxation_model>(dynamic_cast<apsis::relaxation_model*>(made.release()));

@@ -49,19 +49,29 @@ double smallest_unknown(const field& u) {
   return lowest;
 }
 
-void expect_nonnegative_steps(const std::string& name, limiter_kind kind, int rounds) {
+/// Cells with |v|/Δx from 1e-8 to 1e8, not far from each other along different directions: products of
+/// subnormal numbers round if it is small and are exact if it is large.
+grid random_mesh(int dimensions, int cells, apsis::random_source& random) {
+  const double size = std::pow(10.0, random.uniform(-8.0, 8.0));
+  std::array<int, 3> count = {1, 1, 1};
+  std::array<double, 3> upper = {1.0, 1.0, 1.0};
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k) {
+    count[k] = k == 0 ? cells : 5;
+    upper[k] = size * count[k] * random.uniform(0.5, 1.5);
+  }
+  return {dimensions, count, {0.0, 0.0, 0.0}, upper};
+}
+
+void expect_nonnegative_steps(const std::string& name, limiter_kind kind, int dimensions, int rounds) {
   apsis::random_source random(11);
   for (int round = 0; round < rounds; ++round) {
-    const int cells = 11 + round % 7;
-    // |v|/Δx from 1e-8 to 1e8: products of subnormal numbers round if it is small and are exact if it is
-    // large.
-    const grid mesh = grid::line(cells, 0.0, std::pow(10.0, random.uniform(-8.0, 8.0)));
-    const auto m = small_bgk(10);
+    const grid mesh = random_mesh(dimensions, 11 + round % 7, random);
+    const auto m = small_bgk(dimensions == 1 ? 10 : 4, 8.0, dimensions);
     const apsis::transport t(*m, space_of(mesh), scheme(name, kind));
-    const field u = tiny_rows(cells, m->components(), random);
+    const field u = tiny_rows(mesh.size(), m->components(), random);
     const double alpha = round % 3 == 0 ? 1.0 : std::pow(10.0, random.uniform(-8.0, 0.0));
     ASSERT_GE(smallest_unknown(longest_step(t, u, alpha, round % 2 == 0)), 0.0)
-        << name << ", round " << round << ", alpha " << alpha;
+        << name << ", " << dimensions << " dimensions, round " << round << ", alpha " << alpha;
   }
 }
 
@@ -71,8 +81,17 @@ TEST(subnormal, the_largest_step_keeps_every_value_nonnegative_in_every_instruct
   for_each_instruction_set([] {
     for (const auto* const name : {"weno5-z", "weno5-js"})
       for (const auto kind : {limiter_kind::edges, limiter_kind::fluxes})
-        expect_nonnegative_steps(name, kind, 400);
-    expect_nonnegative_steps("upwind1", limiter_kind::none, 400);
+        expect_nonnegative_steps(name, kind, 1, 400);
+    expect_nonnegative_steps("upwind1", limiter_kind::none, 1, 400);
+  });
+}
+
+TEST(subnormal, the_largest_step_keeps_every_value_nonnegative_in_several_dimensions) {
+  for_each_instruction_set([] {
+    for (const int dimensions : {2, 3}) {
+      expect_nonnegative_steps("weno5-z", limiter_kind::fluxes, dimensions, 20);
+      expect_nonnegative_steps("upwind1", limiter_kind::none, dimensions, 20);
+    }
   });
 }
 

@@ -5,12 +5,15 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/run/setup.hpp>
+#include <apsis/verify/limit_distance.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 using namespace apsis;
@@ -27,6 +30,25 @@ double limit_of_ode(const std::string& method, int steps) {
   scheme.start(std::array{2.0, 0.0});
   for (int n = 0; n < steps; ++n) scheme.step(1.0 / steps);
   return scheme.moments().at(0);
+}
+
+/// A gas at rest with four states.
+case_config jumps(const std::vector<std::string>& overrides) {
+  return parse_case(
+      "[model]\nname = \"bgk\"\ndegrees_of_freedom = 5\nepsilon = 0\n"
+      "[initial]\nrho = \"x < 0.5 ? (y < 0.5 ? 1 : 0.2) : (y < 0.5 ? 0.5 : 0.01)\"\nT = 1\n"
+      "[space]\nboundary = \"outflow\"\nlimiter = \"positivity\"\n[velocity]\nmax = 6\npoints = 8\n"
+      "[time]\nmethod = \"md-imex-3-2\"\ndt = 0.0005\nend = 0.002\n",
+      "jumps.toml", overrides);
+}
+
+std::string refusal(const case_config& config) {
+  try {
+    limit_scheme scheme(config);
+  } catch (const input_error& refused) {
+    return refused.what();
+  }
+  return "accepted";
 }
 
 double largest(const std::vector<double>& a, const std::vector<double>& b) {
@@ -115,6 +137,24 @@ TEST(limit_scheme, remembers_the_kinetic_state_with_cell_averages_only) {
       EXPECT_LT(difference, 1e-14);
     }
   }
+}
+
+// With jumps that the limiter acts on, and ends at which gas leaves.
+TEST(limit_scheme, is_that_of_the_kinetic_scheme_in_the_plane_and_in_space) {
+  for (const char* space : {"space.cells=[9,7]", "space.cells=[6,5,7]"}) {
+    const auto table = limit_distance(jumps({space}), {0.0});
+    EXPECT_EQ(table.steps, 4);
+    EXPECT_LT(table.rows[0].moments_end, 1e-14) << space;  // relative: roundings of four steps
+    EXPECT_LT(table.rows[0].state_end, 1e-14) << space;
+  }
+}
+
+TEST(limit_scheme, refuses_walls_and_solid_boxes) {
+  EXPECT_THAT(refusal(jumps({"space.cells=[9,7]", "boundary.top.kind=diffuse"})),
+              testing::HasSubstr("no limit scheme (rows beyond the face 'top' are not rows of cells)"));
+  EXPECT_THAT(
+      refusal(jumps({"space.cells=[10,10]", "space.solid.1.from=[0,0]", "space.solid.1.to=[0.5,0.5]"})),
+      testing::HasSubstr("no limit scheme (it has solid boxes)"));
 }
 
 TEST(limit_scheme, refuses_methods_and_models_without_one_and_states_of_another_size) {

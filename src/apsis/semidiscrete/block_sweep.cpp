@@ -75,9 +75,7 @@ void block_sweep::run(const context& of, const field& u, const place& at, target
       i += run.cells * run.joined;
     }
   }
-  for (const bool upper : {false, true})
-    if (const segment_end* end = surface_at(upper, at); end != nullptr && of.faces.prescribes(end->surface))
-      empty_beyond(upper ? at.end : -1, upper ? 1 : -1);
+  for (const bool upper : {false, true}) empty_beyond_surface(upper, at);
   const profile::section timed(kernel::fluxes, numbers, work_of(targets));
   for (int i = at.begin; i < at.end;) {
     const run_of_cells run = run_from(i, at.end - i);
@@ -95,11 +93,21 @@ const segment_end* block_sweep::surface_at(bool upper, const place& at) const {
   return there && end.surface >= 0 ? &end : nullptr;
 }
 
-/// Replaces the ghost cells from `first` outwards, as the fluxes see them, by vacuum.
-void block_sweep::empty_beyond(int first, int outwards) {
+/// Replaces the cells of the halo behind a surface that prescribes the incoming components, as the fluxes see
+/// them, by vacuum. The surface may lie cells away from the block, also across periodic faces: all sweeps
+/// that compute the same flux see the same.
+void block_sweep::empty_beyond_surface(bool upper, const place& at) {
+  int distance = upper ? segment_->cells - at.end : at.begin;
+  for (const segment* one = segment_; distance < halo_;) {
+    const segment_end& end = one->ends[upper ? 1 : 0];
+    if (end.surface >= 0 && !of_->faces.prescribes(end.surface)) return;
+    if (end.surface >= 0) break;
+    one = &of_->space.segment_at(at.direction, end.place);
+    distance += one->cells;
+  }
   vacuum_.resize(std::max(vacuum_.size(), static_cast<std::size_t>(width_)));
-  for (int k = 0; k < halo_; ++k) {
-    const int ghost = first + k * outwards;
+  for (; distance < halo_; ++distance) {
+    const int ghost = upper ? at.end + distance : at.begin - 1 - distance;
     rows_[static_cast<std::size_t>(ghost - first_row_)] = vacuum_.data();
     std::fill_n(left_.data() + offset(ghost), width_, 0.0);
     std::fill_n(right_.data() + offset(ghost), width_, 0.0);

@@ -64,7 +64,7 @@ class block_sweep {
   };
 
   const segment_end* surface_at(bool upper, const place& at) const;
-  void empty_beyond(int first, int outwards);
+  void empty_beyond_surface(bool upper, const place& at);
   void record(const segment_end& end, bool upper, const place& at);
   bool both_edges() const;
   kernel_work work_of(targets_view targets) const;

@@ -10,6 +10,8 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace apsis {
 namespace {
 
@@ -18,8 +20,16 @@ constexpr int halo = 2;
 
 domain space_of(const case_config& config, const relaxation_model& equation) {
   if (equation.space_dimensions() == 0) return domain::point();
-  const grid mesh = make_mesh(config);
-  return {mesh, {make_boundaries(config, equation)}};
+  if (!config.solids.empty())
+    throw input_error("the case has no limit scheme (it has solid boxes); remove them");
+  domain made({make_mesh(config), equation.velocities()}, make_boundaries(config, equation));
+  for (const opening& one : made.openings())
+    if (!made.side(one.surfaces.front())->repeated_cell(0, 1))
+      throw input_error(
+          fmt::format("the case has no limit scheme (rows beyond the face '{}' are not rows of cells); use "
+                      "\"periodic\" or \"outflow\" there",
+                      face_names[one.where.index()]));
+  return made;
 }
 
 }  // namespace
@@ -66,12 +76,13 @@ field limit_space::equilibria(const field& omega) const {
   return u;
 }
 
-limit_space::pencil limit_space::reconstruct(const field& u) const {
+limit_space::pencil limit_space::reconstruct(const field& u, int direction, int segment) const {
   pencil p;
-  const int ghosts = scheme_->ghost_width(), count = cells() + 2 * halo;
+  const int n = space_.segment_at(direction, segment).cells, ghosts = scheme_->ghost_width(),
+            count = n + 2 * halo;
   p.first_row = -halo - ghosts;
   p.width = static_cast<std::size_t>(u.stride());
-  space_.segment_rows(u, 0, 0, p.first_row, cells() + halo + ghosts, p.rows);
+  space_.segment_rows(u, direction, segment, p.first_row, n + halo + ghosts, p.rows);
   p.left_edges.resize(static_cast<std::size_t>(count) * p.width);
   p.right_edges.resize(static_cast<std::size_t>(count) * p.width);
   scheme_->edges(p.rows.data() + ghosts, count, u.stride(), p.left_edges.data(), p.right_edges.data());
@@ -81,7 +92,7 @@ limit_space::pencil limit_space::reconstruct(const field& u) const {
 field limit_space::equilibrium_averages(const field& u) const {
   constexpr std::array<double, 7> points = {gauss3::xi[0], gauss3::xi[1],   gauss3::xi[2], -0.5,
                                             0.5,           -lobatto4_inner, lobatto4_inner};
-  const pencil p = reconstruct(u);
+  const pencil p = reconstruct(u, 0, 0);
   field mean(u.cells(), u.components());
   field values(gauss3::points, u.components());
   for (int i = 0; i < u.cells(); ++i) {
@@ -127,18 +138,20 @@ double limit_space::face_value(const pencil& p, int face, std::size_t k, bool ah
   return edge;
 }
 
-void limit_space::add_divergence(const field& u, field& t) const {
-  const pencil p = reconstruct(u);
-  const auto v = equation_.speeds(0);
+void limit_space::add_divergence(const field& u, int direction, int segment, field& t) const {
+  const pencil p = reconstruct(u, direction, segment);
+  const auto& [first, offset, n, ends] = space_.segment_at(direction, segment);
+  const auto v = equation_.speeds(direction);
   std::vector<double> before(v.size()), after(v.size());
   const auto fluxes = [&](int face, std::vector<double>& flux) {
     for (std::size_t k = 0; k < v.size(); ++k) flux[k] = v[k] * face_value(p, face, k, v[k] > 0.0);
   };
   fluxes(0, before);
-  for (int i = 0; i < u.cells(); ++i) {
+  for (int i = 0; i < n; ++i) {
     fluxes(i + 1, after);
+    double* row = t.row(first + i * space_.mesh().stride(direction));
     for (std::size_t k = 0; k < v.size(); ++k)
-      t.row(i)[k] -= (after[k] - before[k]) / space_.mesh().spacing(0);
+      row[k] -= (after[k] - before[k]) / space_.mesh().spacing(direction);
     std::swap(before, after);
   }
 }
@@ -147,7 +160,9 @@ field limit_space::transport(const field& u) const {
   field t(u.cells(), u.components());
   if (equation_.has_source())
     for (int i = 0; i < u.cells(); ++i) equation_.source(u.row(i), t.row(i));
-  if (has_space_) add_divergence(u, t);
+  for (int direction = 0; has_space_ && direction < space_.mesh().dimensions(); ++direction)
+    for (std::size_t s = 0; s < space_.segments().along(direction).size(); ++s)
+      add_divergence(u, direction, static_cast<int>(s), t);
   return t;
 }
 

@@ -13,10 +13,11 @@ namespace apsis {
 
 /// Space discretisation of a case, face by face, for the limit ε → 0. Independent of the operators of a run
 /// (semidiscrete): it uses only reconstruction, quartic, limiter and ghost cells of the space rooms, and
-/// moments and equilibrium of the model. Simple and slow. One space dimension, or none.
+/// moments and equilibrium of the model. Simple and slow.
 class limit_space {
  public:
-  /// `equation` must outlive this. Throws input_error for an unknown reconstruction or boundary.
+  /// `equation` must outlive this. Throws input_error for an unknown reconstruction, for solid boxes, and
+  /// unless the rows beyond every face are rows of cells (periodic, outflow).
   limit_space(const case_config& config, const relaxation_model& equation);
 
   /// Cells of the mesh; 1 without space.
@@ -32,13 +33,14 @@ class limit_space {
   /// Π(u)_i = Σ_q w_q E(ℛu(x_q)) with the (limited) quartics u(x) of every component through the averages u;
   /// only if averages(). ℛΠ(u) = ℛu.
   field equilibrium_averages(const field& u) const;
-  /// T(u)_i = −(φ_{i+1/2} − φ_{i−1/2})/Δx + S(u_i), φ the upwind fluxes of all components.
+  /// T(u)_i = −Σ_k (φ_{k,i+1/2} − φ_{k,i−1/2})/Δx_k + S(u_i), φ_k the upwind fluxes of all components along
+  /// direction k.
   field transport(const field& u) const;
 
  private:
   struct pencil;
-  pencil reconstruct(const field& u) const;
-  void add_divergence(const field& u, field& t) const;
+  pencil reconstruct(const field& u, int direction, int segment) const;
+  void add_divergence(const field& u, int direction, int segment, field& t) const;
   double face_value(const pencil& p, int face, std::size_t k, bool ahead) const;
   double harmless_fraction(const pencil& p, int cell, std::size_t k, bool ahead) const;
 

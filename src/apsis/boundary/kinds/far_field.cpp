@@ -9,8 +9,9 @@ namespace {
 
 /// A gas that is at rest or in uniform motion far away. The Riemann invariants of the Euler equations that
 /// leave, u_n + 2a/(γ − 1), are those of the gas inside, the one that enters, u_n − 2a/(γ − 1), that of the
-/// state far away; entropy and tangential velocity come from where the gas comes from. Waves leave with
-/// little reflection; in uniform gas it is the boundary condition inflow.
+/// state far away; entropy and tangential velocity come from where the gas comes from. Gas that is slower
+/// than sound upstream crosses the face at most at the speed of sound, which it has in the middle of a
+/// rarefaction. Waves leave with little reflection; in uniform gas it is the boundary condition inflow.
 class far_field final : public gas_end {
  public:
   far_field(const model& equation, std::vector<face_quantity> values)
@@ -29,8 +30,14 @@ class far_field final : public gas_end {
     if (un_inside >= sound(inside.T)) return inside;
     if (un_far <= -sound(far.T)) return far;
     const double leaving = un_inside + rise * sound(inside.T), entering = un_far - rise * sound(far.T);
-    const double speed = 0.5 * (leaving + entering), a = (leaving - entering) / (2.0 * rise);
-    if (!(a > 0.0)) return far;  // the gas inside recedes faster than it can expand: vacuum
+    double speed = 0.5 * (leaving + entering), a = (leaving - entering) / (2.0 * rise);
+    if (!(std::abs(speed) <= a)) {
+      // The face lies in a rarefaction of the gas upstream, at its sonic point.
+      const double invariant = speed > 0.0 ? leaving : -entering;
+      if (!(invariant > 0.0)) return far;  // both gases recede faster than they can expand: vacuum
+      a = invariant / (1.0 + rise);
+      speed = std::copysign(a, speed);
+    }
     fluid_state state = speed > 0.0 ? inside : far;
     const double T = a * a / gamma();
     state.rho *= std::pow(T / state.T, 1.0 / (gamma() - 1.0));  // the entropy p/ρ^γ is kept

@@ -9,7 +9,7 @@ from apsis.plot import __main__ as command
 from apsis.plot import comparison_figure, distribution_figure, draw, fields_figure, history_figure, read_result, stability_figure
 from apsis.plot import tableau_figure
 from apsis.plot.methods import stability_function
-from apsis.plot.results import differences
+from apsis.plot.comparison import differences
 from apsis.plot.style import PictureError, plt
 
 

@@ -3,8 +3,10 @@ import apsis
 import numpy as np
 import pytest
 from apsis.plot import __main__ as command
-from apsis.plot import fields_figure, history_figure, read_result
-from apsis.plot.maps import frames, probe_figures
+from apsis.plot import comparison_figure, fields_figure, history_figure, read_result
+from apsis.plot.comparison import differences
+from apsis.plot.maps import colours_of, frames
+from apsis.plot.probes import probe_comparisons, probe_figures
 from apsis.plot.style import PictureError, plt
 
 PLANE = """
@@ -66,22 +68,23 @@ def space(tmp_path_factory):
 
 
 def maps(figure):
-    """The maps of a figure by the label of their colour bars."""
-    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
-    bars = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
-    return [(bar.get_ylabel().replace("\n", " "), axes) for axes, bar in zip(panels, bars)]
+    """The maps of a figure, each with its title in one line."""
+    return [(axes.get_title().replace("\n", " "), axes) for axes in figure.axes if axes.get_label() != "<colorbar>"]
 
 
 def test_maps_show_the_fields_with_x_across_and_y_up(plane):
     result = read_result(plane)
     drawn = maps(fields_figure(result))
-    assert [label.partition(" (")[0] for label, _ in drawn] == ["density", "bulk velocity along x", "bulk velocity along y",
+    assert [title.partition(" (")[0] for title, _ in drawn] == ["density", "bulk velocity along x", "bulk velocity along y",
                                                                 "temperature", "speed"]
     for (_, axes), name in zip(drawn, ("rho", "u_x", "u_y", "T")):
         mesh = axes.collections[0]
         np.testing.assert_array_equal(mesh.get_array().filled(np.nan).reshape(8, 16), result.fields[name].T)
         np.testing.assert_allclose([axes.dataLim.x0, axes.dataLim.x1, axes.dataLim.y0, axes.dataLim.y1], [0, 2, 0, 1], atol=1e-15)
         assert axes.get_aspect() == 1.0
+        # Equal scales, without empty margins that Matplotlib would cut off.
+        box = axes.get_position().transformed(axes.figure.transFigure)
+        assert box.width == pytest.approx(2 * box.height)
         # The box is blank.
         assert mesh.get_array().mask.sum() == 4 * 2
     # Both signs: symmetric about 0.
@@ -103,6 +106,49 @@ def test_streamlines_turn_as_the_gas_does(plane):
             assert middle[0] * (y1 - y0) - middle[1] * (x1 - x0) > 0.0
 
 
+def test_a_component_that_is_rounding_is_drawn_as_zero_and_has_no_streamlines():
+    fields = {"u_x": np.array([[0.2, 0.3]]), "u_y": np.array([[1e-17, -2e-17]]), "T": np.array([[1.0, 2.0]])}
+    colours = colours_of(fields)
+    length = np.hypot(0.3, 2e-17)
+    assert colours["u_y"] == (-length, length, "RdBu_r")
+    assert colours["u_x"] == (0.2, 0.3, "viridis") and colours["T"] == (1.0, 2.0, "viridis")
+
+
+def test_the_speed_of_a_run_in_si_units_has_a_unit(tmp_path):
+    text = PLANE.replace("epsilon = 0.05\n", "").replace("[initial]", '[gas]\nname = "argon"\npressure = "100 Pa"\n'
+                         'temperature = "300 K"\nlength = "1 mm"\n[initial]') + 'units = "SI"\n'
+    (tmp_path / "si.toml").write_text(text)
+    apsis.run(str(tmp_path / "si.toml"), out=tmp_path / "run")
+    assert maps(fields_figure(read_result(tmp_path / "run")))[-1][0] == "speed (m/s)"
+
+
+def test_a_comparison_of_planes_has_a_row_for_each_field_with_one_range_of_colours(plane, tmp_path):
+    apsis.run(str(plane.parent / "plane.toml"), "model.epsilon=5", "space.cells=[32,16]", out=tmp_path / "fine")
+    runs = [("few", read_result(plane)), ("many", read_result(tmp_path / "fine"))]
+    drawn = maps(comparison_figure(runs))
+    assert [title for title, _ in drawn[:2]] == ["density (dimensionless) few", "density (dimensionless) many"]
+    assert len(drawn) == 2 * 5  # rho, u_x, u_y, T, speed
+    for (_, left), (_, right), name in zip(drawn[::2], drawn[1::2], ("rho", "u_x", "u_y", "T")):
+        assert left.collections[0].get_clim() == right.collections[0].get_clim()
+        np.testing.assert_array_equal(right.collections[0].get_array().filled(np.nan).reshape(16, 32), runs[1][1].fields[name].T)
+    # The finer run is averaged over 2 x 2 cells; those of the box have no value in either.
+    coarse, fine = (run.fields["rho"] for _, run in runs)
+    blocks = 0.25 * (fine[::2, ::2] + fine[1::2, ::2] + fine[::2, 1::2] + fine[1::2, 1::2])
+    (line,) = differences(runs)
+    assert line.startswith(f"few against many: rho {np.nanmax(np.abs(coarse - blocks)):.2e}, ")
+    (name, figure), = probe_comparisons(runs)
+    assert name == "probe-middle"
+    last = np.genfromtxt(plane / "probes" / "middle.csv", delimiter=",", names=True)[-7:]
+    np.testing.assert_array_equal(figure.axes[0].lines[0].get_ydata(), last["rho"])
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["few", "many"]
+
+
+def test_a_comparison_of_a_plane_with_a_line_is_refused(plane, tmp_path):
+    apsis.run("paper/bgk-mixed", "space.cells=12", "velocity.points=48", "time.end=0.01", out=tmp_path / "line")
+    with pytest.raises(PictureError, match="the runs have different space dimensions"):
+        comparison_figure([("a", read_result(plane)), ("b", read_result(tmp_path / "line"))])
+
+
 def test_frames_share_the_range_of_colours(plane):
     result = read_result(plane)
     made = list(frames(result, "title"))
@@ -114,8 +160,10 @@ def test_frames_share_the_range_of_colours(plane):
 
 
 def test_profiles_along_probes_are_those_of_the_table(plane):
-    (name, figure), = probe_figures(read_result(plane))
+    (name, figure), = probe_figures(read_result(plane), "Gas around a box")
     assert name == "probe-middle"
+    assert figure._suptitle.get_text() == "Gas around a box: probe middle from (0.1, 0.5) to (1.9, 0.5)"
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["t = 0", "t = 0.001", "t = 0.002"]
     table = np.genfromtxt(plane / "probes" / "middle.csv", delimiter=",", names=True)
     last = table["t"] == table["t"].max()
     line = figure.axes[0].lines[-1]
@@ -127,7 +175,7 @@ def test_space_is_drawn_on_planes_through_the_middle_or_the_chosen_one(space):
     result = read_result(space)
     rho = result.fields["rho"]
     drawn = maps(fields_figure(result))
-    assert [axes.get_title() for _, axes in drawn[:3]] == ["z = 1.5", "y = 0.5", "x = 1.125"]
+    assert [title for title, _ in drawn[:3]] == [f"density (dimensionless) {place}" for place in ("z = 1.5", "y = 0.5", "x = 1.125")]
     for (_, axes), cut in zip(drawn[:3], (rho[:, :, 4], rho[:, 3, :], rho[4])):
         np.testing.assert_array_equal(axes.collections[0].get_array().filled(np.nan).reshape(cut.T.shape), cut.T)
     chosen = maps(fields_figure(result, "z=0.2"))[0][1]
@@ -157,3 +205,9 @@ def test_the_command_writes_maps_profiles_and_frames(plane, tmp_path):
     assert command.main([str(plane), "--out", str(tmp_path), "--frames"]) == 0
     names = sorted(path.name for path in tmp_path.iterdir())
     assert names == ["fields.png", "frame-0001.png", "frame-0002.png", "frame-0003.png", "history.png", "probe-middle.png"]
+
+
+def test_the_command_compares_planes_and_their_probes(plane, tmp_path, capsys):
+    assert command.main([f"a={plane}", f"b={plane}", "--compare", "both", "--out", str(tmp_path)]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["both-probe-middle.png", "both.png"]
+    assert "a against b: rho 0.00e+00" in capsys.readouterr().out

@@ -10,6 +10,8 @@ import pytest
 from apsis.report import __main__ as command
 from apsis.report import make_report
 from apsis.report.claims import markdown
+from apsis.report.page import number
+from apsis.plot.run_result import read_history
 from apsis.plot.style import PictureError
 from test_plot import curve, panel, picture
 
@@ -89,6 +91,18 @@ def test_the_condition_of_a_law_is_a_promise(tmp_path):
         apsis.run("laws/dam-break", "space.cells=40", "model.speed=1.1", out=tmp_path / "broken")
     broken = page_of(tmp_path / "broken")
     assert "broken promise: model.speed = 1.1 is too small" in broken and "one was broken, see above" in broken
+
+
+def test_a_run_in_the_plane_has_maps_probes_and_balances(tmp_path):
+    apsis.run("gas/step", "space.cells=[18,12]", "velocity.points=14", "time.end=0.02", 'output.probe.1.name="rise"',
+              "output.probe.1.from=[1,0]", "output.probe.1.to=[1,2]", "output.probe.1.points=5", out=tmp_path)
+    page = page_of(tmp_path)
+    assert "At the end, with contours" in page and "earlier snapshots in grey" in page
+    assert page.count("<img ") == 3  # fields, history, probe
+    history = read_history(tmp_path / "history.csv")
+    drag = history["flux_step_momentum_x"][-1]
+    assert re.search(rf"<td>step</td><td>[^<]*</td><td>{re.escape(number(drag))}</td>", page)
+    assert "<th>momentum x</th>" in page
 
 
 def test_a_run_without_space_shows_its_numbers(tmp_path):

@@ -5,9 +5,10 @@
 
 The functions below return Matplotlib figures. Only method names need the compiled module of the package.
 """
+from .comparison import comparison_figure
 from .methods import stability_figure, tableau_figure
 from .pictures import draw
-from .results import comparison_figure, distribution_figure, fields_figure, history_figure
+from .results import distribution_figure, fields_figure, history_figure
 from .run_result import read_result
 from .style import PictureError
 

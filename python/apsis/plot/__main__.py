@@ -8,7 +8,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from . import methods, pictures, results, run_result
+from . import comparison, methods, pictures, results, run_result
 from .style import FORMATS, PictureError, exit_code_of, save
 
 DESCRIPTION = """Draws what apsis computed, as WHAT/pictures/*.png:
@@ -18,7 +18,8 @@ DESCRIPTION = """Draws what apsis computed, as WHAT/pictures/*.png:
   picture.json                 the pictures in it
   method, FILE.toml            NAME-tableau and NAME-stability, in the present folder
 
-  --compare draws runs of one model into one picture, and prints how far they are from the one with most cells, the last of several."""
+  --compare draws runs of one model into one picture, and one of every probe that they share, and prints how far they are from the
+  one with most cells, the last of several."""
 
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:
@@ -80,19 +81,21 @@ def drawn(what: str, options: argparse.Namespace) -> tuple[Path, Iterable[tuple[
     return Path(), of_method(method_description(what))
 
 
-def compare(what: list[str]) -> Any:
+def compare(what: list[str], slice_at: str | None) -> Iterable[tuple[str, Any]]:
+    """Prints the differences of runs, and returns suffixes and pictures of them. Raises PictureError."""
     runs = []
     for word in what:
         label, separator, folder = word.rpartition("=")
         runs.append((label if separator else Path(folder).resolve().name, run_result.read_result(folder)))
-    for line in results.differences(runs):
+    for line in comparison.differences(runs):
         print(line)
-    return results.comparison_figure(runs)
+    return comparison.comparisons(runs, slice_at)
 
 
 def draw_all(options: argparse.Namespace) -> None:
     if options.compare:
-        print(save(compare(options.what), (options.out or Path()) / f"{options.compare}.{options.format}"))
+        for suffix, figure in compare(options.what, options.slice):
+            print(save(figure, (options.out or Path()) / f"{options.compare}{suffix}.{options.format}"))
         return
     for what in options.what:
         folder, figures = drawn(what, options)

@@ -1,16 +1,19 @@
-"""Pictures of runs in two and three space dimensions: maps of fields on planes, profiles along probes, frames of an animation."""
+"""Pictures of runs in two and three space dimensions: maps of fields on planes, and frames of an animation."""
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 from .run_result import Array, RunResult
-from .style import BLACK, BLUE, COLOURS, PictureError, plt
+from .style import BLACK, PictureError, plt
 
 AXES = ("x", "y", "z")
+VECTORS = {"u": "speed", "m": "momentum"}  # fields u_x, u_y, … and the name of their length
+Colours = tuple[float, float, str]
 
 
 @dataclass(frozen=True)
@@ -74,10 +77,13 @@ def borders(centres: Array) -> Array:
     return np.concatenate([centres - half, centres[-1:] + half])
 
 
-def limits_of(values: Array) -> tuple[float, float, str]:
-    """Smallest and largest value of a colour map, and its name: symmetric about 0 for fields of both signs."""
+def limits_of(values: Array, scale: float = 0.0) -> Colours:
+    """Smallest and largest value of a colour map, and its name: symmetric about 0 for fields of both signs. Values below 1e-12 of
+    `scale` are rounding: all have the colour of 0."""
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    if max(-low, high) < 1e-12 * scale:
+        return -scale, scale, "RdBu_r"
     if low < 0.0 < high:
         largest = max(-low, high)
         return -largest, largest, "RdBu_r"
@@ -88,61 +94,123 @@ def limits_of(values: Array) -> tuple[float, float, str]:
     return low, high, "viridis"
 
 
+def length_of(fields: Mapping[str, Array], vector: str) -> Array:
+    """Lengths of a vector with the components vector_x, vector_y, …"""
+    return np.sqrt(sum(fields[f"{vector}_{axis}"]**2 for axis in AXES if f"{vector}_{axis}" in fields))
+
+
+def vector_in(fields: Mapping[str, Array], plane: Plane) -> str | None:
+    """The vector whose components in a plane are both known."""
+    return next((name for name in VECTORS if all(f"{name}_{axis}" in fields for axis in (plane.across, plane.up))), None)
+
+
+def with_length(fields: Mapping[str, Array], plane: Plane) -> dict[str, Array]:
+    """Fields and, last, the length of their vector."""
+    vector = vector_in(fields, plane)
+    return dict(fields) if vector is None else {**fields, VECTORS[vector]: length_of(fields, vector)}
+
+
+def colours_of(fields: Mapping[str, Array]) -> dict[str, Colours]:
+    """Colours of each field: components of a vector that are zero up to rounding are so on the scale of its length."""
+    lengths = {name: float(np.nanmax(length_of(fields, name), initial=0.0)) for name in VECTORS if f"{name}_x" in fields}
+    return {name: limits_of(values, lengths.get(name.rpartition("_")[0], 0.0)) for name, values in fields.items()}
+
+
 def without_solids(values: Array) -> Any:
     return np.ma.masked_invalid(values)  # type: ignore[no-untyped-call]
 
 
-def draw_map(figure: Any, panel: Any, result: RunResult, name: str, values: Array, plane: Plane, colours: tuple[float, float, str]) -> None:
-    """Draws values[x, y(, z)] on a plane; cells without a value, those of solid boxes, stay blank with an outline."""
+def label_of(result: RunResult, name: str) -> str:
+    """Name and unit of a field, or of the length of a vector."""
+    vector = next((vector for vector, length in VECTORS.items() if length == name), None)
+    return result.label(name, 44) if vector is None else f"{name} ({result.unit(f'{vector}_x')})"
+
+
+def sizes_of(result: RunResult, planes: Sequence[Plane]) -> list[tuple[float, float]]:
+    """Widths and heights of maps in inches on one scale; a side of less than an inch is enlarged, up to the eighth of the other one."""
+    extents = [tuple(float(np.ptp(borders(result.arrays[axis]))) for axis in (plane.across, plane.up)) for plane in planes]
+    inch = max(max(sides) for sides in extents) / (3.4 if all(up > 0.4 * across for across, up in extents) else 4.8)
+    sizes = []
+    for sides in extents:
+        across, up = (side / inch for side in sides)
+        more = max(1.0, min(1.0 / min(across, up), 4.8 / max(across, up)))
+        across, up = across * more, up * more
+        sizes.append((max(across, up / 8), max(up, across / 8)))
+    return sizes
+
+
+def draw_map(panel: Any, result: RunResult, name: str, values: Array, plane: Plane, colours: Colours, size: tuple[float, float],
+             title: str = "") -> None:
+    """Draws values[x, y(, z)] on a plane, with contours and a colour bar; cells without a value, those of solid boxes, are grey."""
     across, up = result.arrays[plane.across], result.arrays[plane.up]
     shown = without_solids(plane.cut(values))
     low, high, name_of_map = colours
+    width, height = size
     panel.grid(False)
-    panel.set_aspect("equal")
+    equal = abs(np.ptp(borders(up)) / np.ptp(borders(across)) * width / height - 1.0) < 1e-9
+    panel.set_aspect("equal" if equal else "auto")
+    panel.locator_params(axis="x", nbins=max(2, int(1.7 * width)))
+    panel.locator_params(axis="y", nbins=max(2, int(2.0 * height)))
     panel.set_facecolor("#D9D9D9")
     image = panel.pcolormesh(borders(across), borders(up), shown, cmap=name_of_map, vmin=low, vmax=high, rasterized=True)
-    # As high as the map, whose axes have equal scales.
-    ratio = float(np.ptp(borders(up)) / np.ptp(borders(across)))
-    figure.colorbar(image, ax=panel, label=result.label(name), shrink=0.9 * min(1.0, 1.2 * ratio))
+    beside = panel.inset_axes([1.0 + 0.1 / width, 0.0, 0.13 / width, 1.0], label="<colorbar>")
+    beside.grid(False)
+    panel.figure.colorbar(image, cax=beside)
     levels = np.linspace(low, high, 12)[1:-1]
     if min(shown.shape) > 1 and ((levels > shown.min()) & (levels < shown.max())).any():
         panel.contour(across, up, shown, levels=levels, colors=BLACK, linewidths=0.4, alpha=0.6, linestyles="solid")
     panel.set_xlabel(f"{plane.across} ({result.unit('x')})")
     panel.set_ylabel(f"{plane.up} ({result.unit('x')})")
-    panel.set_title(plane.title(), fontsize=9)
+    panel.set_title("\n".join(filter(None, [label_of(result, name), plane.title(), title])), fontsize=9)
 
 
-def draw_streamlines(panel: Any, result: RunResult, fields: dict[str, Array], plane: Plane) -> None:
-    """Draws streamlines of the bulk velocity in a plane; solid boxes have none."""
+def draw_streamlines(panel: Any, result: RunResult, fields: Mapping[str, Array], plane: Plane, size: tuple[float, float]) -> None:
+    """Draws streamlines of a vector in a plane where it is more than 1e-6 of the largest; solid boxes have none."""
+    vector = vector_in(fields, plane)
+    if vector is None:
+        return
     across, up = result.arrays[plane.across], result.arrays[plane.up]
-    u, v = (plane.cut(fields[f"u_{axis}"]) for axis in (plane.across, plane.up))
-    moves = np.nan_to_num(np.hypot(u, v)).max() > 0.0
-    if moves and min(u.shape) > 1:
-        panel.streamplot(across, up, without_solids(u), without_solids(v), color=BLACK, linewidth=0.6, arrowsize=0.7,
-                         density=1.1)
+    u, v = (plane.cut(fields[f"{vector}_{axis}"]) for axis in (plane.across, plane.up))
+    moves = np.hypot(u, v) > 1e-6 * np.nanmax(length_of(fields, vector), initial=0.0)
+    if moves.any() and min(u.shape) > 1:
+        panel.streamplot(across, up, np.where(moves, u, np.nan), np.where(moves, v, np.nan), color=BLACK, linewidth=0.6, arrowsize=0.7,
+                         density=tuple(0.33 * side for side in size))
 
 
-def maps_of(result: RunResult, fields: dict[str, Array], planes: list[Plane], t: float, title: str,
-            colours: dict[str, tuple[float, float, str]] | None = None) -> Any:
-    """A panel for each field and plane, and one of the speed with streamlines."""
-    with_speed = all(f"u_{axis}" in fields for axis in (planes[0].across, planes[0].up))
-    shown = dict(fields)
-    if with_speed:
-        shown["speed"] = np.sqrt(sum(fields[name]**2 for name in fields if name in ("u_x", "u_y", "u_z")))
-    columns = len(planes) if len(planes) > 1 else min(len(shown), 3)
-    rows = len(shown) if len(planes) > 1 else -(-len(shown) // columns)
-    figure, grid = plt.subplots(rows, columns, figsize=(4.6 * columns, 3.9 * rows), squeeze=False)
-    panels = iter(grid.flat)
-    for name, values in shown.items():
-        limits = (colours or {}).get(name) or limits_of(values)
-        for plane in planes:
-            panel = next(panels)
-            draw_map(figure, panel, result, name, values, plane, limits)
-            if name == "speed":
-                draw_streamlines(panel, result, fields, plane)
-    for unused in panels:
-        unused.remove()
-    figure.suptitle(f"{title}, t = {t:.4g}")
+def sheet(sizes: Sequence[tuple[float, float]], count: int, title: str = "") -> tuple[Any, list[Any]]:
+    """A figure of `count` maps in rows, the maps of a row with these sizes, and its panels. Panels are placed in inches: a layout by
+    Matplotlib reserves no room for what stands around a panel of given aspect."""
+    left, right, below, above = 0.75, 0.95, 0.5, 0.5  # room for labels, colour bar and title
+    rows, height = -(-count // len(sizes)), max(height for _, height in sizes)
+    whole = (sum(left + width + right for width, _ in sizes), rows * (below + height + above) + (0.35 if title else 0.0))
+    figure = plt.figure(figsize=whole)
+    figure.set_layout_engine("none")  # layout="none" above would be forgotten after the first savefig
+    panels = []
+    for k in range(count):
+        row, column = divmod(k, len(sizes))
+        width, up = sizes[column]
+        x = sum(left + before + right for before, _ in sizes[:column]) + left
+        y = (rows - 1 - row) * (below + height + above) + below + 0.5 * (height - up)
+        panels.append(figure.add_axes((x / whole[0], y / whole[1], width / whole[0], up / whole[1])))
+    if title:
+        figure.suptitle(title, y=1.0 - 0.12 / whole[1], va="top")
+    return figure, panels
+
+
+def maps_of(result: RunResult, fields: Mapping[str, Array], planes: list[Plane], title: str,
+            colours: Mapping[str, Colours] | None = None) -> Any:
+    """A map of each field and, with streamlines, of the speed: one after the other, or with several planes a row of each."""
+    shown = with_length(fields, planes[0])
+    colours = colours or colours_of(shown)
+    sizes = sizes_of(result, planes)
+    places = list(zip(planes, sizes))
+    if len(planes) == 1:
+        sizes *= min(len(shown), 3 if sizes[0][0] < 4.0 else 2)
+    figure, panels = sheet(sizes, len(shown) * len(planes), title)
+    for panel, (name, (plane, size)) in zip(panels, product(shown, places)):
+        draw_map(panel, result, name, shown[name], plane, colours[name], size)
+        if name in VECTORS.values():
+            draw_streamlines(panel, result, fields, plane, size)
     return figure
 
 
@@ -152,7 +220,7 @@ def fields_of_plane(result: RunResult) -> dict[str, Array]:
 
 def maps_figure(result: RunResult, title: str, t: float, slice_at: str | None = None) -> Any:
     """Maps of all fields at the end. Raises PictureError."""
-    return maps_of(result, fields_of_plane(result), planes_of(result, slice_at), t, title)
+    return maps_of(result, fields_of_plane(result), planes_of(result, slice_at), f"{title}, t = {t:.4g}")
 
 
 def frames(result: RunResult, title: str, slice_at: str | None = None) -> Iterator[tuple[str, Any]]:
@@ -160,31 +228,8 @@ def frames(result: RunResult, title: str, slice_at: str | None = None) -> Iterat
     if len(result.t) < 2 or dimensions(result) < 2:
         raise PictureError("there is nothing to animate (frames are snapshots of a run in two or three dimensions); run with output.every", 2)
     planes = planes_of(result, slice_at)
-    names = list(fields_of_plane(result))
-    colours = {name: limits_of(result.snapshots[name]) for name in names}
-    speeds = [np.sqrt(sum(result.snapshots[name][k]**2 for name in names if name in ("u_x", "u_y", "u_z"))) for k in range(len(result.t))]
-    colours["speed"] = limits_of(np.array(speeds))
+    series = {name: result.snapshots[name] for name in fields_of_plane(result)}
+    colours = colours_of(with_length(series, planes[0]))
     for k, t in enumerate(result.t):
-        yield f"frame-{k + 1:04d}", maps_of(result, {name: result.snapshots[name][k] for name in names}, planes, float(t), title, colours)
-
-
-def probe_figures(result: RunResult) -> Iterator[tuple[str, Any]]:
-    """Names and figures of the profiles along the probes of a run, the last one in blue over earlier ones."""
-    for probe, columns in result.probes.items():
-        names = [name for name in columns if name not in ("t", "s", *AXES)]
-        times = columns.get("t", np.zeros(len(columns["s"])))
-        count = min(len(names), 3)
-        rows = -(-len(names) // count)
-        figure, grid = plt.subplots(rows, count, figsize=(4.2 * count if count > 1 else 6.0, 3.6 * rows), squeeze=False)
-        for panel, name in zip(grid.flat, names):
-            instants = np.unique(times)
-            for k, t in enumerate(instants):
-                at = times == t
-                last = k == len(instants) - 1
-                panel.plot(columns["s"][at], columns[name][at], color=BLUE if last else COLOURS[-1], linewidth=1.3 if last else 0.7)
-            panel.set_xlabel(f"s ({result.unit('x')})")
-            panel.set_ylabel(result.label(name))
-        for unused in grid.flat[len(names):]:
-            unused.remove()
-        figure.suptitle(f"probe {probe}")
-        yield f"probe-{probe}", figure
+        yield f"frame-{k + 1:04d}", maps_of(result, {name: values[k] for name, values in series.items()}, planes, f"{title}, t = {t:.4g}",
+                                            colours)

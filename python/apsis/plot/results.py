@@ -2,27 +2,15 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from . import maps
+from .probes import probe_figures
 from .run_result import Array, RunResult
-from .style import BLACK, BLUE, COLOURS, GREY, MARKERS, PictureError, plt
-
-SHOWN_TIMES = 5  # maximum number of earlier snapshots drawn with the last one
-
-
-def panels(count: int, width: float = 4.2, height: float = 3.6) -> tuple[Any, list[Any]]:
-    """Returns a figure with `count` panels, at most three in a row."""
-    columns = min(count, 3)
-    rows = -(-count // columns)
-    figure, grid = plt.subplots(rows, columns, figsize=(width * columns if columns > 1 else 6.0, height * rows), squeeze=False)
-    for unused in grid.flat[count:]:
-        unused.remove()
-    return figure, list(grid.flat[:count])
-
+from .style import BLACK, BLUE, COLOURS, GREY, PictureError, earlier_times, panels, plt
 
 def fields_figure(result: RunResult, slice_at: str | None = None) -> Any:
     """A panel for each macroscopic field: over x at the end and, thin, at earlier snapshots; without space over t; in several dimensions
@@ -34,8 +22,7 @@ def fields_figure(result: RunResult, slice_at: str | None = None) -> Any:
     if not result.fields or (not result.has_space and len(result.t) < 2):
         return None
     figure, axes = panels(len(result.fields))
-    earlier = [k for k in range(len(result.t)) if k < len(result.t) - 1]
-    shown = [earlier[k] for k in np.unique(np.linspace(0, len(earlier) - 1, SHOWN_TIMES).astype(int))] if earlier else []
+    shown = earlier_times(len(result.t) - 1)
     for panel, name in zip(axes, result.fields):
         if result.has_space:
             x = result.arrays["x"]
@@ -69,55 +56,6 @@ def end_of(result: RunResult) -> float:
 
 def title_of(result: RunResult) -> str:
     return str(result.manifest.get("case", {}).get("title", "")) or result.folder.resolve().name
-
-
-def comparison_figure(runs: Sequence[tuple[str, RunResult]]) -> Any:
-    """A panel for each field that all runs have: the run with most cells as a line, the others with markers; runs with equally many
-    as lines."""
-    names = [name for name in runs[0][1].fields
-             if all(name in run.fields and run.has_space and maps.dimensions(run) == 1 for _, run in runs)]
-    if not names:
-        raise PictureError("nothing to compare (the runs share no field over x); give runs of one model")
-    finest = finest_of(runs)
-    equal = len({len(run.arrays["x"]) for _, run in runs}) == 1
-    figure, axes = panels(len(names))
-    for panel, name in zip(axes, names):
-        others = 0
-        style: dict[str, Any]
-        for k, (label, run) in enumerate(runs):
-            if equal:
-                style = {"color": COLOURS[k % len(COLOURS)], "linestyle": ("-", "--", "-.", ":")[k % 4], "linewidth": 1.3}
-            elif k == finest:
-                style = {"color": BLACK, "linewidth": 1.2, "zorder": 1}
-            else:
-                style = {"color": COLOURS[others % len(COLOURS)], "marker": ((6, 2, 0), *MARKERS)[others % len(MARKERS)],
-                         "linestyle": "none", "fillstyle": "none", "markersize": 6}
-                others += 1
-            panel.plot(run.arrays["x"], run.fields[name], label=label, **style)
-        panel.set_xlabel(f"x ({runs[0][1].unit('x')})")
-        panel.set_ylabel(runs[0][1].label(name))
-    axes[0].legend(fontsize=8)
-    return figure
-
-
-def finest_of(runs: Sequence[tuple[str, RunResult]]) -> int:
-    return max(range(len(runs)), key=lambda k: (len(runs[k][1].arrays["x"]), k))
-
-
-def differences(runs: Sequence[tuple[str, RunResult]]) -> list[str]:
-    """Returns the largest differences of every run to the finest run, the last one with most cells; its values are averaged onto
-    the coarser cells."""
-    finest = finest_of(runs)
-    label_of_finest, fine = runs[finest]
-    lines = []
-    for k, (label, run) in enumerate(runs):
-        cells = len(run.arrays["x"])
-        if k == finest or len(fine.arrays["x"]) % cells != 0:
-            continue
-        largest = {name: float(np.abs(values - fine.fields[name].reshape(cells, -1).mean(axis=1)).max())
-                   for name, values in run.fields.items() if name in fine.fields}
-        lines.append(f"{label} against {label_of_finest}: " + ", ".join(f"{name} {d:.2e}" for name, d in largest.items()))
-    return lines
 
 
 def is_reduced(result: RunResult) -> bool:
@@ -190,7 +128,7 @@ def history_figure(result: RunResult) -> Any:
         return None
     defects = [name for name in history if name.startswith("conservation")]
     with_entropy = "entropy" in history and bool(np.isfinite(history["entropy"]).any())
-    # The last two steps divide the remaining time, which is not a change of the step size.
+    # The last two steps end at time.end, which is not a change of the step size.
     steps = history["dt"][1:-2]
     changing = len(steps) > 1 and float(np.ptp(steps)) > 1e-9 * float(steps.max())
     figure, axes = panels(1 + bool(defects) + with_entropy + changing, height=3.4)
@@ -204,7 +142,7 @@ def history_figure(result: RunResult) -> Any:
         panel.set_ylabel("entropy (dimensionless)")
     if changing:
         panel = next(following)
-        panel.semilogy(history["t"][1:], history["dt"][1:], color=BLUE)
+        panel.semilogy(history["t"][1:-2], steps, color=BLUE)
         panel.set_ylabel(f"Δt ({result.unit('dt')})")
     for panel in axes:
         panel.set_xlabel(f"t ({result.unit('t')})")
@@ -234,7 +172,7 @@ def draw_defects(panel: Any, history: dict[str, Array], defects: list[str]) -> N
 def figures(result: RunResult, slice_at: str | None = None) -> dict[str, Any]:
     """Returns all pictures of a run by name: fields, distribution, history, profiles along probes."""
     made = {"fields": fields_figure(result, slice_at), "distribution": distribution_figure(result), "history": history_figure(result),
-            **dict(maps.probe_figures(result))}
+            **dict(probe_figures(result, title_of(result)))}
     return {name: figure for name, figure in made.items() if figure is not None}
 
 

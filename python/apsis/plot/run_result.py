@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import textwrap
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -50,8 +51,10 @@ class RunResult:
         v = self.arrays.get("v")
         return 0 if v is None else v.shape[1] if v.ndim == 2 else 1
 
-    def label(self, name: str) -> str:
-        return textwrap.fill(self.labels.get(name, f"{name} (dimensionless)"), 36)
+    def label(self, name: str, width: int = 36) -> str:
+        """Words and unit of a field; lines break outside of parentheses."""
+        words = self.labels.get(name, f"{name} (dimensionless)")
+        return textwrap.fill(re.sub(r"\([^()]*\)", lambda part: part[0].replace(" ", "\N{NO-BREAK SPACE}"), words), width)
 
     def unit(self, name: str) -> str:
         """Unit of a field, of x, or of a column of the history."""

@@ -13,14 +13,15 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
 
-__all__ = ["BLACK", "BLUE", "COLOURS", "FORMATS", "GREEN", "GREY", "MARKERS", "ORANGE", "PURPLE", "PictureError", "SKY", "UNDATED",
-           "VERMILLION", "exit_code_of", "palette", "plt", "save", "whole_file"]
+__all__ = ["BLACK", "BLUE", "COLOURS", "FORMATS", "GREEN", "GREY", "LINES", "MARKERS", "ORANGE", "PURPLE", "PictureError", "SKY",
+           "UNDATED", "VERMILLION", "earlier_times", "exit_code_of", "palette", "panels", "plt", "save", "whole_file"]
 
 # Okabe and Ito: distinct for colour-blind readers, and in lightness for print.
 BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
 SKY, GREY = "#56B4E9", "#7F7F7F"
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY)
 # Markers differ as well, so that curves are distinguishable without colour.
+LINES = ("-", "--", "-.", ":")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "h")
 FORMATS = ("png", "svg", "pdf")
 UNDATED = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
@@ -50,6 +51,21 @@ def exit_code_of(command: Callable[[], None]) -> int:
 def palette(count: int) -> list[Any]:
     """Returns `count` colours: named ones if there are enough, else samples of a colour map that prints in grey."""
     return list(COLOURS) if count <= len(COLOURS) else [plt.cm.viridis(t) for t in np.linspace(0.0, 0.9, count)]
+
+
+def panels(count: int, width: float = 4.2, height: float = 3.6) -> tuple[Any, list[Any]]:
+    """Returns a figure with `count` panels, at most three in a row."""
+    columns = min(count, 3)
+    rows = -(-count // columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(width * columns if columns > 1 else 6.0, height * rows), squeeze=False)
+    for unused in grid.flat[count:]:
+        unused.remove()
+    return figure, list(grid.flat[:count])
+
+
+def earlier_times(count: int) -> list[int]:
+    """Which of `count` snapshots to draw below the last one: at most five, equally far apart."""
+    return [int(k) for k in np.unique(np.linspace(0, count - 1, 5).astype(int))] if count > 0 else []
 
 
 @contextmanager

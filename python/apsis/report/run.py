@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from ..plot.maps import dimensions
 from ..plot.results import distribution_name, end_of, figures, title_of
 from ..plot.run_result import RunResult, read_result
 from . import page
@@ -12,8 +13,10 @@ from .page import number, table, text, verdict
 
 CAPTIONS = {
     "fields": ("Macroscopic fields", "At the end, and at earlier snapshots in grey."),
+    "maps": ("Macroscopic fields", "At the end, with contours, and streamlines over the speed; solid boxes are grey."),
     "distribution": ("Distribution function", "{f} at the end, and the Knudsen number ε(x) where it is not 0."),
     "history": ("History", "Checks after every step. A conservation defect is relative to the size of the quantity."),
+    "probe": ("Profiles along a line", "Over the distance s from the first point, at the end and at earlier snapshots in grey."),
 }
 PROMISES = {
     "positivity": ("every unknown stays nonnegative", "min_value", "smallest value"),
@@ -25,7 +28,8 @@ PROMISES = {
 def caption(name: str, result: RunResult) -> tuple[str, str]:
     """Heading and caption of a picture."""
     drawn = "f(x, v)" if result.velocity_dimensions < 2 else distribution_name(result)
-    heading, words = CAPTIONS[name]
+    kind = "maps" if name == "fields" and dimensions(result) > 1 else name.partition("-")[0]
+    heading, words = CAPTIONS[kind]
     return heading, words.format(f=drawn)
 
 
@@ -63,6 +67,20 @@ def promises(manifest: dict[str, Any]) -> str:
     return table(["promise", "verdict", "measured"], rows)
 
 
+def balances(result: RunResult) -> str:
+    """A table of the rates at which faces and solid boxes give to the gas at the end, flux_FACE_QUANTITY of the history."""
+    quantities = [name.removeprefix("total_") for name in result.history if name.startswith("total_")]
+    faces = dict.fromkeys(name.removeprefix("flux_").removesuffix(f"_{quantities[0]}") for name in result.history
+                          if quantities and name.startswith("flux_") and name.endswith(f"_{quantities[0]}"))
+    if not faces:
+        return ""
+    units = [result.unit(f"flux_{next(iter(faces))}_{name}") for name in quantities]
+    columns = ["from", *(f"{name.replace('_', ' ')}{'' if unit == 'dimensionless' else f' ({unit})'}"
+                         for name, unit in zip(quantities, units))]
+    rows = [[text(face), *(number(float(result.history[f"flux_{face}_{name}"][-1])) for name in quantities)] for face in faces]
+    return "<h2>Balances</h2>\n" + table(columns, rows, "Received by the gas per unit of time at the end")
+
+
 def case_text(result: RunResult) -> str:
     return f"<pre>{text(result.case.strip() or json.dumps(result.manifest['case'], indent=2))}</pre>\n"
 
@@ -81,7 +99,7 @@ def report(folder: Path) -> str:
     pictures = "".join(page.embedded(figure, name, *caption(name, result), folder / "pictures")
                        for name, figure in figures(result).items())
     rest = {key: value for key, value in manifest.items() if key not in ("case", "message")}
-    body = (summary(result) + "<h2>Promises</h2>\n" + promises(manifest)
+    body = (summary(result) + "<h2>Promises</h2>\n" + promises(manifest) + balances(result)
             + ("<h2>Pictures</h2>\n" + pictures if pictures else "")
             + "<h2>Case</h2>\n" + case_text(result)
             + "<h2>Manifest</h2>\n" + table([], [[f"<code>{text(name)}</code>", text(value)] for name, value in flattened(rest)])

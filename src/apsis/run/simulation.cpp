@@ -52,7 +52,7 @@ struct simulation::impl {
         problem(setup.make_problem()),
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
-        watch(*setup.equation, setup.cell_volume(), setup.open_faces().size(),
+        watch(*setup.equation, setup.cell_volume(), setup.open_ends(),
               setup.entropy_bounds().value_or(std::vector<double>{}), setup.mesh().fluid()),
         rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
         state(start ? start(setup) : setup.initial_state()),

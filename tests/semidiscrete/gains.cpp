@@ -1,4 +1,4 @@
-// What the gas receives at every end of a segment: its layout, its values, and its linear combinations.
+// Gains of a state at every end of a segment: their layout, values, and linear combinations.
 #include "bgk_case.hpp"
 
 #include <apsis/exec/parallel.hpp>

@@ -10,6 +10,7 @@ import numpy as np
 from . import maps
 from .run_result import Array, RunResult
 from .style import BLACK, BLUE, COLOURS, GREY, MARKERS, PictureError, plt
+from .surfaces import surface_figures
 
 SHOWN_TIMES = 5  # maximum number of earlier snapshots drawn with the last one
 
@@ -232,9 +233,9 @@ def draw_defects(panel: Any, history: dict[str, Array], defects: list[str]) -> N
 
 
 def figures(result: RunResult, slice_at: str | None = None) -> dict[str, Any]:
-    """Returns all pictures of a run by name: fields, distribution, history, profiles along probes."""
+    """Returns all pictures of a run by name: fields, distribution, history, profiles along probes and walls."""
     made = {"fields": fields_figure(result, slice_at), "distribution": distribution_figure(result), "history": history_figure(result),
-            **dict(maps.probe_figures(result))}
+            **dict(maps.probe_figures(result)), **dict(surface_figures(result))}
     return {name: figure for name, figure in made.items() if figure is not None}
 
 

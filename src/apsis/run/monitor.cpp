@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace apsis {
 
@@ -102,6 +103,10 @@ step_record monitor::start(const field& u) {
   record.entropy_change = std::numeric_limits<double>::quiet_NaN();
   compare(t, invariants_, record.flux, record);
   return record;
+}
+
+std::size_t monitor::size_of_gains() const {
+  return invariants_.size() * std::accumulate(ends_.begin(), ends_.end(), std::size_t{0});
 }
 
 step_record monitor::check(const field& u, double dt, const step_record& previous) const {

@@ -30,6 +30,9 @@ class monitor {
   /// · model::invariant_scales().
   step_record start(const field& u);
 
+  /// Returns the number of gains of a step at all ends, force and source.
+  std::size_t size_of_gains() const;
+
   /// Returns the record of the state after a step of length dt, whose gains through the faces are those of
   /// the step; without step and t. Throws numerical_error at the first number that is not finite.
   step_record check(const field& u, double dt, const step_record& previous) const;

@@ -28,7 +28,7 @@ class Result:
     f[cell, component] is the state at the end, x the cell centres, v[component] the speeds of the components, epsilon the Knudsen
     number at the centres (empty where the model has none). In two and three space dimensions y and z are the centres in the other
     directions, and [cell] stands for [i, j] or [i, j, k], the numbers of the cell along x, y and z: a field has the shape (nt, nx, ny).
-    probes[name] has the columns of probes/NAME.csv. With two or three velocity dimensions v[component, dimension] are
+    probes[name] has the columns of probes/NAME.csv, surfaces[name] those of surfaces/NAME.csv. With two or three velocity dimensions v[component, dimension] are
     the velocities, v_weights[component] their quadrature weights, so that f @ v_weights is the density; where they are a tensor
     product, axes["v_x"], … are its nodes and marginals["v_x"][cell, node], … f integrated over the other components. fields[name][k, cell] are the macroscopic fields at the times t[k], ending with
     the final time, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
@@ -50,6 +50,7 @@ class Result:
     y: Array = field(default_factory=lambda: np.zeros(0))
     z: Array = field(default_factory=lambda: np.zeros(0))
     probes: dict[str, dict[str, Array]] = field(default_factory=dict)
+    surfaces: dict[str, dict[str, NDArray[Any]]] = field(default_factory=dict)
 
     @property
     def title(self) -> str:
@@ -73,14 +74,14 @@ class Result:
 
     def plot(self, kind: str = "fields") -> Any:
         """A Matplotlib figure: "fields" over x or t, "distribution" f(x, v) or, with several velocity dimensions, its marginal over
-        v_x, or "history". Raises InputError if there is nothing to draw."""
+        v_x, "history", "probe-NAME" or "surface-NAME". Raises InputError if there is nothing to draw."""
         from .plot.results import figures  # needs Matplotlib, which runs do not
         from .plot.run_result import RunResult
         every = {"f": self.f, "x": self.x, "y": self.y, "z": self.z, "v": self.v, "v_weights": self.v_weights, "epsilon": self.epsilon, **self.axes}
         arrays = {name: value for name, value in every.items() if value.size}
         last = {name: values[-1] for name, values in self.fields.items()}
         stored = RunResult(Path("run"), {"case": self.summary.get("case", {})}, last, {**self.fields, "t": self.t}, arrays, self.history,
-                           self.labels, "", self.marginals)
+                           self.labels, "", self.marginals, self.probes, self.surfaces)
         made = figures(stored)
         if kind not in made:
             raise InputError(f"unknown picture '{kind}' (this result has no such picture); valid: {', '.join(made) or 'none'}")
@@ -90,15 +91,16 @@ class Result:
         """Bitwise equality of everything but wall times, including NaN."""
         if not isinstance(other, Result):
             return False
-        def same(a: Mapping[str, Array], b: Mapping[str, Array]) -> bool:
-            return a.keys() == b.keys() and all(np.array_equal(a[name], b[name], equal_nan=True) for name in a)
+        def same(a: Mapping[str, NDArray[Any]], b: Mapping[str, NDArray[Any]]) -> bool:
+            return a.keys() == b.keys() and all(np.array_equal(a[name], b[name], equal_nan=a[name].dtype.kind == "f") for name in a)
+        def same_tables(a: Mapping[str, Mapping[str, NDArray[Any]]], b: Mapping[str, Mapping[str, NDArray[Any]]]) -> bool:
+            return a.keys() == b.keys() and all(same(a[name], b[name]) for name in a)
         arrays = ("f", "x", "y", "z", "v", "v_weights", "epsilon", "t")
         return (self.state == other.state and self.summary.get("case") == other.summary.get("case")
                 and same({name: getattr(self, name) for name in arrays}, {name: getattr(other, name) for name in arrays})
                 and same(self.fields, other.fields) and same(self.history, other.history)
                 and same(self.axes, other.axes) and same(self.marginals, other.marginals)
-                and self.probes.keys() == other.probes.keys()
-                and all(same(columns, other.probes[name]) for name, columns in self.probes.items()))
+                and same_tables(self.probes, other.probes) and same_tables(self.surfaces, other.surfaces))
 
 
 def cases() -> list[str]:

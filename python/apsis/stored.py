@@ -14,11 +14,10 @@ def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
 
     Without snapshots t and fields have the end alone, and without a stored distribution f has no numbers. f is what the file
     holds: every output.stride-th cell in output.precision, and with output.distribution_at no numbers (points/f of the file). Raises FileError if the folder is not a result folder."""
-    from .plot.run_result import read_history, read_result  # needs h5py and Matplotlib, which runs do not
+    from .plot.run_result import read_result  # needs h5py and Matplotlib, which runs do not
     from .plot.style import PictureError
     try:
         stored = read_result(folder)
-        probes = {path.stem: read_history(path) for path in sorted((Path(folder) / "probes").glob("*.csv"))}
     except PictureError as problem:
         raise FileError(str(problem)) from problem
     manifest, empty = stored.manifest, np.zeros(0)
@@ -33,4 +32,5 @@ def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
                   v=arrays.get("v", empty), epsilon=arrays.get("epsilon", empty), t=t, fields=fields, history=stored.history,
                   summary=summary, labels={name: stored.labels[name] for name in fields if name in stored.labels},
                   v_weights=arrays.get("v_weights", empty), axes={name: arrays[name] for name in ("v_x", "v_y", "v_z") if name in arrays},
-                  marginals=stored.marginals, y=arrays.get("y", empty), z=arrays.get("z", empty), probes=probes)
+                  marginals=stored.marginals, y=arrays.get("y", empty), z=arrays.get("z", empty), probes=stored.probes,
+                  surfaces=stored.surfaces)

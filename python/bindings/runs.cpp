@@ -64,6 +64,13 @@ py::dict columns_of(const numeric_table& rows) {
   return columns;
 }
 
+py::dict columns_of(const surface_table& surface) {
+  py::dict columns;
+  columns["face"] = py::module_::import("numpy").attr("array")(surface.faces, "str");
+  columns.attr("update")(columns_of(surface.numbers));
+  return columns;
+}
+
 /// Returns the shape of an array with numbers before and after those of the mesh: [first…][nx][ny][last…].
 std::vector<py::ssize_t> shape_of(const std::vector<mesh_axis>& axes, std::vector<py::ssize_t> first,
                                   const std::vector<py::ssize_t>& last = {}) {
@@ -135,6 +142,10 @@ py::dict result_of(const run_session& session, run_end end) {
     probes[py::str(line.name)] = columns_of(to_table(fields, line));
   }
   out["probes"] = probes;
+  py::dict surfaces;
+  for (const surface_table& surface : run.surfaces())
+    surfaces[py::str(surface.name)] = columns_of(units.convert(surface));
+  out["surfaces"] = surfaces;
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/stepper.hpp>
+#include <apsis/semidiscrete/face_fluxes.hpp>
 
 #include <atomic>
 #include <cstdlib>
@@ -140,4 +141,20 @@ TEST(allocations, steps_to_a_tolerance_allocate_nothing_after_the_first_ones) {
     for (int k = 0; k < 5; ++k) step();
     EXPECT_EQ(allocations - before, 0);
   }
+}
+
+TEST(allocations, gains_of_many_ends_are_combined_without_any_after_the_first_step) {
+  apsis::field u(1, 1), stage(1, 1);
+  const std::vector<double> rates(1000, 1.0);
+  const std::vector<apsis::target<apsis::field, double>> to_stage = {{&stage, 1.0, 0.5, true}},
+                                                         to_u = {{&u, 0.5, 0.5, false}};
+  long before = 0;
+  for (int step = 0; step < 3; ++step) {
+    if (step == 1) before = allocations;
+    u.gains().clear();
+    apsis::combine_gains(u, to_stage, rates);
+    apsis::combine_gains(stage, to_u, rates);
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(u.gains().at(999), 0.75);
 }

@@ -11,6 +11,8 @@ from . import maps
 from .probes import probe_figures
 from .run_result import Array, RunResult
 from .style import BLACK, BLUE, COLOURS, GREY, PictureError, earlier_times, panels, plt
+from .surfaces import surface_figures
+
 
 def fields_figure(result: RunResult, slice_at: str | None = None) -> Any:
     """A panel for each macroscopic field: over x at the end and, thin, at earlier snapshots; without space over t; in several dimensions
@@ -170,9 +172,9 @@ def draw_defects(panel: Any, history: dict[str, Array], defects: list[str]) -> N
 
 
 def figures(result: RunResult, slice_at: str | None = None) -> dict[str, Any]:
-    """Returns all pictures of a run by name: fields, distribution, history, profiles along probes."""
+    """Returns all pictures of a run by name: fields, distribution, history, profiles along probes and walls."""
     made = {"fields": fields_figure(result, slice_at), "distribution": distribution_figure(result), "history": history_figure(result),
-            **dict(probe_figures(result, title_of(result)))}
+            **dict(probe_figures(result, title_of(result))), **dict(surface_figures(result))}
     return {name: figure for name, figure in made.items() if figure is not None}
 
 

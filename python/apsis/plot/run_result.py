@@ -23,8 +23,8 @@ class RunResult:
     """The content of a result folder. fields[name][cell] are the macroscopic fields at the end, snapshots[name][k, cell] at the times t[k];
     arrays has those of f[cell, component], x, v, epsilon that the model has, and with several velocity dimensions v_weights and
     the nodes v_x, v_y, v_z; history[column][step] the checks of every step; labels the axis labels; case the case file;
-    marginals[axis][cell, node] f integrated over the other velocity components; probes[name][column] the fields along lines. In several
-    space dimensions [cell] stands for [x, y(, z)]."""
+    marginals[axis][cell, node] f integrated over the other velocity components; probes[name][column] the fields along lines; surfaces[name][column] what the gas
+    gives to faces and solid boxes. In several space dimensions [cell] stands for [x, y(, z)]."""
 
     folder: Path
     manifest: dict[str, Any]
@@ -36,6 +36,7 @@ class RunResult:
     case: str
     marginals: dict[str, Array] = field(default_factory=dict)
     probes: dict[str, dict[str, Array]] = field(default_factory=dict)
+    surfaces: dict[str, dict[str, NDArray[Any]]] = field(default_factory=dict)
 
     @property
     def t(self) -> Array:
@@ -72,6 +73,20 @@ def read_history(path: Path) -> dict[str, Array]:
         raise PictureError(f"cannot read '{path}' ({problem.strerror}); run the case with --out first") from problem
     except (IndexError, ValueError) as problem:
         raise PictureError(f"'{path}' is not a table of numbers ({problem}); run the case again") from problem
+
+
+def read_surface(path: Path) -> dict[str, NDArray[Any]]:
+    """Returns the columns of a table whose first one is text, the face. Raises PictureError."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            header, *rows = csv.reader(file)
+        numbers = np.array([row[1:] for row in rows], dtype=float).reshape(len(rows), len(header) - 1)
+        return {header[0]: np.array([row[0] for row in rows], dtype=str),
+                **{name: numbers[:, k] for k, name in enumerate(header[1:])}}
+    except OSError as problem:
+        raise PictureError(f"cannot read '{path}' ({problem.strerror}); run the case with --out first") from problem
+    except (IndexError, ValueError) as problem:
+        raise PictureError(f"'{path}' is not the table of a surface ({problem}); run the case again") from problem
 
 
 def read_any_json(path: Path) -> Any:
@@ -121,7 +136,8 @@ def read_result(folder: str | Path) -> RunResult:
     fields = groups["fields"]
     in_order = {name: fields[name] for name in (*columns_of(folder / "fields.csv"), *fields) if name in fields}
     return RunResult(folder, manifest, in_order, groups["snapshots"], arrays, history, labels, case, groups["marginals"],
-                     {table.stem: read_history(table) for table in sorted((folder / "probes").glob("*.csv"))})
+                     {table.stem: read_history(table) for table in sorted((folder / "probes").glob("*.csv"))},
+                     {table.stem: read_surface(table) for table in sorted((folder / "surfaces").glob("*.csv"))})
 
 
 def columns_of(path: Path) -> list[str]:

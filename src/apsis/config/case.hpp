@@ -107,6 +107,7 @@ struct case_config {
     int history_rows = 100000;                                        ///< most rows of the history
     std::vector<line_probe> probes;                                   ///< tables [[output.probe]]
     std::vector<plane_slice> slices;                                  ///< tables [[output.slice]]
+    std::vector<std::string> surfaces;  ///< names of faces and solid boxes, or all_surfaces
   } output;
 };
 

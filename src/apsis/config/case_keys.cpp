@@ -430,6 +430,12 @@ std::vector<case_key> output_keys() {
                     .measure = dimensions::length,
                     .doc = "Points [[x, y], ...]: f is written in the cells that contain them, as points/f "
                            "of the file, and not in all cells."})),
+      key("output.surfaces", [](auto& c) -> auto& { return c.output.surfaces; },
+          {.scope = key_scope::space,
+           .doc = "Names of faces (left, right, bottom, ...) that are not periodic and of solid boxes, or "
+                  "\"all\": what the gas gives to them in the last step, of mass, momentum and energy per "
+                  "unit of time and area, with pressure, shear stress and heat flux, at every cell face, in "
+                  "surfaces/NAME.csv."}),
       key("output.stride", [](auto& c) -> auto& { return c.output.stride; },
           {.unit = "cells",
            .lowest = 1,

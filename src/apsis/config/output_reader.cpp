@@ -1,5 +1,6 @@
 #include <apsis/config/output_reader.hpp>
 
+#include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/core/suggest.hpp>
 
@@ -35,6 +36,7 @@ class reader {
     for (const auto& item : items_of("probe", {"name", "from", "to", "points"})) add_probe(item);
     for (const auto& item : items_of("slice", {"name", "normal", "at"})) add_slice(item);
     check_points_of_distribution();
+    check_surfaces();
   }
 
  private:
@@ -217,6 +219,38 @@ class reader {
                         fmt::format("'{}' conflicts with {} (both choose the cells in which f is written); "
                                     "remove one of them",
                                     path, with));
+  }
+
+  /// Names of the faces that are not periodic and of the solid boxes.
+  std::vector<std::string> open_surfaces() const {
+    std::vector<std::string> names;
+    const auto sides = make_boundaries(config_, *make_model(config_));
+    for (std::size_t k = 0; k < 2 * sides.size(); ++k)
+      if (!sides[k / 2][k % 2]->periodic()) names.push_back(face_names[k]);
+    for (const auto& solid : config_.solids) names.push_back(solid.name);
+    return names;
+  }
+
+  void check_surfaces() const {
+    const auto given = text_.values.find("output.surfaces");
+    if (given == text_.values.end()) return;
+    std::vector<std::string> names = open_surfaces();
+    if (names.empty())
+      throw input_error(given->second.place,
+                        "'output.surfaces' has no meaning (every face is periodic, and there are no solid "
+                        "boxes); remove it");
+    names.emplace_back(all_surfaces);
+    const auto* list = std::get_if<raw_value::list>(&given->second.value);
+    for (std::size_t k = 0; k < config_.output.surfaces.size(); ++k) {
+      const std::string& name = config_.output.surfaces[k];
+      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      const bool is_face = std::find(face_names.begin(), face_names.end(), name) <
+                           face_names.begin() + 2 * static_cast<std::ptrdiff_t>(dimensions());
+      throw input_error(list == nullptr ? given->second.value_place : list->at(k).value_place,
+                        fmt::format("unknown surface '{}' in 'output.surfaces' ({}); {}", shown(name),
+                                    is_face ? "this face is periodic" : "no face or solid box has this name",
+                                    suggest(name, names)));
+    }
   }
 
   const case_text& text_;

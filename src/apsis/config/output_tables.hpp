@@ -29,6 +29,9 @@ struct plane_slice {
   double at = 0.0;    ///< coordinate along the normal
 };
 
+/// Stands for every surface in output.surfaces.
+inline constexpr const char* all_surfaces = "all";
+
 /// Returns the cell that contains a point of the domain; of two, the upper one.
 int cell_at(const grid& mesh, std::span<const double> x);
 

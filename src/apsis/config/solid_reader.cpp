@@ -120,7 +120,7 @@ class reader {
     const std::string path = path_of(box);
     if (here.name.empty()) here.name = fmt::format("solid-{}", box + 1);
     std::vector<std::string> taken(face_names.begin(), face_names.end());
-    taken.insert(taken.end(), {"force", "source"});
+    taken.insert(taken.end(), {"force", "source", all_surfaces});
     for (std::size_t other = 0; other < box; ++other) taken.push_back(config_.solids[other].name);
     if (!is_name(here.name) || std::find(taken.begin(), taken.end(), here.name) != taken.end())
       throw input_error(

@@ -68,6 +68,7 @@ void write_checkpoint(const std::string& path, const checkpoint& c) {
   file.write("case", c.case_text);
   file.write("commit", c.commit);
   file.write("state", c.state, {c.cells, c.components}, "unknowns");
+  if (!c.gains.empty()) file.write("gains", c.gains, {c.gains.size()});
   file.write("history/columns", joined(c.history.columns));
   write_rows(file, "history/rows", c.history.rows, c.history.columns.size());
   file.write("fields/names", joined(c.fields.names));
@@ -97,6 +98,7 @@ checkpoint read_checkpoint(const std::string& path) {
   c.cells = extents[0];
   c.components = extents[1];
   c.state = file.read("state");
+  if (file.has("gains")) c.gains = file.read("gains");
   c.history.columns = split(file.read_text("history/columns"));
   c.history.rows = read_rows(file, path, "history/rows", c.history.columns.size());
   if (c.history.rows.empty()) damaged(path, "its history is empty");

@@ -17,6 +17,7 @@ struct checkpoint {
   std::uint64_t cells = 0,                ///< rows of the state
       components = 0;                     ///< unknowns of a cell
   std::vector<double> state;              ///< [cells][components]
+  std::vector<double> gains;              ///< of the last step at every surface; empty before the first
   std::map<std::string, double> numbers;  ///< time, counters and totals, by name
   numeric_table history;                  ///< from the initial state to the last step
   field_series fields;                    ///< snapshots so far

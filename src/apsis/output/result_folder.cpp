@@ -21,7 +21,7 @@ constexpr std::array<const char*, 11> result_names = {
     "solution.xdmf",         "checkpoint.h5", "converge.csv", "converge.json",
     "picture.json",          "converge.png",  "report.html"};
 
-constexpr std::array<const char*, 3> series_names = {"snapshots", "probes", "slices"};
+constexpr std::array<const char*, 4> series_names = {"snapshots", "probes", "slices", "surfaces"};
 
 constexpr const char* advice = "choose another folder with --out or free some space";
 

@@ -4,6 +4,7 @@
 #include <apsis/phase/position.hpp>
 #include <apsis/phase/velocity_set.hpp>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -49,6 +50,9 @@ class boundary {
   /// outwards. Calls incoming() unless it is overridden.
   virtual void incoming_beside(const face& where, double t, const position& at, const double* outgoing,
                                std::span<const double* const> ghosts, double* incoming) const;
+  /// Returns the velocity of the wall, which does the work u_w · (force) on it; 0, the default, of a wall at
+  /// rest and of an open end.
+  virtual std::array<double, 3> wall_velocity(double /*t*/, const position& /*at*/) const { return {}; }
   /// Whether the domain continues at the opposite face; both faces of a direction must agree.
   virtual bool periodic() const { return false; }
   /// Returns c such that the entropy that enters through the face in a sweep of first order is at most Σ_k

@@ -74,6 +74,12 @@ std::optional<std::vector<std::vector<double>>> domain::entropy_bounds() const {
   return all;
 }
 
+std::size_t domain::ends_at(const opening& one) const {
+  std::size_t ends = 0;
+  for (const int surface : one.surfaces) ends += surfaces()[at(surface)].segments.size();
+  return ends;
+}
+
 bool domain::repeats(int surface) const {
   return !sides_[at(surface)] || sides_[at(surface)]->repeated_cell(0, 1).has_value();
 }

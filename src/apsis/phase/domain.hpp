@@ -6,7 +6,9 @@
 #include <apsis/phase/segments.hpp>
 
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace apsis {
@@ -56,6 +58,8 @@ class domain {
   int cell_at(int surface, int place) const;
   /// Returns the faces that are not periodic and the solid boxes, in this order.
   const std::vector<opening>& openings() const { return openings_; }
+  /// Returns the number of ends of segments at an opening, those of its surfaces in their order.
+  std::size_t ends_at(const opening& one) const;
   /// Returns boundary::entropy_bound() of every opening; nothing if one of them has none.
   std::optional<std::vector<std::vector<double>>> entropy_bounds() const;
 

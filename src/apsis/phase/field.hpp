@@ -49,9 +49,10 @@ class field {
   /// Returns the stride of rows with the given number of components.
   static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
 
-  /// Amounts of the invariants that this state has received through the faces of the domain, and from a
-  /// force after them, [face][invariant]; copied with the rows, and formed by the same linear combinations
-  /// (semidiscrete/face_fluxes.hpp). Empty where nothing crosses a face.
+  /// Amounts of the invariants that this state has received through every end of a segment at a surface, in
+  /// the order of domain::openings(), [opening][end][invariant], then the totals of a force and of a source;
+  /// copied with the rows, and formed by the same linear combinations (semidiscrete/face_fluxes.hpp). Empty
+  /// where nothing has crossed a surface.
   std::vector<double>& gains() { return gains_; }
   /// The gains of a constant field.
   const std::vector<double>& gains() const { return gains_; }

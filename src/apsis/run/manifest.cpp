@@ -50,6 +50,9 @@ void add_units(json& out, const simulation& run) {
   for (int k = 0; k < run.mesh().dimensions(); ++k)
     names[std::string(1, "xyz"[k])] = unit_of(dimensions::length);
   for (const auto& [column, measure] : history_measures(run)) names[column] = unit_of(measure);
+  for (const surface_table& surface : run.surfaces())
+    for (std::size_t k = 0; k < surface.measures.size(); ++k)
+      names[surface.numbers.columns[k]] = unit_of(surface.measures[k]);
   const field_table fields = run.fields();
   for (std::size_t k = 0; k < fields.names.size(); ++k) names[fields.names[k]] = unit_of(fields.measures[k]);
   out["units"] = names;

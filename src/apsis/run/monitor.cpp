@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace apsis {
 
@@ -94,7 +95,7 @@ step_record monitor::start(const field& u) {
   invariants_ = t.invariants;
   scales_ = t.scales;
   step_record record;
-  record.received.assign(faces_ * invariants_.size(), 0.0);
+  record.received.assign(ends_.size() * invariants_.size(), 0.0);
   record.flux = record.received;
   record.min_value = t.lowest;
   record.negative_values = t.negative;
@@ -102,6 +103,10 @@ step_record monitor::start(const field& u) {
   record.entropy_change = std::numeric_limits<double>::quiet_NaN();
   compare(t, invariants_, record.flux, record);
   return record;
+}
+
+std::size_t monitor::size_of_gains() const {
+  return invariants_.size() * std::accumulate(ends_.begin(), ends_.end(), std::size_t{0});
 }
 
 step_record monitor::check(const field& u, double dt, const step_record& previous) const {
@@ -112,8 +117,7 @@ step_record monitor::check(const field& u, double dt, const step_record& previou
   record.entropy = t.entropy;
   record.entropy_change = t.entropy - previous.entropy;
   record.violation = violation_in(u, t);
-  std::vector<double> gained = u.gains();
-  gained.resize(faces_ * invariants_.size());
+  const std::vector<double> gained = gained_through_faces(u.gains());
   for (std::size_t k = 0; k < entropy_bounds_.size(); ++k)
     record.entropy_change -= entropy_bounds_[k] * gained[k];
   record.received = previous.received;
@@ -123,6 +127,21 @@ step_record monitor::check(const field& u, double dt, const step_record& previou
   }
   compare(t, previous.total, gained, record);
   return record;
+}
+
+/// The sums of the gains of all ends at each face, [face][invariant].
+std::vector<double> monitor::gained_through_faces(const std::vector<double>& gains) const {
+  const std::size_t count = invariants_.size();
+  std::vector<double> sums;
+  std::size_t first = 0;
+  for (const std::size_t ends : ends_) {
+    std::vector<compensated_sum> sum(count);
+    for (std::size_t k = first; k < std::min(first + ends * count, gains.size()); ++k)
+      sum[(k - first) % count].add(gains[k]);
+    first += ends * count;
+    for (const auto& one : sum) sums.push_back(one.value());
+  }
+  return sums;
 }
 
 std::optional<condition_violation> monitor::violation_in(const field& u, const totals& t) const {
@@ -137,7 +156,7 @@ void monitor::compare(const totals& t, const std::vector<double>& before, const 
   const std::size_t count = invariants_.size();
   for (std::size_t k = 0; k < count; ++k) {
     double received = 0.0, passed = 0.0, in_step = 0.0;
-    for (std::size_t f = 0; f < faces_; ++f) {
+    for (std::size_t f = 0; f < ends_.size(); ++f) {
       received += record.received[f * count + k];
       passed += std::abs(record.received[f * count + k]);
       in_step += gained[f * count + k];

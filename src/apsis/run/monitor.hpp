@@ -15,20 +15,23 @@ namespace apsis {
 /// results do not depend on the number of threads.
 class monitor {
  public:
-  /// `volume` is the cell volume (1 for an ordinary differential equation), `faces` the number of faces that
-  /// are not periodic, and `cells` those of the gas, all if there are none.
-  /// `entropy_bounds` as those of run_setup; empty if there are none.
-  monitor(const model& equation, double volume, std::size_t faces, std::vector<double> entropy_bounds = {},
-          std::vector<cell_range> cells = {})
+  /// `volume` is the cell volume (1 for an ordinary differential equation), `ends` as run_setup::open_ends(),
+  /// and `cells` those of the gas, all if there are none. `entropy_bounds` as those of run_setup; empty if
+  /// there are none.
+  monitor(const model& equation, double volume, std::vector<std::size_t> ends,
+          std::vector<double> entropy_bounds = {}, std::vector<cell_range> cells = {})
       : equation_(equation),
         volume_(volume),
-        faces_(faces),
+        ends_(std::move(ends)),
         entropy_bounds_(std::move(entropy_bounds)),
         cells_(std::move(cells)) {}
 
   /// Sets the reference state of conservation and returns its record: defects are relative to Σ_cells volume
   /// · model::invariant_scales().
   step_record start(const field& u);
+
+  /// Returns the number of gains of a step at all ends, force and source.
+  std::size_t size_of_gains() const;
 
   /// Returns the record of the state after a step of length dt, whose gains through the faces are those of
   /// the step; without step and t. Throws numerical_error at the first number that is not finite.
@@ -43,12 +46,13 @@ class monitor {
   };
   std::optional<condition_violation> violation_in(const field& u, const totals& t) const;
   totals sum(const field& u) const;
+  std::vector<double> gained_through_faces(const std::vector<double>& gains) const;
   void compare(const totals& t, const std::vector<double>& before, const std::vector<double>& gained,
                step_record& record) const;
 
   const model& equation_;
   double volume_;
-  std::size_t faces_;
+  std::vector<std::size_t> ends_;       ///< number at each face
   std::vector<double> entropy_bounds_;  ///< of what is received, [face][invariant]
   std::vector<cell_range> cells_;
   std::vector<double> invariants_, scales_;  ///< of the initial state

@@ -189,6 +189,7 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records) {
   c.cells = static_cast<std::uint64_t>(run.cells());
   c.components = static_cast<std::uint64_t>(run.components());
   c.state = std::move(saved.unknowns);
+  c.gains = std::move(saved.gains);
   run_state::visit_records(saved, [&c](const char* group, const auto& record) {
     record.visit_members(record, number_writer{group, c});
   });
@@ -201,6 +202,7 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records) {
 run_state to_run_state(const checkpoint& c) {
   run_state saved;
   saved.unknowns = c.state;
+  saved.gains = c.gains;
   if (c.numbers.contains("control.proposed")) saved.control.emplace();  // of a run with a tolerance
   run_state::visit_records(saved, [&c](const char* group, auto& record) {
     record.visit_members(record, number_reader{group, c});

@@ -41,6 +41,13 @@ field_series result_units::convert(field_series fields) const {
   return fields;
 }
 
+surface_table result_units::convert(surface_table surface) const {
+  if (!are_si()) return surface;
+  for (auto& row : surface.numbers.rows)
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] *= factor(surface.measures[k]);
+  return surface;
+}
+
 numeric_table result_units::convert(numeric_table history, const simulation& run) const {
   if (!are_si()) return history;
   for (const auto& [name, measure] : history_measures(run)) {
@@ -60,7 +67,8 @@ std::vector<std::pair<std::string, dimension>> history_measures(const simulation
   const auto names = run.invariants();
   const auto densities = run.invariant_measures();
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const dimension amount = densities[k] * length;
+    dimension amount = densities[k];
+    for (int d = 0; d < run.mesh().dimensions(); ++d) amount = amount * length;
     all.emplace_back("total_" + names[k], amount);
     for (const auto& face : run.open_faces()) {
       all.emplace_back("received_" + face + "_" + names[k], amount);

@@ -26,6 +26,8 @@ class result_units {
 
   /// Returns the fields in these units, with the units in their labels.
   field_series convert(field_series fields) const;
+  /// Returns a table of a surface in these units.
+  surface_table convert(surface_table surface) const;
   /// Returns the history of a run in these units.
   numeric_table convert(numeric_table history, const simulation& run) const;
 
@@ -34,7 +36,7 @@ class result_units {
 };
 
 /// Returns the dimensions of the columns of the history that have one, in units of a gas: times, and what is
-/// in the domain and crosses its faces per area.
+/// in the domain and crosses its faces, on a line per area and in the plane per length.
 std::vector<std::pair<std::string, dimension>> history_measures(const simulation& run);
 
 }  // namespace apsis

@@ -35,8 +35,8 @@ struct step_record {
   /// time.steady.
   double change = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> total;  ///< I, the sum of the densities of each invariant over the domain
-  /// Amounts of the invariants that the gas received through each face since the start, [face][invariant],
-  /// per area of the face.
+  /// Amounts of the invariants that the gas received through each face since the start, [face][invariant];
+  /// on a line per area, in the plane per length.
   std::vector<double> received;
   std::vector<double> flux;  ///< the same per unit of time, in the mean over the step
   /// |I − I₀ − received| of this step alone, relative to the same scales; not among the members that are
@@ -107,6 +107,7 @@ struct run_state {
   run_summary totals;                                        ///< of all steps so far
   step_record initial,                                       ///< record of the initial state
       last;                                                  ///< record of the last step
+  std::vector<double> gains = {};  ///< field::gains() of the last step; empty before the first one
 
   /// Calls visit(group, record) for every record of numbers that a checkpoint keeps: those of steps are rows
   /// of the history.

@@ -10,6 +10,7 @@
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/probe_files.hpp>
 #include <apsis/run/result_units.hpp>
+#include <apsis/run/surface_files.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -144,8 +145,9 @@ run_session::run_session(const case_config& configured, session_options options)
     resume_snapshots(*options_.restart);
   else if (simulation_.step() == 0 && config.output.every > 0.0)
     write_distribution_snapshot();
-  if (const auto& output = config.output; !folder_ && !(output.probes.empty() && output.slices.empty()))
-    log::warning("no probes and slices are written (they need a folder); give one with --out");
+  if (const auto& output = config.output;
+      !folder_ && !(output.probes.empty() && output.slices.empty() && output.surfaces.empty()))
+    log::warning("no probes, slices and surfaces are written (they need a folder); give one with --out");
   if (!folder_ && config.output.checkpoint_every > 0)
     log::warning("no checkpoints are written (output.checkpoint_every needs a folder); give one with --out");
   if (config.output.distribution == distribution_choice::snapshots && !(folder_ && config.output.every > 0.0))
@@ -293,6 +295,7 @@ void run_session::write_results(result_folder& folder, run_end end, const std::s
                       to_csv(units.convert(shown_->history(), simulation_), {"step", "negative_values"}));
   folder.prepare_text("fields.csv", to_csv(to_table(final_state.fields)));
   write_probes(simulation_.config(), final_state.fields, units.factor(dimensions::length), folder);
+  write_surfaces(simulation_, folder);
   folder.prepare("solution.h5", [&](const std::string& path) { write_solution(path, final_state); });
   folder.prepare_text("solution.xdmf",
                       solution_xdmf(final_state, distribution_files(folder, units.factor(dimensions::time))));

@@ -167,6 +167,15 @@ std::vector<std::string> run_setup::open_faces() const {
   return open;
 }
 
+std::vector<std::size_t> run_setup::open_ends() const {
+  std::vector<std::size_t> ends;
+  if (!has_space()) return ends;
+  const domain space = builder_.space();
+  for (const opening& one : space.openings()) ends.push_back(space.ends_at(one));
+  ends.resize(open_faces().size(), 1);
+  return ends;
+}
+
 std::optional<std::vector<double>> run_setup::entropy_bounds() const {
   std::vector<double> all;
   if (!has_space()) return all;

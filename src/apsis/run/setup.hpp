@@ -56,6 +56,9 @@ class run_setup {
   /// Returns the names of the faces that are not periodic, "left", "right", and "force" and "source"
   /// if there are any.
   std::vector<std::string> open_faces() const;
+  /// Returns the number of ends of segments at each of the open faces, 1 for the force and the source: the
+  /// layout of field::gains().
+  std::vector<std::size_t> open_ends() const;
   /// Returns boundary::entropy_bound() of the open faces, [face][invariant]; nothing if the entropy that one
   /// of them, the force or the source gives is not bounded.
   std::optional<std::vector<double>> entropy_bounds() const;

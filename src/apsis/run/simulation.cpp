@@ -6,6 +6,7 @@
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/tolerance_forecast.hpp>
 #include <apsis/run/find_fields.hpp>
+#include <apsis/run/find_surfaces.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/promises.hpp>
@@ -52,7 +53,7 @@ struct simulation::impl {
         problem(setup.make_problem()),
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
-        watch(*setup.equation, setup.cell_volume(), setup.open_faces().size(),
+        watch(*setup.equation, setup.cell_volume(), setup.open_ends(),
               setup.entropy_bounds().value_or(std::vector<double>{}), setup.mesh().fluid()),
         rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
         state(start ? start(setup) : setup.initial_state()),
@@ -120,6 +121,7 @@ struct simulation::impl {
     march.advance(dt);
     const double change = last.change;
     last = watch.check(state, dt, last);
+    gains = state.gains();
     // The change of a sliver that is left before time.end would be its rounding.
     constexpr double sliver = 1e-6;
     if (config.time.steady)
@@ -144,7 +146,8 @@ struct simulation::impl {
   stepper<semidiscrete_problem> integrator;
   monitor watch;
   rounding_bound rounding;
-  field state, before;  ///< before a step; empty without time.steady
+  field state, before;        ///< before a step; empty without time.steady
+  std::vector<double> gains;  ///< of the last step
   time_marcher<double> march;
   std::optional<step_controller<double>> control;
   error_estimate<semidiscrete_problem> estimate;
@@ -256,6 +259,10 @@ field_table simulation::fields() const {
   return find_fields(impl_->setup, impl_->state);
 }
 
+std::vector<surface_table> simulation::surfaces() const {
+  return find_surfaces(impl_->setup, {t(), last().dt, impl_->gains});
+}
+
 bool simulation::has_space() const {
   return impl_->setup.has_space();
 }
@@ -300,6 +307,7 @@ run_state simulation::save() const {
   saved.totals = summary();
   saved.initial = impl_->first;
   saved.last = impl_->last;
+  saved.gains = impl_->gains;
   return saved;
 }
 
@@ -308,6 +316,10 @@ void simulation::restore(const run_state& saved) {
     throw input_error(
         "the saved state has another size than the case (it belongs to another case); restart with the case "
         "it was written for");
+  if (!saved.gains.empty() && saved.gains.size() != impl_->watch.size_of_gains())
+    throw input_error(
+        "the saved gains have another size than those of the case (they belong to another case); restart "
+        "with the case they were written for");
   for (int cell = 0; cell < cells(); ++cell)
     std::copy_n(saved.unknowns.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
                 impl_->state.row(cell));
@@ -317,6 +329,7 @@ void simulation::restore(const run_state& saved) {
   impl_->totals = saved.totals;
   impl_->first = saved.initial;
   impl_->last = saved.last;
+  impl_->gains = saved.gains;
 }
 
 }  // namespace apsis

@@ -5,6 +5,7 @@
 #include <apsis/phase/grid.hpp>
 #include <apsis/phase/velocity_set.hpp>
 #include <apsis/run/run_state.hpp>
+#include <apsis/run/surface_table.hpp>
 
 #include <functional>
 #include <limits>
@@ -81,7 +82,9 @@ class simulation {
   const step_record& last() const;  ///< record of the last step, or of the initial state
   run_summary summary() const;      ///< totals of all steps so far
 
-  field_table fields() const;          ///< macroscopic fields of the current state
+  field_table fields() const;  ///< macroscopic fields of the current state
+  /// Returns what the gas gave in the last step to the surfaces of output.surfaces (find_surfaces()).
+  std::vector<surface_table> surfaces() const;
   bool has_space() const;              ///< whether the model has a mesh
   const grid& mesh() const;            ///< the mesh; a single cell without space
   bool periodic(int direction) const;  ///< whether both ends of the mesh along a direction are periodic
@@ -98,7 +101,7 @@ class simulation {
   /// Returns the state for a restart that is bitwise identical.
   run_state save() const;
   /// Continues from where `saved` was taken; the case must be the same. Throws input_error if the sizes
-  /// differ.
+  /// differ. Surfaces are NaN until the next step where `saved` has no gains.
   void restore(const run_state& saved);
   const step_record& initial_record() const;  ///< record of the initial state
 

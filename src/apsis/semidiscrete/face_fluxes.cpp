@@ -25,8 +25,10 @@ face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
       const auto ends = of.segments.size();
       made.values = field(static_cast<int>(ends), equation.components());
       made.incoming = field(prescribes(surface) ? static_cast<int>(ends) : 0, equation.components());
-      made.received.assign(ends, std::vector<double>(invariants_));
+      made.first = ends_;
+      ends_ += ends;
     }
+  rates_.resize(ends_ * invariants_);
 }
 
 double* face_fluxes::recorded(int surface, int place) {
@@ -58,41 +60,46 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
   }
   // The row becomes that of the fluxes; invariants are linear functions of a row.
   for (std::size_t k = 0; k < here.inward.size(); ++k) values[k] *= here.inward[k];
-  std::vector<double>& received = here.received[index(place)];
-  equation_.invariant_densities(values, received.data());
+  double* received = rates_.data() + (here.first + index(place)) * invariants_;
+  equation_.invariant_densities(values, received);
   const double area = mesh.cell_volume() / mesh.spacing(where.direction);
-  for (double& one : received) one *= area;
+  for (std::size_t k = 0; k < invariants_; ++k) received[k] *= area;
 }
 
-void face_fluxes::add_gains(const field& u, std::span<const target<field, double>> targets, bool moved,
-                            std::span<const double> inside) const {
-  if ((space_->openings().empty() && inside.empty()) || !moved) return combine_gains(u, targets);
-  std::vector<double> rates;
-  for (const opening& one : space_->openings()) {
-    std::vector<double> sum(invariants_);
-    for (const int surface : one.surfaces)
-      for (const auto& received : sides_[index(surface)].received)
-        for (std::size_t k = 0; k < invariants_; ++k) sum[k] += received[k];
-    rates.insert(rates.end(), sum.begin(), sum.end());
-  }
-  rates.insert(rates.end(), inside.begin(), inside.end());
-  for (const auto& to : targets) {
-    std::vector<double>& gains = to.acc->gains();
-    gains.resize(rates.size());
-    for (std::size_t k = 0; k < rates.size(); ++k)
-      gains[k] = to.combine(gains[k], u.gains().empty() ? 0.0 : u.gains()[k], rates[k]);
-  }
+void face_fluxes::add_gains(const field& u, std::span<const target<field, double>> targets,
+                            std::span<const double> inside) {
+  rates_.resize(ends_ * invariants_ + inside.size());
+  std::copy(inside.begin(), inside.end(), rates_.end() - static_cast<std::ptrdiff_t>(inside.size()));
+  combine_gains(u, targets, rates_);
 }
 
-void combine_gains(const field& u, std::span<const target<field, double>> targets) {
-  // A copy: an accumulator may be u itself.
-  const std::vector<double> of_u = u.gains();  // NOLINT(performance-unnecessary-copy-initialization)
-  for (const auto& to : targets) {
-    std::vector<double>& gains = to.acc->gains();
-    if (to.fresh) gains.clear();
-    gains.resize(std::max(gains.size(), of_u.size()));
-    for (std::size_t k = 0; k < of_u.size(); ++k) gains[k] += to.alpha * of_u[k];
+namespace {
+
+/// sum ← sum + factor · values
+void add_multiple(std::vector<double>& sum, double factor, std::span<const double> values) {
+  for (std::size_t k = 0; k < values.size(); ++k) sum[k] += factor * values[k];
+}
+
+void combine(const field& u, const target<field, double>& to, std::span<const double> rates) {
+  std::vector<double>& gains = to.acc->gains();
+  if (to.fresh && to.acc == &u) {  // β = 0
+    for (double& gain : gains) gain *= to.alpha;
+    return;
   }
+  if (to.fresh) gains.clear();
+  gains.resize(std::max({gains.size(), u.gains().size(), rates.size()}));
+  add_multiple(gains, to.alpha, u.gains());
+  add_multiple(gains, to.beta, rates);
+}
+
+}  // namespace
+
+void combine_gains(const field& u, std::span<const target<field, double>> targets,
+                   std::span<const double> rates) {
+  for (const auto& to : targets)
+    if (to.acc != &u) combine(u, to, rates);
+  for (const auto& to : targets)
+    if (to.acc == &u) combine(u, to, rates);  // after those that need its old value
 }
 
 }  // namespace apsis

@@ -15,7 +15,7 @@ namespace apsis {
 /// of the transport record the upwind values at a surface; where its boundary prescribes the incoming
 /// components, it computes them here from the outgoing ones, after the sweep: beyond such a surface a sweep
 /// sees vacuum, so that what enters is added to a state that is nonnegative without it. The invariants that
-/// pass are collected in field::gains().
+/// pass at every end are collected in field::gains().
 class face_fluxes {
  public:
   /// `equation` must outlive the object.
@@ -31,17 +31,17 @@ class face_fluxes {
   /// targets. Concurrent calls must differ in the cell at the end.
   void complete(int surface, int place, double t, std::span<const target<field, double>> targets);
 
-  /// acc ← (fresh ? 0 : acc) + α u + β (flux) for the gains of every target; with `moved`, the fluxes are
-  /// those of complete(), else 0. `inside` is what a force and a source give, after all openings.
-  void add_gains(const field& u, std::span<const target<field, double>> targets, bool moved,
-                 std::span<const double> inside = {}) const;
+  /// acc ← (fresh ? 0 : acc) + α u + β (flux) for the gains of every target, with the fluxes of complete().
+  /// `inside` is what a force and a source give, after all openings.
+  void add_gains(const field& u, std::span<const target<field, double>> targets,
+                 std::span<const double> inside);
 
  private:
   struct side {
-    std::vector<double> inward;                 ///< velocity towards the inside of every component
-    field values;                               ///< [place], recorded upwind values
-    field incoming;                             ///< [place], what the boundary prescribes
-    std::vector<std::vector<double>> received;  ///< [place][invariant], per unit of time
+    std::vector<double> inward;  ///< velocity towards the inside of every component
+    field values;                ///< [place], recorded upwind values
+    field incoming;              ///< [place], what the boundary prescribes
+    std::size_t first = 0;       ///< of its ends among those of all openings
   };
   side& at(int surface) { return sides_[static_cast<std::size_t>(surface)]; }
 
@@ -49,9 +49,13 @@ class face_fluxes {
   std::shared_ptr<domain> space_;
   std::vector<side> sides_;  ///< [surface]
   std::size_t invariants_ = 0;
+  std::size_t ends_ = 0;       ///< of all openings
+  std::vector<double> rates_;  ///< what is received per unit of time, in the order of field::gains()
 };
 
-/// The part of add_gains() without fluxes, for operations that conserve the invariants.
-void combine_gains(const field& u, std::span<const target<field, double>> targets);
+/// acc ← (fresh ? 0 : acc) + α u + β rates for the gains of every target; without rates for operations that
+/// conserve the invariants.
+void combine_gains(const field& u, std::span<const target<field, double>> targets,
+                   std::span<const double> rates = {});
 
 }  // namespace apsis

@@ -38,6 +38,7 @@ int first_component(int width, int columns, int column) {
 struct transport::scratch {
   per_thread<block_sweep> sweeps;
   per_thread<std::vector<upwind::row_target>> rows;
+  std::vector<double> given;  ///< by force and source
 
   /// The boxes of a mesh, which are made again only for another width or number of threads.
   const tiling& boxes(const grid& mesh, int longest, int parts) {
@@ -92,7 +93,7 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   const bool moves =
       std::any_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta != 0.0; });
   if (!moves) {
-    faces_->add_gains(u, targets, false);
+    combine_gains(u, targets);
     add_weighted(u, targets, then);
     return static_cast<bool>(then);
   }
@@ -104,7 +105,8 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   // Cells are complete box by box only where sweeps are all there is.
   const bool alone = !force_ && !source_;
   const bool done = sweep(t, u, targets, alone ? then : cells_job());
-  std::vector<double> given;  // inside the domain
+  std::vector<double>& given = scratch_->given;
+  given.clear();
   if (force_) {
     force_->add(t, u, targets);
     given = force_->given();
@@ -113,7 +115,7 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
     source_->add(t, targets);
     given.insert(given.end(), source_->given().begin(), source_->given().end());
   }
-  faces_->add_gains(u, targets, true, given);
+  faces_->add_gains(u, targets, given);
   return done;
 }
 

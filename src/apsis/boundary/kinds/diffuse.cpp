@@ -4,6 +4,7 @@
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -40,6 +41,12 @@ class diffuse_wall final : public incoming_boundary {
   }
 
   std::optional<std::vector<double>> entropy_bound() const override { return entropy_bound_; }
+
+  std::array<double, 3> wall_velocity(double t, const position& at) const override {
+    std::array<double, 3> u{};
+    for (std::size_t k = 0; k < velocity_.size(); ++k) u[k] = velocity_[k].at(t, at);
+    return u;
+  }
 
   void incoming(const face& where, double t, const position& at, const double* outgoing,
                 double* values) const override {

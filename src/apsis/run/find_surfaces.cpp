@@ -1,0 +1,203 @@
+#include <apsis/run/find_surfaces.hpp>
+
+#include <apsis/phase/component_name.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace apsis {
+namespace {
+
+std::size_t at(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+std::optional<std::size_t> place_of_name(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+/// The columns that are derived from the invariants.
+struct derived_columns {
+  std::vector<std::size_t> momenta;   ///< of each velocity dimension; empty if the model has none
+  std::optional<std::size_t> energy;  ///< nothing without momenta
+
+  explicit derived_columns(const model& equation) {
+    const auto names = equation.invariants();
+    const int dimensions = equation.velocities().dimensions();
+    for (int k = 0; k < dimensions; ++k)
+      if (const auto found = place_of_name(names, component_name("momentum", k, dimensions)))
+        momenta.push_back(*found);
+    if (momenta.size() < at(dimensions)) momenta.clear();
+    if (!momenta.empty()) energy = place_of_name(names, "energy");
+  }
+
+  /// Adds the names, and the dimensions given those of the fluxes of the invariants.
+  void add_names(surface_table& table, const std::vector<dimension>& fluxes) const {
+    const auto add = [&](const char* name, std::size_t invariant) {
+      table.numbers.columns.emplace_back(name);
+      table.measures.push_back(fluxes[invariant]);
+    };
+    if (momenta.empty()) return;
+    add("pressure", momenta.front());
+    if (momenta.size() > 1) add("shear_stress", momenta.front());
+    if (energy) add("heat_flux", *energy);
+  }
+
+  /// Appends the values for the given fluxes of the invariants.
+  void add_values(std::vector<double>& row, const std::vector<double>& given, const face& where,
+                  const std::array<double, 3>& wall_velocity) const {
+    if (momenta.empty()) return;
+    const double normal = given[momenta[at(where.direction)]];
+    row.push_back(where.upper ? normal : -normal);
+    std::vector<double> along;
+    double work = 0.0;
+    for (std::size_t k = 0; k < momenta.size(); ++k) {
+      if (k != at(where.direction)) along.push_back(given[momenta[k]]);
+      work += wall_velocity[k] * given[momenta[k]];
+    }
+    if (along.size() == 1) row.push_back(along.front());
+    if (along.size() == 2) row.push_back(std::hypot(along[0], along[1]));
+    if (energy) row.push_back(given[*energy] - work);
+  }
+};
+
+/// The face of the domain at which a surface is, or the face of a box: it is the upper one where segments
+/// begin.
+face face_beside(const surface& one) {
+  return {one.where.direction, one.solid < 0 ? one.where.upper : !one.where.upper};
+}
+
+/// Arc length in the plane at a point of a surface.
+double arc_length(const grid& mesh, const surface& one, const position& x) {
+  const int along = 1 - one.where.direction;
+  if (one.solid < 0) return x[at(along)] - mesh.edge(along, 0);
+  const cell_box& box = mesh.solids()[at(one.solid)];
+  const auto end = [&](int direction, bool upper) {
+    const auto k = at(direction);
+    return mesh.edge(direction, box.first[k] + (upper ? box.cells[k] : 0));
+  };
+  const double width = end(0, true) - end(0, false), height = end(1, true) - end(1, false);
+  switch (face_beside(one).index()) {
+    case 0:  // left, downwards
+      return 2.0 * width + height + (end(1, true) - x[1]);
+    case 1:  // right, upwards
+      return width + (x[1] - end(1, false));
+    case 2:  // bottom, to the right
+      return x[0] - end(0, false);
+    default:  // top, to the left
+      return width + height + (end(0, true) - x[0]);
+  }
+}
+
+/// The table of one opening, whose gains begin at `first`.
+class surface_writer {
+ public:
+  surface_writer(const run_setup& setup, const domain& space, const step_gains& last)
+      : space_(space), last_(last), invariants_(setup.equation->invariants()), derived_(*setup.equation) {
+    for (const dimension& density : setup.equation->invariant_measures())
+      fluxes_.push_back(density * dimensions::length / dimensions::time);
+  }
+
+  surface_table table(const std::string& name, const opening& one, std::size_t first) const {
+    surface_table table = with_columns(name);
+    for (const int number : one.surfaces)
+      for (std::size_t place = 0; place < space_.surfaces()[at(number)].segments.size(); ++place) {
+        table.faces.push_back(face_names[face_beside(space_.surfaces()[at(number)]).index()]);
+        table.numbers.rows.push_back(row(number, static_cast<int>(place), first));
+        first += invariants_.size();
+      }
+    if (one.solid >= 0 && in_plane()) sort_along(table);
+    return table;
+  }
+
+ private:
+  bool in_plane() const { return space_.mesh().dimensions() == 2; }
+
+  surface_table with_columns(const std::string& name) const {
+    surface_table table{name, {}, {}};
+    const auto add = [&](const std::string& column, const dimension& measure) {
+      table.numbers.columns.push_back(column);
+      table.measures.push_back(measure);
+    };
+    const int dimensions = space_.mesh().dimensions();
+    if (in_plane()) add("s", dimensions::length);
+    for (int k = 0; k < dimensions; ++k) add(std::string(1, "xyz"[k]), dimensions::length);
+    dimension area = dimensions::none;
+    for (int k = 1; k < dimensions; ++k) area = area * dimensions::length;
+    add("area", area);
+    for (std::size_t k = 0; k < invariants_.size(); ++k) add(invariants_[k], fluxes_[k]);
+    derived_.add_names(table, fluxes_);
+    return table;
+  }
+
+  std::vector<double> row(int number, int place, std::size_t first) const {
+    const grid& mesh = space_.mesh();
+    const surface& one = space_.surfaces()[at(number)];
+    const position x = space_.meeting_point(number, place);
+    const double area = mesh.cell_volume() / mesh.spacing(one.where.direction);
+    std::vector<double> row, given;
+    if (in_plane()) row.push_back(arc_length(mesh, one, x));
+    row.insert(row.end(), x.begin(), x.begin() + mesh.dimensions());
+    row.push_back(area);
+    for (std::size_t k = first; k < first + invariants_.size(); ++k)
+      given.push_back(last_.received.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                             : (0.0 - last_.received[k]) / (area * last_.dt));
+    row.insert(row.end(), given.begin(), given.end());
+    const double middle = last_.t - 0.5 * last_.dt;
+    derived_.add_values(row, given, one.where, space_.side(number)->wall_velocity(middle, x));
+    return row;
+  }
+
+  /// Sorts the rows by s.
+  static void sort_along(surface_table& table) {
+    std::vector<std::size_t> order(table.faces.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto& rows = table.numbers.rows;
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return rows[a].front() < rows[b].front(); });
+    surface_table sorted{table.name, {}, {table.numbers.columns, {}}, table.measures};
+    for (const std::size_t k : order) {
+      sorted.faces.push_back(table.faces[k]);
+      sorted.numbers.rows.push_back(rows[k]);
+    }
+    table = std::move(sorted);
+  }
+
+  const domain& space_;
+  const step_gains& last_;
+  std::vector<std::string> invariants_;
+  std::vector<dimension> fluxes_;  ///< dimensions of the fluxes of the invariants
+  derived_columns derived_;
+};
+
+}  // namespace
+
+std::vector<surface_table> find_surfaces(const run_setup& setup, const step_gains& last) {
+  std::vector<surface_table> tables;
+  const auto& wanted = setup.config().output.surfaces;
+  if (wanted.empty()) return tables;
+  const domain space = setup.builder().space();
+  const surface_writer writer(setup, space, last);
+  const auto names = setup.open_faces();
+  const auto is_wanted = [&](const std::string& name) {
+    return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  };
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < space.openings().size(); ++k) {
+    const opening& one = space.openings()[k];
+    if (is_wanted(all_surfaces) || is_wanted(names[k])) tables.push_back(writer.table(names[k], one, first));
+    first += space.ends_at(one) * setup.equation->invariants().size();
+  }
+  return tables;
+}
+
+}  // namespace apsis

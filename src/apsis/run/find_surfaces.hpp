@@ -1,0 +1,32 @@
+#pragma once
+
+#include <apsis/run/setup.hpp>
+#include <apsis/run/surface_table.hpp>
+
+#include <vector>
+
+namespace apsis {
+
+/// The amounts of the invariants that the gas received in the last step.
+struct step_gains {
+  double t = 0.0,                ///< time at its end
+      dt = 0.0;                  ///< its length
+  std::vector<double> received;  ///< field::gains(); empty before the first step
+};
+
+/// Returns the tables of the surfaces of output.surfaces, a row for each cell face, with the columns
+///   s          in the plane: arc length; on a face of the domain from its lower end, around a box
+///              counter-clockwise from its lower left corner
+///   x, y, z    centre of the cell face
+///   area       of the cell face: 1 on a line, a length in the plane
+///   INVARIANT  what the gas gives to the surface per unit of time and area, in the mean over the step: minus
+///              what it receives
+/// and, where the model has the momenta m and the energy, with the normal n into the surface,
+///   pressure       m·n
+///   shear_stress   the component of m along the surface and an axis, or with three velocity dimensions the
+///                  norm of the part of m along the surface; none with one dimension
+///   heat_flux      energy − u_w·m with the velocity u_w of the wall in the middle of the step
+/// NaN before the first step. Rows of a box in the plane are in the order of s, others in that of the ends.
+std::vector<surface_table> find_surfaces(const run_setup& setup, const step_gains& last);
+
+}  // namespace apsis

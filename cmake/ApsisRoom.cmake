@@ -63,6 +63,12 @@ function(apsis_room name)
   set_property(GLOBAL APPEND PROPERTY APSIS_ROOMS_${ROOM_COMPONENT} ${name})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp
        ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*/*.cpp)
+  # Functions with two implementations.
+  if(apsis_mpi)
+    list(FILTER sources EXCLUDE REGEX "/without_mpi/")
+  else()
+    list(FILTER sources EXCLUDE REGEX "/with_mpi/")
+  endif()
   add_library(apsis_${name} ${sources} ${ROOM_GENERATED})
   add_library(apsis::${name} ALIAS apsis_${name})
   set_target_properties(apsis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF

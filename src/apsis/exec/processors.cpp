@@ -55,4 +55,11 @@ int available_processors() {
   return granted > 0 ? std::min(allowed, granted) : allowed;
 }
 
+int available_processors(int sharing) {
+  const int all = available_processors();
+  // A launcher that binds processes to processors has shared them out already.
+  const bool bound = processors_of_affinity() < static_cast<int>(std::thread::hardware_concurrency());
+  return bound ? all : std::max(1, all / std::max(1, sharing));
+}
+
 }  // namespace apsis

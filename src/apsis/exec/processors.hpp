@@ -8,6 +8,9 @@ namespace apsis {
 /// fewer if the CPU quota of a control group is smaller.
 int available_processors();
 
+/// Returns the number for one of `sharing` processes of the same run on this machine.
+int available_processors(int sharing);
+
 /// Returns the number of processors that a line "quota period" of cpu.max (cgroup version 2) grants, rounded
 /// up; 0 if it sets no limit or cannot be parsed.
 int processors_of_quota(std::string_view cpu_max);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <apsis/exec/communicator.hpp>
+
+#include <exception>
+
+namespace apsis {
+
+/// Throws on all processes if one of them has an error: the error of the smallest cell, then of the smallest
+/// rank, with its type (an exit code has one type of error), its message and its site. Collective; every
+/// process passes its own error or nullptr.
+void agree_on_errors(communicator& processes, const std::exception_ptr& mine);
+
+/// Runs body() on every process, without collective calls inside, and throws on all what one of them throws.
+template <class Body>
+void together(communicator& processes, const Body& body) {
+  if (processes.is_single()) return body();
+  std::exception_ptr mine;
+  try {
+    body();
+  } catch (...) {
+    mine = std::current_exception();
+  }
+  agree_on_errors(processes, mine);
+}
+
+}  // namespace apsis

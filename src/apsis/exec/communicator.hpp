@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// Numbers that one process sends to another.
+struct message {
+  int rank;                   ///< of the other process
+  std::span<double> numbers;  ///< sent, or to be overwritten; valid until finish_exchange()
+};
+
+/// Messages and bytes that a process has sent.
+struct communication_count {
+  long messages = 0,   ///< of exchanges
+      bytes = 0,       ///< in these messages
+      reductions = 0;  ///< sums, minima and broadcasts
+};
+
+/// The processes of a run: one, or many that hold a part of the mesh each. Every member but rank() and size()
+/// is collective: all processes call it in the same order with data of the same size.
+class communicator {
+ public:
+  virtual ~communicator() = default;
+
+  virtual int rank() const = 0;                   ///< number of this process, 0 … size() − 1
+  virtual int size() const = 0;                   ///< number of processes
+  bool is_root() const { return rank() == 0; }    ///< whether this process writes messages and files
+  bool is_single() const { return size() == 1; }  ///< whether there is one process only
+
+  /// values ← the elementwise sums over all processes, on all of them. Integers: the order does not matter.
+  void sum(std::span<std::int64_t> values);
+  /// values ← the elementwise minima over all processes; NaN is not allowed.
+  void lowest(std::span<double> values);
+  /// values ← those of process `from`.
+  void broadcast(std::span<std::byte> values, int from = 0);
+  /// Returns the bytes of every process on the root, and nothing elsewhere; sizes may differ.
+  std::vector<std::vector<std::byte>> gather(std::span<const std::byte> values);
+  /// Starts to exchange messages: at most one for each ordered pair of processes, of the same length at both
+  /// ends.
+  void begin_exchange(std::span<const message> sent, std::span<const message> received);
+  /// Waits for the messages of begin_exchange(), if there are any.
+  void finish_exchange();
+
+  /// Returns the number of processes on the machine of this one, with which it shares processors and memory.
+  virtual int processes_here() const { return 1; }
+  /// Returns the Fortran handle of the MPI communicator, for libraries that communicate themselves; −1 for a
+  /// single process.
+  virtual std::int64_t handle() const { return -1; }
+  /// Whether all processes call this within some seconds: those that fail together. Not to be called twice.
+  virtual bool all_arrive(double seconds) = 0;
+  /// Ends all processes with an exit code; for the error of one while others wait for it.
+  [[noreturn]] virtual void abort(int code) const = 0;
+  /// Returns what this process has sent since it was started.
+  const communication_count& count() const { return count_; }
+
+ private:
+  virtual void do_sum(std::span<std::int64_t> values) = 0;
+  virtual void do_lowest(std::span<double> values) = 0;
+  virtual void do_broadcast(std::span<std::byte> values, int from) = 0;
+  virtual std::vector<std::vector<std::byte>> do_gather(std::span<const std::byte> values) = 0;
+  virtual void do_begin_exchange(std::span<const message> sent, std::span<const message> received) = 0;
+  virtual void do_finish_exchange() = 0;
+
+  communication_count count_;
+};
+
+/// Returns the communicator of a single process.
+std::shared_ptr<communicator> single_process();
+
+/// Returns what all processes gathered as one list of numbers in the order of the ranks; nothing elsewhere
+/// than on the root.
+std::vector<double> gather_numbers(communicator& processes, std::span<const double> mine);
+
+}  // namespace apsis

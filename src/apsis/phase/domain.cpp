@@ -38,20 +38,35 @@ domain::domain(phase_space space, std::vector<faces> sides,
                std::vector<std::shared_ptr<const boundary>> solids)
     : space_(std::move(space)),
       periodic_(periodic_directions(space_.mesh, sides)),
-      segments_(space_.mesh, periodic_),
-      sides_(surfaces().size()),
-      ghosts_(surfaces().size()) {
+      segments_(space_.mesh, periodic_) {
+  set_sides(sides, solids);
+}
+
+domain::domain(phase_space space, std::vector<faces> sides,
+               std::vector<std::shared_ptr<const boundary>> solids, const distribution& shared)
+    : space_(std::move(space)),
+      processes_(shared.processes),
+      periodic_(periodic_directions(space_.mesh, sides)) {
+  if (!processes_->is_single()) distribution_ = shared;
+  segments_ = segment_table(shared.whole, mesh(), periodic_, 0);
+  set_sides(sides, solids);
+}
+
+void domain::set_sides(const std::vector<faces>& sides,
+                       const std::vector<std::shared_ptr<const boundary>>& solids) {
   if (solids.size() != mesh().solids().size())
     throw input_error(fmt::format("{} boundaries of solid boxes (the mesh has {}); give one for each",
                                   solids.size(), mesh().solids().size()));
+  sides_.resize(surfaces().size());
+  ghosts_.resize(surfaces().size());
   for (std::size_t number = 0; number < sides_.size(); ++number) {
-    const auto& [where, solid, ends] = surfaces()[number];
+    const auto& [where, solid, ends, own] = surfaces()[number];
     if (solid < 0 && periodic(where.direction)) continue;
     auto& here = sides_[number];
     here = solid < 0 ? sides[at(where.direction)][where.upper ? 1 : 0] : solids[at(solid)];
     if (here->periodic())
       throw input_error("a solid box is periodic (nothing lies behind its faces); give it a wall");
-    if (auto own = here->prepared(where, space_.velocities)) here = std::move(own);
+    if (auto tables = here->prepared(where, space_.velocities)) here = std::move(tables);
     if (solid < 0 || openings_.empty() || openings_.back().solid != solid)
       openings_.push_back({{}, where, solid});
     openings_.back().surfaces.push_back(static_cast<int>(number));
@@ -74,9 +89,13 @@ std::optional<std::vector<std::vector<double>>> domain::entropy_bounds() const {
   return all;
 }
 
+long domain::number_in_whole_mesh(long cell) const {
+  return cell < 0 || !distribution_ ? cell : distribution_->whole.cell_of(mesh(), static_cast<int>(cell));
+}
+
 std::size_t domain::ends_at(const opening& one) const {
   std::size_t ends = 0;
-  for (const int surface : one.surfaces) ends += surfaces()[at(surface)].segments.size();
+  for (const int surface : one.surfaces) ends += at(surfaces()[at(surface)].own);
   return ends;
 }
 
@@ -85,43 +104,97 @@ bool domain::repeats(int surface) const {
 }
 
 void domain::reserve(int components, int width) {
+  const int before = width_;
+  width_ = std::max(width, width_);
+  if (distribution_ && width_ > before) {
+    segments_ = segment_table(distribution_->whole, mesh(), periodic_, width_);
+    halo_ = std::make_unique<halo_exchange>(*distribution_, periodic_, width_);
+  }
   for (std::size_t number = 0; number < sides_.size(); ++number) {
     field& rows = ghosts_[number];
-    if (repeats(static_cast<int>(number)) || (rows.components() == components && width_ >= width)) continue;
-    rows = field(static_cast<int>(surfaces()[number].segments.size()) * std::max(width, width_), components);
+    const int needed = static_cast<int>(surfaces()[number].segments.size()) * width_;
+    if (repeats(static_cast<int>(number)) || (rows.components() == components && rows.cells() == needed))
+      continue;
+    rows = field(needed, components);
   }
-  width_ = std::max(width, width_);
 }
 
 int domain::cell_at(int surface, int place) const {
-  const auto& [where, solid, ends] = surfaces()[at(surface)];
+  const auto& [where, solid, ends, own] = surfaces()[at(surface)];
   const segment& one = segment_at(where.direction, ends[at(place)]);
   return one.first + (where.upper ? (one.cells - 1) * mesh().stride(where.direction) : 0);
 }
 
 position domain::meeting_point(int surface, int place) const {
-  const face& where = surfaces()[at(surface)].where;
+  const auto& [where, solid, ends, own] = surfaces()[at(surface)];
+  const segment& one = segment_at(where.direction, ends[at(place)]);
+  const auto k = at(where.direction);
   position x = mesh().centre(cell_at(surface, place));
-  x[at(where.direction)] += (where.upper ? 0.5 : -0.5) * mesh().spacing(where.direction);
+  if (const int beyond = one.beyond[where.upper ? 1 : 0]; beyond > 0) {
+    // The centre of the cell of another process, with the bits that it has there.
+    const int all = distribution_->whole.cells(where.direction);
+    const int along =
+        mesh().first(where.direction) + one.offset + (where.upper ? one.cells - 1 + beyond : -beyond);
+    x[k] = distribution_->whole.centre(
+        (along % all + all) % all * distribution_->whole.stride(where.direction), where.direction);
+  }
+  x[k] += (where.upper ? 0.5 : -0.5) * mesh().spacing(where.direction);
   return x;
 }
 
-void domain::fill_surface(int surface, double t, const field& u) {
-  const auto& [where, solid, ends] = surfaces()[at(surface)];
-  const int stride = mesh().stride(where.direction);
+int domain::pencil_of(int direction, const segment& one) const {
+  const int inner = mesh().stride(direction);
+  return one.first / (inner * mesh().cells(direction)) * inner + one.first % inner;
+}
+
+/// Number of cells between an end and the opposite one, as far as this process sees them; a pencil that
+/// continues across periodic faces counts to the face.
+int domain::visible(int direction, const segment& one, bool upper) const {
+  const int seen = one.beyond[0] + one.cells + one.beyond[1];
+  if (!halo_ || !periodic(direction)) return seen;
+  const int n = distribution_->whole.cells(direction), first = mesh().first(direction) + one.offset;
+  const int end =
+      upper ? first + one.cells - 1 + one.beyond[1] : first - one.beyond[0];  // the cell at the end
+  const int wrapped = (end % n + n) % n;
+  return std::min(seen, upper ? wrapped + 1 : n - wrapped);
+}
+
+/// The row of a cell counted inwards from an end.
+const double* domain::inside_row(const field& u, int direction, const segment& one, bool upper,
+                                 int cell) const {
+  const int others = one.beyond[upper ? 1 : 0];
+  if (cell < others) return halo_->row(u, direction, pencil_of(direction, one), upper, others - 1 - cell);
+  cell -= others;
+  if (cell >= one.cells) return halo_->row(u, direction, pencil_of(direction, one), !upper, cell - one.cells);
+  return u.row(one.first + (upper ? one.cells - 1 - cell : cell) * mesh().stride(direction));
+}
+
+/// Whether the ghost rows of an end depend on cells of other processes. A boundary reads as many rows inside
+/// as there are ghost rows, and at least three, if there are so many.
+bool domain::needs_others(int direction, const segment& one, bool upper) const {
+  return !one.ends_here(upper) || (one.cells < rows_inside() && visible(direction, one, upper) > one.cells);
+}
+
+void domain::fill_surface(int surface, double t, const field& u, end_kind which) {
+  const auto& [where, solid, ends, own] = surfaces()[at(surface)];
   field& rows = ghosts_[at(surface)];
   constexpr int ends_at_once = 16;
   const boundary& here = *sides_[at(surface)];
   const face& of_end = where;
   const std::vector<int>& segments = ends;
-  parallel_blocks(static_cast<int>(ends.size()), ends_at_once, [&](int begin, int end) {
+  parallel_blocks(static_cast<int>(segments.size()), ends_at_once, [&](int begin, int end) {
     std::vector<const double*> inside;
     std::vector<double*> beyond(at(width_));
     for (int place = begin; place < end; ++place) {
       const segment& one = segment_at(of_end.direction, segments[at(place)]);
-      inside.resize(at(one.cells));
-      for (int k = 0; k < one.cells; ++k)
-        inside[at(k)] = u.row(one.first + (of_end.upper ? one.cells - 1 - k : k) * stride);
+      if (which != end_kind::all &&
+          needs_others(of_end.direction, one, of_end.upper) != (which == end_kind::of_others))
+        continue;
+      // In a mesh of several processes no boundary may depend on how far this one sees.
+      const int seen = visible(of_end.direction, one, of_end.upper);
+      inside.resize(at(halo_ ? std::min(seen, rows_inside()) : seen));
+      for (int k = 0; k < static_cast<int>(inside.size()); ++k)
+        inside[at(k)] = inside_row(u, of_end.direction, one, of_end.upper, k);
       for (int g = 0; g < width_; ++g) beyond[at(g)] = rows.row(place * width_ + g);
       here.fill(of_end, t,
                 {inside, beyond, space_.velocities, u.components(), meeting_point(surface, place)});
@@ -129,30 +202,67 @@ void domain::fill_surface(int surface, double t, const field& u) {
   });
 }
 
-void domain::fill_ghosts(double t, const field& u) {
+void domain::fill_surfaces(double t, const field& u, end_kind which) {
   for (int surface = 0; surface < static_cast<int>(sides_.size()); ++surface)
-    if (!repeats(surface)) fill_surface(surface, t, u);
+    if (!repeats(surface)) fill_surface(surface, t, u, which);
+}
+
+void domain::fill_ghosts(double t, const field& u) {
+  exchange(u);
+  fill_surfaces(t, u, end_kind::all);
+}
+
+void domain::begin_ghosts(double t, const field& u) {
+  if (halo_) halo_->begin(u);
+  fill_surfaces(t, u, halo_ ? end_kind::of_own_cells : end_kind::all);
+}
+
+void domain::finish_ghosts(double t, const field& u) {
+  if (!halo_) return;
+  halo_->finish();
+  fill_surfaces(t, u, end_kind::of_others);
+}
+
+void domain::exchange(const field& u) {
+  if (!halo_) return;
+  halo_->begin(u);
+  halo_->finish();
+}
+
+bool domain::is_inner(const cell_box& box) const {
+  for (int k = 0; k < mesh().dimensions(); ++k)
+    if (splits(k) && (box.first[at(k)] < rows_inside() ||
+                      box.first[at(k)] + box.cells[at(k)] > mesh().cells(k) - rows_inside()))
+      return false;
+  return true;
 }
 
 /// A segment that crosses periodic faces continues in another one of its pencil, or in itself.
 const double* domain::ghost_row(const field& u, int direction, int number, bool upper, int ghost) const {
-  const int stride = mesh().stride(direction);
   for (;;) {
     const segment& one = segment_at(direction, number);
+    if (ghost < one.beyond[upper ? 1 : 0])
+      return halo_->row(u, direction, pencil_of(direction, one), upper, ghost);
+    ghost -= one.beyond[upper ? 1 : 0];
     const auto& [surface, place] = one.ends[upper ? 1 : 0];
-    int cell = ghost;
-    if (surface < 0) {
-      const segment& next = segment_at(direction, place);
-      if (ghost < next.cells) return u.row(next.first + (upper ? ghost : next.cells - 1 - ghost) * stride);
-      ghost -= next.cells;
-      number = place;
-      continue;
+    if (surface >= 0) {
+      const auto repeated = sides_[at(surface)]->repeated_cell(ghost, visible(direction, one, upper));
+      return repeated ? inside_row(u, direction, one, upper, *repeated)
+                      : ghosts_[at(surface)].row(place * width_ + ghost);
     }
-    const auto repeated = sides_[at(surface)]->repeated_cell(ghost, one.cells);
-    if (!repeated) return ghosts_[at(surface)].row(place * width_ + ghost);
-    cell = *repeated;
-    return u.row(one.first + (upper ? one.cells - 1 - cell : cell) * stride);
+    const segment& next = segment_at(direction, place);
+    if (ghost < next.cells)
+      return u.row(next.first + (upper ? ghost : next.cells - 1 - ghost) * mesh().stride(direction));
+    ghost -= next.cells;
+    number = place;
   }
+}
+
+const double* domain::row_across(const field& u, int direction, int number, bool upper) const {
+  const segment& one = segment_at(direction, number);
+  return one.ends_here(upper) && one.ends[upper ? 1 : 0].surface >= 0
+             ? nullptr
+             : ghost_row(u, direction, number, upper, 0);
 }
 
 void domain::ghost_rows(int surface, int place, std::vector<const double*>& rows) const {

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <apsis/phase/boundary.hpp>
+#include <apsis/phase/distribution.hpp>
 #include <apsis/phase/field.hpp>
+#include <apsis/phase/halo_exchange.hpp>
 #include <apsis/phase/phase_space.hpp>
 #include <apsis/phase/segments.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -32,6 +35,9 @@ class domain {
   /// Throws input_error where only one of the two faces of a direction is periodic, or a box is.
   domain(phase_space space, std::vector<faces> sides,
          std::vector<std::shared_ptr<const boundary>> solids = {});
+  /// The block of this process of a mesh that several processes share; `space` has this block as its mesh.
+  domain(phase_space space, std::vector<faces> sides, std::vector<std::shared_ptr<const boundary>> solids,
+         const distribution& shared);
   /// Returns a single cell without faces, for equations without space.
   static domain point();
 
@@ -54,7 +60,8 @@ class domain {
   const boundary* side(int surface) const { return sides_[static_cast<std::size_t>(surface)].get(); }
   /// Returns the point at which a segment meets a surface.
   position meeting_point(int surface, int place) const;
-  /// Returns the cell in front of a surface.
+  /// Returns the cell in front of a surface, which may belong to another process only where the end does not
+  /// lie here (segment::ends_here()).
   int cell_at(int surface, int place) const;
   /// Returns the faces that are not periodic and the solid boxes, in this order.
   const std::vector<opening>& openings() const { return openings_; }
@@ -63,10 +70,32 @@ class domain {
   /// Returns boundary::entropy_bound() of every opening; nothing if one of them has none.
   std::optional<std::vector<std::vector<double>>> entropy_bounds() const;
 
-  /// Allocates `width` ghost rows of `components` numbers at every end of a segment.
+  /// Returns the processes that share the mesh.
+  communicator& processes() const { return *processes_; }
+  /// Returns the number in the whole mesh of a cell of this process; −1 for −1.
+  long number_in_whole_mesh(long cell) const;
+  /// Whether other processes hold cells of the mesh.
+  bool shared() const { return distribution_.has_value(); }
+  /// Whether other processes continue the pencils along a direction.
+  bool splits(int direction) const { return halo_ && halo_->splits(direction); }
+
+  /// Allocates `width` ghost rows of `components` numbers at every end of a segment. To be called before the
+  /// places of ends are used, on all processes.
   void reserve(int components, int width);
-  /// Fills the ghost rows of u at time t.
+  /// Fills the ghost rows of u at time t, and receives the rows of other processes.
   void fill_ghosts(double t, const field& u);
+  /// The same in two parts: in between, rows may be read that depend on no other process (is_inner()).
+  void begin_ghosts(double t, const field& u);
+  /// Completes begin_ghosts().
+  void finish_ghosts(double t, const field& u);
+  /// Whether the cells of a box and their neighbours within the ghost width depend on no other process.
+  bool is_inner(const cell_box& box) const;
+  /// Receives the rows of other processes, without ghost rows.
+  void exchange(const field& u);
+
+  /// Returns the row of the cell across an end of a segment, of another process or a periodic neighbour,
+  /// after exchange(); nullptr if the gas ends there.
+  const double* row_across(const field& u, int direction, int segment, bool upper) const;
 
   /// rows ← the ghost rows beyond an end at a surface, counted outwards, of the last fill_ghosts(). The
   /// boundary of the surface must fill them.
@@ -80,11 +109,25 @@ class domain {
  private:
   domain();
 
+  /// Ends of segments by what their ghost rows are computed from.
+  enum class end_kind { all, of_own_cells, of_others };
+
+  void set_sides(const std::vector<faces>& sides, const std::vector<std::shared_ptr<const boundary>>& solids);
   bool repeats(int surface) const;
+  /// Number of rows inside that a boundary may read.
+  int rows_inside() const { return std::max(width_, 3); }
+  int pencil_of(int direction, const segment& one) const;
+  int visible(int direction, const segment& one, bool upper) const;
+  const double* inside_row(const field& u, int direction, const segment& one, bool upper, int cell) const;
   const double* ghost_row(const field& u, int direction, int segment, bool upper, int ghost) const;
-  void fill_surface(int surface, double t, const field& u);
+  bool needs_others(int direction, const segment& one, bool upper) const;
+  void fill_surfaces(double t, const field& u, end_kind which);
+  void fill_surface(int surface, double t, const field& u, end_kind which);
 
   phase_space space_;
+  std::shared_ptr<communicator> processes_ = single_process();
+  std::optional<distribution> distribution_;  ///< of a mesh that several processes share
+  std::unique_ptr<halo_exchange> halo_;
   std::array<bool, 3> periodic_{};
   segment_table segments_;
   std::vector<std::shared_ptr<const boundary>> sides_;  ///< [surface]

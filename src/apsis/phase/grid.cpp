@@ -58,6 +58,7 @@ grid grid::block(std::array<int, 3> first, std::array<int, 3> cells) const {
     inside.push_back(box);
   }
   if (!inside.empty()) part.set_solids(std::move(inside));
+  if (part.fluid_.empty()) part.fluid_.push_back({0, 0});
   return part;
 }
 
@@ -129,6 +130,13 @@ int grid::stride(int direction) const {
   int stride = 1;
   for (int k = 2; k > direction; --k) stride *= cells(k);
   return stride;
+}
+
+int grid::cell_of(const grid& block, int cell) const {
+  int number = 0;
+  for (int k = 0; k < 3; ++k)
+    number += (cell / block.stride(k) % block.cells(k) + block.first(k) - first(k)) * stride(k);
+  return number;
 }
 
 int grid::first_cell(int direction, int pencil) const {

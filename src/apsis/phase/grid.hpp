@@ -75,6 +75,9 @@ class grid {
   /// Returns the distance in cell numbers between neighbours along a direction.
   int stride(int direction) const;
 
+  /// Returns the number in this grid of a cell of one of its blocks.
+  int cell_of(const grid& block, int cell) const;
+
   /// Returns the number of pencils along a direction: lines of cells(direction) cells, stride(direction)
   /// apart.
   int pencils(int direction) const { return size() / cells(direction); }
@@ -84,7 +87,7 @@ class grid {
   const std::vector<cell_box>& solids() const { return solids_; }  ///< the solid boxes
   /// Returns the number of the last of the solid boxes that contain a cell; −1 if none does.
   int solid(int cell) const { return solid_ ? (*solid_)[at(cell)] : -1; }
-  /// Returns all cells that are not solid, in increasing order.
+  /// Returns all cells that are not solid, in increasing order; a single empty range for a block without any.
   const std::vector<cell_range>& fluid() const { return fluid_; }
 
  private:

@@ -60,6 +60,8 @@ void block_sweep::reserve(const context& of, int cells, int width, std::size_t t
   joined_.reserve(rows);
   targets_.reserve(targets);
   make_room(cells, width);
+  // Also for threads that come to the end of a segment in a later step.
+  for (auto* row : {&vacuum_, &in_, &out_}) row->resize(std::max(row->size(), static_cast<std::size_t>(width)));
 }
 
 void block_sweep::run(const context& of, const field& u, const place& at, targets_view targets) {
@@ -90,22 +92,22 @@ void block_sweep::run(const context& of, const field& u, const place& at, target
 const segment_end* block_sweep::surface_at(bool upper, const place& at) const {
   const segment_end& end = segment_->ends[upper ? 1 : 0];
   const bool there = upper ? at.end == segment_->cells : at.begin == 0;
-  return there && end.surface >= 0 ? &end : nullptr;
+  return there && segment_->ends_here(upper) && end.surface >= 0 ? &end : nullptr;
 }
 
 /// Replaces the cells of the halo behind a surface that prescribes the incoming components, as the fluxes see
-/// them, by vacuum. The surface may lie cells away from the block, also across periodic faces: all sweeps
-/// that compute the same flux see the same.
+/// them, by vacuum. The surface may lie cells away from the block, also across periodic faces and behind cells of
+/// other processes: all sweeps that compute the same flux see the same.
 void block_sweep::empty_beyond_surface(bool upper, const place& at) {
-  int distance = upper ? segment_->cells - at.end : at.begin;
+  const std::size_t side = upper ? 1 : 0;
+  int distance = (upper ? segment_->cells - at.end : at.begin) + segment_->beyond[side];
   for (const segment* one = segment_; distance < halo_;) {
-    const segment_end& end = one->ends[upper ? 1 : 0];
+    const segment_end& end = one->ends[side];
     if (end.surface >= 0 && !of_->faces.prescribes(end.surface)) return;
     if (end.surface >= 0) break;
     one = &of_->space.segment_at(at.direction, end.place);
-    distance += one->cells;
+    distance += one->cells + one->beyond[side];
   }
-  vacuum_.resize(std::max(vacuum_.size(), static_cast<std::size_t>(width_)));
   for (; distance < halo_; ++distance) {
     const int ghost = upper ? at.end + distance : at.begin - 1 - distance;
     rows_[static_cast<std::size_t>(ghost - first_row_)] = vacuum_.data();
@@ -118,8 +120,6 @@ void block_sweep::empty_beyond_surface(bool upper, const place& at) {
 void block_sweep::record(const segment_end& end, bool upper, const place& at) {
   const int cell = upper ? at.end - 1 : 0;
   const auto width = static_cast<std::size_t>(width_);
-  in_.resize(std::max(in_.size(), width));
-  out_.resize(std::max(out_.size(), width));
   const double* right = right_.data() + offset(cell);
   const upwind::cells one{row(cell),
                           both_edges() ? left_.data() + offset(cell) : right,

@@ -22,7 +22,7 @@ face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
       side& made = at(surface);
       for (const double v : equation.speeds(of.where.direction))
         made.inward.push_back(of.where.upper ? -v : v);
-      const auto ends = of.segments.size();
+      const auto ends = index(of.own);
       made.values = field(static_cast<int>(ends), equation.components());
       made.incoming = field(prescribes(surface) ? static_cast<int>(ends) : 0, equation.components());
       made.first = ends_;

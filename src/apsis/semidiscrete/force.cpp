@@ -1,7 +1,9 @@
 #include <apsis/semidiscrete/force.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/first_error.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
+#include <apsis/semidiscrete/global_integrals.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
 #include <algorithm>
@@ -93,17 +95,17 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
     here.a.resize(size(together));
     here.target.reserve(1);
   });
-  parallel_blocks(u.cells(), std::max(together, cells_of_task), [&](int begin, int end) {
-    for_cells_in(space_->mesh().fluid(), begin, end, [&](int from, int to) {
-      for (int first = from; first < to; first += together)
-        add_cells(t, u, targets, first, std::min(to, first + together), workspaces_->here());
+  first_error failure;
+  failure.run([&] {
+    parallel_blocks(u.cells(), std::max(together, cells_of_task), [&](int begin, int end) {
+      for_cells_in(space_->mesh().fluid(), begin, end, [&](int from, int to) {
+        for (int first = from; first < to; first += together)
+          add_cells(t, u, targets, first, std::min(to, first + together), workspaces_->here());
+      });
     });
   });
-  // In the order of the cells, whatever the number of threads.
-  std::fill(given_.begin(), given_.end(), 0.0);
-  for (std::size_t cell = 0; cell < size(u.cells()); ++cell)
-    for (std::size_t k = 0; k < invariants_; ++k) given_[k] += of_cells_[cell * invariants_ + k];
-  for (double& one : given_) one *= space_->mesh().cell_volume();
+  given_ = global_integrals(*space_, of_cells_, invariants_);
+  failure.rethrow();
 }
 
 void force::load_acceleration(double t, int begin, int end, workspace& here) const {

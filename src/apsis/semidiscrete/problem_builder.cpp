@@ -44,9 +44,30 @@ problem_builder& problem_builder::on(const grid& mesh) {
                                   mesh.dimensions(), equation_->space_dimensions(),
                                   equation_->space_dimensions()));
   mesh_ = mesh;
+  distribution_.reset();
   const auto periodic = make_boundary("periodic");
   sides_.assign(static_cast<std::size_t>(mesh.dimensions()), {periodic, periodic});
   solids_.assign(mesh.solids().size(), nullptr);
+  return *this;
+}
+
+problem_builder& problem_builder::shared_by(std::shared_ptr<communicator> processes,
+                                            const std::optional<std::array<int, 3>>& blocks) {
+  processes_ = std::move(processes);
+  if (!has_space() && !processes_->is_single())
+    throw input_error(
+        fmt::format("{} processes (the model has no space to share); start one", processes_->size()));
+  if (!has_space()) return *this;
+  const grid whole = whole_mesh();
+  const block_partition cut =
+      blocks ? block_partition(whole, *blocks) : block_partition(whole, processes_->size());
+  if (cut.processes() != processes_->size())
+    throw input_error(
+        fmt::format("{} x {} x {} blocks are {} (there are {} processes); give as many blocks as processes",
+                    cut.blocks(0), cut.blocks(1), cut.blocks(2), cut.processes(), processes_->size()));
+  if (processes_->is_single()) return *this;
+  distribution_ = distribution{processes_, cut, whole};
+  mesh_ = distribution_->block();
   return *this;
 }
 
@@ -69,10 +90,10 @@ problem_builder& problem_builder::with_solid(int number, std::shared_ptr<const b
 problem_builder& problem_builder::with_reconstruction(std::shared_ptr<const reconstruction> scheme) {
   const int needed = 2 * scheme->ghost_width() + 1;
   for (int direction = 0; direction < mesh_.dimensions(); ++direction)
-    if (mesh_.cells(direction) < needed)
+    if (const int cells = whole_mesh().cells(direction); cells < needed)
       throw input_error(
-          fmt::format("a mesh of {} cells is smaller than the stencil ({} cells); give at least {}",
-                      mesh_.cells(direction), needed, needed));
+          fmt::format("a mesh of {} cells is smaller than the stencil ({} cells); give at least {}", cells,
+                      needed, needed));
   discretization_.scheme = std::move(scheme);
   return *this;
 }
@@ -129,10 +150,20 @@ spatial_discretization problem_builder::complete_discretization() const {
   return discretization;
 }
 
-domain problem_builder::space() const {
+void problem_builder::check_solids() const {
   for (std::size_t k = 0; k < solids_.size(); ++k)
     if (!solids_[k]) throw input_error(fmt::format("solid box {} has no wall; call with_solid()", k));
-  return has_space() ? domain({mesh_, equation_->velocities()}, sides_, solids_) : domain::point();
+}
+
+domain problem_builder::space() const {
+  check_solids();
+  return distribution_ ? domain({mesh_, equation_->velocities()}, sides_, solids_, *distribution_)
+                       : whole_space();
+}
+
+domain problem_builder::whole_space() const {
+  check_solids();
+  return has_space() ? domain({whole_mesh(), equation_->velocities()}, sides_, solids_) : domain::point();
 }
 
 /// In every cell at the points `offsets` · Δx from its centre, along the first direction.

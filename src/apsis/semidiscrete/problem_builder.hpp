@@ -5,6 +5,7 @@
 #include <apsis/scheme/formulation.hpp>
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -36,6 +37,11 @@ class problem_builder {
 
   /// Sets the mesh. Throws input_error if the model has another number of space dimensions.
   problem_builder& on(const grid& mesh);
+  /// Shares the mesh, which must be set before, among processes: mesh() is then the block of this one.
+  /// `blocks`: numbers of blocks along each direction, by default those with the smallest surfaces. Throws
+  /// input_error if the mesh cannot be shared so, or the model has no space.
+  problem_builder& shared_by(std::shared_ptr<communicator> processes,
+                             const std::optional<std::array<int, 3>>& blocks = std::nullopt);
   /// Sets the boundary of one face of the mesh, which must be set before; the default is periodic.
   problem_builder& with_boundary(const face& where, std::shared_ptr<const boundary> side);
   /// Sets the boundary at a solid box of the mesh, which must be set before; every box needs one.
@@ -67,10 +73,18 @@ class problem_builder {
 
   /// Whether the model has space.
   bool has_space() const { return equation_->space_dimensions() > 0; }
-  /// Returns the mesh; a single cell without space.
+  /// Returns the mesh, or the block of this process; a single cell without space.
   const grid& mesh() const { return mesh_; }
+  /// Returns the mesh of all processes.
+  const grid& whole_mesh() const { return distribution_ ? distribution_->whole : mesh_; }
+  /// Returns the processes that share the mesh.
+  communicator& processes() const { return *processes_; }
+  /// Returns the blocks of a mesh that several processes share; nothing for a single one.
+  const std::optional<distribution>& blocks() const { return distribution_; }
   /// Returns the domain. Throws input_error if only one face of a direction is periodic.
   domain space() const;
+  /// Returns the domain of the whole mesh, also on one of several processes.
+  domain whole_space() const;
   /// Whether the reconstruction is first-order upwind.
   bool first_order() const { return discretization_.scheme && discretization_.scheme->order() == 1; }
   /// Whether steps within r Δt_FE keep nonnegative data nonnegative.
@@ -81,12 +95,15 @@ class problem_builder {
  private:
   formulation unknowns() const;
   bool pointwise() const;
+  void check_solids() const;
   spatial_discretization complete_discretization() const;
   std::vector<double> epsilon_at(std::span<const double> offsets) const;
   std::unique_ptr<collision> make_collision(const std::shared_ptr<domain>& space) const;
 
   const model* equation_;
   grid mesh_;
+  std::shared_ptr<communicator> processes_ = single_process();
+  std::optional<distribution> distribution_;
   std::vector<domain::faces> sides_;
   std::vector<std::shared_ptr<const boundary>> solids_;
   spatial_discretization discretization_;

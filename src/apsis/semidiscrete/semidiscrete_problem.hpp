@@ -1,5 +1,8 @@
 #pragma once
 
+#include <apsis/core/first_error.hpp>
+#include <apsis/exec/agreement.hpp>
+#include <apsis/exec/global_sum.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/transport.hpp>
 
@@ -9,6 +12,9 @@
 namespace apsis {
 
 /// A model on a mesh, or at one point without space, as a problem of the integrator (integrate/problem.hpp).
+///
+/// On several processes every member function is collective. An error on one of them does not end the stage,
+/// in which the others wait for its rows: it is kept until settle(), which throws it on all.
 class semidiscrete_problem {
  public:
   using state = field;  ///< f[cell][component]
@@ -17,7 +23,8 @@ class semidiscrete_problem {
   /// `equation` must outlive the problem.
   semidiscrete_problem(const model& equation, std::shared_ptr<domain> space,
                        spatial_discretization discretization, std::unique_ptr<collision> q)
-      : transport_(equation, std::move(space), std::move(discretization)),
+      : space_(space),
+        transport_(equation, std::move(space), std::move(discretization)),
         has_transport_(equation.space_dimensions() > 0 || equation.has_source()),
         collision_(std::move(q)),
         cellwise_(dynamic_cast<cellwise_collision*>(collision_.get())) {}
@@ -36,11 +43,13 @@ class semidiscrete_problem {
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(t, u) for every target; boundaries know the time t.
   void add_transport(double t, const field& u, std::span<const target<field, double>> targets) {
-    transport_.add_transport(t, u, targets);
+    guarded([&] { transport_.add_transport(t, u, targets); });
   }
   /// u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε². Throws numerical_error where there is no equilibrium, or
   /// Newton's method finds no solution.
-  void solve_collision(double t, double a, double b, field& u) { collision_->solve(t, a, b, u); }
+  void solve_collision(double t, double a, double b, field& u) {
+    guarded([&] { collision_->solve(t, a, b, u); });
+  }
   /// Equivalent to add_transport() followed by solve_collision(due); where possible, cells are solved while
   /// they are in cache.
   void add_transport_and_solve(double t, const field& u, std::span<const target<field, double>> targets,
@@ -49,32 +58,67 @@ class semidiscrete_problem {
       cellwise_->solve_cells(due.a, due.b, *due.u, begin, end);
     };
     if (cellwise_) cellwise_->prepare(*due.u);
-    const bool done =
-        transport_.add_transport(t, u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
-    if (!done) collision_->solve(due.t, due.a, due.b, *due.u);
+    bool done = false;
+    guarded([&] {
+      done = transport_.add_transport(t, u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
+    });
+    // Collisions of cells that are independent need no other process.
+    if (!done && !(cellwise_ && failure_)) guarded([&] { collision_->solve(due.t, due.a, due.b, *due.u); });
   }
   /// acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε for every target. Throws numerical_error where ε = 0
   /// or there is no equilibrium.
   void add_collision(double t, const field& u, std::span<const target<field, double>> targets) {
-    collision_->add_collision(t, u, targets);
+    guarded([&] { collision_->add_collision(t, u, targets); });
+  }
+  /// Throws on all processes what one of them met since the last call, with the number of the cell in the
+  /// whole mesh.
+  void settle() {
+    if (space_->shared()) agree_on_errors(space_->processes(), failure_.take());
   }
   /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it.
   double forward_euler_step(double, const field& u) const {
     const double of_transport = transport_.forward_euler_step();
     if (!explicit_collision_) return of_transport;
-    return 1.0 / (1.0 / of_transport + 1.0 / (rounding_allowance * collision_->forward_euler_step(u)));
+    return 1.0 / (1.0 / of_transport +
+                  1.0 / (rounding_allowance * lowest([&] { return collision_->forward_euler_step(u); })));
   }
   /// Whether the model has space or a source.
   bool has_transport(double, const field&) const { return has_transport_; }
   /// Smallest ε/C > 0; +infinity where none is known, or ε = 0 everywhere.
-  double relaxation_time(double, const field& u) const { return collision_->relaxation_time(u); }
+  double relaxation_time(double, const field& u) const {
+    return lowest([&] { return collision_->relaxation_time(u); });
+  }
 
  private:
+  /// Runs a part of a step; on several processes its errors wait for settle().
+  template <class Body>
+  void guarded(const Body& body) {
+    if (!space_->shared()) return body();
+    failure_.run([&] {
+      try {
+        body();
+      } catch (const numerical_error& failure) {
+        failure_site site = failure.site();
+        site.cell = space_->number_in_whole_mesh(site.cell);
+        throw numerical_error(failure.problem(), site);
+      }
+    });
+  }
+  /// Returns the smallest value of a function over all processes, with the errors of all.
+  template <class Function>
+  double lowest(const Function& of) const {
+    double mine = 0.0;
+    together(space_->processes(), [&] { mine = of(); });
+    return global_lowest(space_->processes(), mine);
+  }
+
+  std::shared_ptr<domain> space_;
   transport transport_;
   bool has_transport_;
   std::unique_ptr<collision> collision_;
   cellwise_collision* cellwise_;  ///< the collision if its cells are independent; else null
   bool explicit_collision_ = false;
+  first_error failure_;
 };
 
 }  // namespace apsis

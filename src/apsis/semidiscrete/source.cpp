@@ -1,8 +1,10 @@
 #include <apsis/semidiscrete/source.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/first_error.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/scheme/quartic.hpp>
+#include <apsis/semidiscrete/global_integrals.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -42,17 +44,21 @@ void source::compute_cell(double t, int cell, std::vector<double>& row) {
 
 void source::compute(double t) {
   constexpr int block = 8;
-  parallel_blocks(values_.cells(), block, [&](int begin, int end) {
-    std::vector<double> row(static_cast<std::size_t>(values_.components()));
-    for (int cell = begin; cell < end; ++cell)
-      if (space_->mesh().solid(cell) < 0) compute_cell(t, cell, row);
+  const std::size_t invariants = equation_.invariants().size();
+  std::vector<double> densities(static_cast<std::size_t>(values_.cells()) * invariants);
+  first_error failure;
+  failure.run([&] {
+    parallel_blocks(values_.cells(), block, [&](int begin, int end) {
+      std::vector<double> row(static_cast<std::size_t>(values_.components()));
+      for (int cell = begin; cell < end; ++cell) {
+        if (space_->mesh().solid(cell) < 0) compute_cell(t, cell, row);
+        equation_.invariant_densities(values_.row(cell),
+                                      densities.data() + static_cast<std::size_t>(cell) * invariants);
+      }
+    });
   });
-  given_.assign(equation_.invariants().size(), 0.0);
-  std::vector<double> densities(given_.size());
-  for (int cell = 0; cell < values_.cells(); ++cell) {
-    equation_.invariant_densities(values_.row(cell), densities.data());
-    for (std::size_t k = 0; k < given_.size(); ++k) given_[k] += space_->mesh().cell_volume() * densities[k];
-  }
+  given_ = global_integrals(*space_, densities, invariants);
+  failure.rethrow();
   known_ = rate_.steady;
 }
 

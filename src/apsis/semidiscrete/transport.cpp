@@ -1,5 +1,6 @@
 #include <apsis/semidiscrete/transport.hpp>
 
+#include <apsis/core/first_error.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/model/vector_math.hpp>
@@ -9,6 +10,7 @@
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -41,16 +43,29 @@ struct transport::scratch {
   std::vector<double> given;  ///< by force and source
 
   /// The boxes of a mesh, which are made again only for another width or number of threads.
-  const tiling& boxes(const grid& mesh, int longest, int parts) {
-    if (!made || longest != longest_made || parts != parts_made) made.emplace(mesh, longest, parts);
+  const tiling& boxes(const domain& space, int longest, int parts) {
+    if (made && longest == longest_made && parts == parts_made) return *made;
+    made.emplace(space.mesh(), longest, parts);
     longest_made = longest;
     parts_made = parts;
+    for (auto& numbers : waves) numbers.clear();
+    for (int number = 0; number < made->count(); ++number)
+      waves[space.is_inner(made->box(number)) ? 0 : 1].push_back(number);
     return *made;
   }
+  /// Numbers of the boxes that depend on no other process, and of the others.
+  std::array<std::vector<int>, 2> waves;
 
  private:
   std::optional<tiling> made;
   int longest_made = 0, parts_made = 0;
+};
+
+/// How a sweep is divided into tasks: boxes of the tiling, or boxes times parts of the rows.
+struct transport::sweep_plan {
+  const tiling& boxes;
+  int columns;    ///< parts of a row
+  bool by_boxes;  ///< whether a task is a whole box, whose cells are complete at its end
 };
 
 transport::~transport() = default;
@@ -62,10 +77,10 @@ transport::transport(const model& equation, std::shared_ptr<domain> space,
       space_(std::move(space)),
       discretization_(std::move(discretization)),
       scratch_(std::make_unique<scratch>()) {
+  const bool has_space = equation.space_dimensions() > 0;
+  if (has_space) space_->reserve(equation.components(), sweep_ghosts(discretization_));
   faces_ = std::make_unique<face_fluxes>(equation_, space_);
-  if (equation.space_dimensions() == 0) return;
-  space_->reserve(equation.components(), sweep_ghosts(discretization_));
-  speeds_ = line_speeds::of(equation, mesh());
+  if (has_space) speeds_ = line_speeds::of(equation, mesh());
 }
 
 void transport::set_force(acceleration of) {
@@ -101,20 +116,25 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
     add_source(u, targets);
     return false;
   }
-  space_->fill_ghosts(t, u);
   // Cells are complete box by box only where sweeps are all there is.
   const bool alone = !force_ && !source_;
-  const bool done = sweep(t, u, targets, alone ? then : cells_job());
+  bool done = false;
   std::vector<double>& given = scratch_->given;
   given.clear();
+  first_error failure;
+  failure.run([&] { done = sweep(t, u, targets, alone ? then : cells_job()); });
+  // The sums of force and source are those of all processes, even if this one has failed.
   if (force_) {
-    force_->add(t, u, targets);
+    failure.run([&] { force_->add(t, u, targets); });
     given = force_->given();
   }
   if (source_) {
-    source_->add(t, targets);
+    failure.run([&] { source_->add(t, targets); });
     given.insert(given.end(), source_->given().begin(), source_->given().end());
   }
+  failure.rethrow();
+  // One process keeps what all have received together.
+  if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);
   faces_->add_gains(u, targets, given);
   return done;
 }
@@ -190,7 +210,7 @@ void transport::complete_box(double t, targets_view targets, const cell_box& box
       const segment& one = space_->segment_at(direction, number);
       for (const bool upper : {false, true}) {
         const auto& [surface, place] = one.ends[upper ? 1 : 0];
-        if (surface >= 0 && (upper ? end == one.cells : begin == 0))
+        if (surface >= 0 && one.ends_here(upper) && (upper ? end == one.cells : begin == 0))
           faces_->complete(surface, place, t, targets);
       }
     });
@@ -214,34 +234,44 @@ bool transport::sweep(double t, const field& u, targets_view targets, const cell
   // So many parts that threads of different speed end at about the same time.
   const int enough = threads() == 1 ? 1 : 4 * threads();
   const bool parts_of_a_line = on_a_line && n / least_cells >= threads();
-  const tiling& boxes = scratch_->boxes(mesh(), longest, parts_of_a_line ? threads() : 1);
+  const tiling& boxes = scratch_->boxes(*space_, longest, parts_of_a_line ? threads() : 1);
   const bool by_boxes = on_a_line ? parts_of_a_line : boxes.count() >= enough;
   if (!whole_cells && !by_boxes && static_cast<long>(boxes.count()) * columns < enough)
     columns = std::max(columns, width / least_columns);
   if (!by_boxes) columns = static_cast<int>(std::clamp<long>(most_tasks / boxes.count(), 1, columns));
-  const auto component = [&](int column) { return first_component(width, columns, column); };
   const int widest = (width / packet_length / columns + 1) * packet_length;
   const block_sweep::context all{equation_, *space_, discretization_, speeds_, *faces_};
   scratch_->sweeps.prepare([&](auto& sweep) {
     sweep.reserve(all, std::min(std::max({mesh().cells(0), mesh().cells(1), mesh().cells(2)}), longest),
                   std::min(width, widest + width % packet_length), targets.size());
   });
-  if (by_boxes) {
-    parallel_for(boxes.count(), [&](int number) {
-      const cell_box box = boxes.box(number);
+  const sweep_plan plan{boxes, columns, by_boxes};
+  // Rows of other processes arrive while the boxes that do not need them are swept.
+  space_->begin_ghosts(t, u);
+  sweep_boxes(t, u, targets, plan, scratch_->waves[0], then);
+  space_->finish_ghosts(t, u);
+  sweep_boxes(t, u, targets, plan, scratch_->waves[1], then);
+  return by_boxes && then;
+}
+
+void transport::sweep_boxes(double t, const field& u, targets_view targets, const sweep_plan& plan,
+                            const std::vector<int>& numbers, const cells_job& then) const {
+  const int count = static_cast<int>(numbers.size()), columns = plan.columns;
+  const auto component = [&](int column) { return first_component(u.stride(), columns, column); };
+  const auto box = [&](int k) { return plan.boxes.box(numbers[static_cast<std::size_t>(k)]); };
+  if (plan.by_boxes)
+    return parallel_for(count, [&](int k) {
+      const cell_box here = box(k);
       for (int column = 0; column < columns; ++column)
-        sweep_box(u, targets, box, component(column), component(column + 1));
-      complete_box(t, targets, box);
-      if (then) finish_box(box, then);
+        sweep_box(u, targets, here, component(column), component(column + 1));
+      complete_box(t, targets, here);
+      if (then) finish_box(here, then);
     });
-    return static_cast<bool>(then);
-  }
-  parallel_for(boxes.count() * columns, [&](int task) {
+  parallel_for(count * columns, [&](int task) {
     const int column = task % columns;
-    sweep_box(u, targets, boxes.box(task / columns), component(column), component(column + 1));
+    sweep_box(u, targets, box(task / columns), component(column), component(column + 1));
   });
-  parallel_for(boxes.count(), [&](int number) { complete_box(t, targets, boxes.box(number)); });
-  return false;
+  parallel_for(count, [&](int k) { complete_box(t, targets, box(k)); });
 }
 
 }  // namespace apsis

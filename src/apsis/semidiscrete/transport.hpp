@@ -52,6 +52,9 @@ class transport {
                     const cells_job& then) const;
   bool sweep(double t, const field& u, std::span<const target<field, double>> targets,
              const cells_job& then) const;
+  struct sweep_plan;
+  void sweep_boxes(double t, const field& u, std::span<const target<field, double>> targets,
+                   const sweep_plan& plan, const std::vector<int>& numbers, const cells_job& then) const;
   void sweep_box(const field& u, std::span<const target<field, double>> targets, const cell_box& box,
                  int first, int last) const;
   void complete_box(double t, std::span<const target<field, double>> targets, const cell_box& box) const;

@@ -140,7 +140,8 @@ double limit_space::face_value(const pencil& p, int face, std::size_t k, bool ah
 
 void limit_space::add_divergence(const field& u, int direction, int segment, field& t) const {
   const pencil p = reconstruct(u, direction, segment);
-  const auto& [first, offset, n, ends] = space_.segment_at(direction, segment);
+  const apsis::segment& line = space_.segment_at(direction, segment);
+  const int first = line.first, n = line.cells;
   const auto v = equation_.speeds(direction);
   std::vector<double> before(v.size()), after(v.size());
   const auto fluxes = [&](int face, std::vector<double>& flux) {

@@ -1,0 +1,16 @@
+#include <apsis/semidiscrete/global_integrals.hpp>
+
+#include <apsis/exec/global_sum.hpp>
+
+namespace apsis {
+
+std::vector<double> global_integrals(const domain& space, std::span<const double> densities,
+                                     std::size_t count) {
+  std::vector<exact_sum> sums(count);
+  for (std::size_t k = 0; k < densities.size(); ++k) sums[k % count].add(densities[k]);
+  std::vector<double> integrals = global_values(space.processes(), sums);
+  for (double& one : integrals) one *= space.mesh().cell_volume();
+  return integrals;
+}
+
+}  // namespace apsis

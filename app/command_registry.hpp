@@ -18,6 +18,7 @@ struct command_entry {
   int place = 1000;     ///< position in the help, lowest first; by name among equals
   /// Words that complete an argument, as bash expands them in double quotes; "": file names only.
   std::string completion{};
+  bool shares_work = false;  ///< whether several processes that mpirun starts do the work together
   /// Adds options and arguments, and returns the action of the command.
   action (*define)(CLI::App& command) = nullptr;
 };

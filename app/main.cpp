@@ -1,6 +1,7 @@
 #include "command_registry.hpp"
 #include "interrupt.hpp"
 #include "option_values.hpp"
+#include "processes.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
@@ -63,7 +64,12 @@ int run_program(int argc, char** argv) {
   for (const command_entry* command : commands_in_order()) {
     CLI::App* added = program.add_subcommand(command->name, command->summary);
     // Only recorded during parsing, so that nothing runs before the whole line is valid.
-    added->callback([&chosen, run = command->define(*added)] { chosen = run; });
+    added->callback([&chosen, command, run = command->define(*added)] {
+      chosen = [command, run] {
+        if (!command->shares_work) refuse_several_processes(command->name.c_str());
+        return run();
+      };
+    });
   }
   check_option_values(program);
   const std::vector<std::string> names = command_names(program);
@@ -89,6 +95,8 @@ void occupy_standard_descriptors() {
 }
 
 int fail(exit_code code, const std::string& message) {
+  // Of several processes, which end with the same error, one reports it.
+  if (!reports_errors()) return static_cast<int>(code);
   // If standard error cannot be written, only the exit code reports the error.
   std::fputs(fmt::format("error: {}\n", message).c_str(), stderr);
   return static_cast<int>(code);

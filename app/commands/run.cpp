@@ -2,12 +2,14 @@
 #include "interrupt.hpp"
 #include "option_values.hpp"
 #include "print.hpp"
+#include "processes.hpp"
 #include "progress_bar.hpp"
 #include "run_profile.hpp"
 #include "run_report.hpp"
 #include "threads_option.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/exec/agreement.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/output/case_json.hpp>
@@ -40,17 +42,22 @@ std::string step_text(const simulation& now) {
                      now.last().min_value);
 }
 
-int run(run_options options) {
-  // Before anything else: an interrupt before the first step has the same effect as a later one.
-  watch_for_interrupts("the current step, and a checkpoint if there is a folder (--out)");
-  case_config config = load_case(options.case_name, options.overrides);
-  set_threads(options.threads.value_or(threads_for(config)));
+int code_of(run_end end) {
+  return static_cast<int>(end == run_end::complete ? exit_code::success : exit_code::interrupted);
+}
+
+int run_on(const std::shared_ptr<communicator>& processes, run_options options) {
+  case_config config;
+  together(*processes, [&] { config = load_case(options.case_name, options.overrides); });
+  set_threads(options.threads.value_or(threads_for(config, *processes)));
   progress_bar bar;
+  options.session.processes = processes;
   options.session.command = command_line();
   options.session.stop = interrupted;
-  options.session.watch = [&bar, end = config.time.end](const simulation& now) {
-    if (bar.due()) bar.update(now.t() / end, step_text(now));
-  };
+  if (processes->is_root())
+    options.session.watch = [&bar, end = config.time.end](const simulation& now) {
+      if (bar.due()) bar.update(now.t() / end, step_text(now));
+    };
   options.session.stepped = [&bar] { bar.finish(); };
   run_session session(std::move(config), options.session);
   if (options.profile) profile::start();
@@ -62,12 +69,22 @@ int run(run_options options) {
                                                             static_cast<std::size_t>(computed.components()));
   if (options.json) {
     auto out = to_json(computed, session.records());
+    if (!processes->is_root()) return code_of(end);
     if (profile) out["profile"] = to_json(*profile);
     print(json_text(out) + "\n");
   } else {
-    print(summary_text(computed, end) + (profile ? profile_text(*profile) : ""));
+    const std::string summary = summary_text(computed, end);
+    if (processes->is_root()) print(summary + (profile ? profile_text(*profile) : ""));
   }
-  return static_cast<int>(end == run_end::complete ? exit_code::success : exit_code::interrupted);
+  return code_of(end);
+}
+
+int run(const run_options& options) {
+  // Before anything else: an interrupt before the first step has the same effect as a later one.
+  watch_for_interrupts(reports_errors() ? "the current step, and a checkpoint if there is a folder (--out)"
+                                        : nullptr);
+  return on_all_processes(
+      [&](const std::shared_ptr<communicator>& processes) { return run_on(processes, options); });
 }
 
 action define(CLI::App& command) {
@@ -99,6 +116,7 @@ const command_entry command_run = {.name = "run",
                                    .summary = "Run a case and write its results",
                                    .place = 10,
                                    .completion = completed_from_list("cases"),
+                                   .shares_work = true,
                                    .define = define};
 
 }  // namespace apsis::app

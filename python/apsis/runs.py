@@ -5,7 +5,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Callable, Union
+from typing import Any, Callable, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -108,9 +108,21 @@ def cases() -> list[str]:
     return _core.case_names()
 
 
+@overload
 def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str | Path | None = None,
         wall: float | None = None, threads: int | None = None, progress: Progress | None = None,
-        initial: Initial | None = None, jumps: Sequence[float] = ()) -> Result:
+        initial: Initial | None = None, jumps: Sequence[float] = (), comm: None = None) -> Result: ...
+
+
+@overload
+def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str | Path | None = None,
+        wall: float | None = None, threads: int | None = None, progress: Progress | None = None,
+        initial: Initial | None = None, jumps: Sequence[float] = (), comm: Any) -> Result | None: ...
+
+
+def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str | Path | None = None,
+        wall: float | None = None, threads: int | None = None, progress: Progress | None = None,
+        initial: Initial | None = None, jumps: Sequence[float] = (), comm: Any = None) -> Result | None:
     """Runs a case: the name of a built-in one, a file, or a mapping such as {"model": {"name": "bgk"}, …}.
 
     overrides are "key=value" ("space.cells=80"). `out` is a folder for the results, `restart` a checkpoint to continue from, `wall`
@@ -121,6 +133,9 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     of (x, v), that returns all components; or a mapping of the variables of the model, {"rho": lambda x: 1 + x, "T": 1}: numbers,
     functions of x, or arrays with a value for each cell. Functions are averaged over cells as formulas are, exactly between their
     `jumps`. The results and a restart refer to the data as `from = "python"`; a restart takes the state of the checkpoint.
+
+    `comm` is a communicator of mpi4py, whose processes share the mesh and call the function together. The result is that of its
+    first process; the others get None.
 
     `threads`: 0 for all processors; default: OMP_NUM_THREADS, else all for a large case and 1 for a small one.
     Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
@@ -136,8 +151,19 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     got = _core.run(text, "case" if text is not None else str(case), everything, _path(out), _path(restart),
                     None if wall is None else number("wall", wall, positive=True),
                     None if threads is None else whole_number("threads", threads), progress,
-                    dict(initial) if isinstance(initial, Mapping) else initial, sorted(number("jumps", x) for x in jumps))
+                    dict(initial) if isinstance(initial, Mapping) else initial, sorted(number("jumps", x) for x in jumps),
+                    _handle(comm))
+    if got is None:
+        return None
     return Result(summary=json.loads(got.pop("json")), **got)
+
+
+def _handle(comm: Any) -> int | None:
+    if comm is None:
+        return None
+    if not hasattr(comm, "py2f"):
+        raise InputError(f"comm is a {type(comm).__name__} (it must be a communicator of mpi4py); give MPI.COMM_WORLD")
+    return int(comm.py2f())
 
 
 def to_toml(case: Mapping[str, Any]) -> str:

@@ -2,8 +2,12 @@
 #include "given_data.hpp"
 
 #include <apsis/config/case_schema.hpp>
+#include <apsis/core/first_error.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/exec/agreement.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/exec/processes.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/output/probe.hpp>
@@ -15,6 +19,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 #include <pybind11/stl.h>
@@ -47,6 +52,7 @@ class attendant {
     stopped_ = stopped_ || is_false(answer);
   }
   bool stopped() const { return stopped_; }
+  void stop() { stopped_ = true; }
 
  private:
   progress_function progress_;
@@ -113,19 +119,38 @@ void add_velocities(const simulation& run, const std::vector<mesh_axis>& mesh, c
   out["marginals"] = marginal_values;
 }
 
+/// Messages of a run are those of the root.
+class silence_of_others {
+ public:
+  explicit silence_of_others(const communicator& processes) : silenced_(!processes.is_root()) {
+    if (silenced_) log::set_level(log::level::quiet);
+  }
+  ~silence_of_others() {
+    if (silenced_) log::set_level(log::level::info);
+  }
+  silence_of_others(const silence_of_others&) = delete;
+  silence_of_others& operator=(const silence_of_others&) = delete;
+
+ private:
+  bool silenced_;
+};
+
+/// Collective; complete on the root.
 py::dict result_of(const run_session& session, run_end end) {
   const simulation& run = session.computed();
   py::dict out;
   out["state"] = to_string(end);
   out["json"] = to_json(run, session.records()).dump();
-  std::vector<double> f = run.state();
+  std::vector<double> f = run.whole_state();
+  std::vector<double> epsilon = run.epsilon();
   const result_units units(run.config());
   const field_series fields = units.convert(session.records().fields());
   add_velocities(run, fields.axes, f, out);
+  const std::vector<surface_table> walls = run.surfaces();
+  if (!run.processes().is_root()) return {};
   out["f"] = to_array(std::move(f), shape_of(fields.axes, {}, {run.components()}));
   for (const std::string name : {"x", "y", "z"}) out[py::str(name)] = to_array(std::vector<double>());
   for (const auto& axis : fields.axes) out[py::str(axis.name)] = to_array(std::vector<double>(axis.centres));
-  std::vector<double> epsilon = run.epsilon();
   out["epsilon"] = epsilon.empty() ? to_array(std::move(epsilon))
                                    : to_array(std::move(epsilon), shape_of(fields.axes, {}));
   out["history"] = columns_of(units.convert(session.records().history(), run));
@@ -143,30 +168,45 @@ py::dict result_of(const run_session& session, run_end end) {
   }
   out["probes"] = probes;
   py::dict surfaces;
-  for (const surface_table& surface : run.surfaces())
+  for (const surface_table& surface : walls)
     surfaces[py::str(surface.name)] = columns_of(units.convert(surface));
   out["surfaces"] = surfaces;
   return out;
 }
 
-py::dict run_case(const std::optional<std::string>& text, const std::string& name,
-                  const std::vector<std::string>& overrides, const std::optional<std::string>& out,
-                  const std::optional<std::string>& restart, std::optional<double> wall,
-                  std::optional<int> threads, const progress_function& progress, const py::object& initial,
-                  const std::vector<double>& jumps) {
-  case_config config = text ? parse_case(*text, name, overrides) : load_case(name, overrides);
-  set_threads(threads.value_or(threads_for(config)));
+py::object run_case(const std::optional<std::string>& text, const std::string& name,
+                    const std::vector<std::string>& overrides, const std::optional<std::string>& out,
+                    const std::optional<std::string>& restart, std::optional<double> wall,
+                    std::optional<int> threads, const progress_function& progress, const py::object& initial,
+                    const std::vector<double>& jumps, std::optional<int> communicator_handle) {
+  const auto processes = communicator_handle ? processes_of(*communicator_handle) : single_process();
+  const silence_of_others quiet(*processes);
+  case_config config;
+  together(*processes,
+           [&] { config = text ? parse_case(*text, name, overrides) : load_case(name, overrides); });
+  set_threads(threads.value_or(threads_for(config, *processes)));
   attendant asks(progress);
   session_options how;
+  how.processes = processes;
   how.out = out;
   how.restart = restart;
   how.wall = wall;
-  how.watch = [&asks](const simulation& run) { asks.watch(run); };
+  first_error failure;
+  how.watch = [&](const simulation& run) {
+    if (processes->is_single()) return asks.watch(run);
+    // The others stop at the same step.
+    failure.run([&] { asks.watch(run); });
+    if (failure) asks.stop();
+  };
   how.stop = [&asks] { return asks.stopped(); };
   if (!initial.is_none())
     how.initial = [&initial, &jumps](const run_setup& setup) {
-      const py::gil_scoped_acquire python;
-      return setup.checked(make_state(initial, *setup.equation, setup.builder(), jumps, "initial"));
+      field state;
+      together(setup.processes(), [&] {
+        const py::gil_scoped_acquire python;
+        state = make_state(initial, *setup.equation, setup.builder(), jumps, "initial");
+      });
+      return setup.checked(std::move(state));
     };
   std::unique_ptr<run_session> session;
   run_end end{};
@@ -175,7 +215,9 @@ py::dict run_case(const std::optional<std::string>& text, const std::string& nam
     session = std::make_unique<run_session>(std::move(config), how);
     end = session->run();
   }
-  return result_of(*session, end);
+  failure.rethrow();
+  py::dict result = result_of(*session, end);
+  return processes->is_root() ? py::object(std::move(result)) : py::object(py::none());
 }
 
 }  // namespace

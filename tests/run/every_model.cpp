@@ -63,7 +63,7 @@ one_step step_of(const model_entry& entry, const case_config& c, bool with_zeros
   for (int i = 1; uniform && i < u.cells(); ++i) std::copy_n(u.row(0), u.components(), u.row(i));
   const auto problem = setup.make_problem();
   stepper<semidiscrete_problem> integrator(setup.integrator(), *problem);
-  monitor watch(*setup.equation, setup.cell_volume(), {});
+  monitor watch(setup);
   one_step result;
   result.before = watch.start(u);
   double dt = 1.0 / 16.0;

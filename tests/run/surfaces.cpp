@@ -133,7 +133,8 @@ void expect_balance(const std::string& text, const std::vector<std::string>& ove
 TEST(surfaces, give_what_the_history_receives_on_a_line_in_the_plane_and_in_space) {
   expect_balance(cavity);
   expect_balance(cavity, {"space.reconstruction=weno5-z", "space.limiter=positivity"});
-  expect_balance(cavity, {"model.velocity_dimensions=3", "model.degrees_of_freedom=5", "boundary.top.velocity=[0.3, 0, 0.1]"});
+  expect_balance(cavity, {"model.velocity_dimensions=3", "model.degrees_of_freedom=5",
+                          "boundary.top.velocity=[0.3, 0, 0.1]"});
   expect_balance(gas_between("cells = 9\n",
                              "[boundary.left]\nT = 1.2\n[[space.solid]]\nfrom = \"4/9\"\n"
                              "to = \"5/9\"\n"));

@@ -66,7 +66,8 @@ struct case_config {
     apsis::formulation formulation = apsis::formulation::finite_volume;
     std::string reconstruction = "weno5-z";
     limiter_choice limiter = limiter_choice::none;
-    std::string boundary = "periodic";  ///< kind of every face without one of its own
+    std::string boundary = "periodic";       ///< kind of every face without one of its own
+    std::optional<std::vector<int>> blocks;  ///< blocks of cells in every direction, one for each process
   } space;
   std::array<face_table, 6> faces;  ///< tables [boundary.NAME], by face::index(), of models with space
   std::vector<solid_table> solids;  ///< tables [[space.solid]]

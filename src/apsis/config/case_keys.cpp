@@ -284,6 +284,12 @@ std::vector<case_key> space_keys() {
            .measure = dimensions::length,
            .doc = "Lower and upper end of the domain, [lower, upper] with lower < upper; in several "
                   "dimensions a list of such pairs."}),
+      key("space.blocks", [](auto& c) -> auto& { return c.space.blocks; },
+          {.scope = key_scope::space,
+           .lowest = 1,
+           .highest = 10'000'000,
+           .doc = "Number of blocks of cells in each direction, one block for each process; by default those "
+                  "with the least to send."}),
       key("space.formulation", [](auto& c) -> auto& { return c.space.formulation; },
           {.scope = key_scope::space,
            .doc = "Unknowns are cell averages (finite-volume; collisions at Gauss points of the cell) or "

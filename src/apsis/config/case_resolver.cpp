@@ -366,6 +366,12 @@ class resolver {
     };
     check("space.cells", config_.space.cells.size(), "numbers");
     check("space.domain", config_.space.domain.size(), "intervals");
+    if (config_.space.blocks) check("space.blocks", config_.space.blocks->size(), "numbers");
+    for (std::size_t k = 0; config_.space.blocks && k < wanted; ++k)
+      if ((*config_.space.blocks)[k] > config_.space.cells[k])
+        refuse(*find("space.blocks"), "space.blocks",
+               fmt::format("{} blocks share {} cells", (*config_.space.blocks)[k], config_.space.cells[k]),
+               "give at most one block for each cell");
   }
 
   void check_interval(const interval& ends, int cells) const {

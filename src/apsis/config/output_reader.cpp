@@ -233,7 +233,8 @@ class reader {
 
   void check_surfaces() const {
     const auto given = text_.values.find("output.surfaces");
-    if (given == text_.values.end()) return;
+    // A resolved case states that there are none.
+    if (given == text_.values.end() || config_.output.surfaces.empty()) return;
     std::vector<std::string> names = open_surfaces();
     if (names.empty())
       throw input_error(given->second.place,

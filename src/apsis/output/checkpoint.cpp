@@ -1,6 +1,7 @@
 #include <apsis/output/checkpoint.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/exec/agreement.hpp>
 #include <apsis/output/hdf5_file.hpp>
 #include <apsis/output/sealed_file.hpp>
 
@@ -52,6 +53,35 @@ std::vector<std::vector<double>> read_rows(const hdf5_file& file, const std::str
   return rows;
 }
 
+/// The state has the shape of the mesh, so that every process writes a box of it.
+void write_state(hdf5_file& file, const checkpoint& c) {
+  auto extents = c.fields.axes.empty() ? hdf5_file::shape{c.cells} : mesh_shape(c.fields.axes);
+  extents.push_back(c.components);
+  if (!c.part) return file.write("state", c.state, extents, "unknowns");
+  dataset_part mine = *c.part;
+  mine.first.push_back(0);
+  mine.count.push_back(c.components);
+  file.write_part("state", c.state, extents, mine, "unknowns");
+}
+
+void read_state(const hdf5_file& file, const std::string& path, const std::optional<dataset_part>& part,
+                checkpoint& c) {
+  const auto extents = file.extents("state");
+  if (extents.size() < 2 || extents.size() > 4) damaged(path, "'state' has a wrong shape");
+  c.cells = 1;
+  for (std::size_t k = 0; k + 1 < extents.size(); ++k) c.cells *= extents[k];
+  c.components = extents.back();
+  if (!part ||
+      part->first.size() + 1 != extents.size()) {  // a state of another shape is refused by its sizes
+    c.state = file.read("state");
+    return;
+  }
+  dataset_part mine = *part;
+  mine.first.push_back(0);
+  mine.count.push_back(c.components);
+  c.state = file.read_part("state", mine);
+}
+
 }  // namespace
 
 double checkpoint::number(const std::string& name) const {
@@ -62,12 +92,13 @@ double checkpoint::number(const std::string& name) const {
   return found->second;
 }
 
-void write_checkpoint(const std::string& path, const checkpoint& c) {
-  hdf5_file file = hdf5_file::create(path, seal_length);
+void write_checkpoint(const std::string& path, const checkpoint& c,
+                      const std::shared_ptr<communicator>& processes) {
+  hdf5_file file = hdf5_file::create(path, seal_length, processes);
   for (const auto& [name, value] : c.numbers) file.write_attribute(name, value);
   file.write("case", c.case_text);
   file.write("commit", c.commit);
-  file.write("state", c.state, {c.cells, c.components}, "unknowns");
+  write_state(file, c);
   if (!c.gains.empty()) file.write("gains", c.gains, {c.gains.size()});
   file.write("history/columns", joined(c.history.columns));
   write_rows(file, "history/rows", c.history.rows, c.history.columns.size());
@@ -81,23 +112,23 @@ void write_checkpoint(const std::string& path, const checkpoint& c) {
     for (const auto& values : snapshot.values) row.insert(row.end(), values.begin(), values.end());
     snapshots.push_back(std::move(row));
   }
-  if (!snapshots.empty()) write_rows(file, "fields/snapshots", snapshots, snapshots.front().size());
+  if (!snapshots.empty())
+    write_rows(file, "fields/snapshots", snapshots, 1 + c.fields.names.size() * c.cells);
   file.close();
-  seal(path, kind);
+  if (!processes) return seal(path, kind);
+  together(*processes, [&] {
+    if (processes->is_root()) seal(path, kind);
+  });
 }
 
-checkpoint read_checkpoint(const std::string& path) {
-  check_seal(path, kind);
+checkpoint read_checkpoint(const std::string& path, const std::optional<dataset_part>& part, bool verify) {
+  if (verify) check_seal(path, kind);
   const hdf5_file file = hdf5_file::open(path);
   checkpoint c;
   for (const auto& [name, value] : file.attributes()) c.numbers[name] = value;
   c.case_text = file.read_text("case");
   c.commit = file.read_text("commit");
-  const auto extents = file.extents("state");
-  if (extents.size() != 2) damaged(path, "'state' has a wrong shape");
-  c.cells = extents[0];
-  c.components = extents[1];
-  c.state = file.read("state");
+  read_state(file, path, part, c);
   if (file.has("gains")) c.gains = file.read("gains");
   c.history.columns = split(file.read_text("history/columns"));
   c.history.rows = read_rows(file, path, "history/rows", c.history.columns.size());

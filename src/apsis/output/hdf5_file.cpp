@@ -1,8 +1,13 @@
 #include <apsis/output/hdf5_file.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/exec/agreement.hpp>
+#include <apsis/output/parallel_access.hpp>
 #include <apsis/output/recording_driver.hpp>
 
+#include <algorithm>
+#include <functional>
+#include <numeric>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -58,6 +63,28 @@ handle creation_properties(hid_t what) {
   return {list, H5Pclose};
 }
 
+/// Selects a part of a dataset, or nothing if the part has no numbers.
+bool select(hid_t space, const dataset_part& part) {
+  if (std::find(part.count.begin(), part.count.end(), 0U) != part.count.end())
+    return H5Sselect_none(space) >= 0;
+  const std::vector<hsize_t> first(part.first.begin(), part.first.end()),
+      count(part.count.begin(), part.count.end());
+  return H5Sselect_hyperslab(space, H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr) >= 0;
+}
+
+hsize_t size_of(const dataset_part& part) {
+  return std::accumulate(part.count.begin(), part.count.end(), hsize_t{1}, std::multiplies<>());
+}
+
+/// Writes a part of a dataset; `together`: all processes do so.
+bool write_selected(hid_t data, hid_t space, const dataset_part& part, const double* values, bool together) {
+  const hsize_t numbers = size_of(part);
+  const handle memory(H5Screate_simple(1, &numbers, nullptr), H5Sclose);
+  if (numbers == 0) H5Sselect_none(memory);
+  const handle transfer(together ? make_collective_transfer() : H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+  return select(space, part) && H5Dwrite(data, H5T_NATIVE_DOUBLE, memory, space, transfer, values) >= 0;
+}
+
 /// Creates the parent groups of "a/b/name".
 bool make_groups(hid_t file, const std::string& name) {
   const handle properties = creation_properties(H5P_GROUP_CREATE);
@@ -75,7 +102,11 @@ bool make_groups(hid_t file, const std::string& name) {
 hdf5_file::hdf5_file(std::string path, std::int64_t id) : path_(std::move(path)), id_(id) {}
 
 hdf5_file::hdf5_file(hdf5_file&& other) noexcept
-    : path_(std::move(other.path_)), id_(std::exchange(other.id_, -1)), error_(std::move(other.error_)) {}
+    : path_(std::move(other.path_)),
+      id_(std::exchange(other.id_, -1)),
+      error_(std::move(other.error_)),
+      processes_(std::move(other.processes_)),
+      failure_(std::move(other.failure_)) {}
 
 hdf5_file::~hdf5_file() {
   if (id_ >= 0) H5Fclose(id_);
@@ -85,21 +116,38 @@ void hdf5_file::fail(const std::string& what) const {
   throw io_error(fmt::format("'{}': {}", path_, what));
 }
 
-void hdf5_file::fail_to_write(const std::string& what) const {
-  fail(fmt::format("{} ({}); free some space or choose another folder", what,
-                   *error_ != 0 ? std::generic_category().message(*error_) : "no reason given by HDF5"));
+void hdf5_file::fail_to_write(const std::string& what) {
+  const std::string message =
+      fmt::format("{} ({}); free some space or choose another folder", what,
+                  *error_ != 0 ? std::generic_category().message(*error_) : "no reason given by HDF5");
+  if (!is_shared()) fail(message);
+  // The other processes wait in the next call.
+  if (failure_.empty()) failure_ = message;
 }
 
 hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes) {
+  return create(path, free_bytes, nullptr);
+}
+
+hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes,
+                            const std::shared_ptr<communicator>& processes) {
   silence();
   const handle creation = creation_properties(H5P_FILE_CREATE);
   H5Pset_userblock(creation, free_bytes);
   // Version 1.8 and later can have attributes of more than 64 KiB, such as a long case.
   hdf5_file file(path, -1);
-  const handle access(make_recording_access(file.error_.get()), H5Pclose);
+  file.processes_ = processes;
+  const handle access(
+      file.is_shared() ? make_parallel_access(*processes) : make_recording_access(file.error_.get()),
+      H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
   file.id_ = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access);
-  if (file.id_ < 0) file.fail_to_write("cannot be created");
+  if (file.is_shared())
+    together(*processes, [&] {
+      if (file.id_ < 0) file.fail("cannot be created (no reason given by HDF5); choose another folder");
+    });
+  else if (file.id_ < 0)
+    file.fail_to_write("cannot be created");
   return file;
 }
 
@@ -113,12 +161,28 @@ hdf5_file hdf5_file::open(const std::string& path) {
 
 void hdf5_file::close() {
   const hid_t id = std::exchange(id_, -1);
-  const bool flushed = H5Fflush(id, H5F_SCOPE_LOCAL) >= 0;
+  const bool flushed = H5Fflush(id, H5F_SCOPE_GLOBAL) >= 0;
   if (H5Fclose(id) < 0 || !flushed || *error_ != 0) fail_to_write("cannot be written completely");
+  if (is_shared())
+    together(*processes_, [this] {
+      if (!failure_.empty()) fail(failure_);
+    });
 }
 
 void hdf5_file::write(const std::string& name, const std::vector<double>& values, const shape& extents,
                       const std::string& long_name, precision stored, const std::string& units) {
+  write_numbers(name, values.data(), extents, nullptr, long_name, stored, units);
+}
+
+void hdf5_file::write_part(const std::string& name, const std::vector<double>& values, const shape& extents,
+                           const dataset_part& part, const std::string& long_name, precision stored,
+                           const std::string& units) {
+  write_numbers(name, values.data(), extents, &part, long_name, stored, units);
+}
+
+void hdf5_file::write_numbers(const std::string& name, const double* values, const shape& extents,
+                              const dataset_part* part, const std::string& long_name, precision stored,
+                              const std::string& units) {
   const std::vector<hsize_t> dims(extents.begin(), extents.end());
   const handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
   const handle properties = creation_properties(H5P_DATASET_CREATE);
@@ -126,10 +190,13 @@ void hdf5_file::write(const std::string& name, const std::vector<double>& values
   const hid_t type = stored == precision::float64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
   const handle data(H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
                     H5Dclose);
-  const bool written = with_groups && data.good() &&
-                       H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0 &&
-                       write_text_attribute(data, "units", units) &&
-                       (long_name.empty() || write_text_attribute(data, "long_name", long_name));
+  bool written = with_groups && data.good();
+  if (part != nullptr)
+    written = write_selected(data, space, *part, values, is_shared()) && written;
+  else if (writes())
+    written = H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0 && written;
+  written = write_text_attribute(data, "units", units) && written;
+  written = (long_name.empty() || write_text_attribute(data, "long_name", long_name)) && written;
   if (!written || *error_ != 0) fail_to_write(fmt::format("'{}' cannot be written", name));
 }
 
@@ -140,8 +207,8 @@ void hdf5_file::write(const std::string& name, const std::string& text) {
   const handle properties = creation_properties(H5P_DATASET_CREATE);
   const handle data(H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
                     H5Dclose);
-  if (!with_groups || !data.good() || H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0 ||
-      *error_ != 0)
+  if (!with_groups || !data.good() ||
+      (writes() && H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0) || *error_ != 0)
     fail_to_write(fmt::format("'{}' cannot be written", name));
 }
 
@@ -225,6 +292,25 @@ std::vector<double> hdf5_file::read(const std::string& name) const {
     fail(fmt::format("'{}' is incomplete (damaged file); give another file", name));
   std::vector<double> values(count);
   if (H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    fail(fmt::format("'{}' cannot be read (damaged file); give another file", name));
+  return values;
+}
+
+std::vector<double> hdf5_file::read_part(const std::string& name, const dataset_part& part) const {
+  const auto all = extents(name);
+  for (std::size_t k = 0; k < part.first.size(); ++k)
+    if (all.size() != part.first.size() || part.first[k] + part.count[k] > all[k])
+      fail(fmt::format("'{}' has another shape (damaged file); give another file", name));
+  const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  const handle space(H5Dget_space(data), H5Sclose);
+  const std::uint64_t bytes = stored(name) == precision::float32 ? sizeof(float) : sizeof(double);
+  if (H5Dget_storage_size(data) < bytes * static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space)))
+    fail(fmt::format("'{}' is incomplete (damaged file); give another file", name));
+  const hsize_t numbers = size_of(part);
+  std::vector<double> values(numbers);
+  const handle memory(H5Screate_simple(1, &numbers, nullptr), H5Sclose);
+  if (numbers > 0 && (!select(space, part) ||
+                      H5Dread(data, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data()) < 0))
     fail(fmt::format("'{}' cannot be read (damaged file); give another file", name));
   return values;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <apsis/exec/communicator.hpp>
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -11,6 +13,12 @@ namespace apsis {
 /// Storage type of numbers.
 enum class precision { float64, float32 };
 
+/// The part of a dataset that one of several processes holds: indices first … first + count − 1 of each
+/// extent.
+struct dataset_part {
+  std::vector<std::uint64_t> first, count;
+};
+
 /// An HDF5 file with the operations that results need. The destructor closes identifiers, objects carry no
 /// time stamps (equal results give equal bytes), and HDF5 does not print errors itself. Every member throws
 /// io_error with the name of the file.
@@ -21,6 +29,11 @@ class hdf5_file {
   /// Creates a file. The user block of `free_bytes` at its beginning is left to the caller; 0, or a power of
   /// two of at least 512.
   static hdf5_file create(const std::string& path, std::uint64_t free_bytes = 0);
+  /// Creates a file that several processes write together. All call the same members in the same order, up to
+  /// close(); the root gives the numbers and texts, the others only extents, except in write_part(). Errors
+  /// are thrown by close(), on all processes.
+  static hdf5_file create(const std::string& path, std::uint64_t free_bytes,
+                          const std::shared_ptr<communicator>& processes);
   /// Opens an existing file for reading.
   static hdf5_file open(const std::string& path);
   ~hdf5_file();
@@ -33,12 +46,18 @@ class hdf5_file {
   void write(const std::string& name, const std::vector<double>& values, const shape& extents,
              const std::string& long_name = "", precision stored = precision::float64,
              const std::string& units = "dimensionless");
+  /// The same, from the parts of all processes, [first extent of the part][…]; a part may have no numbers.
+  void write_part(const std::string& name, const std::vector<double>& values, const shape& extents,
+                  const dataset_part& part, const std::string& long_name = "",
+                  precision stored = precision::float64, const std::string& units = "dimensionless");
   /// Writes text as a scalar UTF-8 dataset without attributes.
   void write(const std::string& name, const std::string& text);
   /// Writes a number as an attribute of the file.
   void write_attribute(const std::string& name, double value);
   /// Writes text as an attribute of the file.
   void write_attribute(const std::string& name, const std::string& value);
+  /// Whether this process writes what is not a part: the root of several processes.
+  bool writes() const { return !is_shared() || processes_->is_root(); }
   /// Flushes the file to disk and closes it, so that a full disk is reported here and not in a destructor.
   void close();
 
@@ -54,6 +73,8 @@ class hdf5_file {
   std::string units(const std::string& name) const;
   /// Returns all numbers of a dataset in row-major order. Throws if the dataset is incomplete.
   std::vector<double> read(const std::string& name) const;
+  /// Returns the numbers of a part of a dataset in row-major order. Throws if the dataset is incomplete.
+  std::vector<double> read_part(const std::string& name, const dataset_part& part) const;
   /// Returns text written by write().
   std::string read_text(const std::string& name) const;
   /// Returns a number from the attributes of the file.
@@ -67,12 +88,19 @@ class hdf5_file {
 
  private:
   hdf5_file(std::string path, std::int64_t id);
+  void write_numbers(const std::string& name, const double* values, const shape& extents,
+                     const dataset_part* part, const std::string& long_name, precision stored,
+                     const std::string& units);
+  /// Whether several processes write the file.
+  bool is_shared() const { return processes_ && !processes_->is_single(); }
   [[noreturn]] void fail(const std::string& what) const;
-  [[noreturn]] void fail_to_write(const std::string& what) const;
+  void fail_to_write(const std::string& what);
 
   std::string path_;
   std::int64_t id_;
   std::unique_ptr<int> error_ = std::make_unique<int>(0);  ///< errno of the first write that failed
+  std::shared_ptr<communicator> processes_;
+  std::string failure_;  ///< of a file that several processes write, until close()
 };
 
 }  // namespace apsis

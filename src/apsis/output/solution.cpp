@@ -2,6 +2,8 @@
 
 #include <apsis/output/velocity_axes.hpp>
 
+#include <algorithm>
+
 namespace apsis {
 namespace {
 
@@ -25,11 +27,38 @@ void write_velocities(hdf5_file& file, const velocity_set& velocities) {
     file.write(axis.name, axis.nodes, {axis.nodes.size()}, "velocity component");
 }
 
+/// Adds `last` numbers in every cell to a part of the mesh.
+dataset_part with(dataset_part part, std::uint64_t last) {
+  part.first.push_back(0);
+  part.count.push_back(last);
+  return part;
+}
+
+/// Writes `last` numbers for every cell of the axes, or of the part of this process.
+void write_cells(hdf5_file& file, const std::string& name, const std::vector<double>& values,
+                 const std::vector<mesh_axis>& axes, const std::optional<dataset_part>& part,
+                 std::uint64_t last, const std::string& label, precision stored) {
+  const shape all = with(mesh_shape(axes), last);
+  if (part)
+    file.write_part(name, values, all, with(*part, last), label, stored);
+  else
+    file.write(name, values, all, label, stored);
+}
+
+void write_f(hdf5_file& file, const std::vector<double>& f, const std::vector<mesh_axis>& axes,
+             const std::optional<dataset_part>& part, std::uint64_t components, precision stored) {
+  if (f.empty() && !part) return;
+  write_cells(file, "f", f, axes, part, components, "unknowns", stored);
+}
+
 void write_marginals(hdf5_file& file, const std::vector<double>& f, const std::vector<mesh_axis>& axes,
-                     const velocity_set& velocities, precision stored) {
-  for (const auto& one : marginals(f, mesh_size(axes), velocities))
-    file.write("marginals/" + one.axis.name, one.values, with(mesh_shape(axes), one.axis.nodes.size()),
-               one.label, stored);
+                     const std::optional<dataset_part>& part, const velocity_set& velocities,
+                     precision stored) {
+  if (f.empty() && !part) return;
+  const std::uint64_t cells = f.size() / static_cast<std::uint64_t>(std::max(velocities.components(), 1));
+  for (const auto& one : marginals(f, cells, velocities))
+    write_cells(file, "marginals/" + one.axis.name, one.values, axes, part, one.axis.nodes.size(), one.label,
+                stored);
 }
 
 void write_coordinates(hdf5_file& file, const std::string& group, const std::vector<mesh_axis>& axes,
@@ -41,8 +70,8 @@ void write_coordinates(hdf5_file& file, const std::string& group, const std::vec
 
 void write_points(hdf5_file& file, const distribution_at_points& points, std::uint64_t components,
                   precision stored, const std::string& unit) {
-  if (points.f.empty()) return;
-  file.write("points/f", points.f, {points.f.size() / components, components}, "unknowns", stored);
+  if (points.centres.empty()) return;
+  file.write("points/f", points.f, {points.centres.front().centres.size(), components}, "unknowns", stored);
   write_coordinates(file, "points/", points.centres, unit);
 }
 
@@ -50,7 +79,7 @@ void write_points(hdf5_file& file, const distribution_at_points& points, std::ui
 void write_geometry(hdf5_file& file, const field_series& fields) {
   if (fields.axes.size() < 2) return;
   std::vector<double> points;
-  for (std::size_t cell = 0; cell < mesh_size(fields.axes); ++cell)
+  for (std::size_t cell = 0; cell < mesh_size(fields.axes) && file.writes(); ++cell)
     for (std::size_t k = 0; k < 3; ++k)
       points.push_back(k < fields.axes.size() ? centre_of_cell(fields.axes, cell, k) : 0.0);
   file.write("geometry/centres", points, with(mesh_shape(fields.axes), 3), "cell centre", precision::float64,
@@ -83,20 +112,22 @@ void write_series(hdf5_file& file, const field_series& fields) {
 
 }  // namespace
 
-void write_solution(const std::string& path, const solution& s) {
-  hdf5_file file = hdf5_file::create(path);
+void write_solution(const std::string& path, const solution& s,
+                    const std::shared_ptr<communicator>& processes) {
+  hdf5_file file = hdf5_file::create(path, 0, processes);
   file.write_attribute("title", s.title);
   file.write_attribute("case", s.case_text);
   file.write_attribute("manifest", s.manifest);
   file.write_attribute("t", s.t);
   file.write_attribute("step", static_cast<double>(s.step));
   const auto& axes = s.fields.axes;
-  if (!s.f.empty()) file.write("f", s.f, with(mesh_shape(axes), s.components), "unknowns");
+  write_f(file, s.f, axes, s.part, s.components, precision::float64);
   write_points(file, s.points, s.components, precision::float64, s.fields.unit_of_x);
   write_velocities(file, s.velocities);
-  if (!s.f.empty()) write_marginals(file, s.f, axes, s.velocities, precision::float64);
+  write_marginals(file, s.f, axes, s.part, s.velocities, precision::float64);
   write_coordinates(file, "", axes, s.fields.unit_of_x);
-  if (!s.epsilon.empty()) file.write("epsilon", s.epsilon, mesh_shape(axes), "Knudsen number");
+  if (!s.epsilon.empty() || !file.writes())
+    file.write("epsilon", s.epsilon, mesh_shape(axes), "Knudsen number");
   write_geometry(file, s.fields);
   write_series(file, s.fields);
   file.close();
@@ -111,15 +142,16 @@ void write_fields(const std::string& path, const std::string& title, const field
   file.close();
 }
 
-void write_distribution(const std::string& path, const distribution_snapshot& s, precision stored) {
-  hdf5_file file = hdf5_file::create(path);
+void write_distribution(const std::string& path, const distribution_snapshot& s, precision stored,
+                        const std::shared_ptr<communicator>& processes) {
+  hdf5_file file = hdf5_file::create(path, 0, processes);
   file.write_attribute("t", s.t);
   file.write_attribute("step", static_cast<double>(s.step));
-  if (!s.f.empty()) file.write("f", s.f, with(mesh_shape(s.axes), s.components), "unknowns", stored);
+  write_f(file, s.f, s.axes, s.part, s.components, stored);
   write_points(file, s.points, s.components, stored, "dimensionless");
   write_velocities(file, s.velocities);
-  if (!s.f.empty()) {
-    write_marginals(file, s.f, s.axes, s.velocities, stored);
+  if (!s.f.empty() || s.part) {
+    write_marginals(file, s.f, s.axes, s.part, s.velocities, stored);
     write_coordinates(file, "", s.axes, "dimensionless");
   }
   file.close();

@@ -5,6 +5,8 @@
 #include <apsis/phase/velocity_set.hpp>
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,20 +18,22 @@ struct distribution_at_points {
   std::vector<double> f;           ///< [points][components]; empty if no cells are chosen
 };
 
-/// The content of solution.h5: the state at the end of a run. Dimensionless, except for times and fields
-/// whose series has units. Its cells are those of the axes of the fields.
+/// The content of solution.h5: the state at the end of a run. On one of several processes f has the cells of
+/// its part, and fields and epsilon have their numbers on the root only. Dimensionless, except for times and
+/// fields whose series has units. Its cells are those of the axes of the fields.
 struct solution {
-  std::string title;              ///< of the case
-  std::string case_text;          ///< the resolved case as TOML
-  std::string manifest;           ///< manifest.json
-  double t = 0.0;                 ///< time
-  long step = 0;                  ///< steps done
-  std::uint64_t components = 0;   ///< unknowns of a cell
-  std::vector<double> f;          ///< [cells][components]; empty if not requested
-  distribution_at_points points;  ///< f of chosen cells
-  velocity_set velocities;        ///< of the components; none without space
-  std::vector<double> epsilon;    ///< [cells]
-  field_series fields;            ///< the last snapshot is the final state
+  std::string title;                      ///< of the case
+  std::string case_text;                  ///< the resolved case as TOML
+  std::string manifest;                   ///< manifest.json
+  double t = 0.0;                         ///< time
+  long step = 0;                          ///< steps done
+  std::uint64_t components = 0;           ///< unknowns of a cell
+  std::vector<double> f;                  ///< [cells][components]; empty if not requested
+  distribution_at_points points;          ///< f of chosen cells
+  velocity_set velocities;                ///< of the components; none without space
+  std::vector<double> epsilon;            ///< [cells]
+  field_series fields;                    ///< the last snapshot is the final state
+  std::optional<dataset_part> part = {};  ///< of the mesh, of one of several processes
 };
 
 /// Writes the datasets f, v, epsilon, fields/NAME; the coordinates x (and y, z) of the cell centres, one
@@ -39,26 +43,30 @@ struct solution {
 /// or three velocity dimensions v is [points][dimensions], and v_weights [points] are added; where the
 /// velocities are a tensor product, also the nodes v_x, v_y, v_z and, with f, its marginals/v_x, … [nodes].
 /// Chosen cells are in points/f [points][components], points/x, …. Every dataset has the attribute units; the
-/// file has title, case (TOML) and manifest (JSON). Throws io_error.
-void write_solution(const std::string& path, const solution& s);
+/// file has title, case (TOML) and manifest (JSON). Throws io_error. `processes`: those that write the file
+/// together, each with its part; the texts are the same on all.
+void write_solution(const std::string& path, const solution& s,
+                    const std::shared_ptr<communicator>& processes = nullptr);
 
 /// Writes fields alone with their coordinates, as in solution.h5, and the attribute title. Throws io_error.
 void write_fields(const std::string& path, const std::string& title, const field_series& fields);
 
 /// The unknowns at one time, of all or some cells, for a file of their own.
 struct distribution_snapshot {
-  double t = 0.0;                 ///< time
-  long step = 0;                  ///< steps done
-  std::uint64_t components = 0;   ///< unknowns of a cell
-  std::vector<mesh_axis> axes;    ///< of the cells written; empty without space
-  std::vector<double> f;          ///< [cells][components]; empty with `points`
-  distribution_at_points points;  ///< f of chosen cells, in place of all
-  velocity_set velocities;        ///< of the components; none without space
+  double t = 0.0;                         ///< time
+  long step = 0;                          ///< steps done
+  std::uint64_t components = 0;           ///< unknowns of a cell
+  std::vector<mesh_axis> axes;            ///< of the cells written; empty without space
+  std::vector<double> f;                  ///< [cells][components]; empty with `points`
+  distribution_at_points points;          ///< f of chosen cells, in place of all
+  velocity_set velocities;                ///< of the components; none without space
+  std::optional<dataset_part> part = {};  ///< of the cells written, of one of several processes
 };
 
 /// Writes the datasets f, v, x, y, z and those of several velocity dimensions, or of chosen cells the group
 /// points, as in solution.h5, with attributes t and step. Throws io_error.
-void write_distribution(const std::string& path, const distribution_snapshot& s, precision stored);
+void write_distribution(const std::string& path, const distribution_snapshot& s, precision stored,
+                        const std::shared_ptr<communicator>& processes = nullptr);
 
 /// A file written by write_distribution.
 struct distribution_file {

@@ -1,9 +1,12 @@
 #include <apsis/run/find_fields.hpp>
 
+#include <apsis/run/gathered_cells.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace apsis {
 namespace {
@@ -26,26 +29,24 @@ void add_names(field_table& table, const std::vector<field_name>& names) {
 }
 
 /// Adds the squares of the derivatives of φ along a direction, within the segments of its pencils.
-void add_squares(const domain& space, int direction, const std::vector<double>& phi,
-                 std::vector<double>& sum) {
+void add_squares(const domain& space, int direction, const field& phi, std::vector<double>& sum) {
   const int stride = space.mesh().stride(direction);
-  for (const segment& one : space.segments().along(direction)) {
+  const auto& segments = space.segments().along(direction);
+  for (int number = 0; number < static_cast<int>(segments.size()); ++number) {
+    const segment& one = segments[static_cast<std::size_t>(number)];
     const int n = one.cells;
-    const auto at = [&](int k) { return static_cast<std::size_t>(one.first + k * stride); };
-    // The cell beyond an end across periodic faces, or the one at the end.
-    const auto beyond = [&](bool upper) {
-      const auto& [surface, place] = one.ends[upper ? 1 : 0];
-      if (surface >= 0) return at(upper ? n - 1 : 0);
-      const segment& next = space.segment_at(direction, place);
-      return static_cast<std::size_t>(next.first + (upper ? 0 : (next.cells - 1) * stride));
-    };
+    // The cell across an end, of another process or across periodic faces; none where the gas ends.
+    const double* before = space.row_across(phi, direction, number, false);
+    const double* after = space.row_across(phi, direction, number, true);
     for (int k = 0; k < n; ++k) {
-      const std::size_t below = k > 0 ? at(k - 1) : beyond(false),
-                        above = k < n - 1 ? at(k + 1) : beyond(true);
-      const int intervals = (below == at(k) ? 0 : 1) + (above == at(k) ? 0 : 1);
-      const double slope =
-          intervals == 0 ? 0.0 : (phi[above] - phi[below]) / (intervals * space.mesh().spacing(direction));
-      sum[at(k)] += slope * slope;
+      const int cell = one.first + k * stride;
+      const double *here = phi.row(cell), *below = k > 0 ? phi.row(cell - stride) : before,
+                   *above = k < n - 1 ? phi.row(cell + stride) : after;
+      const int intervals =
+          (below == nullptr || below == here ? 0 : 1) + (above == nullptr || above == here ? 0 : 1);
+      const double rise = *(above == nullptr ? here : above) - *(below == nullptr ? here : below);
+      const double slope = intervals == 0 ? 0.0 : rise / (intervals * space.mesh().spacing(direction));
+      sum[static_cast<std::size_t>(cell)] += slope * slope;
     }
   }
 }
@@ -54,9 +55,13 @@ void add_squares(const domain& space, int direction, const std::vector<double>& 
 std::vector<double> size_of_gradient(const run_setup& setup, const std::vector<double>& phi) {
   std::vector<double> sum(phi.size(), 0.0);
   if (setup.has_space()) {
-    const domain space = setup.builder().space();
+    domain space = setup.builder().space();
+    space.reserve(1, 1);
+    field values(static_cast<int>(phi.size()), 1);
+    for (int cell = 0; cell < values.cells(); ++cell) *values.row(cell) = phi[static_cast<std::size_t>(cell)];
+    space.exchange(values);
     for (int direction = 0; direction < setup.mesh().dimensions(); ++direction)
-      add_squares(space, direction, phi, sum);
+      add_squares(space, direction, values, sum);
   }
   for (double& x : sum) x = std::sqrt(x);
   return sum;
@@ -84,16 +89,17 @@ void add_gradient_fields(const run_setup& setup, const field& u, std::size_t usu
   }
 }
 
+/// Of the whole mesh, on the root alone.
 void add_centres(const run_setup& setup, field_table& table) {
-  const grid& mesh = setup.mesh();
-  table.x = setup.centres();
-  const std::array further = {&table.y, &table.z};
-  for (int direction = 0; direction < mesh.dimensions(); ++direction) {
+  const grid& mesh = setup.whole_mesh();
+  for (int direction = 0; direction < mesh.dimensions(); ++direction)
     table.shape.push_back(mesh.cells(direction));
-    if (direction == 0) continue;
-    std::vector<double>& centres = *further.at(static_cast<std::size_t>(direction) - 1);
-    for (int cell = 0; cell < mesh.size(); ++cell) centres.push_back(mesh.centre(cell, direction));
-  }
+  if (!setup.processes().is_root()) return;
+  const std::array columns = {&table.x, &table.y, &table.z};
+  for (int direction = 0; direction < mesh.dimensions(); ++direction)
+    for (int cell = 0; cell < mesh.size(); ++cell)
+      columns.at(static_cast<std::size_t>(direction))
+          ->push_back(setup.has_space() ? mesh.centre(cell, direction) : 0.0);
 }
 
 }  // namespace
@@ -118,6 +124,7 @@ field_table find_fields(const run_setup& setup, const field& u) {
     for (std::size_t k = 0; k < values.size(); ++k) table.values[k].push_back(values[k]);
   }
   if (names_one_of(wanted, equation.gradient_fields())) add_gradient_fields(setup, u, usual, table);
+  for (auto& column : table.values) column = gather_cells(setup.builder(), std::move(column));
   return table;
 }
 

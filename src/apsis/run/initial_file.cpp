@@ -130,11 +130,15 @@ void project(const model& equation, std::span<double> u) {
   relaxation->equilibrium(omega.data(), u.data());
 }
 
-field copied(const line_rows& rows) {
-  field u(rows.cells, rows.components);
-  for (int cell = 0; cell < rows.cells; ++cell)
-    std::copy_n(rows.values.begin() + static_cast<std::ptrdiff_t>(cell) * rows.components, rows.components,
+/// The rows of the cells of a block of the mesh that the file has.
+field copied(const line_rows& rows, const problem_builder& builder) {
+  const grid& mesh = builder.mesh();
+  field u(builder.has_space() ? mesh.size() : rows.cells, rows.components);
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    const int there = builder.has_space() ? builder.whole_mesh().cell_of(mesh, cell) : cell;
+    std::copy_n(rows.values.begin() + static_cast<std::ptrdiff_t>(there) * rows.components, rows.components,
                 u.row(cell));
+  }
   return u;
 }
 
@@ -142,8 +146,8 @@ field copied(const line_rows& rows) {
 /// them.
 state_of_file on_the_same_mesh(const case_config& config, const model& equation,
                                const problem_builder& builder, const line_rows& rows, bool equilibrium) {
-  if (config.prescribed.regions.empty()) return {copied(rows), !equilibrium};
-  const grid& mesh = builder.mesh();
+  if (config.prescribed.regions.empty()) return {copied(rows, builder), !equilibrium};
+  const grid& mesh = builder.whole_mesh();
   const prescribed_data data(
       config, equation, [&config](const std::string& path) { return place_of(config, path); },
       [&](const position& x, std::span<double> u) {
@@ -158,7 +162,7 @@ state_of_file on_the_same_mesh(const case_config& config, const model& equation,
 
 state_of_file sample_initial_file(const case_config& config, const model& equation,
                                   const problem_builder& builder) {
-  const grid& mesh = builder.mesh();
+  const grid& mesh = builder.whole_mesh();
   const auto [rows, equilibrium] = reader(config, equation).read();
   if (mesh.dimensions() > 1) return on_the_same_mesh(config, equation, builder, rows, equilibrium);
   const bool on_line = builder.has_space();
@@ -168,7 +172,7 @@ state_of_file sample_initial_file(const case_config& config, const model& equati
        rows.lower == config.space.domain.front()[0] && rows.upper == config.space.domain.front()[1]);
   const bool points = config.space.formulation == formulation::finite_difference;
   if (same_mesh && config.prescribed.regions.empty() && (!equilibrium || points || !on_line))
-    return {copied(rows), !equilibrium};
+    return {copied(rows, builder), !equilibrium};
   const cell_polynomials between(rows, equation.positive());
   const bool project_rows = equilibrium;
   const prescribed_data data(

@@ -119,7 +119,10 @@ std::vector<int> memory_need::points_that_fit(double limit) const {
 
 void check_memory(const case_config& config, const run_setup& setup, int copies) {
   const memory_need need(config, setup, copies);
-  const memory_limit limit = available_memory();
+  memory_limit limit = available_memory();
+  // Of all machines, if they are like this one.
+  const communicator& processes = setup.processes();
+  limit.bytes *= 1.0 * processes.size() / processes.processes_here();
   if (need.bytes() <= limit.bytes) return;
   const std::string message = fmt::format("the run needs at least {}, and {} are left ({}); {}", need.text(),
                                           in_units(limit.bytes), limit.source, advice(need, limit.bytes));

@@ -1,92 +1,120 @@
 #include <apsis/run/monitor.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/exec/agreement.hpp>
+#include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/scheme/row_check.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace apsis {
 
-namespace {
+struct monitor::partial {
+  std::vector<exact_sum> sums;  ///< invariants, their scales and the entropy
+  std::vector<double> densities, scales;
+  double lowest = std::numeric_limits<double>::infinity();  ///< of solid cells
+  long negative = 0;
+  int not_finite = none, violating = none;  ///< first cells
+  double value = 0.0;                       ///< that is not finite
 
-/// Compensated summation (Neumaier 1974), accurate to one or two roundings for any number of cells.
-class compensated_sum {
- public:
-  void add(double x) {
-    const double sum = sum_ + x;
-    lost_ += std::abs(sum_) >= std::abs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
-    sum_ = sum;
-  }
-  double value() const { return sum_ + lost_; }
-
- private:
-  double sum_ = 0.0, lost_ = 0.0;
+  static constexpr int none = std::numeric_limits<int>::max();
 };
 
-}  // namespace
+monitor::monitor(const run_setup& setup)
+    : setup_(setup),
+      equation_(*setup.equation),
+      volume_(setup.cell_volume()),
+      ends_(setup.open_ends()),
+      entropy_bounds_(setup.entropy_bounds().value_or(std::vector<double>{})),
+      parts_(std::make_unique<per_thread<partial>>()) {}
+
+monitor::~monitor() = default;
+
+void monitor::check_cells(const field& u, int begin, int end, partial& own) const {
+  const std::size_t count = own.densities.size();
+  const bool conditional = !equation_.condition().empty();
+  const profile::section timed(kernel::monitor, static_cast<double>(end - begin) * u.stride(),
+                               {0.0, sizeof(double)});
+  for (int cell = begin; cell < end; ++cell) {
+    const double* row = u.row(cell);
+    const auto [low, below] = find_extremes(row, u.components());
+    if (std::isnan(low)) {
+      if (cell < own.not_finite) own.value = low;
+      own.not_finite = std::min(own.not_finite, cell);
+      continue;
+    }
+    own.lowest = std::min(own.lowest, low);
+    own.negative += below;
+    equation_.invariant_densities(row, own.densities.data());
+    equation_.invariant_scales(own.densities.data(), own.scales.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      own.sums[k].add(own.densities[k]);
+      own.sums[count + k].add(own.scales[k]);
+    }
+    if (conditional && !equation_.check_supported(row).problem.empty())
+      own.violating = std::min(own.violating, cell);
+    if (equation_.has_entropy() && below == 0) own.sums.back().add(equation_.entropy(row));
+  }
+}
+
+/// The parts of all threads.
+monitor::partial monitor::check_block(const field& u) const {
+  const std::size_t count = equation_.invariants().size();
+  partial empty;
+  empty.sums.resize(2 * count + 1);
+  empty.densities.resize(count);
+  empty.scales.resize(count);
+  std::vector<partial*> parts;
+  parts_->prepare([&](partial& own) {
+    own = empty;
+    parts.push_back(&own);
+  });
+  constexpr int block = 16;
+  parallel_blocks(u.cells(), block, [&](int begin, int end) {
+    for_cells_in(setup_.mesh().fluid(), begin, end,
+                 [&](int from, int to) { check_cells(u, from, to, parts_->here()); });
+  });
+  for (const partial* own : parts) {
+    for (std::size_t k = 0; k < empty.sums.size(); ++k) empty.sums[k].add(own->sums[k]);
+    empty.lowest = std::min(empty.lowest, own->lowest);
+    empty.negative += own->negative;
+    if (own->not_finite < empty.not_finite) empty.value = own->value;
+    empty.not_finite = std::min(empty.not_finite, own->not_finite);
+    empty.violating = std::min(empty.violating, own->violating);
+  }
+  return empty;
+}
 
 monitor::totals monitor::sum(const field& u) const {
   const std::size_t count = equation_.invariants().size();
-  const auto cells = static_cast<std::size_t>(u.cells());
-  std::vector<double> densities(cells * count), entropies(cells), scales(cells * count),
-      lowest(cells, std::numeric_limits<double>::infinity());  // of solid cells
-  std::vector<long> negative(cells);
-  const bool conditional = !equation_.condition().empty();
-  std::vector<char> violates(conditional ? cells : 0);
-  constexpr int block = 16;
-  const std::vector<cell_range> all = {{0, u.cells()}};
-  const auto check = [&](int begin, int end) {
-    const profile::section timed(kernel::monitor, static_cast<double>(end - begin) * u.stride(),
-                                 {0.0, sizeof(double)});
-    for (int cell = begin; cell < end; ++cell) {
-      const auto c = static_cast<std::size_t>(cell);
-      const double* row = u.row(cell);
-      const auto [low, below] = find_extremes(row, u.components());
-      lowest[c] = low;
-      negative[c] = below;
-      equation_.invariant_densities(row, densities.data() + c * count);
-      equation_.invariant_scales(densities.data() + c * count, scales.data() + c * count);
-      if (conditional) violates[c] = equation_.check_supported(row).problem.empty() ? 0 : 1;
-      if (equation_.has_entropy() && below == 0) entropies[c] = equation_.entropy(row);
-    }
-  };
-  parallel_blocks(u.cells(), block, [&](int begin, int end) {
-    for_cells_in(cells_.empty() ? all : cells_, begin, end, check);
-  });
-
-  totals t{std::vector<double>(count, 0.0),
-           std::vector<double>(count, 0.0),
-           0.0,
-           std::numeric_limits<double>::infinity(),
-           0,
-           -1};
-  std::vector<compensated_sum> invariants(count), sizes(count);
-  compensated_sum entropy;
-  for (std::size_t c = 0; c < cells; ++c) {
-    if (std::isnan(lowest[c]))
+  partial mine = check_block(u);
+  communicator& processes = setup_.processes();
+  together(processes, [&] {
+    if (mine.not_finite != partial::none)
       throw numerical_error(
           "a value of the state is not finite (the step is unstable, or the data are); use a smaller step",
-          {-1, std::numeric_limits<double>::quiet_NaN(), static_cast<long>(c), lowest[c]});
-    t.lowest = std::min(t.lowest, lowest[c]);
-    t.negative += negative[c];
-    entropy.add(entropies[c]);
-    for (std::size_t k = 0; k < count; ++k) {
-      invariants[k].add(densities[c * count + k]);
-      sizes[k].add(scales[c * count + k]);
-    }
-    if (conditional && t.violating < 0 && violates[c] != 0) t.violating = static_cast<long>(c);
-  }
+          {-1, std::numeric_limits<double>::quiet_NaN(), setup_.number_in_whole_mesh(mine.not_finite),
+           mine.value});
+  });
+  const std::vector<double> sums = global_values(processes, mine.sums);
+  std::array<std::int64_t, 2> counts = {mine.negative, mine.violating == partial::none ? 0 : 1};
+  processes.sum(counts);
+  totals t;
+  t.lowest = global_lowest(processes, mine.lowest);
+  t.negative = counts[0];
+  t.violated = counts[1] > 0;
+  if (mine.violating != partial::none) t.violating = mine.violating;
   for (std::size_t k = 0; k < count; ++k) {
-    t.invariants[k] = volume_ * invariants[k].value();
-    t.scales[k] = volume_ * sizes[k].value();
+    t.invariants.push_back(volume_ * sums[k]);
+    t.scales.push_back(volume_ * sums[count + k]);
   }
-  t.entropy = volume_ * entropy.value();
-  if (!equation_.has_entropy() || t.negative > 0) t.entropy = std::numeric_limits<double>::quiet_NaN();
+  t.entropy = !equation_.has_entropy() || t.negative > 0 ? std::numeric_limits<double>::quiet_NaN()
+                                                         : volume_ * sums.back();
   return t;
 }
 
@@ -103,10 +131,6 @@ step_record monitor::start(const field& u) {
   record.entropy_change = std::numeric_limits<double>::quiet_NaN();
   compare(t, invariants_, record.flux, record);
   return record;
-}
-
-std::size_t monitor::size_of_gains() const {
-  return invariants_.size() * std::accumulate(ends_.begin(), ends_.end(), std::size_t{0});
 }
 
 step_record monitor::check(const field& u, double dt, const step_record& previous) const {
@@ -132,22 +156,31 @@ step_record monitor::check(const field& u, double dt, const step_record& previou
 /// The sums of the gains of all ends at each face, [face][invariant].
 std::vector<double> monitor::gained_through_faces(const std::vector<double>& gains) const {
   const std::size_t count = invariants_.size();
-  std::vector<double> sums;
+  std::vector<exact_sum> sums(ends_.size() * count);
   std::size_t first = 0;
-  for (const std::size_t ends : ends_) {
-    std::vector<compensated_sum> sum(count);
-    for (std::size_t k = first; k < std::min(first + ends * count, gains.size()); ++k)
-      sum[(k - first) % count].add(gains[k]);
-    first += ends * count;
-    for (const auto& one : sum) sums.push_back(one.value());
+  for (std::size_t face = 0; face < ends_.size(); ++face) {
+    for (std::size_t k = first; k < std::min(first + ends_[face] * count, gains.size()); ++k)
+      sums[face * count + (k - first) % count].add(gains[k]);
+    first += ends_[face] * count;
   }
-  return sums;
+  return global_values(setup_.processes(), sums);
 }
 
+/// The violation in the first cell of the mesh.
 std::optional<condition_violation> monitor::violation_in(const field& u, const totals& t) const {
-  if (t.violating < 0) return std::nullopt;
-  const double* row = u.row(static_cast<int>(t.violating));
-  return condition_violation{t.violating, row[0], equation_.check_supported(row).problem};
+  if (!t.violated) return std::nullopt;
+  // As an error, on which all processes agree.
+  try {
+    together(setup_.processes(), [&] {
+      if (t.violating < 0) return;
+      const double* row = u.row(t.violating);
+      throw numerical_error(equation_.check_supported(row).problem,
+                            {-1, 0.0, setup_.number_in_whole_mesh(t.violating), row[0]});
+    });
+  } catch (const numerical_error& first) {
+    return condition_violation{first.site().cell, first.site().value, first.problem()};
+  }
+  return std::nullopt;
 }
 
 void monitor::compare(const totals& t, const std::vector<double>& before, const std::vector<double>& gained,

@@ -189,6 +189,7 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records) {
   c.cells = static_cast<std::uint64_t>(run.cells());
   c.components = static_cast<std::uint64_t>(run.components());
   c.state = std::move(saved.unknowns);
+  c.part = part_of(run);
   c.gains = std::move(saved.gains);
   run_state::visit_records(saved, [&c](const char* group, const auto& record) {
     record.visit_members(record, number_writer{group, c});
@@ -223,10 +224,12 @@ solution make_solution(const simulation& run, const run_records& records) {
   s.step = run.step();
   s.components = static_cast<std::uint64_t>(run.components());
   const auto& output = run.config().output;
-  if (!output.distribution_at.empty())
+  if (!output.distribution_at.empty()) {
     s.points = rows_at_points(run, units.factor(dimensions::length));
-  else if (output.distribution != distribution_choice::none)
+  } else if (output.distribution != distribution_choice::none) {
     s.f = run.state();
+    s.part = part_of(run);
+  }
   s.velocities = run.velocities();
   s.epsilon = run.epsilon();
   s.fields = units.convert(records.fields());

@@ -4,15 +4,20 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/exec/agreement.hpp>
+#include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/exec/processors.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/run/distribution_rows.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/probe_files.hpp>
 #include <apsis/run/result_units.hpp>
+#include <apsis/run/shared_files.hpp>
 #include <apsis/run/surface_files.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -56,21 +61,39 @@ constexpr long many_steps = 100'000'000;
 /// Returns the case if the state and, for results, its checkpoint and solution.h5 fit into memory together;
 /// reports what it needs.
 case_config with_room_for_results(case_config config, const session_options& options) {
-  const run_setup setup(config);
-  const int copies = options.out ? 2 : 0;
-  check_memory(config, setup, copies);
-  log::info(fmt::format("{}: needs {}", config.source, memory_need(config, setup, copies).text()));
+  together(*options.processes, [&] {
+    const run_setup setup(config, options.processes);
+    const int copies = options.out ? 2 : 0;
+    check_memory(config, setup, copies);
+    log::info(fmt::format("{}: needs {}", config.source, memory_need(config, setup, copies).text()));
+  });
   return config;
+}
+
+/// Reads a checkpoint: the root verifies it before the others read their parts.
+checkpoint read_by_all(const std::string& path, communicator& processes,
+                       const std::optional<dataset_part>& part) {
+  checkpoint saved;
+  together(processes, [&] {
+    if (processes.is_root()) saved = read_checkpoint(path, part);
+  });
+  together(processes, [&] {
+    if (!processes.is_root()) saved = read_checkpoint(path, part, false);
+  });
+  return saved;
 }
 
 /// The state of a checkpoint as that from which a run starts.
 state_source state_of_checkpoint(const std::string& path) {
   return [path](const run_setup& setup) {
-    const checkpoint saved = read_checkpoint(path);
-    field u(setup.mesh().size(), setup.equation->components());
+    const grid& block = setup.mesh();
+    std::optional<dataset_part> part;
+    if (!setup.processes().is_single()) part = part_of(block);
+    const checkpoint saved = read_by_all(path, setup.processes(), part);
+    field u(block.size(), setup.equation->components());
     const auto components = static_cast<std::size_t>(u.components());
     if (saved.state.size() != static_cast<std::size_t>(u.cells()) * components)
-      refuse_size(path, saved, u.cells(), u.components());
+      refuse_size(path, saved, setup.whole_mesh().size(), u.components());
     for (int cell = 0; cell < u.cells(); ++cell)
       std::copy_n(saved.state.begin() + static_cast<std::ptrdiff_t>(cell) * u.components(), u.components(),
                   u.row(cell));
@@ -104,6 +127,7 @@ std::string essential_text(case_config config) {
   config.title.clear();
   config.output = {};
   config.time.end = 1.0;
+  config.space.blocks.reset();
   return to_toml(config);
 }
 
@@ -123,47 +147,53 @@ void check_same_case(const case_config& mine, const std::string& saved_text, con
 
 }  // namespace
 
-int threads_for(const case_config& config) {
+int threads_for(const case_config& config, const communicator& processes) {
   if (const int requested = requested_threads(); requested > 0) return requested;
   constexpr double large = 32768.0;
   const double unknowns = 1.0 * make_model(config)->components() * make_mesh(config).size();
-  return unknowns < large ? 1 : default_threads();
+  if (unknowns < large * processes.size()) return 1;
+  return std::min(available_processors(processes.processes_here()), most_threads);
 }
 
 run_session::run_session(const case_config& configured, session_options options)
     : options_(std::move(options)),
-      simulation_(with_room_for_results(configured, options_), start_of(configured, options_)) {
+      simulation_(with_room_for_results(configured, options_), start_of(configured, options_),
+                  options_.processes) {
   // Locked first: a checkpoint in a folder that another run writes into must not be read.
-  if (options_.out) folder_ = std::make_unique<result_folder>(*options_.out);
+  together(processes(), [this] {
+    if (options_.out && processes().is_root()) folder_ = std::make_unique<result_folder>(*options_.out);
+  });
   if (options_.restart)
     resume(*options_.restart);
   else
     records_ = std::make_unique<run_records>(simulation_);
   const case_config& config = simulation_.config();
   snapshots_ = simulation_.snapshot_times_passed();
-  if (folder_ && options_.restart)
+  if (has_folder() && options_.restart)
     resume_snapshots(*options_.restart);
   else if (simulation_.step() == 0 && config.output.every > 0.0)
     write_distribution_snapshot();
   if (const auto& output = config.output;
-      !folder_ && !(output.probes.empty() && output.slices.empty() && output.surfaces.empty()))
+      !has_folder() && !(output.probes.empty() && output.slices.empty() && output.surfaces.empty()))
     log::warning("no probes, slices and surfaces are written (they need a folder); give one with --out");
-  if (!folder_ && config.output.checkpoint_every > 0)
+  if (!has_folder() && config.output.checkpoint_every > 0)
     log::warning("no checkpoints are written (output.checkpoint_every needs a folder); give one with --out");
-  if (config.output.distribution == distribution_choice::snapshots && !(folder_ && config.output.every > 0.0))
+  if (config.output.distribution == distribution_choice::snapshots &&
+      !(has_folder() && config.output.every > 0.0))
     log::warning(
         "no snapshots of f are written (output.distribution = \"snapshots\" needs output.every and a "
         "folder); "
         "give both");
   const long steps = simulation_.steps_total();
-  log::info(fmt::format("{}: about {} steps of {} on {} thread{}; {}", config.source, steps,
-                        config.time.method, threads(), threads() == 1 ? "" : "s",
-                        simulation_.promises().text()));
+  const int ranks = processes().size();
+  log::info(fmt::format("{}: about {} steps of {} on {}{} thread{}; {}", config.source, steps,
+                        config.time.method, ranks == 1 ? "" : fmt::format("{} processes of ", ranks),
+                        threads(), threads() == 1 ? "" : "s", simulation_.promises().text()));
   if (steps - simulation_.step() >= many_steps) warn_at_step_ = simulation_.step() + 1000;
 }
 
 void run_session::resume(const std::string& path) {
-  const checkpoint saved = read_checkpoint(path);
+  const checkpoint saved = read_by_all(path, processes(), part_of(simulation_));
   warn_of_another_commit(saved, path);
   check_same_case(simulation_.config(), saved.case_text, path);
   if (saved.cells != static_cast<std::uint64_t>(simulation_.cells()) ||
@@ -187,8 +217,8 @@ run_end run_session::run() {
   }
   if (options_.stepped) options_.stepped();
   finish_records();
-  if (folder_)
-    write_results(*folder_, end_, "");
+  if (has_folder())
+    write_results(folder_.get(), end_, "");
   else if (end_ != run_end::complete)
     log::warning("nothing was saved (a checkpoint needs a folder); give one with --out");
   return end_;
@@ -207,38 +237,49 @@ void run_session::take_snapshot() {
 
 void run_session::write_distribution_snapshot() {
   const auto& output = simulation_.config().output;
-  if (!folder_ || output.distribution != distribution_choice::snapshots) return;
+  if (!has_folder() || output.distribution != distribution_choice::snapshots) return;
   const distribution_snapshot now = make_distribution_snapshot(simulation_);
-  folder_->add_to_series(snapshots, fmt::format("f-{:09}.h5", now.step), [&](const std::string& path) {
-    write_distribution(path, now, stored_precision(simulation_.config()));
-  });
+  write_by_all(
+      processes(),
+      [&](const file_writer& write) {
+        folder_->add_to_series(snapshots, fmt::format("f-{:09}.h5", now.step), write);
+      },
+      [&](const std::string& path) {
+        write_distribution(path, now, stored_precision(simulation_.config()), options_.processes);
+      });
 }
 
 /// Resumes the series with the snapshots taken before the checkpoint.
 void run_session::resume_snapshots(const std::string& checkpoint) {
   if (simulation_.config().output.distribution != distribution_choice::snapshots) return;
-  folder_->resume_series(snapshots, std::filesystem::path(checkpoint).parent_path(),
-                         [this](const std::string& path) {
-                           return hdf5_file::open(path).read_attribute("t") <= simulation_.t();
-                         });
+  together(processes(), [&] {
+    if (!folder_) return;
+    folder_->resume_series(snapshots, std::filesystem::path(checkpoint).parent_path(),
+                           [this](const std::string& path) {
+                             return hdf5_file::open(path).read_attribute("t") <= simulation_.t();
+                           });
+  });
 }
 
 void run_session::loop() {
   if (options_.watch) options_.watch(simulation_);
   while (!simulation_.finished()) {
-    if (options_.stop && options_.stop()) {
-      end_ = run_end::interrupted;
-      return;
-    }
-    if (options_.wall && std::chrono::duration<double>(clock::now() - start_).count() >= *options_.wall) {
-      end_ = run_end::wall_time;
-      return;
-    }
-    if (folder_ && !before_end_ && simulation_.next_step_depends_on_end())
+    if (end_ = end_requested(); end_ != run_end::complete) return;
+    if (has_folder() && !before_end_ && simulation_.next_step_depends_on_end())
       before_end_ = make_checkpoint(simulation_, *records_);
     simulation_.advance();
     after_step();
   }
+}
+
+/// Whether a process was asked to stop, or the wall time of the root is over; run_end::complete if not.
+run_end run_session::end_requested() const {
+  const bool late = options_.wall && processes().is_root() &&
+                    std::chrono::duration<double>(clock::now() - start_).count() >= *options_.wall;
+  std::array<std::int64_t, 2> wanted = {options_.stop && options_.stop() ? 1 : 0, late ? 1 : 0};
+  processes().sum(wanted);
+  if (wanted[0] > 0) return run_end::interrupted;
+  return wanted[1] > 0 ? run_end::wall_time : run_end::complete;
 }
 
 void run_session::warn_of_many_steps() {
@@ -263,62 +304,86 @@ void run_session::after_step() {
 }
 
 bool run_session::checkpoint_is_due() const {
-  if (!folder_) return false;
+  if (!has_folder()) return false;
   const auto& output = simulation_.config().output;
+  if (output.checkpoint_every > 0 && simulation_.step() % output.checkpoint_every == 0) return true;
+  if (!(output.checkpoint_minutes > 0.0)) return false;
+  // By the clock of the root.
   const std::chrono::duration<double, std::ratio<60>> since = clock::now() - last_checkpoint_;
-  return (output.checkpoint_every > 0 && simulation_.step() % output.checkpoint_every == 0) ||
-         (output.checkpoint_minutes > 0.0 && since.count() >= output.checkpoint_minutes);
+  return global_count(processes(),
+                      processes().is_root() && since.count() >= output.checkpoint_minutes ? 1 : 0) > 0;
 }
 
 void run_session::publish_checkpoint() {
-  folder_->publish("checkpoint.h5", [&](const std::string& path) {
-    write_checkpoint(path, make_checkpoint(simulation_, *records_));
-  });
+  const checkpoint now = make_checkpoint(simulation_, *records_);
+  write_by_all(
+      processes(), [&](const file_writer& write) { folder_->publish("checkpoint.h5", write); },
+      [&](const std::string& path) { write_checkpoint(path, now, options_.processes); });
   last_checkpoint_ = clock::now();
 }
 
-void run_session::write_checkpoint_of_end(const std::string& path) {
-  // Without the snapshot of the current time, which the continued run would not have taken.
-  if (end_ == run_end::complete && before_end_)
-    write_checkpoint(path, *before_end_);
-  else
-    write_checkpoint(path, make_checkpoint(simulation_, *records_));
+/// Without the snapshot of the current time, which the continued run would not have taken.
+checkpoint run_session::checkpoint_of_end() const {
+  return end_ == run_end::complete && before_end_ ? *before_end_ : make_checkpoint(simulation_, *records_);
 }
 
-void run_session::write_results(result_folder& folder, run_end end, const std::string& message) {
-  const std::string about =
+/// `folder`: on the root alone.
+void run_session::write_results(result_folder* folder, run_end end, const std::string& message) {
+  std::string about =
       json_text(manifest(simulation_, {end, message, started_, options_.command, options_.restart})) + "\n";
+  broadcast_text(processes(), about);
   solution final_state = make_solution(simulation_, *shown_);
   final_state.manifest = about;
+  const std::vector<surface_table> walls = simulation_.surfaces();
+  together(processes(), [&] {
+    if (folder != nullptr) write_tables(*folder, final_state, walls);
+  });
+  const auto by_all = [&](const char* name, const file_writer& write) {
+    write_by_all(processes(), [&](const file_writer& all) { folder->prepare(name, all); }, write);
+  };
+  by_all("solution.h5",
+         [&](const std::string& path) { write_solution(path, final_state, options_.processes); });
+  if (end != run_end::failed) {
+    const checkpoint last = checkpoint_of_end();
+    by_all("checkpoint.h5",
+           [&](const std::string& path) { write_checkpoint(path, last, options_.processes); });
+  }
+  together(processes(), [&] {
+    if (folder == nullptr) return;
+    folder->prepare_text(result_folder::manifest, about);
+    folder->commit();
+  });
+}
+
+void run_session::write_tables(result_folder& folder, const solution& final_state,
+                               const std::vector<surface_table>& walls) {
   const result_units units(simulation_.config());
   folder.prepare_text("history.csv",
                       to_csv(units.convert(shown_->history(), simulation_), {"step", "negative_values"}));
   folder.prepare_text("fields.csv", to_csv(to_table(final_state.fields)));
   write_probes(simulation_.config(), final_state.fields, units.factor(dimensions::length), folder);
-  write_surfaces(simulation_, folder);
-  folder.prepare("solution.h5", [&](const std::string& path) { write_solution(path, final_state); });
+  write_surfaces(walls, simulation_.config(), folder);
   folder.prepare_text("solution.xdmf",
                       solution_xdmf(final_state, distribution_files(folder, units.factor(dimensions::time))));
-  if (end != run_end::failed)
-    folder.prepare("checkpoint.h5", [this](const std::string& path) { write_checkpoint_of_end(path); });
-  folder.prepare_text(result_folder::manifest, about);
-  folder.commit();
 }
 
 void run_session::save_failure(const std::string& message) {
-  if (!folder_) return;
+  if (!has_folder()) return;
   finish_records();
   // Results of an earlier successful run are not replaced by those of a failed one.
-  if (std::filesystem::exists(folder_->path() / result_folder::manifest)) {
-    result_folder beside(folder_->path() / "failed");
+  std::unique_ptr<result_folder> beside;
+  bool earlier = false;
+  together(processes(), [&] {
+    if (!folder_ || !std::filesystem::exists(folder_->path() / result_folder::manifest)) return;
+    earlier = true;
+    beside = std::make_unique<result_folder>(folder_->path() / "failed");
     if (simulation_.config().output.distribution == distribution_choice::snapshots)
-      beside.resume_series(snapshots, folder_->path(), [](const std::string&) { return true; });
-    write_results(beside, run_end::failed, message);
+      beside->resume_series(snapshots, folder_->path(), [](const std::string&) { return true; });
+  });
+  write_results(beside ? beside.get() : folder_.get(), run_end::failed, message);
+  if (earlier)
     log::warning(fmt::format("the results so far are in '{}' (the folder holds an earlier run)",
-                             beside.path().string()));
-  } else {
-    write_results(*folder_, run_end::failed, message);
-  }
+                             beside->path().string()));
 }
 
 }  // namespace apsis

@@ -15,10 +15,15 @@ namespace apsis {
 
 /// Returns the default number of threads for a case: OMP_NUM_THREADS if set, otherwise all processors for at
 /// least 32768 unknowns and 1 for fewer, which gain little from threads.
-int threads_for(const case_config& config);
+/// They are shared among the processes on this machine.
+int threads_for(const case_config& config, const communicator& processes);
+inline int threads_for(const case_config& config) {
+  return threads_for(config, *single_process());
+}
 
 /// Session options: output, restart, limits, callbacks.
 struct session_options {
+  std::shared_ptr<communicator> processes = single_process();  ///< share the mesh; all get the same options
   std::optional<std::string> out;      ///< result folder; without it nothing is written
   std::optional<std::string> restart;  ///< checkpoint of the same case to continue from
   std::optional<double> wall;          ///< wall time in seconds after which to stop with a checkpoint
@@ -52,13 +57,19 @@ class run_session {
   void after_step();
   bool checkpoint_is_due() const;
   void publish_checkpoint();
-  void write_checkpoint_of_end(const std::string& path);
+  checkpoint checkpoint_of_end() const;
+  run_end end_requested() const;
+  communicator& processes() const { return *options_.processes; }
+  /// Whether results are written; the folder itself is on the root alone.
+  bool has_folder() const { return options_.out.has_value(); }
   void warn_of_many_steps();
   void take_snapshot();
   void write_distribution_snapshot();
   void resume_snapshots(const std::string& checkpoint);
   void finish_records();
-  void write_results(result_folder& folder, run_end end, const std::string& message);
+  void write_results(result_folder* folder, run_end end, const std::string& message);
+  void write_tables(result_folder& folder, const solution& final_state,
+                    const std::vector<surface_table>& walls);
   void save_failure(const std::string& message);
 
   session_options options_;

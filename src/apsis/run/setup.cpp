@@ -8,6 +8,8 @@
 #include <apsis/config/source_reader.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/exec/agreement.hpp>
+#include <apsis/exec/global_sum.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/convexity.hpp>
 #include <apsis/model/expression.hpp>
@@ -49,6 +51,14 @@ std::pair<std::vector<double>, std::vector<double>> extremes_of_fields(const mod
   return {lowest, highest};
 }
 
+/// Returns space.blocks as one number for each of three directions; nothing if it is not given.
+std::optional<std::array<int, 3>> given_blocks(const std::optional<std::vector<int>>& blocks) {
+  if (!blocks) return std::nullopt;
+  std::array<int, 3> all = {1, 1, 1};
+  std::copy(blocks->begin(), blocks->end(), all.begin());
+  return all;
+}
+
 /// Calls body() and adds the place of a key to its input errors.
 template <class Body>
 void at_key(const case_config& config, const std::string& key, const Body& body) {
@@ -61,21 +71,26 @@ void at_key(const case_config& config, const std::string& key, const Body& body)
 
 }  // namespace
 
-run_setup::run_setup(const case_config& config)
+run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> processes)
     : equation(make_model(config)), config_(config), builder_(*equation) {
   method_ = &find_method(config.time.method);
   check_method();
-  if (has_space()) build_space();
+  if (has_space())
+    build_space(std::move(processes));
+  else
+    builder_.shared_by(std::move(processes));
   set_epsilon();
   set_prescribed_data();
   if (method_->kind == method_kind::explicit_only) builder_.with_explicit_collision();
 }
 
-void run_setup::build_space() {
+void run_setup::build_space(std::shared_ptr<communicator> processes) {
   const auto& space = config_.space;
   const reconstruction_entry* scheme = find_reconstruction(space.reconstruction);
   if (scheme == nullptr) throw input_error("unknown reconstruction '" + space.reconstruction + "'");
   builder_.on(make_mesh(config_)).with_unknowns(space.formulation);
+  at_key(config_, space.blocks ? "space.blocks" : "space.cells",
+         [&] { builder_.shared_by(std::move(processes), given_blocks(space.blocks)); });
   const auto sides = make_boundaries(config_, *equation);
   for (int direction = 0; direction < static_cast<int>(sides.size()); ++direction)
     for (const bool upper : {false, true})
@@ -198,7 +213,7 @@ void run_setup::set_prescribed_data() {
   if (config_.prescribed.empty() || config_.prescribed.given_elsewhere()) return;
   const auto given = std::make_shared<const prescribed_data>(
       config_, *equation, [this](const std::string& path) { return place_of(config_, path); });
-  const std::vector<double> jumps = has_space() ? given->jumps(builder_.mesh()) : std::vector<double>{};
+  const std::vector<double> jumps = has_space() ? given->jumps(whole_mesh()) : std::vector<double>{};
   prescribed_ = {"initial",
                  "table [initial]",
                  [given](const position& x, std::span<double> u) { (*given)(x, u); },
@@ -223,25 +238,38 @@ field run_setup::initial_state() const {
            "initial=...), or continue from a checkpoint");
   if (const std::string problem = unsupported_boundary(config_, *equation); !problem.empty())
     log::warning(problem);
-  if (config_.prescribed.file.empty()) return checked(builder_.sample(data().point_value, data().jumps));
-  state_of_file read = sample_initial_file(config_, *equation, builder_);
+  state_of_file read;
+  together(processes(), [&] {
+    if (config_.prescribed.file.empty())
+      read.state = builder_.sample(data().point_value, data().jumps);
+    else
+      read = sample_initial_file(config_, *equation, builder_);
+  });
   return checked(std::move(read.state), read.from_result);
 }
 
 field run_setup::checked(field u, bool computed) const {
+  together(processes(), [&] { check_cells(u, computed); });
+  auto [lowest, highest] = extremes_of_fields(*equation, mesh(), u);
+  for (double& value : highest) value = -value;
+  processes().lowest(lowest);
+  processes().lowest(highest);
+  for (double& value : highest) value = -value;
+  const unsupported_initial_data found = equation->check_supported_range(lowest.data(), highest.data());
+  if (!found.problem.empty()) refuse(config_, found.key, found.problem);
+  return u;
+}
+
+void run_setup::check_cells(const field& u, bool computed) const {
   for (int cell = 0; cell < u.cells(); ++cell) {
     if (mesh().solid(cell) >= 0) continue;
     const unsupported_initial_data found = equation->check_supported(u.row(cell));
     if (found.problem.empty()) continue;
-    const std::string problem = fmt::format("{} [cell {}]", found.problem, cell);
+    const std::string problem = fmt::format("{} [cell {}]", found.problem, number_in_whole_mesh(cell));
     if (!computed || found.key.rfind("velocity.", 0) != 0) refuse(config_, found.key, problem);
     log::warning(problem);
     break;
   }
-  const auto [lowest, highest] = extremes_of_fields(*equation, mesh(), u);
-  const unsupported_initial_data found = equation->check_supported_range(lowest.data(), highest.data());
-  if (!found.problem.empty()) refuse(config_, found.key, found.problem);
-  return u;
 }
 
 std::optional<field> run_setup::exact_state(double t) const {
@@ -263,7 +291,8 @@ double run_setup::equilibrium_defect(const field& u) const {
   const std::size_t count = equation->invariants().size();
   std::vector<double> omega(static_cast<std::size_t>(relaxation->moment_count()));
   std::vector<double> e(static_cast<std::size_t>(u.components()));
-  std::vector<double> before(count), after(count), scales(count), missed(count), all(count);
+  std::vector<double> before(count), after(count), scales(count);
+  std::vector<exact_sum> missed(count), all(count);
   for (int cell = 0; cell < u.cells(); ++cell) {
     if (mesh().solid(cell) >= 0) continue;
     relaxation->moments(u.row(cell), omega.data());
@@ -272,13 +301,15 @@ double run_setup::equilibrium_defect(const field& u) const {
     equation->invariant_densities(e.data(), after.data());
     equation->invariant_scales(before.data(), scales.data());
     for (std::size_t k = 0; k < count; ++k) {
-      missed[k] += std::abs(after[k] - before[k]);
-      all[k] += scales[k];
+      missed[k].add(std::abs(after[k] - before[k]));
+      all[k].add(scales[k]);
     }
   }
+  const std::vector<double> defects = global_values(processes(), missed),
+                            sizes = global_values(processes(), all);
   double worst = 0.0;
   for (std::size_t k = 0; k < count; ++k)
-    if (all[k] > 0.0) worst = std::max(worst, missed[k] / all[k]);
+    if (sizes[k] > 0.0) worst = std::max(worst, defects[k] / sizes[k]);
   return worst;
 }
 

@@ -18,7 +18,8 @@ class run_setup {
  public:
   /// Throws input_error if the mesh is smaller than the stencil, the method cannot integrate the model, or
   /// epsilon(x) is not a finite number ≥ 0 on the mesh.
-  explicit run_setup(const case_config& config);
+  /// `processes` share the mesh; states and fields are those of the block of this process.
+  explicit run_setup(const case_config& config, std::shared_ptr<communicator> processes = single_process());
 
   std::unique_ptr<model> equation;  ///< model.name with its parameters and velocity grid
 
@@ -49,8 +50,14 @@ class run_setup {
   bool has_space() const { return builder_.has_space(); }
   /// Returns the cell volume; 1 without space.
   double cell_volume() const { return has_space() ? builder_.mesh().cell_volume() : 1.0; }
-  /// Returns the mesh; a single cell without space.
+  /// Returns the mesh, or the block of this process; a single cell without space.
   const grid& mesh() const { return builder_.mesh(); }
+  /// Returns the mesh of all processes.
+  const grid& whole_mesh() const { return builder_.whole_mesh(); }
+  /// Returns the processes that share the mesh.
+  communicator& processes() const { return builder_.processes(); }
+  /// Returns the number in the whole mesh of a cell of this process.
+  long number_in_whole_mesh(int cell) const { return whole_mesh().cell_of(mesh(), cell); }
   /// Whether both ends along a direction are periodic.
   bool periodic(int direction) const { return builder_.space().periodic(direction); }
   /// Returns the names of the faces that are not periodic, "left", "right", and "force" and "source"
@@ -85,7 +92,8 @@ class run_setup {
 
  private:
   const initial_data& data() const;
-  void build_space();
+  void check_cells(const field& u, bool computed) const;
+  void build_space(std::shared_ptr<communicator> processes);
   void set_epsilon();
   void set_prescribed_data();
   void check_method();

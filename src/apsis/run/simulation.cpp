@@ -2,19 +2,24 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/exec/agreement.hpp>
 #include <apsis/exec/thread_clock.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/tolerance_forecast.hpp>
 #include <apsis/run/find_fields.hpp>
 #include <apsis/run/find_surfaces.hpp>
+#include <apsis/run/gathered_cells.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/promises.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/setup.hpp>
+#include <apsis/run/state_distance.hpp>
 #include <apsis/run/step_plan.hpp>
+#include <apsis/run/whole_gains.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -25,36 +30,34 @@ namespace apsis {
 
 namespace {
 
-/// Returns ‖u − v‖₂/‖u‖₂ over all cells and components.
-double relative_distance(const field& u, const field& v) {
-  double difference = 0.0, size = 0.0;
-  for (int cell = 0; cell < u.cells(); ++cell)
-    for (int k = 0; k < u.components(); ++k) {
-      const double x = u.row(cell)[k], d = x - v.row(cell)[k];
-      difference += d * d;
-      size += x * x;
-    }
-  return difference == 0.0 ? 0.0 : std::sqrt(difference / size);
+/// Returns the setup of a case if its state and buffers fit into memory.
+std::unique_ptr<run_setup> setup_that_fits(const case_config& config,
+                                           const std::shared_ptr<communicator>& processes) {
+  std::unique_ptr<run_setup> setup;
+  together(*processes, [&] {
+    setup = std::make_unique<run_setup>(config, processes);
+    check_memory(config, *setup, 0);
+  });
+  return setup;
 }
 
-/// Returns the setup of a case if its state and buffers fit into memory.
-run_setup setup_that_fits(const case_config& config) {
-  run_setup setup(config);
-  check_memory(config, setup, 0);
-  return setup;
+std::unique_ptr<semidiscrete_problem> problem_of(const run_setup& setup) {
+  std::unique_ptr<semidiscrete_problem> problem;
+  together(setup.processes(), [&] { problem = setup.make_problem(); });
+  return problem;
 }
 
 }  // namespace
 
 struct simulation::impl {
-  impl(case_config configured, const state_source& start)
+  impl(case_config configured, const state_source& start, const std::shared_ptr<communicator>& processes)
       : config(std::move(configured)),
-        setup(setup_that_fits(config)),
-        problem(setup.make_problem()),
+        made(setup_that_fits(config, processes)),
+        setup(*made),
+        problem(problem_of(setup)),
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
-        watch(*setup.equation, setup.cell_volume(), setup.open_ends(),
-              setup.entropy_bounds().value_or(std::vector<double>{}), setup.mesh().fluid()),
+        watch(setup),
         rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
         state(start ? start(setup) : setup.initial_state()),
         march(times_of(setup)) {
@@ -62,7 +65,7 @@ struct simulation::impl {
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
-    totals.phase_points = static_cast<long>(state.cells()) * state.components();
+    totals.phase_points = static_cast<long>(setup.whole_mesh().size()) * state.components();
     if (march.done()) return;
     warn_of_stiff_collision(setup, problem->relaxation_time(march.t(), state), next_dt());
     // The first step may be shorter than those that follow.
@@ -71,12 +74,20 @@ struct simulation::impl {
     start_steps();
   }
 
+  /// ‖u − v‖₂/‖u‖₂, after the errors that processes met while they computed u and v.
+  auto distance() {
+    return [this](const field& u, const field& v) {
+      problem->settle();
+      return relative_distance(u, v, setup.processes());
+    };
+  }
+
   void start_steps() {
     const startup how = setup.has_graded_start() ? startup::graded : startup::none;
     if (control) {
       const double longest = std::min(limit(), config.time.end);
       warn_of_tolerance(longest);
-      start_control(*problem, march.t(), state, longest, how, *control, relative_distance);
+      start_control(*problem, march.t(), state, longest, how, *control, distance());
     } else if (how == startup::graded) {
       march.start_up(limit(), problem->relaxation_time(march.t(), state));
     }
@@ -85,7 +96,7 @@ struct simulation::impl {
   void warn_of_tolerance(double longest) {
     const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().coefficients<double>()));
     expected = forecast_tolerance(integrator, march.t(), state, config.time.end, longest, control->target(),
-                                  bounds, relative_distance);
+                                  bounds, distance());
     warn_of_plateau(setup, *expected, problem->relaxation_time(march.t(), state));
   }
 
@@ -111,9 +122,10 @@ struct simulation::impl {
     state.gains().clear();  // those of this step alone
     if (config.time.steady) before = state;
     if (control)
-      return step_within_tolerance(integrator, march, *control, estimate, limit(), state, relative_distance);
+      return step_within_tolerance(integrator, march, *control, estimate, limit(), state, distance());
     const double dt = next_dt();
     integrator.step(march.t(), dt, state);
+    problem->settle();
     return dt;
   }
 
@@ -124,8 +136,7 @@ struct simulation::impl {
     gains = state.gains();
     // The change of a sliver that is left before time.end would be its rounding.
     constexpr double sliver = 1e-6;
-    if (config.time.steady)
-      last.change = dt < sliver * totals.dt ? change : relative_distance(state, before) / dt;
+    if (config.time.steady) last.change = dt < sliver * totals.dt ? change : distance()(state, before) / dt;
     last.step = march.step();
     last.t = march.t();
     last.dt = dt;
@@ -141,7 +152,8 @@ struct simulation::impl {
   }
 
   case_config config;
-  run_setup setup;
+  std::unique_ptr<run_setup> made;
+  run_setup& setup;
   std::unique_ptr<semidiscrete_problem> problem;
   stepper<semidiscrete_problem> integrator;
   monitor watch;
@@ -167,8 +179,9 @@ std::vector<double> without_padding(const field& u) {
 }
 }  // namespace
 
-simulation::simulation(case_config config, const state_source& start)
-    : impl_(std::make_unique<impl>(std::move(config), start)) {}
+simulation::simulation(case_config config, const state_source& start,
+                       const std::shared_ptr<communicator>& processes)
+    : impl_(std::make_unique<impl>(std::move(config), start, processes)) {}
 simulation::~simulation() = default;
 simulation::simulation(simulation&&) noexcept = default;
 simulation& simulation::operator=(simulation&&) noexcept = default;
@@ -260,20 +273,28 @@ field_table simulation::fields() const {
 }
 
 std::vector<surface_table> simulation::surfaces() const {
-  return find_surfaces(impl_->setup, {t(), last().dt, impl_->gains});
+  const std::vector<double> gains = whole_gains(impl_->setup, impl_->gains);
+  if (!processes().is_root()) return {};
+  return find_surfaces(impl_->setup, {t(), last().dt, gains});
 }
 
 bool simulation::has_space() const {
   return impl_->setup.has_space();
 }
 const grid& simulation::mesh() const {
+  return impl_->setup.whole_mesh();
+}
+const grid& simulation::block() const {
   return impl_->setup.mesh();
+}
+communicator& simulation::processes() const {
+  return impl_->setup.processes();
 }
 bool simulation::periodic(int direction) const {
   return impl_->setup.periodic(direction);
 }
 int simulation::cells() const {
-  return impl_->state.cells();
+  return impl_->setup.whole_mesh().size();
 }
 int simulation::components() const {
   return impl_->state.components();
@@ -281,6 +302,10 @@ int simulation::components() const {
 
 std::vector<double> simulation::state() const {
   return without_padding(impl_->state);
+}
+
+std::vector<double> simulation::whole_state() const {
+  return gather_cells(impl_->setup.builder(), state(), components());
 }
 
 std::span<const double> simulation::row(int cell) const {
@@ -296,7 +321,7 @@ const velocity_set& simulation::velocities() const {
   return impl_->setup.equation->velocities();
 }
 std::vector<double> simulation::epsilon() const {
-  return impl_->setup.epsilon_at_centres();
+  return gather_cells(impl_->setup.builder(), impl_->setup.epsilon_at_centres());
 }
 
 run_state simulation::save() const {
@@ -305,31 +330,38 @@ run_state simulation::save() const {
   saved.march = impl_->march.save();
   if (impl_->control) saved.control = impl_->control->save();
   saved.totals = summary();
+  // Times that every process measures are those of the root.
+  std::array<double, 2> seconds = {saved.totals.wall_s, saved.totals.cpu_s};
+  processes().broadcast(std::as_writable_bytes(std::span(seconds)));
+  saved.totals.wall_s = seconds[0];
+  saved.totals.cpu_s = seconds[1];
   saved.initial = impl_->first;
   saved.last = impl_->last;
-  saved.gains = impl_->gains;
+  saved.gains = whole_gains(impl_->setup, impl_->gains);
   return saved;
 }
 
 void simulation::restore(const run_state& saved) {
-  if (saved.unknowns.size() != static_cast<std::size_t>(cells()) * static_cast<std::size_t>(components()))
+  field& state = impl_->state;
+  if (saved.unknowns.size() !=
+      static_cast<std::size_t>(state.cells()) * static_cast<std::size_t>(components()))
     throw input_error(
         "the saved state has another size than the case (it belongs to another case); restart with the case "
         "it was written for");
-  if (!saved.gains.empty() && saved.gains.size() != impl_->watch.size_of_gains())
+  if (!saved.gains.empty() && saved.gains.size() != size_of_whole_gains(impl_->setup))
     throw input_error(
         "the saved gains have another size than those of the case (they belong to another case); restart "
         "with the case they were written for");
-  for (int cell = 0; cell < cells(); ++cell)
+  for (int cell = 0; cell < state.cells(); ++cell)
     std::copy_n(saved.unknowns.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
-                impl_->state.row(cell));
+                state.row(cell));
   // Before the first step the marcher is that of the case.
   if (saved.march.step > 0) impl_->march.resume(saved.march);
   if (impl_->control && saved.control) impl_->control->resume(*saved.control);
   impl_->totals = saved.totals;
   impl_->first = saved.initial;
   impl_->last = saved.last;
-  impl_->gains = saved.gains;
+  impl_->gains = own_gains(impl_->setup, saved.gains);
 }
 
 }  // namespace apsis

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/exec/communicator.hpp>
 #include <apsis/phase/field.hpp>
 #include <apsis/phase/grid.hpp>
 #include <apsis/phase/velocity_set.hpp>
@@ -47,7 +48,10 @@ class simulation {
  public:
   /// Throws input_error (for example: v_max too small for the data, mesh smaller than the stencil).
   /// `start`: the initial state, if it is not that of the case.
-  explicit simulation(case_config config, const state_source& start = {});
+  /// `processes` share the mesh: every member function that computes or returns values of cells is then
+  /// collective, and fields and exact states of all cells are on the root only.
+  explicit simulation(case_config config, const state_source& start = {},
+                      const std::shared_ptr<communicator>& processes = single_process());
   ~simulation();
   simulation(simulation&&) noexcept;             ///< leaves the source empty
   simulation& operator=(simulation&&) noexcept;  ///< leaves the source empty
@@ -83,16 +87,21 @@ class simulation {
   run_summary summary() const;      ///< totals of all steps so far
 
   field_table fields() const;  ///< macroscopic fields of the current state
-  /// Returns what the gas gave in the last step to the surfaces of output.surfaces (find_surfaces()).
+  /// Returns what the gas gave in the last step to the surfaces of output.surfaces (find_surfaces()); on the
+  /// root.
   std::vector<surface_table> surfaces() const;
   bool has_space() const;              ///< whether the model has a mesh
   const grid& mesh() const;            ///< the mesh; a single cell without space
+  const grid& block() const;           ///< the cells of this process; all if there is one
+  communicator& processes() const;     ///< the processes that share the mesh
   bool periodic(int direction) const;  ///< whether both ends of the mesh along a direction are periodic
-  int cells() const;                   ///< number of cells; 1 without space
+  int cells() const;                   ///< number of cells of the mesh; 1 without space
   int components() const;              ///< unknowns per cell
-  std::vector<double> state() const;   ///< [cells][components], contiguous
-  /// Returns the unknowns of a cell, valid until the next step.
+  std::vector<double> state() const;   ///< [cells of block()][components], contiguous
+  /// Returns the unknowns of a cell of block(), valid until the next step.
   std::span<const double> row(int cell) const;
+  /// Returns the state of the whole mesh, [cells][components]; on the root, elsewhere nothing. Collective.
+  std::vector<double> whole_state() const;
   /// Returns the exact solution at t() in the form of state(); empty if no formula is known.
   std::vector<double> exact_state() const;
   const velocity_set& velocities() const;  ///< velocities of the components; empty without space

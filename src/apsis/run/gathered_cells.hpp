@@ -1,0 +1,13 @@
+#pragma once
+
+#include <apsis/semidiscrete/problem_builder.hpp>
+
+#include <vector>
+
+namespace apsis {
+
+/// Returns the numbers of all cells of the mesh, [cell][per_cell], from those of the blocks of all processes.
+/// Collective; the result is on the root, elsewhere it is empty.
+std::vector<double> gather_cells(const problem_builder& builder, std::vector<double> mine, int per_cell = 1);
+
+}  // namespace apsis

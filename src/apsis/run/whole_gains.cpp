@@ -1,0 +1,85 @@
+#include <apsis/run/whole_gains.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <span>
+#include <utility>
+
+namespace apsis {
+namespace {
+
+/// An end of a segment: its surface, and the cell in front of it in the whole mesh.
+using end_key = std::pair<int, int>;
+
+/// The ends of a domain in the order of the gains.
+std::vector<end_key> ends_of(const domain& space, const grid& whole) {
+  std::vector<end_key> ends;
+  for (const opening& one : space.openings())
+    for (const int surface : one.surfaces)
+      for (int place = 0; place < space.surfaces()[static_cast<std::size_t>(surface)].own; ++place)
+        ends.emplace_back(surface, whole.cell_of(space.mesh(), space.cell_at(surface, place)));
+  return ends;
+}
+
+/// The places in the whole mesh of the ends of this process.
+std::vector<std::size_t> places_of(const run_setup& setup) {
+  const grid& whole = setup.whole_mesh();
+  std::map<end_key, std::size_t> places;
+  for (const end_key& one : ends_of(setup.builder().whole_space(), whole)) places.emplace(one, places.size());
+  std::vector<std::size_t> mine;
+  for (const end_key& one : ends_of(setup.builder().space(), whole)) mine.push_back(places.at(one));
+  return mine;
+}
+
+/// Force and source have one set of totals each, after those of the ends.
+std::size_t size_of_totals(const run_setup& setup) {
+  return (setup.open_faces().size() - setup.builder().space().openings().size()) *
+         setup.equation->invariants().size();
+}
+
+}  // namespace
+
+std::size_t size_of_whole_gains(const run_setup& setup) {
+  if (!setup.has_space()) return 0;
+  const domain whole = setup.builder().whole_space();
+  return ends_of(whole, setup.whole_mesh()).size() * setup.equation->invariants().size() +
+         size_of_totals(setup);
+}
+
+std::vector<double> whole_gains(const run_setup& setup, const std::vector<double>& own) {
+  if (setup.processes().is_single() || own.empty()) return own;
+  const std::size_t count = setup.equation->invariants().size();
+  const std::vector<std::size_t> mine = places_of(setup);
+  std::vector<double> packed;  // place and gains
+  for (std::size_t k = 0; k < mine.size(); ++k) {
+    packed.push_back(static_cast<double>(mine[k]));
+    packed.insert(packed.end(), own.begin() + static_cast<std::ptrdiff_t>(k * count),
+                  own.begin() + static_cast<std::ptrdiff_t>((k + 1) * count));
+  }
+  std::vector<double> whole(size_of_whole_gains(setup));
+  const std::vector<double> all = gather_numbers(setup.processes(), packed);
+  for (std::size_t from = 0; from < all.size(); from += 1 + count)
+    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(from) + 1, count,
+                whole.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(all[from]) * count));
+  // Totals are those of the root.
+  std::copy(own.begin() + static_cast<std::ptrdiff_t>(mine.size() * count), own.end(),
+            whole.end() - static_cast<std::ptrdiff_t>(size_of_totals(setup)));
+  setup.processes().broadcast(std::as_writable_bytes(std::span(whole)));
+  return whole;
+}
+
+std::vector<double> own_gains(const run_setup& setup, const std::vector<double>& whole) {
+  if (setup.processes().is_single() || whole.empty()) return whole;
+  const std::size_t count = setup.equation->invariants().size();
+  std::vector<double> own;
+  for (const std::size_t place : places_of(setup))
+    own.insert(own.end(), whole.begin() + static_cast<std::ptrdiff_t>(place * count),
+               whole.begin() + static_cast<std::ptrdiff_t>((place + 1) * count));
+  const auto totals = static_cast<std::ptrdiff_t>(size_of_totals(setup));
+  own.insert(own.end(), whole.end() - totals, whole.end());
+  if (!setup.processes().is_root()) std::fill(own.end() - totals, own.end(), 0.0);
+  return own;
+}
+
+}  // namespace apsis

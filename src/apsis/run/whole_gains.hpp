@@ -1,0 +1,19 @@
+#pragma once
+
+#include <apsis/run/setup.hpp>
+
+#include <vector>
+
+namespace apsis {
+
+/// Returns the gains (field::gains()) of the ends of the whole mesh, in the order in which one process has
+/// them, from those of all processes; on all of them. Collective. Nothing where nothing was gained.
+std::vector<double> whole_gains(const run_setup& setup, const std::vector<double>& own);
+
+/// Returns the gains of this process among those of the whole mesh.
+std::vector<double> own_gains(const run_setup& setup, const std::vector<double>& whole);
+
+/// Returns the number of gains of the whole mesh.
+std::size_t size_of_whole_gains(const run_setup& setup);
+
+}  // namespace apsis

@@ -1,0 +1,193 @@
+"""Errors on one process end all with one message and the exit code of a run on one process; nothing is lost."""
+import os
+import random
+import re
+import resource
+import signal
+import subprocess
+import time
+
+from processes import ENVIRONMENT, LIMIT, Folder, command, main, slow
+
+GAS = ("paper/bgk-mixed-fd", "space.cells=24", "velocity.points=40")
+
+# Beyond the step that its method allows, with large gradients: a stage has no equilibrium in some cell.
+UNSTABLE = """
+title = "An unstable run"
+[model]
+name = "bgk"
+epsilon = 1e-3
+[initial]
+rho = "x < 0.3 ? 1 : 1e-6"
+T = 1
+u = 0
+[space]
+cells = 40
+domain = [0, 1]
+boundary = "outflow"
+formulation = "finite-difference"
+limiter = "none"
+[velocity]
+max = 8
+points = 24
+[time]
+method = "md-imex-3-2"
+end = 10
+cfl = 3.5
+"""
+
+
+def errors(text):
+    return [line for line in text.splitlines() if line.startswith("error:")]
+
+
+class Failures(Folder):
+    def expect_the_error_of_one_process(self, code, *arguments, counts=(3,), **how):
+        alone = self.run_on(1, *arguments, **how)
+        self.assertEqual(alone.returncode, code, alone.stderr)
+        for count in counts:
+            together = self.run_on(count, *arguments, **how)
+            self.assertEqual(together.returncode, code, together.stderr)
+            self.assertEqual(errors(together.stderr), errors(alone.stderr))
+        return errors(alone.stderr)[0]
+
+    def test_of_input(self):
+        self.write("bad.toml", UNSTABLE.replace("cells = 40", "cells = 40\ncels = 3"))
+        self.assertRegex(self.expect_the_error_of_one_process(2, "run", "bad.toml"), r"bad.toml:12:\d+: unknown key 'space.cels'")
+
+    def test_of_input_in_the_cells_of_one_process(self):
+        self.write("negative.toml", UNSTABLE.replace("x < 0.3 ? 1 : 1e-6", "x > 0.9 ? -1 : 1"))
+        self.expect_the_error_of_one_process(2, "run", "negative.toml", counts=(2,))
+
+    def test_of_numbers(self):
+        self.write("unstable.toml", UNSTABLE)
+        alone = self.run_on(1, "run", "unstable.toml", "--out", "one")
+        self.assertEqual(alone.returncode, 3, alone.stderr)
+        for count in (3,):
+            together = self.run_on(count, "run", "unstable.toml", "--out", f"on-{count}")
+            self.assertEqual(together.returncode, 3, together.stderr)
+            self.assertEqual(len(errors(together.stderr)), 1, together.stderr)
+            step = re.search(r"step \d+", errors(alone.stderr)[0])
+            self.assertIsNotNone(step, alone.stderr)
+            self.assertIn(step[0] + ",", errors(together.stderr)[0])
+            # The history so far is kept.
+            self.assertEqual((self.folder / f"on-{count}" / "history.csv").read_text(), (self.folder / "one" / "history.csv").read_text())
+
+    @slow
+    def test_of_a_folder_that_cannot_be_written(self):
+        (self.folder / "file").write_text("")
+        self.expect_the_error_of_one_process(4, "run", *GAS, "time.end=0.01", "--out", "file/out", counts=(2,))
+
+    def test_of_too_many_processes(self):
+        refused = self.run_on(5, "run", *GAS, "space.cells=3", "space.reconstruction=upwind1")
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertEqual(len(errors(refused.stderr)), 1, refused.stderr)
+        self.assertIn("5 processes cannot share the mesh", refused.stderr)
+        self.assertIn("start 3", refused.stderr)
+
+    def test_of_commands_that_do_not_share_their_work(self):
+        refused = self.run_on(2, "list", "methods")
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertEqual(len(errors(refused.stderr)), 1, refused.stderr)
+        self.assertIn("2 processes were started", refused.stderr)
+
+    @slow
+    def test_of_a_restart_with_a_damaged_checkpoint(self):
+        self.completed(2, "run", *GAS, "time.end=0.01", "--out", "out")
+        path = self.folder / "out" / "checkpoint.h5"
+        content = bytearray(path.read_bytes())
+        content[len(content) // 2] ^= 1
+        path.write_bytes(content)
+        self.expect_the_error_of_one_process(4, "run", *GAS, "time.end=0.02", "--restart", "out/checkpoint.h5", counts=(3,))
+
+
+class Signals(Folder):
+    def start(self, count, *arguments):
+        return subprocess.Popen(command(count, arguments), cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                text=True, start_new_session=True)
+
+    def processes_of(self, run):
+        """The processes of the program that mpirun started."""
+        found = subprocess.run(["pgrep", "-P", str(run.pid)], capture_output=True, text=True, check=False).stdout.split()
+        return [int(pid) for pid in found if os.path.basename(os.path.realpath(f"/proc/{pid}/exe")) == "apsis"]
+
+    def await_checkpoint(self, run, before):
+        path = self.folder / "out" / "checkpoint.h5"
+        while run.poll() is None and (not path.exists() or path.stat().st_mtime_ns == before):
+            time.sleep(0.005)
+
+    def kill_and_restart(self, kills, seed):
+        long = (*GAS, "output.every=0.002", "time.end=0.02")
+        self.completed(1, "run", *long, "--out", "whole")
+        chance = random.Random(seed)
+        saved = self.folder / "out" / "checkpoint.h5"
+        for _ in range(kills):
+            restart = ("--restart", "out/checkpoint.h5") if saved.exists() else ()
+            before = saved.stat().st_mtime_ns if saved.exists() else 0
+            run = self.start(chance.choice((2, 3)), "run", *long, "output.checkpoint_every=1", *restart, "--out", "out")
+            self.await_checkpoint(run, before)
+            time.sleep(chance.uniform(0.0, 0.05))
+            victims = self.processes_of(run)
+            if run.poll() is None and victims:
+                os.kill(chance.choice(victims), signal.SIGKILL)
+                begun = time.monotonic()
+                _, messages = run.communicate(timeout=120)
+                self.assertNotEqual(run.returncode, 0, messages)
+                # mpirun names the process and its signal.
+                self.assertRegex(messages, "(?i)signal 9|killed")
+                self.assertLess(time.monotonic() - begun, 60.0)
+            else:
+                run.communicate(timeout=120)
+            if (self.folder / "out" / "manifest.json").exists():
+                break
+        restart = ("--restart", "out/checkpoint.h5")
+        if not (self.folder / "out" / "manifest.json").exists():
+            self.completed(2, "run", *long, *restart, "--out", "out")
+        self.assert_same_results("whole", "out")
+
+    def test_a_process_that_is_killed_ends_the_run_and_loses_nothing(self):
+        self.kill_and_restart(1, seed=1)
+
+    @slow
+    def test_fifty_kills(self):
+        for seed in range(10):
+            self.kill_and_restart(5, seed)
+            for name in ("out", "whole"):
+                subprocess.run(["rm", "-rf", str(self.folder / name)], check=True)
+
+    @slow
+    def test_a_wall_time_ends_all_with_a_checkpoint(self):
+        stopped = self.run_on(3, "run", *GAS, "time.end=1000.0", "--wall", "0.3", "--out", "out")
+        self.assertEqual(stopped.returncode, 130, stopped.stderr)
+        self.assertTrue((self.folder / "out" / "checkpoint.h5").exists())
+
+    def test_one_process_speaks(self):
+        done = self.completed(3, "run", *GAS, "time.end=0.01")
+        self.assertEqual(done.stderr.count("promised at every step"), 1, done.stderr)
+        self.assertEqual(done.stdout.count("wall time"), 1, done.stdout)
+        self.assertIn("3 processes", done.stderr)
+
+    def test_a_full_disk_ends_all_and_loses_nothing(self):
+        run = self.start(2, "run", *GAS, "time.end=1000.0", "output.checkpoint_every=1", "--out", "out")
+        self.await_checkpoint(run, 0)
+        # The root writes small files for all.
+        resource.prlimit(min(self.processes_of(run)), resource.RLIMIT_FSIZE, (4096, 4096))
+        _, messages = run.communicate(timeout=LIMIT)
+        self.assertEqual(run.returncode, 4, messages)
+        self.assertEqual(len(errors(messages)), 1, messages)
+        self.assertIn("checkpoint.h5", errors(messages)[0])
+        self.completed(1, "run", *GAS, "time.end=0.1", "--restart", "out/checkpoint.h5")
+
+    def test_a_signal_to_one_process_stops_all_at_the_same_step(self):
+        run = self.start(3, "run", *GAS, "time.end=1000.0", "output.checkpoint_every=1", "--out", "out")
+        self.await_checkpoint(run, 0)
+        victims = self.processes_of(run)
+        self.assertEqual(len(victims), 3)
+        os.kill(victims[1], signal.SIGTERM)
+        _, messages = run.communicate(timeout=120)
+        self.assertEqual(run.returncode, 130, messages)
+        self.assertIn('"interrupted"', (self.folder / "out" / "manifest.json").read_text())
+
+
+if __name__ == "__main__":
+    main()

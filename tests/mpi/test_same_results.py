@@ -1,0 +1,146 @@
+"""A case on any number of processes and threads has the same results, bit for bit, also across restarts (docs/processes.md)."""
+import unittest
+
+from processes import Folder, main, slow
+
+# A gas of three dimensions between moving, heated walls of all kinds, around two solid boxes, with a force; near walls it is
+# so thin in places that the limiter works there.
+STEP = """
+title = "Gas around boxes"
+[model]
+name = "bgk"
+epsilon = "0.02 + 0.1*x"
+degrees_of_freedom = 3
+[initial]
+rho = "(x - 0.7)*(y - 0.6) > 0.05 ? 1e-9 : 1 + 0.2*sin(2*pi*x)*cos(pi*y)"
+u = [0.1, "0.05*cos(2*pi*x)"]
+T = "1 + 0.1*y"
+[space]
+limiter = "positivity"
+cells = [15, 13]
+domain = [[0, 1.5], [0, 1.3]]
+boundary = "diffuse"
+[boundary.top]
+kind = "diffuse"
+velocity = ["0.2*sin(40*t)", 0]
+T = "1.1 + 0.1*x"
+[boundary.right]
+kind = "outflow"
+[boundary.bottom]
+kind = "symmetry"
+[[space.solid]]
+name = "box"
+from = [0.3, 0.2]
+to = [0.5, 0.6]
+T = 0.8
+[[space.solid]]
+name = "corner"
+from = [1.2, 0.0]
+to = [1.5, 0.4]
+accommodation = 0.7
+[force]
+acceleration = ["0.1*cos(y)", 0]
+[velocity]
+max = 7.5
+points = 12
+[time]
+method = "md-imex-6-3"
+end = 0.02
+safety = 1
+[output]
+every = 0.01
+fields = ["rho", "u_x", "u_y", "T", "heat_flux_x", "stress_xy"]
+distribution = "snapshots"
+stride = 4
+surfaces = ["all"]
+[[output.probe]]
+name = "line"
+from = [0.05, 0.7]
+to = [1.45, 1.2]
+points = 7
+[[output.slice]]
+name = "cut"
+normal = "y"
+at = 1.0
+"""
+
+PERIODIC = """
+title = "Waves in a periodic box"
+[model]
+name = "bgk"
+epsilon = 0.01
+[initial]
+rho = "1 + 0.2*sin(2*pi*(x + y - z))"
+u = ["0.1*cos(2*pi*y)", 0, 0.1]
+T = 1
+[space]
+cells = [8, 7, 9]
+[velocity]
+max = 6
+points = 8
+[time]
+method = "md-imex-3-2"
+end = 0.01
+cfl = 0.4
+"""
+
+
+class SameResults(Folder):
+    def expect_same(self, case, *overrides, counts=(2, 3, 4), threads=(1, 1, 2)):
+        self.completed(1, "run", case, *overrides, "--out", "one")
+        for count, of_each in zip(counts, threads):
+            self.completed(count, "run", case, *overrides, "--out", f"on-{count}", threads=of_each)
+            self.assert_same_results("one", f"on-{count}")
+
+    def test_walls_boxes_and_a_force_in_the_plane(self):
+        self.write("step.toml", STEP)
+        self.expect_same("step.toml")
+
+    @slow
+    def test_blocks_of_a_chosen_shape(self):
+        self.write("step.toml", STEP)
+        self.completed(1, "run", "step.toml", "--out", "one")
+        for count, blocks in ((3, "[1,3]"), (4, "[4,1]"), (6, "[2,3]")):
+            self.completed(count, "run", "step.toml", f"space.blocks={blocks}", "--out", f"on-{count}")
+            self.assert_same_results("one", f"on-{count}")
+
+    @slow
+    def test_a_periodic_box_in_space(self):
+        self.write("periodic.toml", PERIODIC)
+        self.expect_same("periodic.toml")
+
+    def test_cell_averages_on_a_line(self):
+        self.expect_same("paper/bgk-mixed", "space.cells=37", "velocity.points=60", "time.end=0.02", counts=(3,))
+
+    def test_steps_to_a_tolerance(self):
+        self.expect_same("paper/bgk-mixed", "space.cells=24", "velocity.points=40", "time.end=0.05", "time.method=md-imex-8-3-mixed",
+                         "time.tolerance=1e-4", "time.startup=graded", counts=(3,))
+
+    @slow
+    def test_a_steady_state(self):
+        self.expect_same("gas/couette", "space.cells=12", "velocity.points=[16,12]", "time.steady=1e-3", "time.end=2", counts=(2,))
+
+    @slow
+    def test_a_general_model_and_a_conservation_law(self):
+        self.expect_same("benchmarks/nine-velocities", "space.cells=[11,9]", "time.end=0.1", counts=(3,))
+        self.folder = self.folder / "law"
+        self.folder.mkdir()
+        self.expect_same("laws/circular-dam", "space.cells=[17,13]", "time.end=0.1", counts=(4,))
+
+    @slow
+    def test_one_cell_for_each_process(self):
+        self.expect_same("paper/bgk-mixed-fd", "space.cells=9", "velocity.points=40", "time.end=0.02", counts=(9,))
+
+    def test_restarts_on_other_numbers_of_processes(self):
+        self.write("step.toml", STEP)
+        self.completed(1, "run", "step.toml", "--out", "whole")
+        for number, (count, end) in enumerate(((1, 0.007), (7, 0.013), (3, 0.02))):
+            restart = ("--restart", f"part-{number - 1}/checkpoint.h5") if number else ()
+            self.completed(count, "run", "step.toml", f"time.end={end}", *restart, "--out", f"part-{number}")
+        for name in ("fields.csv", "history.csv"):
+            self.assertEqual((self.folder / "whole" / name).read_text(), (self.folder / "part-2" / name).read_text())
+        self.assert_same_datasets(self.folder / "whole" / "solution.h5", self.folder / "part-2" / "solution.h5")
+
+
+if __name__ == "__main__":
+    main()

@@ -6,8 +6,9 @@ import resource
 import signal
 import subprocess
 import time
+from pathlib import Path
 
-from processes import ENVIRONMENT, LIMIT, Folder, command, main, slow
+from processes import ENVIRONMENT, LIMIT, PROGRAM, Folder, command, main, slow
 
 GAS = ("paper/bgk-mixed-fd", "space.cells=24", "velocity.points=40")
 
@@ -160,6 +161,18 @@ class Signals(Folder):
         stopped = self.run_on(3, "run", *GAS, "time.end=1000.0", "--wall", "0.3", "--out", "out")
         self.assertEqual(stopped.returncode, 130, stopped.stderr)
         self.assertTrue((self.folder / "out" / "checkpoint.h5").exists())
+
+    def test_the_batch_script_of_the_page_runs_and_continues(self):
+        # docs/processes.md, with an srun that starts two processes.
+        page = (Path(__file__).resolve().parents[2] / "docs" / "processes.md").read_text(encoding="utf-8")
+        self.write("job.sh", re.search(r"```sh\n(#!/bin/bash.*?)```", page, re.S)[1])
+        self.write("case.toml", UNSTABLE.replace("cfl = 3.5", "cfl = 0.4").replace("end = 10", "end = 0.01"))
+        (self.folder / "srun").write_text(f'#!/bin/sh\nshift\nexec mpirun -n 2 "{PROGRAM}" "$@"\n')
+        (self.folder / "srun").chmod(0o755)
+        environment = {**ENVIRONMENT, "PATH": f"{self.folder}:{ENVIRONMENT['PATH']}", "SLURM_CPUS_PER_TASK": "1"}
+        done = subprocess.run(["bash", "job.sh"], cwd=self.folder, env=environment, capture_output=True, text=True, timeout=LIMIT, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.folder / "results" / "run" / "checkpoint.h5").exists())
 
     def test_one_process_speaks(self):
         done = self.completed(3, "run", *GAS, "time.end=0.01")

@@ -112,6 +112,9 @@ class SameResults(Folder):
     def test_cell_averages_on_a_line(self):
         self.expect_same("paper/bgk-mixed", "space.cells=37", "velocity.points=60", "time.end=0.02", counts=(3,))
 
+    def test_a_line_whose_middle_process_has_no_wall(self):
+        self.expect_same("gas/couette", "space.cells=12", "velocity.points=[12,8]", "time.end=0.05", 'output.surfaces="all"', counts=(3,))
+
     def test_steps_to_a_tolerance(self):
         self.expect_same("paper/bgk-mixed", "space.cells=24", "velocity.points=40", "time.end=0.05", "time.method=md-imex-8-3-mixed",
                          "time.tolerance=1e-4", "time.startup=graded", counts=(3,))

@@ -183,4 +183,4 @@ def test_a_run_reports_its_memory(tmp_path):
     (tmp_path / "case.toml").write_text(apsis.runs.to_toml(VORTEX))
     done = subprocess.run([program, "run", "case.toml"], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "case.toml: needs 2 MB of memory (16 x 12 cells x 144 unknowns)" in done.stderr
-    assert "no probes and slices are written" in done.stderr
+    assert "no probes, slices and surfaces are written" in done.stderr

@@ -16,7 +16,8 @@ enum class precision { float64, float32 };
 /// The part of a dataset that one of several processes holds: indices first … first + count − 1 of each
 /// extent.
 struct dataset_part {
-  std::vector<std::uint64_t> first, count;
+  std::vector<std::uint64_t> first;  ///< first index of each extent
+  std::vector<std::uint64_t> count;  ///< number of indices; 0 if the process holds nothing
 };
 
 /// An HDF5 file with the operations that results need. The destructor closes identifiers, objects carry no

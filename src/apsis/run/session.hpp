@@ -13,13 +13,10 @@
 
 namespace apsis {
 
-/// Returns the default number of threads for a case: OMP_NUM_THREADS if set, otherwise all processors for at
-/// least 32768 unknowns and 1 for fewer, which gain little from threads.
-/// They are shared among the processes on this machine.
-int threads_for(const case_config& config, const communicator& processes);
-inline int threads_for(const case_config& config) {
-  return threads_for(config, *single_process());
-}
+/// Returns the default number of threads of each process for a case: OMP_NUM_THREADS if set, otherwise its
+/// share of the processors of this machine for at least 32768 unknowns in each process, and 1 for fewer,
+/// which gain little from threads.
+int threads_for(const case_config& config, const communicator& processes = *single_process());
 
 /// Session options: output, restart, limits, callbacks.
 struct session_options {

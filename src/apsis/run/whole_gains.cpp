@@ -1,5 +1,7 @@
 #include <apsis/run/whole_gains.hpp>
 
+#include <apsis/exec/global_sum.hpp>
+
 #include <algorithm>
 #include <cstddef>
 #include <map>
@@ -48,7 +50,9 @@ std::size_t size_of_whole_gains(const run_setup& setup) {
 }
 
 std::vector<double> whole_gains(const run_setup& setup, const std::vector<double>& own) {
-  if (setup.processes().is_single() || own.empty()) return own;
+  if (setup.processes().is_single()) return own;
+  // A process without ends has nothing, also where others have something.
+  if (global_count(setup.processes(), own.empty() ? 0 : 1) == 0) return {};
   const std::size_t count = setup.equation->invariants().size();
   const std::vector<std::size_t> mine = places_of(setup);
   std::vector<double> packed;  // place and gains

@@ -171,7 +171,7 @@ TEST(every_face, of_space_has_every_kind_with_formulas_along_it) {
 }
 
 TEST(every_face, meets_others_in_corners_without_a_loss) {
-  // Plates of different temperatures and accommodation, some of which move, around gas beside a vacuum.
+  // Resting and moving plates of different temperatures and accommodation around gas beside a vacuum.
   const placed_wall cold = {"diffuse", {{"T", "0.9 + 0.1*sin(3*{X})"}, {"accommodation", "0.3"}}, "", {}},
                     hot = {"diffuse", {{"T", "1.6 + 0.3*{Y}"}, {"accommodation", "1"}}, "", {}};
   const std::vector<placed_wall> plates = {moving_plate, hot, cold, lid};

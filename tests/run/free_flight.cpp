@@ -41,7 +41,7 @@ const std::array<wave, 4> waves = {
 const std::array<std::array<double, 3>, 4> velocities = {
     {{1.0, 0.6, -0.3}, {-1.0, -0.6, 0.3}, {-0.6, 1.0, 0.3}, {0.6, -1.0, -0.3}}};
 
-/// Four velocities of the plane or of space, each of which carries its own wave.
+/// Four velocities of the plane or of space, which carry a wave each.
 std::string four_waves(int dimensions) {
   std::string list, initial, domain;
   for (std::size_t j = 0; j < 4; ++j) {
@@ -138,8 +138,8 @@ TEST(free_flight, of_a_gas_in_space_carries_every_component_with_its_velocity) {
       density = std::max(density, exact);
     }
   }
-  // Waves of 12 cells, of which a molecule with |v| = 4 crosses one: the error of the order above, while a
-  // component with the velocity of another one has an error of 0.1 times the density or more.
+  // The error of waves of 8 to 10 cells in a flight over less than half a cell; a component with the velocity
+  // of another one misses by 1e-2 or more.
   RecordProperty("error", fmt::format("{:.2g}", largest / density));
   EXPECT_LT(largest / density, 2e-4);
 }

@@ -29,7 +29,7 @@ def comparison_figure(runs: Runs, slice_at: str | None = None) -> Any:
 
 
 def shared_fields(runs: Runs) -> list[str]:
-    """Fields over space that all runs have. Raises PictureError where there is none, or the runs have different dimensions."""
+    """Names of the fields over space that all runs have. Raises PictureError if no field is common to all, or the dimensions differ."""
     dimensions = {maps.dimensions(run) for _, run in runs}
     if len(dimensions) > 1:
         raise PictureError("nothing to compare (the runs have different space dimensions); give runs of one model")

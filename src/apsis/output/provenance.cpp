@@ -3,6 +3,7 @@
 #include <apsis/core/version.hpp>
 #include <apsis/exec/instruction_set.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/exec/processes.hpp>
 
 #include <array>
 #include <chrono>
@@ -47,6 +48,7 @@ nlohmann::ordered_json build_info() {
       {"compiler", compiler()},
       {"build_type", build_type()},
       {"instruction_set", kernel_instruction_set()},
+      {"mpi", has_mpi()},
       {"libraries",
        {{"hdf5", fmt::format("{}.{}.{}", major, minor, release)},
         {"boost", fmt::format("{}.{}", BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000)},

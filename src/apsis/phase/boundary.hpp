@@ -14,11 +14,13 @@ namespace apsis {
 
 /// The rows on both sides of a face along one pencil.
 struct pencil_end {
-  std::span<const double* const> inside;  ///< rows of all cells of the pencil, counted inwards from the face
-  std::span<double* const> ghosts;        ///< rows to fill, counted outwards from the face
-  const velocity_set& velocities;         ///< velocities of the components
-  int components;                         ///< numbers of a row
-  position at;                            ///< intersection of the pencil with the face
+  /// Rows of the cells of the pencil, counted inwards from the face. fill() may read as many of them as there
+  /// are ghost rows, and at least three, if the pencil has so many; on several processes no others are here.
+  std::span<const double* const> inside;
+  std::span<double* const> ghosts;  ///< rows to fill, counted outwards from the face
+  const velocity_set& velocities;   ///< velocities of the components
+  int components;                   ///< numbers of a row
+  position at;                      ///< intersection of the pencil with the face
 };
 
 /// A boundary condition at a face of the domain: ghost rows for reconstruction and collision and, where it

@@ -128,12 +128,4 @@ const double* halo_exchange::row(const field& u, int direction, int pencil, bool
          (at(one.received) * at(mesh_.pencils(direction)) + at(pencil)) * at(stride_);
 }
 
-double halo_exchange::sent_numbers(int stride) const {
-  double numbers = 0.0;
-  for (int k = 0; k < mesh_.dimensions(); ++k)
-    for (const peer& other : lines_[at(k)].peers)
-      numbers += 1.0 * static_cast<double>(other.given.size()) * mesh_.pencils(k) * stride;
-  return numbers;
-}
-
 }  // namespace apsis

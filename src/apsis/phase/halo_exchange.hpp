@@ -32,9 +32,6 @@ class halo_exchange {
   /// the block, on a pencil of a direction that is split; u is the field of begin().
   const double* row(const field& u, int direction, int pencil, bool upper, int ghost) const;
 
-  /// Returns the number of numbers that this process sends for rows of `stride` numbers.
-  double sent_numbers(int stride) const;
-
  private:
   /// A plane of cells across a direction: one of the block, or received into a buffer.
   struct plane_source {

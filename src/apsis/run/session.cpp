@@ -322,11 +322,6 @@ void run_session::publish_checkpoint() {
   last_checkpoint_ = clock::now();
 }
 
-/// Without the snapshot of the current time, which the continued run would not have taken.
-checkpoint run_session::checkpoint_of_end() const {
-  return end_ == run_end::complete && before_end_ ? *before_end_ : make_checkpoint(simulation_, *records_);
-}
-
 /// `folder`: on the root alone.
 void run_session::write_results(result_folder* folder, run_end end, const std::string& message) {
   std::string about =
@@ -344,9 +339,10 @@ void run_session::write_results(result_folder* folder, run_end end, const std::s
   by_all("solution.h5",
          [&](const std::string& path) { write_solution(path, final_state, options_.processes); });
   if (end != run_end::failed) {
-    const checkpoint last = checkpoint_of_end();
+    // Without the snapshot of the current time, which the continued run would not have taken.
+    if (end_ != run_end::complete || !before_end_) before_end_ = make_checkpoint(simulation_, *records_);
     by_all("checkpoint.h5",
-           [&](const std::string& path) { write_checkpoint(path, last, options_.processes); });
+           [&](const std::string& path) { write_checkpoint(path, *before_end_, options_.processes); });
   }
   together(processes(), [&] {
     if (folder == nullptr) return;

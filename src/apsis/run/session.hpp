@@ -54,7 +54,6 @@ class run_session {
   void after_step();
   bool checkpoint_is_due() const;
   void publish_checkpoint();
-  checkpoint checkpoint_of_end() const;
   run_end end_requested() const;
   communicator& processes() const { return *options_.processes; }
   /// Whether results are written; the folder itself is on the root alone.

@@ -163,13 +163,6 @@ void run_setup::check_tolerance() const {
   }
 }
 
-std::vector<double> run_setup::centres() const {
-  std::vector<double> x;
-  for (int cell = 0; cell < builder_.mesh().size(); ++cell)
-    x.push_back(has_space() ? builder_.mesh().centre(cell, 0) : 0.0);
-  return x;
-}
-
 std::vector<std::string> run_setup::open_faces() const {
   std::vector<std::string> open;
   if (!has_space()) return open;

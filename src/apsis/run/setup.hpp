@@ -69,8 +69,6 @@ class run_setup {
   /// Returns boundary::entropy_bound() of the open faces, [face][invariant]; nothing if the entropy that one
   /// of them, the force or the source gives is not bounded.
   std::optional<std::vector<double>> entropy_bounds() const;
-  /// Returns x of the cell centres; {0} without space.
-  std::vector<double> centres() const;
   /// Returns ε at the cell centres.
   std::vector<double> epsilon_at_centres() const { return builder_.epsilon_at_centres(); }
   /// Returns time.dt if every step has this length.

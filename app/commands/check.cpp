@@ -19,6 +19,7 @@
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
+namespace check_command {
 namespace {
 
 /// A case in place of a method is worth a message of its own.
@@ -114,12 +115,13 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace check_command
 
 extern const command_entry command_check;
 const command_entry command_check = {.name = "check",
                                      .summary = "Certify a method: order, SSP coefficient, structure, cost",
                                      .place = 50,
                                      .completion = completed_from_list("methods"),
-                                     .define = define};
+                                     .define = check_command::define};
 
 }  // namespace apsis::app

@@ -21,6 +21,7 @@
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
+namespace converge_command {
 namespace {
 
 using json = nlohmann::ordered_json;
@@ -162,12 +163,13 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace converge_command
 
 extern const command_entry command_converge;
 const command_entry command_converge = {.name = "converge",
                                         .summary = "Run a case on many meshes or steps: errors and rates",
                                         .place = 20,
                                         .completion = completed_from_list("cases"),
-                                        .define = define};
+                                        .define = converge_command::define};
 
 }  // namespace apsis::app

@@ -28,6 +28,7 @@
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
+namespace design_command {
 namespace {
 
 using json = nlohmann::ordered_json;
@@ -282,12 +283,13 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace design_command
 
 extern const command_entry command_design;
 const command_entry command_design = {
     .name = "design",
     .summary = "Find a new method of given order and stages that optimizes an objective",
     .place = 70,
-    .define = define};
+    .define = design_command::define};
 
 }  // namespace apsis::app

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
+namespace info_command {
 namespace {
 
 std::string as_text(const nlohmann::ordered_json& value, const std::string& indent = "") {
@@ -40,11 +41,12 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace info_command
 
 extern const command_entry command_info;
 const command_entry command_info = {.name = "info",
                                     .summary = "Version, compiler, build, machine and libraries",
                                     .place = 100,
-                                    .define = define};
+                                    .define = info_command::define};
 
 }  // namespace apsis::app

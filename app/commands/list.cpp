@@ -24,6 +24,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis::app {
+namespace list_command {
 namespace {
 
 using json = nlohmann::ordered_json;
@@ -247,12 +248,14 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace list_command
 
 extern const command_entry command_list;
-const command_entry command_list = {.name = "list",
-                                    .summary = fmt::format("List {}", fmt::join(list_names(), ", ")),
-                                    .place = 30,
-                                    .completion = fmt::format("{}", fmt::join(list_names(), " ")),
-                                    .define = define};
+const command_entry command_list = {
+    .name = "list",
+    .summary = fmt::format("List {}", fmt::join(list_command::list_names(), ", ")),
+    .place = 30,
+    .completion = fmt::format("{}", fmt::join(list_command::list_names(), " ")),
+    .define = list_command::define};
 
 }  // namespace apsis::app

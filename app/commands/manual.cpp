@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
+namespace manual_command {
 namespace {
 
 /// Escapes a text for a manual page, where a backslash, and a dot or quote at the beginning of a line, have
@@ -139,12 +140,13 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace manual_command
 
 extern const command_entry command_manual;
 const command_entry command_manual = {
     .name = "manual",
     .summary = "Print the manual page, or the command-line completion for bash",
     .place = 110,
-    .define = define};
+    .define = manual_command::define};
 
 }  // namespace apsis::app

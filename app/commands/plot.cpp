@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 namespace apsis::app {
+namespace plot_command {
 namespace {
 
 namespace fs = std::filesystem;
@@ -77,6 +78,7 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace plot_command
 
 extern const command_entry command_plot;
 const command_entry command_plot = {
@@ -84,6 +86,6 @@ const command_entry command_plot = {
     .summary = "Draw results of any kind, or the stability regions of a method",
     .place = 80,
     .completion = completed_from_list("methods"),
-    .define = define};
+    .define = plot_command::define};
 
 }  // namespace apsis::app

@@ -7,6 +7,7 @@
 #include <memory>
 
 namespace apsis::app {
+namespace report_command {
 namespace {
 
 action define(CLI::App& command) {
@@ -24,12 +25,13 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace report_command
 
 extern const command_entry command_report;
 const command_entry command_report = {
     .name = "report",
     .summary = "Write one page about a folder of results: summary, promises, pictures, case, manifest",
     .place = 90,
-    .define = define};
+    .define = report_command::define};
 
 }  // namespace apsis::app

@@ -25,6 +25,7 @@
 #include <paper/claim_registry.hpp>
 
 namespace apsis::app {
+namespace reproduce_command {
 namespace {
 
 using json = nlohmann::ordered_json;
@@ -180,12 +181,13 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace reproduce_command
 
 extern const command_entry command_reproduce;
 const command_entry command_reproduce = {.name = "reproduce",
                                          .summary = "Check every claim of the paper and redraw its figures",
                                          .place = 60,
                                          .completion = completed_from_list("claims"),
-                                         .define = define};
+                                         .define = reproduce_command::define};
 
 }  // namespace apsis::app

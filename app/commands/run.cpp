@@ -25,6 +25,7 @@
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
+namespace run_command {
 namespace {
 
 /// The command line of `apsis run`.
@@ -110,6 +111,7 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace run_command
 
 extern const command_entry command_run;
 const command_entry command_run = {.name = "run",
@@ -117,6 +119,6 @@ const command_entry command_run = {.name = "run",
                                    .place = 10,
                                    .completion = completed_from_list("cases"),
                                    .shares_work = true,
-                                   .define = define};
+                                   .define = run_command::define};
 
 }  // namespace apsis::app

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 namespace apsis::app {
+namespace scales_command {
 namespace {
 
 /// The command line of `apsis scales`.
@@ -71,6 +72,7 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace scales_command
 
 extern const command_entry command_scales;
 const command_entry command_scales = {
@@ -78,6 +80,6 @@ const command_entry command_scales = {
     .summary = "Knudsen numbers of a case in every definition, and its units by the table [gas]",
     .place = 45,
     .completion = completed_from_list("cases"),
-    .define = define};
+    .define = scales_command::define};
 
 }  // namespace apsis::app

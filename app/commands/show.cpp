@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 namespace apsis::app {
+namespace show_command {
 namespace {
 
 struct options {
@@ -64,6 +65,7 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace show_command
 
 extern const command_entry command_show;
 const command_entry command_show = {
@@ -71,6 +73,6 @@ const command_entry command_show = {
     .summary = "Show a method, a built-in case, or the keys of a case (show case)",
     .place = 40,
     .completion = completed_from_list("methods"),
-    .define = define};
+    .define = show_command::define};
 
 }  // namespace apsis::app

@@ -24,6 +24,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis::app {
+namespace validate_command {
 namespace {
 
 using json = nlohmann::ordered_json;
@@ -200,6 +201,7 @@ action define(CLI::App& command) {
 }
 
 }  // namespace
+}  // namespace validate_command
 
 extern const command_entry command_validate;
 const command_entry command_validate = {
@@ -207,6 +209,6 @@ const command_entry command_validate = {
     .summary = "Compare the solver with published values of gas flows, or compute one for other parameters",
     .place = 65,
     .completion = completed_from_list("quantities"),
-    .define = define};
+    .define = validate_command::define};
 
 }  // namespace apsis::app

@@ -2,6 +2,7 @@
 #include <paper/condition_tables.hpp>
 
 namespace apsis {
+namespace C01_claim {
 namespace {
 
 claim_result check(const study_control&) {
@@ -12,6 +13,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C01_claim
 
 extern const claim_entry claim_C01;
 const claim_entry claim_C01 = {
@@ -19,6 +21,6 @@ const claim_entry claim_C01 = {
     .section = "Formulating the order conditions",
     .statement = "order conditions of implicit two-derivative Runge-Kutta methods up to order 4",
     .how = "generated from rooted trees and compared with the printed table term by term",
-    .check = check};
+    .check = C01_claim::check};
 
 }  // namespace apsis

@@ -2,6 +2,7 @@
 #include <paper/condition_tables.hpp>
 
 namespace apsis {
+namespace C02_claim {
 namespace {
 
 claim_result check(const study_control&) {
@@ -12,6 +13,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C02_claim
 
 extern const claim_entry claim_C02;
 const claim_entry claim_C02 = {
@@ -19,6 +21,6 @@ const claim_entry claim_C02 = {
     .section = "Formulating order conditions",
     .statement = "order conditions of multi-derivative IMEX Runge-Kutta methods up to order 3",
     .how = "generated from two-coloured rooted trees and compared with the printed table term by term",
-    .check = check};
+    .check = C02_claim::check};
 
 }  // namespace apsis

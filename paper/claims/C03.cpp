@@ -2,6 +2,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C03_claim {
 namespace {
 
 claim_result check(const study_control&) {
@@ -15,6 +16,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C03_claim
 
 extern const claim_entry claim_C03;
 const claim_entry claim_C03 = {
@@ -22,6 +24,6 @@ const claim_entry claim_C03 = {
     .section = "New SSP implicit two-derivative Runge-Kutta methods",
     .statement = "the one-stage implicit Taylor method is of second order and SSP for every step",
     .how = "certificate from the coefficients alone",
-    .check = check};
+    .check = C03_claim::check};
 
 }  // namespace apsis

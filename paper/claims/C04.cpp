@@ -2,6 +2,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C04_claim {
 namespace {
 
 claim_result check(const study_control&) {
@@ -12,6 +13,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C04_claim
 
 extern const claim_entry claim_C04;
 const claim_entry claim_C04 = {
@@ -19,6 +21,6 @@ const claim_entry claim_C04 = {
     .section = "New SSP implicit two-derivative Runge-Kutta methods",
     .statement = "the two-stage method is of third order and SSP for every step; its printed forms agree",
     .how = "certificate; conversion of the Shu-Osher form compared with the printed matrices",
-    .check = check};
+    .check = C04_claim::check};
 
 }  // namespace apsis

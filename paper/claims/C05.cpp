@@ -2,6 +2,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C05_claim {
 namespace {
 
 claim_result check(const study_control&) {
@@ -15,6 +16,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C05_claim
 
 extern const claim_entry claim_C05;
 const claim_entry claim_C05 = {
@@ -22,6 +24,6 @@ const claim_entry claim_C05 = {
     .section = "New SSP implicit two-derivative Runge-Kutta methods",
     .statement = "the five-stage method is of fourth order and SSP for every step; its printed forms agree",
     .how = "certificate; conversion of the Shu-Osher form compared with the printed matrices",
-    .check = check};
+    .check = C05_claim::check};
 
 }  // namespace apsis

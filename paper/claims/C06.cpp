@@ -2,6 +2,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C06_claim {
 namespace {
 
 claim_result check(const study_control&) {
@@ -12,6 +13,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C06_claim
 
 extern const claim_entry claim_C06;
 const claim_entry claim_C06 = {
@@ -19,6 +21,6 @@ const claim_entry claim_C06 = {
     .section = "New SSP IMEX multi-derivative Runge-Kutta methods",
     .statement = "the three-stage IMEX method is of second order with r = 1; its printed Butcher form agrees",
     .how = "certificate; r derived from the Butcher form alone",
-    .check = check};
+    .check = C06_claim::check};
 
 }  // namespace apsis

@@ -5,6 +5,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C07_claim {
 namespace {
 
 claim_result check(const study_control&) {
@@ -24,6 +25,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C07_claim
 
 extern const claim_entry claim_C07;
 const claim_entry claim_C07 = {.id = "C7",
@@ -32,6 +34,6 @@ const claim_entry claim_C07 = {.id = "C7",
                                    "the six-stage IMEX method is of third order with r = 0.904402174130635; "
                                    "its printed Butcher form agrees",
                                .how = "certificate; r derived from the Butcher form alone",
-                               .check = check};
+                               .check = C07_claim::check};
 
 }  // namespace apsis

@@ -6,6 +6,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C08_claim {
 namespace {
 
 claim_result check(const study_control&) {
@@ -24,6 +25,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C08_claim
 
 extern const claim_entry claim_C08;
 const claim_entry claim_C08 = {
@@ -32,6 +34,6 @@ const claim_entry claim_C08 = {
     .statement =
         "both IMEX methods are of type A and globally stiffly accurate, with three and six implicit solves",
     .how = "certificate",
-    .check = check};
+    .check = C08_claim::check};
 
 }  // namespace apsis

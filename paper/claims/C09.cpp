@@ -3,6 +3,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C09_claim {
 namespace {
 
 claim_result check(const study_control&) {
@@ -27,6 +28,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C09_claim
 
 extern const claim_entry claim_C09;
 const claim_entry claim_C09 = {
@@ -34,6 +36,6 @@ const claim_entry claim_C09 = {
     .section = "New SSP IMEX multi-derivative Runge-Kutta methods",
     .statement = "r = 1 is 23 % larger than that of the second-order scheme of Hu, Shu and Zhang (2018)",
     .how = "their scheme is in the catalogue; both coefficients derived from the Butcher forms alone",
-    .check = check};
+    .check = C09_claim::check};
 
 }  // namespace apsis

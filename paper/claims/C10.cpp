@@ -16,6 +16,7 @@
 #include <paper/square_decay.hpp>
 
 namespace apsis {
+namespace C10_claim {
 namespace {
 
 using row = std::vector<double>;
@@ -158,6 +159,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C10_claim
 
 extern const claim_entry claim_C10;
 const claim_entry claim_C10 = {
@@ -167,6 +169,6 @@ const claim_entry claim_C10 = {
     .how =
         "positivity of every stage and step; beyond the paper: random dissipative G with random convex "
         "functionals, for every unconditionally SSP implicit method of the catalogue",
-    .check = check};
+    .check = C10_claim::check};
 
 }  // namespace apsis

@@ -2,6 +2,7 @@
 #include <paper/square_decay.hpp>
 
 namespace apsis {
+namespace C11_claim {
 namespace {
 
 /// The largest step, by bisection, for which 20 steps keep every stage positive.
@@ -29,6 +30,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C11_claim
 
 extern const claim_entry claim_C11;
 const claim_entry claim_C11 = {
@@ -36,6 +38,6 @@ const claim_entry claim_C11 = {
     .section = "Numerical results, the implicit methods on u' = -10 u^2",
     .statement = "the DIRK methods of second and third order lose positivity for steps above 1/50 and 1/75",
     .how = "bisection of the step for which every stage of twenty steps from u(0) = 10 is positive",
-    .check = check};
+    .check = C11_claim::check};
 
 }  // namespace apsis

@@ -8,6 +8,7 @@
 #include <paper/square_decay.hpp>
 
 namespace apsis {
+namespace C12_claim {
 namespace {
 
 constexpr int finest = 64;
@@ -77,6 +78,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C12_claim
 
 extern const claim_entry claim_C12;
 const claim_entry claim_C12 = {
@@ -84,6 +86,6 @@ const claim_entry claim_C12 = {
     .section = "Numerical results, figure of u' = -10 u^2",
     .statement = "the SSP methods are qualitatively right for all steps tested, the DIRK methods are not",
     .how = "both panels of the figure; positivity of every stage and decay in every step",
-    .check = check};
+    .check = C12_claim::check};
 
 }  // namespace apsis

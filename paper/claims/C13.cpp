@@ -7,6 +7,7 @@
 #include <paper/square_decay.hpp>
 
 namespace apsis {
+namespace C13_claim {
 namespace {
 
 constexpr double end = 2.0;
@@ -54,6 +55,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C13_claim
 
 extern const claim_entry claim_C13;
 const claim_entry claim_C13 = {
@@ -61,6 +63,6 @@ const claim_entry claim_C13 = {
     .section = "Numerical results, the implicit methods on u' = -10 u^2",
     .statement = "the three implicit methods reach orders 2, 3 and 4",
     .how = "error against the exact solution at t = 2 through the production stepper, in long double",
-    .check = check};
+    .check = C13_claim::check};
 
 }  // namespace apsis

@@ -9,6 +9,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C14_claim {
 namespace {
 
 /// One of the model's initial data at a random position, disturbed by up to 90 % in every component;
@@ -52,6 +53,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C14_claim
 
 extern const claim_entry claim_C14;
 const claim_entry claim_C14 = {
@@ -61,6 +63,6 @@ const claim_entry claim_C14 = {
         "R Q = 0, Q(E) = 0 and Q'(u) Q(u) = -C Q(u) for the ODE model, the relaxation system, Broadwell and "
         "BGK",
     .how = "random states of every relaxation model; the derivative by differences",
-    .check = check};
+    .check = C14_claim::check};
 
 }  // namespace apsis

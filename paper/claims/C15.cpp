@@ -9,6 +9,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C15_claim {
 namespace {
 
 /// Nonnegative: the model's initial data at a random position, disturbed over eight decades, a fifth
@@ -64,6 +65,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C15_claim
 
 extern const claim_entry claim_C15;
 const claim_entry claim_C15 = {
@@ -73,6 +75,6 @@ const claim_entry claim_C15 = {
     .how =
         "random nonnegative states, steps from 1e-12 to 1e12, no value below zero in "
         "floating point, exact zeros in the input",
-    .check = check};
+    .check = C15_claim::check};
 
 }  // namespace apsis

@@ -16,6 +16,7 @@
 #include <paper/limit_equations.hpp>
 
 namespace apsis {
+namespace C16_claim {
 namespace {
 
 constexpr int samples = 1000;
@@ -163,6 +164,7 @@ claim_result check(const study_control&) {
 }
 
 }  // namespace
+}  // namespace C16_claim
 
 extern const claim_entry claim_C16;
 const claim_entry claim_C16 = {
@@ -172,6 +174,6 @@ const claim_entry claim_C16 = {
         "in moments ρ_t + m_x = 0, m_t + z_x = 0, z_t + m_x = (ρ² + m² − 2ρz)/(2ε); for ε → 0 z = (ρ² + "
         "m²)/(2ρ), which closes the limit system; E(ρ, m) as printed",
     .how = "identities on random states through the production operators, and the fluxes of the limit system",
-    .check = check};
+    .check = C16_claim::check};
 
 }  // namespace apsis

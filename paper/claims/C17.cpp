@@ -13,6 +13,7 @@
 #include <paper/limit_convergence.hpp>
 
 namespace apsis {
+namespace C17_claim {
 namespace {
 
 /// Two programs that sum in different order, a few steps, values of order one.
@@ -258,6 +259,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C17_claim
 
 extern const claim_entry claim_C17;
 const claim_entry claim_C17 = {
@@ -269,6 +271,6 @@ const claim_entry claim_C17 = {
     .how =
         "comparison of runs with the limit scheme, implemented without the operators and the stepper of a "
         "run, and of the limit scheme with the limit systems written out by hand",
-    .check = check};
+    .check = C17_claim::check};
 
 }  // namespace apsis

@@ -10,6 +10,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C18_claim {
 namespace {
 
 const std::vector<double> epsilons = {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 1e-1, 1.0, 1e2, 1e6, 1e12};
@@ -174,6 +175,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C18_claim
 
 extern const claim_entry claim_C18;
 const claim_entry claim_C18 = {
@@ -185,6 +187,6 @@ const claim_entry claim_C18 = {
     .how =
         "every step of runs and of extreme data, epsilon from 0 to 1e12, every IMEX method with an SSP "
         "coefficient; and a method without one that violates it",
-    .check = check};
+    .check = C18_claim::check};
 
 }  // namespace apsis

@@ -11,6 +11,7 @@
 #include <paper/plateau_study.hpp>
 
 namespace apsis {
+namespace C19_claim {
 namespace {
 
 // Values like those of the paper's figures; the steps are 1/4 … 1/131072 = 7.6e-6.
@@ -125,6 +126,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C19_claim
 
 extern const claim_entry claim_C19;
 const claim_entry claim_C19 = {
@@ -135,6 +137,6 @@ const claim_entry claim_C19 = {
     .how =
         "error at t = 1 against a reference accurate to 1e-13, for Δt from 1/4 to 7.6e-6; cause of the "
         "plateaus; observed order over ε and Δt for all models",
-    .check = check};
+    .check = C19_claim::check};
 
 }  // namespace apsis

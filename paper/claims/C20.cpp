@@ -6,6 +6,7 @@
 #include <paper/ode_study.hpp>
 
 namespace apsis {
+namespace C20_claim {
 namespace {
 
 constexpr double epsilon = 1e-6;
@@ -68,6 +69,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C20_claim
 
 extern const claim_entry claim_C20;
 const claim_entry claim_C20 = {
@@ -75,6 +77,6 @@ const claim_entry claim_C20 = {
     .section = "Numerical results, an ODE model",
     .statement = "on the plateaus the methods still converge with their order, if Δt is compared with Δt/2",
     .how = "self-convergence at eps = 1e-6 where the error against the reference is flat",
-    .check = check};
+    .check = C20_claim::check};
 
 }  // namespace apsis

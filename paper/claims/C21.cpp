@@ -6,6 +6,7 @@
 #include <paper/ode_study.hpp>
 
 namespace apsis {
+namespace C21_claim {
 namespace {
 
 /// The third-order method with the printed coefficients: 15 digits in double, whose rows sum to 1 only up to
@@ -110,6 +111,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C21_claim
 
 extern const claim_entry claim_C21;
 const claim_entry claim_C21 = {
@@ -119,6 +121,6 @@ const claim_entry claim_C21 = {
     .how =
         "shown with the printed digits; removed by coefficients whose rows sum to 1 exactly, and by long "
         "double",
-    .check = check};
+    .check = C21_claim::check};
 
 }  // namespace apsis

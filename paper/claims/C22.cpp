@@ -7,6 +7,7 @@
 #include <paper/accuracy_figure.hpp>
 
 namespace apsis {
+namespace C22_claim {
 namespace {
 
 /// Errors of an independent program at N = 80 and 160 (second and third order, eps = 1 and 1e-8), with a
@@ -76,6 +77,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C22_claim
 
 extern const claim_entry claim_C22;
 const claim_entry claim_C22 = {
@@ -85,7 +87,7 @@ const claim_entry claim_C22 = {
         "both methods have their design order for ε = 1 and in the limit, from inconsistent data, and a "
         "reduced order in between",
     .how = "the paper's runs: finite volumes, Δt = Δx/2, L² difference from the next finer mesh at t = 0.1",
-    .check = check,
+    .check = C22_claim::check,
     .slow = true};
 
 }  // namespace apsis

@@ -2,6 +2,7 @@
 #include <paper/accuracy_figure.hpp>
 
 namespace apsis {
+namespace C23_claim {
 namespace {
 
 constexpr const char* second = "md-imex-3-2";
@@ -62,6 +63,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C23_claim
 
 extern const claim_entry claim_C23;
 const claim_entry claim_C23 = {
@@ -73,7 +75,7 @@ const claim_entry claim_C23 = {
     .how =
         "the paper's runs: finite volumes, 150 velocities, Δt = Δx/(2 v_max), L² difference in (x, v) from "
         "the next finer mesh at t = 0.1; and only the step refined on one mesh",
-    .check = check,
+    .check = C23_claim::check,
     .slow = true};
 
 }  // namespace apsis

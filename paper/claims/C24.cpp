@@ -8,6 +8,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C24_claim {
 namespace {
 
 void add_promises(claim_result& result, const std::string& name, const outcome& run) {
@@ -85,6 +86,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C24_claim
 
 extern const claim_entry claim_C24;
 const claim_entry claim_C24 = {
@@ -95,7 +97,7 @@ const claim_entry claim_C24 = {
         "agree "
         "with the explicit reference and with each other",
     .how = "the paper's run with both methods and its reference, every step monitored",
-    .check = check,
+    .check = C24_claim::check,
     .slow = true};
 
 }  // namespace apsis

@@ -10,6 +10,7 @@
 #include <paper/claim.hpp>
 
 namespace apsis {
+namespace C25_claim {
 namespace {
 
 /// k_1 = 1/4, k_i = 1/(4(1 − k_{i−1})), which is s/(2(s+1)).
@@ -190,6 +191,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C25_claim
 
 extern const claim_entry claim_C25;
 const claim_entry claim_C25 = {
@@ -201,6 +203,6 @@ const claim_entry claim_C25 = {
         "≤ k_s < 1/2",
     .how =
         "random nonnegative tableaux; random searches for the largest difference and the smallest residual",
-    .check = check};
+    .check = C25_claim::check};
 
 }  // namespace apsis

@@ -12,6 +12,7 @@
 #include <paper/square_decay.hpp>
 
 namespace apsis {
+namespace C26_claim {
 namespace {
 
 constexpr const char* name = "imdrk-9-5";
@@ -86,6 +87,7 @@ claim_result check(const study_control& control) {
 }
 
 }  // namespace
+}  // namespace C26_claim
 
 extern const claim_entry claim_C26;
 const claim_entry claim_C26 = {
@@ -94,6 +96,6 @@ const claim_entry claim_C26 = {
     .statement =
         "a fifth-order unconditionally SSP implicit two-derivative method exists (the paper found none)",
     .how = "certificate of imdrk-9-5, observed order through the production stepper in long double",
-    .check = check};
+    .check = C26_claim::check};
 
 }  // namespace apsis

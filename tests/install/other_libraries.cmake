@@ -8,7 +8,7 @@ foreach(package HDF5 hwy Ipopt muparser nlohmann_json OpenMP Threads)
   list(APPEND others -DCMAKE_DISABLE_FIND_PACKAGE_${package}=TRUE)
 endforeach()
 configure(${SOURCE} ${work}/build -DBUILD_SHARED_LIBS=${SHARED} -DAPSIS_COMPONENTS=integrate -DAPSIS_TESTS=OFF
-          -DCMAKE_BUILD_TYPE=Plain -DAPSIS_WERROR=OFF -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} ${others})
+          -DCMAKE_BUILD_TYPE=Plain -DAPSIS_WERROR=OFF -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_UNITY_BUILD=ON ${others})
 run(${CMAKE_COMMAND} --build ${work}/build)
 install_into(${work}/build ${work}/prefix)
 

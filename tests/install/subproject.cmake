@@ -4,7 +4,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
 set(work ${WORK}/${CONSUMER})
 file(REMOVE_RECURSE ${work})
 configure(${CMAKE_CURRENT_LIST_DIR}/${CONSUMER} ${work} -DAPSIS_SOURCE=${SOURCE} -DFETCHCONTENT_SOURCE_DIR_APSIS=${SOURCE}
-          -DFETCHCONTENT_FULLY_DISCONNECTED=ON -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
+          -DFETCHCONTENT_FULLY_DISCONNECTED=ON -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_UNITY_BUILD=ON)
 if(EXISTS ${work}/compile_commands.json OR EXISTS ${work}/CPackConfig.cmake OR EXISTS ${work}/CTestTestfile.cmake)
   message(FATAL_ERROR "the project of the consumer has compile commands, packages or tests that it did not ask for")
 endif()

@@ -5,6 +5,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace couette_quantity {
 namespace {
 
 /// The plates move with ±U, so slowly that the problem is linear: U² is below the accuracy.
@@ -24,6 +25,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace couette_quantity
 
 extern const quantity_entry quantity_couette;
 const quantity_entry quantity_couette = {
@@ -41,6 +43,6 @@ const quantity_entry quantity_couette = {
                   {{{"delta", "10"}}, 0.1473},
                   {{{"delta", "20"}}, 0.08045},
                   {{{"delta", "100"}}, 0.01737}},
-    .compute = compute};
+    .compute = couette_quantity::compute};
 
 }  // namespace apsis

@@ -5,6 +5,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace heat_quantity {
 namespace {
 
 /// The temperatures of the plates are 1 ± this: its square is below the accuracy.
@@ -22,6 +23,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace heat_quantity
 
 extern const quantity_entry quantity_heat;
 const quantity_entry quantity_heat = {
@@ -34,6 +36,6 @@ const quantity_entry quantity_heat = {
                   {{{"delta", "0.1"}}, 0.935159},
                   {{{"delta", "1"}}, 0.640853},
                   {{{"delta", "10"}}, 0.175788}},
-    .compute = compute};
+    .compute = heat_quantity::compute};
 
 }  // namespace apsis

@@ -6,6 +6,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace kramers_quantity {
 namespace {
 
 /// Values of a smooth function with the term y log y of a layer at y = 0, from its values at y_i.
@@ -50,6 +51,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace kramers_quantity
 
 extern const quantity_entry quantity_kramers;
 const quantity_entry quantity_kramers = {
@@ -69,6 +71,6 @@ const quantity_entry quantity_kramers = {
                   {{{"value", "layer"}, {"distance", "0.3"}}, 0.16114},
                   {{{"value", "layer"}, {"distance", "1"}}, 0.07175},
                   {{{"value", "layer"}, {"distance", "3"}}, 0.014967}},
-    .compute = compute};
+    .compute = kramers_quantity::compute};
 
 }  // namespace apsis

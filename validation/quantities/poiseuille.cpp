@@ -5,6 +5,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace poiseuille_quantity {
 namespace {
 
 /// The flow rate in units of √(2RT) times the relative pressure gradient, which is √2 a.
@@ -49,6 +50,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace poiseuille_quantity
 
 extern const quantity_entry quantity_poiseuille;
 const quantity_entry quantity_poiseuille = {
@@ -63,6 +65,6 @@ const quantity_entry quantity_poiseuille = {
                   {{{"delta", "1"}}, 1.538678},
                   {{{"delta", "10"}}, 2.768644},
                   {{{"delta", "100"}}, 17.691059}},
-    .compute = compute};
+    .compute = poiseuille_quantity::compute};
 
 }  // namespace apsis

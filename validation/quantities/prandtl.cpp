@@ -5,6 +5,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace prandtl_quantity {
 namespace {
 
 double field_at(const field_table& fields, const std::string& name, std::size_t cell) {
@@ -34,6 +35,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace prandtl_quantity
 
 extern const quantity_entry quantity_prandtl;
 const quantity_entry quantity_prandtl = {
@@ -46,6 +48,6 @@ const quantity_entry quantity_prandtl = {
     .published = {{{{"model", "bgk"}}, 1.0},
                   {{{"model", "shakhov"}}, 2.0 / 3.0},
                   {{{"model", "es-bgk"}}, 2.0 / 3.0}},
-    .compute = compute};
+    .compute = prandtl_quantity::compute};
 
 }  // namespace apsis

@@ -5,6 +5,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace riemann_quantity {
 namespace {
 
 /// The states between the waves of a shock tube whose gas moves to the right behind the shock.
@@ -65,6 +66,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace riemann_quantity
 
 extern const quantity_entry quantity_riemann;
 const quantity_entry quantity_riemann = {
@@ -87,6 +89,6 @@ const quantity_entry quantity_riemann = {
                   {{{"degrees_of_freedom", "5"}, {"value", "pressure"}}, 0.30313},
                   {{{"degrees_of_freedom", "5"}, {"value", "density-left"}}, 0.42632},
                   {{{"degrees_of_freedom", "5"}, {"value", "density-right"}}, 0.26557}},
-    .compute = compute};
+    .compute = riemann_quantity::compute};
 
 }  // namespace apsis

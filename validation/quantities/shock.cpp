@@ -8,6 +8,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace shock_quantity {
 namespace {
 
 /// Ratios of density and temperature of the states behind and before a shock of a monatomic gas at rest, and
@@ -90,6 +91,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace shock_quantity
 
 extern const quantity_entry quantity_shock;
 const quantity_entry quantity_shock = {
@@ -118,6 +120,6 @@ const quantity_entry quantity_shock = {
          // The target of Shakhov's model is negative in parts of this shock, which never comes to rest.
          {{{"mach", "8"}, {"value", "energy"}, {"model", "shakhov"}}, 1.0, 3e-3},
          {{{"mach", "8"}, {"value", "energy"}, {"model", "es-bgk"}}, 1.0}},
-    .compute = compute};
+    .compute = shock_quantity::compute};
 
 }  // namespace apsis

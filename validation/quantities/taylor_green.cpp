@@ -9,6 +9,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace taylor_green_quantity {
 namespace {
 
 constexpr double wave_number = 2.0 * std::numbers::pi;
@@ -41,6 +42,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace taylor_green_quantity
 
 extern const quantity_entry quantity_taylor_green;
 const quantity_entry quantity_taylor_green = {
@@ -54,6 +56,6 @@ const quantity_entry quantity_taylor_green = {
     .published = {{{{"epsilon", "0.003"}}, 0.99929140},
                   {{{"epsilon", "0.01"}}, 0.99234128},
                   {{{"epsilon", "0.03"}}, 0.94306517}},
-    .compute = compute};
+    .compute = taylor_green_quantity::compute};
 
 }  // namespace apsis

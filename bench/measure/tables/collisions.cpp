@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis::bench {
+namespace apsis::bench::collisions_table {
 namespace {
 
 struct gas {
@@ -73,4 +73,4 @@ const registered here({"collisions", "speed of Shakhov, ES-BGK and reduced distr
                        measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::collisions_table

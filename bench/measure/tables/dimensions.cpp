@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis::bench {
+namespace apsis::bench::dimensions_table {
 namespace {
 
 /// The mesh and the velocities of D dimensions.
@@ -86,4 +86,4 @@ result_table measure(const settings& options) {
 const registered here({"dimensions", "speed in one, two and three dimensions", measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::dimensions_table

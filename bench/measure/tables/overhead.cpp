@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis::bench {
+namespace apsis::bench::overhead_table {
 namespace {
 
 constexpr double epsilon = 1e-4, dt = 1e-3;
@@ -119,4 +119,4 @@ result_table measure(const settings& options) {
 const registered here({"overhead", "a step of two unknowns against a hand-written one", measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::overhead_table

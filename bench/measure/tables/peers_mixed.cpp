@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis::bench {
+namespace apsis::bench::peers_mixed_table {
 namespace {
 
 using namespace peers;
@@ -166,4 +166,4 @@ const registered here({"peers-mixed", "work and precision against SUNDIALS and S
                        measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::peers_mixed_table

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis::bench {
+namespace apsis::bench::peers_ode_table {
 namespace {
 
 using namespace peers;
@@ -99,4 +99,4 @@ result_table measure(const settings& options) {
 const registered here({"peers-ode", "work and precision against SUNDIALS, ODE model", measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::peers_ode_table

@@ -16,7 +16,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis::bench {
+namespace apsis::bench::plain_table {
 namespace {
 
 const char* const test = "paper/bgk-mixed";
@@ -140,4 +140,4 @@ result_table measure(const settings& options) {
 const registered here({"plain", "library against the same formulas in plain loops", measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::plain_table

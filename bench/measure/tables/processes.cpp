@@ -19,7 +19,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace apsis::bench {
+namespace apsis::bench::processes_table {
 namespace {
 
 using processes_pointer = std::shared_ptr<communicator>;
@@ -215,4 +215,4 @@ result_table measure(const settings& options) {
 const registered here({"processes", "weak and strong scaling on several processes", measure, true});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::processes_table

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis::bench {
+namespace apsis::bench::scaling_table {
 namespace {
 
 /// Cost of a point·stage in units of a multiply–add, measured at the same time to eliminate a drift of the
@@ -57,4 +57,4 @@ result_table measure(const settings& options) {
 const registered here({"scaling", "cost of a step for 1e4 to 1e8 points", measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::scaling_table

@@ -12,7 +12,7 @@
 #include <xmmintrin.h>
 #endif
 
-namespace apsis::bench {
+namespace apsis::bench::subnormal_table {
 namespace {
 
 #if defined(__SSE2__)
@@ -81,4 +81,4 @@ result_table measure(const settings&) {
 const registered here({"subnormal", "gain from flushing subnormal numbers to zero", measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::subnormal_table

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis::bench {
+namespace apsis::bench::threads_table {
 namespace {
 
 /// Ideal speedup of the machine: multiply–adds in registers, which share nothing, on one thread and on two
@@ -66,4 +66,4 @@ result_table measure(const settings& options) {
 const registered here({"threads", "speedup of two threads", measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::threads_table

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis::bench {
+namespace apsis::bench::throughput_table {
 namespace {
 
 /// Rates of one turn, summed over all threads.
@@ -93,4 +93,4 @@ result_table measure(const settings& options) {
 const registered here({"throughput", "throughput of steps against the ceilings of the machine", measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::throughput_table

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <hwy/targets.h>
 
-namespace apsis::bench {
+namespace apsis::bench::vectors_table {
 namespace {
 
 job with(std::int64_t instructions, job body) {
@@ -61,4 +61,4 @@ result_table measure(const settings& options) {
 const registered here({"vectors", "gain from the vector units of the processor", measure});
 
 }  // namespace
-}  // namespace apsis::bench
+}  // namespace apsis::bench::vectors_table

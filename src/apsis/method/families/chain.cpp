@@ -4,6 +4,7 @@
 #include <apsis/method/family_registry.hpp>
 
 namespace apsis {
+namespace chain_family {
 namespace {
 
 /// The free ḋ make the method third order where T = 0 and are spread evenly over the chain.
@@ -36,12 +37,13 @@ method make(std::size_t stages) {
 }
 
 }  // namespace
+}  // namespace chain_family
 
 extern const family_entry family_chain;
 const family_entry family_chain = {.pattern = "md-imex-chain-S-2",
                                    .description = "second order, r = S - 2, n_F = S - 1 (docs/methods.md)",
                                    .lowest = 3,
                                    .highest = 64,
-                                   .make = make};
+                                   .make = chain_family::make};
 
 }  // namespace apsis

@@ -3,6 +3,7 @@
 #include <apsis/method/family_registry.hpp>
 
 namespace apsis {
+namespace plateau_free_family {
 namespace {
 
 /// Order 2 leaves one condition, ḋ_2 + (n−1) ḋ_{n+1} = −(n² − 3n + 4)/n². Two equal parts are within 2 % of
@@ -37,6 +38,7 @@ method make(std::size_t stages) {
 }
 
 }  // namespace
+}  // namespace plateau_free_family
 
 extern const family_entry family_plateau_free;
 const family_entry family_plateau_free = {
@@ -44,6 +46,6 @@ const family_entry family_plateau_free = {
     .description = "second order, r = S - 3, n_F = S - 2, no O(epsilon) plateaus (docs/plateaus.md)",
     .lowest = 5,
     .highest = 64,
-    .make = make};
+    .make = plateau_free_family::make};
 
 }  // namespace apsis

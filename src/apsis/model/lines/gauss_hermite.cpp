@@ -4,6 +4,7 @@
 #include <utility>
 
 namespace apsis {
+namespace gauss_hermite_line {
 namespace {
 
 velocity_line make(int points, double max) {
@@ -15,6 +16,7 @@ velocity_line make(int points, double max) {
 }
 
 }  // namespace
+}  // namespace gauss_hermite_line
 
 extern const velocity_line_entry velocity_line_gauss_hermite;
 const velocity_line_entry velocity_line_gauss_hermite = {
@@ -24,6 +26,6 @@ const velocity_line_entry velocity_line_gauss_hermite = {
         "from one Maxwellian",
     .source = "Shan, Yuan, Chen, J. Fluid Mech. 550 (2006)",
     .needs_max = false,
-    .make = make};
+    .make = gauss_hermite_line::make};
 
 }  // namespace apsis

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 namespace apsis {
+namespace graded_line {
 namespace {
 
 /// v = max s|s|² at midpoints of equal intervals of s ∈ [−1, 1], with weights v'(s) Δs. The integrand f v' of
@@ -29,12 +30,13 @@ velocity_line make(int points, double max) {
 }
 
 }  // namespace
+}  // namespace graded_line
 
 extern const velocity_line_entry velocity_line_graded;
 const velocity_line_entry velocity_line_graded = {
     .name = "graded",
     .description = "max s^3 at midpoints of equal intervals of s: for walls, where f jumps at v = 0",
     .source = "midpoint rule after a change of variables",
-    .make = make};
+    .make = graded_line::make};
 
 }  // namespace apsis

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 namespace apsis {
+namespace half_range_gauss_hermite_line {
 namespace {
 
 velocity_line make(int points, double max) {
@@ -29,6 +30,7 @@ velocity_line make(int points, double max) {
 }
 
 }  // namespace
+}  // namespace half_range_gauss_hermite_line
 
 extern const velocity_line_entry velocity_line_half_range_gauss_hermite;
 const velocity_line_entry velocity_line_half_range_gauss_hermite = {
@@ -38,6 +40,6 @@ const velocity_line_entry velocity_line_half_range_gauss_hermite = {
         "deviations from one Maxwellian that jump at v = 0",
     .source = "Ghiroldi, Gibelli, J. Comput. Phys. 258 (2014)",
     .needs_max = false,
-    .make = make};
+    .make = half_range_gauss_hermite_line::make};
 
 }  // namespace apsis

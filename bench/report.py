@@ -4,7 +4,7 @@
     bench/report.py [--results results/bench/speed.json] [--docs docs] [--readme README.md]
 
 Copies the results, if there are any, to DOCS/data/speed/PROCESSOR.json. Writes the tables of the newest file there between the
-marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, draws DOCS/images/speed-*.png, and writes the table that compares processors
+marks <!-- NAME --> and <!-- end --> of DOCS/speed.md and DOCS/scaling.md, draws DOCS/images/speed-*.png, and writes the table that compares processors
 there and its most important rows into the README.
 """
 import argparse
@@ -15,7 +15,11 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "python" / "apsis"))
+import scaling_model  # noqa: E402
 from plot.style import COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
+
+
+PAGES = {"processes": "scaling.md"}  # of tables that are not in speed.md
 
 
 class ReportError(Exception):
@@ -238,7 +242,9 @@ def main():
     machines = newest_first(folder)
     results = machines[0]
     for name, result in results.items():
-        replace(given.docs / "speed.md", name, section(result))
+        replace(given.docs / PAGES.get(name, "speed.md"), name, section(result))
+    if "processes" in results:
+        replace(given.docs / PAGES["processes"], "scaling-model", scaling_model.tables(results["processes"]))
     replace(given.docs / "speed.md", "processors", comparison(machines))
     replace(given.readme, "speed", comparison(machines, FRONT_PAGE))
     if "peers-mixed" in results:

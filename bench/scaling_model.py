@@ -9,7 +9,7 @@ other nodes use the network.
 import math
 from dataclasses import dataclass
 
-HALO = 5  # cells, of WENO with the limiter
+HALO = 4  # cells, of WENO with the limiter
 
 
 @dataclass(frozen=True)

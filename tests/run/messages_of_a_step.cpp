@@ -33,7 +33,7 @@ apsis::case_config gas(const std::string& method, const std::string& boundary,
       "gas.toml", overrides);
 }
 
-/// The states of which a step needs T: those with a weight in a later stage.
+/// The number of states whose T enters a later stage.
 int evaluations_of_transport(const apsis::method& m) {
   const auto form = m.coefficients<double>();
   int count = 0;
@@ -45,22 +45,21 @@ int evaluations_of_transport(const apsis::method& m) {
   return count;
 }
 
-/// What a process sends to one evaluation.
+/// Messages and rows of a process for one evaluation of T.
 struct halo {
   long messages, rows;
 };
 
-/// Along x there are two blocks of 6 cells, along y three of 4, and WENO with the limiter needs 5 cells
+/// Along x there are two blocks of 6 cells, along y three of 4, and WENO with the limiter needs 4 cells
 /// beyond a block. Between periodic faces the other block along x is the neighbour on both sides and needs
-/// all 6 planes, in one message, and the others along y need all 4. Between walls a block needs 5 planes of
-/// its neighbour along x, and along y the 4 planes of its neighbour and one of the next.
+/// all 6 planes, in one message; along y all three are neighbours.
 halo halo_of(int rank, bool periodic) {
-  halo sum{1, (periodic ? 6 : 5) * 4};
+  halo sum{1, (periodic ? 6 : 4) * 4};
   const int place = rank % 3;
   for (int other = 0; other < 3; ++other) {
-    if (other == place) continue;
+    if (other == place || (!periodic && std::abs(other - place) == 2)) continue;
     ++sum.messages;
-    sum.rows += (periodic || std::abs(other - place) == 1 ? 4 : 1) * 6;
+    sum.rows += 4 * 6;
   }
   return sum;
 }

@@ -14,6 +14,8 @@
 #include <gtest/gtest.h>
 #include <validation/quantity.hpp>
 
+namespace linear_rectangle_test {
+
 namespace {
 
 using apsis::find_quantity;
@@ -199,3 +201,5 @@ TEST(slow_linear_square, is_the_source_of_all_values) {
     for (const auto& reference : find_quantity(quantity).published)
       EXPECT_NEAR(linear_value(quantity, reference, 12, 16), reference.value, 4e-5) << quantity;
 }
+
+}  // namespace linear_rectangle_test

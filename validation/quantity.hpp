@@ -75,7 +75,7 @@ double steady_safety(double delta);
 double steady_time(double delta);
 
 /// Returns the mean over the domain of a smooth function from its values at the cell centres, of fourth
-/// order. `shape`: number of cells along x, y, z, of which the last is the fastest; at least 3 each.
+/// order. `shape`: number of cells along x, y, z, the last the fastest; at least 3 each.
 double mean_of_cells(std::vector<double> values, const std::vector<int>& shape);
 
 /// Returns the mean of a field over the domain from its values at the cell centres, of fourth order. Throws

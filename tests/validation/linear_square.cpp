@@ -23,7 +23,7 @@ const std::array<velocity_function, 4> invariants = {
       return part{std::sqrt(2.0 / 3.0) * (x * x + y * y - 1.0), std::sqrt(1.0 / 3.0)};
     }};
 
-/// What a moving side and a hot one emit, 2 c_x and c² − 2, which carries no mass through the side.
+/// Emission of a moving side and of a hot one, 2 c_x and c² − 2, which carries no mass through the side.
 const velocity_function moving = [](double x, double) { return part{2.0 * x, 0.0}; };
 const velocity_function hot = [](double x, double y) {
   return part{x * x + y * y - 1.5, 1.0 / std::numbers::sqrt2};

@@ -8,7 +8,7 @@ namespace validation_test {
 
 /// The steady linearized BGK equation in the unit square,
 ///     c·∇φ = δ (ρ + 2 c·u + (c² − 3/2) τ − φ),   c = v/v₀ in three dimensions, δ = pL/(μ v₀),
-/// with diffuse sides, of which the top moves along itself or is hotter than the others. Unknown are the
+/// with diffuse sides; the top moves along itself or is hotter than the others. Unknown are the
 /// moments ρ, u and τ inside and the density of the molecules that leave each side, by Galerkin's method. At
 /// the ends of the top the moments depend on the direction from there, so that their error is of second order
 /// in 1/n, and that of drag and heat, which are quadratic in it, of about fourth.

@@ -21,7 +21,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
                      "velocity.set=[\"graded\",\"graded\"]", "velocity.points=[16,22]",
                      "time.method=md-imex-5-2", fmt::format("time.safety={}", steady_safety(delta)),
                      "time.steady=2e-6", fmt::format("time.end={}", steady_time(delta))});
-  // ρ U √(T/(2π)): what leaves the lid.
+  // ρ U √(T/(2π)): momentum of the molecules that leave the lid.
   const double emitted = lid_speed / std::sqrt(2.0 * std::numbers::pi);
   return last_flux(run, "top", "momentum_x") / emitted;
 }

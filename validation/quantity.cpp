@@ -36,6 +36,23 @@ double number_of(const std::string& text) {
                                                                   : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Returns the means of every n consecutive values at the centres of cells.
+std::vector<double> means_of_lines(const std::vector<double>& values, std::size_t n) {
+  std::vector<double> means;
+  for (std::size_t first = 0; first < values.size(); first += n) {
+    const double* line = values.data() + first;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      // The average of a cell is its centre + second difference/24; the end cells take that of their
+      // neighbours.
+      const std::size_t at = std::clamp<std::size_t>(i, 1, n - 2);
+      sum += line[i] + (line[at - 1] - 2.0 * line[at] + line[at + 1]) / 24.0;
+    }
+    means.push_back(sum / static_cast<double>(n));
+  }
+  return means;
+}
+
 }  // namespace
 
 const quantity_entry& find_quantity(const std::string& name) {
@@ -112,25 +129,23 @@ double steady_safety(double delta) {
   return std::min(1.0, 25.0 / delta);
 }
 
+double steady_time(double delta) {
+  return 12.0 + delta;
+}
+
 std::vector<double> field_values(const simulation& run, const std::string& name) {
   const field_table fields = run.fields();
   return fields.values.at(place_in(fields.names, name));
 }
 
 double mean_of_field(const simulation& run, const std::string& name) {
-  return mean_of_cells(field_values(run, name));
+  return mean_of_cells(field_values(run, name), run.fields().shape);
 }
 
-double mean_of_cells(const std::vector<double>& values) {
-  const std::size_t n = values.size();
-  double sum = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    // The average of a cell is its centre + second difference/24; the end cells take that of their
-    // neighbours.
-    const std::size_t at = std::clamp<std::size_t>(i, 1, n - 2);
-    sum += values[i] + (values[at - 1] - 2.0 * values[at] + values[at + 1]) / 24.0;
-  }
-  return sum / static_cast<double>(n);
+double mean_of_cells(std::vector<double> values, const std::vector<int>& shape) {
+  for (std::size_t axis = shape.size(); axis-- > 0;)
+    values = means_of_lines(values, static_cast<std::size_t>(shape[axis]));
+  return values.front();
 }
 
 double last_flux(const simulation& run, const std::string& face, const std::string& invariant) {

@@ -70,12 +70,16 @@ const std::string& one_of(const quantity_values& parameters, const std::string& 
 /// Δt/ε where that is of order 1 (docs/validation.md).
 double steady_safety(double delta);
 
-/// Returns the mean over the domain of a smooth function from its values at the cell centres, of fourth
-/// order.
-double mean_of_cells(const std::vector<double>& values);
+/// Returns the time after which a gas between walls at a distance of 1 is steady to 1e-3 in its fluxes: some
+/// crossings of slow molecules if it is rare, and of shear waves, L²/μ, if it is dense.
+double steady_time(double delta);
 
-/// Returns the mean of a field in x over the domain from its values at the cell centres, of fourth order.
-/// Throws std::out_of_range for an unknown name.
+/// Returns the mean over the domain of a smooth function from its values at the cell centres, of fourth
+/// order. `shape`: number of cells along x, y, z, the last the fastest; at least 3 each.
+double mean_of_cells(std::vector<double> values, const std::vector<int>& shape);
+
+/// Returns the mean of a field over the domain from its values at the cell centres, of fourth order. Throws
+/// std::out_of_range for an unknown name.
 double mean_of_field(const simulation& run, const std::string& name);
 
 /// Returns a field at the cell centres. Throws std::out_of_range for an unknown name.

@@ -27,7 +27,7 @@ double fine_flow(std::vector<std::string> deck, const quantity_run& make) {
   std::vector<double> flow = field_values(run, "u_y");
   const std::vector<double> x = run.fields().x;
   for (std::size_t i = 0; i < x.size(); ++i) flow[i] *= cells.slope(x[i]);
-  return flow_rate(run, mean_of_cells(flow));
+  return flow_rate(run, mean_of_cells(flow, run.fields().shape));
 }
 
 double default_flow(std::vector<std::string> deck, double delta, const quantity_run& make) {

@@ -1,0 +1,55 @@
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+#include <validation/quantity.hpp>
+
+namespace apsis {
+namespace {
+
+double compute(const quantity_values& parameters, const quantity_run& make) {
+  const double delta = positive_number(parameters, "delta");
+  const double hot = number_between(parameters, "hot", 1.0001, 4.0);
+  const std::string& wall = one_of(parameters, "wall", {"bottom", "left", "top"});
+  const simulation run = make(
+      "gas/enclosure",
+      {"parameters.delta=" + parameters.at("delta"), "parameters.hot=" + parameters.at("hot"),
+       "model.name=" + parameters.at("model"), fmt::format("velocity.max={}", 6.0 * std::sqrt(hot)),
+       fmt::format("time.safety={}", steady_safety(delta)), fmt::format("time.steady={}", 1e-4 * (hot - 1.0)),
+       "velocity.points=[20,28]", fmt::format("time.end={}", steady_time(delta))});
+  // Free molecules arrive at and leave all walls at the same rate J: the density is J √(2π/T) of each wall,
+  // weighted by the angle at which it is seen, on the average a quarter of 2π. They carry 2 T J.
+  const double rate = 1.0 / (std::sqrt(2.0 * std::numbers::pi) * (0.25 / std::sqrt(hot) + 0.75));
+  const double emitted = 2.0 * (hot - 1.0) * rate;
+  // Bottom and top are cut in half by the plane of symmetry.
+  const double length = wall == "left" ? 1.0 : 0.5;
+  const double received = last_flux(run, wall, "energy") / (-emitted * length);
+  return wall == "top" ? 1.0 + received : received;
+}
+
+}  // namespace
+
+extern const quantity_entry quantity_enclosure;
+const quantity_entry quantity_enclosure = {
+    .name = "enclosure",
+    .description =
+        "heat that arrives at a wall of a square with a hot top over what free molecules carry away from the "
+        "top, diffuse walls",
+    .source =
+        "view factors (free molecules, any temperature); linearized BGK equation, the spectral solver of "
+        "tests/validation/linear_square.hpp",
+    .parameters = {{"delta", "1", "rarefaction p L/(mu v0), v0 = sqrt(2 R T)"},
+                   {"wall", "bottom", "bottom, left, or top"},
+                   {"hot", "1.001", "temperature of the top, 1.0001 to 4; that of the others is 1"},
+                   {"model", "bgk", "bgk, shakhov or es-bgk"}},
+    .published = {{{{"delta", "0.0001"}}, std::numbers::sqrt2 - 1.0, 2e-3},
+                  {{{"delta", "0.0001"}, {"wall", "left"}}, 1.0 - 0.5 * std::numbers::sqrt2, 2e-3},
+                  {{{"delta", "0.0001"}, {"hot", "2"}}, std::numbers::sqrt2 - 1.0, 5e-3},
+                  {{{"delta", "1"}}, 0.258184, 2e-3},
+                  {{{"delta", "1"}, {"wall", "left"}}, 0.291405, 2e-3},
+                  {{{"delta", "10"}}, 0.049300, 1e-2},
+                  {{{"delta", "10"}, {"wall", "left"}}, 0.188031, 1e-2}},
+    .compute = compute};
+
+}  // namespace apsis

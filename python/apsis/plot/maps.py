@@ -165,13 +165,13 @@ def draw_map(panel: Any, result: RunResult, name: str, values: Array, plane: Pla
 
 
 def draw_streamlines(panel: Any, result: RunResult, fields: Mapping[str, Array], plane: Plane, size: tuple[float, float]) -> None:
-    """Draws streamlines of a vector in a plane where it is more than 1e-6 of the largest; solid boxes have none."""
+    """Draws streamlines of a vector in a plane where it is more than 1e-4 of the largest; solid boxes have none."""
     vector = vector_in(fields, plane)
     if vector is None:
         return
     across, up = result.arrays[plane.across], result.arrays[plane.up]
     u, v = (plane.cut(fields[f"{vector}_{axis}"]) for axis in (plane.across, plane.up))
-    moves = np.hypot(u, v) > 1e-6 * np.nanmax(length_of(fields, vector), initial=0.0)
+    moves = np.hypot(u, v) > 1e-4 * np.nanmax(length_of(fields, vector), initial=0.0)
     if moves.any() and min(u.shape) > 1:
         panel.streamplot(across, up, np.where(moves, u, np.nan), np.where(moves, v, np.nan), color=BLACK, linewidth=0.6, arrowsize=0.7,
                          density=tuple(0.33 * side for side in size))

@@ -116,6 +116,13 @@ def test_a_component_that_is_rounding_is_drawn_as_zero_and_has_no_streamlines():
     assert colours["u_x"] == (0.2, 0.3, "viridis") and colours["T"] == (1.0, 2.0, "viridis")
 
 
+def test_four_maps_are_a_square(plane, tmp_path):
+    apsis.run(str(plane.parent / "plane.toml"), 'output.fields=["rho", "u_x", "u_y"]', out=tmp_path / "run")
+    boxes = [axes.get_position() for _, axes in maps(fields_figure(read_result(tmp_path / "run")))]
+    assert len(boxes) == 4
+    assert len({round(box.x0, 6) for box in boxes}) == len({round(box.y0, 6) for box in boxes}) == 2
+
+
 def test_gas_that_hardly_moves_has_no_streamlines():
     x = np.arange(8.0)
     fields = {"u_x": np.where(x < 4.0, 1.0, 1e-5)[:, None] * np.ones(8), "u_y": np.zeros((8, 8))}

@@ -205,7 +205,7 @@ def maps_of(result: RunResult, fields: Mapping[str, Array], planes: list[Plane],
     sizes = sizes_of(result, planes)
     places = list(zip(planes, sizes))
     if len(planes) == 1:
-        sizes *= min(len(shown), 3 if sizes[0][0] < 4.0 else 2)
+        sizes *= 2 if len(shown) == 4 else min(len(shown), 3 if sizes[0][0] < 4.0 else 2)
     figure, panels = sheet(sizes, len(shown) * len(planes), title)
     for panel, (name, (plane, size)) in zip(panels, product(shown, places)):
         draw_map(panel, result, name, shown[name], plane, colours[name], size)

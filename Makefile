@@ -6,6 +6,9 @@ APSIS  := build/release/app/apsis
 export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
 export CTEST_PARALLEL_LEVEL ?= $(CORES)
 
+# For whole builds: several files are compiled as one, with precompiled headers.
+WHOLE := -DAPSIS_PCH=ON -DCMAKE_UNITY_BUILD=ON
+
 FORMATTED = $(shell find src app paper validation tests bench examples python -name '*.[ch]pp' 2>/dev/null)
 
 .DEFAULT_GOAL := help
@@ -37,12 +40,12 @@ figures: ## redraw the pictures from existing results
 
 program: ## build only the program, in build/release/app
 	@scripts/install-packages.sh run
-	cmake --preset release -DAPSIS_TESTS=OFF -DAPSIS_PCH=ON >/dev/null
+	cmake --preset release -DAPSIS_TESTS=OFF $(WHOLE) >/dev/null
 	cmake --build build/release --target app/apsis
 
 test: ## install packages, build everything, run all tests except the slow ones
 	@scripts/install-packages.sh test
-	cmake --preset release -DAPSIS_TESTS=ON -DAPSIS_BENCH=ON -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) -DAPSIS_PCH=ON >/dev/null
+	cmake --preset release -DAPSIS_TESTS=ON -DAPSIS_BENCH=ON -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) $(WHOLE) >/dev/null
 	cmake --build build/release
 	ctest --preset release -LE slow
 
@@ -54,11 +57,11 @@ test-all: test ## test, slow tests, clang, sanitizers, clang-tidy, format
 	$(MAKE) --no-print-directory test-slow format-check clang tidy asan tsan
 
 clang: ## build everything with clang-19 without warnings
-	cmake --preset clang -DAPSIS_PCH=ON >/dev/null
+	cmake --preset clang $(WHOLE) >/dev/null
 	cmake --build build/clang
 
 asan: ## run the tests under the address and undefined-behaviour sanitizers
-	cmake --preset asan -DAPSIS_PCH=ON >/dev/null
+	cmake --preset asan $(WHOLE) >/dev/null
 	cmake --build build/asan
 	ctest --preset asan -LE slow
 
@@ -68,15 +71,16 @@ tsan: ## run the tests of threads and of their users under the thread sanitizer
 	ctest --preset tsan -LE slow
 
 tidy: ## run clang-tidy over the library, the program and the Python package
-	cmake --preset clang -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) >/dev/null
+	cmake --preset clang -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) -DAPSIS_PCH=OFF -DCMAKE_UNITY_BUILD=OFF >/dev/null
 	cmake --build build/clang --target app/apsis
 	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app|paper|validation|python)/.*'
 
 bench: ## measure every table of docs/speed.md into results/bench/speed.json (half an hour, on an idle machine)
 	@scripts/install-packages.sh test
-	cmake --preset release -DAPSIS_BENCH=ON -DAPSIS_PCH=ON >/dev/null
+	cmake --preset release -DAPSIS_BENCH=ON $(WHOLE) >/dev/null
 	cmake --build build/release --target apsis_measure
 	build/release/bench/apsis_measure --out results/bench/speed.json
+	if command -v mpirun >/dev/null; then mpirun -n 2 build/release/bench/apsis_measure --out results/bench/speed.json; fi
 
 packages: program ## build Debian packages in build/release and test them in a bare Debian 12 (as root, with a network)
 	@scripts/install-packages.sh dev
@@ -91,7 +95,7 @@ format-check:
 
 docs: ## build the documentation and execute every code block: build/docs/html/index.html
 	@scripts/install-packages.sh docs
-	cmake --preset release -DAPSIS_TESTS=OFF -DAPSIS_BENCH=OFF -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) -DAPSIS_PCH=ON >/dev/null
+	cmake --preset release -DAPSIS_TESTS=OFF -DAPSIS_BENCH=OFF -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) $(WHOLE) >/dev/null
 	cmake --build build/release
 	$(PYTHON) docs/execute.py
 	$(PYTHON) docs/build.py

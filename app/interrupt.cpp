@@ -16,7 +16,7 @@ volatile pid_t child_process = 0;
 const char* awaited_text = nullptr;
 
 /// write() is async-signal-safe; a failure is ignored.
-void say(const char* text) {
+void write_now(const char* text) {
   if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
 }
 
@@ -25,15 +25,15 @@ extern "C" void note_stop(int) {
   stop_requested = 1;
   if (child_process > 0) kill(child_process, SIGTERM);
   if (awaited_text != nullptr) {
-    say("\ninterrupted: waiting for ");
-    say(awaited_text);
-    say("; a second Ctrl-C ends the program immediately\n");
+    write_now("\ninterrupted: waiting for ");
+    write_now(awaited_text);
+    write_now("; a second Ctrl-C ends the program immediately\n");
   }
   errno = number;
 }
 
 extern "C" void end_program(int) {
-  say("\ninterrupted\n");
+  write_now("\ninterrupted\n");
   _exit(static_cast<int>(exit_code::interrupted));
 }
 

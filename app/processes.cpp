@@ -16,8 +16,6 @@
 namespace apsis::app {
 namespace {
 
-constexpr double seconds_to_fail_together = 10.0;
-
 exit_code code_of(const std::exception& failure) {
   if (const auto* known = dynamic_cast<const error*>(&failure)) return known->code();
   return dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ? exit_code::numerical
@@ -26,14 +24,14 @@ exit_code code_of(const std::exception& failure) {
 
 }  // namespace
 
-int on_all_processes(const std::function<int(const std::shared_ptr<communicator>&)>& body) {
+int on_all_processes(const std::function<int(const std::shared_ptr<communicator>&)>& body, double patience) {
   const std::shared_ptr<communicator> processes = launched_processes();
   if (!processes->is_root()) log::set_level(log::level::quiet);
   try {
     return body(processes);
   } catch (const std::exception& failure) {
     // Where all fail, the root reports the error.
-    if (processes->is_single() || processes->all_arrive(seconds_to_fail_together)) throw;
+    if (processes->is_single() || processes->all_arrive(patience)) throw;
     std::fputs(fmt::format("error: process {}: {}\n", processes->rank(), failure.what()).c_str(), stderr);
     processes->abort(static_cast<int>(code_of(failure)));
     throw;

@@ -21,7 +21,10 @@ target_compile_options(apsis_options INTERFACE
   -fno-math-errno
   # g++-12 reports overlaps in its own std::string (GCC bug 105651), and more of them with precompiled headers.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
-  "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${APSIS_PCH}>>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>")
+  "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${APSIS_PCH}>>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>"
+  # Files that are compiled together look like headers to it, and shadow each other's functions.
+  "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage;-Wno-shadow;-Wshadow=local>"
+  "$<$<AND:$<CXX_COMPILER_ID:Clang>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-shadow>")
 
 # Code that only calls the rooms (program, tests) does not profit from optimisation, which costs build time.
 set(APSIS_QUICKLY_BUILT $<$<CONFIG:Release>:-O1>)
@@ -69,6 +72,13 @@ function(apsis_room name)
   else()
     list(FILTER sources EXCLUDE REGEX "/with_mpi/")
   endif()
+  # Highway compiles such a file several times, which must not include others.
+  foreach(source IN LISTS sources)
+    file(STRINGS ${source} several_targets REGEX "foreach_target" LIMIT_COUNT 1)
+    if(several_targets)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
   add_library(apsis_${name} ${sources} ${ROOM_GENERATED})
   add_library(apsis::${name} ALIAS apsis_${name})
   set_target_properties(apsis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF

@@ -2,7 +2,9 @@
 #include "table.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/exec/processes.hpp>
 
 #include <cstdio>
 #include <exception>
@@ -32,16 +34,24 @@ void write_results(const std::string& path, const json& results) {
   std::filesystem::rename(beside, target);
 }
 
-std::vector<entry> chosen(const std::vector<std::string>& names) {
+std::vector<entry> chosen(const std::vector<std::string>& names, bool several) {
   const auto all = apsis::bench::entries();
-  if (names.empty()) return all;
   std::vector<entry> some;
+  if (names.empty()) {
+    for (const auto& one : all)
+      if (one.on_several_processes == several) some.push_back(one);
+    return some;
+  }
   std::vector<std::string> known;
   for (const auto& one : all) known.push_back(one.name);
   for (const auto& name : names) {
     bool found = false;
     for (const auto& one : all)
       if (one.name == name) {
+        if (one.on_several_processes != several)
+          throw apsis::input_error(several
+                                       ? "'" + name + "' is measured on one process; start it without mpirun"
+                                       : "'" + name + "' compares processes; start several with mpirun -n 2");
         some.push_back(one);
         found = true;
       }
@@ -53,11 +63,12 @@ std::vector<entry> chosen(const std::vector<std::string>& names) {
 
 int measure(const std::vector<std::string>& names, const std::string& path,
             const apsis::bench::settings& options) {
-  for (const auto& one : chosen(names)) {
-    fmt::print(stderr, "measuring {}: {}\n", one.name, one.description);
-    json result;
+  const bool writes = options.processes->is_root();
+  for (const auto& one : chosen(names, !options.processes->is_single())) {
+    if (writes) fmt::print(stderr, "measuring {}: {}\n", one.name, one.description);
     const auto table = one.measure(options);
-    result = to_json(table);
+    if (!writes) continue;
+    json result = to_json(table);
     result["machine"] = apsis::bench::machine();
     result["repeats"] = options.repeats;
     fmt::print("{}\n", markdown(table));
@@ -86,6 +97,8 @@ int main(int argc, char** argv) {
   program.add_flag("--list", list, "list the measurements");
   CLI11_PARSE(program, argc, argv);
   try {
+    options.processes = apsis::launched_processes();
+    if (!options.processes->is_root()) apsis::log::set_level(apsis::log::level::quiet);
     if (list) {
       for (const auto& one : apsis::bench::entries()) fmt::print("{:<14} {}\n", one.name, one.description);
       return 0;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <apsis/exec/communicator.hpp>
+
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +14,7 @@ namespace apsis::bench {
 struct settings {
   int repeats = 5;
   bool quick = false;
+  std::shared_ptr<communicator> processes = single_process();  ///< that were started together
 };
 
 /// A table of results; a cell is a number or a string.
@@ -27,6 +31,7 @@ struct result_table {
 struct entry {
   std::string name, description;
   result_table (*measure)(const settings&);
+  bool on_several_processes = false;  ///< measured when several processes are started, and then alone
 };
 
 class registered {

@@ -55,7 +55,8 @@ mixed_regime::mixed_regime(double end)
   const auto& [from, to] = config_.space.domain.front();
   const double dx = (to - from) / config_.space.cells.front();
   const expression formula(config_.model.epsilon);
-  for (const double centre : setup_.centres()) {
+  for (int cell = 0; cell < setup_.mesh().size(); ++cell) {
+    const double centre = setup_.mesh().centre(cell, 0);
     double mean = 0.0;
     for (std::size_t q = 0; q < gauss3::points; ++q)
       mean += gauss3::weight[q] / formula.evaluate(centre + gauss3::xi[q] * dx);

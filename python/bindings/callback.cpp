@@ -21,7 +21,7 @@ std::vector<py::ssize_t> shape_of(const py::array& a) {
 }
 
 /// "an array of shape (3,) and type complex128", "None", "a str".
-std::string description(const py::object& value) {
+std::string type_and_size(const py::object& value) {
   if (value.is_none()) return "None";
   if (py::isinstance<py::array>(value)) {
     const auto a = value.cast<py::array>();
@@ -52,7 +52,7 @@ real_array real_numbers(const py::object& value) {
 
 void callback::refuse(const py::object& returned, const std::string& wanted) const {
   throw input_error(
-      fmt::format("{} returned {} ({} is needed); return that", name_, description(returned), wanted));
+      fmt::format("{} returned {} ({} is needed); return that", name_, type_and_size(returned), wanted));
 }
 
 void callback::refuse(py::error_already_set& why, const py::object& returned,
@@ -60,7 +60,7 @@ void callback::refuse(py::error_already_set& why, const py::object& returned,
   if (!why.matches(PyExc_TypeError) && !why.matches(PyExc_ValueError)) throw why;
   const py::object type = py::module_::import("apsis.errors").attr("InputError");
   const auto message =
-      fmt::format("{} returned {} ({} is needed); return that", name_, description(returned), wanted);
+      fmt::format("{} returned {} ({} is needed); return that", name_, type_and_size(returned), wanted);
   py::raise_from(why, type.ptr(), message.c_str());
   throw py::error_already_set();
 }

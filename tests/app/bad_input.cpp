@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace bad_input_test {
+
 using namespace app_test;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -221,3 +223,5 @@ TEST(bad_input, a_numerical_failure_retains_the_computed_results_and_reports_it)
   EXPECT_THAT(read(folder.path() / "o/manifest.json"), HasSubstr("\"state\": \"failed\""));
   EXPECT_FALSE(read(folder.path() / "o/history.csv").empty());
 }
+
+}  // namespace bad_input_test

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace commands_test {
+
 using namespace app_test;
 using testing::ContainsRegex;
 using testing::HasSubstr;
@@ -71,3 +73,5 @@ TEST(commands, describe_themselves_without_side_effects) {
   }
   EXPECT_TRUE(folder.listing().empty());
 }
+
+}  // namespace commands_test

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace converge_test {
+
 using namespace app_test;
 using nlohmann::json;
 using testing::HasSubstr;
@@ -19,11 +21,6 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> small = {"converge", "paper/ode",         "--vary", "model.epsilon=1,1e-10",
                                         "--vary",   "time.dt=1/16..1/64"};
-
-std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
 
 /// Rows without the columns that differ between two identical runs.
 json without_times(json rows) {
@@ -191,3 +188,5 @@ TEST(converge, options_may_stand_before_the_keys) {
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(json::parse(result.out).size(), 2U);
 }
+
+}  // namespace converge_test

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace design_test {
+
 using namespace app_test;
 using nlohmann::json;
 using testing::HasSubstr;
@@ -208,3 +210,5 @@ TEST(design, removes_stages_and_retains_the_best_method_when_time_is_over) {
   EXPECT_EQ(late.code, 3);
   EXPECT_THAT(late.err, HasSubstr("stages remains (the time of"));
 }
+
+}  // namespace design_test

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+namespace exit_codes_test {
+
 using namespace app_test;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -124,3 +126,5 @@ TEST(exit_codes, files_may_have_a_byte_order_mark_windows_line_ends_and_tabs) {
   EXPECT_EQ(wrong.code, input);
   EXPECT_THAT(wrong.err, HasSubstr("w.toml:"));
 }
+
+}  // namespace exit_codes_test

@@ -12,6 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace interrupts_test {
+
 using namespace app_test;
 using nlohmann::json;
 using testing::HasSubstr;
@@ -101,3 +103,5 @@ TEST_P(every_signal, ends_the_drawing_of_plot_and_report_and_leaves_nothing_behi
 INSTANTIATE_TEST_SUITE_P(signals, every_signal, testing::Values(SIGINT, SIGTERM, SIGHUP), [](const auto& s) {
   return s.param == SIGINT ? "SIGINT" : s.param == SIGTERM ? "SIGTERM" : "SIGHUP";
 });
+
+}  // namespace interrupts_test

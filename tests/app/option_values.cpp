@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace option_values_test {
+
 using namespace app_test;
 using nlohmann::json;
 using testing::HasSubstr;
@@ -135,3 +137,5 @@ TEST(option_values, paths_that_begin_with_a_dash_are_written_with_their_folder) 
   EXPECT_EQ(run_apsis(folder, {"run", "paper/ode", "--out", "./--json"}).code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "--json" / "manifest.json"));
 }
+
+}  // namespace option_values_test

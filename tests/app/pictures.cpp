@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace pictures_test {
+
 using namespace app_test;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -89,3 +91,5 @@ TEST(report, is_one_page_and_goes_with_the_results_that_it_reports) {
   ASSERT_EQ(run_apsis(folder, {"run", "paper/broadwell", "--out", "fine"}).code, 0);
   EXPECT_FALSE(fs::exists(folder.path() / "fine" / "report.html")) << "a report of results that are gone";
 }
+
+}  // namespace pictures_test

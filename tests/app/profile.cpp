@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace profile_test {
+
 using namespace app_test;
 using nlohmann::json;
 
@@ -71,3 +73,5 @@ TEST(profile, is_a_table_after_the_summary_only_on_request) {
   const outcome without = run_apsis(folder, {"run", "paper/bgk-mixed", "time.end=0.001"});
   EXPECT_THAT(without.out, testing::Not(testing::HasSubstr("of triad")));
 }
+
+}  // namespace profile_test

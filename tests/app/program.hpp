@@ -55,4 +55,11 @@ outcome run_apsis(const work_folder& folder, const std::vector<std::string>& arg
 
 std::string read(const std::filesystem::path& path);
 
+/// Returns the arguments with more of them behind.
+inline std::vector<std::string> with(std::vector<std::string> arguments,
+                                     const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
 }  // namespace app_test

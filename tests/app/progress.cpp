@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace progress_test {
+
 using namespace app_test;
 using nlohmann::json;
 using testing::ContainsRegex;
@@ -105,3 +107,5 @@ TEST(progress, is_erased_before_an_error_is_reported) {
   const auto parts = drawn(run.err);
   EXPECT_TRUE(parts.back().starts_with("error: no method found")) << run.err;
 }
+
+}  // namespace progress_test

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace reproduce_test {
+
 namespace {
 
 using app_test::run_apsis;
@@ -128,3 +130,5 @@ TEST(reproduce, the_documentation_has_every_claim_and_no_other) {
     EXPECT_THAT(page, HasSubstr("| " + claim["name"].get<std::string>() + " | " +
                                 claim["description"].get<std::string>() + " |"));
 }
+
+}  // namespace reproduce_test

@@ -17,6 +17,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace results_test {
+
 using namespace app_test;
 using nlohmann::json;
 using testing::HasSubstr;
@@ -27,11 +29,6 @@ namespace fs = std::filesystem;
 
 // Large enough for hundreds of steps, small enough for a second.
 const std::vector<std::string> small = {"run", "paper/bgk-mixed", "space.cells=20", "velocity.points=100"};
-
-std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
 
 std::vector<std::string> lines(const std::string& text) {
   std::vector<std::string> out;
@@ -457,3 +454,5 @@ TEST(results, a_run_to_a_tolerance_continues_from_a_checkpoint_bit_for_bit_and_r
   EXPECT_GE(json::parse(rejecting.out)["rejected_steps"].get<long>(), 1);
   EXPECT_THAT(whole.out, HasSubstr("steps rejected)"));
 }
+
+}  // namespace results_test

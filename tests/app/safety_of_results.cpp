@@ -18,6 +18,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+namespace safety_of_results_test {
+
 using namespace app_test;
 using nlohmann::json;
 using testing::AllOf;
@@ -231,3 +233,5 @@ TEST(a_manifest, records_version_command_and_host_of_a_run) {
       0);
   EXPECT_EQ(json::parse(read(folder.path() / "p/manifest.json"))["restart"], "o/checkpoint.h5");
 }
+
+}  // namespace safety_of_results_test

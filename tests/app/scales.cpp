@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace scales_test {
+
 using namespace app_test;
 using nlohmann::json;
 using testing::HasSubstr;
@@ -99,3 +101,5 @@ TEST(scales, results_of_a_gas_are_dimensionless_by_default) {
 }
 
 }  // namespace
+
+}  // namespace scales_test

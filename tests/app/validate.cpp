@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace validate_test {
+
 namespace {
 
 using app_test::run_apsis;
@@ -56,3 +58,5 @@ TEST(validate, refuses_settings_without_one_quantity) {
   EXPECT_THAT(unknown.err, HasSubstr("did you mean 'couette'"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "v"));
 }
+
+}  // namespace validate_test

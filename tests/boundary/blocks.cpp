@@ -14,6 +14,8 @@
 #include <gtest/gtest.h>
 #include <support/processes.hpp>
 
+namespace blocks_test {
+
 namespace {
 
 using apsis::block_partition;
@@ -221,3 +223,5 @@ TEST(block_partition, that_is_impossible_is_refused_with_the_next_number_of_proc
   EXPECT_THAT(message([&] { block_partition(mesh, {5, 1, 1}); }),
               HasSubstr("5 blocks along direction 1 (it has 4 cells); give 1 to 4"));
 }
+
+}  // namespace blocks_test

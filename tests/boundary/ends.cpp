@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace ends_test {
+
 namespace {
 
 using apsis::face;
@@ -212,3 +214,5 @@ TEST(given_end, is_its_function_of_the_velocity) {
   EXPECT_THAT(message_of<apsis::input_error>([&] { make_boundary("given", *gas, {{"g", {1.0}}}); }),
               HasSubstr("boundary 'given' has no value of 'h'"));
 }
+
+}  // namespace ends_test

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace kinds_test {
+
 namespace {
 
 using apsis::domain;
@@ -164,3 +166,5 @@ TEST(boundary, the_entropy_of_a_domain_is_bounded_where_that_of_all_its_faces_is
 }
 
 }  // namespace
+
+}  // namespace kinds_test

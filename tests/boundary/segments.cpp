@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace segments_test {
+
 TEST(segments, continue_across_periodic_faces_until_the_next_solid_cell) {
   // Cells 0 1 | solid 2 | 3 4 of a ring: the ring is cut once.
   const apsis::grid mesh = apsis::grid::line(5, 0.0, 1.0).with_solids({{{2, 0, 0}, {1, 1, 1}}});
@@ -25,3 +27,5 @@ TEST(segments, continue_across_periodic_faces_until_the_next_solid_cell) {
   for (const double* row : rows) values.push_back(*row);
   EXPECT_EQ(values, (std::vector<double>{3, 3, 3, 4, 0, 1, 1, 1}));
 }
+
+}  // namespace segments_test

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace symmetry_test {
+
 namespace {
 
 using apsis::mirrored_components;
@@ -96,3 +98,5 @@ TEST(symmetry, ghost_rows_are_mirror_images_at_both_faces) {
   EXPECT_THAT(row(4), ElementsAre(32.0, 31.0, 30.0));
   EXPECT_THAT(row(6), ElementsAre(12.0, 11.0, 10.0));
 }
+
+}  // namespace symmetry_test

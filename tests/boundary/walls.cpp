@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace walls_test {
+
 namespace {
 
 using apsis::face;
@@ -224,3 +226,5 @@ TEST(incoming_boundary, does_not_continue_a_jump_inside) {
     for (const auto& ghost : ghosts_of(cells)) EXPECT_EQ(ghost, (std::array{1.0, 9.0})) << at;
   }
 }
+
+}  // namespace walls_test

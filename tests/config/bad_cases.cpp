@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace bad_cases_test {
+
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -350,3 +352,5 @@ TEST(bad_case, integers_may_be_written_in_any_notation) {
 TEST(bad_case, a_step_rule_written_with_spaces_replaces_that_of_the_file) {
   EXPECT_EQ(error_of(good, {"time.dt = 0.1"}), "accepted");
 }
+
+}  // namespace bad_cases_test

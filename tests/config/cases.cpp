@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace cases_test {
+
 using namespace apsis;
 using testing::HasSubstr;
 
@@ -167,3 +169,5 @@ TEST(schema, documents_every_key_with_its_default) {
   EXPECT_THAT(text, HasSubstr("weno5-z"));
   EXPECT_THAT(text, HasSubstr("buckley-leverett, or a formula in u"));
 }
+
+}  // namespace cases_test

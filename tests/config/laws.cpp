@@ -13,6 +13,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace laws_test {
+
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -182,3 +184,5 @@ TEST(schema, documents_lists_and_automatic_parameters) {
   EXPECT_THAT(text, HasSubstr("flux (list of formulas in the names of 'variables'"));
   EXPECT_THAT(text, HasSubstr("speed (number, 1e-06 to 1000000, or \"auto\"; default \"auto\")"));
 }
+
+}  // namespace laws_test

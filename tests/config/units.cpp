@@ -19,6 +19,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace units_test {
+
 using namespace apsis;
 using testing::HasSubstr;
 
@@ -385,3 +387,5 @@ TEST(knudsen, what_is_wrong_is_refused) {
 }
 
 }  // namespace
+
+}  // namespace units_test

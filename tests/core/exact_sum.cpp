@@ -11,6 +11,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
+namespace exact_sum_test {
+
 namespace {
 
 using apsis::exact_sum;
@@ -124,3 +126,5 @@ TEST(exact_sum, of_special_values_is_that_of_real_arithmetic) {
   EXPECT_TRUE(std::isnan(sum_of({infinity, -infinity})));
   EXPECT_TRUE(std::isnan(sum_of({1.0, nan, infinity})));
 }
+
+}  // namespace exact_sum_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis {
+namespace apsis::extremes_test {
 namespace {
 
 const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -39,4 +39,4 @@ TEST(extremes, maximum_of_a_list_is_its_largest_number) {
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::extremes_test

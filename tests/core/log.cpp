@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace log_test {
+
 namespace {
 
 using testing::internal::CaptureStderr;
@@ -58,3 +60,5 @@ TEST_F(log_of_messages, lines_of_several_threads_do_not_interleave) {
 }
 
 }  // namespace
+
+}  // namespace log_test

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+namespace suggest_test {
+
 using apsis::nearest_word;
 using apsis::suggest;
 
@@ -105,3 +107,5 @@ TEST(suggest, suggestions_for_random_words_differ_in_at_most_a_third) {
   }
   EXPECT_GT(offered, 100);
 }
+
+}  // namespace suggest_test

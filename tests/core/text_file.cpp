@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <support/folder.hpp>
 
+namespace text_file_test {
+
 using namespace apsis;
 using testing::HasSubstr;
 
@@ -65,3 +67,5 @@ TEST(text_file, that_cannot_be_written_completely_is_named_with_a_suggestion) {
     EXPECT_EQ(text, "cannot write '" + path + "' (no permission or no space left); set TMPDIR");
   }
 }
+
+}  // namespace text_file_test

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace word_wrap_test {
+
 using apsis::word_wrap;
 using testing::ElementsAre;
 
@@ -23,3 +25,5 @@ TEST(word_wrap, collapses_whitespace_between_words) {
 TEST(word_wrap, returns_one_empty_line_for_empty_text) {
   EXPECT_THAT(word_wrap("", 20), ElementsAre(""));
 }
+
+}  // namespace word_wrap_test

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis {
+namespace apsis::derivatives_test {
 namespace {
 
 using measure = design_problem::measure;
@@ -261,4 +261,4 @@ TEST(design_conditions, hold_for_the_catalogue) {
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::derivatives_test

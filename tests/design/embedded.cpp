@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
-namespace apsis {
+namespace apsis::embedded_test {
 namespace {
 
 embedded_search search_for(const std::string& name, int order = 0,
@@ -165,4 +165,4 @@ TEST(embedded_solution, is_rejected_for_unsupported_methods) {
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::embedded_test

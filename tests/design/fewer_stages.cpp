@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis {
+namespace apsis::fewer_stages_test {
 namespace {
 
 design_task task_like(const method& m, int order) {
@@ -70,4 +70,4 @@ TEST(fewer_stages, reports_the_residual_weight_if_all_are_needed) {
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::fewer_stages_test

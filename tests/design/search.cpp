@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis {
+namespace apsis::search_test {
 namespace {
 
 design_task imex_task(int order, std::size_t stages, double box) {
@@ -294,4 +294,4 @@ TEST(design_sparsify, loses_no_more_than_the_tolerance) {
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::search_test

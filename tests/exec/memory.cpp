@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <support/folder.hpp>
 
+namespace memory_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -57,3 +59,5 @@ TEST(available_memory, supports_control_groups_of_version_1) {
 TEST(available_memory, of_this_machine_is_positive) {
   EXPECT_GT(apsis::available_memory().bytes, 1e6);
 }
+
+}  // namespace memory_test

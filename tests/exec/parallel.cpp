@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace parallel_test {
+
 TEST(part_blocks, partition_the_range_into_blocks_of_limited_length) {
   for (const int n : {0, 1, 2, 7, 40, 63, 64, 65, 400, 1000, 12345})
     for (const int longest : {1, 6, 26, 64, 4096})
@@ -56,3 +58,5 @@ TEST(parallel_blocks, process_every_index_once_and_propagate_exceptions) {
   }
   apsis::set_threads(1);
 }
+
+}  // namespace parallel_test

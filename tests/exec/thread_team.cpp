@@ -21,6 +21,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+namespace thread_team_test {
+
 namespace {
 
 /// Sets the number of threads for a test and restores it afterwards.
@@ -216,3 +218,5 @@ TEST(processors, granted_by_a_quota_are_rounded_up) {
   EXPECT_EQ(apsis::processors_of_quota("0 100000"), 0);
   EXPECT_EQ(apsis::processors_of_quota("100000 0"), 0);
 }
+
+}  // namespace thread_team_test

@@ -17,6 +17,8 @@
 #include <integrate/reference.hpp>
 #include <support/property.hpp>
 
+namespace embedded_test {
+
 namespace {
 
 using apsis::method_kind;
@@ -339,3 +341,5 @@ TEST(step_control, reports_why_no_step_is_possible) {
 }
 
 }  // namespace
+
+}  // namespace embedded_test

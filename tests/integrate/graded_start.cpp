@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace graded_start_test {
+
 namespace {
 
 TEST(graded_start, divides_the_step_into_doubling_steps) {
@@ -25,3 +27,5 @@ TEST(graded_start, keeps_short_steps_and_steps_without_a_layer) {
 }
 
 }  // namespace
+
+}  // namespace graded_start_test

@@ -15,6 +15,8 @@
 
 #include <gtest/gtest.h>
 
+namespace intermediate_regime_test {
+
 namespace {
 
 using real = long double;
@@ -113,3 +115,5 @@ TEST(intermediate, remainders_have_the_documented_constants) {
 }
 
 }  // namespace
+
+}  // namespace intermediate_regime_test

@@ -18,6 +18,8 @@
 
 #include <gtest/gtest.h>
 
+namespace intermediate_terms_test {
+
 namespace {
 
 using real = apsis::mp_real;
@@ -179,3 +181,5 @@ TEST(layer, of_nonlinear_transport_is_reproduced_in_its_linear_part) {
 }
 
 }  // namespace
+
+}  // namespace intermediate_terms_test

@@ -15,6 +15,8 @@
 #include <integrate/ode_model.hpp>
 #include <integrate/reference.hpp>
 
+namespace method_orders_test {
+
 namespace {
 
 using apsis::certificate;
@@ -129,3 +131,5 @@ TEST(comparators, bhr_loses_one_order_from_inconsistent_data) {
 }
 
 }  // namespace
+
+}  // namespace method_orders_test

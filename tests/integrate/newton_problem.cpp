@@ -18,6 +18,8 @@
 #include <integrate/random.hpp>
 #include <support/property.hpp>
 
+namespace newton_problem_test {
+
 namespace {
 
 using apsis::linear_solver;
@@ -327,3 +329,5 @@ TEST(newton_problem, slow_reaches_the_end_of_robertson_s_problem) {
   EXPECT_NEAR(u[2], 0.9999999791665050, 1e-5);
   EXPECT_NEAR(u[0] + u[1] + u[2], 1.0, 1e-12);
 }
+
+}  // namespace newton_problem_test

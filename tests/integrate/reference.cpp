@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <integrate/ode_model.hpp>
 
+namespace reference_test {
+
 namespace {
 
 TEST(reference, two_independent_solvers_agree_to_1e_12) {
@@ -84,3 +86,5 @@ TEST(extrapolation, throws_if_the_tolerance_cannot_be_met) {
 }
 
 }  // namespace
+
+}  // namespace reference_test

@@ -20,6 +20,8 @@
 #include <integrate/random.hpp>
 #include <support/property.hpp>
 
+namespace relaxation_problem_test {
+
 namespace {
 
 using random_input::magnitude;
@@ -370,3 +372,5 @@ TEST(rule_of_ssp_steps, requires_a_method_with_an_ssp_coefficient) {
         "0); give dt, or choose a method with an SSP coefficient");
   }
 }
+
+}  // namespace relaxation_problem_test

@@ -9,6 +9,8 @@
 #include <integrate/random_form.hpp>
 #include <support/property.hpp>
 
+namespace schedule_test {
+
 namespace {
 
 using apsis::schedule;
@@ -184,3 +186,5 @@ TEST(stepper, rejects_a_method_that_needs_add_collision_if_the_problem_lacks_it)
     }
   }
 }
+
+}  // namespace schedule_test

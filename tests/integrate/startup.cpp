@@ -13,6 +13,8 @@
 #include <optional>
 #include <vector>
 
+namespace startup_test {
+
 namespace {
 
 using apsis::startup;
@@ -199,3 +201,5 @@ TEST(startup, works_in_any_precision) {
 }
 
 }  // namespace
+
+}  // namespace startup_test

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <integrate/ode_model.hpp>
 
+namespace states_test {
+
 namespace {
 
 /// Compilers contract multiply–adds differently for each container: 64 steps, a few ulps of 3.
@@ -80,3 +82,5 @@ TEST(states, both_problem_types_and_precisions_give_the_same_solution) {
 }
 
 }  // namespace
+
+}  // namespace states_test

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+namespace stepper_time_test {
+
 namespace {
 
 /// u' = T(t) − u² with the solution 2 + sin t: T = cos t + (2 + sin t)².
@@ -146,3 +148,5 @@ TEST(integrate, can_be_ended_by_the_observer) {
   EXPECT_EQ(result.steps, 3);
   EXPECT_DOUBLE_EQ(result.t, 0.3);
 }
+
+}  // namespace stepper_time_test

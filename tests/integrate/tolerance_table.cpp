@@ -12,6 +12,8 @@
 #include <integrate/ode_model.hpp>
 #include <integrate/reference.hpp>
 
+namespace tolerance_table_test {
+
 namespace {
 
 using state = std::vector<double>;
@@ -127,3 +129,5 @@ TEST(global_error, scales_with_the_tolerance_to_the_power_p_over_q_plus_1) {
     }
   }
 }
+
+}  // namespace tolerance_table_test

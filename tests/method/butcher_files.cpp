@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace apsis::test {
+namespace apsis::test::butcher_files_test {
 namespace {
 
 std::string head(const std::string& kind, int order, const std::string& claim) {
@@ -189,4 +189,4 @@ TEST(butcher_files, with_any_byte_changed_do_not_crash) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::butcher_files_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis::test {
+namespace apsis::test::comparators_test {
 namespace {
 
 /// Printed entries by row and column, from 1; all others are 0.
@@ -159,4 +159,4 @@ TEST(comparators, rational_coefficients_of_bhr_satisfy_their_conditions_to_13_di
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::comparators_test

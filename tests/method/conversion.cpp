@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis::test {
+namespace apsis::test::conversion_test {
 namespace {
 
 void expect_same(const shu_osher_form<mp_real>& a, const shu_osher_form<mp_real>& b,
@@ -48,4 +48,4 @@ TEST(conversion, recovers_the_form_of_the_papers_methods_without_R) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::conversion_test

@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace apsis::test {
+namespace apsis::test::embedded_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -227,4 +227,4 @@ TEST(embedded_row, with_a_changed_coefficient_is_detected_for_many_stages_slow) 
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::embedded_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis::test {
+namespace apsis::test::error_constants_test {
 namespace {
 
 TEST(error_constant, equals_the_value_of_the_programs_that_found_the_methods) {
@@ -47,4 +47,4 @@ TEST(error_constant, is_positive_for_every_method) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::error_constants_test

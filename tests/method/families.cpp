@@ -14,7 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace apsis::test {
+namespace apsis::test::families_test {
 namespace {
 
 std::string chain(std::size_t s) {
@@ -184,4 +184,4 @@ TEST(families, have_descriptions_with_existing_members) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::families_test

@@ -13,7 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace apsis::test {
+namespace apsis::test::files_test {
 namespace {
 
 // Lines: 1 name, 2 title, 3 citation, 4 kind, 6 [claims], 7 order, 9 [shu_osher], 10 r, 11 P, 12 W,
@@ -329,4 +329,4 @@ TEST(method_files, unknown_names_get_the_closest_name_as_suggestion) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::files_test

@@ -15,7 +15,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace apsis {
+namespace apsis::intermediate_regime_test {
 namespace {
 
 intermediate_regime<mp_real> of(const std::string& name) {
@@ -201,4 +201,4 @@ TEST(polishing, with_conditions_of_the_intermediate_regime_recovers_the_catalogu
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::intermediate_regime_test

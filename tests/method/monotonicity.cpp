@@ -7,7 +7,7 @@
 
 #include <support/property.hpp>
 
-namespace apsis::test {
+namespace apsis::test::monotonicity_test {
 namespace {
 
 const mp_real zero("1e-45");  // exact dyadic input, sixty digits
@@ -140,4 +140,4 @@ TEST(monotonicity, of_explicit_methods_lies_between_the_bounds_by_form_and_polyn
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::monotonicity_test

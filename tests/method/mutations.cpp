@@ -18,7 +18,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace apsis::test {
+namespace apsis::test::mutations_test {
 namespace {
 
 struct mutant {
@@ -251,4 +251,4 @@ TEST(refusals, reject_a_method_with_a_negative_weight) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::mutations_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis::test {
+namespace apsis::test::polish_test {
 namespace {
 
 const std::string printed_imdrk_5_4 = method_text("imdrk-5-4", "implicit", 4, R"([shu_osher]
@@ -194,4 +194,4 @@ TEST(polish, does_not_accept_nan_as_a_solution) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::polish_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis::test {
+namespace apsis::test::precision_test {
 namespace {
 
 TEST(catalogue, has_residuals_below_1e_38_and_satisfies_its_claims) {
@@ -162,4 +162,4 @@ TEST(monotonicity, radii_agree_with_the_literature) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::precision_test

@@ -12,7 +12,7 @@
 
 #include <support/property.hpp>
 
-namespace apsis::test {
+namespace apsis::test::properties_test {
 namespace {
 
 TEST(trees, have_the_known_number_per_order) {
@@ -232,4 +232,4 @@ TEST(conversion, agrees_with_the_recursion_over_stages) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::properties_test

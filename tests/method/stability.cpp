@@ -13,7 +13,7 @@
 
 #include <support/property.hpp>
 
-namespace apsis::test {
+namespace apsis::test::stability_test {
 namespace {
 
 using complex = std::complex<long double>;
@@ -195,4 +195,4 @@ TEST(stability, of_one_stage_follows_from_its_denominator) {
 }
 
 }  // namespace
-}  // namespace apsis::test
+}  // namespace apsis::test::stability_test

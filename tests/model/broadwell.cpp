@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace broadwell_test {
+
 namespace {
 
 const apsis::relaxation_model& broadwell() {
@@ -110,3 +112,5 @@ TEST(broadwell, data_of_the_riemann_problems_have_the_published_moments) {
   expect(moments_at("riemann-2", -0.01), {1.0, 0.0, 1.0});
   expect(moments_at("riemann-2", 0.01), {0.2, 0.0, 1.0});
 }
+
+}  // namespace broadwell_test

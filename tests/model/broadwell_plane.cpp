@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace broadwell_plane_test {
+
 namespace {
 
 const apsis::relaxation_model& called(const char* name) {
@@ -95,3 +97,5 @@ TEST(broadwell_plane, with_equal_densities_along_y_is_the_model_on_a_line) {
     for (std::size_t k = 0; k < 4; ++k) RC_ASSERT(std::abs(of.e[k] - expected[k]) <= 1e-15 * omega[0]);
   });
 }
+
+}  // namespace broadwell_plane_test

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace correlated_gaussian_test {
+
 namespace {
 
 double number(double from, double to) {
@@ -58,3 +60,5 @@ RC_GTEST_PROP(correlated_gaussian, is_its_formula_at_every_velocity, ()) {
               1e-11 * exact + 3e-300 * std::max(1.0, height));
   }
 }
+
+}  // namespace correlated_gaussian_test

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+namespace discrete_maxwellian_test {
+
 namespace {
 
 using apsis::random_source;
@@ -300,3 +302,5 @@ TEST(discrete_maxwellian, reports_why_moments_are_not_realizable) {
   const std::array<double, 4> fine = {1, 0, 0, 1};
   EXPECT_EQ(apsis::why_unrealizable(grid, fine.data()), "");
 }
+
+}  // namespace discrete_maxwellian_test

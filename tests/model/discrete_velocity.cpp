@@ -15,6 +15,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace discrete_velocity_test {
+
 namespace {
 
 using apsis::point_batch;
@@ -285,3 +287,5 @@ TEST(discrete_velocity, tables_without_sense_are_refused) {
   EXPECT_THAT(refusal(plane, {}, 3),
               HasSubstr("velocities of 2 components (space has 3 dimensions); give 3"));
 }
+
+}  // namespace discrete_velocity_test

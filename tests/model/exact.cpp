@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace exact_test {
+
 namespace {
 
 std::unique_ptr<apsis::model> make(const apsis::model_entry& entry) {
@@ -61,3 +63,5 @@ TEST(exact_solution, of_the_decay_model_satisfies_its_equation) {
     RC_ASSERT(std::abs(derivative - q) <= 1e-7 * std::abs(q));
   });
 }
+
+}  // namespace exact_test

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace expression_test {
+
 using apsis::expression;
 using apsis::input_error;
 using testing::HasSubstr;
@@ -162,3 +164,5 @@ TEST(expression, is_evaluated_by_many_threads_concurrently) {
   for (auto& thread : threads) thread.join();
   EXPECT_EQ(wrong, 0);
 }
+
+}  // namespace expression_test

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace fluid_fields_test {
+
 namespace {
 
 using testing::ElementsAre;
@@ -80,3 +82,5 @@ TEST(fluid_fields, are_permuted_with_the_axes) {
   EXPECT_NEAR(f[3], g[1], 1e-14);
   EXPECT_NEAR(f[4], g[4], 1e-13);
 }
+
+}  // namespace fluid_fields_test

@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace gas_test {
+
 namespace {
 
 using apsis::gas;
@@ -157,3 +159,5 @@ TEST(gas, with_as_many_degrees_of_freedom_as_dimensions_has_one_set) {
     EXPECT_THAT(e.what(), HasSubstr("model.degrees_of_freedom = 2 is below model.velocity_dimensions = 3"));
   }
 }
+
+}  // namespace gas_test

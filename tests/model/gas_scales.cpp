@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+namespace gas_scales_test {
+
 namespace {
 
 using apsis::gas_scales, apsis::gas_species, apsis::find_gas;
@@ -132,3 +134,5 @@ TEST(gas_scales, units_are_written_in_the_usual_form) {
 }
 
 }  // namespace
+
+}  // namespace gas_scales_test

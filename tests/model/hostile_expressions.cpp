@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace hostile_expressions_test {
+
 using apsis::expression;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -109,3 +111,5 @@ TEST(hostile_expression, random_tokens_never_end_the_program) {
   // Some random texts are formulas; otherwise the test is vacuous.
   EXPECT_GT(good, 100);
 }
+
+}  // namespace hostile_expressions_test

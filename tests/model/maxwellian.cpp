@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace maxwellian_test {
+
 namespace {
 
 using apsis::fluid_state;
@@ -147,3 +149,5 @@ TEST(maxwellian, sums_in_two_and_three_dimensions_keep_the_tails) {
     }
   }
 }
+
+}  // namespace maxwellian_test

@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <support/broadwell_as_general_model.hpp>
 
+namespace point_collision_test {
+
 namespace {
 
 using apsis::point_batch;
@@ -137,3 +139,5 @@ TEST(point_collision, a_general_model_has_no_relaxation_time) {
   const auto relaxation = closed->make_collision({.points = 1, .pitch = 3});
   EXPECT_DOUBLE_EQ(relaxation->relaxation_time(u.data(), 0.1), 0.1 / 1.7);  // ε/ρ, ρ = 0.7 + 0.6 + 0.4
 }
+
+}  // namespace point_collision_test

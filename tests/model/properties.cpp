@@ -12,6 +12,8 @@
 
 #include <gtest/gtest.h>
 
+namespace properties_test {
+
 namespace {
 
 using apsis::relaxation_model;
@@ -152,3 +154,5 @@ TEST(models, bgk_reports_how_its_velocity_grid_must_change) {
   EXPECT_NE(complaint(60.0, 20).find("velocity.points = 20 is too few"), std::string::npos)
       << complaint(60.0, 20);
 }
+
+}  // namespace properties_test

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace relaxation_test {
+
 namespace {
 
 std::unique_ptr<apsis::model> make(const std::string& flux, double speed) {
@@ -134,3 +136,5 @@ TEST(relaxation, an_infinite_flux_is_refused_with_its_state) {
   EXPECT_FALSE(m.equilibrium(&omega, e));
   EXPECT_EQ(m.why_inadmissible(&omega), "the flux is inf at u1 = 0.5");
 }
+
+}  // namespace relaxation_test

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace relaxing_targets_test {
+
 namespace {
 
 using row = std::vector<double>;
@@ -176,3 +178,5 @@ TEST(relaxing_targets, stress_and_heat_flux_relax_at_the_rates_of_the_prandtl_nu
   expect_rates("es-bgk", 2.0 / 3.0, 1.5, 1.0);
   expect_rates("bgk", 1.0, 1.0, 1.0);
 }
+
+}  // namespace relaxing_targets_test

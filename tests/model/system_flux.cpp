@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace system_flux_test {
+
 using apsis::system_flux;
 using testing::HasSubstr;
 
@@ -149,3 +151,5 @@ TEST(system_flux, refuses_names_and_numbers_of_formulas_that_do_not_fit) {
   EXPECT_THAT(error_of({"g"}, {"g"}, {{"g", 1.0}}), HasSubstr("a parameter of the case has this name"));
   EXPECT_THAT(error_of({"h"}, {"k"}), HasSubstr("unknown name 'k'"));
 }
+
+}  // namespace system_flux_test

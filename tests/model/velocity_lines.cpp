@@ -21,6 +21,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace velocity_lines_test {
+
 namespace {
 
 using apsis::find_velocity_line;
@@ -227,3 +229,5 @@ TEST(velocity_set_of_a_gas, says_before_the_run_whether_it_holds_the_data) {
               HasSubstr("velocity.points is too small for the data (the 12 velocities"));
   EXPECT_EQ(problem("half-range-gauss-hermite", 16, 1.0), "");
 }
+
+}  // namespace velocity_lines_test

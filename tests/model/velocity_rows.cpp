@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <support/instruction_sets.hpp>
 
+namespace velocity_rows_test {
+
 namespace {
 
 /// Distance in units in the last place of the larger value.
@@ -137,3 +139,5 @@ TEST(velocity_rows, moments_of_the_formula_are_exact_where_claimed) {
   EXPECT_GT(exact, 20);
   EXPECT_GT(other, 20);
 }
+
+}  // namespace velocity_rows_test

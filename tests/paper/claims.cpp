@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <paper/claim_registry.hpp>
 
+namespace claims_test {
+
 using namespace apsis;
 
 TEST(findings, hold_only_within_their_bounds) {
@@ -59,3 +61,5 @@ TEST(studies, run_every_job_once_and_stop_when_asked) {
   EXPECT_THROW(run_all(control, "jobs", 20, [&](int) { ++done; }), study_interrupted);
   EXPECT_EQ(done, 3);
 }
+
+}  // namespace claims_test

@@ -13,6 +13,8 @@
 #include <paper/fourier_solution.hpp>
 #include <support/property.hpp>
 
+namespace limit_references_test {
+
 using namespace apsis;
 using std::numbers::pi;
 
@@ -140,3 +142,5 @@ TEST(broadwell_riemann, refuses_states_that_are_not_hyperbolic) {
   EXPECT_THROW(broadwell_riemann({1.0, 0.0}, {0.0, 0.0}), input_error);
   EXPECT_THROW(broadwell_riemann({1.0, 0.0}, {std::nan(""), 0.0}), input_error);
 }
+
+}  // namespace limit_references_test

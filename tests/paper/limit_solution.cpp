@@ -12,6 +12,8 @@
 #include <paper/limit_equations.hpp>
 #include <verify/limit_cases.hpp>
 
+namespace limit_solution_test {
+
 using namespace apsis;
 
 namespace {
@@ -91,3 +93,5 @@ TEST(limit_solution, needs_a_written_limit_and_a_riemann_problem) {
   EXPECT_THROW(compare_with_riemann_solution(load_case("paper/broadwell")), input_error);
   EXPECT_THROW(compare_with_riemann_solution(load_case("paper/ode")), input_error);
 }
+
+}  // namespace limit_solution_test

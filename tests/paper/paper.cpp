@@ -11,7 +11,7 @@
 #include <paper/paper_tables.hpp>
 #include <paper/reproduce.hpp>
 
-namespace apsis {
+namespace apsis::paper_test {
 namespace {
 
 std::vector<std::string> ids(bool slow) {
@@ -89,4 +89,4 @@ TEST(reproduction, a_check_that_throws_is_a_claim_that_does_not_hold) {
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::paper_test

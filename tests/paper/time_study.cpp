@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <paper/plateau_study.hpp>
 
-namespace apsis {
+namespace apsis::time_study_test {
 namespace {
 
 TEST(time_study, reference_is_what_fine_steps_of_every_method_converge_to) {
@@ -73,4 +73,4 @@ TEST(plateaus, a_wrong_prediction_is_detected) {
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::time_study_test

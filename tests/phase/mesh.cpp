@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace mesh_test {
+
 TEST(grid, pencils_of_every_direction_visit_every_cell_once) {
   const apsis::grid mesh(3, {3, 4, 5}, {0, 0, 0}, {1, 2, 3});
   for (int direction = 0; direction < 3; ++direction) {
@@ -85,3 +87,5 @@ TEST(grid, a_block_lies_inside) {
     EXPECT_THROW(static_cast<void>(line.block({first, 0, 0}, {cells, 1, 1})), apsis::input_error) << first;
   EXPECT_EQ(line.block({7, 0, 0}, {1, 1, 1}).centre(0, 0), line.centre(7, 0));
 }
+
+}  // namespace mesh_test

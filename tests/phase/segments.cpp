@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace segments_test {
+
 namespace {
 
 using apsis::cell_box;
@@ -122,3 +124,5 @@ TEST(grid, blocks_keep_the_parts_of_solid_boxes_with_their_numbers) {
     for (int j = 0; j < 4; ++j)
       EXPECT_EQ(part.solid(number_of(part, {i, j, 0})), mesh.solid(number_of(mesh, {i + 3, j + 1, 0})));
 }
+
+}  // namespace segments_test

@@ -9,6 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace velocity_set_test {
+
 namespace {
 
 using apsis::velocity_set;
@@ -69,3 +71,5 @@ TEST(phase_space, has_as_many_unknowns_as_cells_times_components) {
   EXPECT_EQ(space.points(), 3 * 4 * 4);
   EXPECT_EQ(apsis::phase_space(apsis::grid::line(5, 0.0, 1.0)).points(), 0);
 }
+
+}  // namespace velocity_set_test

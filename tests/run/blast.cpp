@@ -13,6 +13,8 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+namespace blast_test {
+
 namespace {
 
 /// The upper right quarter of the plane between planes of symmetry; the blast does not reach the outer faces.
@@ -155,3 +157,5 @@ TEST(blast, has_the_symmetries_of_the_mesh_to_rounding) {
       EXPECT_LT(difference_from(one, fields), 1e-13) << one.name << epsilon;
   }
 }
+
+}  // namespace blast_test

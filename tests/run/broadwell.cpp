@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace broadwell_test {
+
 namespace {
 
 using apsis::formulation;
@@ -92,3 +94,5 @@ TEST(broadwell, negative_data_disable_the_promise_of_positivity_and_become_posit
   slow.advance();
   EXPECT_GT(slow.last().negative_values, 0);
 }
+
+}  // namespace broadwell_test

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+namespace conservation_test {
+
 using apsis::formulation;
 
 namespace {
@@ -148,3 +150,5 @@ TEST(conservation, slow_holds_on_grids_where_a_fixed_bound_fails) {
         << r.dimensions << " " << r.points << " " << r.method << " " << r.epsilon;
   }
 }
+
+}  // namespace conservation_test

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace conservation_beside_solids_test {
+
 namespace {
 
 const char* const beside_a_box = R"toml(
@@ -56,3 +58,5 @@ TEST(conservation_beside_solids, holds_one_cell_from_the_middle_of_the_mesh) {
   EXPECT_LT(defect("[0.6, 0.2]", "[1.4, 0.6]"), rounding);
   EXPECT_LT(defect("[1.6, 0.2]", "[2.4, 0.6]"), rounding);
 }
+
+}  // namespace conservation_beside_solids_test

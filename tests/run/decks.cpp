@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+namespace decks_test {
+
 namespace {
 
 using apsis::simulation;
@@ -115,3 +117,5 @@ TEST(decks, shock_has_the_slope_of_beckers_solution_as_the_mach_number_tends_to_
   // Burnett terms are of the size (M − 1)².
   EXPECT_NEAR(steepest, exact, 0.02 * exact);
 }
+
+}  // namespace decks_test

@@ -13,6 +13,8 @@
 
 #include <gtest/gtest.h>
 
+namespace every_face_test {
+
 namespace {
 
 /// A monatomic gas.
@@ -195,3 +197,5 @@ TEST(every_face, meets_others_in_corners_without_a_loss) {
       EXPECT_GT(energy, 1e-5);  // the plates do heat and cool the gas
     }
 }
+
+}  // namespace every_face_test

@@ -17,6 +17,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace every_model_test {
+
 using namespace apsis;
 
 namespace {
@@ -205,3 +207,5 @@ TEST(every_model, reads_its_resolved_case_back_with_any_parameters) {
     });
   }
 }
+
+}  // namespace every_model_test

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace force_test {
+
 namespace {
 
 using apsis::simulation;
@@ -112,3 +114,5 @@ TEST(accelerated_gas, does_not_take_wrong_formulas) {
   EXPECT_THAT(refusal({"force.direction=1"}), HasSubstr("unknown key 'force.direction'"));
   EXPECT_THAT(refusal({"force.acceleration="}), HasSubstr("force.acceleration"));
 }
+
+}  // namespace force_test

@@ -12,6 +12,8 @@
 
 #include <gtest/gtest.h>
 
+namespace free_flight_test {
+
 namespace {
 
 constexpr std::array<double, 3> lengths = {1.0, 0.8, 1.2};
@@ -143,3 +145,5 @@ TEST(free_flight, of_a_gas_in_space_carries_every_component_with_its_velocity) {
   RecordProperty("error", fmt::format("{:.2g}", largest / density));
   EXPECT_LT(largest / density, 2e-4);
 }
+
+}  // namespace free_flight_test

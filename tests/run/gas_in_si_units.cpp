@@ -14,6 +14,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace gas_in_si_units_test {
+
 using namespace apsis;
 using std::numbers::pi;
 
@@ -273,3 +275,5 @@ TEST(local_knudsen, is_one_sided_at_walls_and_zero_in_a_uniform_gas) {
 }
 
 }  // namespace
+
+}  // namespace gas_in_si_units_test

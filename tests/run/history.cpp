@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <support/folder.hpp>
 
+namespace history_test {
+
 using apsis::history;
 using row = std::vector<double>;
 
@@ -91,3 +93,5 @@ TEST(a_history, of_a_run_respects_the_limit_of_the_case) {
   EXPECT_GE(some.size(), 50U);
   for (const auto& one : some) EXPECT_TRUE(same(one, all[static_cast<std::size_t>(one[0])]));
 }
+
+}  // namespace history_test

@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace initial_data_test {
+
 namespace {
 
 using apsis::field;
@@ -244,3 +246,5 @@ TEST(bad_initial_data, of_models_and_parameters_are_refused) {
       "[model]\nname = \"ode\"\n[initial]\nu1 = \"x\"\n[time]\nmethod = \"md-imex-3-2\"\nend = 1\ndt = 0.1\n";
   EXPECT_THAT(message(ode), HasSubstr("depends on x (the model has no space)"));
 }
+
+}  // namespace initial_data_test

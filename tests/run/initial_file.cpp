@@ -21,6 +21,8 @@
 #include <rapidcheck/gtest.h>
 #include <support/folder.hpp>
 
+namespace initial_file_test {
+
 namespace {
 
 using apsis::case_config;
@@ -461,3 +463,5 @@ RC_GTEST_PROP(cell_polynomials, keep_averages_totals_and_sign, ()) {
   }
   RC_ASSERT(std::abs(found - total) <= 1e-13 * 1000.0 * largest);
 }
+
+}  // namespace initial_file_test

@@ -12,6 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace law_promises_test {
+
 using testing::HasSubstr;
 
 namespace {
@@ -124,3 +126,5 @@ TEST(law, reports_its_largest_characteristic_speed_as_a_field) {
     EXPECT_NEAR(fields.values[2][i], std::abs(u) + std::sqrt(h), 1e-9);
   }
 }
+
+}  // namespace law_promises_test

@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+namespace laws_test {
+
 namespace {
 
 /// Returns the root of a decreasing or increasing function by bisection.
@@ -261,3 +263,5 @@ TEST(law, of_one_variable_equals_the_scalar_relaxation_model) {
                                   {});
   EXPECT_EQ(one.state(), other.state());
 }
+
+}  // namespace laws_test

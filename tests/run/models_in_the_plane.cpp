@@ -16,6 +16,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace models_in_the_plane_test {
+
 namespace {
 
 const char* const plane = R"case([model]
@@ -356,3 +358,5 @@ TEST(models_in_the_plane, laws_need_a_flux_along_every_direction) {
   EXPECT_THAT(refusal(plane, {"space.cells=[4, 4, 4]", "space.domain=[0, 1]"}),
               HasSubstr("its particles move in a plane"));
 }
+
+}  // namespace models_in_the_plane_test

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+namespace open_ends_test {
+
 namespace {
 
 using apsis::simulation;
@@ -118,3 +120,5 @@ end = 3
   EXPECT_LT(flux[3], -0.1);  // through the right face
   EXPECT_LT(run.summary().conservation_defect, 1e-12);
 }
+
+}  // namespace open_ends_test

@@ -23,6 +23,8 @@
 #include <gtest/gtest.h>
 #include <support/instruction_sets.hpp>
 
+namespace pinned_norms_test {
+
 using namespace apsis;
 
 namespace {
@@ -191,3 +193,5 @@ TEST(the_comparison_with_pinned_norms, detects_a_domain_longer_by_a_part_in_two_
   EXPECT_NE(text.find(" of state is "), std::string::npos) << text;
   EXPECT_NE(text.find(" of field:rho is "), std::string::npos) << text;
 }
+
+}  // namespace pinned_norms_test

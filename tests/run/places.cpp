@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+namespace places_test {
+
 namespace {
 
 std::string deck(const std::string& cells, const std::string& velocity, const std::string& epsilon,
@@ -47,3 +49,5 @@ TEST(places, of_errors_in_the_mesh_the_velocity_grid_and_the_method) {
   starts(complaint(deck("20", good_velocity, "1.0", "method = \"dirk-2-2\"\ncfl = 0.05")),
          "my.toml:11:1: method 'dirk-2-2' cannot integrate");
 }
+
+}  // namespace places_test

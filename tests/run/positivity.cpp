@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <support/catalogue.hpp>
 
+namespace positivity_test {
+
 namespace {
 
 using apsis::formulation;
@@ -69,3 +71,5 @@ INSTANTIATE_TEST_SUITE_P(widths, wide_grids,
                            return std::string(how == formulation::finite_volume ? "averages_" : "points_") +
                                   std::to_string(static_cast<int>(std::get<1>(parameters.param)));
                          });
+
+}  // namespace positivity_test

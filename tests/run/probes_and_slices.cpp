@@ -17,6 +17,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace probes_and_slices_test {
+
 using namespace apsis;
 using namespace in_several_dimensions;
 using testing::ElementsAre;
@@ -288,3 +290,5 @@ at = 0.3
   EXPECT_EQ(a.read("snapshots/rho"), b.read("snapshots/rho"));
   EXPECT_EQ(a.read("snapshots/t"), b.read("snapshots/t"));
 }
+
+}  // namespace probes_and_slices_test

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+namespace promises_test {
+
 namespace {
 using apsis::formulation;
 constexpr formulation both[] = {formulation::finite_volume, formulation::finite_difference};
@@ -304,3 +306,5 @@ TEST(simulation, free_flight_is_fifth_order_with_and_without_limiter) {
     }
   }
 }
+
+}  // namespace promises_test

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <support/shock_tube.hpp>
 
+namespace reduced_gas_test {
+
 namespace {
 
 using apsis::parse_case;
@@ -119,3 +121,5 @@ TEST(reduced_gas, keeps_its_promises_on_random_cases) {
       EXPECT_EQ(run.summary().negative_values, 0);
     }
 }
+
+}  // namespace reduced_gas_test

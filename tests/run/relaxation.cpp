@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace relaxation_test {
+
 namespace {
 
 apsis::simulation finished_run(const std::string& name, const std::vector<std::string>& overrides) {
@@ -128,3 +130,5 @@ TEST(relaxation, boundaries_named_per_end_equal_one_name_for_both) {
   EXPECT_TRUE(b.promises().conservation);
   EXPECT_NE(apsis::to_json(b.config())["boundary"]["left"]["kind"], nullptr);
 }
+
+}  // namespace relaxation_test

@@ -22,6 +22,8 @@
 #include <gtest/gtest.h>
 #include <support/folder.hpp>
 
+namespace restart_test {
+
 using namespace apsis;
 using testing::HasSubstr;
 
@@ -219,3 +221,5 @@ TEST(a_checkpoint, of_another_commit_is_accepted_with_a_warning) {
   const bool known = std::string(commit()) != "unknown";
   EXPECT_EQ(said.find("was written by commit " + std::string(40, 'a')) != std::string::npos, known) << said;
 }
+
+}  // namespace restart_test

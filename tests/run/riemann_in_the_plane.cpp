@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <support/shock_tube.hpp>
 
+namespace riemann_in_the_plane_test {
+
 namespace {
 
 struct state {
@@ -84,3 +86,5 @@ TEST(riemann_in_the_plane, has_the_exact_shock_tubes_along_its_sides) {
 TEST(riemann_in_the_plane, slow_has_the_exact_shock_tubes_along_its_sides) {
   expect_shock_tubes(40);
 }
+
+}  // namespace riemann_in_the_plane_test

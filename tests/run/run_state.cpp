@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace run_state_test {
+
 namespace {
 
 /// A run stopped in the middle, to a tolerance or with a graded start.
@@ -100,3 +102,5 @@ TEST(run_state, the_manifest_contains_every_total_and_the_history_every_check) {
   EXPECT_EQ(columns.size(), row_of(run.last()).size());
   EXPECT_EQ(std::set<std::string>(columns.begin(), columns.end()).size(), columns.size());
 }
+
+}  // namespace run_state_test

@@ -16,6 +16,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace several_space_dimensions_results_test {
+
 using namespace apsis;
 using namespace in_several_dimensions;
 using testing::ElementsAre;
@@ -233,3 +235,5 @@ TEST(results_in_space, around_a_solid_box_have_no_values_inside_and_start_anothe
   inside.emplace_back("output.distribution_at=[[0.3, -0.9]]");
   EXPECT_THAT(refusal(in_plane, inside), HasSubstr("has a point inside a solid ([0.3, -0.9])"));
 }
+
+}  // namespace several_space_dimensions_results_test

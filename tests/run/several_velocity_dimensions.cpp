@@ -20,6 +20,8 @@
 #include <gtest/gtest.h>
 #include <support/folder.hpp>
 
+namespace several_velocity_dimensions_test {
+
 using namespace apsis;
 using shape = hdf5_file::shape;
 using testing::ElementsAre;
@@ -239,3 +241,5 @@ TEST(several_velocity_dimensions, keep_the_layout_of_one_velocity_dimension) {
               testing::AllOf(Not(HasSubstr("<!--")), HasSubstr("Dimensions=\"1 6 24\">solution.h5:/f<"),
                              HasSubstr("Dimensions=\"24\">solution.h5:/v<")));
 }
+
+}  // namespace several_velocity_dimensions_test

@@ -13,6 +13,8 @@
 
 #include <gtest/gtest.h>
 
+namespace sizes_test {
+
 namespace {
 
 template <class Function>
@@ -82,3 +84,5 @@ TEST(sizes, a_row_of_a_million_velocities_is_transported) {
   EXPECT_LE(run.last().conservation_defect[0], 1e-13);
   EXPECT_GE(run.last().min_value, -1e-15);  // undershoots of WENO where f is zero to rounding
 }
+
+}  // namespace sizes_test

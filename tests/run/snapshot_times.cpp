@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <support/folder.hpp>
 
+namespace snapshot_times_test {
+
 using namespace apsis;
 
 namespace {
@@ -124,3 +126,5 @@ TEST(time_marcher, refuses_stops_that_are_not_multiples_of_a_given_dt) {
   EXPECT_THROW(march.stop_every(0.05), input_error);
   EXPECT_THROW(march.stop_every(-1.0), input_error);
 }
+
+}  // namespace snapshot_times_test

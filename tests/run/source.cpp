@@ -13,6 +13,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace source_test {
+
 namespace {
 
 using apsis::simulation;
@@ -199,3 +201,5 @@ end = 0.4
   EXPECT_NEAR(run.last().total[0], 1.0 + 0.4 * 1.5, 1e-13);
   EXPECT_LT(run.summary().conservation_defect, 1e-12);
 }
+
+}  // namespace source_test

@@ -17,6 +17,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace space_dimensions_test {
+
 namespace {
 
 using apsis::simulation;
@@ -290,3 +292,5 @@ TEST(solids, that_do_not_fit_are_refused_with_the_nearest_edges) {
   EXPECT_THAT(message({"space.solid.3.from=[0,0]"}), HasSubstr("key 'space.solid.3.to' is missing"));
   EXPECT_THAT(message({"space.formulation=finite-volume"}), HasSubstr("write \"finite-difference\""));
 }
+
+}  // namespace space_dimensions_test

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace startup_test {
+
 namespace {
 
 apsis::case_config ode(const std::string& method, const std::string& epsilon, const std::string& startup,
@@ -122,3 +124,5 @@ TEST(startup, is_refused_where_it_has_no_meaning) {
   EXPECT_EQ(apsis::load_case("paper/ode", {"time.startup=graded"}).time.startup,
             apsis::startup_choice::graded);
 }
+
+}  // namespace startup_test

@@ -20,6 +20,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace surface_files_test {
+
 using namespace apsis;
 using namespace in_several_dimensions;
 using testing::ElementsAre;
@@ -234,3 +236,5 @@ TEST(surfaces_of_a_case, that_it_does_not_have_are_refused_at_their_place) {
     EXPECT_THAT(refused.what(), HasSubstr(fmt::format("case.toml:{}:1", lines + 4)));
   }
 }
+
+}  // namespace surface_files_test

@@ -19,6 +19,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace surfaces_test {
+
 using namespace apsis;
 using namespace in_several_dimensions;
 using testing::ElementsAre;
@@ -328,3 +330,5 @@ velocity = [0.3, 0]
     EXPECT_NEAR(column(top, "energy")[k], -heat_below, 1e-4 * heat_below);
   }
 }
+
+}  // namespace surfaces_test

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+namespace symmetry_test {
+
 namespace {
 
 using apsis::parse_case;
@@ -68,3 +70,5 @@ TEST(symmetry, conserves_mass_and_energy_to_rounding) {
   EXPECT_NEAR(mass_at_end, mass, 1e-12 * mass);
   EXPECT_NEAR(energy_at_end, energy, 1e-12 * energy);
 }
+
+}  // namespace symmetry_test

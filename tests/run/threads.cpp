@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+namespace threads_test {
+
 namespace {
 
 /// Sets OMP_NUM_THREADS during a test and restores it.
@@ -52,3 +54,5 @@ TEST(threads_for, a_case_follow_the_environment_or_its_size) {
   c.model.parameters["velocity_dimensions"] = 3;  // 36³ velocities
   EXPECT_EQ(apsis::threads_for(c), apsis::default_threads());
 }
+
+}  // namespace threads_test

@@ -14,6 +14,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace tolerance_test {
+
 namespace {
 
 using testing::HasSubstr;
@@ -235,3 +237,5 @@ TEST(tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_a
        methods_where([](const apsis::method& m) { return m.embedded && m.kind == apsis::method_kind::imex; }))
     check_mixed_bgk(method, {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9});
 }
+
+}  // namespace tolerance_test

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+namespace vacuum_test {
+
 namespace {
 
 using apsis::formulation;
@@ -98,3 +100,5 @@ TEST(vacuum, rows_of_zeros_of_subnormal_numbers_and_of_one_velocity_are_integrat
     }
   }
 }
+
+}  // namespace vacuum_test

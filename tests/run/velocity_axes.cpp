@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace velocity_axes_test {
+
 namespace {
 
 using apsis::velocity_set;
@@ -91,3 +93,5 @@ TEST(marginals, are_of_a_function_of_several_velocity_components) {
   EXPECT_THAT(apsis::marginals({1.0, 2.0, 3.0, 4.0}, 1, {{{1.0, -1.0}, {0.0, 0.0}}, {1.0, 1.0}, 2}),
               IsEmpty());
 }
+
+}  // namespace velocity_axes_test

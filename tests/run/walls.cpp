@@ -15,6 +15,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace walls_test {
+
 namespace {
 
 using apsis::simulation;
@@ -324,3 +326,5 @@ TEST(walls, fields_of_a_steady_gas_are_the_fluxes_through_its_walls) {
     }
   }
 }
+
+}  // namespace walls_test

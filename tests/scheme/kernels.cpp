@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <support/instruction_sets.hpp>
 
+namespace kernels_test {
+
 namespace {
 
 using apsis::aligned_vector;
@@ -173,3 +175,5 @@ TEST(kernels, are_tested_for_the_baseline_and_at_least_one_other_instruction_set
   for_each_instruction_set([&sets] { ++sets; });
   EXPECT_GE(sets, 2);
 }
+
+}  // namespace kernels_test

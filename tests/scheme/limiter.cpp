@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace limiter_test {
+
 namespace {
 /// Returns a nonnegative number of any magnitude, possibly zero.
 double any_average() {
@@ -53,3 +55,5 @@ TEST(limiter, flattens_empty_and_negative_cells) {
     EXPECT_EQ(r, c);
   }
 }
+
+}  // namespace limiter_test

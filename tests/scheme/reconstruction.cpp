@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace reconstruction_test {
+
 namespace {
 
 using apsis::reconstruction;
@@ -118,3 +120,5 @@ TEST(reconstruction, does_not_oscillate_at_a_jump) {
     EXPECT_NEAR(e.left, 1.0, 1e-3) << name;
   }
 }
+
+}  // namespace reconstruction_test

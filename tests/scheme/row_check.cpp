@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <support/instruction_sets.hpp>
 
+namespace row_check_test {
+
 TEST(row_check, finds_minimum_negative_entries_and_nan_at_any_position) {
   const double infinity = std::numeric_limits<double>::infinity(),
                nan = std::numeric_limits<double>::quiet_NaN();
@@ -28,3 +30,5 @@ TEST(row_check, finds_minimum_negative_entries_and_nan_at_any_position) {
       }
   });
 }
+
+}  // namespace row_check_test

@@ -8,6 +8,8 @@
 
 #include <support/property.hpp>
 
+namespace collision_test {
+
 namespace {
 
 using apsis::field;
@@ -186,3 +188,5 @@ TEST(collision, explicit_evaluation_agrees_with_the_implicit_one_for_small_steps
         EXPECT_NEAR((implicit.row(i)[k] - u.row(i)[k]) / dt, change.row(i)[k], 2e-6);
   }
 }
+
+}  // namespace collision_test

@@ -17,6 +17,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace force_test {
+
 namespace {
 
 using apsis::acceleration;
@@ -204,3 +206,5 @@ TEST(force, refuses_what_it_cannot_hold) {
       apsis::find_model("broadwell")->make(apsis::default_config(*apsis::find_model("broadwell")));
   EXPECT_THROW(problem_of(*other, constant({1.0, 0.0, 0.0}), false), apsis::input_error);
 }
+
+}  // namespace force_test

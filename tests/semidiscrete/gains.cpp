@@ -12,6 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace gains_test {
+
 namespace {
 
 using apsis::face;
@@ -106,3 +108,5 @@ TEST(gains, of_an_accumulator_that_is_the_state_itself_change_after_those_of_the
   apsis::combine_gains(u, targets{{&u, 2.0, 0.0, false}});
   EXPECT_THAT(u.gains(), ElementsAre(1.5, 15.0));
 }
+
+}  // namespace gains_test

@@ -13,6 +13,8 @@
 
 #include <support/instruction_sets.hpp>
 
+namespace kernels_test {
+
 namespace {
 
 using apsis::field;
@@ -240,3 +242,5 @@ TEST(kernels, collisions_fused_with_transport_give_the_same_bits) {
   for (const int cells : {7, 64, 65, 300})
     for (const int threads : {1, 2, 3}) expect_same_in_one_pass(cells, threads);
 }
+
+}  // namespace kernels_test

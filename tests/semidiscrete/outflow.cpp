@@ -3,6 +3,8 @@
 
 #include <apsis/semidiscrete/collision.hpp>
 
+namespace outflow_test {
+
 namespace {
 
 using apsis::field;
@@ -92,3 +94,5 @@ TEST(outflow, a_pulse_leaves_without_reflection) {
     EXPECT_LT(moving, 1e-10 * start) << c.scheme;
   }
 }
+
+}  // namespace outflow_test

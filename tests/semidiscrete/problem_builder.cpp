@@ -15,6 +15,8 @@
 #include <gtest/gtest.h>
 #include <support/broadwell_as_general_model.hpp>
 
+namespace problem_builder_test {
+
 namespace {
 
 using apsis::grid;
@@ -191,3 +193,5 @@ TEST(problem_builder, a_general_model_on_a_mesh_agrees_with_its_closed_form) {
         ASSERT_NEAR(v.row(cell)[k], u.row(cell)[k], 1e-11) << cell << " " << k;
   }
 }
+
+}  // namespace problem_builder_test

@@ -9,6 +9,8 @@
 
 #include <support/instruction_sets.hpp>
 
+namespace subnormal_test {
+
 namespace {
 
 using apsis::field;
@@ -154,3 +156,5 @@ TEST(subnormal, an_explicit_relaxation_step_leaves_nonnegative_values) {
     }
   });
 }
+
+}  // namespace subnormal_test

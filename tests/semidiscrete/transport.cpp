@@ -7,6 +7,8 @@
 
 #include <support/property.hpp>
 
+namespace transport_test {
+
 namespace {
 
 using apsis::field;
@@ -196,3 +198,5 @@ TEST(transport, is_fifth_order_in_two_dimensions) {
   };
   EXPECT_GT(std::log2(error(40) / error(80)), 4.8);
 }
+
+}  // namespace transport_test

@@ -20,6 +20,11 @@ std::vector<std::string> methods_where(const Condition& condition) {
   return names;
 }
 
+/// Whether a method has an SSP coefficient r > 0 at every ε; steps of explicit ones end at ε/C.
+inline bool is_convex_at_every_epsilon(const apsis::method& m) {
+  return m.kind == apsis::method_kind::imex && m.claims.ssp_coefficient.value_or("0") != "0";
+}
+
 /// Returns the methods with transport whose O(ε) terms follow from the coefficients.
 inline std::vector<std::string> methods_with_an_intermediate_regime() {
   return methods_where([](const apsis::method& m) {

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <validation/quantity.hpp>
 
+namespace linear_plates_test_test {
+
 namespace {
 
 using apsis::find_quantity;
@@ -97,3 +99,5 @@ TEST(linear_plates, has_the_slip_and_the_layer_of_kramers) {
     EXPECT_NEAR(value, reference.value, 1e-5) << (at == reference.at.end() ? "slip" : at->second);
   }
 }
+
+}  // namespace linear_plates_test_test

@@ -15,6 +15,8 @@
 #include <validation/comparison.hpp>
 #include <validation/quantity.hpp>
 
+namespace quantities_test {
+
 namespace {
 
 using apsis::compare_published;
@@ -243,3 +245,5 @@ TEST(compared_value, is_drawn_at_distance_0_too) {
   ASSERT_EQ(picture.panels.size(), 2U);
   EXPECT_FALSE(picture.panels[0].log_x);  // where 0 would be omitted
 }
+
+}  // namespace quantities_test

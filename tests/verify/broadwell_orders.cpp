@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+namespace broadwell_orders_test {
+
 using namespace apsis;
 
 namespace {
@@ -41,3 +43,5 @@ INSTANTIATE_TEST_SUITE_P(catalogue, every_asymptotic_preserving_method,
                          test_name);
 
 }  // namespace
+
+}  // namespace broadwell_orders_test

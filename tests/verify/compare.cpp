@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace compare_test {
+
 using namespace apsis;
 using testing::HasSubstr;
 
@@ -172,3 +174,5 @@ TEST(meshes, that_cannot_be_compared_are_refused) {
   elsewhere.config.space.domain = {{0.0, 1.0}};
   EXPECT_THAT(message(averages(10), elsewhere), HasSubstr("space.domain"));
 }
+
+}  // namespace compare_test

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace conserved_fields_test {
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -28,3 +30,5 @@ TEST(conserved_fields, of_several_velocity_dimensions_are_refused) {
     EXPECT_THAT(refusal.what(), HasSubstr("there is no field 'u'"));
   }
 }
+
+}  // namespace conserved_fields_test

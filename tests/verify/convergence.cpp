@@ -12,6 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace convergence_test {
+
 using namespace apsis;
 using testing::HasSubstr;
 using kind = convergence_reference::kind;
@@ -261,3 +263,5 @@ TEST(convergence, reports_its_progress_by_work) {
   EXPECT_GT(parts[1], 0.99);
   EXPECT_DOUBLE_EQ(parts.back(), 1.0);
 }
+
+}  // namespace convergence_test

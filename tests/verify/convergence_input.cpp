@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace convergence_input_test {
+
 using namespace apsis;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -210,3 +212,5 @@ TEST(convergence_input, a_case_need_not_be_a_file) {
   study.vary = {parse_vary("time.dt=x")};
   EXPECT_THROW(converge(study), input_error);
 }
+
+}  // namespace convergence_input_test

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace convergence_report_test {
+
 using namespace apsis;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -149,3 +151,5 @@ TEST(convergence_report, without_a_refined_key_there_is_no_picture_and_no_rate) 
   EXPECT_THAT(to_text(table), HasSubstr("md-imex-3-2"));
   for (const auto& row : to_json(table)) EXPECT_TRUE(row["rate"].is_null());
 }
+
+}  // namespace convergence_report_test

@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+namespace euler_limit_in_the_plane_test {
+
 namespace {
 
 using moments = plane_euler_limit::moments;
@@ -105,3 +107,5 @@ TEST(euler_limit_in_the_plane, is_approached_in_proportion_to_epsilon) {
   EXPECT_NEAR(coarse / fine, 10.0, 0.1);
   EXPECT_LT(fine, 1e-6);
 }
+
+}  // namespace euler_limit_in_the_plane_test

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace interrupted_convergence_test {
+
 using namespace apsis;
 
 TEST(interrupted_convergence, stops_between_steps_and_retains_finished_runs) {
@@ -32,3 +34,5 @@ TEST(interrupted_convergence, stops_between_steps_and_retains_finished_runs) {
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_EQ(table.blocks[0].rows[k].error, whole.table().blocks[0].rows[k].error);
 }
+
+}  // namespace interrupted_convergence_test

@@ -12,6 +12,8 @@
 
 #include <support/property.hpp>
 
+namespace limit_distance_test {
+
 using namespace apsis;
 
 namespace {
@@ -111,3 +113,5 @@ TEST(limit_distance, fits_slopes_only_where_the_distance_is_above_rounding) {
   EXPECT_NEAR(table.slope(&limit_row::state_end).value(), 0.0, 1e-12);
   EXPECT_EQ(table.floor(&limit_row::moments_end), 1e-5);
 }
+
+}  // namespace limit_distance_test

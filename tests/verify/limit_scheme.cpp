@@ -16,6 +16,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace limit_scheme_test {
+
 using namespace apsis;
 
 namespace {
@@ -163,3 +165,5 @@ TEST(limit_scheme, refuses_methods_and_models_without_one_and_states_of_another_
   limit_scheme scheme(ode_case("md-imex-3-2"));
   EXPECT_THROW(scheme.start(std::array{1.0, 2.0, 3.0}), input_error);
 }
+
+}  // namespace limit_scheme_test

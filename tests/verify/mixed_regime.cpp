@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <run/cases.hpp>
 
-namespace apsis {
+namespace apsis::mixed_regime_test {
 namespace {
 
 /// The explicit SSP-RK2 solution on 80 cells, Δt = Δx/(240 v_max), averaged onto 40 cells.
@@ -82,4 +82,4 @@ TEST(claims, C24_values_of_an_independent_code) {
   }
 }
 
-}  // namespace apsis
+}  // namespace apsis::mixed_regime_test

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <support/property.hpp>
 
+namespace model_properties_test {
+
 namespace {
 
 /// One of the model's initial data at a random position, disturbed by up to 90 % in every component;
@@ -90,3 +92,5 @@ TEST(model_properties, an_equilibrium_that_does_not_conserve_breaks_all_three) {
   EXPECT_GT(defects.equilibrium, 1e-4);
   EXPECT_GT(defects.derivative, 1e-4);
 }
+
+}  // namespace model_properties_test

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+namespace observed_order_test {
+
 using namespace apsis;
 
 namespace {
@@ -58,3 +60,5 @@ TEST(observed_order, of_no_runs_is_no_rows) {
   auto problem = problem_with(1.0);
   EXPECT_TRUE(observed_orders(find_method("md-imex-3-2"), problem, {2.0, 0.0}, 0.0, 1.0, {}, l1).empty());
 }
+
+}  // namespace observed_order_test

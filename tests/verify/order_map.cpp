@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis {
+namespace apsis::order_map_test {
 namespace {
 
 /// Errors composed of Δt², a plateau 0.1 ε, and the uncertainty of the reference.
@@ -48,4 +48,4 @@ TEST(order_map, becomes_a_map_of_slopes) {
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::order_map_test

@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+namespace orders_in_the_plane_test {
+
 namespace {
 
 const char* const gas = R"toml(
@@ -70,3 +72,5 @@ TEST(orders_in_the_plane, are_those_of_the_method_in_time_at_large_and_vanishing
     }
   }
 }
+
+}  // namespace orders_in_the_plane_test

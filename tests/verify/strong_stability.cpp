@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace apsis {
+namespace apsis::strong_stability_test {
 namespace {
 
 using row = std::vector<double>;
@@ -172,4 +172,4 @@ TEST(strong_stability, searches_climb_before_they_bisect) {
 }
 
 }  // namespace
-}  // namespace apsis
+}  // namespace apsis::strong_stability_test

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace wall_orders_test {
+
 using namespace apsis;
 
 namespace {
@@ -79,3 +81,5 @@ TEST(walls, have_the_limit_scheme_as_epsilon_vanishes_in_steps_that_do_not_depen
     EXPECT_EQ(rows.back().steps, rows[0].steps) << model;
   }
 }
+
+}  // namespace wall_orders_test

@@ -24,9 +24,9 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-class reader {
+class reader_of_initial_state {
  public:
-  reader(const case_text& text, const model& equation, const std::string& name)
+  reader_of_initial_state(const case_text& text, const model& equation, const std::string& name)
       : text_(text), model_name_(name) {
     for (const auto& form : equation.data_forms())
       for (const auto& variable : form.variables) variables_.push_back(variable.name);
@@ -179,7 +179,7 @@ class reader {
 
 initial_table read_initial_table(const case_text& text, const model& equation, const std::string& name,
                                  const formula_constants& constants) {
-  return reader(text, equation, name).read(constants);
+  return reader_of_initial_state(text, equation, name).read(constants);
 }
 
 }  // namespace apsis

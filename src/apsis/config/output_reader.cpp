@@ -16,9 +16,9 @@
 namespace apsis {
 namespace {
 
-constexpr int most_tables = 1000;         ///< of a list
-constexpr long most_points = 1'000'000;   ///< of a probe
-constexpr std::size_t longest_name = 64;  ///< of a file
+constexpr int most_tables = 1000;          ///< of a list
+constexpr long longest_probe = 1'000'000;  ///< of a probe
+constexpr std::size_t longest_name = 64;   ///< of a file
 
 /// The keys of one table of a list.
 struct output_item {
@@ -27,9 +27,9 @@ struct output_item {
   std::map<std::string, const raw_value*> keys;
 };
 
-class reader {
+class reader_of_output {
  public:
-  reader(const case_text& text, const model_entry& model, case_config& config)
+  reader_of_output(const case_text& text, const model_entry& model, case_config& config)
       : text_(text), on_mesh_(has_space(model)), model_(model.name), config_(config) {}
 
   void read() {
@@ -94,7 +94,7 @@ class reader {
       refuse(*item.keys.at("to"), item.path + ".to", "it is the same point as 'from'",
              "give the other end of the line");
     if (const auto found = item.keys.find("points"); found != item.keys.end())
-      probe.points = static_cast<int>(whole(*found->second, item.path + ".points", 2, most_points));
+      probe.points = static_cast<int>(whole(*found->second, item.path + ".points", 2, longest_probe));
     config_.output.probes.push_back(std::move(probe));
   }
 
@@ -263,7 +263,7 @@ class reader {
 }  // namespace
 
 void read_output_tables(const case_text& text, const model_entry& model, case_config& config) {
-  reader(text, model, config).read();
+  reader_of_output(text, model, config).read();
 }
 
 }  // namespace apsis

@@ -63,9 +63,9 @@ int edge_at(const case_config& config, const grid& mesh, const std::string& path
                   path, x, "xyz"[direction], mesh.edge(direction, below), mesh.edge(direction, below + 1)));
 }
 
-class reader {
+class reader_of_solids {
  public:
-  reader(const case_text& text, const model& equation, case_config& config)
+  reader_of_solids(const case_text& text, const model& equation, case_config& config)
       : text_(text), equation_(equation), config_(config) {}
 
   void read() {
@@ -144,7 +144,7 @@ class reader {
 }  // namespace
 
 void read_solids(const case_text& text, const model& equation, case_config& config) {
-  reader(text, equation, config).read();
+  reader_of_solids(text, equation, config).read();
 }
 
 std::vector<cell_box> solid_boxes(const case_config& config, const grid& mesh) {

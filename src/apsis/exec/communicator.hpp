@@ -21,8 +21,8 @@ struct communication_count {
       reductions = 0;  ///< sums, minima and broadcasts
 };
 
-/// The processes of a run: one, or many that hold a part of the mesh each. Every member but rank() and size()
-/// is collective: all processes call it in the same order with data of the same size.
+/// The processes of a run: one, or many that hold a part of the mesh each. Every member that communicates is
+/// collective: all processes call it in the same order with data of the same size.
 class communicator {
  public:
   virtual ~communicator() = default;
@@ -43,6 +43,10 @@ class communicator {
   /// Starts to exchange messages: at most one for each ordered pair of processes, of the same length at both
   /// ends.
   void begin_exchange(std::span<const message> sent, std::span<const message> received);
+  /// Lets the messages of begin_exchange() advance during other work: many MPI libraries move long messages
+  /// only within their functions. Not collective; for the thread that communicates, cheap enough for every
+  /// few microseconds.
+  void advance_exchange() { do_advance_exchange(); }
   /// Waits for the messages of begin_exchange(), if there are any.
   void finish_exchange();
 
@@ -64,6 +68,7 @@ class communicator {
   virtual void do_broadcast(std::span<std::byte> values, int from) = 0;
   virtual std::vector<std::vector<std::byte>> do_gather(std::span<const std::byte> values) = 0;
   virtual void do_begin_exchange(std::span<const message> sent, std::span<const message> received) = 0;
+  virtual void do_advance_exchange() {}
   virtual void do_finish_exchange() = 0;
 
   communication_count count_;

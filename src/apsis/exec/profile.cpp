@@ -23,6 +23,8 @@ const char* kernel_name(kernel which) {
       return "fluxes";
     case kernel::multiples:
       return "multiples of u";
+    case kernel::halo:
+      return "halo";
     case kernel::points:
       return "Gauss points";
     case kernel::equilibria:

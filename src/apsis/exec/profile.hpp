@@ -13,6 +13,7 @@ enum class kernel {
   edges,       ///< reconstruction of edge values
   fluxes,      ///< flux limiter, T(u), and adding its multiples to the accumulators
   multiples,   ///< adding multiples of u alone to the accumulators
+  halo,        ///< packing rows for other processes, and waiting for theirs
   points,      ///< values at Gauss points from cell averages
   equilibria,  ///< moments and equilibria
   relaxation,  ///< convex combination with the equilibrium

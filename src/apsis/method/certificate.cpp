@@ -13,10 +13,6 @@
 namespace apsis {
 namespace {
 
-std::string short_text(const mp_real& x) {
-  return x.str(12);
-}
-
 /// Returns the largest admissible residual: 1000 units in the last decimal of the coefficients, 1e-50 if
 /// they are exact.
 mp_real tolerance_of(int digits) {

@@ -5,14 +5,6 @@
 #include <fmt/format.h>
 
 namespace apsis {
-namespace {
-
-std::string short_text(const mp_real& x) {
-  return x.str(12);
-}
-
-}  // namespace
-
 void check_order_claim(const method& m, certificate& c) {
   if (c.order == m.claims.order) return;
   if (c.order > m.claims.order) {

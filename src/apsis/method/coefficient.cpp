@@ -62,4 +62,8 @@ int decimals(const std::string& text) {
   return count >= shortest ? count : 0;
 }
 
+std::string short_text(const mp_real& x) {
+  return x.str(12);
+}
+
 }  // namespace apsis

@@ -13,6 +13,9 @@ bool is_coefficient(const std::string& text);
 /// Returns the value of a valid coefficient to the precision of mp_real.
 mp_real coefficient_value(const std::string& text);
 
+/// Returns a number with 12 significant digits, for messages.
+std::string short_text(const mp_real& x);
+
 /// Returns the number of decimals of a long decimal (12 or more), which bounds the precision to expect of the
 /// order conditions; 0 for rationals and short decimals, which are exact.
 int decimals(const std::string& text);

@@ -1,6 +1,7 @@
 #include <apsis/method/stability.hpp>
 
 #include <apsis/method/golden_section.hpp>
+#include <apsis/method/internal/complex_product.hpp>
 #include <apsis/method/stable_ray.hpp>
 
 #include <algorithm>
@@ -36,10 +37,6 @@ std::complex<long double> stability_function(const butcher_form<long double>& b,
 namespace {
 
 using complex = std::complex<long double>;
-
-complex times(complex a, complex b) {
-  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
 
 /// R(z) from the nonzero entries of the Shu–Osher form: O(s) for the families, whose Butcher
 /// forms have O(s²).

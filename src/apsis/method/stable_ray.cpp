@@ -1,5 +1,7 @@
 #include <apsis/method/stable_ray.hpp>
 
+#include <apsis/method/internal/complex_product.hpp>
+
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -12,11 +14,6 @@ namespace {
 
 using real = long double;
 using complex = std::complex<real>;
-
-/// Complex product without the check for infinities of std::complex, which would dominate the run time.
-complex times(complex a, complex b) {
-  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
 
 /// |a|, provided that its square neither overflows nor underflows.
 real modulus(complex a) {

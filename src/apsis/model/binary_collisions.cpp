@@ -249,10 +249,10 @@ void binary_collisions::gain_over_loss(const double* u, double alpha, double* v)
 namespace {
 
 /// The dual problem of the minimum of the entropy: the minimum of the convex Σ_j exp(λ·φ_j) − λ·ω.
-class entropy_dual {
+class pair_dual {
  public:
   /// `functionals`: φ_kj; `moments`: ω with ω_0 = 1.
-  entropy_dual(Eigen::MatrixXd functionals, Eigen::VectorXd moments)
+  pair_dual(Eigen::MatrixXd functionals, Eigen::VectorXd moments)
       : phi_(std::move(functionals)),
         moments_(std::move(moments)),
         lambda_(Eigen::VectorXd::Zero(moments_.size())) {
@@ -316,7 +316,7 @@ class entropy_dual {
 
 bool binary_collisions::minimize_entropy(const Eigen::VectorXd& moments, double* e) const {
   if (!(moments[0] > 0.0) || !moments.allFinite()) return false;
-  entropy_dual dual(functionals_.topRows(moments.size()), moments / moments[0]);
+  pair_dual dual(functionals_.topRows(moments.size()), moments / moments[0]);
   if (!dual.solve()) return false;
   Eigen::Map<Eigen::VectorXd>(e, size()) = moments[0] * dual.densities();
   return true;

@@ -120,11 +120,11 @@ void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t 
 namespace {
 
 /// Sums over some lines of the last direction, without the factor Δv^d.
-struct line_sums {
+struct line_moments {
   double mass = 0.0, energy = 0.0;
   std::array<double, 3> momentum{};
 
-  void add(const line_sums& other) {
+  void add(const line_moments& other) {
     mass += other.mass;
     energy += other.energy;
     for (std::size_t k = 0; k < 3; ++k) momentum[k] += other.momentum[k];
@@ -133,9 +133,9 @@ struct line_sums {
 
 /// Adds halves of halves: of a Gaussian, most terms lie far out, and added one by one to a sum that is
 /// already large they would all be rounded away, which is a loss of the same sign in every cell and step.
-line_sums sum_over_lines(const velocity_grid& grid, const double* f, int first, int lines) {
+line_moments sum_over_lines(const velocity_grid& grid, const double* f, int first, int lines) {
   constexpr int few = 16;
-  line_sums sum;
+  line_moments sum;
   if (lines > few) {
     const int half = lines / 2;
     sum = sum_over_lines(grid, f, first, half);
@@ -170,7 +170,7 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) 
   thread_local aligned_vector<double> scratch;
   const double* row = grid.weighted(f, scratch);
   if (d == 1) return moments_on_line(grid, row, 0, 1, omega);
-  const line_sums sum = sum_over_lines(grid, row, 0, grid.lines());
+  const line_moments sum = sum_over_lines(grid, row, 0, grid.lines());
   omega[0] = grid.weight() * sum.mass;
   for (int k = 0; k < d; ++k) omega[1 + k] = grid.weight() * sum.momentum[static_cast<std::size_t>(k)];
   omega[1 + d] = grid.weight() * sum.energy;

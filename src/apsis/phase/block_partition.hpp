@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/core/index.hpp>
 #include <apsis/phase/grid.hpp>
 
 #include <array>
@@ -34,7 +35,6 @@ class block_partition {
   double halo_cells(int width) const;
 
  private:
-  static std::size_t at(int direction) { return static_cast<std::size_t>(direction); }
   int first_of(int direction, int block) const {
     return static_cast<int>(static_cast<long>(cells_[at(direction)]) * block / blocks_[at(direction)]);
   }

@@ -1,6 +1,7 @@
 #include <apsis/phase/domain.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/index.hpp>
 #include <apsis/exec/parallel.hpp>
 
 #include <algorithm>
@@ -11,10 +12,6 @@
 
 namespace apsis {
 namespace {
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
 
 std::array<bool, 3> periodic_directions(const grid& mesh, const std::vector<domain::faces>& sides) {
   if (sides.size() != at(mesh.dimensions()))

@@ -86,6 +86,11 @@ class domain {
   void fill_ghosts(double t, const field& u);
   /// The same in two parts: in between, rows may be read that depend on no other process (is_inner()).
   void begin_ghosts(double t, const field& u);
+  /// Lets the rows of other processes arrive between begin_ghosts() and finish_ghosts(); for the thread that
+  /// communicates.
+  void advance_ghosts() const {
+    if (halo_) halo_->advance();
+  }
   /// Completes begin_ghosts().
   void finish_ghosts(double t, const field& u);
   /// Whether the cells of a box and their neighbours within the ghost width depend on no other process.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/index.hpp>
 #include <apsis/phase/position.hpp>
 
 #include <algorithm>
@@ -94,7 +95,6 @@ class grid {
   void check_size() const;
   void set_solids(std::vector<cell_box> boxes);
   void find_fluid();
-  static std::size_t at(int direction) { return static_cast<std::size_t>(direction); }
 
   int dimensions_;
   std::array<int, 3> cells_, global_, first_;

@@ -1,5 +1,6 @@
 #include <apsis/phase/halo_exchange.hpp>
 
+#include <apsis/core/index.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 
@@ -9,10 +10,6 @@
 
 namespace apsis {
 namespace {
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
 
 constexpr int outside = -1;
 
@@ -95,9 +92,19 @@ void halo_exchange::pack(const field& u, int direction, peer& to) const {
   }
 }
 
+double halo_exchange::numbers_sent() const {
+  double rows = 0.0;
+  for (int direction = 0; direction < mesh_.dimensions(); ++direction)
+    for (const peer& other : lines_[at(direction)].peers)
+      rows += static_cast<double>(other.given.size()) * mesh_.pencils(direction);
+  return rows * stride_;
+}
+
 void halo_exchange::begin(const field& u) {
   finish();
   stride_ = u.stride();
+  // Packing reads and writes every number.
+  const profile::section timed(kernel::halo, numbers_sent(), {0.0, 2.0 * sizeof(double)});
   std::vector<message> sent, received;
   for (int direction = 0; direction < mesh_.dimensions(); ++direction) {
     const std::size_t plane = at(mesh_.pencils(direction)) * at(stride_);
@@ -117,6 +124,7 @@ void halo_exchange::begin(const field& u) {
 void halo_exchange::finish() {
   if (!under_way_) return;
   under_way_ = false;
+  const profile::section waited(kernel::halo, 0.0, {});
   of_.processes->finish_exchange();
 }
 

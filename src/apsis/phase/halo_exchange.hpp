@@ -23,6 +23,10 @@ class halo_exchange {
 
   /// Starts to send the rows of u that others need, and to receive theirs. Collective.
   void begin(const field& u);
+  /// Lets them advance during other work; for the thread that communicates.
+  void advance() const {
+    if (under_way_) of_.processes->advance_exchange();
+  }
   /// Waits until they are received; without effect if nothing was begun.
   void finish();
 
@@ -56,6 +60,7 @@ class halo_exchange {
   void plan(int direction, bool periodic);
   std::vector<int> planes_beyond(int direction, int block, bool periodic, bool upper) const;
   void pack(const field& u, int direction, peer& to) const;
+  double numbers_sent() const;
 
   distribution of_;
   grid mesh_;

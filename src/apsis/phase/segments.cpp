@@ -1,14 +1,8 @@
 #include <apsis/phase/segments.hpp>
 
+#include <apsis/core/index.hpp>
+
 namespace apsis {
-namespace {
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
-
-}  // namespace
-
 segment_table::segment_table(const grid& mesh, const std::array<bool, 3>& periodic)
     : segment_table(mesh, mesh, periodic, 0) {}
 

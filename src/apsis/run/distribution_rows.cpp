@@ -1,6 +1,7 @@
 #include <apsis/run/distribution_rows.hpp>
 
 #include <apsis/config/output_tables.hpp>
+#include <apsis/core/index.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -9,10 +10,6 @@
 
 namespace apsis {
 namespace {
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
 
 /// Every stride-th cell of the mesh in each direction, and those of them in the block of this process.
 struct thinned_mesh {

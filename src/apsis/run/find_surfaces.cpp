@@ -1,5 +1,6 @@
 #include <apsis/run/find_surfaces.hpp>
 
+#include <apsis/core/index.hpp>
 #include <apsis/phase/component_name.hpp>
 
 #include <algorithm>
@@ -14,10 +15,6 @@
 
 namespace apsis {
 namespace {
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
 
 std::optional<std::size_t> place_of_name(const std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);

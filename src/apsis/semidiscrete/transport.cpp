@@ -259,6 +259,9 @@ void transport::sweep_boxes(double t, const field& u, targets_view targets, cons
   const int count = static_cast<int>(numbers.size()), columns = plan.columns;
   const auto component = [&](int column) { return first_component(u.stride(), columns, column); };
   const auto box = [&](int k) { return plan.boxes.box(numbers[static_cast<std::size_t>(k)]); };
+  const auto after_box = [&] {
+    if (thread_number() == 0) space_->advance_ghosts();
+  };
   if (plan.by_boxes)
     return parallel_for(count, [&](int k) {
       const cell_box here = box(k);
@@ -266,10 +269,12 @@ void transport::sweep_boxes(double t, const field& u, targets_view targets, cons
         sweep_box(u, targets, here, component(column), component(column + 1));
       complete_box(t, targets, here);
       if (then) finish_box(here, then);
+      after_box();
     });
   parallel_for(count * columns, [&](int task) {
     const int column = task % columns;
     sweep_box(u, targets, box(task / columns), component(column), component(column + 1));
+    after_box();
   });
   parallel_for(count, [&](int k) { complete_box(t, targets, box(k)); });
 }

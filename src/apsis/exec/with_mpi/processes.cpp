@@ -133,6 +133,13 @@ class mpi_communicator final : public communicator {
                       &requests_.emplace_back()),
             "MPI_Isend");
   }
+  void do_advance_exchange() override {
+    int all_done = 0;
+    if (!requests_.empty())
+      check(MPI_Testall(static_cast<int>(requests_.size()), requests_.data(), &all_done, MPI_STATUSES_IGNORE),
+            "MPI_Testall");
+    if (all_done != 0) requests_.clear();
+  }
   void do_finish_exchange() override {
     if (requests_.empty()) return;
     check(MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE),

@@ -1,0 +1,218 @@
+// Efficiency of runs on several processes: `mpirun -n 2 apsis_measure`.
+#include "../clock.hpp"
+#include "../table.hpp"
+
+#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
+#include <apsis/phase/domain.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis::bench {
+namespace {
+
+using processes_pointer = std::shared_ptr<communicator>;
+
+/// A periodic gas with n cells in each direction but the first, which has `first`.
+struct gas {
+  std::string name;
+  int dimensions, first, others, points;
+};
+
+case_config case_of(const gas& of) {
+  const auto directions = static_cast<std::size_t>(of.dimensions);
+  std::vector<int> cells(directions, of.others);
+  cells.front() = of.first;
+  const std::vector<std::string> domain(directions, "[0, 1]"), rest(directions, "0");
+  return parse_case(
+      fmt::format(
+          "[model]\nname = \"bgk\"\nepsilon = 0.01\n[initial]\nrho = \"1 + 0.2*sin(2*pi*x)\"\nu = [{}]\nT = "
+          "1\n"
+          "[space]\ncells = [{}]\ndomain = [{}]\nformulation = \"finite-difference\"\nlimiter = "
+          "\"positivity\"\n"
+          "[velocity]\nmax = 6\npoints = {}\n[time]\nmethod = \"md-imex-6-3\"\nsafety = 0.9\nend = 100.0\n",
+          fmt::join(rest, ", "), fmt::join(cells, ", "), fmt::join(domain, ", "), of.points),
+      "waves.toml");
+}
+
+/// Steps of a run on one or all processes; the others sleep meanwhile.
+class timed_run {
+ public:
+  /// `alone`: the root has the whole mesh; otherwise all share it.
+  timed_run(const gas& of, const processes_pointer& all, bool alone)
+      : all_(all), takes_part_(!alone || all->is_root()) {
+    if (takes_part_)
+      run_ = std::make_unique<simulation>(case_of(of), state_source(), alone ? single_process() : all);
+    take();
+  }
+  /// Returns the wall-clock seconds of a step, those of the slowest process.
+  double take() {
+    wait_asleep();
+    const double start = wall_seconds();
+    if (run_) run_->advance();
+    std::array<double, 1> fastest = {takes_part_ ? start - wall_seconds() : 0.0};
+    wait_asleep();
+    all_->lowest(fastest);
+    return -fastest[0];
+  }
+  const simulation* run() const { return run_.get(); }
+
+ private:
+  /// A barrier without a busy loop, which would disturb the others. A process that arrives late wakes nobody.
+  void wait_asleep() {
+    if (!all_->all_arrive(3600.0)) throw std::runtime_error("a process did not arrive within an hour");
+  }
+
+  processes_pointer all_;
+  bool takes_part_;
+  std::unique_ptr<simulation> run_;
+};
+
+/// What the processes exchange in a step.
+struct exchanged {
+  double messages, bytes, reductions;  ///< of the process with most of them
+  double waited,                       ///< seconds in which the root packed and waited in a step
+      blocking;                        ///< seconds of the same exchanges with nothing to do meanwhile
+};
+
+exchanged count_exchanges(const gas& of, const processes_pointer& all) {
+  simulation run(case_of(of), {}, all);
+  run.advance();
+  const communication_count before = all->count();
+  profile::start();
+  run.advance();
+  profile::stop();
+  exchanged result{};
+  result.messages = static_cast<double>(all->count().messages - before.messages);
+  result.bytes = static_cast<double>(all->count().bytes - before.bytes);
+  result.reductions = static_cast<double>(all->count().reductions - before.reductions);
+  for (const auto& kernel : profile::read())
+    if (kernel.which == kernel::halo) result.waited = kernel.seconds;
+
+  const run_setup setup(case_of(of), all);
+  const field u = setup.initial_state();
+  domain space = setup.builder().space();
+  constexpr int width = 5;  // of WENO with the limiter
+  space.reserve(u.components(), width);
+  const long bytes_before = all->count().bytes;
+  space.exchange(u);
+  const double times = result.bytes / static_cast<double>(all->count().bytes - bytes_before);
+  std::vector<double> seconds;
+  for (int repetition = 0; repetition < 7; ++repetition) {
+    const double start = wall_seconds();
+    space.exchange(u);
+    seconds.push_back(wall_seconds() - start);
+  }
+  result.blocking = times * median(seconds);
+  return result;
+}
+
+/// Seconds of a message of so many numbers to the next process and back again, halved.
+double one_way(const processes_pointer& all, std::size_t count, int times) {
+  if (all->rank() > 1) return 0.0;
+  std::vector<double> mine(count, 1.0), theirs(count);
+  const int other = 1 - all->rank();
+  const std::vector<message> sent = {{other, mine}}, received = {{other, theirs}};
+  const double start = wall_seconds();
+  for (int k = 0; k < times; ++k) {
+    all->begin_exchange(sent, received);
+    all->finish_exchange();
+  }
+  return (wall_seconds() - start) / times;
+}
+
+/// Latency and bandwidth between two processes, and the time of a reduction.
+void measure_messages(const settings& options, result_table& result) {
+  const auto& all = options.processes;
+  const int times = options.quick ? 10 : 2000;
+  std::vector<double> shortest, longest, sums;
+  constexpr std::size_t numbers = 1 << 20;
+  for (int repetition = 0; repetition <= options.repeats; ++repetition) {
+    shortest.push_back(one_way(all, 1, times));
+    longest.push_back(one_way(all, numbers, std::max(1, times / 100)));
+    std::vector<std::int64_t> words(70);
+    const double start = wall_seconds();
+    for (int k = 0; k < times; ++k) all->sum(words);
+    sums.push_back((wall_seconds() - start) / times);
+  }
+  result.data["latency_s"] = median(shortest);
+  result.data["bytes_per_s"] = sizeof(double) * numbers / median(longest);
+  result.data["reduction_s"] = median(sums);
+  result.data["processes"] = all->size();
+  result.note += fmt::format(
+      " Messages between two processes of the machine: {:.2g} µs for one number, {:.2g} GB/s in both "
+      "directions at once for "
+      "8 MB; {:.2g} µs for a sum of 70 words over all.",
+      1e6 * median(shortest), 1e-9 * sizeof(double) * numbers / median(longest), 1e6 * median(sums));
+}
+
+void measure_gas(const gas& whole, const settings& options, result_table& result) {
+  const auto& all = options.processes;
+  gas part = whole;
+  part.first /= all->size();
+  timed_run alone(whole, all, true), part_alone(part, all, true), together(whole, all, false);
+  std::vector<double> strong, weak, seconds, seconds_alone;
+  for (int turn = 0; turn < options.repeats; ++turn) {
+    const double shared = together.take();
+    seconds_alone.push_back(alone.take());
+    strong.push_back(seconds_alone.back() / (all->size() * shared));
+    weak.push_back(part_alone.take() / shared);
+    seconds.push_back(shared);
+  }
+  const exchanged of = count_exchanges(whole, all);
+  const double points = static_cast<double>(together.run()->mesh().size()) * together.run()->components();
+  result.data["gases"].push_back({{"name", whole.name},
+                                  {"dimensions", whole.dimensions},
+                                  {"components", together.run()->components()},
+                                  {"seconds_per_point", median(seconds_alone) / points},
+                                  {"exchanges", of.messages},  // two processes: one message in each
+                                  {"reductions", of.reductions}});
+  result.rows.push_back({whole.name, fmt::format("{:.2g}", points), all->size(), 1e3 * median(seconds),
+                         fmt::format("{:.0f} %", 100.0 * median(weak)),
+                         fmt::format("{:.0f} %", 100.0 * median(strong)), of.messages,
+                         fmt::format("{:.3g}", 1e-6 * of.bytes), of.reductions,
+                         fmt::format("{:.1f} %", 100.0 * of.blocking / median(seconds)),
+                         fmt::format("{:.1f} %", 100.0 * of.waited / median(seconds))});
+}
+
+result_table measure(const settings& options) {
+  set_threads(1);
+  result_table result;
+  result.title = "Several processes";
+  result.note =
+      "Whole steps of runs with one thread on each process: md-imex-6-3, finite differences and the limiter, "
+      "BGK, with the sums "
+      "of the history after every step. Weak: the time of one process with the cells of one block over that "
+      "of all with "
+      "the whole mesh; strong: that of one process with the whole mesh over the number of processes times "
+      "that of all; medians "
+      "of turns, in which those that have nothing to do sleep. Messages, MB and reductions are those of a "
+      "process in a step. "
+      "Blocking: packing, sending and waiting without other work, in percent of the step; waiting: what a "
+      "step spends in it.";
+  result.columns = {"space × velocity", "points", "processes",  "ms per step", "weak",   "strong",
+                    "messages",         "MB",     "reductions", "blocking",    "waiting"};
+  const std::vector<gas> gases =
+      options.quick
+          ? std::vector<gas>{{"2D2V", 2, 24, 12, 8}}
+          : std::vector<gas>{{"1D1V", 1, 80000, 1, 150}, {"2D2V", 2, 160, 160, 24}, {"3D3V", 3, 24, 24, 12}};
+  for (const gas& each : gases) measure_gas(each, options, result);
+  measure_messages(options, result);
+  return result;
+}
+
+const registered here({"processes", "weak and strong scaling on several processes", measure, true});
+
+}  // namespace
+}  // namespace apsis::bench

@@ -1,0 +1,100 @@
+// Messages, bytes and reductions of a step on several processes against a formula.
+#include <apsis/method/method.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <support/processes.hpp>
+
+namespace messages_of_a_step_test {
+
+namespace {
+
+using apsis::communication_count;
+using apsis::communicator;
+
+/// 12 × 12 cells in 2 × 3 blocks of 6 × 4 cells.
+apsis::case_config shared_gas(const std::string& method, const std::string& boundary) {
+  return apsis::parse_case(
+      fmt::format("[model]\nname = \"bgk\"\nepsilon = 0.1\n[initial]\nrho = \"1 + 0.2*sin(2*pi*x)\"\nu = [0, "
+                  "0]\nT = 1\n"
+                  "[space]\ncells = [12, 12]\ndomain = [[0, 1], [0, 1]]\nblocks = [2, 3]\nboundary = \"{}\"\n"
+                  "limiter = \"positivity\"\n[velocity]\nmax = 6\npoints = 12\n[time]\nmethod = "
+                  "\"{}\"\nsafety = 0.5\n"
+                  "end = 1.0\n",
+                  boundary, method),
+      "gas.toml");
+}
+
+/// The states of which a step needs T: those with a weight in a later stage.
+int evaluations_of_transport(const apsis::method& m) {
+  const auto form = m.coefficients<double>();
+  int count = 0;
+  for (std::size_t j = 0; j < form.stages(); ++j) {
+    bool used = false;
+    for (std::size_t i = 0; i < form.stages(); ++i) used = used || form.W(i, j) != 0.0;
+    count += used ? 1 : 0;
+  }
+  return count;
+}
+
+/// What a process sends to one evaluation.
+struct halo {
+  long messages, rows;
+};
+
+/// Along x there are two blocks of 6 cells, along y three of 4, and WENO with the limiter needs 5 cells
+/// beyond a block. Between periodic faces the other block along x is the neighbour on both sides and needs
+/// all 6 planes, in one message, and the others along y need all 4. Between walls a block needs 5 planes of
+/// its neighbour along x, and along y the 4 planes of its neighbour and one of the next.
+halo halo_of(int rank, bool periodic) {
+  halo sum{1, (periodic ? 6 : 5) * 4};
+  const int place = rank % 3;
+  for (int other = 0; other < 3; ++other) {
+    if (other == place) continue;
+    ++sum.messages;
+    sum.rows += (periodic || std::abs(other - place) == 1 ? 4 : 1) * 6;
+  }
+  return sum;
+}
+
+void expect_the_formula(const std::string& method, bool periodic) {
+  const std::string boundary = periodic ? "periodic" : "diffuse";
+  std::vector<communication_count> sent(6);
+  threads_as_processes::run(6, [&](const std::shared_ptr<communicator>& processes) {
+    apsis::simulation run(shared_gas(method, boundary), {}, processes);
+    run.advance();
+    const communication_count before = processes->count();
+    run.advance();
+    const communication_count after = processes->count();
+    sent[static_cast<std::size_t>(processes->rank())] = {
+        after.messages - before.messages, after.bytes - before.bytes, after.reductions - before.reductions};
+  });
+  const apsis::run_setup alone(shared_gas(method, boundary));
+  const int evaluations = evaluations_of_transport(alone.integrator()),
+            stride = alone.initial_state().stride();
+  for (int rank = 0; rank < 6; ++rank) {
+    const halo each = halo_of(rank, periodic);
+    const auto& found = sent[static_cast<std::size_t>(rank)];
+    EXPECT_EQ(found.messages, evaluations * each.messages) << method << " on process " << rank;
+    EXPECT_EQ(found.bytes, evaluations * each.rows * stride * 8) << method << " on process " << rank;
+    EXPECT_EQ(found.reductions, sent[0].reductions);
+    // Those of the history and of promises, whatever the method.
+    EXPECT_LE(found.reductions, 12);
+  }
+}
+
+}  // namespace
+
+TEST(messages_of_a_step, are_those_of_the_halo_in_every_evaluation_of_transport) {
+  for (const std::string method : {"md-imex-3-2", "md-imex-6-3"})
+    for (const bool periodic : {false, true}) expect_the_formula(method, periodic);
+}
+
+}  // namespace messages_of_a_step_test

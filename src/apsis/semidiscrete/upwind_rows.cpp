@@ -28,6 +28,7 @@ HWY_INLINE void accumulate(const Walk& way, const cells& run, std::span<const ro
     N change = (N(to.beta) * speed) * difference;
     if (run.source != nullptr) change = fma(N(to.beta), way.load(run.source, run.pitch, j), change);
     const N add = fma(N(to.alpha), u, change);
+    way.prefetch(to.acc, to.pitch, j);
     way.store(to.fresh ? add : way.load(to.acc, to.pitch, j) + add, to.acc, to.pitch, j);
   }
 }

@@ -44,6 +44,24 @@ kernel_work mixed_step::count_work() {
   return sum;
 }
 
+sweep_work mixed_step::count_sweeps() {
+  profile::start();
+  take(1);
+  profile::stop();
+  sweep_work sweeps{};
+  double all = 0.0;
+  for (const auto& done : profile::read()) {
+    all += done.seconds;
+    if (done.which == kernel::edges || done.which == kernel::fluxes) sweeps.share += done.seconds;
+    if (done.which != kernel::fluxes) continue;
+    constexpr double read_and_written = 2.0 * sizeof(double);
+    sweeps.numbers = done.numbers;
+    sweeps.accumulators = static_cast<int>(std::lround(done.bytes / done.numbers / read_and_written));
+  }
+  sweeps.share /= all;
+  return sweeps;
+}
+
 double mixed_step::point_stages() const {
   return static_cast<double>(u_.cells()) * u_.components() *
          static_cast<double>(setup_.integrator().stages());

@@ -10,6 +10,13 @@
 
 namespace apsis::bench {
 
+/// Work of the sweeps of a step.
+struct sweep_work {
+  double numbers;    ///< of all sweeps
+  int accumulators;  ///< that a sweep changes, rounded mean
+  double share;      ///< of the time of all kernels
+};
+
 /// Steps of the mixed-regime problem of the paper (data V, 150 velocities) without monitoring.
 class mixed_step {
  public:
@@ -24,6 +31,8 @@ class mixed_step {
   }
   /// Counts the operations and bytes of a step by taking one.
   kernel_work count_work();
+  /// Counts the numbers of the sweeps of a step, and measures their share of its time, by taking one.
+  sweep_work count_sweeps();
   /// Returns the fraction of values that are subnormal.
   double subnormal_share() const;
   /// Returns the point·stages of a step: N · N_v · s.

@@ -281,7 +281,7 @@ TEST(bad_case, messages_quote_the_override) {
       {"space.cells=40 # fine", "the value is followed by '#'"},
       {"velocity.points=1e2.5", "not a value of TOML"},
       {"space.domain=0,2", "write for example [0.0, 2.0]"},
-      {"output.fields=rho", "write for example [\"rho\", \"u\"]"},
+      {"output.fields=[rho]", "write for example [\"rho\", \"u\"]"},
       {" =3", "not of the form key=value"},
       {"model.epsilon=foo + x", "unknown name 'foo' at character 1); valid: x"},
       {std::string("title=") + std::string(5000, 'a'), "the value has 5000 bytes (at most 4096 are read)"}};

@@ -149,6 +149,12 @@ TEST(cases, text_values_of_a_model_read_back_unchanged) {
   EXPECT_EQ(load_case("paper/relaxation", {"model.flux=0"}).model.texts.at("flux"), "0");
 }
 
+TEST(cases, a_list_of_one_name_is_given_without_brackets_and_quotes) {
+  const case_config c = load_case("paper/bgk-mixed", {"output.fields=T", "velocity.set=graded"});
+  EXPECT_EQ(c.output.fields, std::vector<std::string>{"T"});
+  EXPECT_EQ(c.velocity.set, std::vector<std::string>{"graded"});
+}
+
 TEST(schema, a_parameter_name_has_one_type_in_all_models) {
   // The command line decides whether a value needs quotes before the model is known.
   for (const model_entry* one : model_entries())

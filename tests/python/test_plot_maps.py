@@ -1,11 +1,13 @@
 """Content of the pictures of runs in two and three dimensions, from results with known numbers."""
+from types import SimpleNamespace
+
 import apsis
 import numpy as np
 import pytest
 from apsis.plot import __main__ as command
 from apsis.plot import comparison_figure, fields_figure, history_figure, read_result
 from apsis.plot.comparison import differences
-from apsis.plot.maps import colours_of, frames
+from apsis.plot.maps import Plane, colours_of, draw_streamlines, frames
 from apsis.plot.probes import probe_comparisons, probe_figures
 from apsis.plot.style import PictureError, plt
 
@@ -112,6 +114,22 @@ def test_a_component_that_is_rounding_is_drawn_as_zero_and_has_no_streamlines():
     length = np.hypot(0.3, 2e-17)
     assert colours["u_y"] == (-length, length, "RdBu_r")
     assert colours["u_x"] == (0.2, 0.3, "viridis") and colours["T"] == (1.0, 2.0, "viridis")
+
+
+def test_four_maps_are_a_square(plane, tmp_path):
+    apsis.run(str(plane.parent / "plane.toml"), 'output.fields=["rho", "u_x", "u_y"]', out=tmp_path / "run")
+    boxes = [axes.get_position() for _, axes in maps(fields_figure(read_result(tmp_path / "run")))]
+    assert len(boxes) == 4
+    assert len({round(box.x0, 6) for box in boxes}) == len({round(box.y0, 6) for box in boxes}) == 2
+
+
+def test_gas_that_hardly_moves_has_no_streamlines():
+    x = np.arange(8.0)
+    fields = {"u_x": np.where(x < 4.0, 1.0, 1e-5)[:, None] * np.ones(8), "u_y": np.zeros((8, 8))}
+    _, panel = plt.subplots()
+    draw_streamlines(panel, SimpleNamespace(arrays={"x": x, "y": x}), fields, Plane("x", "y"), (3.0, 3.0))
+    lines = np.concatenate(panel.collections[0].get_segments())
+    assert 2.5 < lines[:, 0].max() <= 4.0  # from the last cell that moves at most to its neighbour
 
 
 def test_the_speed_of_a_run_in_si_units_has_a_unit(tmp_path):

@@ -8,6 +8,7 @@
 #include <apsis/scheme/limiter.hpp>
 #include <apsis/scheme/quartic.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
+#include <apsis/semidiscrete/upwind_rows.hpp>
 
 #include <array>
 
@@ -237,6 +238,17 @@ void expect_same_in_one_pass(int cells, int threads) {
 }
 
 }  // namespace
+
+TEST(kernels, operations_of_a_run_include_the_limiter_of_cells_beyond_its_ends) {
+  using apsis::upwind::operations;
+  for (const int cells : {1, 2, 8, 64}) EXPECT_EQ(operations(false, cells), operations(false, 1)) << cells;
+  const double per_cell = operations(true, 2) * 2 - operations(true, 1);
+  // Fractions of 1/3 are rounded in the quotient and in the product.
+  EXPECT_NEAR(operations(true, 3) * 3, operations(true, 1) + 2.0 * per_cell, 1e-13);
+  // A run of one cell limits the cells on both sides too, but has one accumulation.
+  EXPECT_GT(operations(true, 1), 2.0 * per_cell);
+  EXPECT_LT(operations(true, 1), 3.0 * per_cell);
+}
 
 TEST(kernels, collisions_fused_with_transport_give_the_same_bits) {
   for (const int cells : {7, 64, 65, 300})

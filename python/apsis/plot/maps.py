@@ -165,13 +165,13 @@ def draw_map(panel: Any, result: RunResult, name: str, values: Array, plane: Pla
 
 
 def draw_streamlines(panel: Any, result: RunResult, fields: Mapping[str, Array], plane: Plane, size: tuple[float, float]) -> None:
-    """Draws streamlines of a vector in a plane where it is more than 1e-6 of the largest; solid boxes have none."""
+    """Draws streamlines of a vector in a plane where it is more than 1e-4 of the largest; solid boxes have none."""
     vector = vector_in(fields, plane)
     if vector is None:
         return
     across, up = result.arrays[plane.across], result.arrays[plane.up]
     u, v = (plane.cut(fields[f"{vector}_{axis}"]) for axis in (plane.across, plane.up))
-    moves = np.hypot(u, v) > 1e-6 * np.nanmax(length_of(fields, vector), initial=0.0)
+    moves = np.hypot(u, v) > 1e-4 * np.nanmax(length_of(fields, vector), initial=0.0)
     if moves.any() and min(u.shape) > 1:
         panel.streamplot(across, up, np.where(moves, u, np.nan), np.where(moves, v, np.nan), color=BLACK, linewidth=0.6, arrowsize=0.7,
                          density=tuple(0.33 * side for side in size))
@@ -205,7 +205,7 @@ def maps_of(result: RunResult, fields: Mapping[str, Array], planes: list[Plane],
     sizes = sizes_of(result, planes)
     places = list(zip(planes, sizes))
     if len(planes) == 1:
-        sizes *= min(len(shown), 3 if sizes[0][0] < 4.0 else 2)
+        sizes *= 2 if len(shown) == 4 else min(len(shown), 3 if sizes[0][0] < 4.0 else 2)
     figure, panels = sheet(sizes, len(shown) * len(planes), title)
     for panel, (name, (plane, size)) in zip(panels, product(shown, places)):
         draw_map(panel, result, name, shown[name], plane, colours[name], size)

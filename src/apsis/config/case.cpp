@@ -38,7 +38,7 @@ bool is_output_table(const std::string& path) {
 override_form form_of(const std::string& path, const std::string& value) {
   if (looks_like_quantity(value)) return {true, type_advice(key_type::quantity)};
   for (const case_key& key : case_schema())
-    if (key.path == path && key.type == key_type::formulas)
+    if (key.path == path && (key.type == key_type::formulas || key.type == key_type::text_list))
       return {value.find('[') != 0, type_advice(key.type)};
   for (const case_key& key : case_schema())
     if (key.path == path)

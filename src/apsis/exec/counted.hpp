@@ -68,6 +68,9 @@ struct counting_walk {
   counted load_downstream(const Where&...) const {
     return 0.0;
   }
+  /// Prefetches nothing, at no cost.
+  template <class... Where>
+  void prefetch(const Where&...) const {}
   /// Writes nothing, at no cost.
   template <class... Where>
   void store(const Where&...) const {}

@@ -31,11 +31,17 @@ class walk {
     if constexpr (C == course::backward) return number::load(rows[last_ - j] + k_);
     return select(ahead(), number::load(rows[j] + k_), number::load(rows[last_ - j] + k_));
   }
-  /// Prefetches the row of cell j or, past the end, of the last cell: rows beyond the end may belong
-  /// to another core.
-  HWY_INLINE void prefetch(const double* const* rows, int j) const {
-    if constexpr (C != course::backward) hwy::Prefetch(rows[j < last_ ? j : last_] + k_);
-    if constexpr (C != course::forward) hwy::Prefetch(rows[j < last_ ? last_ - j : 0] + k_);
+  /// Loads like load(), and prefetches the next pack of the row. Rows of neighbouring cells are too far apart
+  /// for the hardware prefetcher; a walk along the next pack returns to each of them.
+  HWY_INLINE number load_and_prefetch(const double* const* rows, int j) const {
+    if constexpr (C != course::backward) prefetch_behind(rows[j] + k_);
+    if constexpr (C != course::forward) prefetch_behind(rows[last_ - j] + k_);
+    return load(rows, j);
+  }
+  /// Prefetches the next pack of cell j in equally spaced rows.
+  HWY_INLINE void prefetch(const double* row, std::ptrdiff_t pitch, int j) const {
+    if constexpr (C != course::backward) prefetch_behind(row + j * pitch + k_);
+    if constexpr (C != course::forward) prefetch_behind(row + (last_ - j) * pitch + k_);
   }
   /// Loads from equally spaced rows, starting with that of cell 0 of the pencil.
   HWY_INLINE number load(const double* row, std::ptrdiff_t pitch, int j) const {
@@ -63,6 +69,11 @@ class walk {
   }
 
  private:
+  /// Prefetches the pack after this one; single numbers are not worth it.
+  static HWY_INLINE void prefetch_behind(const double* at) {
+    constexpr std::size_t length = hn::MaxLanes(D());
+    if constexpr (length > 1) hwy::Prefetch(at + length);
+  }
   HWY_INLINE auto ahead() const { return number::load(forward_ + k_) > number(0.5); }
 
   int last_, k_;

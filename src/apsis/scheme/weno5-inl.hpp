@@ -161,25 +161,22 @@ struct both_fractions {
 
 /// Calls put(fraction, j) for cells 0 … count−1 of the walk. The formulas of a cell form a dependency chain
 /// longer than the out-of-order window of a processor; they are split into three parts, and those of three
-/// cells are interleaved to hide latency. Rows of neighbouring cells are too far apart for the hardware
-/// prefetcher, so rows are prefetched `cells_ahead` cells in advance.
+/// cells are interleaved to hide latency.
 template <class Weights, template <class> class Fraction, class Walk, class Put>
 HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Put& put) {
   using N = typename Walk::number;
-  window<N> u(way.load(rows, -2), way.load(rows, -1), way.load(rows, 0), way.load(rows, 1),
-              way.load(rows, 2));
+  const auto value = [&](int j) APSIS_PACKED { return way.load_and_prefetch(rows, j); };
+  window<N> u(value(-2), value(-1), value(0), value(1), value(2));
   edge_terms<Weights, N> newest(u);
   Fraction<N> waiting(newest);
   if (count > 1) {
-    u.advance(way.load(rows, 3));
+    u.advance(value(3));
     newest = edge_terms<Weights, N>(u);
   }
-  constexpr int cells_ahead = 16;
   for (int j = 2; j < count; ++j) {
-    way.prefetch(rows, j + cells_ahead);
     put(waiting, j - 2);
     waiting = Fraction<N>(newest);
-    u.advance(way.load(rows, j + 2));
+    u.advance(value(j + 2));
     newest = edge_terms<Weights, N>(u);
   }
   if (count > 1) {

@@ -61,16 +61,20 @@ void block_sweep::reserve(const context& of, int cells, int width, std::size_t t
   targets_.reserve(targets);
   make_room(cells, width);
   // Also for threads that come to the end of a segment in a later step.
-  for (auto* row : {&vacuum_, &in_, &out_}) row->resize(std::max(row->size(), static_cast<std::size_t>(width)));
+  for (auto* row : {&vacuum_, &in_, &out_})
+    row->resize(std::max(row->size(), static_cast<std::size_t>(width)));
 }
 
 void block_sweep::run(const context& of, const field& u, const place& at, targets_view targets) {
   if (at.begin == at.end) return;
   prepare(of, u, at);
-  const double numbers = static_cast<double>(at.end - at.begin) * width_;
+  const int cells = at.end - at.begin;
+  const double numbers = static_cast<double>(cells) * width_;
   {
-    const profile::section timed(kernel::edges, numbers,
-                                 {of.discretization.scheme->operations(both_edges()), sizeof(double)});
+    const double repeated = 1.0 + 2.0 * halo_ / cells;  // edges of the halo are those of another block too
+    const profile::section timed(
+        kernel::edges, numbers,
+        {repeated * of.discretization.scheme->operations(both_edges()), sizeof(double)});
     for (int i = at.begin - halo_; i < at.end + halo_;) {
       const run_of_cells run = run_from(i, at.end + halo_ - i);
       make_edges(i, run);
@@ -78,7 +82,7 @@ void block_sweep::run(const context& of, const field& u, const place& at, target
     }
   }
   for (const bool upper : {false, true}) empty_beyond_surface(upper, at);
-  const profile::section timed(kernel::fluxes, numbers, work_of(targets));
+  const profile::section timed(kernel::fluxes, numbers, work_of(targets, cells));
   for (int i = at.begin; i < at.end;) {
     const run_of_cells run = run_from(i, at.end - i);
     add(i, run, at, targets);
@@ -96,8 +100,8 @@ const segment_end* block_sweep::surface_at(bool upper, const place& at) const {
 }
 
 /// Replaces the cells of the halo behind a surface that prescribes the incoming components, as the fluxes see
-/// them, by vacuum. The surface may lie cells away from the block, also across periodic faces and behind cells of
-/// other processes: all sweeps that compute the same flux see the same.
+/// them, by vacuum. The surface may lie cells away from the block, also across periodic faces and behind
+/// cells of other processes: all sweeps that compute the same flux see the same.
 void block_sweep::empty_beyond_surface(bool upper, const place& at) {
   const std::size_t side = upper ? 1 : 0;
   int distance = (upper ? segment_->cells - at.end : at.begin) + segment_->beyond[side];
@@ -141,9 +145,9 @@ bool block_sweep::both_edges() const {
   return of_->discretization.positivity == limiter_kind::edges;
 }
 
-kernel_work block_sweep::work_of(targets_view targets) const {
+kernel_work block_sweep::work_of(targets_view targets, int cells) const {
   kernel_work each = traffic(targets);
-  each.operations = upwind::operations(of_->discretization.positivity == limiter_kind::fluxes) +
+  each.operations = upwind::operations(of_->discretization.positivity == limiter_kind::fluxes, cells) +
                     upwind::operations_of_target * static_cast<double>(targets.size());
   return each;
 }

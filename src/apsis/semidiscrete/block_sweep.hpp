@@ -67,7 +67,7 @@ class block_sweep {
   void empty_beyond_surface(bool upper, const place& at);
   void record(const segment_end& end, bool upper, const place& at);
   bool both_edges() const;
-  kernel_work work_of(targets_view targets) const;
+  kernel_work work_of(targets_view targets, int cells) const;
   void prepare(const context& of, const field& u, const place& at);
   void make_room(int cells, int width);
   const double* const* row(int i) const { return rows_.data() + (i - first_row_); }

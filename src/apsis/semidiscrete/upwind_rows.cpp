@@ -28,6 +28,7 @@ HWY_INLINE void accumulate(const Walk& way, const cells& run, std::span<const ro
     N change = (N(to.beta) * speed) * difference;
     if (run.source != nullptr) change = fma(N(to.beta), way.load(run.source, run.pitch, j), change);
     const N add = fma(N(to.alpha), u, change);
+    way.prefetch(to.acc, to.pitch, j);
     way.store(to.fresh ? add : way.load(to.acc, to.pitch, j) + add, to.acc, to.pitch, j);
   }
 }
@@ -117,20 +118,17 @@ void fluxes_of_cell(const cells& of, bool limited, double* in, double* out) {
   });
 }
 
-/// Of the last of two cells: what one more costs.
-double operations(bool limited) {
-  const auto of_cells = [limited](int count) {
-    cells run{};
-    run.count = count;
-    return counted::operations_of([&] {
-      if (limited) {
-        add_limited_along(counting_walk(), counted(0.0), run, {});
-      } else {
-        add_along(counting_walk(), counted(0.0), run, {});
-      }
-    });
-  };
-  return of_cells(2) - of_cells(1);
+/// Operations on a component of a run of cells.
+double operations_of_run(bool limited, int cells_in_run) {
+  cells run{};
+  run.count = cells_in_run;
+  return counted::operations_of([&] {
+    if (limited) {
+      add_limited_along(counting_walk(), counted(0.0), run, {});
+    } else {
+      add_along(counting_walk(), counted(0.0), run, {});
+    }
+  });
 }
 
 void add_weights(const double* u, int width, std::span<const row_target> targets) {
@@ -158,9 +156,17 @@ HWY_EXPORT(fluxes_of_cell);
 
 namespace upwind {
 
-double operations(bool limited) {
-  static const double with = HWY_NAMESPACE::operations(true), without = HWY_NAMESPACE::operations(false);
-  return limited ? with : without;
+double operations(bool limited, int cells) {
+  struct count {
+    double first, further;
+  };
+  const auto counted_for = [](bool with_limiter) {
+    const double one = HWY_NAMESPACE::operations_of_run(with_limiter, 1);
+    return count{one, HWY_NAMESPACE::operations_of_run(with_limiter, 2) - one};
+  };
+  static const count with = counted_for(true), without = counted_for(false);
+  const count& of = limited ? with : without;
+  return of.further + (of.first - of.further) / cells;
 }
 
 void add(const cells& run, std::span<const row_target> targets) {

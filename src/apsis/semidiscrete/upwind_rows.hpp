@@ -62,8 +62,9 @@ void add_limited(const cells& run, std::span<const row_target> targets);
 /// add() uses them or, if `limited`, add_limited(); one row each.
 void fluxes_of_cell(const cells& run, bool limited, double* in, double* out);
 
-/// Returns the operation count per number of add() or add_limited() without targets (exec/counted.hpp).
-double operations(bool limited);
+/// Returns the operation count per number of add() or add_limited() without targets, for runs of so many
+/// cells (exec/counted.hpp): the limiter repeats its work in a cell beyond either end.
+double operations(bool limited, int cells);
 /// Operation count per number and target.
 inline constexpr double operations_of_target = 4.0;
 

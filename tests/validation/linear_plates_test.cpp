@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <validation/quantity.hpp>
 
-namespace linear_plates_test_test {
+namespace linear_plates_test {
 
 namespace {
 
@@ -100,4 +100,4 @@ TEST(linear_plates, has_the_slip_and_the_layer_of_kramers) {
   }
 }
 
-}  // namespace linear_plates_test_test
+}  // namespace linear_plates_test

@@ -6,6 +6,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace cavity_quantity {
 namespace {
 
 /// The lid moves so slowly that the problem is linear: the square of this is below the accuracy.
@@ -27,6 +28,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace cavity_quantity
 
 extern const quantity_entry quantity_cavity;
 const quantity_entry quantity_cavity = {
@@ -41,6 +43,6 @@ const quantity_entry quantity_cavity = {
                   {{{"delta", "1"}}, 1.12509, 2e-3},
                   {{{"delta", "2"}}, 1.05601, 3e-3},
                   {{{"delta", "10"}}, 0.74234, 1e-2}},
-    .compute = compute};
+    .compute = cavity_quantity::compute};
 
 }  // namespace apsis

@@ -8,6 +8,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace duct_quantity {
 namespace {
 
 /// Mean over the cross-section of Σ w v_z (1 − v_⊥²/2) f, minus the heat along the duct that a force carries.
@@ -51,6 +52,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace duct_quantity
 
 extern const quantity_entry quantity_duct;
 const quantity_entry quantity_duct = {
@@ -68,6 +70,6 @@ const quantity_entry quantity_duct = {
                   {{{"delta", "10"}}, 1.317518, 3e-3},
                   {{{"delta", "1"}, {"value", "creep"}}, 0.220790, 3e-3},
                   {{{"delta", "1"}, {"aspect", "2"}}, 1.042655, 3e-3}},
-    .compute = compute};
+    .compute = duct_quantity::compute};
 
 }  // namespace apsis

@@ -6,6 +6,7 @@
 #include <validation/quantity.hpp>
 
 namespace apsis {
+namespace enclosure_quantity {
 namespace {
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
@@ -29,6 +30,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
 }
 
 }  // namespace
+}  // namespace enclosure_quantity
 
 extern const quantity_entry quantity_enclosure;
 const quantity_entry quantity_enclosure = {
@@ -50,6 +52,6 @@ const quantity_entry quantity_enclosure = {
                   {{{"delta", "1"}, {"wall", "left"}}, 0.291405, 2e-3},
                   {{{"delta", "10"}}, 0.049300, 1e-2},
                   {{{"delta", "10"}, {"wall", "left"}}, 0.188031, 1e-2}},
-    .compute = compute};
+    .compute = enclosure_quantity::compute};
 
 }  // namespace apsis

@@ -200,7 +200,7 @@ def compact(results):
             groups.setdefault(point.get("epsilon"), []).append(point)
         best = [{key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in run.items()}
                 for group in groups.values() for front in fronts(group).values() for run in front]
-        kept[name] = result | {"data": {"points": best}}
+        kept[name] = result | {"data": result["data"] | {"points": best}}
     return kept
 
 
@@ -240,7 +240,9 @@ def main():
     if given.results.exists():
         keep(read(given.results), folder)
     machines = newest_first(folder)
-    results = machines[0]
+    results = {}
+    for measured in reversed(machines):  # a table that the newest file lacks is that of an older one
+        results.update(measured)
     for name, result in results.items():
         replace(given.docs / PAGES.get(name, "speed.md"), name, section(result))
     if "processes" in results:

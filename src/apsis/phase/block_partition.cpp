@@ -80,7 +80,10 @@ int block_partition::block_of(int direction, int cell) const {
 double block_partition::halo_cells(int width) const {
   // The largest block.
   std::array<double, 3> side{};
-  for (std::size_t k = 0; k < 3; ++k) side[k] = (cells_[k] + blocks_[k] - 1) / blocks_[k];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int longest = (cells_[k] + blocks_[k] - 1) / blocks_[k];
+    side[k] = longest;
+  }
   double sum = 0.0;
   for (std::size_t k = 0; k < 3; ++k)
     sum += std::min(2, blocks_[k] - 1) * width * side[0] * side[1] * side[2] / side[k];

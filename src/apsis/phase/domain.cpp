@@ -31,16 +31,16 @@ std::array<bool, 3> periodic_directions(const grid& mesh, const std::vector<doma
 
 }  // namespace
 
-domain::domain(phase_space space, std::vector<faces> sides,
-               std::vector<std::shared_ptr<const boundary>> solids)
+domain::domain(phase_space space, const std::vector<faces>& sides,
+               const std::vector<std::shared_ptr<const boundary>>& solids)
     : space_(std::move(space)),
       periodic_(periodic_directions(space_.mesh, sides)),
       segments_(space_.mesh, periodic_) {
   set_sides(sides, solids);
 }
 
-domain::domain(phase_space space, std::vector<faces> sides,
-               std::vector<std::shared_ptr<const boundary>> solids, const distribution& shared)
+domain::domain(phase_space space, const std::vector<faces>& sides,
+               const std::vector<std::shared_ptr<const boundary>>& solids, const distribution& shared)
     : space_(std::move(space)),
       processes_(shared.processes),
       periodic_(periodic_directions(space_.mesh, sides)) {

@@ -33,11 +33,11 @@ class domain {
 
   /// One pair of boundaries for each direction of the mesh, and one boundary for each of its solid boxes.
   /// Throws input_error where only one of the two faces of a direction is periodic, or a box is.
-  domain(phase_space space, std::vector<faces> sides,
-         std::vector<std::shared_ptr<const boundary>> solids = {});
+  domain(phase_space space, const std::vector<faces>& sides,
+         const std::vector<std::shared_ptr<const boundary>>& solids = {});
   /// The block of this process of a mesh that several processes share; `space` has this block as its mesh.
-  domain(phase_space space, std::vector<faces> sides, std::vector<std::shared_ptr<const boundary>> solids,
-         const distribution& shared);
+  domain(phase_space space, const std::vector<faces>& sides,
+         const std::vector<std::shared_ptr<const boundary>>& solids, const distribution& shared);
   /// Returns a single cell without faces, for equations without space.
   static domain point();
 

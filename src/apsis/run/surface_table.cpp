@@ -11,7 +11,7 @@ std::string to_csv(const surface_table& surface) {
   std::string text = "face," + line + "\n";
   for (const auto& face : surface.faces) {
     std::getline(numbers, line);
-    text += face + "," + line + "\n";
+    text.append(face).append(",").append(line).append("\n");
   }
   return text;
 }

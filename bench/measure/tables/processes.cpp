@@ -211,14 +211,16 @@ result_table measure(const settings& options) {
   result.title = "Several processes";
   result.note =
       "Whole steps of runs with one thread on each process: md-imex-6-3, finite differences and the limiter, "
-      "BGK, with the sums of the history after every step. Weak: the time of one process with the cells of a "
-      "block over that of all with the whole mesh; strong: that of one process with the whole mesh over the "
-      "number of processes times that of all; independent: the time of one process with the cells of a block "
-      "over that of runs on all processes simultaneously that have nothing to do with each other, the "
-      "ceiling "
-      "of both. Medians of turns, in which idle processes sleep. Messages, MB and reductions are those of a "
-      "process in a step. Blocking: packing, sending and waiting without other work, in percent of the step; "
-      "waiting: the same within a step.";
+      "BGK, with the sums of the history after every step. Weak: time of one process with one block, over "
+      "that "
+      "of all processes with the whole mesh. Strong: time of one process with the whole mesh, over the "
+      "number "
+      "of processes times that of all. Independent: time of one process with one block, over that of "
+      "unrelated "
+      "runs of one block on all processes simultaneously, the ceiling of both. Medians of turns, in which "
+      "idle "
+      "processes sleep. Messages, MB and reductions are those of a process in a step. Blocking: packing, "
+      "sending and waiting without other work, in percent of the step; waiting: the same within a step.";
   result.columns = {"space × velocity", "points",   "processes", "ms per step", "weak",     "strong",
                     "independent",      "messages", "MB",        "reductions",  "blocking", "waiting"};
   const std::vector<gas> gases =

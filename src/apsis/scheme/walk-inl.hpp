@@ -69,7 +69,7 @@ class walk {
   }
 
  private:
-  /// Prefetches the pack after this one; single numbers are not worth it.
+  /// Prefetches the pack after this one; not in the scalar remainder of a row.
   static HWY_INLINE void prefetch_behind(const double* at) {
     constexpr std::size_t length = hn::MaxLanes(D());
     if constexpr (length > 1) hwy::Prefetch(at + length);

@@ -80,7 +80,8 @@ bench: ## measure every table of docs/speed.md into results/bench/speed.json (ha
 	cmake --preset release -DAPSIS_BENCH=ON $(WHOLE) >/dev/null
 	cmake --build build/release --target apsis_measure
 	build/release/bench/apsis_measure --out results/bench/speed.json
-	if command -v mpirun >/dev/null; then mpirun -n 2 build/release/bench/apsis_measure --out results/bench/speed.json; fi
+	if command -v mpirun >/dev/null; then OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+	  mpirun -n 2 build/release/bench/apsis_measure --out results/bench/speed.json; fi
 
 packages: program ## build Debian packages in build/release and test them in a bare Debian 12 (as root, with a network)
 	@scripts/install-packages.sh dev

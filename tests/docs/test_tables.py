@@ -48,10 +48,11 @@ def method_problems(rows, methods, members):
         for k, name in enumerate(of_row):
             order, said = orders[k if len(orders) > 1 else 0], coefficients[k if len(coefficients) > 1 else 0]
             if "S" in name:
-                for stages, certificate in members(name):
-                    offset = int(re.fullmatch(r"S − (\d+)", said)[1])
-                    if certificate["ssp_coefficient"] != stages - offset or str(certificate["order"]) != order:
-                        problems.append(f"{name} with S = {stages}: {order}, {said}")
+                for number, certificate in members(name):
+                    offset = re.fullmatch(r"S − (\d+)", said)
+                    wanted = number - int(offset[1]) if offset else 0 if said == "not SSP here" else None
+                    if certificate["ssp_coefficient"] != wanted or certificate["order"] != (number if order == "S" else int(order)):
+                        problems.append(f"{name} with S = {number}: {order}, {said}")
                 continue
             if name not in methods:
                 problems.append(f"{name}: no such method")

@@ -176,7 +176,8 @@ TEST(families, have_descriptions_with_existing_members) {
     EXPECT_FALSE(f->description.empty());
     for (const std::size_t s : {f->lowest, f->highest}) {
       const method& m = find_method(member_name(*f, s));
-      EXPECT_EQ(m.stages(), s);
+      const bool of_columns = f->pattern == "extrapolated-euler-S";
+      EXPECT_EQ(m.stages(), of_columns ? 2 + s * (s + 1) / 2 : s);
       EXPECT_FALSE(m.title.empty() || m.citation.empty() || m.origin.empty());
       EXPECT_EQ(find_family(m.name), f);
     }

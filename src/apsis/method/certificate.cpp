@@ -7,6 +7,8 @@
 #include <apsis/method/order_conditions.hpp>
 #include <apsis/method/stability.hpp>
 
+#include <limits>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -20,8 +22,7 @@ mp_real tolerance_of(int digits) {
 }
 
 void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certificate& c) {
-  constexpr int highest = 6;
-  for (int p = 1; p <= highest && c.order == p - 1; ++p) {
+  for (int p = 1; p <= certificate::highest_order && c.order == p - 1; ++p) {
     const auto trees = rooted_trees(p, colours_of(c.kind));
     const auto weights = elementary_weights(b, trees);
     mp_real largest(0), squares(0);
@@ -46,6 +47,7 @@ void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certif
     c.order_residual = largest;
     c.conditions = conditions;
   }
+  c.error_constant = std::numeric_limits<double>::quiet_NaN();
 }
 
 void find_ssp(const butcher_form<mp_real>& b, const mp_real& zero, certificate& c) {
@@ -119,8 +121,10 @@ mp_real alignment_of(const butcher_form<mp_real>& b, int p, method_kind kind) {
   return residuals == 0 ? mp_real(0) : mp_real(abs(along) / sqrt(residuals * exact));
 }
 
-/// Checks that the row of the embedded solution is convex, so that ũ preserves what the stages preserve.
+/// Checks that the row of the embedded solution is convex, so that ũ preserves what the stages preserve,
+/// where the method itself preserves it.
 void check_embedded_signs(const shu_osher_form<mp_real>& form, const mp_real& tolerance, certificate& c) {
+  if (c.bounded && c.ssp_coefficient == 0) return;
   const std::size_t last = form.stages() - 1;
   const auto check = [&](const std::string& what, const mp_real& value, const mp_real& least) {
     if (value < least)

@@ -44,13 +44,16 @@ struct embedded_certificate {
 
 /// Certificate of a method: its properties, derived from the coefficients alone.
 struct certificate {
+  static constexpr int highest_order = 8;  ///< conditions of higher order are not evaluated
+
   std::string name;                      ///< name of the method
   method_kind kind = method_kind::imex;  ///< determines which order conditions apply
-  int order = 0;                         ///< order p by the order conditions, at most 6
+  int order = 0;                         ///< order p by the order conditions, at most highest_order
   mp_real order_residual;                ///< largest residual of the conditions up to `order`
   std::vector<failed_condition> next;    ///< violated conditions of order p + 1
   int conditions = 0;                    ///< number of conditions up to order p
-  mp_real error_constant;                ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order p + 1
+  mp_real error_constant;                ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order p + 1; NaN if
+                                         ///< p is highest_order
 
   bool unconditional = false;           ///< SSP without a step bound from Q
   bool bounded = true;                  ///< the explicit part sets a bound Δt ≤ r Δt_FE

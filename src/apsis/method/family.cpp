@@ -6,9 +6,9 @@
 namespace apsis {
 namespace {
 
-/// Position of the letter S in the pattern "…-S-…".
+/// Position of the letter S in the pattern "…-S" or "…-S-…".
 std::size_t place_of_stages(const family_entry& family) {
-  return family.pattern.find("-S-") + 1;
+  return family.pattern.find("-S") + 1;
 }
 
 std::string_view before(const family_entry& family) {

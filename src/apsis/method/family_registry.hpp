@@ -9,14 +9,15 @@
 
 namespace apsis {
 
-/// Methods in closed form, one for each number S of stages: a file of method/families/ defines
-/// `extern const family_entry family_<file>`. Members are found by name like methods of the catalogue.
+/// Methods in closed form, one for each number S, of stages or of whatever the description says: a file of
+/// method/families/ defines `extern const family_entry family_<file>`. Members are found by name like methods
+/// of the catalogue.
 struct family_entry {
-  std::string pattern;                 ///< name with S in place of the number of stages: "md-imex-chain-S-2"
+  std::string pattern;                 ///< name with S in place of the number: "md-imex-chain-S-2"
   std::string description;             ///< one line: order, r and n_F in terms of S
   std::size_t lowest,                  ///< smallest S of its members
       highest;                         ///< largest S
-  method (*make)(std::size_t stages);  ///< builds a member, except for its name
+  method (*make)(std::size_t number);  ///< builds a member, except for its name
 };
 
 /// Returns all families, in the order of the registry.
@@ -29,7 +30,7 @@ const family_entry* find_family(std::string_view name);
 /// it has one.
 std::string missing_member(const family_entry& family, std::string_view name);
 
-/// Returns the name of the member with the given number of stages.
+/// Returns the name of the member with the given S.
 std::string member_name(const family_entry& family, std::size_t stages);
 
 /// Returns the member called `name`, not certified. Throws input_error if there is none.

@@ -1,7 +1,8 @@
 #include <apsis/method/order_conditions.hpp>
 
-#include <apsis/method/lower_product.hpp>
 #include <apsis/method/precision.hpp>
+
+#include <algorithm>
 
 namespace apsis {
 namespace {
@@ -13,13 +14,22 @@ template <class Real>
 class evaluator {
  public:
   evaluator(const butcher_form<Real>& method, const std::vector<rooted_tree>& trees)
-      : method_(method), trees_(trees) {}
+      : method_(method), trees_(trees) {
+    for (std::size_t i = 0; i < method.stages(); ++i)
+      for (std::size_t j = 0; j <= i; ++j)
+        has_derivatives_ = has_derivatives_ || method.A_dot(i, j) != Real(0);
+  }
 
   std::vector<Real> run() {
     std::vector<Real> weights;
+    int highest = 0;
+    for (const rooted_tree& tree : trees_) highest = std::max(highest, tree.order);
     for (const rooted_tree& tree : trees_) {
+      // A tree of the highest order is no subtree: the value of u^{n+1} is enough.
+      first_row_ = tree.order == highest ? method_.stages() - 1 : 0;
       phi_.push_back(stage_values(tree));
       weights.push_back(phi_.back().back());
+      if (tree.order == highest) phi_.back().clear();
     }
     return weights;
   }
@@ -35,7 +45,8 @@ class evaluator {
   stage_vector<Real> stage_values(const rooted_tree& tree) const {
     auto product = ones();
     for (const int child : tree.children) multiply(product, child);
-    if (tree.root == colour::F) return lower_product(method_.A_hat, product);
+    if (tree.root == colour::F) return rows_of_product(method_.A_hat, product);
+    if (!has_derivatives_) return rows_of_product(method_.A, product);
 
     stage_vector<Real> derivative(method_.stages(), Real(0));
     for (std::size_t k = 0; k < tree.children.size(); ++k) {
@@ -47,15 +58,26 @@ class evaluator {
       for (const int grandchild : child.children) multiply(term, grandchild);
       for (std::size_t i = 0; i < term.size(); ++i) derivative[i] += term[i];
     }
-    auto values = lower_product(method_.A, product);
-    const auto second = lower_product(method_.A_dot, derivative);
+    auto values = rows_of_product(method_.A, product);
+    const auto second = rows_of_product(method_.A_dot, derivative);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] += second[i];
     return values;
+  }
+
+  /// Returns ax from first_row_ on, and 0 before.
+  stage_vector<Real> rows_of_product(const matrix<Real>& a, const stage_vector<Real>& x) const {
+    stage_vector<Real> y(a.rows(), Real(0));
+    for (std::size_t i = first_row_; i < a.rows(); ++i)
+      for (std::size_t j = 0; j <= i; ++j)
+        if (a(i, j) != Real(0)) y[i] += a(i, j) * x[j];
+    return y;
   }
 
   const butcher_form<Real>& method_;
   const std::vector<rooted_tree>& trees_;
   std::vector<stage_vector<Real>> phi_;
+  std::size_t first_row_ = 0;
+  bool has_derivatives_ = false;  ///< whether Q̇ occurs
 };
 
 }  // namespace

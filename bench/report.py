@@ -80,6 +80,45 @@ def against(result, label, errors, epsilon=None):
     return f"{', '.join(ratios)} times the CPU time of the best method of Apsis"
 
 
+# Tables of contests, in the order of the table of winners.
+CONTESTS = {"peers-ode": "ODE model", "peers-prothero-robinson": "Prothero–Robinson", "peers-kaps": "Kaps",
+            "peers-mixed-points": "mixed BGK, point values", "peers-mixed": "mixed BGK, cell averages"}
+
+
+def winner(result, error, epsilon):
+    """Returns the cheapest run of Apsis for an error, and how many times its time the best of the others needs."""
+    column = next((k for k, name in enumerate(result["columns"]) if name.startswith(f"error {error} ")), None)
+    if column is None:
+        return ""
+    unit = re.search(r"\((.*)\)", result["columns"][column]).group(1)
+    rows = {row[1 if epsilon else 0]: row[column] for row in result["rows"] if not epsilon or row[0] == epsilon}
+    best, others = rows.get("best of Apsis"), rows.get("best of the others")
+    if not best or not others:
+        return "—"
+    time, name = best.split(" ", 1)
+    name, _, how = name.partition(", ")
+    scale, shown = (1e3, "ms") if unit == "s" else (1.0, unit)
+    ratio = re.search(r"\(([^()]*)\)", others).group(1)
+    return f"`{name}`{' ' + how if how else ''} {scale * float(time):.3g} {shown}; {ratio}"
+
+
+def winners(results):
+    """Tabulates problem × ε × error with the cheapest method of Apsis, its time and the ratio to the best of the others."""
+    errors = ("0.001", "0.0001", "1e-05", "1e-06", "1e-07", "1e-08", "1e-09")
+    rows = []
+    for table, problem in CONTESTS.items():
+        if table not in results or not rows_labelled(results[table], "best of Apsis"):
+            continue
+        result = results[table]
+        for epsilon in dict.fromkeys(row[0] for row in result["rows"]) if result["columns"][0] == "ε" else (None,):
+            rows.append([problem, epsilon or "10⁻⁵ … 1.5", *(winner(result, error, epsilon) for error in errors)])
+    return markdown(("problem", "ε", *errors), rows)
+
+
+def rows_labelled(result, label):
+    return [row for row in result["rows"] if label in row[:2]]
+
+
 def summary(results):
     """Returns the rows of the table that compares processors."""
     rows = []
@@ -105,7 +144,7 @@ def summary(results):
                                     ("best of SUNDIALS and SSP-RK3 with f of any sign", "best of the others"))]
     if "peers-ode" in results:
         result = results["peers-ode"]
-        rows += [(f"ODE model, ε = {epsilon}, best of SUNDIALS at errors 1e-4 and 1e-6",
+        rows += [(f"ODE model, ε = {epsilon}, best of other integrators at errors 1e-4 and 1e-6",
                   against(result, "best of the others", ("0.0001", "1e-06"), epsilon)) for epsilon in ("1", "0.01", "1e-06", "1e-10")]
     return rows
 
@@ -190,11 +229,22 @@ def draw_ode(result, path):
 # --- main ------------------------------------------------------------------------------------------------------------------------
 
 
+# Leagues of methods of Apsis that the pictures show as one contestant.
+GROUPS = {"Apsis": ("ssp", "any sign", "adaptive"), "Apsis, with SSP coefficient": ("ssp",), "Apsis, steps by tolerance": ("adaptive",)}
+
+
+def grouped(points):
+    """Replaces the methods of Apsis by three groups; the name of the method becomes part of the setting."""
+    others = [point for point in points if point.get("league", "other") == "other"]
+    return others + [point | {"contestant": group, "setting": f"{point['contestant']}, {point['setting']}"}
+                     for group, leagues in GROUPS.items() for point in points if point.get("league") in leagues]
+
+
 def compact(results):
-    """Keeps only what tables and pictures show, which is the Pareto front of each contestant."""
+    """Keeps only what tables and pictures show, which is the Pareto front of each contestant or group."""
     kept = {}
     for name, result in results.items():
-        points = result["data"].get("points", [])
+        points = grouped(result["data"].get("points", []))
         groups = {}
         for point in points:
             groups.setdefault(point.get("epsilon"), []).append(point)
@@ -248,11 +298,15 @@ def main():
     if "processes" in results:
         replace(given.docs / PAGES["processes"], "scaling-model", scaling_model.tables(results["processes"]))
     replace(given.docs / "speed.md", "processors", comparison(machines))
+    replace(given.docs / "speed.md", "winners", winners(results))
     replace(given.readme, "speed", comparison(machines, FRONT_PAGE))
-    if "peers-mixed" in results:
-        draw_mixed(results["peers-mixed"], given.docs / "images" / "speed-mixed.png")
-    if "peers-ode" in results:
-        draw_ode(results["peers-ode"], given.docs / "images" / "speed-ode.png")
+    for table, picture in (("peers-mixed", "speed-mixed"), ("peers-mixed-points", "speed-mixed-points")):
+        if table in results:
+            draw_mixed(results[table], given.docs / "images" / f"{picture}.png")
+    for table, picture in (("peers-ode", "speed-ode"), ("peers-kaps", "speed-kaps"),
+                           ("peers-prothero-robinson", "speed-prothero-robinson")):
+        if table in results:
+            draw_ode(results[table], given.docs / "images" / f"{picture}.png")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 #include "contest.hpp"
 #include "measure/clock.hpp"
 
+#include <apsis/method/method.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,10 +13,42 @@
 namespace apsis::bench::peers {
 namespace {
 
-/// Lower bounds of f: nonnegative, nonnegative up to the rounding errors of a projection, any sign.
-constexpr double floors[] = {0.0, -1e-20, -std::numeric_limits<double>::infinity()};
+constexpr double any = -std::numeric_limits<double>::infinity();
+
+/// Whether a run is to be counted at all: those of methods with an SSP coefficient must keep their promise.
+bool is_valid(const attempt& one) {
+  return one.measured.failure.empty() && (one.of != league::ssp || one.measured.smallest >= 0.0);
+}
+
+const char* name_of(league one) {
+  switch (one) {
+    case league::ssp:
+      return "ssp";
+    case league::any_sign:
+      return "any sign";
+    case league::adaptive:
+      return "adaptive";
+    case league::other:
+      break;
+  }
+  return "other";
+}
 
 }  // namespace
+
+std::vector<std::string> imex_contestants() {
+  std::vector<std::string> names;
+  for (const auto& name : method_names())
+    if (find_method(name).kind == method_kind::imex) names.push_back(name);
+  for (int order = 2; order <= 8; ++order) names.push_back(fmt::format("extrapolated-euler-{}", order));
+  return names;
+}
+
+/// Lower bounds of the unknowns: nonnegative, nonnegative up to the rounding errors of a projection, any
+/// sign.
+std::vector<double> contest::floors() const {
+  return signs_ ? std::vector<double>{0.0, -1e-20, any} : std::vector<double>{any};
+}
 
 void contest::run(int repeats, double seconds_each) {
   for (auto& one : attempts_) {
@@ -34,16 +68,11 @@ void contest::run(int repeats, double seconds_each) {
     if (!times.empty()) attempts_[index].measured.seconds = median(times);
 }
 
-bool contest::reaches(const attempt& one, double error) const {
-  if (!one.measured.failure.empty() || !(one.measured.error <= error)) return false;
-  return !one.ours || rule_ == rule::any_sign || one.measured.smallest >= 0.0;
-}
-
-std::size_t contest::cheapest(double error, const std::function<bool(const attempt&)>& allowed) const {
+std::size_t contest::cheapest(double error, const filter& allowed) const {
   std::size_t best = none;
   for (std::size_t k = 0; k < attempts_.size(); ++k) {
     const auto& one = attempts_[k];
-    if (!allowed(one) || !reaches(one, error)) continue;
+    if (!is_valid(one) || !(one.measured.error <= error) || !allowed(one)) continue;
     if (best == none || one.measured.seconds < attempts_[best].measured.seconds) best = k;
   }
   return best;
@@ -63,37 +92,45 @@ void contest::choose() {
       chosen_.back().push_back(
           take(cheapest(error, [&](const attempt& one) { return one.contestant == name; })));
   }
-  for (const double floor : floors)
+  for (const double floor : floors())
     for (const double error : errors_)
-      take(cheapest(error, [&](const attempt& one) { return !one.ours && one.measured.smallest >= floor; }));
+      for (const bool ours : {true, false})
+        take(cheapest(
+            error, [&](const attempt& one) { return one.ours() == ours && one.measured.smallest >= floor; }));
 }
 
-double contest::best_seconds(std::size_t error) const {
-  const auto best = cheapest(errors_[error], [](const attempt& one) { return one.ours && one.counts; });
+double contest::best_seconds(std::size_t error, double floor) const {
+  const auto best = cheapest(errors_[error], [&](const attempt& one) {
+    return one.ours() && one.counts && one.measured.smallest >= floor;
+  });
   return best == none ? std::numeric_limits<double>::quiet_NaN() : attempts_[best].measured.seconds;
 }
 
-/// Formats seconds, or microseconds for short times.
 std::string contest::time(std::size_t index) const {
-  const double seconds = attempts_[index].measured.seconds;
-  return rule_ == rule::any_sign ? fmt::format("{:.3g}", 1e6 * seconds) : fmt::format("{:.3g}", seconds);
+  return fmt::format("{:.3g}", (unit_ == "s" ? 1.0 : 1e6) * attempts_[index].measured.seconds);
 }
 
-std::string contest::ratio(std::size_t index, std::size_t error) const {
-  const double ratio = attempts_[index].measured.seconds / best_seconds(error);
+std::string contest::ratio(std::size_t index, std::size_t error, double floor) const {
+  const double ratio = attempts_[index].measured.seconds / best_seconds(error, floor);
   if (std::isnan(ratio)) return "";
   return ratio < 100.0 ? fmt::format("({:.2g})", ratio) : fmt::format("({:.0f})", ratio);
 }
 
-std::vector<std::vector<nlohmann::json>> contest::rows() const {
+std::vector<std::vector<nlohmann::json>> contest::rows(bool only_others) const {
+  const auto is_ours = [this](const std::string& name) {
+    return std::any_of(attempts_.begin(), attempts_.end(),
+                       [&](const attempt& one) { return one.contestant == name && one.ours(); });
+  };
   std::vector<std::vector<nlohmann::json>> all;
   for (std::size_t n = 0; n < names_.size(); ++n) {
+    if (only_others && is_ours(names_[n])) continue;
     std::vector<nlohmann::json> row = {names_[n]};
     for (std::size_t e = 0; e < errors_.size(); ++e) {
       const auto index = chosen_[n][e];
       const bool reached = index != none;
-      row.push_back(reached ? nlohmann::json(time(index) + " " + ratio(index, e)) : nlohmann::json());
-      if (rule_ == rule::any_sign) continue;
+      row.push_back(reached ? nlohmann::json(time(index) + " " + ratio(index, e, floors().front()))
+                            : nlohmann::json());
+      if (!signs_) continue;
       row.push_back(reached ? nlohmann::json(fmt::format("{:.0e}", attempts_[index].measured.smallest))
                             : nlohmann::json());
     }
@@ -102,24 +139,46 @@ std::vector<std::vector<nlohmann::json>> contest::rows() const {
   return all;
 }
 
+std::vector<std::vector<nlohmann::json>> contest::best_of_ours() const {
+  const std::pair<const char*, filter> groups[] = {
+      {"best of Apsis", [](const attempt& one) { return one.ours(); }},
+      {"best with an SSP coefficient", [](const attempt& one) { return one.of == league::ssp; }},
+      {"best with steps by tolerance", [](const attempt& one) { return one.of == league::adaptive; }}};
+  std::vector<std::vector<nlohmann::json>> all;
+  for (const auto& [label, allowed] : groups) {
+    std::vector<nlohmann::json> row = {label};
+    bool any_run = false;
+    for (const double error : errors_) {
+      const auto best = cheapest(error, [&](const attempt& one) { return one.counts && allowed(one); });
+      any_run = any_run || best != none;
+      row.push_back(best == none ? nlohmann::json()
+                                 : nlohmann::json(time(best) + " " + attempts_[best].contestant));
+      if (!signs_) continue;
+      row.push_back(best == none ? nlohmann::json()
+                                 : nlohmann::json(fmt::format("{:.0e}", attempts_[best].measured.smallest)));
+    }
+    if (any_run) all.push_back(std::move(row));
+  }
+  return all;
+}
+
 std::vector<std::vector<nlohmann::json>> contest::best_of_others() const {
   std::vector<std::vector<nlohmann::json>> all;
-  for (const double floor : floors) {
-    if (rule_ == rule::any_sign && !std::isinf(floor)) continue;
+  for (const double floor : floors()) {
     std::vector<nlohmann::json> row = {std::isinf(floor)
                                            ? std::string("best of the others")
                                            : fmt::format("best of the others with least ≥ {:g}", floor)};
     for (std::size_t e = 0; e < errors_.size(); ++e) {
       const auto best = cheapest(errors_[e], [&](const attempt& one) {
-        return !one.ours && one.counts && one.measured.smallest >= floor;
+        return !one.ours() && one.counts && one.measured.smallest >= floor;
       });
       const bool found = best != none;
       const auto name = found ? attempts_[best].contestant : std::string();
-      if (rule_ == rule::any_sign) {
-        row.push_back(found ? nlohmann::json(name + " " + ratio(best, e)) : nlohmann::json());
-      } else {
-        row.push_back(found ? nlohmann::json(ratio(best, e)) : nlohmann::json());
+      if (signs_) {
+        row.push_back(found ? nlohmann::json(ratio(best, e, floor)) : nlohmann::json());
         row.push_back(found ? nlohmann::json(name) : nlohmann::json());
+      } else {
+        row.push_back(found ? nlohmann::json(name + " " + ratio(best, e, floor)) : nlohmann::json());
       }
     }
     all.push_back(std::move(row));
@@ -132,7 +191,8 @@ nlohmann::json contest::points() const {
   for (const auto& one : attempts_) {
     nlohmann::json point = {{"contestant", one.contestant},
                             {"setting", one.setting},
-                            {"ours", one.ours},
+                            {"ours", one.ours()},
+                            {"league", name_of(one.of)},
                             {"error", one.measured.error},
                             {"seconds", one.measured.seconds},
                             {"smallest", one.measured.smallest},
@@ -147,8 +207,8 @@ nlohmann::json contest::points() const {
 std::vector<std::string> contest::columns() const {
   std::vector<std::string> names = {"contestant"};
   for (const double error : errors_) {
-    names.push_back(fmt::format("error {:g} ({})", error, rule_ == rule::any_sign ? "µs" : "s"));
-    if (rule_ == rule::nonnegative) names.emplace_back("least");
+    names.push_back(fmt::format("error {:g} ({})", error, unit_));
+    if (signs_) names.emplace_back("least");
   }
   return names;
 }

@@ -18,27 +18,37 @@ struct outcome {
   std::string failure = {};  ///< empty if the end time was reached
 };
 
+/// Returns the names of all IMEX methods of the catalogue and of the extrapolated Euler steps of orders 2
+/// to 8.
+std::vector<std::string> imex_contestants();
+
+/// Class of contestants. A best row of the table is that of one or several classes.
+enum class league {
+  ssp,       ///< methods of Apsis with an SSP coefficient, equal steps; count only without negative unknowns
+  any_sign,  ///< methods of the catalogue of Apsis without one, equal steps
+  adaptive,  ///< methods of Apsis, steps chosen by a tolerance
+  other      ///< other programs, and explicit methods
+};
+
 /// A point of a work–precision diagram: a contestant with a given step length or tolerance.
 struct attempt {
   std::string contestant, setting;
-  bool ours = false;
+  league of = league::other;
   std::function<outcome()> run;
   outcome measured = {};
   bool counts = false;  ///< whether it is the cheapest of its kind for some error
+
+  bool ours() const { return of != league::other; }
 };
 
 /// Work needed by each contestant to reach an error: that of the cheapest run that reaches it, whatever its
 /// setting, without interpolation.
 class contest {
  public:
-  enum class rule {
-    nonnegative,  ///< runs of Apsis count if no unknown was ever negative, those of others always;
-                  ///< signs are shown
-    any_sign      ///< all runs count
-  };
-
-  explicit contest(std::vector<double> errors, rule which = rule::nonnegative)
-      : errors_(std::move(errors)), rule_(which) {}
+  /// `unit`: "s", or "µs" for short runs; `signs`: whether tables show the smallest unknown, and compare with
+  /// what stays nonnegative.
+  contest(std::vector<double> errors, std::string unit, bool signs)
+      : errors_(std::move(errors)), unit_(std::move(unit)), signs_(signs) {}
 
   void add(attempt one) { attempts_.push_back(std::move(one)); }
 
@@ -46,11 +56,17 @@ class contest {
   /// `seconds_each` per turn; their CPU time is then the median.
   void run(int repeats, double seconds_each);
 
-  /// After run(), returns a row for each contestant: for every error the CPU time, in brackets relative to
-  /// the best of Apsis, and the smallest unknown.
-  std::vector<std::vector<nlohmann::json>> rows() const;
-  /// After run(), returns for every error the best of the others, relative to the best of Apsis, and its
-  /// name; one row each for those that stay nonnegative, those that do up to rounding, and all.
+  /// After run(), returns a row for each contestant, or only for those of others: for every error the CPU
+  /// time, in brackets relative to the best of Apsis (with nonnegative unknowns, if signs are shown), and the
+  /// smallest unknown.
+  std::vector<std::vector<nlohmann::json>> rows(bool only_others) const;
+  /// After run(), returns for every error the best run of Apsis: of all, of methods with an SSP coefficient,
+  /// and of those with steps chosen by a tolerance, with its time and method. Rows without any run are left
+  /// out.
+  std::vector<std::vector<nlohmann::json>> best_of_ours() const;
+  /// After run(), returns for every error the best of the others, relative to the best of Apsis with the same
+  /// lower bound of the unknowns, and its name; if signs are shown, one row each for those that stay
+  /// nonnegative, those that do up to rounding, and all.
   std::vector<std::vector<nlohmann::json>> best_of_others() const;
   /// Returns all runs, for diagrams.
   nlohmann::json points() const;
@@ -58,15 +74,18 @@ class contest {
 
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  bool reaches(const attempt& one, double error) const;
-  std::size_t cheapest(double error, const std::function<bool(const attempt&)>& allowed) const;
-  double best_seconds(std::size_t error) const;
-  std::string ratio(std::size_t index, std::size_t error) const;
+  using filter = std::function<bool(const attempt&)>;
+
+  std::size_t cheapest(double error, const filter& allowed) const;
+  double best_seconds(std::size_t error, double floor) const;
+  std::string ratio(std::size_t index, std::size_t error, double floor) const;
   std::string time(std::size_t index) const;
+  std::vector<double> floors() const;
   void choose();
 
   std::vector<double> errors_;
-  rule rule_;
+  std::string unit_;
+  bool signs_;
   std::vector<attempt> attempts_;
   std::vector<std::string> names_;
   std::vector<std::vector<std::size_t>> chosen_;  ///< index of the chosen run of every contestant

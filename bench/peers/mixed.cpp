@@ -1,7 +1,7 @@
 #include "measure/clock.hpp"
 #include "mixed.hpp"
 
-#include <apsis/integrate/integrate.hpp>
+#include <apsis/integrate/error_control.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/scheme/quartic.hpp>
 
@@ -45,9 +45,9 @@ outcome run_monitor::result(const field& u) const {
   return what;
 }
 
-mixed_regime::mixed_regime(double end)
-    : config_(
-          load_case("paper/bgk-mixed", {"time.method=md-imex-3-2", fmt::format("time.end={:.17g}", end)})),
+mixed_regime::mixed_regime(double end, unknowns which)
+    : config_(load_case(which == unknowns::averages ? "paper/bgk-mixed" : "paper/bgk-mixed-fd",
+                        {"time.method=md-imex-3-2", fmt::format("time.end={:.17g}", end)})),
       end_(end),
       setup_(config_),
       problem_(setup_.make_problem()),
@@ -60,7 +60,7 @@ mixed_regime::mixed_regime(double end)
     double mean = 0.0;
     for (std::size_t q = 0; q < gauss3::points; ++q)
       mean += gauss3::weight[q] / formula.evaluate(centre + gauss3::xi[q] * dx);
-    rates_.push_back(mean);
+    rates_.push_back(which == unknowns::averages ? mean : 1.0 / formula.evaluate(centre));
   }
 }
 
@@ -73,16 +73,14 @@ long mixed_regime::positive_steps(const method& m) const {
   return static_cast<long>(std::ceil(end_ / longest));
 }
 
-outcome mixed_regime::run(const method& m, long steps, bool graded, double seconds_allowed, field* result) {
-  stepper march(m, *problem_);
+template <class Run>
+outcome mixed_regime::measure(double seconds_allowed, field* result, const Run& run) {
   field u = initial_;
   run_monitor timer(seconds_allowed);
-  const auto rule = step_rule<double>::fixed(end_ / static_cast<double>(steps))
-                        .with(graded ? startup::graded : startup::none);
   bool in_time = true;
   std::string failure;
   try {
-    integrate(march, u, 0.0, end_, rule, [&](long step, double, double, const field& now) {
+    run(u, [&](long step, double, double, const field& now) {
       if (step == 0)
         timer.start();
       else
@@ -98,6 +96,24 @@ outcome mixed_regime::run(const method& m, long steps, bool graded, double secon
   if (!std::isfinite(what.error) && failure.empty()) what.failure = "failed";
   if (result != nullptr) *result = u;
   return what;
+}
+
+outcome mixed_regime::run(const method& m, long steps, bool graded, double seconds_allowed, field* result) {
+  stepper march(m, *problem_);
+  const auto rule = step_rule<double>::fixed(end_ / static_cast<double>(steps))
+                        .with(graded ? startup::graded : startup::none);
+  return measure(seconds_allowed, result,
+                 [&](field& u, auto&& observer) { integrate(march, u, 0.0, end_, rule, observer); });
+}
+
+outcome mixed_regime::run_to_tolerance(const method& m, double tolerance, double seconds_allowed) {
+  stepper march(m, *problem_, solutions::result_and_embedded);
+  step_controller<double> control(tolerance, m.embedded->order);
+  return measure(seconds_allowed, nullptr, [&](field& u, auto&& observer) {
+    integrate_to_tolerance(
+        march, u, 0.0, end_, step_rule<double>::unlimited(), control,
+        [](const field& a, const field& b) { return distance(b, a); }, observer);
+  });
 }
 
 double mixed_regime::distance(const field& u, const field& exact) {

@@ -71,7 +71,7 @@ TEST(unconditional_ssp, attains_the_bound_with_equal_stages_in_a_chain) {
 TEST(unconditional_ssp, bounds_b_c_of_random_convex_forms) {
   random_source source(3);
   for (int trial = 0; trial < 2000; ++trial) {
-    const auto stages = static_cast<std::size_t>(source.integer(1, 7));
+    const auto stages = static_cast<std::size_t>(source.integer(1, 8));
     auto form = zeros(stages);
     for (std::size_t i = 0; i < stages; ++i) {
       form.D(i, i) = source.one_in(4) ? 0.0 : source.magnitude(-2, 0);

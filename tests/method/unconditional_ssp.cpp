@@ -1,4 +1,5 @@
-// What unconditional strong stability of the implicit part excludes (docs/plateaus.md, the band).
+// Limits that unconditional strong stability of the implicit part sets to the band (docs/plateaus.md, (11)
+// and (12)).
 #include <apsis/core/random_source.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/convexity.hpp>

@@ -93,7 +93,7 @@ TEST(profile_errors, of_a_method_without_viscosity_halve_with_the_step) {
 TEST(profile_errors, vanish_where_transport_and_collision_have_the_same_weights) {
   const auto table =
       predict_profile_errors(mixed("bhr-553", 1.0 / 1000, {"time.end=0.1", "time.startup=graded"}), 0);
-  // What remains is R(−z)^N for e^{−CT/ε} where ε is of the order of T; md-imex-6-3 has 4e-5.
+  // The difference of R(−z)^N and e^{−CT/ε} remains where ε is of the order of T; md-imex-6-3 has 4e-5.
   for (const double error : table.rows[0].of_moments) EXPECT_LT(error, 1e-8);
 }
 

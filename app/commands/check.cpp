@@ -3,16 +3,19 @@
 #include "method_report.hpp"
 #include "print.hpp"
 
+#include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
 #include <apsis/verify/observed_limits.hpp>
+#include <apsis/verify/profile_errors.hpp>
 
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -45,6 +48,8 @@ method read_method(const std::string& path) {
 
 struct options {
   std::string what;
+  std::vector<std::string> overrides;
+  std::optional<std::string> profile;
   bool json = false, observe = false;
 };
 
@@ -71,15 +76,63 @@ nlohmann::ordered_json to_json(const observed_limit& one) {
           {"lost", number(one.limit.lost)},   {"worst", one.worst}};
 }
 
+std::optional<profile_errors> predicted(const options& given) {
+  constexpr int halvings = 3;
+  if (!given.profile) {
+    if (given.overrides.empty()) return std::nullopt;
+    throw input_error(
+        fmt::format("command line: '{}' has no case to change (apsis check reads one only for "
+                    "--epsilon-profile); add --epsilon-profile CASE",
+                    given.overrides.front().substr(0, 60)));
+  }
+  std::vector<std::string> overrides = given.overrides;
+  overrides.push_back("time.method=" + given.what);
+  return predict_profile_errors(load_case(*given.profile, overrides), halvings);
+}
+
+std::string profile_text(const profile_errors& errors, const std::string& profile) {
+  std::string text = fmt::format(
+      "predicted errors of the O(epsilon) terms of {} on point values, l2 norms over space; "
+      "epsilon/C = {:.3g} ... {:.3g}\n  {:<12}{:<20}",
+      profile, errors.smallest_epsilon, errors.largest_epsilon, "dt", "viscosity");
+  for (const auto& name : errors.invariants) text += fmt::format("{:<12}", name);
+  for (const auto& row : errors.rows) {
+    text += fmt::format("\n  {:<12.4g}{:<20}", row.dt,
+                        fmt::format("{:.4f} ... {:.4f}", row.least_flux, row.largest_flux));
+    for (const double error : row.of_moments) text += fmt::format("{:<12.3g}", error);
+  }
+  return text + "\n";
+}
+
+nlohmann::ordered_json to_json(const profile_errors& errors) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const auto& row : errors.rows) {
+    nlohmann::ordered_json of_moments;
+    for (std::size_t k = 0; k < row.of_moments.size(); ++k)
+      of_moments[errors.invariants[k]] = row.of_moments[k];
+    rows.push_back({{"dt", row.dt},
+                    {"least_viscosity", row.least_flux},
+                    {"largest_viscosity", row.largest_flux},
+                    {"error", of_moments}});
+  }
+  return {{"smallest_epsilon", errors.smallest_epsilon},
+          {"largest_epsilon", errors.largest_epsilon},
+          {"rows", rows}};
+}
+
 int report(const method& m, const options& given) {
   nlohmann::ordered_json result = check_json(m);
+  const auto profile = predicted(given);
+  if (profile) result["epsilon_profile"] = to_json(*profile);
   std::vector<observed_limit> observed;
   if (given.observe) {
     observed = observe_limits(m);
     result["observed"] = nlohmann::ordered_json::array();
     for (const auto& one : observed) result["observed"].push_back(to_json(one));
   }
-  print(given.json ? result.dump(2) + "\n" : check_text(m) + (given.observe ? observed_text(observed) : ""));
+  print(given.json ? result.dump(2) + "\n"
+                   : check_text(m) + (given.observe ? observed_text(observed) : "") +
+                         (profile ? profile_text(*profile, *given.profile) : ""));
   if (!result["claims_hold"].get<bool>())
     throw claim_error(
         fmt::format("the claims of '{}' do not hold ({}); correct the coefficients or the claims", m.name,
@@ -111,6 +164,12 @@ action define(CLI::App& command) {
   command.add_flag(
       "--observe", given->observe,
       "also search for the largest steps that preserve positivity, total variation, entropy, ...");
+  command.add_option(
+      "--epsilon-profile", given->profile,
+      "also predict the errors of the O(epsilon) terms, viscosity and initial layer, for the epsilon(x), "
+      "data "
+      "and step of this case and for three halvings of the step, without running it with METHOD");
+  command.add_option("key=value", given->overrides, "override key=value of the case of --epsilon-profile");
   return [given] { return check(*given); };
 }
 

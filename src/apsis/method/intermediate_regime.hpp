@@ -140,18 +140,22 @@ intermediate_regime<Real> analyse_intermediate_regime(const shu_osher_form<Real>
   return out;
 }
 
-/// flux and last of intermediate_regime at finite z = CΔt/ε.
+/// flux and last of intermediate_regime at finite z = CΔt/ε, and one step of an initial layer.
 template <class Real>
 struct finite_rate {
   Real flux{},  ///< Σ b̂_i κ_i(z)
-      last{};   ///< κ_s(z)
+      last{},   ///< κ_s(z)
+      layer{},  ///< Σ b̂_i λ_i(z); exact: (1 − e^{−z})/z
+      decay{};  ///< λ_s(z) = R(−z); exact: e^{−z}
 };
 
-/// Computes flux and last at finite z > 0, for methods of any type. Stage i deviates from equilibrium by
-/// κ_i(z) times the exact deviation, where
+/// Computes flux, last, layer and decay at finite z > 0, for methods of any type. Stage i deviates from
+/// equilibrium by κ_i(z) times the exact deviation, where
 ///   (I + zA − z²Ȧ) κ = z ĉ + κ_s e,    flux(z) = Σ b̂_i κ_i,    last(z) = κ_s;
 /// for Δt → 0 with z fixed, the numerical ω obeys ω_t = ℛT(E) − flux(z) ℛT′(E) D. Both tend to 1 as z → 0 and
-/// to the values of intermediate_regime as z → ∞.
+/// to the values of intermediate_regime as z → ∞. A deviation D₀ left from the initial layer is λ_i D₀ in
+/// stage i, with (I + zA − z²Ȧ) λ = e, so that the step changes ω by −Δt layer(z) ℛT′(E) D₀ and leaves
+/// decay(z) D₀.
 template <class Real>
 finite_rate<Real> at_finite_rate(const butcher_form<Real>& b, const Real& z) {
   const std::size_t s = b.stages();
@@ -169,8 +173,12 @@ finite_rate<Real> at_finite_rate(const butcher_form<Real>& b, const Real& z) {
     of_start[i] = start / diagonal;
   }
   finite_rate<Real> out;
-  out.last = moved[s - 1] / (Real(1) - of_start[s - 1]);
-  for (std::size_t i = 0; i < s; ++i) out.flux += b.A_hat(s - 1, i) * (moved[i] + of_start[i] * out.last);
+  out.decay = of_start[s - 1];
+  out.last = moved[s - 1] / (Real(1) - out.decay);
+  for (std::size_t i = 0; i < s; ++i) {
+    out.flux += b.A_hat(s - 1, i) * (moved[i] + of_start[i] * out.last);
+    out.layer += b.A_hat(s - 1, i) * of_start[i];
+  }
   return out;
 }
 

@@ -60,7 +60,7 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
       if (bar.due()) bar.update(now.t() / end, step_text(now));
     };
   options.session.stepped = [&bar] { bar.finish(); };
-  run_session session(std::move(config), options.session);
+  run_session session(config, options.session);
   if (options.profile) profile::start();
   const run_end end = session.run();
   const simulation& computed = session.computed();

@@ -108,8 +108,8 @@ TEST(embedded_row, exists_for_every_recommended_method_at_the_cost_of_one_solve)
       ASSERT_TRUE(e->last) << name;
       EXPECT_LT(abs(*e->last - 1), mp_real(1e-40)) << name;
     }
-    // The target was at least 1/30 of the Taylor term, with a coverage of at least 0.15 in the limit ε → 0, whose
-    // terms are 0.4 of all.
+    // The target was at least 1/30 of the Taylor term, with a coverage of at least 0.15 in the limit ε → 0,
+    // whose terms are 0.4 of all.
     EXPECT_GT(e->estimate, mp_real(0.15 * 0.4 / 30)) << name;
     EXPECT_LT(e->estimate, mp_real(0.15)) << name;
   }
@@ -213,7 +213,8 @@ TEST(embedded_row, that_is_not_convex_is_certified_if_the_file_says_so) {
 TEST(embedded_row, of_order_p_minus_1_exists_for_all_but_three_methods) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded.has_value(); })) {
     const method& m = find_method(name);
-    const bool lower = name == "md-imex-6-3" || name == "md-imex-16-4-large-r" || name == "imdrk-9-5-accurate";
+    const bool lower =
+        name == "md-imex-6-3" || name == "md-imex-16-4-large-r" || name == "imdrk-9-5-accurate";
     EXPECT_EQ(m.embedded->order < m.claims.order - 1, lower) << name;
   }
 }

@@ -86,7 +86,9 @@ void check_against_fixed_steps(const std::string& name, double epsilon, long mos
     const auto trace = ::testing::Message() << name << ", epsilon " << epsilon << ", tolerance " << tolerance
                                             << ": " << now.steps << " steps, error " << now.error;
     EXPECT_LE(now.error, 30 * tolerance) << trace;
-    if (now.steps > 3) EXPECT_GE(now.error, tolerance / 30) << trace;
+    if (now.steps > 3) {
+      EXPECT_GE(now.error, tolerance / 30) << trace;
+    }
     long best = most;
     for (const auto& [steps, error] : fixed)
       if (error <= now.error) best = std::min(best, steps);

@@ -272,7 +272,7 @@ embedded_search find_embedded(const method& m, const embedded_task& task) {
     const embedded_program program(m, q, task.cost);
     const int parts = task.parts > 0 ? task.parts : default_parts(q);
     for (const bool convex : {true, false}) {
-      if (search.found || (!convex && (q == 1 || task.cost == embedded_cost::nothing))) continue;
+      if (search.found || (!convex && (q == 1 || m.kind != method_kind::imex))) continue;
       const mp_real least = convex ? mp_real(0) : -round(mp_real(1000) * task.negative) / (1000 * parts);
       const candidate best = best_of(program, parts, least, task.margin);
       search.attempts.push_back(

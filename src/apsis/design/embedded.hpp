@@ -73,9 +73,10 @@ struct embedded_search {
 ///
 /// The row of u^{n+1} satisfies all equations but estimates nothing. If there is no other convex solution, or
 /// none with sufficient coverage of the trees of each colour, weights down to −θ negative are admitted for
-/// q ≥ 2, while d̃ ≥ 0 ≥ d̃̇ remain; an order q for which this does not help either is skipped. u^{n+1} does
-/// not depend on ũ: the bound only keeps ũ itself admissible where stages differ by less than that. Throws
-/// input_error for methods with a nondiagonal D, with an update, or of order 1, and for orders not below p.
+/// q ≥ 2 and kind imex, while d̃ ≥ 0 ≥ d̃̇ remain; an order q for which this does not help either is skipped.
+/// u^{n+1} does not depend on ũ: the bound only keeps ũ itself admissible where stages differ by less than
+/// that. Throws input_error for methods with a nondiagonal D, with an update, or of order 1, and for orders
+/// not below p.
 embedded_search find_embedded(const method& m, const embedded_task& task);
 
 }  // namespace apsis

@@ -31,9 +31,11 @@ embedded_task task_of(const embedded_options& given, const method& m) {
 
 std::string text_of(const embedded_attempt& tried, double least_coverage) {
   if (tried.residual < 1e-15)  // the row of u^{n+1} is always a solution
-    return fmt::format("order {}: coverage {:.2g} of the error, at least {:.2g} needed", tried.order,
-                       tried.coverage < 1e-12 ? 0.0 : tried.coverage, least_coverage);
-  return fmt::format("order {}: nearest residual {:.1e}", tried.order, tried.residual);
+    return fmt::format("order {}{}: coverage {:.2g} of the error, at least {:.2g} needed", tried.order,
+                       tried.convex ? "" : ", not convex", tried.coverage < 1e-12 ? 0.0 : tried.coverage,
+                       least_coverage);
+  return fmt::format("order {}{}: nearest residual {:.1e}", tried.order, tried.convex ? "" : ", not convex",
+                     tried.residual);
 }
 
 }  // namespace
@@ -53,11 +55,12 @@ int design_embedded(const embedded_options& given) {
   }
   m.embedded = search.found;
   m.embedded->origin = fmt::format(
-      "apsis design --embedded {}{}: the convex row of order {} {}whose distance to u^(n+1) is closest "
+      "apsis design --embedded {}{}: the {} of order {} {}whose distance to u^(n+1) is closest "
       "to 1/{} of the Taylor term of order {}",
-      m.name, given.cost == "nothing" ? " --cost nothing" : "", m.embedded->order,
-      m.claims.intermediate ? "with the O(epsilon) term of the last stage " : "", task.parts,
-      m.embedded->order + 1);
+      m.name, given.cost == "nothing" ? " --cost nothing" : "",
+      m.embedded->convex ? "convex row" : "row with slightly negative weights", m.embedded->order,
+      m.claims.intermediate ? "with the O(epsilon) term of the last stage " : "",
+      default_parts(m.embedded->order), m.embedded->order + 1);
   m.name = file.name();
   file.write(m);
   const auto report = check_json(m);

@@ -75,9 +75,10 @@ json document_json(const method& m) {
   if (m.claims.l_stable) out["claims"]["l_stable"] = *m.claims.l_stable;
   if (m.claims.intermediate) out["claims"]["intermediate"] = *m.claims.intermediate;
   if (m.embedded)
-    out["embedded"] = {{"order", m.embedded->order}, {"origin", m.embedded->origin},
-                       {"P", m.embedded->P},         {"W", m.embedded->W},
-                       {"d", m.embedded->d},         {"ddot", m.embedded->ddot}};
+    out["embedded"] = {{"order", m.embedded->order},   {"convex", m.embedded->convex},
+                       {"origin", m.embedded->origin}, {"P", m.embedded->P},
+                       {"W", m.embedded->W},           {"d", m.embedded->d},
+                       {"ddot", m.embedded->ddot}};
   return out;
 }
 

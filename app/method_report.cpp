@@ -29,6 +29,7 @@ json embedded_json(const method& m, const certificate& c) {
   if (!c.embedded) return nullptr;
   const schedule steps(m.with_embedded_row().coefficients<double>(), true);
   return {{"order", c.embedded->order},
+          {"convex", m.embedded->convex},
           {"order_residual", c.embedded->order_residual.convert_to<double>()},
           {"estimate", c.embedded->estimate.convert_to<double>()},
           {"alignment", c.embedded->alignment.convert_to<double>()},
@@ -40,9 +41,9 @@ json embedded_json(const method& m, const certificate& c) {
 }
 
 std::string embedded_text(const json& e) {
-  return fmt::format("order {}, estimate {:.4g} (2-norm of its residuals of order {}), alignment {:.3g}",
+  return fmt::format("order {}, estimate {:.4g} (2-norm of its residuals of order {}), alignment {:.3g}{}",
                      e["order"].get<int>(), e["estimate"].get<double>(), e["order"].get<int>() + 1,
-                     e["alignment"].get<double>());
+                     e["alignment"].get<double>(), e["convex"].get<bool>() ? "" : ", not convex");
 }
 
 std::string embedded_cost_text(const json& e) {

@@ -85,6 +85,7 @@ class embedded_program {
   embedded_row row(const mp_vector& x, int order, std::string (*text)(const mp_real&)) const {
     embedded_row out;
     out.order = order;
+    out.convex = x.minCoeff() >= 0;
     out.P.assign(form_.stages(), "0");
     out.W = out.P;
     for (std::size_t u = 0; u < unknowns_.size(); ++u) {
@@ -210,9 +211,10 @@ std::optional<candidate> better(const std::optional<candidate>& a, const candida
   return a && a->distance <= b.distance ? a : std::optional(b);
 }
 
-/// Returns the solution for the better sign of θ, with d̃ or −d̃̇ constrained to be above the margin if both
-/// would be below it.
-candidate best_of(const embedded_program& program, const embedded_task& task) {
+/// Returns the solution with weights above `least_weight` for the better sign of θ = ±1/parts, with d̃ or −d̃̇
+/// constrained to be above the margin if both would be below it.
+candidate best_of(const embedded_program& program, int parts, const mp_real& least_weight,
+                  const mp_real& margin) {
   const auto& implicit = program.implicit_places();
   const auto solve = [&](const mp_real& theta, const mp_vector& least) {
     const mp_vector goal = (1 - theta) * program.t;
@@ -227,16 +229,17 @@ candidate best_of(const embedded_program& program, const embedded_task& task) {
     return c;
   };
   std::optional<candidate> best;
-  for (const mp_real& theta : {mp_real(1) / task.parts, mp_real(-1) / task.parts}) {
-    const mp_vector nothing = mp_vector::Zero(program.size());
-    const auto free = solve(theta, nothing);
-    if (implicit.empty() || free.x(implicit).sum() >= task.margin) {
+  for (const mp_real& theta : {mp_real(1) / parts, mp_real(-1) / parts}) {
+    mp_vector lowest = mp_vector::Constant(program.size(), least_weight);
+    lowest(implicit).setZero();
+    const auto free = solve(theta, lowest);
+    if (implicit.empty() || free.x(implicit).sum() >= margin) {
       best = better(best, free);
       continue;
     }
     for (const Eigen::Index place : implicit) {
-      mp_vector least = nothing;
-      least(place) = task.margin;
+      mp_vector least = lowest;
+      least(place) = margin;
       best = better(best, solve(theta, least));
     }
   }
@@ -267,10 +270,16 @@ embedded_search find_embedded(const method& m, const embedded_task& task) {
             lowest = task.order > 0 ? task.order : 1;
   for (int q = highest; q >= lowest && !search.found; --q) {
     const embedded_program program(m, q, task.cost);
-    const candidate best = best_of(program, task);
-    search.attempts.push_back({q, best.residual.convert_to<double>(), best.coverage.convert_to<double>()});
-    const bool solves = best.residual < pow(mp_real(10), 3 - digits);
-    if (solves && best.coverage >= task.least_coverage) search.found = program.row(best.x, q, text_of);
+    const int parts = task.parts > 0 ? task.parts : default_parts(q);
+    for (const bool convex : {true, false}) {
+      if (search.found || (!convex && (q == 1 || m.kind != method_kind::imex))) continue;
+      const mp_real least = convex ? mp_real(0) : -round(mp_real(1000) * task.negative) / (1000 * parts);
+      const candidate best = best_of(program, parts, least, task.margin);
+      search.attempts.push_back(
+          {q, convex, best.residual.convert_to<double>(), best.coverage.convert_to<double>()});
+      const bool solves = best.residual < pow(mp_real(10), 3 - digits);
+      if (solves && best.coverage >= task.least_coverage) search.found = program.row(best.x, q, text_of);
+    }
   }
   return search;
 }

@@ -17,15 +17,24 @@ enum class embedded_cost {
 struct embedded_task {
   int order = 0;  ///< order q of ũ; 0 means the highest for which a useful ũ exists
   embedded_cost cost = embedded_cost::one_solve;  ///< admissible cost of ũ
-  int parts = 10;                ///< target for u^{n+1} − ũ: 1/parts of the Taylor term of order q + 1,
-                                 ///< θ = 1/parts
+  int parts = 0;          ///< target for u^{n+1} − ũ: θ = 1/parts of the Taylor term of order q + 1; 0 means
+                          ///< default_parts(q)
+  double negative = 0.6;  ///< weights may be as low as −θ negative, to three digits, where no convex
+                          ///< row is useful
   double least_coverage = 0.15;  ///< lower bound of embedded_attempt::coverage
   double margin = 1.0 / 64;      ///< lower bound of d̃ + |d̃̇| if there is a solve
 };
 
+/// Returns the part 1/n of the Taylor term that a ũ of order q deviates by, n: 10, 30 and 15 for q = 1, 2 and
+/// above, chosen such that the error at the end is of the size of the tolerance (docs/design.md).
+inline int default_parts(int q) {
+  return q == 1 ? 10 : q == 2 ? 30 : 15;
+}
+
 /// Result of the search at one order.
 struct embedded_attempt {
-  int order = 0;  ///< order q
+  int order = 0;       ///< order q
+  bool convex = true;  ///< whether all weights are required to be ≥ 0
   double residual =
       0.0;  ///< largest |residual| at the closest point with x ≥ 0; rounding error if there is a solution
   /// ‖t − E x‖/(θ ‖t‖) over the trees of T alone or over those of Q alone, whichever is smaller: the
@@ -38,11 +47,11 @@ struct embedded_attempt {
 struct embedded_search {
   std::optional<embedded_row> found;       ///< with coefficients of 45 digits, or exact rationals where
                                            ///< they are simple
-  std::vector<embedded_attempt> attempts;  ///< in descending order q
+  std::vector<embedded_attempt> attempts;  ///< in descending order q, convex rows first
 };
 
-/// Searches for an embedded solution of order q < p of a method of order p that is convex and suitable
-/// for error estimation.
+/// Searches for an embedded solution of order q < p of a method of order p that is suitable for error
+/// estimation, convex if possible.
 ///
 /// Its unknowns x = (p̃_j, w̃_j, r̃, d̃, −d̃̇) ≥ 0 satisfy linear equations: the order conditions at the new
 /// row are φ̃(τ) = 1/γ(τ) for |τ| ≤ q, so all factors of the products under the root of a tree of order ≤ q +
@@ -62,9 +71,12 @@ struct embedded_search {
 /// If the method claims exact O(ε) terms for ε ≪ Δt, ũ has the same O(ε) term as u^{n+1}: Σ_j w̃_j/r = d̃ and
 /// d̃̇ = 0 ((N2) of docs/plateaus.md, also linear). Otherwise u^{n+1} − ũ would stall at a multiple of ε.
 ///
-/// The row of u^{n+1} satisfies all equations but estimates nothing. An order q is skipped if there is no
-/// other solution, or none with sufficient coverage of the trees of each colour. Throws input_error for
-/// methods with a nondiagonal D, with an update, or of order 1, and for orders not below p.
+/// The row of u^{n+1} satisfies all equations but estimates nothing. If there is no other convex solution, or
+/// none with sufficient coverage of the trees of each colour, weights down to −θ negative are admitted for
+/// q ≥ 2 and kind imex, while d̃ ≥ 0 ≥ d̃̇ remain; an order q for which this does not help either is skipped.
+/// u^{n+1} does not depend on ũ: the bound only keeps ũ itself admissible where stages differ by less than
+/// that. Throws input_error for methods with a nondiagonal D, with an update, or of order 1, and for orders
+/// not below p.
 embedded_search find_embedded(const method& m, const embedded_task& task);
 
 }  // namespace apsis

@@ -14,7 +14,7 @@ namespace apsis {
 /// Step-size controller: keeps the estimated error err of a step below a tolerance. A step is rejected if err
 /// > tol; after a rejected step and after an accepted one, respectively,
 ///   Δt ← 0.9 Δt (tol/err)^{1/k},      Δt ← 0.9 Δt (tol/err)^{0.7/k} (err_{n−1}/tol)^{0.4/k},
-/// by a factor between 0.2 and 5, and no increase right after a rejection. err ~ Δt^k: k is the order of the
+/// by a factor between 0.2 and 10, and no increase right after a rejection. err ~ Δt^k: k is the order of the
 /// embedded solution plus one. The second formula is Gustafsson's proportional–integral controller, which
 /// does not oscillate where stability or a step limit keeps err small or irregular (Hairer, Wanner, Solving
 /// Ordinary Differential Equations II, section IV.2; Söderlind, ACM Trans. Math. Softw. 29 (2003) 1–26).
@@ -24,7 +24,7 @@ class step_controller {
   /// State of the controller in a checkpoint; a restart from it is bitwise identical.
   struct progress {
     Real proposed = std::numeric_limits<Real>::infinity();  ///< proposed length of the next step
-    Real previous = Real(1);                                ///< err/tol of the last accepted step, ≥ 1e-4
+    Real previous = Real(1);                                ///< err/tol of the last accepted step, ≥ 1e-8
     bool after_rejection = false;                           ///< whether the last step was rejected
     long rejected = 0;                                      ///< number of rejected steps
 
@@ -61,9 +61,9 @@ class step_controller {
     const Real k(order_ + 1), ratio = error / tolerance_;
     const bool good = ratio <= Real(1);
     if (good) {
-      const Real now = std::max(ratio, Real(1e-4));  // bounds the growth for tiny errors
+      const Real now = std::max(ratio, Real(1e-8));  // bounds the growth for tiny errors
       const Real factor = Real(0.9) * pow(now, Real(-0.7) / k) * pow(now_.previous, Real(0.4) / k);
-      now_.proposed = dt * std::clamp(factor, Real(0.2), now_.after_rejection ? Real(1) : Real(5));
+      now_.proposed = dt * std::clamp(factor, Real(0.2), now_.after_rejection ? Real(1) : Real(10));
       now_.previous = now;
     } else {
       const bool is_number = ratio < std::numeric_limits<Real>::infinity();
@@ -106,8 +106,7 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
     }
     try {
       const auto tried = method_stepper.attempt(march.t(), dt, u);
-      const real error =
-          estimate(method_stepper.problem(), march.t(), dt, u, tried, control.target(), distance);
+      const real error = estimate(method_stepper.problem(), march.t(), dt, u, tried, distance);
       if (!control.accepts(dt, error)) continue;
     } catch (const numerical_error& why) {
       failure = why;

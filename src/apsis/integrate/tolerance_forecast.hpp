@@ -35,7 +35,7 @@ typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, ty
     const bool rejected_before = control.rejected() > 0;
     real error(0);
     try {
-      error = estimate(p, t, dt, u, method_stepper.attempt(t, dt, u), target, distance);
+      error = estimate(p, t, dt, u, method_stepper.attempt(t, dt, u), distance);
     } catch (const numerical_error&) {
       error = std::numeric_limits<real>::infinity();  // a step that fails is too long
     }

@@ -121,21 +121,21 @@ mp_real alignment_of(const butcher_form<mp_real>& b, int p, method_kind kind) {
   return residuals == 0 ? mp_real(0) : mp_real(abs(along) / sqrt(residuals * exact));
 }
 
-/// Checks that the row of the embedded solution is convex, so that ũ preserves what the stages preserve,
-/// where the method itself preserves it.
-void check_embedded_signs(const shu_osher_form<mp_real>& form, const mp_real& tolerance, certificate& c) {
-  if (c.bounded && c.ssp_coefficient == 0) return;
+/// Checks that ũ is a stage that can be solved and, if its row is `convex`, that it preserves what the stages
+/// preserve.
+void check_embedded_signs(const shu_osher_form<mp_real>& form, const mp_real& tolerance, bool convex,
+                          certificate& c) {
   const std::size_t last = form.stages() - 1;
   const auto check = [&](const std::string& what, const mp_real& value, const mp_real& least) {
     if (value < least)
       c.failures.push_back(
           fmt::format("{} = {} is negative: the embedded solution is not convex", what, short_text(value)));
   };
-  for (std::size_t j = 0; j < last; ++j) {
+  for (std::size_t j = 0; convex && j < last; ++j) {
     check(fmt::format("embedded.P_{}", j + 1), form.P(last, j), 0);
     check(fmt::format("embedded.W_{}", j + 1), form.W(last, j), 0);
   }
-  check("the weight of u^n in [embedded]", initial_weights(form)[last], -tolerance);
+  if (convex) check("the weight of u^n in [embedded]", initial_weights(form)[last], -tolerance);
   if (c.kind == method_kind::explicit_only) return;
   check("embedded.d", form.D(last, last), 0);
   check("-embedded.ddot", -form.ddot[last], 0);
@@ -179,7 +179,7 @@ void find_embedded_solution(const method& m, certificate& c) {
     check_order_claim(extended, row);
     for (const auto& failure : row.failures) c.failures.push_back("[embedded] " + failure);
   }
-  check_embedded_signs(form, tolerance, c);
+  check_embedded_signs(form, tolerance, m.embedded->convex, c);
 }
 
 }  // namespace

@@ -88,7 +88,8 @@ std::vector<std::string> diagonal_of(const matrix<std::string>& m) {
 }
 
 std::string embedded_table(const embedded_row& row, method_kind kind) {
-  std::string out = fmt::format("\n[embedded]\norder = {}\n", row.order);
+  std::string out =
+      fmt::format("\n[embedded]\norder = {}\n{}", row.order, row.convex ? "" : "convex = false\n");
   if (!row.origin.empty()) out += fmt::format("origin = {}\n", quoted(row.origin));
   out += fmt::format("P = {}\n", list(row.P));
   if (kind != method_kind::implicit_only) out += fmt::format("W = {}\n", list(row.W));

@@ -44,6 +44,7 @@ struct method_claims {
 struct embedded_row {
   int order = 0;               ///< q, below the order of the method
   std::string origin;          ///< how it was found; "" if not stated
+  bool convex = true;          ///< whether all weights are ≥ 0; otherwise only the signs of d̃ and d̃̇ hold
   std::vector<std::string> P,  ///< p̃, one entry per stage
       W;                       ///< w̃, one entry per stage
   std::string d = "0",         ///< d̃

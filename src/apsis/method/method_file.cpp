@@ -95,13 +95,14 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
 
 /// Reads [embedded], a row of the Shu–Osher form with the explicit and implicit parts that the method has.
 void read_embedded(const toml::table& table, const std::string& file, method& m) {
-  std::vector<std::string> keys = {"order", "origin", "P"};
+  std::vector<std::string> keys = {"order", "origin", "convex", "P"};
   if (m.kind != method_kind::implicit_only) keys.emplace_back("W");
   if (m.kind != method_kind::explicit_only) keys.insert(keys.end(), {"d", "ddot"});
   const toml_section form(table, file, "embedded", keys);
   embedded_row row;
   row.order = form.integer("order", 1, 8);
   if (form.has("origin")) row.origin = form.text("origin");
+  if (form.has("convex")) row.convex = form.boolean("convex");
   const auto weights = [&](const std::string& key) {
     auto values = form.vector(key);
     if (values.size() != m.stages())

@@ -41,6 +41,7 @@ method make(std::size_t columns) {
   m.exact = empty_form(rows, "1");
   m.embedded = embedded_row{.order = static_cast<int>(order) - 1,
                             .origin = "the same without the last column",
+                            .convex = false,
                             .P = std::vector<std::string>(rows, "0"),
                             .W = std::vector<std::string>(rows, "0")};
   std::size_t row = 1;

@@ -276,7 +276,11 @@ void thread_team::run(int n, int threads, numbered_job job, split mode) {
   const auto worked = std::chrono::steady_clock::now();
   all.close();
   here = {};
-  if (mode == split::parts) overhead_.add({begun, called, worked, std::chrono::steady_clock::now()}, own, n);
+  if (mode == split::parts) {
+    const auto ended = std::chrono::steady_clock::now();
+    overhead_.add({begun, called, worked, ended}, own, n);
+    trial_.add(std::chrono::duration<double>(ended - begun).count());
+  }
   all.failure.rethrow();
 }
 

@@ -448,8 +448,8 @@ TEST(results, a_run_to_a_tolerance_continues_from_a_checkpoint_bit_for_bit_and_r
   EXPECT_EQ(result("whole")["rejected_steps"], result("resumed")["rejected_steps"]);
   EXPECT_LT(result("stopped")["steps"].get<long>(), result("whole")["steps"].get<long>());
   const outcome rejecting =
-      run_apsis(folder, {"run", "paper/ode", "time.method=md-imex-14-4-accurate", "model.epsilon=1e-3",
-                         "time.dt=0.5", "time.tolerance=1e-6", "--json"});
+      run_apsis(folder, {"run", "paper/ode", "time.method=md-imex-16-4-accurate", "model.epsilon=1e-3",
+                         "time.dt=0.5", "time.tolerance=1e-8", "--json"});
   ASSERT_EQ(rejecting.code, 0) << rejecting.err;
   EXPECT_GE(json::parse(rejecting.out)["rejected_steps"].get<long>(), 1);
   EXPECT_THAT(whole.out, HasSubstr("steps rejected)"));

@@ -64,7 +64,7 @@ method make(std::size_t columns) {
 extern const family_entry family_extrapolated_euler;
 const family_entry family_extrapolated_euler = {
     .pattern = "extrapolated-euler-S",
-    .description = "order S from 1, 2, ..., S substeps, n_F = 1 + S(S - 1)/2, any sign (docs/methods.md)",
+    .description = "order S from 1 to S substeps, f of any sign (docs/methods.md)",
     .lowest = 2,
     .highest = 8,
     .make = extrapolated_euler_family::make};

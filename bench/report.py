@@ -240,6 +240,49 @@ def grouped(points):
                      for group, leagues in GROUPS.items() for point in points if point.get("league") in leagues]
 
 
+# Methods whose steps by tolerance are compared with equal steps.
+ADAPTIVE = ("md-imex-3-2", "md-imex-8-3-mixed", "md-imex-8-3-accurate", "extrapolated-euler-6")
+
+
+def tolerance_runs(points):
+    """Returns ε, method, steps, error and whether a tolerance chose the steps, for equal steps only the fewest for an error."""
+    runs = {}
+    for point in points:
+        name, _, how = point["contestant"].partition(", ")
+        if name in ADAPTIVE and point["error"] and not point.get("failure"):
+            runs.setdefault((point["epsilon"], name, how == "adaptive"), []).append((point["steps"], float(f"{point['error']:.3g}")))
+    kept = []
+    for (epsilon, name, adaptive), found in runs.items():
+        best = float("inf")
+        for steps, error in sorted(found):
+            if adaptive or error < best:
+                kept.append({"epsilon": epsilon, "method": name, "steps": steps, "error": error, "adaptive": adaptive})
+                best = min(best, error)
+    return kept
+
+
+def draw_tolerance(runs, path):
+    """Draws steps against error for each ε: equal steps as lines, steps chosen by a tolerance as marks."""
+    epsilons = sorted({run["epsilon"] for run in runs}, reverse=True)
+    figure, grid = plt.subplots(2, 3, figsize=(13.0, 8.5))
+    places = list(grid.flat)
+    for axes, epsilon in zip(places, epsilons):
+        for k, name in enumerate(ADAPTIVE):
+            def points(adaptive):
+                chosen = [run for run in runs if (run["epsilon"], run["method"], run["adaptive"]) == (epsilon, name, adaptive)]
+                return [run["error"] for run in chosen], [run["steps"] for run in chosen]
+            axes.loglog(*points(False), "-", color=COLOURS[k], label=f"{name}, equal steps")
+            axes.loglog(*points(True), MARKERS[k], color=COLOURS[k], label=f"{name}, tolerance")
+        axes.invert_xaxis()
+        axes.set_xlabel("error")
+        axes.set_ylabel("steps")
+        axes.set_title(f"ε = {epsilon:g}")
+    places[-1].axis("off")
+    places[-1].legend(*places[0].get_legend_handles_labels(), loc="center", fontsize="small")
+    figure.savefig(path)
+    plt.close(figure)
+
+
 def compact(results):
     """Keeps only what tables and pictures show, which is the Pareto front of each contestant or group."""
     kept = {}
@@ -251,6 +294,8 @@ def compact(results):
         best = [{key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in run.items()}
                 for group in groups.values() for front in fronts(group).values() for run in front]
         kept[name] = result | {"data": result["data"] | {"points": best}}
+        if name == "peers-ode" and any("league" in point for point in result["data"]["points"]):
+            kept[name]["data"]["tolerance"] = tolerance_runs(result["data"]["points"])
     return kept
 
 
@@ -307,6 +352,8 @@ def main():
                            ("peers-prothero-robinson", "speed-prothero-robinson")):
         if table in results:
             draw_ode(results[table], given.docs / "images" / f"{picture}.png")
+    if "tolerance" in results.get("peers-ode", {"data": {}})["data"]:
+        draw_tolerance(results["peers-ode"]["data"]["tolerance"], given.docs / "images" / "speed-tolerance.png")
 
 
 if __name__ == "__main__":

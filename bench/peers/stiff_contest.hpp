@@ -14,7 +14,7 @@ namespace apsis::bench::peers {
 result_table race_on(const std::function<std::unique_ptr<stiff_task>(double)>& make,
                      const std::vector<double>& epsilons, const settings& options);
 
-/// What the rows and columns of race_on() mean, to be appended to what the problem is.
+/// Explanation of the rows and columns of race_on(), to be appended to a description of the problem.
 extern const char* const race_note;
 
 }  // namespace apsis::bench::peers

@@ -55,7 +55,7 @@ class Shell(Pages):
                              block("text", "True", "output"))
 
     def test_a_command_that_fails_in_the_middle_is_reported_with_its_message(self):
-        self.assert_refused(3, "nothing is called 'nonsense'", block("sh", "apsis show nonsense\ntrue"))
+        self.assert_refused(3, "is called 'nonsense'", block("sh", "apsis show nonsense\ntrue"))
 
     def test_a_pipe_that_fails_at_its_beginning_fails(self):
         self.assert_refused(3, "exit code 3", block("sh", "(exit 3) | cat"))

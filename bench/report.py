@@ -345,13 +345,13 @@ def main():
     replace(given.docs / "speed.md", "processors", comparison(machines))
     replace(given.docs / "speed.md", "winners", winners(results))
     replace(given.readme, "speed", comparison(machines, FRONT_PAGE))
-    for table, picture in (("peers-mixed", "speed-mixed"), ("peers-mixed-points", "speed-mixed-points")):
+    for table, picture in (("peers-mixed", "speed-mixed.png"), ("peers-mixed-points", "speed-mixed-points.png")):
         if table in results:
-            draw_mixed(results[table], given.docs / "images" / f"{picture}.png")
-    for table, picture in (("peers-ode", "speed-ode"), ("peers-kaps", "speed-kaps"),
-                           ("peers-prothero-robinson", "speed-prothero-robinson")):
+            draw_mixed(results[table], given.docs / "images" / picture)
+    for table, picture in (("peers-ode", "speed-ode.png"), ("peers-kaps", "speed-kaps.png"),
+                           ("peers-prothero-robinson", "speed-prothero-robinson.png")):
         if table in results:
-            draw_ode(results[table], given.docs / "images" / f"{picture}.png")
+            draw_ode(results[table], given.docs / "images" / picture)
     if "tolerance" in results.get("peers-ode", {"data": {}})["data"]:
         draw_tolerance(results["peers-ode"]["data"]["tolerance"], given.docs / "images" / "speed-tolerance.png")
 

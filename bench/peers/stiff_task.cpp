@@ -76,6 +76,9 @@ double relative_distance(const stiff_task::state& u, const stiff_task::state& v)
   return std::hypot(u[0] - v[0], u[1] - v[1]) / std::hypot(u[0], u[1]);
 }
 
+/// Limit on the number of steps, that of SUNDIALS in sundials_ode.cpp.
+constexpr long most_steps = 20000;
+
 template <class Definition>
 class relaxation_task : public stiff_task {
  public:
@@ -125,7 +128,12 @@ class relaxation_task : public stiff_task {
       run(u, [&](long step, double, double, const state& now) {
         measured.smallest = std::min({measured.smallest, now[0], now[1]});
         measured.steps = step;
+        return step < most_steps;
       });
+      if (measured.steps >= most_steps) {
+        measured.failure = "too many steps";
+        return measured;
+      }
       measured.seconds = seconds_per_call([&] {
         u = initial();
         run(u, no_observer{});

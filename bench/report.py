@@ -171,10 +171,10 @@ def comparison(machines, selection=("",)):
 
 
 def fronts(points):
-    """Returns the Pareto front of every contestant: runs that no other of its runs beats in both error and time."""
+    """Returns the Pareto front of every contestant, errors from 1 to 1e-11: runs that no other of its runs beats in both error and time."""
     by_name = {}
     for point in points:
-        if point.get("error") and point.get("seconds") and not point.get("failure"):
+        if 1e-11 <= (point.get("error") or 0) <= 1 and point.get("seconds") and not point.get("failure"):
             by_name.setdefault(point["contestant"], []).append(point)
     for name, runs in by_name.items():
         runs.sort(key=lambda run: (run["seconds"], run["error"]))
@@ -187,9 +187,9 @@ def fronts(points):
     return by_name
 
 
-def draw_work(axes, points):
+def draw_work(axes, points, names):
     """Draws time against error; marks are filled if no value was negative in the run."""
-    for k, name in enumerate(sorted({point["contestant"] for point in points})):
+    for k, name in enumerate(names):
         front = fronts(points).get(name, [])
         colour, mark = COLOURS[k % len(COLOURS)], MARKERS[k // len(COLOURS) % len(MARKERS)]
         dashes = "-" if any(point["ours"] for point in points if point["contestant"] == name) else "--"
@@ -204,7 +204,7 @@ def draw_work(axes, points):
 
 def draw_mixed(result, path):
     figure, axes = plt.subplots(figsize=(11.0, 6.0))
-    draw_work(axes, result["data"]["points"])
+    draw_work(axes, result["data"]["points"], sorted({point["contestant"] for point in result["data"]["points"]}))
     axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.02, 0.5))
     axes.set_title("mixed-regime run; open: some value of f was negative")
     figure.savefig(path)
@@ -217,7 +217,7 @@ def draw_ode(result, path):
     figure, grid = plt.subplots(2, 3, figsize=(13.0, 8.5))
     places = list(grid.flat)
     for axes, epsilon in zip(places, epsilons):
-        draw_work(axes, [point for point in points if point["epsilon"] == epsilon])
+        draw_work(axes, [point for point in points if point["epsilon"] == epsilon], sorted({point["contestant"] for point in points}))
         axes.set_title(f"ε = {epsilon:g}")
     places[-1].axis("off")
     handles, labels = places[0].get_legend_handles_labels()

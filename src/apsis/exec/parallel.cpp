@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -91,10 +90,7 @@ void run_parallel_for(int n, numbered_job body) {
   if (together <= 1) return run_alone(n, body);
   thread_team& all = team_of(team);
   if (all.backs_off()) return run_alone(n, body);
-  if (!all.prefers_caller()) return all.run(n, together, body, thread_team::split::parts);
-  const auto begun = std::chrono::steady_clock::now();
-  run_alone(n, body);
-  all.ran_alone(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+  all.run(n, together, body, thread_team::split::parts);
 }
 
 part_blocks::part_blocks(int n, int longest, int parts) : n_(n), parts_(std::max(1, parts)) {

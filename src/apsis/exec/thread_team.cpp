@@ -276,11 +276,7 @@ void thread_team::run(int n, int threads, numbered_job job, split mode) {
   const auto worked = std::chrono::steady_clock::now();
   all.close();
   here = {};
-  if (mode == split::parts) {
-    const auto ended = std::chrono::steady_clock::now();
-    overhead_.add({begun, called, worked, ended}, own, n);
-    trial_.add(std::chrono::duration<double>(ended - begun).count());
-  }
+  if (mode == split::parts) overhead_.add({begun, called, worked, std::chrono::steady_clock::now()}, own, n);
   all.failure.rethrow();
 }
 

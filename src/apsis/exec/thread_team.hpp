@@ -1,7 +1,6 @@
 #pragma once
 
 #include <apsis/exec/parallel.hpp>
-#include <apsis/exec/region_trial.hpp>
 
 #include <chrono>
 #include <memory>
@@ -67,10 +66,6 @@ class thread_team {
 
   /// Whether the workers have recently cost more time than they saved.
   bool backs_off() const { return overhead_.backs_off(); }
-  /// Whether short regions are to be timed on the caller alone now, or are faster so; then the caller passes
-  /// their duration to ran_alone().
-  bool prefers_caller() const { return trial_.alone(); }
-  void ran_alone(double seconds) { trial_.add(seconds); }
 
   /// Runs job(k) for k = 0 … n−1 with at most `threads` threads; rethrows the exception of the smallest
   /// k that failed.
@@ -84,7 +79,6 @@ class thread_team {
   long forks_;
   std::shared_ptr<shared> shared_;
   team_overhead overhead_;
-  region_trial trial_;
 };
 
 }  // namespace apsis

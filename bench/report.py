@@ -234,9 +234,9 @@ GROUPS = {"Apsis": ("ssp", "any sign", "adaptive"), "Apsis, with SSP coefficient
 
 
 def grouped(points):
-    """Replaces the methods of Apsis by three groups; the name of the method becomes part of the setting."""
+    """Replaces the methods of Apsis by three groups."""
     others = [point for point in points if point.get("league", "other") == "other"]
-    return others + [point | {"contestant": group, "setting": f"{point['contestant']}, {point['setting']}"}
+    return others + [point | {"contestant": group}
                      for group, leagues in GROUPS.items() for point in points if point.get("league") in leagues]
 
 
@@ -283,6 +283,10 @@ def draw_tolerance(runs, path):
     plt.close(figure)
 
 
+# Properties of a run that the pictures show.
+DRAWN = ("contestant", "ours", "epsilon", "error", "seconds", "smallest")
+
+
 def compact(results):
     """Keeps only what tables and pictures show, which is the Pareto front of each contestant or group."""
     kept = {}
@@ -291,7 +295,7 @@ def compact(results):
         groups = {}
         for point in points:
             groups.setdefault(point.get("epsilon"), []).append(point)
-        best = [{key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in run.items()}
+        best = [{key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in run.items() if key in DRAWN}
                 for group in groups.values() for front in fronts(group).values() for run in front]
         kept[name] = result | {"data": result["data"] | {"points": best}}
         if name == "peers-ode" and any("league" in point for point in result["data"]["points"]):

@@ -5,6 +5,7 @@
 #include <apsis/method/certificate.hpp>
 
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -76,7 +77,7 @@ void add_radau(contest& all, const stiff_task& task, double tightest) {
     }
 }
 
-contest race(const stiff_task& task, bool quick) {
+contest contestants(const stiff_task& task, bool quick) {
   contest all({1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}, "µs", false);
   const double tightest = quick ? 1e-4 : 1e-12;
   add_ours(all, task, quick ? 16 : 8192, quick ? 1e-3 : 1e-10);
@@ -94,9 +95,7 @@ contest race(const stiff_task& task, bool quick) {
   return all;
 }
 
-}  // namespace
-
-const char* const race_note =
+const char* const note =
     " Contestants: every IMEX method of the catalogue, and extrapolated Euler steps of orders 2 to 8, with 1 "
     "to "
     "8192 equal steps, with and without a graded start, and with steps chosen by a tolerance where it has an "
@@ -112,13 +111,17 @@ const char* const race_note =
     "once "
     "and reinitialized.";
 
-result_table race_on(const std::function<std::unique_ptr<stiff_task>(double)>& make,
-                     const std::vector<double>& epsilons, const settings& options) {
+}  // namespace
+
+result_table run(const stiff_race& race, const settings& options) {
   result_table result;
+  result.title = race.title;
+  result.note = race.problem + note;
   auto& points = result.data["points"] = nlohmann::json::array();
-  for (const double epsilon : options.quick ? std::vector<double>{1e-6} : epsilons) {
-    const auto task = make(epsilon);
-    contest all = race(*task, options.quick);
+  for (const double epsilon :
+       options.quick ? std::vector<double>{1e-6} : std::vector<double>{1.0, 1e-2, 1e-4, 1e-6, 1e-10}) {
+    const auto task = race.make(epsilon);
+    contest all = contestants(*task, options.quick);
     all.run(options.quick ? 0 : options.repeats, 1.0);
     if (result.columns.empty()) {
       result.columns = all.columns();

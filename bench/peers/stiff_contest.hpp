@@ -3,18 +3,20 @@
 #include "measure/table.hpp"
 #include "stiff_task.hpp"
 
-#include <functional>
-#include <vector>
+#include <memory>
+#include <string>
 
 namespace apsis::bench::peers {
 
-/// Work and precision of every IMEX method of the catalogue, explicit SSP methods, CVODE, ARKODE and Radau on
-/// a stiff_task for each ε; `make` returns the task. The table has a row for each of the others and the best
-/// of Apsis.
-result_table race_on(const std::function<std::unique_ptr<stiff_task>(double)>& make,
-                     const std::vector<double>& epsilons, const settings& options);
+/// A problem of the contest.
+struct stiff_race {
+  std::string title,  ///< of the table
+      problem;        ///< equation, data and reference, in a sentence
+  std::unique_ptr<stiff_task> (*make)(double epsilon);
+};
 
-/// Explanation of the rows and columns of race_on(), to be appended to a description of the problem.
-extern const char* const race_note;
+/// Work and precision of every IMEX method of the catalogue, explicit SSP methods, CVODE, ARKODE and Radau
+/// for ε = 1, 1e-2, 1e-4, 1e-6 and 1e-10. The table has the best of Apsis and a row for each of the others.
+result_table run(const stiff_race& race, const settings& options);
 
 }  // namespace apsis::bench::peers

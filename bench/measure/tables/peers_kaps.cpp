@@ -6,13 +6,12 @@ namespace apsis::bench::peers_kaps_table {
 namespace {
 
 result_table measure(const settings& options) {
-  auto result = peers::race_on(peers::make_kaps, {1.0, 1e-2, 1e-4, 1e-6, 1e-10}, options);
-  result.title = "Kaps' problem: work and precision";
-  result.note = std::string(
-                    "Kaps' problem, u1' = u2 − u1 − u1², u2' = −2u2 + (u1² − u2)/ε, from (1, 1), near "
-                    "equilibrium; the solution is u1 = exp(−t), u2 = u1².") +
-                peers::race_note;
-  return result;
+  return peers::run({"Kaps' problem: work and precision",
+                     "Kaps' problem, u1' = u2 − u1 − u1², u2' = −2u2 + (u1² − u2)/ε, from (1, 1), near "
+                     "equilibrium; the solution is "
+                     "u1 = exp(−t), u2 = u1².",
+                     peers::make_kaps},
+                    options);
 }
 
 const registered here({"peers-kaps", "work and precision against other integrators, Kaps' problem", measure});

@@ -6,16 +6,16 @@ namespace apsis::bench::peers_ode_table {
 namespace {
 
 result_table measure(const settings& options) {
-  auto result = peers::race_on(peers::make_ode_model, {1.0, 1e-2, 1e-4, 1e-6, 1e-10}, options);
-  result.title = "ODE model: work and precision";
-  result.note = std::string(
-                    "The ODE model of the paper, data out of equilibrium. The reference is extrapolated in "
-                    "extended precision to 1e-13.") +
-                peers::race_note;
-  return result;
+  return peers::run({"ODE model: work and precision",
+                     "The ODE model of the paper, data out of equilibrium. The reference is extrapolated in "
+                     "extended precision to "
+                     "1e-13.",
+                     peers::make_ode_model},
+                    options);
 }
 
-const registered here({"peers-ode", "work and precision against other integrators, ODE model", measure});
+const registered here({"peers-ode",
+                       "work and precision against other integrators, the ODE model of the paper", measure});
 
 }  // namespace
 }  // namespace apsis::bench::peers_ode_table

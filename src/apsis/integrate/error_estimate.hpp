@@ -23,11 +23,9 @@ struct error_target {
 /// ∞, the projection to the manifold,
 ///   estimate = ‖(w e + v(u^{n+1}) − v(ũ))/(1 + w)‖,   v(x) = x + (Δt/ρ²) Q(v(x)),   w = ρ/10,
 ///   ρ = ‖P(u^{n+1}) − P(u^n)‖/‖u^{n+1} − u^n‖, between 1/100 and 1.
-/// To first order this keeps the component along the manifold and multiplies the rest by (w + 1/(1 +
-/// z/ρ²))/(1
-/// + w), z = CΔt/ε: by 1 for z → 0 and by 1/11 for z → ∞ while u follows its moments, ρ = 1; in a layer,
-/// where the moments hardly change, by 1/1000 at least. For problems without relaxation_time the estimate is
-/// ‖e‖.
+/// To first order the component along the manifold has weight 1, and the rest (w + 1/(1 + z/ρ²))/(1 + w) with
+/// z = CΔt/ε: 1 for z → 0, 1/11 for z → ∞ while u follows its moments (ρ = 1), and 1/1000 at least in a
+/// layer, where the moments hardly change. For problems without relaxation_time the estimate is ‖e‖.
 template <problem P>
 class error_estimate {
  public:

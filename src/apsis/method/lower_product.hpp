@@ -17,11 +17,12 @@ matrix<Real> lower_product(const matrix<Real>& a, const matrix<Real>& b) {
   return c;
 }
 
-/// Returns the product ax with a lower triangular matrix a. Dimensions are not checked.
+/// Returns the product ax with a lower triangular matrix a, with 0 in the rows before `first`. Dimensions are
+/// not checked.
 template <class Real>
-std::vector<Real> lower_product(const matrix<Real>& a, const std::vector<Real>& x) {
+std::vector<Real> lower_product(const matrix<Real>& a, const std::vector<Real>& x, std::size_t first = 0) {
   std::vector<Real> y(a.rows(), Real(0));
-  for (std::size_t i = 0; i < a.rows(); ++i)
+  for (std::size_t i = first; i < a.rows(); ++i)
     for (std::size_t j = 0; j <= i; ++j)
       if (a(i, j) != Real(0)) y[i] += a(i, j) * x[j];
   return y;

@@ -1,5 +1,6 @@
 #include <apsis/method/order_conditions.hpp>
 
+#include <apsis/method/lower_product.hpp>
 #include <apsis/method/precision.hpp>
 
 #include <algorithm>
@@ -45,8 +46,8 @@ class evaluator {
   stage_vector<Real> stage_values(const rooted_tree& tree) const {
     auto product = ones();
     for (const int child : tree.children) multiply(product, child);
-    if (tree.root == colour::F) return rows_of_product(method_.A_hat, product);
-    if (!has_derivatives_) return rows_of_product(method_.A, product);
+    if (tree.root == colour::F) return lower_product(method_.A_hat, product, first_row_);
+    if (!has_derivatives_) return lower_product(method_.A, product, first_row_);
 
     stage_vector<Real> derivative(method_.stages(), Real(0));
     for (std::size_t k = 0; k < tree.children.size(); ++k) {
@@ -58,19 +59,10 @@ class evaluator {
       for (const int grandchild : child.children) multiply(term, grandchild);
       for (std::size_t i = 0; i < term.size(); ++i) derivative[i] += term[i];
     }
-    auto values = rows_of_product(method_.A, product);
-    const auto second = rows_of_product(method_.A_dot, derivative);
+    auto values = lower_product(method_.A, product, first_row_);
+    const auto second = lower_product(method_.A_dot, derivative, first_row_);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] += second[i];
     return values;
-  }
-
-  /// Returns ax from first_row_ on, and 0 before.
-  stage_vector<Real> rows_of_product(const matrix<Real>& a, const stage_vector<Real>& x) const {
-    stage_vector<Real> y(a.rows(), Real(0));
-    for (std::size_t i = first_row_; i < a.rows(); ++i)
-      for (std::size_t j = 0; j <= i; ++j)
-        if (a(i, j) != Real(0)) y[i] += a(i, j) * x[j];
-    return y;
   }
 
   const butcher_form<Real>& method_;

@@ -2,6 +2,7 @@
 #include <apsis/exec/parallel.hpp>
 
 #include <atomic>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -56,6 +57,36 @@ TEST(parallel_blocks, process_every_index_once_and_propagate_exceptions) {
     };
     EXPECT_THROW(apsis::parallel_blocks(100, 7, fail), int);
   }
+  apsis::set_threads(1);
+}
+
+TEST(loops_over, few_numbers_run_on_the_caller_alone) {
+  apsis::set_threads(3);
+  {
+    const apsis::loops_over few(apsis::fewest_shared_numbers - 1);
+    EXPECT_EQ(apsis::threads_here(), 1);
+    const auto caller = std::this_thread::get_id();
+    apsis::parallel_for(8, [&](int) {
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+      EXPECT_EQ(apsis::thread_number(), 0);
+    });
+    {
+      const apsis::loops_over inner(0);
+      EXPECT_EQ(apsis::threads_here(), 1);
+    }
+    EXPECT_EQ(apsis::threads_here(), 1) << "the inner one must not end the outer one";
+  }
+  EXPECT_EQ(apsis::threads_here(), 3);
+  {
+    const apsis::loops_over many(apsis::fewest_shared_numbers);
+    EXPECT_EQ(apsis::threads_here(), 3);
+  }
+  apsis::share_loops_from(0);
+  {
+    const apsis::loops_over nothing(0);
+    EXPECT_EQ(apsis::threads_here(), 3);
+  }
+  apsis::share_loops_from(apsis::fewest_shared_numbers);
   apsis::set_threads(1);
 }
 

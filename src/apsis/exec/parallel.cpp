@@ -20,6 +20,7 @@ namespace apsis {
 namespace {
 
 std::atomic<int> thread_count = 1;
+std::atomic<std::size_t> fewest_shared = fewest_shared_numbers;
 
 /// Returns the team of the calling thread, created on demand. A forked process does not use the team
 /// of its parent.
@@ -79,6 +80,19 @@ int threads() {
 
 int threads_here() {
   return this_thread_position().inside ? 1 : threads();
+}
+
+void share_loops_from(std::size_t numbers) {
+  fewest_shared = numbers;
+}
+
+loops_over::loops_over(std::size_t numbers)
+    : outermost_(!this_thread_position().inside && numbers < fewest_shared) {
+  if (outermost_) this_thread_position().inside = true;
+}
+
+loops_over::~loops_over() {
+  if (outermost_) this_thread_position().inside = false;
 }
 
 int thread_number() {

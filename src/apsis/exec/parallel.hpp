@@ -18,10 +18,29 @@ int default_threads();
 int requested_threads();
 /// Returns the number of threads set; initially 1.
 int threads();
-/// Returns the number of threads of a loop started here: 1 inside another loop.
+/// Returns the number of threads of a loop started here: 1 inside another loop or below loops_over.
 int threads_here();
 /// Returns the index of the calling thread: 0 … threads_here() − 1 in a loop, 0 outside loops.
 int thread_number();
+
+/// Loops over fewer numbers are faster on one thread than on several, which exchange them between their
+/// caches in every pass (docs/speed.md, "Threads").
+inline constexpr std::size_t fewest_shared_numbers = 16384;
+/// Replaces fewest_shared_numbers; for tests of threads on small fields.
+void share_loops_from(std::size_t numbers);
+
+/// Runs loops on the calling thread alone, for as long as it lives, if they pass over too few numbers.
+class loops_over {
+ public:
+  /// `numbers`: size of the field over which the loops pass.
+  explicit loops_over(std::size_t numbers);
+  ~loops_over();
+  loops_over(const loops_over&) = delete;
+  loops_over& operator=(const loops_over&) = delete;
+
+ private:
+  bool outermost_;  ///< whether it ended the use of several threads
+};
 
 /// Scratch space for every thread of a loop, prepared for all threads before the loop, so that memory use
 /// does not depend on which of them take part.
@@ -92,7 +111,7 @@ class part_blocks {
 /// caches of the core that wrote them.
 template <class Body>
 void parallel_blocks(int n, int longest, const Body& body) {
-  const part_blocks blocks(n, longest, threads());
+  const part_blocks blocks(n, longest, threads_here());
   parallel_for(blocks.count(), [&](int block) {
     const int begin = blocks.begin(block), end = blocks.end(block);
     if (begin < end) body(begin, end);

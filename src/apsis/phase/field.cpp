@@ -20,6 +20,7 @@ std::size_t field::numbers(int cells, int stride) {
 void field::fill_rows(const double* values) {
   // In the parts of all other loops over cells: memory is near to the core that writes it first.
   constexpr int block = 4096;
+  const loops_over numbers(size());
   parallel_blocks(cells_, block, [&](int begin, int end) {
     const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(begin) * stride_,
                          count = static_cast<std::ptrdiff_t>(end - begin) * stride_;

@@ -45,6 +45,7 @@ class field {
   int components() const { return components_; }  ///< numbers of a row without padding
   /// Distance between rows, including padding.
   int stride() const { return stride_; }
+  std::size_t size() const { return data_.size(); }  ///< numbers of all rows with their padding
 
   /// Returns the stride of rows with the given number of components.
   static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }

@@ -70,6 +70,7 @@ monitor::partial monitor::check_block(const field& u) const {
   empty.densities.resize(count);
   empty.scales.resize(count);
   std::vector<partial*> parts;
+  const loops_over numbers(u.size());
   parts_->prepare([&](partial& own) {
     own = empty;
     parts.push_back(&own);

@@ -16,6 +16,7 @@ double relative_distance(const field& u, const field& v, communicator& processes
   };
   std::vector<cell_squares> squares(static_cast<std::size_t>(u.cells()));
   constexpr int block = 16;
+  const loops_over numbers(u.size());
   parallel_blocks(u.cells(), block, [&](int begin, int end) {
     for (int cell = begin; cell < end; ++cell) {
       cell_squares& here = squares[static_cast<std::size_t>(cell)];

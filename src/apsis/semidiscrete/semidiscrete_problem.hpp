@@ -3,6 +3,7 @@
 #include <apsis/core/first_error.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
+#include <apsis/exec/parallel.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/transport.hpp>
 
@@ -43,12 +44,12 @@ class semidiscrete_problem {
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(t, u) for every target; boundaries know the time t.
   void add_transport(double t, const field& u, std::span<const target<field, double>> targets) {
-    guarded([&] { transport_.add_transport(t, u, targets); });
+    guarded(u, [&] { transport_.add_transport(t, u, targets); });
   }
   /// u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε². Throws numerical_error where there is no equilibrium, or
   /// Newton's method finds no solution.
   void solve_collision(double t, double a, double b, field& u) {
-    guarded([&] { collision_->solve(t, a, b, u); });
+    guarded(u, [&] { collision_->solve(t, a, b, u); });
   }
   /// Equivalent to add_transport() followed by solve_collision(due); where possible, cells are solved while
   /// they are in cache.
@@ -59,16 +60,17 @@ class semidiscrete_problem {
     };
     if (cellwise_) cellwise_->prepare(*due.u);
     bool done = false;
-    guarded([&] {
+    guarded(u, [&] {
       done = transport_.add_transport(t, u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
     });
     // Collisions of cells that are independent need no other process.
-    if (!done && !(cellwise_ && failure_)) guarded([&] { collision_->solve(due.t, due.a, due.b, *due.u); });
+    if (!done && !(cellwise_ && failure_))
+      guarded(u, [&] { collision_->solve(due.t, due.a, due.b, *due.u); });
   }
   /// acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε for every target. Throws numerical_error where ε = 0
   /// or there is no equilibrium.
   void add_collision(double t, const field& u, std::span<const target<field, double>> targets) {
-    guarded([&] { collision_->add_collision(t, u, targets); });
+    guarded(u, [&] { collision_->add_collision(t, u, targets); });
   }
   /// Throws on all processes what one of them met since the last call, with the number of the cell in the
   /// whole mesh.
@@ -90,9 +92,10 @@ class semidiscrete_problem {
   }
 
  private:
-  /// Runs a part of a step; on several processes its errors wait for settle().
+  /// Runs a part of a step over u; on several processes its errors wait for settle().
   template <class Body>
-  void guarded(const Body& body) {
+  void guarded(const field& u, const Body& body) {
+    const loops_over numbers(u.size());
     if (!space_->shared()) return body();
     failure_.run([&] {
       try {

@@ -232,9 +232,9 @@ bool transport::sweep(double t, const field& u, targets_view targets, const cell
   int columns = whole_cells ? 1 : (width + most_columns - 1) / most_columns;
   const int longest = sweep_block_length(std::min(width, most_columns));
   // So many parts that threads of different speed end at about the same time.
-  const int enough = threads() == 1 ? 1 : 4 * threads();
-  const bool parts_of_a_line = on_a_line && n / least_cells >= threads();
-  const tiling& boxes = scratch_->boxes(*space_, longest, parts_of_a_line ? threads() : 1);
+  const int team = threads_here(), enough = team == 1 ? 1 : 4 * team;
+  const bool parts_of_a_line = on_a_line && n / least_cells >= team;
+  const tiling& boxes = scratch_->boxes(*space_, longest, parts_of_a_line ? team : 1);
   const bool by_boxes = on_a_line ? parts_of_a_line : boxes.count() >= enough;
   if (!whole_cells && !by_boxes && static_cast<long>(boxes.count()) * columns < enough)
     columns = std::max(columns, width / least_columns);

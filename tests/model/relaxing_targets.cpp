@@ -122,7 +122,7 @@ void expect_conservation_and_positivity(const char* name) {
   row before(5), after(5), scales(5);
   m.equation->invariant_densities(u.data(), before.data());
   m.equation->invariant_densities(v.data(), after.data());
-  m.equation->invariant_scales(before.data(), scales.data());
+  m.equation->invariant_scales(before, scales.data());
   for (std::size_t k = 0; k < m.equation->invariants().size(); ++k)
     RC_ASSERT(std::abs(after[k] - before[k]) <= 3e-14 * scales[k]);
 }

@@ -89,7 +89,7 @@ std::vector<dimension> gas_model::invariant_measures() const {
   return all;
 }
 
-void gas_model::invariant_scales(const double* densities, double* scales) const {
+void gas_model::invariant_scales(std::span<const double> densities, double* scales) const {
   relaxation_model::invariant_scales(densities, scales);
   const int d = gas_.dimensions();
   const double bound = std::sqrt(2.0 * scales[0] * scales[d + 1]);

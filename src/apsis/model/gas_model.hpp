@@ -60,7 +60,7 @@ class gas_model : public relaxation_model {
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
   /// Momenta cancel between particles of opposite velocities; Σ|v_k| f ≤ √(2ρ𝓔) by the Cauchy–Schwarz
   /// inequality.
-  void invariant_scales(const double* densities, double* scales) const override;
+  void invariant_scales(std::span<const double> densities, double* scales) const override;
 
   std::vector<field_name> fields() const override;
   void macroscopic(const double* f, double* values) const override;

@@ -38,8 +38,8 @@ double model::entropy(const double*) const {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-void model::invariant_scales(const double* densities, double* scales) const {
-  for (std::size_t k = 0; k < invariants().size(); ++k) scales[k] = std::abs(densities[k]);
+void model::invariant_scales(std::span<const double> densities, double* scales) const {
+  for (std::size_t k = 0; k < densities.size(); ++k) scales[k] = std::abs(densities[k]);
 }
 
 unsupported_initial_data model::check_supported(const double*) const {

@@ -102,7 +102,7 @@ class model {
   virtual std::vector<dimension> invariant_measures() const;
   /// scales ← the sizes of the sums behind the invariants, to which rounding is relative; |densities| by
   /// default. A momentum may vanish by cancellation of particles that move in opposite directions.
-  virtual void invariant_scales(const double* densities, double* scales) const;
+  virtual void invariant_scales(std::span<const double> densities, double* scales) const;
 
   /// Returns the macroscopic fields of results.
   virtual std::vector<field_name> fields() const = 0;

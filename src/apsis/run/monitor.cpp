@@ -51,7 +51,7 @@ void monitor::check_cells(const field& u, int begin, int end, partial& own) cons
     own.lowest = std::min(own.lowest, low);
     own.negative += below;
     equation_.invariant_densities(row, own.densities.data());
-    equation_.invariant_scales(own.densities.data(), own.scales.data());
+    equation_.invariant_scales(own.densities, own.scales.data());
     for (std::size_t k = 0; k < count; ++k) {
       own.sums[k].add(own.densities[k]);
       own.sums[count + k].add(own.scales[k]);

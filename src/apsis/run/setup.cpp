@@ -292,7 +292,7 @@ double run_setup::equilibrium_defect(const field& u) const {
     if (!relaxation->equilibrium(omega.data(), e.data())) continue;  // reported by the first step
     equation->invariant_densities(u.row(cell), before.data());
     equation->invariant_densities(e.data(), after.data());
-    equation->invariant_scales(before.data(), scales.data());
+    equation->invariant_scales(before, scales.data());
     for (std::size_t k = 0; k < count; ++k) {
       missed[k].add(std::abs(after[k] - before[k]));
       all[k].add(scales[k]);

@@ -77,7 +77,7 @@ class plane_broadwell_model final : public relaxation_model {
   std::vector<std::string> invariants() const override { return {"mass", "momentum_x", "momentum_y"}; }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
   /// Momenta cancel between opposite velocities; f→ + f← ≤ ρ.
-  void invariant_scales(const double* densities, double* scales) const override {
+  void invariant_scales(std::span<const double> densities, double* scales) const override {
     relaxation_model::invariant_scales(densities, scales);
     for (int k = 1; k < 3; ++k) scales[k] = std::max(scales[0], scales[k]);
   }

@@ -154,11 +154,11 @@ class law_model final : public relaxation_model {
   std::vector<std::string> invariants() const override { return variables(); }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
   /// f± have the size of u/D ± F/a, also where u vanishes, as the momentum of water at rest.
-  void invariant_scales(const double* densities, double* scales) const override {
+  void invariant_scales(std::span<const double> densities, double* scales) const override {
     std::array<double, system_flux::most_variables> F;
-    for (int k = 0; k < n_; ++k) scales[k] = std::abs(densities[k]);
+    for (std::size_t k = 0; k < densities.size(); ++k) scales[k] = std::abs(densities[k]);
     for (const auto& flux : fluxes_) {
-      flux.evaluate(densities, 1, F.data());
+      flux.evaluate(densities.data(), 1, F.data());
       for (std::size_t k = 0; k < static_cast<std::size_t>(n_); ++k)
         if (const double size = std::abs(F[k]) / a_; std::isfinite(size)) scales[k] += size;
     }

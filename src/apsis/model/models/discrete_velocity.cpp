@@ -98,7 +98,7 @@ class discrete_velocity_model final : public model {
     std::copy(all.begin(), all.end(), densities);
   }
   /// A row has |Σ φ_j f_j| ≤ max|φ| ρ.
-  void invariant_scales(const double* densities, double* scales) const override {
+  void invariant_scales(std::span<const double> densities, double* scales) const override {
     for (std::size_t k = 0; k < collisions_.invariants().size(); ++k)
       scales[k] =
           std::max(std::abs(densities[k]),

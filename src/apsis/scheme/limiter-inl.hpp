@@ -46,7 +46,7 @@ class harm_bound {
       : allowed_(maximum(fma(N((1.0 - relative_margin) * (1.0 / end_weight - 1.0)), u,
                              fma(N(1.0 - relative_margin), u_up, N(-absolute_margin))),
                          N(0.0))),
-        harm_(nonnegative(a_out) + nonnegative(-a_in)) {}
+        harm_(maximum(a_out, N(0.0)) - minimum(a_in, N(0.0))) {}
 
   /// Whether some component has a fraction below 1.
   HWY_INLINE bool exceeded() const { return N::any(harm_ > allowed_); }

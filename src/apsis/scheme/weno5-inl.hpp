@@ -33,33 +33,31 @@ class window {
       : here(c),
         before(c - b),
         after(d - c),
-        three_before(N(3.0) * before),
-        three_after(N(3.0) * after),
         bend0(b - a, before),
         bend1(before, after),
         bend2(after, e - d),
         next_(d),
-        last_(e) {}
+        last_(e),
+        last_difference_(e - d) {}
 
   /// Moves the stencil by one cell; `value` is u_{i+2} of the new cell i.
   HWY_INLINE void advance(N value) {
     here = next_;
     next_ = last_;
     before = after;
-    after = next_ - here;
-    three_before = three_after;
-    three_after = N(3.0) * after;
+    after = last_difference_;
+    last_difference_ = value - last_;
     bend0 = bend1;
     bend1 = bend2;
-    bend2 = bend<N>(after, value - next_);
+    bend2 = bend<N>(after, last_difference_);
     last_ = value;
   }
 
-  N here, before, after, three_before, three_after;
+  N here, before, after;
   bend<N> bend0, bend1, bend2;
 
  private:
-  N next_, last_;
+  N next_, last_, last_difference_;
 };
 
 /// Smoothness indicators times four, 4β_k.
@@ -68,40 +66,34 @@ struct smoothness {
   N s0, s1, s2;
 };
 
+/// Derivatives of the three candidates in the middle of the cell i, times 2Δx; the last one with the opposite
+/// sign.
 template <class N>
-HWY_INLINE smoothness<N> indicators(const window<N>& u) {
-  const N two(2.0), y0 = fma(two, u.before, u.bend0.second), y1 = u.before + u.after,
-                    y2 = negative_fma(two, u.after, u.bend2.second);
-  return {fma(y0, y0, u.bend0.square), fma(y1, y1, u.bend1.square), fma(y2, y2, u.bend2.square)};
+struct slopes {
+  N y0, y1, y2;
+
+  HWY_INLINE slopes(const window<N>& u)
+      : y0(fma(N(2.0), u.before, u.bend0.second)),
+        y1(u.before + u.after),
+        y2(negative_fma(N(2.0), u.after, u.bend2.second)) {}
+};
+
+template <class N>
+HWY_INLINE smoothness<N> indicators(const window<N>& u, const slopes<N>& of) {
+  return {fma(of.y0, of.y0, u.bend0.square), fma(of.y1, of.y1, u.bend1.square),
+          fma(of.y2, of.y2, u.bend2.square)};
 }
 
-/// Scales 4(β_k + δ) by the power of two that makes the largest about 1, with a lower bound of 1e-40:
-/// products of six of them neither overflow nor underflow, whatever the size of the data. For data so small
-/// that only δ remains, all three are equal.
+/// Scales 4(β_k + δ) by the power of two that makes the larger of the outer two about 1, with a lower bound
+/// of 1e-40: products of six of them neither overflow nor underflow, whatever the size of the data. The inner
+/// one needs no comparison: β₁ ≤ 2.67 (β₀ + β₂), since in terms of the differences a, b, c, d, 4β₁ ≤ 26 (b² +
+/// c²)/3, 4β₀ ≥ 3.25 b² for any a, and 4β₂ ≥ 3.25 c² for any d. For data so small that only δ remains, all
+/// three are equal.
 template <class N>
 HWY_INLINE smoothness<N> scale(const smoothness<N>& s, N delta) {
-  const N by = inverse_power_of_two(maximum(maximum(s.s1, s.s2), s.s0) + delta),
-          least = fma(delta, by, N(1e-40));
+  const N by = inverse_power_of_two(maximum(s.s0, s.s2) + delta), least = fma(delta, by, N(1e-40));
   return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least)};
 }
-
-/// Terms of a stencil from which the edges of its cell are computed.
-template <class Weights, class N>
-struct edge_terms {
-  N here, before, after, three_before, three_after, second0, second1, second2;
-  smoothness<N> y;
-
-  HWY_INLINE edge_terms(const window<N>& u)
-      : here(u.here),
-        before(u.before),
-        after(u.after),
-        three_before(u.three_before),
-        three_after(u.three_after),
-        second0(u.bend0.second),
-        second1(u.bend1.second),
-        second2(u.bend2.second),
-        y(scale(indicators(u), Weights::delta(u.here))) {}
-};
 
 /// Factors g_k > 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over
 /// a common denominator.
@@ -110,8 +102,37 @@ struct factors {
   N g0, g1, g2;
 };
 
-/// Right edge u + numerator/denominator before the division: twice the candidates minus u_i are r₀, q₁/3 and
-/// q₂/3, with weights g₀, 6g₁ and 3g₂.
+/// Terms of a stencil from which the edges of its cell are computed.
+template <class Weights, class N>
+struct edge_terms {
+  N here, before, after, second0, second2;
+  slopes<N> slope;
+  smoothness<N> y;
+
+  HWY_INLINE edge_terms(const window<N>& u)
+      : here(u.here),
+        before(u.before),
+        after(u.after),
+        second0(u.bend0.second),
+        second2(u.bend2.second),
+        slope(u),
+        y(scale(indicators(u, slope), Weights::delta(u.here))) {}
+
+  /// Numerator at the right edge: twice the candidates minus u_i are r₀, r₁/3 and −r₂/3, with the weights g₀,
+  /// 6g₁ and 3g₂. Sums of differences and slopes, since processors have units for additions alone. `twice`:
+  /// 2g₁.
+  HWY_INLINE N right(const factors<N>& g, N twice) const {
+    const N r0 = fma(N(2.0 / 3.0), second0, before), r1 = slope.y1 + after, r2 = slope.y2 - after;
+    return negative_fma(g.g2, r2, fma(twice, r1, g.g0 * r0));
+  }
+  /// Numerator at the left edge of the mirrored cells.
+  HWY_INLINE N left(const factors<N>& g, N twice) const {
+    const N l0 = slope.y0 + before, l1 = slope.y1 + before, l2 = negative_fma(N(2.0 / 3.0), second2, after);
+    return fma(g.g0, l0, fma(twice, l1, g.g2 * l2));
+  }
+};
+
+/// Right edge u + numerator/(2 denominator) before the division.
 template <class N>
 struct right_fraction {
   N here, numerator, denominator;
@@ -120,14 +141,12 @@ struct right_fraction {
   HWY_INLINE right_fraction(const edge_terms<Weights, N>& u)
       : here(u.here), numerator(u.here), denominator(u.here) {
     const auto g = Weights::factors(u.y);
-    const N r0 = fma(N(2.0 / 3.0), u.second0, u.before), q1 = u.three_after - u.second1,
-            q2 = u.three_after - u.second2;
     const N twice = g.g1 + g.g1;
-    numerator = fma(g.g2, q2, fma(twice, q1, g.g0 * r0));
+    numerator = u.right(g, twice);
     denominator = fma(N(3.0), twice + g.g2, g.g0);
   }
 
-  HWY_INLINE N edge() const { return here + numerator / (denominator + denominator); }
+  HWY_INLINE N edge() const { return fma(N(0.5), numerator / denominator, here); }
 };
 
 /// Both edges with a single division; the left one is that of the mirrored cells, its numerator with
@@ -140,13 +159,9 @@ struct both_fractions {
   HWY_INLINE both_fractions(const edge_terms<Weights, N>& u)
       : here(u.here), right(u.here), right_sum(u.here), left(u.here), left_sum(u.here) {
     const auto g = Weights::factors(u.y);
-    const N r0 = fma(N(2.0 / 3.0), u.second0, u.before), q1 = u.three_after - u.second1,
-            q2 = u.three_after - u.second2;
-    const N l0 = negative_fma(N(2.0 / 3.0), u.second2, u.after), p1 = u.three_before + u.second1,
-            p2 = u.three_before + u.second0;
     const N twice = g.g1 + g.g1;
-    right = fma(g.g2, q2, fma(twice, q1, g.g0 * r0));
-    left = fma(g.g0, p2, fma(twice, p1, g.g2 * l0));
+    right = u.right(g, twice);
+    left = u.left(g, twice);
     const N common = fma(N(3.0), twice, g.g0 + g.g2);
     right_sum = fma(N(2.0), g.g2, common);
     left_sum = fma(N(2.0), g.g0, common);

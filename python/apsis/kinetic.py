@@ -44,6 +44,8 @@ class KineticProblem:
     acceleration of the molecules: a number or a function of the time and the coordinates, or a list of them for each dimension
     largest_acceleration   bound of the absolute values of functions, a number or one for each dimension
     formulation  "finite-volume" (cell averages) or "finite-difference" (point values)
+    collisions   of cell averages: at three "gauss" points of each cell (default), or at the "centres" of the cells, of fourth order in
+    space for a third of the cost
     reconstruction, equilibrium   as in a case file
     positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE
 
@@ -56,7 +58,7 @@ class KineticProblem:
                  parameters: Mapping[str, Union[float, str, Sequence[str]]] | None = None,
                  boundary: Face | Sequence[Face] | Sequence[Sequence[Face]] = "periodic",
                  acceleration: Quantity | Sequence[Quantity] = (), largest_acceleration: float | Sequence[float] = (),
-                 reconstruction: str = "weno5-z", formulation: str = "finite-volume", equilibrium: str = "auto",
+                 reconstruction: str = "weno5-z", formulation: str = "finite-volume", collisions: str = "", equilibrium: str = "auto",
                  positivity: bool = False) -> None:
         numbers_of_cells = [whole_number("cells", n) for n in (cells if isinstance(cells, (Sequence, np.ndarray)) else [cells])]
         directions = len(numbers_of_cells)
@@ -67,7 +69,7 @@ class KineticProblem:
             {name: x for name, x in given.items() if isinstance(x, str)},
             {name: [str(item) for item in x] for name, x in given.items() if isinstance(x, (list, tuple))}, v_max, points, sets, lines, equilibrium, numbers_of_cells, _intervals(domain, directions),
             _faces(boundary, directions), _listed(acceleration),
-            [number("largest_acceleration", x) for x in _listed(largest_acceleration)], reconstruction, formulation, bool(positivity),
+            [number("largest_acceleration", x) for x in _listed(largest_acceleration)], reconstruction, formulation, collisions, bool(positivity),
             epsilon if callable(epsilon) else number("epsilon", epsilon))
         self.model = model
 

@@ -67,7 +67,7 @@ struct description {
   std::vector<std::array<given_face, 2>> boundary;
   std::vector<py::object> acceleration;      ///< numbers and functions
   std::vector<double> largest_acceleration;  ///< of functions; empty if unknown
-  std::string reconstruction, formulation;
+  std::string reconstruction, formulation, collisions;
   bool positivity;
 };
 
@@ -186,6 +186,8 @@ class kinetic_problem {
                                            fmt::format("boundary['{}']", face_names[k][upper ? 1 : 0])));
       if (auto force = make_acceleration(of, *equation_)) builder_.with_force(std::move(*force));
       builder_.with_unknowns(choice_called<formulation>("formulation", of.formulation));
+      if (!of.collisions.empty())
+        builder_.with_collisions_at(choice_called<collision_points>("collisions", of.collisions));
       if (of.positivity) builder_.with_positivity_limiter();
       builder_.with_reconstruction(
           entry_called("reconstruction", of.reconstruction, reconstruction_entries()).make());
@@ -405,14 +407,15 @@ void bind_kinetic(py::module_& m) {
                        std::vector<int> cells, std::vector<std::array<double, 2>> domain,
                        std::vector<std::array<given_face, 2>> boundary, std::vector<py::object> acceleration,
                        std::vector<double> largest_acceleration, std::string reconstruction,
-                       std::string formulation, bool positivity, const py::object& epsilon) {
+                       std::string formulation, std::string collisions, bool positivity,
+                       const py::object& epsilon) {
         return std::make_unique<kinetic_problem>(
             description{std::move(model), std::move(parameters), std::move(options), std::move(lists),
                         velocity_max, std::move(velocity_points), std::move(velocity_sets),
                         std::move(velocity_lines), std::move(equilibrium), std::move(cells),
                         std::move(domain), std::move(boundary), std::move(acceleration),
                         std::move(largest_acceleration), std::move(reconstruction), std::move(formulation),
-                        positivity},
+                        std::move(collisions), positivity},
             epsilon);
       }))
       .def("shape", &kinetic_problem::shape)

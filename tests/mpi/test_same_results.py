@@ -112,6 +112,16 @@ class SameResults(Folder):
     def test_cell_averages_on_a_line(self):
         self.expect_same("paper/bgk-mixed", "space.cells=37", "velocity.points=60", "time.end=0.02", counts=(3,))
 
+    def test_collisions_at_centres(self):
+        self.expect_same("paper/bgk-mixed", "space.cells=23", "space.collisions=centres", "velocity.points=40", "time.end=0.02", counts=(3,))
+        self.expect_same("gas/couette", "space.cells=8", "space.formulation=finite-volume", "space.collisions=centres", "velocity.points=[12,8]",
+                         "time.end=0.05", counts=(4,))
+
+    @slow
+    def test_collisions_at_centres_of_one_cell_for_each_process(self):
+        self.expect_same("gas/couette", "space.cells=9", "space.formulation=finite-volume", "space.collisions=centres", "velocity.points=[12,8]",
+                         "time.end=0.02", counts=(9,))
+
     def test_a_line_whose_middle_process_has_no_wall(self):
         self.expect_same("gas/couette", "space.cells=12", "velocity.points=[12,8]", "time.end=0.05", 'output.surfaces="all"', counts=(3,))
 

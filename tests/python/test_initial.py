@@ -239,3 +239,15 @@ def test_values_of_functions_are_checked_when_they_are_used(value, says):
     with pytest.raises(apsis.InputError) as refused:
         apsis.integrate(problem, problem.state(rho=1, T=1), (0, 0.01), "md-imex-3-2")
     assert says in str(refused.value)
+
+
+def test_collisions_at_centres_are_those_of_a_case():
+    by_case = apsis.run(case(FORMULAS, space={"collisions": "centres"}))
+    by_functions = apsis.run(case(space={"collisions": "centres"}), initial=FUNCTIONS)
+    np.testing.assert_allclose(by_functions.f, by_case.f, rtol=0, atol=1e-14)
+    assert np.abs(by_case.f - apsis.run(case(FORMULAS)).f).max() > 1e-12  # at Gauss points
+    problem = gas(collisions="centres")
+    u = problem.state(**FUNCTIONS)
+    assert np.abs(apsis.integrate(problem, u, (0, 1e-3), "md-imex-3-2", dt=1e-4).u - apsis.integrate(gas(), u, (0, 1e-3), "md-imex-3-2", dt=1e-4).u).max() > 1e-12
+    with pytest.raises(apsis.InputError, match="unknown collisions 'edges'"):
+        gas(collisions="edges")

@@ -116,8 +116,9 @@ std::vector<std::string> random_overrides(const model_entry& entry, bool positiv
     if (overrides == drawn) break;  // there are none
   }
   if (!has_space(entry)) return overrides;
-  overrides.push_back("space.formulation=" +
-                      *rc::gen::element<std::string>("finite-volume", "finite-difference"));
+  const bool averages = *rc::gen::arbitrary<bool>();
+  overrides.emplace_back(averages ? "space.formulation=finite-volume" : "space.formulation=finite-difference");
+  if (averages && *rc::gen::arbitrary<bool>()) overrides.emplace_back("space.collisions=centres");
   if (positive) overrides.emplace_back("space.limiter=positivity");
   return overrides;
 }

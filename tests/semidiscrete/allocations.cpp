@@ -51,7 +51,7 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
 
 namespace {
 
-enum class unknowns { averages, points };
+enum class unknowns { averages, averages_at_centres, points };
 
 apsis::semidiscrete_problem problem_of(const apsis::relaxation_model& m, const apsis::grid& mesh,
                                        unknowns what) {
@@ -61,6 +61,9 @@ apsis::semidiscrete_problem problem_of(const apsis::relaxation_model& m, const a
             apsis::make_pointwise_collision(m, std::vector<double>(cells, 1e-3))};
   const auto how = scheme("weno5-z", apsis::limiter_kind::edges);
   const auto space = space_of(mesh);
+  if (what == unknowns::averages_at_centres)
+    return {m, space, how,
+            apsis::make_cell_centre_collision(m, space, true, std::vector<double>(cells, 1e-3))};
   return {m, space, how,
           apsis::make_cell_average_collision(m, space, how, std::vector<double>(3 * cells, 1e-3))};
 }
@@ -101,11 +104,16 @@ TEST(allocations, the_first_step_takes_the_buffers_of_its_schedule_and_later_ste
     for (const char* method :
          {"md-imex-3-2", "md-imex-6-3", "md-imex-8-3-mixed", "ssprk-3-3", "hsz-ars-4-2"}) {
       const apsis::schedule plan(apsis::find_method(method).coefficients<double>());
-      const auto points = measure(method, unknowns::points), averages = measure(method, unknowns::averages);
+      const auto points = measure(method, unknowns::points), averages = measure(method, unknowns::averages),
+                 centres = measure(method, unknowns::averages_at_centres);
       EXPECT_EQ(points.fields, plan.buffers() - 1) << method << ", u^n belongs to the user";
       // Collisions of cell averages read the old values of their neighbours, so the new ones need a second
       // buffer.
       EXPECT_EQ(averages.fields, plan.buffers() - 1 + (plan.implicit_solves() > 0 ? 1 : 0)) << method;
+      // At centres also the changes of the point values, which neighbours read.
+      const bool collides = plan.implicit_solves() > 0 || plan.collision_evaluations() > 0;
+      EXPECT_EQ(centres.fields, averages.fields + (collides ? 1 : 0)) << method;
+      EXPECT_EQ(centres.in_later_steps, 0) << method << ", " << threads << " threads";
       EXPECT_EQ(points.in_later_steps, 0) << method << ", " << threads << " threads";
       EXPECT_EQ(averages.in_later_steps, 0) << method << ", " << threads << " threads";
     }
@@ -117,7 +125,7 @@ TEST(allocations, steps_to_a_tolerance_allocate_nothing_after_the_first_ones) {
   constexpr int cells = 40;
   const auto m = small_bgk();
   const apsis::grid mesh = apsis::grid::line(cells, 0.0, 2.0);
-  for (const auto what : {unknowns::points, unknowns::averages}) {
+  for (const auto what : {unknowns::points, unknowns::averages, unknowns::averages_at_centres}) {
     auto problem = problem_of(*m, mesh, what);
     apsis::stepper stepper(apsis::find_method("md-imex-8-3-mixed"), problem,
                            apsis::solutions::result_and_embedded);

@@ -292,8 +292,15 @@ std::vector<case_key> space_keys() {
                   "with the least to send."}),
       key("space.formulation", [](auto& c) -> auto& { return c.space.formulation; },
           {.scope = key_scope::space,
-           .doc = "Unknowns are cell averages (finite-volume; collisions at Gauss points of the cell) or "
-                  "point values (finite-difference; collisions pointwise, about a third of the cost)."}),
+           .doc =
+               "Unknowns are cell averages (finite-volume) or point values (finite-difference; about a third "
+               "of the cost of cell averages with collisions at Gauss points)."}),
+      key("space.collisions", [](auto& c) -> auto& { return c.space.collisions; },
+          {.scope = key_scope::space,
+           .doc =
+               "Where cell averages collide: gauss: three Gauss points of each cell, on its reconstruction; "
+               "centres: values at cell centres that all averages together imply, of fourth order in space, "
+               "for a third of the cost. gauss where not given."}),
       key("space.reconstruction", [](auto& c) -> auto& { return c.space.reconstruction; },
           {.scope = key_scope::space,
            .choices = names_in(reconstruction_entries),

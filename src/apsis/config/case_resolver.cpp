@@ -393,6 +393,10 @@ class resolver {
       refuse(*find("space.formulation"), "space.formulation",
              "cell averages collide at the Gauss points of intervals: one space dimension only",
              "write \"finite-difference\", or leave it out");
+    if (config_.space.collisions && config_.space.formulation == formulation::finite_difference)
+      refuse(*find("space.collisions"), "space.collisions",
+             "point values collide where they are (space.formulation = \"finite-difference\")",
+             "leave it out");
   }
 
   void check_solids() const {

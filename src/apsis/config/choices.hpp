@@ -55,6 +55,8 @@ inline constexpr std::array choice_names<units_choice> = {"dimensionless", "SI"}
 template <>
 inline constexpr std::array choice_names<formulation> = {"finite-volume", "finite-difference"};
 template <>
+inline constexpr std::array choice_names<collision_points> = {"gauss", "centres"};
+template <>
 inline constexpr std::array choice_names<equilibrium_choice> = {"auto", "formula", "discrete"};
 /// @endcond
 

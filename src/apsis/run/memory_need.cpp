@@ -19,7 +19,8 @@ constexpr int fewest_points = 4;  ///< of velocity.points
 int buffers_of(const run_setup& setup) {
   const method& m = setup.integrator();
   const int compared = setup.config().time.steady ? 1 : 0;
-  return compared + (setup.has_tolerance()
+  const int changes = setup.builder().collides_at_centres() ? 1 : 0;
+  return compared + changes + (setup.has_tolerance()
                          ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
                          : schedule(m.coefficients<double>()).buffers());
 }

@@ -89,6 +89,7 @@ void run_setup::build_space(std::shared_ptr<communicator> processes) {
   const reconstruction_entry* scheme = find_reconstruction(space.reconstruction);
   if (scheme == nullptr) throw input_error("unknown reconstruction '" + space.reconstruction + "'");
   builder_.on(make_mesh(config_)).with_unknowns(space.formulation);
+  if (space.collisions) builder_.with_collisions_at(*space.collisions);
   at_key(config_, space.blocks ? "space.blocks" : "space.cells",
          [&] { builder_.shared_by(std::move(processes), given_blocks(space.blocks)); });
   const auto sides = make_boundaries(config_, *equation);
@@ -313,10 +314,12 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
   const bool explicit_collision = schedule(method_->coefficients<double>()).collision_evaluations() > 0;
   promises.conservation =
       exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
-  // Stage solves keep the sign of every row; an explicit Q only where the target is an equilibrium, E ≥ 0.
+  // Stage solves keep the sign of every row; an explicit Q only where the target is an equilibrium, E ≥ 0,
+  // and averages are means of values at points.
   const auto* relaxation = dynamic_cast<const relaxation_model*>(equation.get());
+  const bool relaxes = relaxation != nullptr && relaxation->relaxing_count() > 0;
   const bool collisions = equation->collisions_keep_sign() &&
-                          !(explicit_collision && relaxation != nullptr && relaxation->relaxing_count() > 0);
+                          !(explicit_collision && (relaxes || builder_.collides_at_centres()));
   promises.condition = equation->condition();
   promises.positivity = equation->positive() && collisions && nonnegative && within && builder_.keeps_sign();
   // An equilibrium with other moments does not minimize the entropy among the states with those of the data.

@@ -3,6 +3,7 @@
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/scheme/quartic.hpp>
+#include <apsis/semidiscrete/centre_rows.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +104,11 @@ problem_builder& problem_builder::with_unknowns(formulation unknowns) {
   return *this;
 }
 
+problem_builder& problem_builder::with_collisions_at(collision_points points) {
+  collisions_ = points;
+  return *this;
+}
+
 problem_builder& problem_builder::with_positivity_limiter() {
   if (!equation_->positive())
     throw input_error(
@@ -189,6 +195,8 @@ std::vector<double> problem_builder::epsilon_at_centres() const {
 std::unique_ptr<collision> problem_builder::make_collision(const std::shared_ptr<domain>& space) const {
   if (pointwise())
     return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign(), mesh_.fluid());
+  if (collides_at_centres())
+    return make_cell_centre_collision(*equation_, space, keeps_sign(), epsilon_at_centres());
   return make_cell_average_collision(*equation_, space, complete_discretization(), epsilon_at(gauss3::xi));
 }
 
@@ -201,6 +209,13 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
         "cell averages in {} space dimensions (they are collided at the Gauss points of intervals); "
         "use the finite difference formulation",
         mesh_.dimensions()));
+  if (collisions_ && (!has_space() || unknowns() == formulation::finite_difference))
+    throw input_error(
+        "points of collisions (the unknowns are point values, which collide where they are); leave them out");
+  if (collides_at_centres() && whole_mesh().cells(0) < 2 * centre_rows::reach + 1)
+    throw input_error(fmt::format("{} cells (values at their centres depend on {}); give at least {}",
+                                  whole_mesh().cells(0), 2 * centre_rows::reach + 1,
+                                  2 * centre_rows::reach + 1));
   if (!mesh_.solids().empty() && !pointwise())
     throw input_error(
         "solid boxes with cell averages (they are collided on whole lines); use the finite difference "

@@ -54,6 +54,8 @@ class problem_builder {
   /// Keeps nonnegative data nonnegative for steps up to r Δt_FE. Throws input_error if the unknowns of the
   /// model may be negative.
   problem_builder& with_positivity_limiter();
+  /// Points at which cell averages collide; Gauss points by default.
+  problem_builder& with_collisions_at(collision_points points);
   /// Sets ε(x).
   problem_builder& with_epsilon(scale epsilon);
   /// Adds the force −a·∇_v f of an acceleration, on models whose velocities are a lattice.
@@ -65,7 +67,7 @@ class problem_builder {
 
   /// Returns the problem. Throws input_error if the mesh or the reconstruction is missing, ε is not a finite
   /// number ≥ 0, only one face of a direction is periodic, cell averages have more than one space dimension,
-  /// or the force is not possible (force.hpp).
+  /// point values are to collide elsewhere than at the centres, or the force is not possible (force.hpp).
   std::unique_ptr<semidiscrete_problem> build() const;
   /// Returns cell averages or point values of data, [cells][components], 0 in solid cells; averages are exact
   /// to rounding if the data are smooth between the `jumps` (in increasing order).
@@ -89,6 +91,8 @@ class problem_builder {
   bool first_order() const { return discretization_.scheme && discretization_.scheme->order() == 1; }
   /// Whether steps within r Δt_FE keep nonnegative data nonnegative.
   bool keeps_sign() const { return limited_ || first_order() || !has_space(); }
+  /// Whether cell averages collide at the centres of cells.
+  bool collides_at_centres() const { return collisions_ == collision_points::centres && !pointwise(); }
   /// Returns ε at the cell centres. Throws input_error if it is not a finite number ≥ 0.
   std::vector<double> epsilon_at_centres() const;
 
@@ -108,6 +112,7 @@ class problem_builder {
   std::vector<std::shared_ptr<const boundary>> solids_;
   spatial_discretization discretization_;
   std::optional<formulation> unknowns_;
+  std::optional<collision_points> collisions_;
   bool limited_ = false, explicit_collision_ = false;
   scale epsilon_;
   std::optional<acceleration> force_;

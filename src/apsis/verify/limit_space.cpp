@@ -50,6 +50,11 @@ struct limit_space::pencil {
 limit_space::limit_space(const case_config& config, const relaxation_model& equation)
     : equation_(equation), space_(space_of(config, equation)), has_space_(equation.space_dimensions() > 0) {
   if (!has_space_) return;
+  if (config.space.collisions == collision_points::centres)
+    throw input_error(
+        "the case has no limit scheme (it is known for collisions at Gauss points and of point values); "
+        "leave "
+        "space.collisions out");
   const reconstruction_entry* entry = find_reconstruction(config.space.reconstruction);
   if (entry == nullptr) throw input_error("unknown reconstruction '" + config.space.reconstruction + "'");
   scheme_ = entry->make();

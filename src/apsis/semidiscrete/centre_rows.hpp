@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+
+namespace apsis {
+
+/// The map between cell averages and values at cell centres, row by row, for the instruction set of this
+/// processor. With the second difference δ² of neighbouring cells,
+///   ū = M p,  M = I + δ²/24,
+/// are the averages of point values p up to O(Δx⁴). All functions take rows of `width` numbers.
+namespace centre_rows {
+
+/// Number of neighbours on either side on which a value at a centre depends.
+inline constexpr int reach = 3;
+
+/// Averages of the cells i−3 … i+3.
+using stencil = std::array<const double*, 2 * reach + 1>;
+
+/// points ← P ū, the values at the centre of cell i by the first four terms of the series of M⁻¹,
+///   P = I − δ²/24 + (δ²/24)² − (δ²/24)³,
+/// so that |I − P M| = (δ²/24)⁴ ≤ (1/6)⁴ = 8·10⁻⁴ for any data, and O(Δx⁸) for smooth data. `limited`: at
+/// least half the average, which smooth data that the mesh resolves exceed.
+void values(const stencil& averages, bool limited, int width, double* points);
+
+/// A cell and its neighbours i−1, i, i+1, one row each.
+struct three {
+  const double *before, *here, *after;
+};
+
+/// averages ← u_i + (M d)_i = b_i + F_{i+½} − F_{i−½} with b = u + d and the fluxes F_{i+½} = (d_{i+1} −
+/// d_i)/24 between cells. `limited`: no flux takes more than half of b from the cell that it leaves, −b_i/2 ≤
+/// F_{i+½} ≤ b_{i+1}/2, so that averages ≥ 0 if b ≥ 0. It enters both cells alike: the sum over all cells
+/// does not change.
+void add_averages(const three& u, const three& d, bool limited, int width, double* averages);
+
+/// Operations of values() and add_averages() with limiter for one number of a row (exec/counted.hpp).
+double operations();
+
+}  // namespace centre_rows
+}  // namespace apsis

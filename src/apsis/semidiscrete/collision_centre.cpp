@@ -1,0 +1,227 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/core/first_error.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
+#include <apsis/semidiscrete/centre_rows.hpp>
+#include <apsis/semidiscrete/collision.hpp>
+#include <apsis/semidiscrete/collision_rows.hpp>
+#include <apsis/semidiscrete/face_fluxes.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+namespace {
+
+class cell_centre_collision final : public collision {
+ public:
+  cell_centre_collision(const model& equation, std::shared_ptr<domain> space, bool limited,
+                        std::vector<double> epsilon)
+      : equation_(equation), space_(std::move(space)), limited_(limited), epsilon_(std::move(epsilon)) {
+    space_->reserve(equation.components(), centre_rows::reach);
+  }
+
+  /// The averages change by M d, d = v − p, whose rows have no moments: collisions conserve whatever p is.
+  void solve(double, double a, double b, field& u) override {
+    find_changes(u, [&](const point_batch& at, scratch& own) {
+      double* d = changes_.row(at.first_cell);
+      solve_change(a, b, at, own, d);
+      if (limited_)
+        for (int k = 0; k < at.count; ++k)
+          keep_sign(a, b, u.row(at.first_cell + k), batch(u, at.first_cell + k, at.first_cell + k + 1),
+                    own.points.data() + k * at.pitch, own, d + k * at.pitch);
+    });
+    if (result_.cells() != u.cells() || result_.components() != u.components())
+      result_ = field(u.cells(), u.components());
+    for_changes(u, [&](int cell, const centre_rows::three& averages, const centre_rows::three& d, scratch&) {
+      centre_rows::add_averages(averages, d, limited_, u.stride(), result_.row(cell));
+    });
+    result_.gains() = u.gains();
+    std::swap(u, result_);
+  }
+
+  void add_collision(double, const field& u, std::span<const target<field, double>> targets) override {
+    combine_gains(u, targets);
+    find_changes(u, [&](const point_batch& at, scratch& own) {
+      own.local->evaluate(at, own.points.data(), changes_.row(at.first_cell));
+    });
+    scratch_.prepare([&](auto& own) { own.rows.reserve(targets.size()); });
+    for_changes(u, [&](int cell, const centre_rows::three&, const centre_rows::three& q, scratch& own) {
+      constexpr double side = 1.0 / 24.0;
+      const std::array<collision_rows::weighted_row, 3> points = {
+          {{side, q.before}, {1.0 - 2.0 * side, q.here}, {side, q.after}}};
+      upwind::rows_of(targets, cell, own.rows);
+      collision_rows::add(points, u.row(cell), u.stride(), own.rows);
+    });
+  }
+
+  /// With the rate of the averages, as for collisions at Gauss points.
+  double forward_euler_step(const field& u) const override {
+    return smallest(u, &point_collision::forward_euler_step);
+  }
+
+  double relaxation_time(const field& u) const override {
+    return smallest(u, &point_collision::relaxation_time);
+  }
+
+ private:
+  struct scratch {
+    std::vector<const double*> averages, changes;  ///< rows of a batch and of its neighbours
+    aligned_vector<double> points,                 ///< values at the centres of a batch
+        solved;                                    ///< solutions there
+    std::unique_ptr<point_collision> local;
+    std::vector<upwind::row_target> rows;
+  };
+
+  point_batch batch(const field& u, int begin, int end) const {
+    return {
+        .count = end - begin, .pitch = u.stride(), .epsilon = epsilon_.data() + begin, .first_cell = begin};
+  }
+
+  double smallest(const field& u, double (point_collision::*time)(const double*, double)) const {
+    const auto local = equation_.make_collision({1, u.stride(), limited_});
+    double result = std::numeric_limits<double>::infinity();
+    for (int cell = 0; cell < u.cells(); ++cell)
+      result = std::min(result, ((*local).*time)(u.row(cell), epsilon_[static_cast<std::size_t>(cell)]));
+    return result;
+  }
+
+  /// d ← v − p for the points p of a batch.
+  static void solve_change(double a, double b, const point_batch& at, scratch& own, double* d) {
+    const auto count = static_cast<std::size_t>(at.count * at.pitch);
+    std::copy_n(own.points.begin(), count, own.solved.begin());
+    own.local->solve_stage(a, b, at, own.solved.data());
+    for (std::size_t k = 0; k < count; ++k) d[k] = own.solved[k] - own.points[k];
+  }
+
+  /// Where ū + v − p has a negative component, p is replaced by min(p, ū) in this component, then in all: v ≥
+  /// 0 and p ≤ ū leave none.
+  void keep_sign(double a, double b, const double* average, const point_batch& at, double* p, scratch& own,
+                 double* d) {
+    constexpr int rounds = 3;
+    const int n = equation_.components();
+    for (int round = 0;; ++round) {
+      bool harms = false;
+      for (int k = 0; k < n; ++k) {
+        if (!(average[k] + d[k] < 0.0)) continue;
+        harms = true;
+        p[k] = std::min(p[k], average[k]);
+      }
+      if (!harms || round > rounds) return;
+      if (round == rounds)
+        for (int k = 0; k < n; ++k) p[k] = std::min(p[k], average[k]);
+      std::copy_n(p, at.pitch, own.solved.begin());
+      own.local->solve_stage(a, b, at, own.solved.data());
+      for (int k = 0; k < n; ++k) d[k] = own.solved[static_cast<std::size_t>(k)] - p[k];
+    }
+  }
+
+  void prepare(const field& u) {
+    if (changes_.cells() != u.cells() || changes_.components() != u.components())
+      changes_ = field(u.cells(), u.components());
+    for (auto& row : across_) row.resize(static_cast<std::size_t>(u.stride()));
+    const int length = points_per_batch(u.stride());
+    scratch_.prepare([&](auto& own) {
+      const auto numbers = static_cast<std::size_t>(length) * static_cast<std::size_t>(u.stride());
+      for (auto* rows : {&own.averages, &own.changes})
+        rows->reserve(static_cast<std::size_t>(length + 2 * centre_rows::reach));
+      own.points.resize(numbers);
+      own.solved.resize(numbers);
+      if (!own.local) own.local = equation_.make_collision({length, u.stride(), limited_});
+    });
+  }
+
+  /// Calls body(batch, scratch) for batches of cells, with the values at their centres in scratch.points; it
+  /// writes rows of changes_. Then the changes go to other processes, which wait for them even if this one
+  /// has failed.
+  template <class Body>
+  void find_changes(const field& u, const Body& body) {
+    prepare(u);
+    space_->exchange(u);
+    first_error failure;
+    failure.run([&] { at_all_centres(u, body); });
+    std::vector<const double*>& rows = scratch_.here().averages;
+    rows_of(u, -1, 1, rows);
+    std::copy_n(rows.front(), u.stride(), across_[0].data());
+    rows_of(u, u.cells() - 1, u.cells() + 1, rows);
+    std::copy_n(rows.back(), u.stride(), across_[1].data());
+    space_->exchange(changes_);
+    failure.rethrow();
+  }
+
+  template <class Body>
+  void at_all_centres(const field& u, const Body& body) {
+    parallel_blocks(u.cells(), points_per_batch(u.stride()), [&](int begin, int end) {
+      scratch& own = scratch_.here();
+      rows_of(u, begin - centre_rows::reach, end + centre_rows::reach, own.averages);
+      {
+        const profile::section timed(kernel::points, static_cast<double>(end - begin) * u.stride(),
+                                     {centre_rows::operations(), 4.0 * sizeof(double)});
+        double* points = own.points.data();
+        for (int cell = begin; cell < end; ++cell, points += u.stride()) {
+          centre_rows::stencil averages;
+          std::copy_n(own.averages.begin() + (cell - begin), averages.size(), averages.begin());
+          centre_rows::values(averages, limited_, u.stride(), points);
+        }
+      }
+      body(batch(u, begin, end), own);
+    });
+  }
+
+  /// Calls body(cell, averages, changes, scratch) for every cell.
+  template <class Body>
+  void for_changes(const field& u, const Body& body) {
+    parallel_blocks(u.cells(), points_per_batch(u.stride()), [&](int begin, int end) {
+      scratch& own = scratch_.here();
+      rows_of(u, begin - 1, end + 1, own.averages);
+      rows_of(changes_, begin - 1, end + 1, own.changes);
+      // Rows of other processes are those of the changes by now.
+      if (begin == 0) own.averages.front() = across_[0].data();
+      if (end == u.cells()) own.averages.back() = across_[1].data();
+      for (int cell = begin; cell < end; ++cell) {
+        const auto at = static_cast<std::size_t>(cell - begin);
+        body(cell, {own.averages[at], own.averages[at + 1], own.averages[at + 2]},
+             {own.changes[at], own.changes[at + 1], own.changes[at + 2]}, own);
+      }
+    });
+  }
+
+  /// rows ← those of cells begin … end−1, mirrored where the gas ends: no flux of M passes a wall.
+  void rows_of(const field& of, int begin, int end, std::vector<const double*>& rows) const {
+    space_->segment_rows(of, 0, 0, begin, end, rows);
+    const segment& line = space_->segment_at(0, 0);
+    const auto row = [&](int cell) -> const double*& { return rows[static_cast<std::size_t>(cell - begin)]; };
+    const int first = -line.beyond[0], last = line.cells + line.beyond[1];
+    if (line.ends[0].surface >= 0)
+      for (int cell = begin; cell < first; ++cell) row(cell) = row(2 * first - 1 - cell);
+    if (line.ends[1].surface >= 0)
+      for (int cell = end - 1; cell >= last; --cell) row(cell) = row(2 * last - 1 - cell);
+  }
+
+  const model& equation_;
+  std::shared_ptr<domain> space_;
+  bool limited_;
+  std::vector<double> epsilon_;
+  field changes_,  ///< of the point values in a stage, or their rates
+      result_;     ///< neighbours need the old averages
+  std::array<aligned_vector<double>, 2>
+      across_;  ///< averages of the cells before the first and after the last
+  per_thread<scratch> scratch_;
+};
+
+}  // namespace
+
+std::unique_ptr<collision> make_cell_centre_collision(const model& equation, std::shared_ptr<domain> space,
+                                                      bool limited, std::vector<double> epsilon) {
+  if (space->mesh().dimensions() != 1)
+    throw input_error(
+        "collisions at the centres of cells map averages along one line and know one space dimension only; "
+        "use the finite difference formulation");
+  return std::make_unique<cell_centre_collision>(equation, std::move(space), limited, std::move(epsilon));
+}
+
+}  // namespace apsis

@@ -1,0 +1,193 @@
+// Collisions of cell averages at the centres of cells.
+#include "bgk_case.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/semidiscrete/centre_rows.hpp>
+#include <apsis/semidiscrete/problem_builder.hpp>
+
+#include <gmock/gmock.h>
+#include <support/property.hpp>
+
+namespace collision_centre_test {
+
+namespace {
+
+using apsis::field;
+using apsis::grid;
+namespace centre_rows = apsis::centre_rows;
+
+std::vector<double> at_centres(const grid& mesh, const std::function<double(double)>& f) {
+  std::vector<double> values;
+  for (int i = 0; i < mesh.size(); ++i) values.push_back(f(mesh.centre(i, 0)));
+  return values;
+}
+
+/// Smooth data off equilibrium.
+void smooth_row(const apsis::relaxation_model& m, double x, std::vector<double>& row) {
+  m.initial()[2].point_value({x}, row);
+}
+
+field smooth(const apsis::relaxation_model& m, const grid& mesh) {
+  std::vector<double> row(static_cast<std::size_t>(m.components()));
+  return sample(mesh, m.components(), true, [&](double x, int k) {
+    smooth_row(m, x, row);
+    return row[static_cast<std::size_t>(k)];
+  });
+}
+
+/// Largest difference in the l1 norm between the averages after a stage and those of the exact solution of
+/// v = u + a Q(v)/ε at each point, over cells first … n−1−first.
+double error_of_stage(const apsis::relaxation_model& m, int n, const std::string& ends, int first) {
+  constexpr double a = 0.3;
+  const grid mesh = grid::line(n, 0.0, 2.0);
+  const auto epsilon = [](double x) { return 1.2 + std::sin(std::numbers::pi * x); };
+  const auto q = apsis::make_cell_centre_collision(m, space_of(mesh, ends), true, at_centres(mesh, epsilon));
+  field u = smooth(m, mesh);
+  q->solve(0.0, a, 0.0, u);
+  std::vector<double> row(static_cast<std::size_t>(m.components())), e = row, omega(3);
+  const field exact = sample(mesh, m.components(), true, [&](double x, int k) {
+    smooth_row(m, x, row);
+    m.moments(row.data(), omega.data());
+    m.equilibrium(omega.data(), e.data());
+    const double mu = a / epsilon(x);
+    const auto component = static_cast<std::size_t>(k);
+    return (row[component] + mu * e[component]) / (1.0 + mu);
+  });
+  double sum = 0.0;
+  for (int i = first; i < n - first; ++i)
+    for (int k = 0; k < m.components(); ++k) sum += std::abs(u.row(i)[k] - exact.row(i)[k]);
+  return sum / n;
+}
+
+/// Rows that jump by many powers of ten between cells and velocities, or by six between two halves.
+field rough(int cells, int components) {
+  field u(cells, components);
+  const bool two_halves = *rc::gen::arbitrary<bool>();
+  for (int i = 0; i < cells; ++i)
+    for (int k = 0; k < components; ++k) {
+      const double power =
+          two_halves ? (2 * i < cells ? 0.0 : -6.0) : *rc::gen::element(0.0, -1.0, -2.0, -4.0, -8.0, -30.0);
+      u.row(i)[k] = std::pow(10.0, power) * (1.0 + 0.1 * ((7 * i + 3 * k) % 5));
+    }
+  return u;
+}
+
+}  // namespace
+
+TEST(collision_centre, values_invert_averages_up_to_the_fourth_power_of_the_second_difference) {
+  // p_i = cos(θ i) has δ²p = −2(1 − cos θ) p, so that every map is a factor.
+  constexpr double pi = std::numbers::pi;
+  for (const double theta : {0.1, 0.7, 2.0, pi}) {
+    const double x = -2.0 * (1.0 - std::cos(theta)) / 24.0;
+    std::array<double, 7> averages{};
+    for (int i = -3; i <= 3; ++i) averages[static_cast<std::size_t>(i + 3)] = (1.0 + x) * std::cos(theta * i);
+    centre_rows::stencil rows{};
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = &averages[i];
+    double p = 0.0;
+    centre_rows::values(rows, false, 1, &p);
+    // A few roundings of terms of size 1.
+    EXPECT_NEAR(p, 1.0 - std::pow(x, 4), 4e-16) << theta;
+  }
+}
+
+TEST(collision_centre, is_of_fourth_order) {
+  const auto m = small_bgk();
+  EXPECT_GT(std::log2(error_of_stage(*m, 32, "periodic", 0) / error_of_stage(*m, 64, "periodic", 0)), 3.9);
+  // Apart from the cells at the ends, and all but their neighbours, on which M^-1 depends exponentially less.
+  EXPECT_GT(std::log2(error_of_stage(*m, 32, "outflow", 4) / error_of_stage(*m, 64, "outflow", 8)), 3.9);
+  // There the position is off by h/24, in two cells of n: second order in the l1 norm.
+  EXPECT_GT(std::log2(error_of_stage(*m, 32, "outflow", 0) / error_of_stage(*m, 64, "outflow", 0)), 1.9);
+}
+
+TEST(collision_centre, keeps_any_nonnegative_data_so_and_conserves) {
+  const auto m = small_bgk();
+  check_property("nonnegative and conservative", [&] {
+    const grid mesh = grid::line(*rc::gen::inRange(7, 14), 0.0, 2.0);
+    const std::string ends = *rc::gen::element<std::string>("periodic", "outflow", "symmetry");
+    const double epsilon = *rc::gen::element(0.0, 1e-8, 1e-2, 1.0, 1e6);
+    const auto q = apsis::make_cell_centre_collision(*m, space_of(mesh, ends), true,
+                                                     at_centres(mesh, [=](double x) { return epsilon * x; }));
+    field u = rough(mesh.size(), m->components());
+    const field before = u;
+    q->solve(0.0, *rc::gen::element(1e-4, 1e-2, 1.0), *rc::gen::element(0.0, -1e-4, -1.0), u);
+    double size = 0.0;
+    for (int i = 0; i < u.cells(); ++i)
+      for (int k = 0; k < u.components(); ++k) {
+        RC_ASSERT(u.row(i)[k] >= 0.0);
+        size += before.row(i)[k];
+      }
+    // Momentum and energy weigh f by up to v and v²/2 of the small grid, |v| ≤ 15: 1e-14 of the mass in
+    // roundings.
+    const std::array<double, 3> largest = {1.0, 8.0, 32.0};
+    for (int k = 0; k < 3; ++k) {
+      const double error = std::abs(total(*m, u, k) - total(*m, before, k));
+      RC_ASSERT(error <= 1e-14 * size * largest[static_cast<std::size_t>(k)]);
+    }
+  });
+}
+
+TEST(collision_centre, needs_its_limiter_next_to_jumps) {
+  const auto m = small_bgk();
+  const grid mesh = grid::line(12, 0.0, 2.0);
+  field jump = smooth(*m, mesh);
+  for (int i = 6; i < 12; ++i)
+    for (int k = 0; k < jump.components(); ++k) jump.row(i)[k] *= 1e-6;
+  const auto solved = [&](bool limited) {
+    const auto q = apsis::make_cell_centre_collision(*m, space_of(mesh), limited,
+                                                     at_centres(mesh, [](double) { return 1.0; }));
+    field u = jump;
+    q->solve(0.0, 0.1, 0.0, u);
+    return u;
+  };
+  EXPECT_GE(smallest(solved(true)), 0.0);
+  try {
+    solved(false);
+    FAIL() << "no error";
+  } catch (const apsis::numerical_error& failure) {
+    EXPECT_EQ(failure.site().cell, 6);
+    EXPECT_THAT(failure.problem(), testing::HasSubstr("is not positive"));
+  }
+}
+
+TEST(collision_centre, rate_is_the_slope_of_a_short_stage) {
+  const auto m = small_bgk();
+  const grid mesh = grid::line(16, 0.0, 2.0);
+  for (const char* ends : {"periodic", "outflow"}) {
+    const auto q = apsis::make_cell_centre_collision(*m, space_of(mesh, ends), false,
+                                                     at_centres(mesh, [](double x) { return 0.1 + x; }));
+    const field u = smooth(*m, mesh);
+    field stage = u, rate(u.cells(), u.components());
+    constexpr double a = 1e-7;
+    q->solve(0.0, a, 0.0, stage);
+    const apsis::target<field, double> to{&rate, 0.0, 1.0, true};
+    q->add_collision(0.0, u, {&to, 1});
+    // The slope differs by a/(2ε) relative to rates below 10, and by the roundings of u, 1e-16/a.
+    for (int i = 0; i < u.cells(); ++i)
+      for (int k = 0; k < u.components(); ++k)
+        EXPECT_NEAR((stage.row(i)[k] - u.row(i)[k]) / a, rate.row(i)[k], 1e-5) << ends << i << " " << k;
+  }
+}
+
+TEST(collision_centre, states_what_it_cannot_do) {
+  const auto m = small_bgk();
+  const auto message = [&](int cells, apsis::formulation unknowns) -> std::string {
+    try {
+      apsis::problem_builder(*m)
+          .on(grid::line(cells, 0.0, 1.0))
+          .with_unknowns(unknowns)
+          .with_collisions_at(apsis::collision_points::centres)
+          .with_reconstruction(scheme("weno5-z", apsis::limiter_kind::none).scheme)
+          .build();
+    } catch (const apsis::input_error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message(6, apsis::formulation::finite_volume), testing::HasSubstr("give at least 7"));
+  EXPECT_THAT(message(8, apsis::formulation::finite_difference),
+              testing::HasSubstr("point values, which collide where they are"));
+  EXPECT_EQ(message(7, apsis::formulation::finite_volume), "");
+}
+
+}  // namespace collision_centre_test

@@ -82,6 +82,7 @@ def against(result, label, errors, epsilon=None):
 
 # Tables of contests, in the order of the table of winners.
 CONTESTS = {"peers-ode": "ODE model", "peers-prothero-robinson": "Prothero–Robinson", "peers-kaps": "Kaps",
+            "peers-broadwell": "Broadwell",
             "peers-mixed-points": "mixed BGK, point values", "peers-mixed": "mixed BGK, cell averages"}
 
 
@@ -219,7 +220,8 @@ def draw_ode(result, path):
     for axes, epsilon in zip(places, epsilons):
         draw_work(axes, [point for point in points if point["epsilon"] == epsilon], sorted({point["contestant"] for point in points}))
         axes.set_title(f"ε = {epsilon:g}")
-    places[-1].axis("off")
+    for axes in places[len(epsilons):]:
+        axes.axis("off")
     handles, labels = places[0].get_legend_handles_labels()
     places[-1].legend(handles, labels, loc="center", fontsize="small")
     figure.savefig(path)
@@ -353,7 +355,7 @@ def main():
         if table in results:
             draw_mixed(results[table], given.docs / "images" / picture)
     for table, picture in (("peers-ode", "speed-ode.png"), ("peers-kaps", "speed-kaps.png"),
-                           ("peers-prothero-robinson", "speed-prothero-robinson.png")):
+                           ("peers-prothero-robinson", "speed-prothero-robinson.png"), ("peers-broadwell", "speed-broadwell.png")):
         if table in results:
             draw_ode(results[table], given.docs / "images" / picture)
     if "tolerance" in results.get("peers-ode", {"data": {}})["data"]:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -42,6 +43,20 @@ std::vector<std::string> imex_contestants() {
     if (find_method(name).kind == method_kind::imex) names.push_back(name);
   for (int order = 2; order <= 8; ++order) names.push_back(fmt::format("extrapolated-euler-{}", order));
   return names;
+}
+
+std::vector<std::string> explicit_contestants() {
+  std::vector<std::string> names;
+  for (const auto& name : method_names())
+    if (find_method(name).kind == method_kind::explicit_only) names.push_back(name);
+  return names;
+}
+
+std::vector<double> two_per_decade(double loosest, double tightest) {
+  std::vector<double> all;
+  for (double tolerance = loosest; tolerance > 0.99 * tightest; tolerance *= 0.316227766)
+    all.push_back(tolerance);
+  return all;
 }
 
 /// Lower bounds of the unknowns: nonnegative, nonnegative up to the rounding errors of a projection, any
@@ -114,6 +129,20 @@ std::string contest::ratio(std::size_t index, std::size_t error, double floor) c
   const double ratio = attempts_[index].measured.seconds / best_seconds(error, floor);
   if (std::isnan(ratio)) return "";
   return ratio < 100.0 ? fmt::format("({:.2g})", ratio) : fmt::format("({:.0f})", ratio);
+}
+
+void contest::add_to(result_table& result, std::optional<double> epsilon, bool only_others) const {
+  result.columns = columns();
+  if (epsilon) result.columns.insert(result.columns.begin(), "ε");
+  for (const auto& some : {best_of_ours(), rows(only_others), best_of_others()})
+    for (auto row : some) {
+      if (epsilon) row.insert(row.begin(), fmt::format("{:g}", *epsilon));
+      result.rows.push_back(std::move(row));
+    }
+  for (auto point : points()) {
+    if (epsilon) point["epsilon"] = *epsilon;
+    result.data["points"].push_back(std::move(point));
+  }
 }
 
 std::vector<std::vector<nlohmann::json>> contest::rows(bool only_others) const {

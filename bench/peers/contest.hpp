@@ -1,6 +1,9 @@
 #pragma once
 
+#include "measure/table.hpp"
+
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,11 @@ struct outcome {
 /// Returns the names of all IMEX methods of the catalogue and of the extrapolated Euler steps of orders 2
 /// to 8.
 std::vector<std::string> imex_contestants();
+/// Returns the names of all explicit methods of the catalogue.
+std::vector<std::string> explicit_contestants();
+
+/// Returns tolerances from `loosest` to `tightest`, two in each decade.
+std::vector<double> two_per_decade(double loosest, double tightest);
 
 /// Class of contestants. A best row of the table is that of one or several classes.
 enum class league {
@@ -55,6 +63,10 @@ class contest {
   /// Runs every attempt once, and then those that count in turns, `repeats` times, if that takes less than
   /// `seconds_each` per turn; their CPU time is then the median.
   void run(int repeats, double seconds_each);
+
+  /// After run(), adds columns, rows and runs to a table: the best of Apsis, every contestant or only the
+  /// others, and the best of the others; with a first column for ε if the problem has one value of it.
+  void add_to(result_table& result, std::optional<double> epsilon, bool only_others) const;
 
   /// After run(), returns a row for each contestant, or only for those of others: for every error the CPU
   /// time, in brackets relative to the best of Apsis (with nonnegative unknowns, if signs are shown), and the

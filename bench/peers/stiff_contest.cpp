@@ -1,3 +1,4 @@
+#include "integrators.hpp"
 #include "radau.hpp"
 #include "stiff_contest.hpp"
 #include "sundials_ode.hpp"
@@ -15,11 +16,12 @@ namespace {
 using integrator = sundials_ode_options::integrator;
 
 /// Equal steps, 1 to `most_steps` of them, with and without a graded start.
-void add_equal_steps(contest& all, const stiff_task& task, const method& m, league of, long most_steps) {
+void add_equal_steps(contest& all, const stiff_task& task, const std::string& name, league of,
+                     long most_steps) {
   const auto add = [&](long steps) {
     for (const bool graded : {false, true})
-      all.add({m.name, fmt::format("{} steps{}", steps, graded ? ", graded start" : ""), of,
-               [&task, &m, steps, graded] { return task.run(m, steps, graded); }});
+      all.add({name, fmt::format("{} steps{}", steps, graded ? ", graded start" : ""), of,
+               [&task, name, steps, graded] { return task.run(name, steps, graded); }});
   };
   add(1);
   for (long steps = 2; steps <= most_steps; steps *= 2) {
@@ -28,36 +30,31 @@ void add_equal_steps(contest& all, const stiff_task& task, const method& m, leag
   }
 }
 
-/// Tolerances from 1e-2 to `tightest`, two in each decade.
-std::vector<double> tolerances(double tightest) {
-  std::vector<double> all;
-  for (double rtol = 1e-2; rtol > 0.99 * tightest; rtol *= 0.316227766) all.push_back(rtol);
-  return all;
-}
-
 void add_ours(contest& all, const stiff_task& task, long most_steps, double tightest) {
   for (const auto& name : imex_contestants()) {
     const method& m = find_method(name);
     const bool ssp = find_certificate(name).ssp_coefficient > 0;
-    add_equal_steps(all, task, m, ssp ? league::ssp : league::any_sign, most_steps);
+    add_equal_steps(all, task, name, ssp ? league::ssp : league::any_sign, most_steps);
     if (!m.embedded) continue;
-    for (const double tolerance : tolerances(tightest))
+    for (const double tolerance : two_per_decade(1e-2, tightest))
       all.add({name + ", adaptive", fmt::format("tolerance {:.2g}", tolerance), league::adaptive,
                [&task, &m, tolerance] { return task.run_to_tolerance(m, tolerance); }});
   }
 }
 
 void add_explicit(contest& all, const stiff_task& task, long most_steps) {
-  for (const auto& name : method_names())
-    if (const method& m = find_method(name); m.kind == method_kind::explicit_only)
-      add_equal_steps(all, task, m, league::other, most_steps);
+  for (const auto& name : explicit_contestants()) add_equal_steps(all, task, name, league::other, most_steps);
+}
+
+void add_other_integrators(contest& all, const stiff_task& task, long most_steps) {
+  for (const auto& name : other_integrators()) add_equal_steps(all, task, name, league::other, most_steps);
 }
 
 void add_sundials(contest& all, const stiff_task& task, const std::string& name, sundials_ode_options options,
                   const std::vector<double>& nonlinear, double tightest) {
   for (const double coefficient : nonlinear)
     for (const double share : {1.0, 1e-2})
-      for (const double rtol : tolerances(tightest)) {
+      for (const double rtol : two_per_decade(1e-2, tightest)) {
         options.nonlinear = coefficient;
         options.rtol = rtol;
         options.atol = share * rtol;
@@ -70,7 +67,7 @@ void add_sundials(contest& all, const stiff_task& task, const std::string& name,
 
 void add_radau(contest& all, const stiff_task& task, double tightest) {
   for (const double share : {1.0, 1e-2})
-    for (const double rtol : tolerances(tightest)) {
+    for (const double rtol : two_per_decade(1e-2, tightest)) {
       const radau_options options{rtol, share * rtol};
       all.add({"Radau 5", fmt::format("rtol {:.2g}, atol {:.2g}", options.rtol, options.atol), league::other,
                [&task, options] { return run_radau(task, options); }});
@@ -82,6 +79,7 @@ contest contestants(const stiff_task& task, bool quick) {
   const double tightest = quick ? 1e-4 : 1e-12;
   add_ours(all, task, quick ? 16 : 8192, quick ? 1e-3 : 1e-10);
   add_explicit(all, task, quick ? 16 : 8192);
+  add_other_integrators(all, task, quick ? 16 : 8192);
   add_sundials(all, task, "CVODE, defaults", {integrator::cvode, 5, false}, {0.0}, tightest);
   add_sundials(all, task, "CVODE, tuned", {integrator::cvode, 5, true}, {0.1, 0.01}, tightest);
   add_sundials(all, task, "CVODE, tuned, u ≥ 0", {integrator::cvode, 5, true, true}, {0.1}, tightest);
@@ -99,7 +97,9 @@ const char* const note =
     " Contestants: every IMEX method of the catalogue, and extrapolated Euler steps of orders 2 to 8, with 1 "
     "to "
     "8192 equal steps, with and without a graded start, and with steps chosen by a tolerance where it has an "
-    "embedded solution; explicit SSP methods; CVODE (BDF, dense); ARKODE (T explicit, or all implicit); "
+    "embedded solution; explicit SSP methods; IMEX-BDF of orders 2 to 5 and the exponential method, with "
+    "equal steps; CVODE (BDF, dense); ARKODE (T "
+    "explicit, or all implicit); "
     "Radau "
     "IIA of order 5 with the control of RADAU5 (bench/peers/radau.cpp). CPU microseconds of a whole "
     "integration "
@@ -117,25 +117,12 @@ result_table run(const stiff_race& race, const settings& options) {
   result_table result;
   result.title = race.title;
   result.note = race.problem + note;
-  auto& points = result.data["points"] = nlohmann::json::array();
   for (const double epsilon :
        options.quick ? std::vector<double>{1e-6} : std::vector<double>{1.0, 1e-2, 1e-4, 1e-6, 1e-10}) {
     const auto task = race.make(epsilon);
     contest all = contestants(*task, options.quick);
     all.run(options.quick ? 0 : options.repeats, 1.0);
-    if (result.columns.empty()) {
-      result.columns = all.columns();
-      result.columns.insert(result.columns.begin(), "ε");
-    }
-    for (const auto& rows : {all.best_of_ours(), all.rows(true), all.best_of_others()})
-      for (auto row : rows) {
-        row.insert(row.begin(), fmt::format("{:g}", epsilon));
-        result.rows.push_back(std::move(row));
-      }
-    for (auto point : all.points()) {
-      point["epsilon"] = epsilon;
-      points.push_back(std::move(point));
-    }
+    all.add_to(result, epsilon, true);
   }
   return result;
 }

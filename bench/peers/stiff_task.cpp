@@ -1,3 +1,4 @@
+#include "integrators.hpp"
 #include "measure/clock.hpp"
 #include "stiff_task.hpp"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 namespace apsis::bench::peers {
 namespace {
@@ -100,12 +102,13 @@ class relaxation_task : public stiff_task {
          -rate / epsilon()}};
   }
 
-  outcome run(const method& m, long steps, bool graded) const override {
+  outcome run(const std::string& name, long steps, bool graded) const override {
     auto problem = Definition::problem(epsilon());
-    stepper march(m, problem);
     const auto rule = step_rule<double>::fixed(1.0 / static_cast<double>(steps))
                           .with(graded ? startup::graded : startup::none);
-    return measure([&](state& u, auto&& observer) { integrate(march, u, 0.0, 1.0, rule, observer); });
+    return with_integrator(name, problem, [&](auto& march) {
+      return measure([&](state& u, auto&& observer) { integrate(march, u, 0.0, 1.0, rule, observer); });
+    });
   }
 
   outcome run_to_tolerance(const method& m, double tolerance) const override {

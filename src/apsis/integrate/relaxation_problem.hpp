@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/relaxation_flow.hpp>
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/integrate/array_state.hpp>
 #include <apsis/integrate/problem.hpp>
@@ -81,11 +82,16 @@ class relaxation_problem {
       using size_type = decltype(u.size());
       for (size_type i = 0; i < u.size(); ++i) u[i] = weights.of_u * u[i] + weights.of_e * work_[i];
     }
-    require_finite(u, "a stage");  // implies a finite explicit part: neither weight turns a NaN into a number
-    if (admissible_ && !admissible_(u))
-      throw numerical_error(
-          "a stage is not admissible (the method or the time step does not preserve admissibility); "
-          "use Δt ≤ r Δt_FE with an SSP method");
+    require_valid(u);
+  }
+
+  /// Required by `problem_with_exact_collision`: u ← e^{−z}u + (1 − e^{−z})E, z = sC/ε. Throws like
+  /// solve_collision().
+  void advance_collision(real, real s, State& u) {
+    const auto weights = flow_weights(s, relaxation(u), epsilon_);
+    using size_type = decltype(u.size());
+    for (size_type i = 0; i < u.size(); ++i) u[i] = weights.of_u * u[i] + weights.of_e * work_[i];
+    require_valid(u);
   }
 
   /// Required by `problem_with_explicit_collision`. Throws input_error for ε = 0, where Q is not
@@ -138,6 +144,15 @@ class relaxation_problem {
           "reduce the time step, or check the functions of the problem",
           {-1, std::nan(""), -1, static_cast<double>(rate)});
     return rate;
+  }
+
+  /// Throws numerical_error unless u is finite and admissible.
+  void require_valid(const State& u) const {
+    require_finite(u, "a stage");  // implies a finite explicit part: neither weight turns a NaN into a number
+    if (admissible_ && !admissible_(u))
+      throw numerical_error(
+          "a stage is not admissible (the method or the time step does not preserve admissibility); "
+          "use Δt ≤ r Δt_FE with an SSP method");
   }
 
   void match_size(const State& u) {

@@ -1,11 +1,12 @@
+#include "collision_inverse.hpp"
 #include "field_vector.hpp"
-#include "projection.hpp"
-#include "sundials_mixed.hpp"
+#include "sundials_kinetic.hpp"
 
 #include <apsis/core/errors.hpp>
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include <arkode/arkode_arkstep.h>
@@ -19,7 +20,7 @@ using goal = target<field, double>;
 
 struct system_of_equations {
   semidiscrete_problem& problem;
-  projection inverse;
+  std::unique_ptr<collision_inverse> inverse;
 };
 
 system_of_equations& of(void* data) {
@@ -57,13 +58,13 @@ int both_sides(realtype t, N_Vector y, N_Vector out, void* data) {
 int prepare_inverse(realtype, N_Vector y, N_Vector, booleantype still_good, booleantype* renewed, realtype,
                     void* data) {
   *renewed = still_good ? SUNFALSE : SUNTRUE;
-  if (!still_good) of(data).inverse.prepare(field_of(y));
+  if (!still_good) of(data).inverse->prepare(field_of(y));
   return 0;
 }
 
 int apply_inverse(realtype, N_Vector, N_Vector, N_Vector r, N_Vector z, realtype gamma, realtype, int,
                   void* data) {
-  of(data).inverse.solve(gamma, field_of(r), field_of(z));
+  of(data).inverse->solve(gamma, field_of(r), field_of(z));
   return 0;
 }
 
@@ -72,7 +73,7 @@ void require(int flag, const char* what) {
 }
 
 SUNLinearSolver make_linear_solver(linear_solver which, N_Vector like, SUNContext context) {
-  if (which == linear_solver::projection_only) return make_preconditioner_solver(context);
+  if (which == linear_solver::collision_only) return make_preconditioner_solver(context);
   return SUNLinSol_SPGMR(like, which == linear_solver::spgmr ? SUN_PREC_NONE : SUN_PREC_LEFT, 0, context);
 }
 
@@ -148,21 +149,21 @@ void set_up_cvode(workspace& work, system_of_equations& equations, double end,
 
 }  // namespace
 
-outcome run_sundials(mixed_regime& what, const sundials_options& options, field* result) {
-  system_of_equations equations{what.problem(), projection(what.equation(), what.rates())};
-  workspace work(what.initial(), options);
+outcome run_sundials(kinetic_task& task, const sundials_options& options, field* result) {
+  system_of_equations equations{task.problem(), task.inverse()};
+  workspace work(task.initial(), options);
   if (work.is_arkode)
-    set_up_arkode(work, equations, what.end(), options);
+    set_up_arkode(work, equations, task.end(), options);
   else
-    set_up_cvode(work, equations, what.end(), options);
+    set_up_cvode(work, equations, task.end(), options);
   run_monitor timer(options.seconds_allowed);
   const field& u = field_of(work.y.get());
   double t = 0.0;
   std::string failure;
   timer.start();
-  while (t < what.end() && failure.empty()) {
-    const int flag = work.is_arkode ? ARKStepEvolve(work.memory, what.end(), work.y.get(), &t, ARK_ONE_STEP)
-                                    : CVode(work.memory, what.end(), work.y.get(), &t, CV_ONE_STEP);
+  while (t < task.end() && failure.empty()) {
+    const int flag = work.is_arkode ? ARKStepEvolve(work.memory, task.end(), work.y.get(), &t, ARK_ONE_STEP)
+                                    : CVode(work.memory, task.end(), work.y.get(), &t, CV_ONE_STEP);
     const bool in_time = timer.stepped(u);
     if (flag < 0)
       failure = "failed";
@@ -171,7 +172,7 @@ outcome run_sundials(mixed_regime& what, const sundials_options& options, field*
   }
   outcome measured = timer.result(u);
   measured.failure = failure;
-  measured.error = what.error(u);
+  measured.error = task.error(u);
   if (!std::isfinite(measured.error) && failure.empty()) measured.failure = "failed";
   if (result != nullptr) *result = u;
   return measured;

@@ -1,13 +1,16 @@
+#include "integrators.hpp"
+#include "kinetic_task.hpp"
 #include "measure/clock.hpp"
-#include "mixed.hpp"
 
 #include <apsis/integrate/error_control.hpp>
+#include <apsis/integrate/extrapolation.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/scheme/quartic.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,6 +22,12 @@ double smallest_of(const field& u) {
   for (int cell = 0; cell < u.cells(); ++cell)
     for (int k = 0; k < u.components(); ++k) smallest = std::min(smallest, u.row(cell)[k]);
   return smallest;
+}
+
+/// Adds a method, which the task does not use, and the end time.
+std::vector<std::string> with_end(std::vector<std::string> overrides, double end) {
+  overrides.insert(overrides.end(), {"time.method=md-imex-3-2", fmt::format("time.end={:.17g}", end)});
+  return overrides;
 }
 
 }  // namespace
@@ -45,9 +54,8 @@ outcome run_monitor::result(const field& u) const {
   return what;
 }
 
-mixed_regime::mixed_regime(double end, unknowns which)
-    : config_(load_case(which == unknowns::averages ? "paper/bgk-mixed" : "paper/bgk-mixed-fd",
-                        {"time.method=md-imex-3-2", fmt::format("time.end={:.17g}", end)})),
+kinetic_task::kinetic_task(const std::string& case_name, std::vector<std::string> overrides, double end)
+    : config_(load_case(case_name, with_end(std::move(overrides), end))),
       end_(end),
       setup_(config_),
       problem_(setup_.make_problem()),
@@ -60,21 +68,23 @@ mixed_regime::mixed_regime(double end, unknowns which)
     double mean = 0.0;
     for (std::size_t q = 0; q < gauss3::points; ++q)
       mean += gauss3::weight[q] / formula.evaluate(centre + gauss3::xi[q] * dx);
-    rates_.push_back(which == unknowns::averages ? mean : 1.0 / formula.evaluate(centre));
+    const bool averages = config_.space.formulation == formulation::finite_volume;
+    rates_.push_back(averages ? mean : 1.0 / formula.evaluate(centre));
   }
 }
 
-const relaxation_model& mixed_regime::equation() const {
-  return dynamic_cast<const relaxation_model&>(*setup_.equation);
+std::unique_ptr<collision_inverse> kinetic_task::inverse() const {
+  return config_.model.name == "broadwell" ? make_broadwell_inverse(rates_)
+                                           : make_bgk_inverse(equation(), rates_);
 }
 
-long mixed_regime::positive_steps(const method& m) const {
-  const double longest = m.coefficients<double>().r * problem_->forward_euler_step(0.0, initial_);
-  return static_cast<long>(std::ceil(end_ / longest));
+long kinetic_task::positive_steps(const std::string& name) const {
+  const double r = is_method_name(name) ? find_method(name).coefficients<double>().r : 1.0;
+  return static_cast<long>(std::ceil(end_ / (r * problem_->forward_euler_step(0.0, initial_))));
 }
 
 template <class Run>
-outcome mixed_regime::measure(double seconds_allowed, field* result, const Run& run) {
+outcome kinetic_task::measure(double seconds_allowed, field* result, const Run& run) {
   field u = initial_;
   run_monitor timer(seconds_allowed);
   bool in_time = true;
@@ -98,15 +108,20 @@ outcome mixed_regime::measure(double seconds_allowed, field* result, const Run& 
   return what;
 }
 
-outcome mixed_regime::run(const method& m, long steps, bool graded, double seconds_allowed, field* result) {
-  stepper march(m, *problem_);
+outcome kinetic_task::run(const std::string& name, long steps, bool graded, double seconds_allowed,
+                          field* result) {
   const auto rule = step_rule<double>::fixed(end_ / static_cast<double>(steps))
                         .with(graded ? startup::graded : startup::none);
-  return measure(seconds_allowed, result,
-                 [&](field& u, auto&& observer) { integrate(march, u, 0.0, end_, rule, observer); });
+  const auto run = [&](auto& march) {
+    return measure(seconds_allowed, result,
+                   [&](field& u, auto&& observer) { integrate(march, u, 0.0, end_, rule, observer); });
+  };
+  if (name != exponential_name) return with_integrator(name, *problem_, run);
+  kinetic_flow flow(*problem_, equation(), rates_);
+  return with_integrator(name, flow, run);
 }
 
-outcome mixed_regime::run_to_tolerance(const method& m, double tolerance, double seconds_allowed) {
+outcome kinetic_task::run_to_tolerance(const method& m, double tolerance, double seconds_allowed) {
   stepper march(m, *problem_, solutions::result_and_embedded);
   step_controller<double> control(tolerance, m.embedded->order);
   return measure(seconds_allowed, nullptr, [&](field& u, auto&& observer) {
@@ -116,7 +131,14 @@ outcome mixed_regime::run_to_tolerance(const method& m, double tolerance, double
   });
 }
 
-double mixed_regime::distance(const field& u, const field& exact) {
+field kinetic_task::extrapolated(double tolerance) {
+  field u = initial_;
+  extrapolate(*problem_, u, 0.0, end_, {.tolerance = tolerance},
+              [](const field& a, const field& b) { return distance(b, a); });
+  return u;
+}
+
+double kinetic_task::distance(const field& u, const field& exact) {
   if (exact.cells() == 0) return 0.0;
   double difference = 0.0, size = 0.0;
   for (int cell = 0; cell < u.cells(); ++cell)

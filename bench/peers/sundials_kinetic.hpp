@@ -1,14 +1,14 @@
 #pragma once
 
-#include "mixed.hpp"
+#include "kinetic_task.hpp"
 
 namespace apsis::bench::peers {
 
 /// Linear solver of SUNDIALS in Newton's method.
 enum class linear_solver {
-  spgmr,            ///< default for large systems, without preconditioner
-  preconditioned,   ///< preconditioned with `projection`
-  projection_only,  ///< `projection` alone as the inverse
+  spgmr,           ///< default for large systems, without preconditioner
+  preconditioned,  ///< preconditioned with the inverse of the linearized collision
+  collision_only,  ///< this inverse alone
 };
 
 struct sundials_options {
@@ -24,6 +24,6 @@ struct sundials_options {
 };
 
 /// Runs ARKODE (adaptive, T explicit, Q/ε implicit) or CVODE (BDF, both implicit).
-outcome run_sundials(mixed_regime& what, const sundials_options& options, field* result = nullptr);
+outcome run_sundials(kinetic_task& task, const sundials_options& options, field* result = nullptr);
 
 }  // namespace apsis::bench::peers

@@ -1,0 +1,138 @@
+#include "integrators.hpp"
+#include "kinetic_contest.hpp"
+#include "sundials_kinetic.hpp"
+
+#include <apsis/method/certificate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::bench::peers {
+namespace {
+
+/// Equal steps, with and without a graded start.
+void add_equal_steps(contest& all, kinetic_task& task, const std::string& name, league of,
+                     const kinetic_settings& settings) {
+  for (const double factor : settings.factors)
+    for (const bool graded : {false, true}) {
+      const long steps = std::max(1L, std::lround(static_cast<double>(task.positive_steps(name)) / factor));
+      all.add({name, fmt::format("dt = {:g} r dt_FE{}", factor, graded ? ", graded start" : ""), of,
+               [&task, name, steps, graded, seconds = settings.seconds_ours] {
+                 return task.run(name, steps, graded, seconds);
+               }});
+    }
+}
+
+void add_ours(contest& all, kinetic_task& task, const std::string& name, const kinetic_settings& settings) {
+  const bool ssp = find_certificate(name).ssp_coefficient > 0;
+  add_equal_steps(all, task, name, ssp ? league::ssp : league::any_sign, settings);
+  const method& m = find_method(name);
+  if (!m.embedded) return;
+  for (const double tolerance : settings.tolerances)
+    all.add({name + ", adaptive", fmt::format("tolerance {:g}", tolerance), league::adaptive,
+             [&task, &m, tolerance, seconds = settings.seconds_ours] {
+               return task.run_to_tolerance(m, tolerance, seconds);
+             }});
+}
+
+void add_sundials(contest& all, kinetic_task& task, const std::string& name, sundials_options options,
+                  const std::vector<double>& nonlinear, const ladder& tolerances) {
+  for (const double coefficient : nonlinear)
+    for (const double share : tolerances.atol_by_rtol)
+      for (const double rtol : tolerances.rtol) {
+        options.nonlinear = coefficient;
+        options.rtol = rtol;
+        options.atol = share * rtol;
+        std::string more = coefficient > 0.0 ? fmt::format(", nonlinear coefficient {:g}", coefficient) : "";
+        if (options.longest > 0.0) more += fmt::format(", dt ≤ {:g}", options.longest);
+        all.add({name, fmt::format("rtol {:g}, atol {:g}{}", options.rtol, options.atol, more), league::other,
+                 [&task, options] { return run_sundials(task, options); }});
+      }
+}
+
+sundials_options make_options(const kinetic_settings& settings, sundials_options::integrator which, int order,
+                              linear_solver linear, bool tuned, bool constrained = false) {
+  sundials_options options;
+  options.which = which;
+  options.order = order;
+  options.linear = linear;
+  options.tuned = tuned;
+  options.constrained = constrained;
+  options.seconds_allowed = settings.seconds_others;
+  return options;
+}
+
+void add_arkode(contest& all, kinetic_task& task, const kinetic_settings& settings) {
+  const auto options = [&](int order, linear_solver linear, bool tuned) {
+    return make_options(settings, sundials_options::integrator::arkode, order, linear, tuned);
+  };
+  for (const int order : {3, 4, 5}) {
+    const auto tuned = fmt::format("ARKODE {}, tuned", order);
+    auto limited = options(order, linear_solver::collision_only, true);
+    add_sundials(all, task, tuned, limited, {0.1, 0.01}, settings.fine);
+    limited.longest = settings.longest;
+    add_sundials(all, task, tuned, limited, {0.1}, {settings.fine.rtol, {1e-4}});
+    if (order == 5) continue;
+    add_sundials(all, task, fmt::format("ARKODE {}, defaults", order),
+                 options(order, linear_solver::spgmr, false), {0.0}, settings.defaults);
+    add_sundials(all, task, tuned + ", GMRES", options(order, linear_solver::preconditioned, true), {0.1},
+                 settings.few);
+    auto constrained = options(order, linear_solver::collision_only, true);
+    constrained.constrained = true;
+    add_sundials(all, task, tuned + ", f ≥ 0", constrained, {0.1}, {settings.few.rtol, {1e-4}});
+  }
+}
+
+void add_cvode(contest& all, kinetic_task& task, const kinetic_settings& settings) {
+  const ladder& fine = settings.fine;
+  add_sundials(all, task, "CVODE, defaults",
+               make_options(settings, sundials_options::integrator::cvode, 5, linear_solver::spgmr, false),
+               {0.0}, settings.defaults);
+  for (const bool constrained : {false, true}) {
+    const char* more = constrained ? ", f ≥ 0" : "";
+    add_sundials(all, task, fmt::format("CVODE, tuned, GMRES{}", more),
+                 make_options(settings, sundials_options::integrator::cvode, 5, linear_solver::preconditioned,
+                              false, constrained),
+                 {0.1, 0.01}, fine);
+    add_sundials(all, task, fmt::format("CVODE, tuned{}", more),
+                 make_options(settings, sundials_options::integrator::cvode, 5, linear_solver::collision_only,
+                              true, constrained),
+                 {0.1}, fine);
+  }
+}
+
+void add_explicit(contest& all, kinetic_task& task, const kinetic_settings& settings) {
+  for (const auto& name : settings.explicit_methods)
+    for (const long steps : settings.explicit_steps)
+      all.add({name, fmt::format("{} steps", steps), league::other,
+               [&task, name, steps, seconds = settings.seconds_others] {
+                 return task.run(name, steps, false, seconds);
+               }});
+}
+
+}  // namespace
+
+void enter_all(contest& all, kinetic_task& task, const kinetic_settings& settings) {
+  for (const auto& name : imex_contestants()) add_ours(all, task, name, settings);
+  for (const auto& name : other_integrators())
+    if (name != exponential_name || task.has_exact_collision())
+      add_equal_steps(all, task, name, league::other, settings);
+  add_arkode(all, task, settings);
+  add_cvode(all, task, settings);
+  add_explicit(all, task, settings);
+}
+
+std::vector<double> by_octaves(double from, double to) {
+  std::vector<double> all;
+  for (double x = from; x > 0.99 * to; x /= 2.0) {
+    all.push_back(x);
+    if (0.75 * x > 0.99 * to) all.push_back(0.75 * x);
+  }
+  return all;
+}
+
+}  // namespace apsis::bench::peers

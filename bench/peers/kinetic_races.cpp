@@ -1,0 +1,182 @@
+#include "kinetic_contest.hpp"
+#include "kinetic_races.hpp"
+#include "sundials_kinetic.hpp"
+
+#include <apsis/core/errors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::bench::peers {
+namespace {
+
+/// Returns the number of explicit Runge–Kutta steps at the largest stable dt: 2.51 times the smallest ε on
+/// the negative real axis.
+long explicit_steps(double end, double smallest_epsilon) {
+  return static_cast<long>(std::ceil(end / (2.5 * smallest_epsilon)));
+}
+
+/// Sets the reference after comparison with a second solution; returns their relative distance.
+double accept_reference(kinetic_task& task, const field& exact, const field& second, double allowed) {
+  const double apart = kinetic_task::distance(second, exact);
+  if (!(apart < allowed))
+    throw numerical_error(
+        fmt::format("the reference solutions differ by {:.2g} (the limit is {:.0e}); refine "
+                    "their steps",
+                    apart, allowed));
+  task.set_reference(exact);
+  return apart;
+}
+
+/// Computes f by an explicit method with small steps; returns its distance from the solution of an entirely
+/// different method. Implicit methods of any step below ε solve the same system on point values only: on
+/// averages the collision acts at Gauss points that are reconstructed anew in every stage.
+double find_mixed_reference(kinetic_task& task, unknowns which, bool quick) {
+  field exact, second;
+  const long steps = explicit_steps(task.end(), 0.8e-5);
+  task.run("ssprk-5-4", 2 * steps, true, 1e3, &exact);
+  if (which == unknowns::points) {
+    task.run("ark-548-2", steps, true, 1e3, &second);
+  } else {
+    sundials_options tight;
+    tight.linear = linear_solver::collision_only;
+    tight.tuned = true;
+    tight.nonlinear = 0.01;
+    tight.rtol = quick ? 1e-5 : 1e-6;
+    tight.atol = 1e-4 * tight.rtol;
+    tight.seconds_allowed = 1e3;
+    run_sundials(task, tight, &second);
+  }
+  return accept_reference(task, exact, second, which == unknowns::points && !quick ? 1e-7 : 2e-6);
+}
+
+/// Computes f by extrapolated Euler steps, which resolve the layer; returns its distance from the solution of
+/// a method of order 5 with small equal steps after a graded start.
+double find_broadwell_reference(kinetic_task& task, bool quick) {
+  const field exact = task.extrapolated(quick ? 1e-9 : 1e-12);
+  field second;
+  task.run("ark-548-2", quick ? 200 : 4000, true, 1e3, &second);
+  return accept_reference(task, exact, second, quick ? 1e-6 : 1e-9);
+}
+
+/// Steps from those of the longest stable step on: the relaxation rate is ρ/ε with ρ ≤ 5, and 20 steps are as
+/// long as a cell. None where they would exceed the time limit by far.
+std::vector<long> explicit_steps_of_broadwell(double end, double epsilon) {
+  std::vector<long> all;
+  const long least = std::max(20L, explicit_steps(end, epsilon / 5.0));
+  if (least > 100000) return all;
+  for (long steps = least / 2; steps <= 64 * least; steps *= 2) {
+    all.push_back(steps);
+    all.push_back(steps + steps / 2);
+  }
+  return all;
+}
+
+/// The settings of a smoke test.
+void make_quick(kinetic_settings& choices) {
+  choices.factors = {4.0};
+  choices.tolerances = {1e-3};
+  choices.fine = choices.few = choices.defaults = {{1e-3}, {1e-3}};
+  if (!choices.explicit_steps.empty()) choices.explicit_steps.resize(1);
+  choices.seconds_ours = choices.seconds_others = 0.3;
+}
+
+const char* const kinetic_note =
+    "CPU seconds of one thread for a given relative temporal error of f (2-norm over all cells and "
+    "velocities), in brackets relative to the best of Apsis with f ≥ 0 throughout, and the minimum of f "
+    "after "
+    "any step. Contestants: every IMEX method of the catalogue and extrapolated Euler steps, with equal "
+    "steps "
+    "and with steps chosen by a tolerance; IMEX-BDF of orders 2 to 5 and, on point values, the exponential "
+    "method, with equal steps; runs of methods with "
+    "an SSP coefficient count only with f ≥ 0 "
+    "throughout. For each contestant the cheapest run that reaches the error, whatever its setting. All use "
+    "the same T and Q. ARKODE: T explicit, Q/ε implicit; tuned: implicit right-hand side deduced, 20 "
+    "nonlinear "
+    "iterations, and the inverse of the linearized collision as preconditioner of GMRES or instead of it. "
+    "CVODE: BDF, tuned in the same way. f ≥ 0: with their constraint. —: no run reached the error in {:g} "
+    "s. ";
+
+}  // namespace
+
+result_table race_on_mixed_regime(unknowns which, const std::vector<double>& errors,
+                                  const settings& options) {
+  const bool quick = options.quick;
+  kinetic_task task(which == unknowns::averages ? "paper/bgk-mixed" : "paper/bgk-mixed-fd", {},
+                    quick ? 0.004 : 0.5);
+  const double apart = find_mixed_reference(task, which, quick);
+  kinetic_settings choices{
+      .factors = by_octaves(32.0, 0.25),
+      .tolerances = {1e-3, 1e-4, 1e-5, 1e-6},
+      .fine = {{1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6}, {1e-3, 1e-4}},
+      .few = {{1e-2, 1e-3, 1e-4}, {1e-3, 1e-4}},
+      .defaults = {{1e-3}, {1e-3}},
+      .longest = 0.008,
+      .explicit_methods = {"ssprk-3-3"},
+      .explicit_steps = {explicit_steps(task.end(), 1e-5)},
+  };
+  if (quick) make_quick(choices);
+  contest all(errors, "s", true);
+  enter_all(all, task, choices);
+  all.run(quick ? 0 : options.repeats, 3.0);
+  result_table result;
+  result.note = fmt::format(fmt::runtime(kinetic_note), choices.seconds_others) +
+                fmt::format(
+                    "The mixed-regime problem (40 cells, 150 velocities, {}) at t = {:g}. The reference, "
+                    "by an explicit method, is accurate to {:.1e} by comparison with an implicit one.",
+                    which == unknowns::averages ? "cell averages" : "point values", task.end(), apart);
+  all.add_to(result, std::nullopt, false);
+  result.data["reference_error"] = apart;
+  result.data["end"] = task.end();
+  return result;
+}
+
+result_table race_on_broadwell(const settings& options) {
+  const bool quick = options.quick;
+  const double end = 0.5;
+  result_table result;
+  result.title = "Broadwell's model: work and precision";
+  double furthest = 0.0;
+  for (const double epsilon :
+       quick ? std::vector<double>{1e-2} : std::vector<double>{1.0, 1e-2, 1e-4, 1e-6}) {
+    kinetic_task task(
+        "paper/broadwell",
+        {fmt::format("model.epsilon={:g}", epsilon), "space.cells=80", "space.formulation=finite-difference"},
+        end);
+    furthest = std::max(furthest, find_broadwell_reference(task, quick));
+    kinetic_settings choices{
+        .factors = by_octaves(4.0, 1.0 / 32.0),
+        .tolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9},
+        .fine = {two_per_decade(1e-2, 1e-10), {1.0, 1e-2}},
+        .few = {two_per_decade(1e-2, 1e-8), {1e-2}},
+        .defaults = {two_per_decade(1e-2, 1e-6), {1e-2}},
+        .longest = 0.03,
+        .explicit_methods = explicit_contestants(),
+        .explicit_steps = explicit_steps_of_broadwell(end, epsilon),
+        .seconds_ours = 0.3,
+        .seconds_others = 1.0,
+    };
+    if (quick) make_quick(choices);
+    contest all({1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}, "s", true);
+    enter_all(all, task, choices);
+    all.run(quick ? 0 : options.repeats, 1.0);
+    all.add_to(result, epsilon, true);
+    if (result.note.empty()) result.note = fmt::format(fmt::runtime(kinetic_note), choices.seconds_others);
+  }
+  result.note += fmt::format(
+      "Broadwell's model with the smooth data out of equilibrium of paper/broadwell, 80 cells, "
+      "finite differences (WENO5-JS), at t = {:g}. The reference, by extrapolated Euler steps of "
+      "order 8, is accurate to {:.1e} by comparison with ark-548-2. Radau is not entered: its Newton "
+      "matrix couples all 240 unknowns. Explicit methods are entered for ε ≥ 1e-4.",
+      end, furthest);
+  result.data["reference_error"] = furthest;
+  result.data["end"] = end;
+  return result;
+}
+
+}  // namespace apsis::bench::peers

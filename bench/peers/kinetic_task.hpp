@@ -1,0 +1,76 @@
+#pragma once
+
+#include "collision_inverse.hpp"
+#include "contest.hpp"
+#include "kinetic_flow.hpp"
+
+#include <apsis/run/setup.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace apsis::bench::peers {
+
+/// Monitors a run between its steps: smallest values, and the time of the steps alone.
+class run_monitor {
+ public:
+  explicit run_monitor(double seconds_allowed) : allowed_(seconds_allowed) {}
+  void start();
+  /// To be called after each step; returns false once the time limit is exceeded.
+  bool stepped(const field& u);
+  /// Returns the measurements; `u` is the state at the end.
+  outcome result(const field& u) const;
+
+ private:
+  double allowed_, begin_ = 0.0, seconds_ = 0.0, smallest_;
+  long steps_ = 0;
+};
+
+/// A case as a system of ordinary differential equations f' = T(f) + Q(f)/ε on its mesh, from t = 0 to `end`,
+/// with the same functions for all integrators.
+class kinetic_task {
+ public:
+  /// `overrides`: KEY=VALUE, as on the command line. The model must be a relaxation in one space dimension.
+  kinetic_task(const std::string& case_name, std::vector<std::string> overrides, double end);
+
+  double end() const { return end_; }
+  const field& initial() const { return initial_; }
+  semidiscrete_problem& problem() { return *problem_; }
+  /// Whether exponential methods can run: the collision is pointwise.
+  bool has_exact_collision() const { return config_.space.formulation == formulation::finite_difference; }
+  /// Returns the inverse of I − γJ for the Jacobian J of the collision.
+  std::unique_ptr<collision_inverse> inverse() const;
+  /// Returns the number of steps of an integrator in [0, end] at the largest Δt for which f stays
+  /// nonnegative, r Δt_FE (r = 1 if that is unknown).
+  long positive_steps(const std::string& name) const;
+
+  /// Runs `steps` equal steps of an integrator of integrators.hpp; `graded`: the first of them divided into
+  /// steps that resolve the initial layer.
+  outcome run(const std::string& name, long steps, bool graded, double seconds_allowed,
+              field* result = nullptr);
+  /// Runs a method with an embedded solution to a tolerance of the steps, relative to f in the 2-norm.
+  outcome run_to_tolerance(const method& m, double tolerance, double seconds_allowed);
+  /// Computes the solution by extrapolated Euler steps of order 8 with a bound of the error of a step,
+  /// relative to f in the 2-norm (integrate/extrapolation.hpp).
+  field extrapolated(double tolerance);
+
+  void set_reference(field exact) { reference_ = std::move(exact); }
+  double error(const field& u) const { return distance(u, reference_); }
+  static double distance(const field& u, const field& exact);
+
+ private:
+  const relaxation_model& equation() const { return dynamic_cast<const relaxation_model&>(*setup_.equation); }
+  /// Measures run(u, observer), an integration of u from the initial state.
+  template <class Run>
+  outcome measure(double seconds_allowed, field* result, const Run& run);
+
+  case_config config_;
+  double end_;
+  run_setup setup_;
+  std::unique_ptr<semidiscrete_problem> problem_;
+  field initial_, reference_;
+  std::vector<double> rates_;  ///< 1/ε of every cell: at its centre, or the mean over its Gauss points
+};
+
+}  // namespace apsis::bench::peers

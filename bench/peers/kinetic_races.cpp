@@ -58,10 +58,10 @@ double find_mixed_reference(kinetic_task& task, unknowns which, bool quick) {
 /// Computes f by extrapolated Euler steps, which resolve the layer; returns its distance from the solution of
 /// a method of order 5 with small equal steps after a graded start.
 double find_broadwell_reference(kinetic_task& task, bool quick) {
-  const field exact = task.extrapolated(quick ? 1e-9 : 1e-12);
+  const field exact = task.extrapolated(quick ? 1e-9 : 1e-11);
   field second;
   task.run("ark-548-2", quick ? 200 : 4000, true, 1e3, &second);
-  return accept_reference(task, exact, second, quick ? 1e-6 : 1e-9);
+  return accept_reference(task, exact, second, quick ? 1e-6 : 1e-10);
 }
 
 /// Steps from those of the longest stable step on: the relaxation rate is ρ/ε with ρ ≤ 5, and 20 steps are as

@@ -83,7 +83,8 @@ def against(result, label, errors, epsilon=None):
 # Tables of contests, in the order of the table of winners.
 CONTESTS = {"peers-ode": "ODE model", "peers-prothero-robinson": "Prothero–Robinson", "peers-kaps": "Kaps",
             "peers-broadwell": "Broadwell",
-            "peers-mixed-points": "mixed BGK, point values", "peers-mixed": "mixed BGK, cell averages"}
+            "peers-mixed-points": "mixed BGK, point values", "peers-mixed": "mixed BGK, cell averages",
+            "peers-mixed-centres": "mixed BGK, cell averages, collisions at centres"}
 
 
 def winner(result, error, epsilon):
@@ -351,7 +352,8 @@ def main():
     replace(given.docs / "speed.md", "processors", comparison(machines))
     replace(given.docs / "speed.md", "winners", winners(results))
     replace(given.readme, "speed", comparison(machines, FRONT_PAGE))
-    for table, picture in (("peers-mixed", "speed-mixed.png"), ("peers-mixed-points", "speed-mixed-points.png")):
+    for table, picture in (("peers-mixed", "speed-mixed.png"), ("peers-mixed-points", "speed-mixed-points.png"),
+                           ("peers-mixed-centres", "speed-mixed-centres.png")):
         if table in results:
             draw_mixed(results[table], given.docs / "images" / picture)
     for table, picture in (("peers-ode", "speed-ode.png"), ("peers-kaps", "speed-kaps.png"),

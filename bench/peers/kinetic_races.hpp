@@ -9,7 +9,8 @@ namespace apsis::bench::peers {
 /// Unknowns of the discretization in space.
 enum class unknowns {
   averages,  ///< cell averages, finite volumes: the collision is evaluated at Gauss points (paper/bgk-mixed)
-  points     ///< point values, finite differences: the collision is pointwise (paper/bgk-mixed-fd)
+  averages_at_centres,  ///< the same, with collisions at the centres of cells
+  points                ///< point values, finite differences: the collision is pointwise (paper/bgk-mixed-fd)
 };
 
 /// Work and precision on the mixed-regime problem of the paper with these unknowns, for the given temporal

@@ -68,8 +68,9 @@ kinetic_task::kinetic_task(const std::string& case_name, std::vector<std::string
     double mean = 0.0;
     for (std::size_t q = 0; q < gauss3::points; ++q)
       mean += gauss3::weight[q] / formula.evaluate(centre + gauss3::xi[q] * dx);
-    const bool averages = config_.space.formulation == formulation::finite_volume;
-    rates_.push_back(averages ? mean : 1.0 / formula.evaluate(centre));
+    const bool in_cells = config_.space.formulation == formulation::finite_volume &&
+                          config_.space.collisions != collision_points::centres;
+    rates_.push_back(in_cells ? mean : 1.0 / formula.evaluate(centre));
   }
 }
 

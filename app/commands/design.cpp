@@ -40,7 +40,7 @@ struct options {
   std::optional<int> threads;
   bool implicit = false, json = false;
   std::string objective = "r", regime = "none", from, out, embedded, cost = "one-solve";
-  double seconds = 60.0, sparsify = 0.0;
+  double seconds = 60.0, sparsify = 0.0, band_weight = default_band_weight;
   std::uint64_t seed = 1;
   design_demands demands;
 };
@@ -88,6 +88,8 @@ design_task task_of(const options& given) {
   require(d.most_buffers >= 1, "--buffers", std::to_string(d.most_buffers), "at least 1");
   require(d.least_r > 0.0 && d.least_r < d.largest_r, "--ssp", fmt::format("{}", d.least_r),
           fmt::format("positive, below {}", d.largest_r));
+  require(given.band_weight >= 0.0 && given.band_weight <= 1e6, "--band-weight",
+          fmt::format("{}", given.band_weight), "from 0 to 1e6");
   require(given.sparsify >= 0.0 && given.sparsify < 1.0, "--sparsify", fmt::format("{}", given.sparsify),
           "from 0 to 1: the admissible loss of the objective");
   design_task task;
@@ -103,7 +105,9 @@ design_task task_of(const options& given) {
                                             {{"r", design_objective::largest_r},
                                              {"r/n_F", design_objective::efficiency},
                                              {"error", design_objective::smallest_error},
-                                             {"band", design_objective::smallest_band}});
+                                             {"band", design_objective::smallest_band},
+                                             {"mixed", design_objective::smallest_mixed}});
+  task.band_weight = given.band_weight;
   task.seed = given.seed;
   if (!given.from.empty()) {
     const method& m = find_method(given.from);
@@ -112,8 +116,6 @@ design_task task_of(const options& given) {
           fmt::format("command line: --from '{}' cannot be improved (it is not {} of the paper's class); "
                       "name another method",
                       given.from, to_string(task.kind)));
-    require(m.stages() >= task.stages, "--stages", std::to_string(stages),
-            fmt::format("'{}' has {}: as many, or fewer", given.from, m.stages()));
     task.from = m.coefficients<double>();
     const int has = schedule(*task.from).transport_evaluations();
     require(given.evaluations == 0 || given.evaluations >= has, "--evaluations",
@@ -243,20 +245,23 @@ int design(const options& given) {
 action define(CLI::App& command) {
   auto given = std::make_shared<options>();
   auto& d = given->demands;
-  command.add_option("--order", given->order,
-                     "order of accuracy (with --embedded: of the embedded solution)");
+  command.add_option("--order", given->order, "order of accuracy, or that of the embedded solution");
   command.add_option("--stages", given->stages, "number of stages; the last one is the result");
   command.add_flag("--implicit", given->implicit, "a method without transport, u' = Q(u)");
-  command.add_option("--evaluations", given->evaluations,
-                     "transport evaluations per step (any number if not given)");
+  command.add_option("--evaluations", given->evaluations, "transport evaluations per step (default: any)");
   command.add_option("--box", d.box, "largest d and |ddot|")->capture_default_str();
   command.add_option("--margin", d.margin, "least d + |ddot| of a stage")->capture_default_str();
-  command.add_option("--objective", given->objective, "objective to optimize: r, r/n_F, error or band")
+  command
+      .add_option("--objective", given->objective, "quantity to optimize: r, r/n_F, error, band, or mixed")
+      ->capture_default_str();
+  command
+      .add_option("--band-weight", given->band_weight,
+                  "weight of band and layer relative to the error (band, mixed)")
       ->capture_default_str();
   command.add_option("--ssp", d.least_r, "least SSP coefficient r")->capture_default_str();
   command.add_option("--from", given->from,
                      "a method (name or FILE.toml) to improve instead of random starts; stages above "
-                     "--stages are removed, evaluations up to --evaluations are added");
+                     "--stages are removed, stages and evaluations below the requested numbers are added");
   command
       .add_option("--regime", given->regime, "terms of size epsilon required to be exact: none, slow or all")
       ->capture_default_str();

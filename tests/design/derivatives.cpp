@@ -81,7 +81,8 @@ Eigen::VectorXd gradient_of_sum(design_problem& problem, const Eigen::VectorXd& 
                                 const design_problem::weights& given) {
   Eigen::VectorXd g = problem.jacobian(x).transpose() * given.equations, part;
   g += problem.limit_jacobian(x).transpose() * given.limits;
-  for (const auto& [what, weight] : {std::pair{measure::error, given.error}, {measure::band, given.band}}) {
+  for (const auto& [what, weight] :
+       {std::pair{measure::error, given.error}, {measure::band, given.band}, {measure::layer, given.layer}}) {
     if (weight == 0.0) continue;
     problem.half_square(what, x, &part);
     g += weight * part;
@@ -95,15 +96,19 @@ TEST(design_derivatives, agree_with_differences) {
     const bool transports = all[k].kind != method_kind::implicit_only;
     const auto J = problem.jacobian(x), limit_J = problem.limit_jacobian(x);
     EXPECT_EQ(problem.limits() > 0, all[k].kind != method_kind::explicit_only);
-    Eigen::VectorXd of_error, of_band;
+    Eigen::VectorXd of_error, of_band, of_layer;
     problem.half_square(measure::error, x, &of_error);
-    if (transports) problem.half_square(measure::band, x, &of_band);
+    if (transports) {
+      problem.half_square(measure::band, x, &of_band);
+      problem.half_square(measure::layer, x, &of_layer);
+    }
     random_source random(17);
     design_problem::weights given;
     given.equations = draw_vector(problem.equations(), random);
     given.limits = draw_vector(problem.limits(), random);
     given.error = 0.7;
     given.band = transports ? 0.4 : 0.0;
+    given.layer = transports ? 0.3 : 0.0;
     const auto H = problem.hessian(x, given);
     EXPECT_LT((H - H.transpose()).norm(), 1e-12 * H.norm());
     for (Eigen::Index u = 0; u < x.size(); ++u) {
@@ -124,7 +129,10 @@ TEST(design_derivatives, agree_with_differences) {
         };
       };
       expect_slope(square(measure::error), of_error.segment(u, 1));
-      if (transports) expect_slope(square(measure::band), of_band.segment(u, 1));
+      if (transports) {
+        expect_slope(square(measure::band), of_band.segment(u, 1));
+        expect_slope(square(measure::layer), of_layer.segment(u, 1));
+      }
       expect_slope([&](const auto& y) { return gradient_of_sum(problem, y, given); }, H.col(u));
     }
   }
@@ -159,13 +167,16 @@ TEST(design_conditions, agree_with_flux_and_stability_function_of_the_certificat
       EXPECT_NEAR(limits(l), expected, 1e-11 * (1.0 + std::abs(expected))) << k << " " << l;
     }
     if (all[k].kind == method_kind::implicit_only) continue;
-    double sum = 0.0;
+    double sum = 0.0, layer = 0.0;
     for (int l = -8; l <= 20; ++l) {  // 8 per decade
       const long double z = std::pow(10.0L, l / 8.0L);
       const long double R = stability_function(butcher, -z).real();
       const long double residual = (at_finite_rate(butcher, z).flux - 1) / z * (1 - R) / -std::expm1(-z);
       sum += static_cast<double>(residual * residual) / 8.0;
+      const long double of_layer = at_finite_rate(butcher, z).layer - (1 - R) / z;
+      layer += static_cast<double>(of_layer * of_layer) / 8.0;
     }
+    EXPECT_NEAR(problem.half_square(measure::layer, x), 0.5 * layer, 1e-11 * (1.0 + layer)) << k;
     EXPECT_NEAR(problem.half_square(measure::band, x), 0.5 * sum, 1e-11 * (1.0 + sum)) << k;
   }
 }

@@ -77,6 +77,9 @@ int add_transport(condition_list& list, int child) {
   return static_cast<int>(list.nodes.size()) - 1;
 }
 
+/// Values of z in a decade at which band_terms() and layer_terms() are taken.
+constexpr int band_points = 8;
+
 /// Returns logarithmically spaced radii from 0.1 to 300.
 std::vector<double> radii(int to_a_decade) {
   std::vector<double> all;
@@ -126,22 +129,34 @@ void add_regime_equations(condition_list& list, regime_demand demand, std::size_
 }
 
 condition_list band_terms(std::size_t stages) {
-  constexpr int to_a_decade = 8;
   const std::size_t last = stages - 1;
   condition_list list;
-  for (const double z : radii(to_a_decade)) {
+  for (const double z : radii(band_points)) {
     const int moved = add_response(list, series_node::kind::moved, -z);
     const int start = add_response(list, series_node::kind::response, -z);
     const int of_moved = add_transport(list, moved), of_start = add_transport(list, start);
     // κ = moved + κ_s start, κ_s = moved_s/(1 − start_s); (flux(z) − 1)(1 − start_s) is a polynomial in
     // the stage values.
-    const double w = std::sqrt(1.0 / to_a_decade) / (z * -std::expm1(-z));
+    const double w = std::sqrt(1.0 / band_points) / (z * -std::expm1(-z));
     list.conditions.push_back({fmt::format("flux at z = {:.3g}", z),
                                {{w, {of_moved}, last},
                                 {-w, {of_moved, start}, last},
                                 {w, {moved, of_start}, last},
                                 {w, {start}, last}},
                                w});
+  }
+  return list;
+}
+
+condition_list layer_terms(std::size_t stages) {
+  const std::size_t last = stages - 1;
+  const double w = std::sqrt(1.0 / band_points);
+  condition_list list;
+  for (const double z : radii(band_points)) {
+    const int start = add_response(list, series_node::kind::response, -z);
+    const int of_start = add_transport(list, start);
+    list.conditions.push_back(
+        {fmt::format("layer at z = {:.3g}", z), {{w, {of_start}, last}, {w / z, {start}, last}}, w / z});
   }
   return list;
 }

@@ -55,6 +55,10 @@ condition_list error_terms(method_kind kind, int order, std::size_t stages);
 /// 0.1 ≤ z ≤ 300.
 condition_list band_terms(std::size_t stages);
 
+/// Returns terms whose residuals measure the error of a step in the initial layer (docs/plateaus.md, the
+/// band): their 2-norm is that of b̂·λ(z) − (1 − R(−z))/z over log₁₀ z, 0.1 ≤ z ≤ 300.
+condition_list layer_terms(std::size_t stages);
+
 /// Returns (|R(ζ)|² − 1)/min(1, |ζ|)⁴ on the ray at angle `degrees` from the negative axis, which must be ≤ 0
 /// for A(α)-stability of the implicit part. 24 radii per decade, 0.1 ≤ |ζ| ≤ 300.
 condition_list stability_limits(double degrees, std::size_t stages);

@@ -225,12 +225,13 @@ Eigen::MatrixXd design_problem::limit_jacobian(const Eigen::VectorXd& x) {
 }
 
 design_problem::sweeps& design_problem::terms_of(measure what) {
-  auto& terms = what == measure::error ? error_ : band_;
-  if (!terms)
-    terms.emplace(what == measure::error ? error_terms(pattern_.kind, demands_.order + 1, pattern_.stages())
-                                         : band_terms(pattern_.stages()),
-                  slow_);
-  return *terms;
+  const auto ready = [this](std::optional<sweeps>& terms, const auto& list) -> sweeps& {
+    if (!terms) terms.emplace(list(pattern_.stages()), slow_);
+    return *terms;
+  };
+  if (what == measure::band) return ready(band_, band_terms);
+  if (what == measure::layer) return ready(layer_, layer_terms);
+  return ready(error_, [this](std::size_t s) { return error_terms(pattern_.kind, demands_.order + 1, s); });
 }
 
 double design_problem::half_square(measure what, const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
@@ -272,6 +273,7 @@ Eigen::MatrixXd design_problem::hessian(const Eigen::VectorXd& x, const weights&
     if (limits_) add_linear(limits_->second, given.limits);
     add_squares(measure::error, given.error);
     add_squares(measure::band, given.band);
+    add_squares(measure::layer, given.layer);
     for (std::size_t u = 0; u < n; ++u)
       if (const tangent* from = entry(gradient, unknowns_[u]); from != nullptr)
         for (std::size_t k = first; k < last; ++k)

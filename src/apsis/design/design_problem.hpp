@@ -103,7 +103,8 @@ class design_problem {
   /// Error measures that can be minimized.
   enum class measure {
     error,  ///< residuals of the next order, error_terms()
-    band    ///< residuals of band_terms()
+    band,   ///< residuals of band_terms()
+    layer   ///< residuals of layer_terms()
   };
   /// Returns ½ Σ residuals², and optionally its gradient.
   double half_square(measure what, const Eigen::VectorXd& x, Eigen::VectorXd* gradient = nullptr);
@@ -113,7 +114,8 @@ class design_problem {
     Eigen::VectorXd equations,  ///< λ_k
         limits;                 ///< μ_l
     double error = 0.0,         ///< factor of half_square(measure::error, x)
-        band = 0.0;             ///< factor of half_square(measure::band, x)
+        band = 0.0,             ///< factor of half_square(measure::band, x)
+        layer = 0.0;            ///< factor of half_square(measure::layer, x)
   };
   /// Returns the Hessian of Σ_k λ_k residual_k + Σ_l μ_l limit_l + the weighted half squares,
   /// unknowns() × unknowns().
@@ -153,7 +155,7 @@ class design_problem {
   std::vector<std::string> names_;
   std::vector<inequality> inequalities_;
   sweeps conditions_;
-  std::optional<sweeps> limits_, error_, band_;
+  std::optional<sweeps> limits_, error_, band_, layer_;
 };
 
 }  // namespace apsis

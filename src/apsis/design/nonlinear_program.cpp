@@ -148,6 +148,7 @@ class program final : public Ipopt::TNLP {
     given.limits = vector_of(static_cast<Index>(problem_.limits()), multipliers + rows() - problem_.limits());
     given.error = objective_factor * goal_.error_weight;
     given.band = objective_factor * goal_.band_weight;
+    given.layer = objective_factor * goal_.layer_weight;
     const Eigen::MatrixXd H = problem_.hessian(vector_of(n, x), given);
     for (Index i = 0; i < n; ++i)
       for (Index j = 0; j <= i; ++j) *values++ = H(i, j);
@@ -171,9 +172,10 @@ class program final : public Ipopt::TNLP {
     return static_cast<Index>(chosen_.size() + problem_.inequalities().size()) +
            static_cast<Index>(problem_.limits());
   }
-  std::array<std::pair<design_problem::measure, double>, 2> squares() const {
+  std::array<std::pair<design_problem::measure, double>, 3> squares() const {
     return {{{design_problem::measure::error, goal_.error_weight},
-             {design_problem::measure::band, goal_.band_weight}}};
+             {design_problem::measure::band, goal_.band_weight},
+             {design_problem::measure::layer, goal_.layer_weight}}};
   }
 
   design_problem& problem_;
@@ -214,15 +216,18 @@ std::vector<Eigen::Index> independent_equations(const Eigen::MatrixXd& jacobian)
   return chosen;
 }
 
-program_goal goal_of(const design_problem& problem, design_objective objective) {
+program_goal goal_of(const design_problem& problem, design_objective objective, double band_weight) {
   program_goal goal{Eigen::VectorXd::Zero(problem.unknowns())};
   switch (objective) {
     case design_objective::largest_r:
     case design_objective::efficiency:
       goal.linear(problem.place_of_r()) = -1.0;
       break;
+    case design_objective::smallest_mixed:
+      goal.layer_weight = band_weight * band_weight;
+      [[fallthrough]];
     case design_objective::smallest_band:
-      goal.band_weight = band_to_error * band_to_error;
+      goal.band_weight = band_weight * band_weight;
       [[fallthrough]];
     case design_objective::smallest_error:
       goal.error_weight = 1.0;

@@ -12,7 +12,8 @@ enum class design_objective {
   largest_r,       ///< the SSP coefficient r
   efficiency,      ///< r/n_F, the SSP coefficient per evaluation of T; equivalent to r for a given pattern
   smallest_error,  ///< the 2-norm of the residuals of the next order
-  smallest_band    ///< √(error² + (10 band)²), where band is the error of the O(ε) term for ε ~ Δt
+  smallest_band,   ///< √(error² + (w band)²), where band is the error of the O(ε) term for ε ~ Δt
+  smallest_mixed   ///< √(error² + w² (band² + layer²)), where layer is the error in an initial layer
 };
 
 /// Result of optimize().
@@ -24,19 +25,21 @@ struct program_result {
 };
 
 /// Objective function: linear · x + error_weight · ½ Σ (residuals of the next order)² + band_weight ·
-/// ½ Σ (band_terms())².
+/// ½ Σ (band_terms())² + layer_weight · ½ Σ (layer_terms())².
 struct program_goal {
   Eigen::VectorXd linear;     ///< gradient of the linear part, one entry per unknown
   double error_weight = 0.0,  ///< factor of half_square(measure::error, x)
-      band_weight = 0.0;      ///< factor of half_square(measure::band, x)
+      band_weight = 0.0,      ///< factor of half_square(measure::band, x)
+      layer_weight = 0.0;     ///< factor of half_square(measure::layer, x)
 };
 
-/// Factor of the band in smallest_band: a band of 0.01 counts as much as an error constant of 0.1, because
-/// both then cost about the same where ε(x) passes through Δt.
-constexpr double band_to_error = 10.0;
+/// Default of w in smallest_band and smallest_mixed: a band of 0.01 counts as much as an error constant of
+/// 0.1, because both then cost about the same where ε(x) passes through Δt.
+constexpr double default_band_weight = 10.0;
 
-/// Returns the objective function: −r, the error, or the band.
-program_goal goal_of(const design_problem& problem, design_objective objective);
+/// Returns the objective function: −r, the error, the band, or band and layer; `band_weight` is w.
+program_goal goal_of(const design_problem& problem, design_objective objective,
+                     double band_weight = default_band_weight);
 
 /// Finds a local optimum close to x by Ipopt (Wächter, Biegler, Math. Program. 106, 2006) with exact first
 /// and second derivatives. Equations that are linearly dependent at x, which would make the program singular,

@@ -2,6 +2,7 @@
 
 #include <apsis/design/draw.hpp>
 #include <apsis/design/feasibility.hpp>
+#include <apsis/design/more_stages.hpp>
 #include <apsis/design/sparsify.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/schedule.hpp>
@@ -13,14 +14,17 @@
 
 namespace apsis {
 
-double value_of(const design_candidate& candidate, design_objective objective) {
-  switch (objective) {
+double value_of(const design_task& task, const design_candidate& candidate) {
+  switch (task.objective) {
     case design_objective::largest_r:
       return candidate.r;
     case design_objective::efficiency:
       return candidate.r / std::max(1, candidate.evaluations);
     case design_objective::smallest_band:
-      return -std::hypot(candidate.error, band_to_error * candidate.band);
+      return -std::hypot(candidate.error, task.band_weight * candidate.band);
+    case design_objective::smallest_mixed:
+      return -std::hypot(candidate.error, task.band_weight * candidate.band,
+                         task.band_weight * candidate.layer);
     case design_objective::smallest_error:
       break;
   }
@@ -28,7 +32,7 @@ double value_of(const design_candidate& candidate, design_objective objective) {
 }
 
 bool is_better(const design_task& task, const design_candidate& a, const design_candidate& b) {
-  const double value_a = value_of(a, task.objective), value_b = value_of(b, task.objective);
+  const double value_a = value_of(task, a), value_b = value_of(task, b);
   return value_a != value_b ? value_a > value_b : a.start < b.start;
 }
 
@@ -85,7 +89,7 @@ design_candidate best_near(const design_task& task, design_problem& problem, Eig
       task.objective == design_objective::largest_r || task.objective == design_objective::efficiency;
   design_candidate found = drop_zeros(problem, x);
   for (int round = 0; round < most_rounds && (has_r || !for_r); ++round) {
-    const auto solution = optimize(problem, goal_of(problem, task.objective), x, stop);
+    const auto solution = optimize(problem, goal_of(problem, task.objective, task.band_weight), x, stop);
     if (solution.residual < 1e-9) {
       auto better = drop_zeros(problem, solution.x);
       if (round == 0 || is_better(task, better, found)) found = std::move(better);
@@ -107,9 +111,11 @@ std::optional<design_candidate> run_search_start(const design_task& task, int st
   // Hash the start number: seeds of consecutive starts must not be consecutive.
   random_source random(task.seed * 0x9E3779B97F4A7C15ULL +
                        static_cast<std::uint64_t>(start) * 0xD1B54A32D192ED03ULL);
-  const auto pattern = draw_pattern(task, random);
+  design_task here = task;
+  if (here.from) here.from = with_more_stages(*task.from, task.stages, random);
+  const auto pattern = draw_pattern(here, random);
   design_problem problem(pattern, task.demands);
-  const auto feasible = find_feasible(problem, draw_coefficients(task, problem, random, start == 0));
+  const auto feasible = find_feasible(problem, draw_coefficients(here, problem, random, start == 0));
   residual = feasible.residual;
   if (!feasible.feasible || (stop && stop())) return std::nullopt;
   auto found = best_near(task, problem, feasible.x, stop);

@@ -16,10 +16,11 @@ struct design_task {
   std::optional<int> transports;         ///< evaluations of T, n_F; if not given, each start draws a number
   design_demands demands;                ///< order, bounds and further requirements
   design_objective objective = design_objective::largest_r;  ///< objective
+  double band_weight = default_band_weight;                  ///< w of smallest_band and smallest_mixed
   std::uint64_t seed = 1;  ///< seed of all random numbers, together with the number of the start
   /// Initial method: the first start is this method with every coefficient free that the task allows, the
-  /// others are at most a tenth away from it. It has the stages of the task and at most as many
-  /// evaluations of T.
+  /// others are at most a tenth away from it. It has at most the stages and the evaluations of T of the task;
+  /// each start adds the missing ones elsewhere.
   std::optional<shu_osher_form<double>> from;
 };
 
@@ -31,6 +32,7 @@ struct design_candidate {
   int evaluations = 0;   ///< evaluations of T, n_F
   double error = 0.0;    ///< 2-norm of the residuals of the next order
   double band = 0.0;     ///< 2-norm of band_terms() (IMEX methods)
+  double layer = 0.0;    ///< 2-norm of layer_terms() (IMEX methods)
   int start = -1;        ///< number of the start that found it
 };
 
@@ -61,8 +63,9 @@ design_progress search_methods(const design_task& task, const design_search_opti
 /// Whether a is better than b in the objective of the task; ties go to the earlier start.
 bool is_better(const design_task& task, const design_candidate& a, const design_candidate& b);
 
-/// Returns the value of the objective, larger is better: r, r/n_F, −error, or −√(error² + (10 band)²).
-double value_of(const design_candidate& candidate, design_objective objective);
+/// Returns the value of the objective, larger is better: r, r/n_F, −error, −√(error² + (w band)²), or
+/// −√(error² + w² (band² + layer²)).
+double value_of(const design_task& task, const design_candidate& candidate);
 
 /// Whether the demands that are not part of the equations are met: angle, poles, buffers.
 bool is_acceptable(const design_task& task, const design_candidate& candidate);

@@ -16,8 +16,10 @@ design_candidate candidate_of(design_problem& problem, const Eigen::VectorXd& x)
   const auto transport = c.pattern.transport();
   c.evaluations = static_cast<int>(std::count(transport.begin(), transport.end(), 1));
   c.error = std::sqrt(2.0 * problem.half_square(design_problem::measure::error, x));
-  if (c.pattern.kind == method_kind::imex)
+  if (c.pattern.kind == method_kind::imex) {
     c.band = std::sqrt(2.0 * problem.half_square(design_problem::measure::band, x));
+    c.layer = std::sqrt(2.0 * problem.half_square(design_problem::measure::layer, x));
+  }
   return c;
 }
 
@@ -71,7 +73,7 @@ design_candidate drop_zeros(design_problem& problem, const Eigen::VectorXd& x, d
 
 design_candidate sparsify(const design_task& task, design_candidate candidate, double tolerance,
                           const std::function<bool()>& stop) {
-  const double best = value_of(candidate, task.objective);
+  const double best = value_of(task, candidate);
   const double worst = best - tolerance * std::abs(best);
   for (bool changed = true; changed;) {
     changed = false;
@@ -83,10 +85,11 @@ design_candidate sparsify(const design_task& task, design_candidate candidate, d
       design_problem smaller(pattern, task.demands);
       const auto feasible = find_feasible(smaller, smaller.unknowns_of(problem.form(candidate.x)));
       if (!feasible.feasible) continue;
-      const auto solution = optimize(smaller, goal_of(smaller, task.objective), feasible.x, stop);
+      const auto solution =
+          optimize(smaller, goal_of(smaller, task.objective, task.band_weight), feasible.x, stop);
       if (!(solution.residual < 1e-9)) continue;
       auto proposal = drop_zeros(smaller, solution.x);
-      if (value_of(proposal, task.objective) < worst || !is_acceptable(task, proposal)) continue;
+      if (value_of(task, proposal) < worst || !is_acceptable(task, proposal)) continue;
       proposal.start = candidate.start;
       candidate = proposal;
       changed = true;

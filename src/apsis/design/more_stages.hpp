@@ -1,0 +1,14 @@
+#pragma once
+
+#include <apsis/core/random_source.hpp>
+#include <apsis/method/tableau.hpp>
+
+namespace apsis {
+
+/// Returns the method with stages inserted at random places until it has `stages` of them. A new stage
+/// relaxes the stage before it (p = 1, random d, with or without ḋ) and has no weight in later stages, so the
+/// result of a step is the same, and a search that may change these weights starts from a solution of its
+/// equations.
+shu_osher_form<double> with_more_stages(shu_osher_form<double> m, std::size_t stages, random_source& random);
+
+}  // namespace apsis

@@ -3,7 +3,7 @@
 
     studies/report.py [--results results/study] [--docs docs] [--apsis PROGRAM]
 
-Collects the results of studies/run.py from RESULTS in DOCS/data/study.json, or reads that file if there are no results;
+Collects the results of studies/run.py from RESULTS in DOCS/data/study.json, which keeps its entries of studies without new results;
 draws DOCS/images/study-*.png; and writes the tables between the marks <!-- NAME --> and <!-- end --> of DOCS/study.md.
 """
 import argparse
@@ -61,17 +61,22 @@ def compact(row):
             if key not in ("rate", "wall_s", "dt")}
 
 
-def gather(plan, results):
-    """Collects all existing results in the order of the plan."""
+def gather(plan, results, stored):
+    """Collects all existing results in the order of the plan, and the stored ones of designs and studies without a result file."""
     data = {"design": [], "work": {}}
+    earlier = {(run["name"], run["args"]): run for group in stored["design"] for run in group["runs"]}
     for group in plan["design"]:
-        runs = [summary_of(run, read_json(results / "design" / f"{run['name']}.json"))
-                for run in group["runs"] if (results / "design" / f"{run['name']}.json").exists()]
-        data["design"].append({"group": group["group"], "runs": runs})
+        runs = []
+        for run in group["runs"]:
+            file = results / "design" / f"{run['name']}.json"
+            runs.append(summary_of(run, read_json(file)) if file.exists() else earlier.get((run["name"], run["args"])))
+        data["design"].append({"group": group["group"], "runs": [run for run in runs if run is not None]})
     for study in plan["work"]["study"]:
         file = results / "work" / f"{study['name']}.json"
         if file.exists():
             data["work"][study["name"]] = [compact(row) for row in read_json(file)]
+        elif study["name"] in stored["work"]:
+            data["work"][study["name"]] = stored["work"][study["name"]]
     return data
 
 
@@ -294,7 +299,7 @@ def main():
     with open(HERE / "methods.toml", "rb") as file:
         plan = tomllib.load(file)
     stored = given.docs / "data" / "study.json"
-    data = gather(plan, given.results) if given.results.exists() else read_json(stored)
+    data = gather(plan, given.results, read_json(stored) if stored.exists() else {"design": [], "work": {}})
     images = given.docs / "images"
     for folder in (images, stored.parent):
         folder.mkdir(parents=True, exist_ok=True)

@@ -174,7 +174,8 @@ TEST(design_conditions, agree_with_flux_and_stability_function_of_the_certificat
       const long double residual = (at_finite_rate(butcher, z).flux - 1) / z * (1 - R) / -std::expm1(-z);
       sum += static_cast<double>(residual * residual) / 8.0;
       const long double of_layer = at_finite_rate(butcher, z).layer - (1 - R) / z;
-      layer += static_cast<double>(of_layer * of_layer) / 8.0;
+      const long double deviation = (at_finite_rate(butcher, z).last - 1) / z * (1 - R) / -std::expm1(-z);
+      layer += static_cast<double>(of_layer * of_layer + deviation * deviation) / 8.0;
     }
     EXPECT_NEAR(problem.half_square(measure::layer, x), 0.5 * layer, 1e-11 * (1.0 + layer)) << k;
     EXPECT_NEAR(problem.half_square(measure::band, x), 0.5 * sum, 1e-11 * (1.0 + sum)) << k;

@@ -157,6 +157,11 @@ condition_list layer_terms(std::size_t stages) {
     const int of_start = add_transport(list, start);
     list.conditions.push_back(
         {fmt::format("layer at z = {:.3g}", z), {{w, {of_start}, last}, {w / z, {start}, last}}, w / z});
+    // (last(z) − 1)(1 − start_s) = moved_s + start_s − 1.
+    const int moved = add_response(list, series_node::kind::moved, -z);
+    const double v = w / (z * -std::expm1(-z));
+    list.conditions.push_back(
+        {fmt::format("deviation at z = {:.3g}", z), {{v, {moved}, last}, {v, {start}, last}}, v});
   }
   return list;
 }

@@ -55,8 +55,9 @@ condition_list error_terms(method_kind kind, int order, std::size_t stages);
 /// 0.1 ≤ z ≤ 300.
 condition_list band_terms(std::size_t stages);
 
-/// Returns terms whose residuals measure the error of a step in the initial layer (docs/plateaus.md, the
-/// band): their 2-norm is that of b̂·λ(z) − (1 − R(−z))/z over log₁₀ z, 0.1 ≤ z ≤ 300.
+/// Returns terms whose residuals measure the other errors of size ε where ε ~ Δt (docs/plateaus.md, the
+/// band): in the initial layer, b̂·λ(z) − (1 − R(−z))/z, and of the deviation from equilibrium at the end of a
+/// step, (last(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}). Their 2-norm is that over log₁₀ z, 0.1 ≤ z ≤ 300.
 condition_list layer_terms(std::size_t stages);
 
 /// Returns (|R(ζ)|² − 1)/min(1, |ζ|)⁴ on the ray at angle `degrees` from the negative axis, which must be ≤ 0

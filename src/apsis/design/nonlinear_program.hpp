@@ -13,7 +13,7 @@ enum class design_objective {
   efficiency,      ///< r/n_F, the SSP coefficient per evaluation of T; equivalent to r for a given pattern
   smallest_error,  ///< the 2-norm of the residuals of the next order
   smallest_band,   ///< √(error² + (w band)²), where band is the error of the O(ε) term for ε ~ Δt
-  smallest_mixed   ///< √(error² + w² (band² + layer²)), where layer is the error in an initial layer
+  smallest_mixed   ///< √(error² + w² (band² + layer²)), where layer is the norm of layer_terms()
 };
 
 /// Result of optimize().

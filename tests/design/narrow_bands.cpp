@@ -1,0 +1,41 @@
+// Methods for mixed regimes: how far the errors of size ε where ε ~ Δt are reduced.
+#include <apsis/design/design_problem.hpp>
+#include <apsis/design/draw.hpp>
+#include <apsis/method/certificate.hpp>
+#include <apsis/method/method.hpp>
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace apsis::narrow_bands_test {
+namespace {
+
+// Figures of docs/plateaus.md, to their last digit.
+TEST(narrow_bands, are_as_documented) {
+  EXPECT_NEAR(find_certificate("md-imex-8-3-mixed").band.error, 0.0093, 5e-5);
+  EXPECT_NEAR(find_certificate("md-imex-8-3-narrow").band.error, 0.00013, 5e-6);
+  EXPECT_NEAR(find_certificate("md-imex-9-3-narrow").band.error, 0.00048, 5e-6);
+  EXPECT_NEAR(find_certificate("md-imex-10-3-mixed").band.error, 0.0029, 5e-5);
+}
+
+double layer_of(const char* name) {
+  const method& m = find_method(name);
+  design_task task;
+  task.stages = m.stages();
+  task.demands.order = m.claims.order;
+  task.demands.regime = regime_demand::all;
+  const auto form = m.coefficients<double>();
+  design_problem problem(pattern_near(task, form), task.demands);
+  return std::sqrt(2.0 * problem.half_square(design_problem::measure::layer, problem.unknowns_of(form)));
+}
+
+// The errors in layers and of the deviation from equilibrium, which only the objective `mixed` contains.
+TEST(narrow_bands, come_with_small_errors_in_layers_for_one_method) {
+  const double least = layer_of("md-imex-10-3-mixed");
+  for (const char* other : {"md-imex-8-3-mixed", "md-imex-8-3-narrow", "md-imex-9-3-narrow"})
+    EXPECT_LT(least, 0.3 * layer_of(other)) << other << ": " << least << " " << layer_of(other);
+}
+
+}  // namespace
+}  // namespace apsis::narrow_bands_test

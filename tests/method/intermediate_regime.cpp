@@ -128,10 +128,11 @@ TEST(intermediate_band, is_the_maximum_over_ten_thousand_samples) {
       const long double z = std::exp(3 * static_cast<long double>(k) / 5000);
       largest = std::max(largest, std::abs(at_finite_rate(b, z).flux - 1) / z);
     }
-    // Maxima are flat: samples 6e-4 apart miss 1e-7 of them. Methods without a band have
-    // rounding errors, 1e-12.
+    // Samples are at most 3e-4 in log z away from a maximum and miss 4.5e-8 times its relative curvature,
+    // which is 2 for wide bands and 7 for narrow ones, whose errors oscillate: 1e-6 allows 20. Methods
+    // without a band have rounding errors, 1e-12.
     EXPECT_NEAR(find_certificate(name).band.error, static_cast<double>(largest),
-                2e-7 * static_cast<double>(largest) + 1e-12)
+                1e-6 * static_cast<double>(largest) + 1e-12)
         << name;
   }
   EXPECT_NEAR(find_certificate("md-imex-6-2-mixed").band.error, 0.002436, 5e-7);

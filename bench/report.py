@@ -87,21 +87,31 @@ CONTESTS = {"peers-ode": "ODE model", "peers-prothero-robinson": "Prothero–Rob
             "peers-mixed-centres": "mixed BGK, cell averages, collisions at centres"}
 
 
+# Methods of the literature that are in the library, but not in the catalogue.
+BASELINES = re.compile(r"imex-bdf-|exponential-")
+
+
 def winner(result, error, epsilon):
-    """Returns the cheapest run of Apsis for an error, and how many times its time the best of the others needs."""
+    """Returns the cheapest run of Apsis for an error, and how many times its time the best of other programs and explicit methods
+    needs, and the best of the baselines."""
     column = next((k for k, name in enumerate(result["columns"]) if name.startswith(f"error {error} ")), None)
     if column is None:
         return ""
     unit = re.search(r"\((.*)\)", result["columns"][column]).group(1)
     rows = {row[1 if epsilon else 0]: row[column] for row in result["rows"] if not epsilon or row[0] == epsilon}
-    best, others = rows.get("best of Apsis"), rows.get("best of the others")
-    if not best or not others:
+    best = rows.get("best of Apsis")
+    if not best or best == "—":
         return "—"
     time, name = best.split(" ", 1)
     name, _, how = name.partition(", ")
     scale, shown = (1e3, "ms") if unit == "s" else (1.0, unit)
-    ratio = re.search(r"\(([^()]*)\)", others).group(1)
-    return f"`{name}`{' ' + how if how else ''} {scale * float(time):.3g} {shown}; {ratio}"
+
+    def ratio(wanted):
+        times = [float(cell.split()[0]) for label, cell in rows.items()
+                 if wanted(label) and not label.startswith("best") and re.match(r"[0-9.]", cell or "")]
+        return f"{min(times) / float(time):.2g}" if times else "—"
+    return (f"`{name}`{' ' + how if how else ''} {scale * float(time):.3g} {shown}; {ratio(lambda label: not BASELINES.match(label))}, "
+            f"{ratio(BASELINES.match)}")
 
 
 def winners(results):

@@ -29,6 +29,8 @@ const char* name_of(league one) {
       return "any sign";
     case league::adaptive:
       return "adaptive";
+    case league::baseline:
+      return "baseline";
     case league::other:
       break;
   }
@@ -109,9 +111,10 @@ void contest::choose() {
   }
   for (const double floor : floors())
     for (const double error : errors_)
-      for (const bool ours : {true, false})
-        take(cheapest(
-            error, [&](const attempt& one) { return one.ours() == ours && one.measured.smallest >= floor; }));
+      for (const league side : {league::ssp, league::baseline, league::other})
+        take(cheapest(error, [&](const attempt& one) {
+          return (one.ours() ? league::ssp : one.of) == side && one.measured.smallest >= floor;
+        }));
 }
 
 double contest::best_seconds(std::size_t error, double floor) const {
@@ -134,7 +137,7 @@ std::string contest::ratio(std::size_t index, std::size_t error, double floor) c
 void contest::add_to(result_table& result, std::optional<double> epsilon, bool only_others) const {
   result.columns = columns();
   if (epsilon) result.columns.insert(result.columns.begin(), "ε");
-  for (const auto& some : {best_of_ours(), rows(only_others), best_of_others()})
+  for (const auto& some : {best_of_ours(), rows(only_others), best_of_others(), best_of_baselines()})
     for (auto row : some) {
       if (epsilon) row.insert(row.begin(), fmt::format("{:g}", *epsilon));
       result.rows.push_back(std::move(row));
@@ -192,14 +195,24 @@ std::vector<std::vector<nlohmann::json>> contest::best_of_ours() const {
 }
 
 std::vector<std::vector<nlohmann::json>> contest::best_of_others() const {
+  return best_of(league::other, "best of the others");
+}
+
+std::vector<std::vector<nlohmann::json>> contest::best_of_baselines() const {
+  const bool any_entered = std::any_of(attempts_.begin(), attempts_.end(),
+                                       [](const attempt& one) { return one.of == league::baseline; });
+  return any_entered ? best_of(league::baseline, "best of the baselines")
+                     : std::vector<std::vector<nlohmann::json>>();
+}
+
+std::vector<std::vector<nlohmann::json>> contest::best_of(league these, const std::string& label) const {
   std::vector<std::vector<nlohmann::json>> all;
   for (const double floor : floors()) {
-    std::vector<nlohmann::json> row = {std::isinf(floor)
-                                           ? std::string("best of the others")
-                                           : fmt::format("best of the others with least ≥ {:g}", floor)};
+    std::vector<nlohmann::json> row = {std::isinf(floor) ? label
+                                                         : fmt::format("{} with least ≥ {:g}", label, floor)};
     for (std::size_t e = 0; e < errors_.size(); ++e) {
       const auto best = cheapest(errors_[e], [&](const attempt& one) {
-        return !one.ours() && one.counts && one.measured.smallest >= floor;
+        return one.of == these && one.counts && one.measured.smallest >= floor;
       });
       const bool found = best != none;
       const auto name = found ? attempts_[best].contestant : std::string();

@@ -35,6 +35,7 @@ enum class league {
   ssp,       ///< methods of Apsis with an SSP coefficient, equal steps; count only without negative unknowns
   any_sign,  ///< methods of the catalogue of Apsis without one, equal steps
   adaptive,  ///< methods of Apsis, steps chosen by a tolerance
+  baseline,  ///< methods of the literature that are in the library but not in its catalogue, equal steps
   other      ///< other programs, and explicit methods
 };
 
@@ -46,7 +47,8 @@ struct attempt {
   outcome measured = {};
   bool counts = false;  ///< whether it is the cheapest of its kind for some error
 
-  bool ours() const { return of != league::other; }
+  /// Whether `apsis run` can do it: a method of the catalogue or of a family.
+  bool ours() const { return of != league::other && of != league::baseline; }
 };
 
 /// Work needed by each contestant to reach an error: that of the cheapest run that reaches it, whatever its
@@ -80,6 +82,8 @@ class contest {
   /// lower bound of the unknowns, and its name; if signs are shown, one row each for those that stay
   /// nonnegative, those that do up to rounding, and all.
   std::vector<std::vector<nlohmann::json>> best_of_others() const;
+  /// The same of the baselines, after those of the others.
+  std::vector<std::vector<nlohmann::json>> best_of_baselines() const;
   /// Returns all runs, for diagrams.
   nlohmann::json points() const;
   std::vector<std::string> columns() const;
@@ -90,6 +94,7 @@ class contest {
 
   std::size_t cheapest(double error, const filter& allowed) const;
   double best_seconds(std::size_t error, double floor) const;
+  std::vector<std::vector<nlohmann::json>> best_of(league these, const std::string& label) const;
   std::string ratio(std::size_t index, std::size_t error, double floor) const;
   std::string time(std::size_t index) const;
   std::vector<double> floors() const;

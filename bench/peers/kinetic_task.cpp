@@ -4,6 +4,8 @@
 
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/extrapolation.hpp>
+#include <apsis/integrate/schedule.hpp>
+#include <apsis/method/convexity.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/scheme/quartic.hpp>
 
@@ -59,6 +61,7 @@ kinetic_task::kinetic_task(const std::string& case_name, std::vector<std::string
       end_(end),
       setup_(config_),
       problem_(setup_.make_problem()),
+      smooth_(problem_builder(setup_.builder()).with_smooth_collisions().build()),
       initial_(setup_.initial_state()) {
   const auto& [from, to] = config_.space.domain.front();
   const double dx = (to - from) / config_.space.cells.front();
@@ -77,6 +80,16 @@ kinetic_task::kinetic_task(const std::string& case_name, std::vector<std::string
 std::unique_ptr<collision_inverse> kinetic_task::inverse() const {
   return config_.model.name == "broadwell" ? make_broadwell_inverse(rates_)
                                            : make_bgk_inverse(equation(), rates_);
+}
+
+/// Only collisions at centres distinguish them (problem_builder::with_smooth_collisions()).
+semidiscrete_problem& kinetic_task::problem_of(const std::string& integrator) const {
+  if (!is_method_name(integrator)) return *smooth_;
+  const method& m = find_method(integrator);
+  const auto form = m.coefficients<double>();
+  const bool keeps_signs =
+      is_convex(form, m.kind, form.stages()) && form.r > 0.0 && schedule(form).collision_evaluations() == 0;
+  return keeps_signs ? *problem_ : *smooth_;
 }
 
 long kinetic_task::positive_steps(const std::string& name) const {
@@ -117,13 +130,13 @@ outcome kinetic_task::run(const std::string& name, long steps, bool graded, doub
     return measure(seconds_allowed, result,
                    [&](field& u, auto&& observer) { integrate(march, u, 0.0, end_, rule, observer); });
   };
-  if (name != exponential_name) return with_integrator(name, *problem_, run);
+  if (name != exponential_name) return with_integrator(name, problem_of(name), run);
   kinetic_flow flow(*problem_, equation(), rates_);
   return with_integrator(name, flow, run);
 }
 
 outcome kinetic_task::run_to_tolerance(const method& m, double tolerance, double seconds_allowed) {
-  stepper march(m, *problem_, solutions::result_and_embedded);
+  stepper march(m, problem_of(m.name), solutions::result_and_embedded);
   step_controller<double> control(tolerance, m.embedded->order);
   return measure(seconds_allowed, nullptr, [&](field& u, auto&& observer) {
     integrate_to_tolerance(

@@ -36,7 +36,8 @@ class kinetic_task {
 
   double end() const { return end_; }
   const field& initial() const { return initial_; }
-  semidiscrete_problem& problem() { return *problem_; }
+  /// Returns the problem for integrators that keep no signs.
+  semidiscrete_problem& problem() { return *smooth_; }
   /// Whether exponential methods can run: the collision is pointwise.
   bool has_exact_collision() const { return config_.space.formulation == formulation::finite_difference; }
   /// Returns the inverse of I − γJ for the Jacobian J of the collision.
@@ -60,6 +61,7 @@ class kinetic_task {
   static double distance(const field& u, const field& exact);
 
  private:
+  semidiscrete_problem& problem_of(const std::string& integrator) const;
   const relaxation_model& equation() const { return dynamic_cast<const relaxation_model&>(*setup_.equation); }
   /// Measures run(u, observer), an integration of u from the initial state.
   template <class Run>
@@ -68,7 +70,8 @@ class kinetic_task {
   case_config config_;
   double end_;
   run_setup setup_;
-  std::unique_ptr<semidiscrete_problem> problem_;
+  std::unique_ptr<semidiscrete_problem> problem_,
+      smooth_;  ///< for methods that keep no signs, with the same T and Q
   field initial_, reference_;
   std::vector<double> rates_;  ///< 1/ε of every cell: at its centre, or the mean over its Gauss points
 };

@@ -47,7 +47,7 @@ void add_explicit(contest& all, const stiff_task& task, long most_steps) {
 }
 
 void add_other_integrators(contest& all, const stiff_task& task, long most_steps) {
-  for (const auto& name : other_integrators()) add_equal_steps(all, task, name, league::other, most_steps);
+  for (const auto& name : other_integrators()) add_equal_steps(all, task, name, league::baseline, most_steps);
 }
 
 void add_sundials(contest& all, const stiff_task& task, const std::string& name, sundials_ode_options options,

@@ -69,6 +69,11 @@ void at_key(const case_config& config, const std::string& key, const Body& body)
   }
 }
 
+/// Whether a method evaluates Q(u)/epsilon at stages.
+bool evaluates_collisions(const method& m) {
+  return schedule(m.coefficients<double>()).collision_evaluations() > 0;
+}
+
 }  // namespace
 
 run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> processes)
@@ -81,6 +86,7 @@ run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> pr
     builder_.shared_by(std::move(processes));
   set_epsilon();
   set_prescribed_data();
+  if (ssp_coefficient_ == 0.0 || evaluates_collisions(*method_)) builder_.with_smooth_collisions();
   if (method_->kind == method_kind::explicit_only) builder_.with_explicit_collision();
 }
 
@@ -311,7 +317,7 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
                                 bool exact_equilibrium) const {
   const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
   // An explicit Q/epsilon beyond its step limit amplifies its rounding in the invariants by dt/epsilon.
-  const bool explicit_collision = schedule(method_->coefficients<double>()).collision_evaluations() > 0;
+  const bool explicit_collision = evaluates_collisions(*method_);
   promises.conservation =
       exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
   // Stage solves keep the sign of every row; an explicit Q only where the target is an equilibrium, E ≥ 0,

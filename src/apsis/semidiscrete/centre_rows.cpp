@@ -10,24 +10,23 @@
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-/// The weights of P at the distances 0 … 3, by powers of δ² = shift − 2 + shift⁻¹.
-struct series {
-  static constexpr double x = 1.0 / 24.0;
-  static constexpr double w0 = 1.0 + 2.0 * x + 6.0 * x * x + 20.0 * x * x * x;
-  static constexpr double w1 = -x - 4.0 * x * x - 15.0 * x * x * x;
-  static constexpr double w2 = x * x + 6.0 * x * x * x;
-  static constexpr double w3 = -x * x * x;
-};
-static_assert(series::w0 + 2.0 * (series::w1 + series::w2 + series::w3) - 1.0 < 1e-15);
+/// A ρ^k.
+constexpr double weights[] = {0.0,
+                              -0.0498962651136544960533352,
+                              0.00227271749006668625943531,
+                              -0.000103519667812601654241598,
+                              4.71520181055013387984795e-06,
+                              -2.14772019501291115056886e-07,
+                              9.78261847827065140353490e-09};
 
 /// Row i of the stencil is at(i), i = −3 … 3.
 template <class N, class At>
 HWY_INLINE N value(const At& at, bool limited) {
   const N here = at(0);
-  // Sums over both sides first: mirrored data give mirrored bits.
-  const N change = fma(N(series::w1), (at(-1) - here) + (at(1) - here),
-                       fma(N(series::w2), (at(-2) - here) + (at(2) - here),
-                           N(series::w3) * ((at(-3) - here) + (at(3) - here))));
+  N change(0.0);
+  // The smallest terms first, and both sides together: mirrored data give mirrored bits.
+  for (int k = centre_rows::reach; k > 0; --k)
+    change = fma(N(weights[k]), (at(-k) - here) + (at(k) - here), change);
   const N all = here + change;
   return limited ? maximum(all, N(0.5) * here) : all;
 }

@@ -11,15 +11,16 @@ namespace apsis {
 namespace centre_rows {
 
 /// Number of neighbours on either side on which a value at a centre depends.
-inline constexpr int reach = 3;
+inline constexpr int reach = 6;
 
-/// Averages of the cells i−3 … i+3.
+/// Averages of the cells i−6 … i+6.
 using stencil = std::array<const double*, 2 * reach + 1>;
 
-/// points ← P ū, the values at the centre of cell i by the first four terms of the series of M⁻¹,
-///   P = I − δ²/24 + (δ²/24)² − (δ²/24)³,
-/// so that |I − P M| = (δ²/24)⁴ ≤ (1/6)⁴ = 8·10⁻⁴ for any data, and O(Δx⁸) for smooth data. `limited`: at
-/// least half the average, which smooth data that the mesh resolves exceed.
+/// points ← P ū, the values at the centre of cell i by the nearest terms of M⁻¹, whose weights decay like
+/// ρ^|k|,
+///   p_i = ū_i + A Σ_{k=1}^6 ρ^k (ū_{i−k} − 2ū_i + ū_{i+k}),  ρ = √120 − 11 = −0.0455,  A = 24/(22 + 2ρ),
+/// so that |I − P M| ≤ 2·10⁻⁹. `limited`: at least half the average, which smooth data that the mesh resolves
+/// exceed.
 void values(const stencil& averages, bool limited, int width, double* points);
 
 /// A cell and its neighbours i−1, i, i+1, one row each.

@@ -62,10 +62,10 @@ std::unique_ptr<collision> make_cell_average_collision(const model& equation, st
 /// error h/24 of the position in the cells at walls, where nothing passes. A third of the work of Gauss
 /// points, and the same equations at the same points for every Δt/ε, up to |I − P M|.
 ///
-/// `limited`: nonnegative averages stay so. b = ū + v − p is nonnegative, because p is reduced to ū in
-/// components where it would not be (v ≥ 0), and limited fluxes between cells leave it so; each component on
-/// its own, so that the small numbers of the tails do not affect the others. `epsilon` has one value per
-/// cell.
+/// With `limited`, for methods that keep signs: nonnegative averages stay so. b = ū + v − p
+/// is nonnegative, because p is reduced to ū in components where it would not be (v ≥ 0), and limited fluxes
+/// between cells leave it so; each component on its own, so that the small numbers of the tails do not affect
+/// the others. `epsilon` has one value per cell.
 std::unique_ptr<collision> make_cell_centre_collision(const model& equation, std::shared_ptr<domain> space,
                                                       bool limited, std::vector<double> epsilon);
 

@@ -27,7 +27,7 @@ class cell_centre_collision final : public collision {
 
   /// The averages change by M d, d = v − p, whose rows have no moments: collisions conserve whatever p is.
   void solve(double, double a, double b, field& u) override {
-    find_changes(u, [&](const point_batch& at, scratch& own) {
+    find_changes(u, limited_, [&](const point_batch& at, scratch& own) {
       double* d = changes_.row(at.first_cell);
       solve_change(a, b, at, own, d);
       if (limited_)
@@ -46,7 +46,7 @@ class cell_centre_collision final : public collision {
 
   void add_collision(double, const field& u, std::span<const target<field, double>> targets) override {
     combine_gains(u, targets);
-    find_changes(u, [&](const point_batch& at, scratch& own) {
+    find_changes(u, false, [&](const point_batch& at, scratch& own) {
       own.local->evaluate(at, own.points.data(), changes_.row(at.first_cell));
     });
     scratch_.prepare([&](auto& own) { own.rows.reserve(targets.size()); });
@@ -139,11 +139,11 @@ class cell_centre_collision final : public collision {
   /// writes rows of changes_. Then the changes go to other processes, which wait for them even if this one
   /// has failed.
   template <class Body>
-  void find_changes(const field& u, const Body& body) {
+  void find_changes(const field& u, bool limited, const Body& body) {
     prepare(u);
     space_->exchange(u);
     first_error failure;
-    failure.run([&] { at_all_centres(u, body); });
+    failure.run([&] { at_all_centres(u, limited, body); });
     std::vector<const double*>& rows = scratch_.here().averages;
     rows_of(u, -1, 1, rows);
     std::copy_n(rows.front(), u.stride(), across_[0].data());
@@ -154,7 +154,7 @@ class cell_centre_collision final : public collision {
   }
 
   template <class Body>
-  void at_all_centres(const field& u, const Body& body) {
+  void at_all_centres(const field& u, bool limited, const Body& body) {
     parallel_blocks(u.cells(), points_per_batch(u.stride()), [&](int begin, int end) {
       scratch& own = scratch_.here();
       rows_of(u, begin - centre_rows::reach, end + centre_rows::reach, own.averages);
@@ -165,7 +165,7 @@ class cell_centre_collision final : public collision {
         for (int cell = begin; cell < end; ++cell, points += u.stride()) {
           centre_rows::stencil averages;
           std::copy_n(own.averages.begin() + (cell - begin), averages.size(), averages.begin());
-          centre_rows::values(averages, limited_, u.stride(), points);
+          centre_rows::values(averages, limited, u.stride(), points);
         }
       }
       body(batch(u, begin, end), own);

@@ -122,6 +122,11 @@ problem_builder& problem_builder::with_epsilon(scale epsilon) {
   return *this;
 }
 
+problem_builder& problem_builder::with_smooth_collisions() {
+  smooth_collisions_ = true;
+  return *this;
+}
+
 problem_builder& problem_builder::with_explicit_collision() {
   explicit_collision_ = true;
   return *this;
@@ -196,7 +201,8 @@ std::unique_ptr<collision> problem_builder::make_collision(const std::shared_ptr
   if (pointwise())
     return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign(), mesh_.fluid());
   if (collides_at_centres())
-    return make_cell_centre_collision(*equation_, space, keeps_sign(), epsilon_at_centres());
+    return make_cell_centre_collision(*equation_, space, keeps_sign() && !smooth_collisions_,
+                                      epsilon_at_centres());
   return make_cell_average_collision(*equation_, space, complete_discretization(), epsilon_at(gauss3::xi));
 }
 
@@ -212,10 +218,10 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   if (collisions_ && (!has_space() || unknowns() == formulation::finite_difference))
     throw input_error(
         "points of collisions (the unknowns are point values, which collide where they are); leave them out");
-  if (collides_at_centres() && whole_mesh().cells(0) < 2 * centre_rows::reach + 1)
-    throw input_error(fmt::format("{} cells (values at their centres depend on {}); give at least {}",
-                                  whole_mesh().cells(0), 2 * centre_rows::reach + 1,
-                                  2 * centre_rows::reach + 1));
+  if (collides_at_centres() && whole_mesh().cells(0) <= centre_rows::reach)
+    throw input_error(
+        fmt::format("{} cells (values at their centres depend on {} neighbours); give at least {}",
+                    whole_mesh().cells(0), centre_rows::reach, centre_rows::reach + 1));
   if (!mesh_.solids().empty() && !pointwise())
     throw input_error(
         "solid boxes with cell averages (they are collided on whole lines); use the finite difference "

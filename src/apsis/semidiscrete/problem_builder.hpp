@@ -62,6 +62,9 @@ class problem_builder {
   problem_builder& with_force(acceleration of);
   /// Adds a source S(t, x) of rows, on models with space.
   problem_builder& with_source(source_rate rate);
+  /// For methods that keep no signs: collisions at centres are not limited then. Limited averages are no
+  /// smooth function of the data, as small errors need, and their Q is not that of the stage.
+  problem_builder& with_smooth_collisions();
   /// For methods that treat T and Q explicitly: forward_euler_step() is then that of T + Q/ε.
   problem_builder& with_explicit_collision();
 
@@ -113,7 +116,7 @@ class problem_builder {
   spatial_discretization discretization_;
   std::optional<formulation> unknowns_;
   std::optional<collision_points> collisions_;
-  bool limited_ = false, explicit_collision_ = false;
+  bool limited_ = false, explicit_collision_ = false, smooth_collisions_ = false;
   scale epsilon_;
   std::optional<acceleration> force_;
   std::optional<source_rate> source_;

@@ -206,7 +206,7 @@ class Page:
                 process.communicate()
                 raise Problem(block.line, f"the block takes too long (more than {LIMIT} s); take a smaller example") from None
         if process.returncode not in wanted:
-            told = out.read_text(encoding="utf-8", errors="replace")[-1500:] + error[-1500:]
+            told = out.read_text(encoding="utf-8", errors="replace")[-1500:] + error[-4000:]
             raise Problem(block.line, f"the block fails (exit code {process.returncode}, not {wanted[0]})\n{indented(told)}")
 
     def check_pictures(self, reports: list[str]):

@@ -87,10 +87,6 @@ CONTESTS = {"peers-ode": "ODE model", "peers-prothero-robinson": "Prothero–Rob
             "peers-mixed-centres": "mixed BGK, cell averages, collisions at centres"}
 
 
-# Methods of the literature that are in the library, but not in the catalogue.
-BASELINES = re.compile(r"imex-bdf-|exponential-")
-
-
 def winner(result, error, epsilon):
     """Returns the cheapest run of Apsis for an error, and how many times its time the best of other programs and explicit methods
     needs, and the best of the baselines."""
@@ -106,12 +102,10 @@ def winner(result, error, epsilon):
     name, _, how = name.partition(", ")
     scale, shown = (1e3, "ms") if unit == "s" else (1.0, unit)
 
-    def ratio(wanted):
-        times = [float(cell.split()[0]) for label, cell in rows.items()
-                 if wanted(label) and not label.startswith("best") and re.match(r"[0-9.]", cell or "")]
-        return f"{min(times) / float(time):.2g}" if times else "—"
-    return (f"`{name}`{' ' + how if how else ''} {scale * float(time):.3g} {shown}; {ratio(lambda label: not BASELINES.match(label))}, "
-            f"{ratio(BASELINES.match)}")
+    def ratio(label):
+        found = re.search(r"\(([^()]*)\)$", rows.get(label) or "")
+        return found.group(1) if found else "—"
+    return f"`{name}`{' ' + how if how else ''} {scale * float(time):.3g} {shown}; {ratio('best of the others')}, {ratio('best of the baselines')}"
 
 
 def winners(results):

@@ -28,7 +28,8 @@ std::vector<std::string> design(const std::vector<std::string>& more) {
 
 TEST(design, writes_a_method_that_can_be_checked_and_used) {
   const work_folder folder;
-  const auto arguments = design({"--order", "2", "--stages", "3", "--starts", "40", "--json"});
+  const auto arguments =
+      design({"--order", "2", "--stages", "3", "--starts", "40", "--time", "3600", "--json"});
   const outcome result = run_apsis(folder, arguments);
   ASSERT_EQ(result.code, 0) << result.err;
   const json found = json::parse(result.out);
@@ -42,9 +43,10 @@ TEST(design, writes_a_method_that_can_be_checked_and_used) {
   EXPECT_EQ(run_apsis(folder, {"run", "paper/ode", "time.method=found.toml"}).code, 0);
   // The same search has the same result.
   const std::string first = read(folder.path() / "found.toml");
-  ASSERT_EQ(
-      run_apsis(folder, design({"--order", "2", "--stages", "3", "--starts", "40", "--threads", "1"})).code,
-      0);
+  ASSERT_EQ(run_apsis(folder, design({"--order", "2", "--stages", "3", "--starts", "40", "--time", "3600",
+                                      "--threads", "1"}))
+                .code,
+            0);
   EXPECT_EQ(read(folder.path() / "found.toml"), first);
 }
 

@@ -25,6 +25,7 @@ class exact_collisions {
   using state = typename P::state;  ///< type of u
   using real = typename P::real;    ///< type of time and coefficients
 
+  /// `p` must outlive this object.
   explicit exact_collisions(P& p) : problem_(p) {}
 
   /// Required by `problem`.

@@ -25,7 +25,9 @@ void values(const stencil& averages, bool limited, int width, double* points);
 
 /// A cell and its neighbours i−1, i, i+1, one row each.
 struct three {
-  const double *before, *here, *after;
+  const double *before,  ///< row of cell i−1
+      *here,             ///< row of cell i
+      *after;            ///< row of cell i+1
 };
 
 /// averages ← u_i + (M d)_i = b_i + F_{i+½} − F_{i−½} with b = u + d and the fluxes F_{i+½} = (d_{i+1} −

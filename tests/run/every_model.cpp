@@ -117,7 +117,8 @@ std::vector<std::string> random_overrides(const model_entry& entry, bool positiv
   }
   if (!has_space(entry)) return overrides;
   const bool averages = *rc::gen::arbitrary<bool>();
-  overrides.emplace_back(averages ? "space.formulation=finite-volume" : "space.formulation=finite-difference");
+  overrides.emplace_back(averages ? "space.formulation=finite-volume"
+                                  : "space.formulation=finite-difference");
   if (averages && *rc::gen::arbitrary<bool>()) overrides.emplace_back("space.collisions=centres");
   if (positive) overrides.emplace_back("space.limiter=positivity");
   return overrides;

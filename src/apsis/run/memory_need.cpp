@@ -20,9 +20,9 @@ int buffers_of(const run_setup& setup) {
   const method& m = setup.integrator();
   const int compared = setup.config().time.steady ? 1 : 0;
   const int changes = setup.builder().collides_at_centres() ? 1 : 0;
-  return compared + changes + (setup.has_tolerance()
-                         ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
-                         : schedule(m.coefficients<double>()).buffers());
+  return compared + changes +
+         (setup.has_tolerance() ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
+                                : schedule(m.coefficients<double>()).buffers());
 }
 
 std::string in_units(double bytes) {

@@ -24,7 +24,7 @@ class step_controller {
   /// State of the controller in a checkpoint; a restart from it is bitwise identical.
   struct progress {
     Real proposed = std::numeric_limits<Real>::infinity();  ///< proposed length of the next step
-    Real previous = Real(1);                                ///< err/tol of the last accepted step, ≥ 1e-8
+    Real previous = Real(1);                                ///< err/tol of the last accepted step, ≥ 1e-4
     bool after_rejection = false;                           ///< whether the last step was rejected
     long rejected = 0;                                      ///< number of rejected steps
 
@@ -61,7 +61,7 @@ class step_controller {
     const Real k(order_ + 1), ratio = error / tolerance_;
     const bool good = ratio <= Real(1);
     if (good) {
-      const Real now = std::max(ratio, Real(1e-8));  // bounds the growth for tiny errors
+      const Real now = std::max(ratio, Real(1e-4));  // bounds the growth for tiny errors
       const Real factor = Real(0.9) * pow(now, Real(-0.7) / k) * pow(now_.previous, Real(0.4) / k);
       now_.proposed = dt * std::clamp(factor, Real(0.2), now_.after_rejection ? Real(1) : Real(10));
       now_.previous = now;

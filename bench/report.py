@@ -242,7 +242,7 @@ GROUPS = {"Apsis": ("ssp", "any sign", "adaptive"), "Apsis, with SSP coefficient
 
 def grouped(points):
     """Replaces the methods of Apsis by three groups."""
-    others = [point for point in points if point.get("league", "other") == "other"]
+    others = [point for point in points if point.get("league", "other") in ("other", "baseline")]
     return others + [point | {"contestant": group}
                      for group, leagues in GROUPS.items() for point in points if point.get("league") in leagues]
 

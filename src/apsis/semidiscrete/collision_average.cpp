@@ -5,11 +5,11 @@
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
+#include <apsis/semidiscrete/point_times.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -60,11 +60,13 @@ class cell_average_collision final : public collision {
 
   /// With the rate of the averages; the rates at the Gauss points differ by the accuracy of the scheme.
   double forward_euler_step(const field& u) const override {
-    return smallest(u, &point_collision::forward_euler_step);
+    return smallest_time(equation_, u, epsilon_, gauss3::points, limited(),
+                         &point_collision::forward_euler_step);
   }
 
   double relaxation_time(const field& u) const override {
-    return smallest(u, &point_collision::relaxation_time);
+    return smallest_time(equation_, u, epsilon_, gauss3::points, limited(),
+                         &point_collision::relaxation_time);
   }
 
  private:
@@ -79,16 +81,6 @@ class cell_average_collision final : public collision {
   bool limited() const { return discretization_.positivity != limiter_kind::none; }
   static int cells_per_batch(const field& u) {
     return std::max(1, points_per_batch(u.stride()) / gauss3::points);
-  }
-
-  double smallest(const field& u, double (point_collision::*time)(const double*, double)) const {
-    const auto local = equation_.make_collision({1, u.stride(), limited()});
-    double result = std::numeric_limits<double>::infinity();
-    const double* epsilon = epsilon_.data();
-    for (int cell = 0; cell < u.cells(); ++cell)
-      for (int q = 0; q < gauss3::points; ++q, ++epsilon)
-        result = std::min(result, ((*local).*time)(u.row(cell), *epsilon));
-    return result;
   }
 
   void prepare(const field& u) {

@@ -6,11 +6,11 @@
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
+#include <apsis/semidiscrete/point_times.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -61,11 +61,11 @@ class cell_centre_collision final : public collision {
 
   /// With the rate of the averages, as for collisions at Gauss points.
   double forward_euler_step(const field& u) const override {
-    return smallest(u, &point_collision::forward_euler_step);
+    return smallest_time(equation_, u, epsilon_, 1, limited_, &point_collision::forward_euler_step);
   }
 
   double relaxation_time(const field& u) const override {
-    return smallest(u, &point_collision::relaxation_time);
+    return smallest_time(equation_, u, epsilon_, 1, limited_, &point_collision::relaxation_time);
   }
 
  private:
@@ -80,14 +80,6 @@ class cell_centre_collision final : public collision {
   point_batch batch(const field& u, int begin, int end) const {
     return {
         .count = end - begin, .pitch = u.stride(), .epsilon = epsilon_.data() + begin, .first_cell = begin};
-  }
-
-  double smallest(const field& u, double (point_collision::*time)(const double*, double)) const {
-    const auto local = equation_.make_collision({1, u.stride(), limited_});
-    double result = std::numeric_limits<double>::infinity();
-    for (int cell = 0; cell < u.cells(); ++cell)
-      result = std::min(result, ((*local).*time)(u.row(cell), epsilon_[static_cast<std::size_t>(cell)]));
-    return result;
   }
 
   /// d ← v − p for the points p of a batch.

@@ -2,9 +2,9 @@
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
+#include <apsis/semidiscrete/point_times.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -63,11 +63,12 @@ class pointwise_collision final : public cellwise_collision {
   }
 
   double forward_euler_step(const field& u) const override {
-    return smallest(u, &point_collision::forward_euler_step);
+    return smallest_time(equation_, u, epsilon_, 1, keeps_sign_, &point_collision::forward_euler_step,
+                         cells_);
   }
 
   double relaxation_time(const field& u) const override {
-    return smallest(u, &point_collision::relaxation_time);
+    return smallest_time(equation_, u, epsilon_, 1, keeps_sign_, &point_collision::relaxation_time, cells_);
   }
 
  private:
@@ -81,15 +82,6 @@ class pointwise_collision final : public cellwise_collision {
   void for_blocks(const field& u, const Body& body) const {
     parallel_blocks(u.cells(), points_per_batch(u.stride()),
                     [&](int begin, int end) { for_cells_in(cells_, begin, end, body); });
-  }
-
-  double smallest(const field& u, double (point_collision::*time)(const double*, double)) const {
-    const auto local = equation_.make_collision({1, u.stride(), keeps_sign_});
-    double result = std::numeric_limits<double>::infinity();
-    for (const auto& [begin, end] : cells_)
-      for (int cell = begin; cell < end; ++cell)
-        result = std::min(result, ((*local).*time)(u.row(cell), epsilon_[static_cast<std::size_t>(cell)]));
-    return result;
   }
 
   const model& equation_;

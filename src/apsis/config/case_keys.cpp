@@ -123,6 +123,15 @@ struct conversion<Choice> {
   }
 };
 
+template <class Member>
+struct without_optional {
+  using type = Member;
+};
+template <class Member>
+struct without_optional<std::optional<Member>> {
+  using type = Member;
+};
+
 /// The key whose value is the member that at(case_config) refers to; its type is that of the member.
 template <class At>
 case_key key(std::string path, At at, case_key facts) {
@@ -132,9 +141,10 @@ case_key key(std::string path, At at, case_key facts) {
     facts.type = conversion<member>::type;
   facts.store = [at](case_config& c, const case_value& value) { conversion<member>::from(value, at(c)); };
   facts.load = [at](const case_config& c) { return conversion<member>::to(at(c)); };
-  if constexpr (std::is_enum_v<member>)
+  using value_type = typename without_optional<member>::type;
+  if constexpr (std::is_enum_v<value_type>)
     facts.choices = [](const case_config&) {
-      return std::vector<std::string>(choice_names<member>.begin(), choice_names<member>.end());
+      return std::vector<std::string>(choice_names<value_type>.begin(), choice_names<value_type>.end());
     };
   const bool numeric = facts.type == key_type::integer || facts.type == key_type::number ||
                        facts.type == key_type::formula || facts.type == key_type::formulas ||

@@ -96,6 +96,7 @@ problem_builder& problem_builder::with_reconstruction(std::shared_ptr<const reco
           fmt::format("a mesh of {} cells is smaller than the stencil ({} cells); give at least {}", cells,
                       needed, needed));
   discretization_.scheme = std::move(scheme);
+  check_cells();
   return *this;
 }
 
@@ -166,6 +167,14 @@ void problem_builder::check_solids() const {
     if (!solids_[k]) throw input_error(fmt::format("solid box {} has no wall; call with_solid()", k));
 }
 
+/// For collisions at centres; with_reconstruction() checks the stencil of the reconstruction.
+void problem_builder::check_cells() const {
+  if (collides_at_centres() && whole_mesh().cells(0) <= centre_rows::reach)
+    throw input_error(
+        fmt::format("{} cells (values at their centres depend on {} neighbours); give at least {}",
+                    whole_mesh().cells(0), centre_rows::reach, centre_rows::reach + 1));
+}
+
 domain problem_builder::space() const {
   check_solids();
   return distribution_ ? domain({mesh_, equation_->velocities()}, sides_, solids_, *distribution_)
@@ -218,10 +227,7 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   if (collisions_ && (!has_space() || unknowns() == formulation::finite_difference))
     throw input_error(
         "points of collisions (the unknowns are point values, which collide where they are); leave them out");
-  if (collides_at_centres() && whole_mesh().cells(0) <= centre_rows::reach)
-    throw input_error(
-        fmt::format("{} cells (values at their centres depend on {} neighbours); give at least {}",
-                    whole_mesh().cells(0), centre_rows::reach, centre_rows::reach + 1));
+  check_cells();
   if (!mesh_.solids().empty() && !pointwise())
     throw input_error(
         "solid boxes with cell averages (they are collided on whole lines); use the finite difference "

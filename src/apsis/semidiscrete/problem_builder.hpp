@@ -103,6 +103,7 @@ class problem_builder {
   formulation unknowns() const;
   bool pointwise() const;
   void check_solids() const;
+  void check_cells() const;
   spatial_discretization complete_discretization() const;
   std::vector<double> epsilon_at(std::span<const double> offsets) const;
   std::unique_ptr<collision> make_collision(const std::shared_ptr<domain>& space) const;

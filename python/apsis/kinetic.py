@@ -45,7 +45,7 @@ class KineticProblem:
     largest_acceleration   bound of the absolute values of functions, a number or one for each dimension
     formulation  "finite-volume" (cell averages) or "finite-difference" (point values)
     collisions   of cell averages: at three "gauss" points of each cell (default), or at the "centres" of the cells, of fourth order in
-    space for a third of the cost
+    space with a third of the solves
     reconstruction, equilibrium   as in a case file
     positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE
 

@@ -310,7 +310,7 @@ std::vector<case_key> space_keys() {
            .doc =
                "Where cell averages collide: gauss: three Gauss points of each cell, on its reconstruction; "
                "centres: values at cell centres that all averages together imply, of fourth order in space, "
-               "for a third of the cost. gauss where not given."}),
+               "with a third of the solves. gauss where not given."}),
       key("space.reconstruction", [](auto& c) -> auto& { return c.space.reconstruction; },
           {.scope = key_scope::space,
            .choices = names_in(reconstruction_entries),

@@ -59,7 +59,7 @@ std::unique_ptr<collision> make_cell_average_collision(const model& equation, st
 /// with explicit part ū solves v = p + a Q(v)/ε + b Q̇(v)/ε² at the centre of every cell, with the point
 /// values p = P ū, and adds the averages of the change, ū + M (v − p) (centre_rows.hpp). Moments are
 /// conserved whatever p is, since the rows v − p have none. Fourth order in space, of second order with an
-/// error h/24 of the position in the cells at walls, where nothing passes. A third of the work of Gauss
+/// error h/24 of the position in the cells at walls, where nothing passes. A third of the solves of Gauss
 /// points, and the same equations at the same points for every Δt/ε, up to |I − P M|.
 ///
 /// With `limited`, for methods that keep signs: nonnegative averages stay so. b = ū + v − p

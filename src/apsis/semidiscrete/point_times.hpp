@@ -2,6 +2,7 @@
 
 #include <apsis/model/model.hpp>
 #include <apsis/phase/field.hpp>
+#include <apsis/phase/grid.hpp>
 
 #include <span>
 

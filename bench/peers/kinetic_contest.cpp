@@ -1,5 +1,6 @@
 #include "integrators.hpp"
 #include "kinetic_contest.hpp"
+#include "radau_kinetic.hpp"
 #include "sundials_kinetic.hpp"
 
 #include <apsis/method/certificate.hpp>
@@ -105,6 +106,17 @@ void add_cvode(contest& all, kinetic_task& task, const kinetic_settings& setting
   }
 }
 
+void add_radau(contest& all, kinetic_task& task, const kinetic_settings& settings) {
+  for (const double share : settings.implicit.atol_by_rtol)
+    for (const double rtol : settings.implicit.rtol) {
+      const radau_options options{rtol, share * rtol};
+      all.add({"Radau 5", fmt::format("rtol {:.2g}, atol {:.2g}", options.rtol, options.atol), league::other,
+               [&task, options, seconds = settings.seconds_others] {
+                 return run_radau(task, options, seconds);
+               }});
+    }
+}
+
 void add_explicit(contest& all, kinetic_task& task, const kinetic_settings& settings) {
   for (const auto& name : settings.explicit_methods)
     for (const long steps : settings.explicit_steps)
@@ -123,6 +135,7 @@ void enter_all(contest& all, kinetic_task& task, const kinetic_settings& setting
       add_equal_steps(all, task, name, league::baseline, settings);
   add_arkode(all, task, settings);
   add_cvode(all, task, settings);
+  add_radau(all, task, settings);
   add_explicit(all, task, settings);
 }
 

@@ -21,6 +21,7 @@ struct kinetic_settings {
   ladder fine,                     ///< of SUNDIALS, tuned
       few,                         ///< with Krylov iterations or constraints
       defaults;                    ///< with its defaults
+  ladder implicit;                 ///< of Radau, whose Newton matrices couple all unknowns
   double longest;  ///< step limit of T as the explicit part of ARKODE, which error control alone finds
                    ///< only through failed steps
   std::vector<std::string> explicit_methods;
@@ -29,7 +30,7 @@ struct kinetic_settings {
 };
 
 /// Enters every IMEX method of the catalogue and extrapolated Euler steps, with equal steps and by
-/// tolerance, ARKODE, CVODE and explicit methods. The task must outlive the contest.
+/// tolerance, ARKODE, CVODE, Radau and explicit methods. The task must outlive the contest.
 void enter_all(contest& all, kinetic_task& task, const kinetic_settings& settings);
 
 /// Returns from, 3/4 from, from/2, 3/8 from, … down to `to`.

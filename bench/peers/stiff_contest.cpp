@@ -1,5 +1,5 @@
 #include "integrators.hpp"
-#include "radau.hpp"
+#include "radau_ode.hpp"
 #include "stiff_contest.hpp"
 #include "sundials_ode.hpp"
 
@@ -101,7 +101,7 @@ const char* const note =
     "equal steps; CVODE (BDF, dense); ARKODE (T "
     "explicit, or all implicit); "
     "Radau "
-    "IIA of order 5 with the control of RADAU5 (bench/peers/radau.cpp). CPU microseconds of a whole "
+    "IIA of order 5 with the control of RADAU5 (bench/peers/radau_steps.hpp). CPU microseconds of a whole "
     "integration "
     "from t = 0 to 1 for a given error |Δu1| + |Δu2| at t = 1; in brackets relative to the best of Apsis. "
     "For "

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <ostream>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -38,6 +39,12 @@ std::vector<one_value> published() {
   for (const quantity_entry* quantity : apsis::quantity_entries())
     for (const auto& value : quantity->published) all.push_back({quantity, &value});
   return all;
+}
+
+/// Lists of tests show it.
+void PrintTo(const one_value& one, std::ostream* out) {
+  *out << one.quantity->name;
+  for (const auto& [parameter, value] : one.published->at) *out << ", " << parameter << " = " << value;
 }
 
 std::string name_of(const testing::TestParamInfo<one_value>& info) {

@@ -54,7 +54,7 @@ class radau_steps {
 
   radau_steps(System& system, const radau_options& options) : system_(system), options_(options) {}
 
-  /// Integrates from t = 0 to `end`; observe(u) is called after each step and returns whether to go on.
+  /// Integrates from t = 0 to `end`; observe(u) is called after each step and returns whether to continue.
   /// Returns whether the end was reached.
   template <class Observer>
   bool integrate(double end, const Observer& observe) {

@@ -48,9 +48,9 @@ def summary_of(run, result):
             "nearest_residual": result.get("nearest_residual"), "reason": result.get("reason"), "seed": result.get("seed")}
     if method:
         regime = method.get("intermediate_regime") or {}
-        kept |= {"band": regime["band"]["error"] if regime.get("keeps") == "all" else None}
+        kept |= {"band": regime["band"]["error"] if regime.get("keeps") in ("all", "slow") else None}
         kept |= {"r": method["ssp_coefficient"], "evaluations": method["explicit_evaluations"], "stages": method["stages"],
-                 "error": method["error_constant"], "angle": method["stability"]["angle_degrees"],
+                 "error": method["error_constant"], "angle": method["stability"]["angle_degrees"] if "stability" in method else None,
                  "buffers": method["buffers"], "start": result.get("start")}
     return kept
 
@@ -121,6 +121,10 @@ def cost_at(curve, level):
 # --- tables ----------------------------------------------------------------------------------------------------------------------
 
 
+def angle_text(angle):
+    return "—" if angle is None else f"{math.floor(angle * 10 + 1e-6) / 10:.1f}°"
+
+
 def design_tables(data):
     lines = []
     for group in data["design"]:
@@ -134,7 +138,7 @@ def design_tables(data):
                 lines.append(f"| `{run['args']}` | {run['stages']} | {run['evaluations'] or '—'} | "
                              f"{format(run['r'], '.4f') if has_r else 'any'} | "
                              f"{format(run['r'] / run['evaluations'], '.4f') if has_r else '—'} | {run['error']:.3g} | "
-                             f"{format(run['band'], '.2g') if run.get('band') else '—'} | {math.floor(run['angle'] * 10 + 1e-6) / 10:.1f}° | "
+                             f"{format(run['band'], '.2g') if run.get('band') else '—'} | {angle_text(run['angle'])} | "
                              f"{run['start']} | {starts} | {run['seconds']:.0f} |")
             else:
                 residual = f"nearest residual {run['nearest_residual']:.1e}" if run["nearest_residual"] else run["reason"]

@@ -2,6 +2,7 @@
 #include "interrupt.hpp"
 #include "method_report.hpp"
 #include "print.hpp"
+#include "two_step_report.hpp"
 
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
@@ -9,6 +10,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
+#include <apsis/method/two_step.hpp>
 #include <apsis/verify/observed_limits.hpp>
 #include <apsis/verify/profile_errors.hpp>
 
@@ -34,16 +36,6 @@ void refuse_case(const std::string& text, const std::string& path) {
       throw input_error(
           {path, number, 1},
           "a case is no method (it has a table [model]); apsis run checks a case before its first step");
-}
-
-// Parses without certifying: a method whose claims fail is reported, not rejected. A modified copy of a
-// catalogue file may retain its name here; a run rejects it.
-method read_method(const std::string& path) {
-  const std::string text = read_method_text(path);
-  refuse_case(text, path);
-  method m = parse_method(text, path);
-  if (const auto problem = taken_name(m); !problem.empty()) log::warning(path + ": " + problem);
-  return m;
 }
 
 struct options {
@@ -146,15 +138,39 @@ int report(const method& m, const options& given) {
   return 0;
 }
 
+int report_two_steps(const method& m, const options& given) {
+  if (given.observe || given.profile)
+    throw input_error(fmt::format(
+        "command line: --observe and --epsilon-profile need a method of one step ('{}' takes two); "
+        "leave them out",
+        m.name));
+  const auto result = two_step_json(m);
+  print(given.json ? result.dump(2) + "\n" : two_step_text(m));
+  if (!result["claims_hold"].get<bool>())
+    throw claim_error(
+        fmt::format("the claims of '{}' do not hold ({}); correct the coefficients or the claims", m.name,
+                    result["failures"].front().get<std::string>()));
+  return 0;
+}
+
 int check(const options& given) {
   end_on_interrupts();
   const std::string& what = given.what;
   if (is_method_name(what)) return report(find_method(what), given);
+  if (!is_method_file(what) && is_two_step_method(what))
+    return report_two_steps(find_two_step_method(what), given);
   std::error_code ignored;
   if (!std::filesystem::exists(what, ignored))
     throw input_error(fmt::format("no method '{}' (neither in the catalogue nor a file); {}",
                                   what.substr(0, 60), suggest(what, method_names())));
-  return report(read_method(what), given);
+  // Parses without certifying: a method whose claims fail is reported, not rejected. A modified copy of a
+  // catalogue file may retain its name here; a run rejects it.
+  const std::string text = read_method_text(what);
+  refuse_case(text, what);
+  const method m = parse_any_method(text, what);
+  if (m.steps == 2) return report_two_steps(m, given);
+  if (const auto problem = taken_name(m); !problem.empty()) log::warning(what + ": " + problem);
+  return report(m, given);
 }
 
 action define(CLI::App& command) {

@@ -1,26 +1,25 @@
 #include "command_registry.hpp"
 #include "design_embedded.hpp"
+#include "design_options.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
 #include "method_writer.hpp"
 #include "print.hpp"
 #include "progress_bar.hpp"
 #include "threads_option.hpp"
+#include "two_step_report.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
-#include <apsis/core/suggest.hpp>
 #include <apsis/design/draw.hpp>
 #include <apsis/design/fewer_stages.hpp>
 #include <apsis/design/finish.hpp>
 #include <apsis/design/search.hpp>
 #include <apsis/design/sparsify.hpp>
 #include <apsis/exec/parallel.hpp>
-#include <apsis/integrate/schedule.hpp>
 
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -34,107 +33,6 @@ namespace {
 using json = nlohmann::ordered_json;
 using clock = std::chrono::steady_clock;
 
-struct options {
-  std::optional<int> order, stages;
-  int evaluations = 0, starts = 1000;
-  std::optional<int> threads;
-  bool implicit = false, json = false;
-  std::string objective = "r", regime = "none", from, out, embedded, cost = "one-solve";
-  double seconds = 60.0, sparsify = 0.0, band_weight = default_band_weight;
-  std::uint64_t seed = 1;
-  design_demands demands;
-};
-
-template <class Value>
-Value choice(const std::string& option, const std::string& given,
-             const std::map<std::string, Value>& values) {
-  const auto found = values.find(given);
-  if (found != values.end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [name, unused] : values) names.push_back(name);
-  throw input_error(fmt::format("command line: unknown {} '{}' (there is no such choice); {}", option,
-                                given.substr(0, 60), suggest(given, names)));
-}
-
-void require(bool good, const std::string& option, const std::string& value, const std::string& range) {
-  if (!good)
-    throw input_error(
-        fmt::format("command line: {} {} is out of range ({}); change it", option, value, range));
-}
-
-int needed(const std::optional<int>& value, const std::string& option) {
-  if (!value)
-    throw input_error(
-        fmt::format("command line: {} is missing (apsis design needs it); see: apsis design --help", option));
-  return *value;
-}
-
-design_task task_of(const options& given) {
-  const int order = needed(given.order, "--order"), stages = needed(given.stages, "--stages");
-  require(order >= 1 && order <= 6, "--order", std::to_string(order), "from 1 to 6");
-  require(stages >= 1 && stages <= 32, "--stages", std::to_string(stages), "from 1 to 32");
-  require(given.evaluations >= 0 && given.evaluations < stages, "--evaluations",
-          std::to_string(given.evaluations), "fewer than stages: the last stage is the result");
-  require(given.starts >= 1, "--starts", std::to_string(given.starts), "at least 1");
-  require(given.seconds > 0.0, "--time", fmt::format("{}", given.seconds), "positive, in seconds");
-  const auto& d = given.demands;
-  require(d.box > 0.0 && d.box <= 1e3, "--box", fmt::format("{}", d.box), "positive, at most 1000");
-  require(d.margin >= 0.0 && d.margin < d.box, "--margin", fmt::format("{}", d.margin), "from 0 to the box");
-  require(d.least_angle >= 0.0 && d.least_angle <= 90.0, "--angle", fmt::format("{}", d.least_angle),
-          "from 0 to 90 degrees");
-  require(d.least_pole >= 0.0 && d.least_pole * d.least_pole * d.margin <= 1.0, "--pole",
-          fmt::format("{}", d.least_pole),
-          fmt::format("from 0 to 1/sqrt(margin) = {:.4g}", 1.0 / std::sqrt(d.margin)));
-  require(d.most_buffers >= 1, "--buffers", std::to_string(d.most_buffers), "at least 1");
-  require(d.least_r > 0.0 && d.least_r < d.largest_r, "--ssp", fmt::format("{}", d.least_r),
-          fmt::format("positive, below {}", d.largest_r));
-  require(given.band_weight >= 0.0 && given.band_weight <= 1e6, "--band-weight",
-          fmt::format("{}", given.band_weight), "from 0 to 1e6");
-  require(given.sparsify >= 0.0 && given.sparsify < 1.0, "--sparsify", fmt::format("{}", given.sparsify),
-          "from 0 to 1: the admissible loss of the objective");
-  design_task task;
-  task.kind = given.implicit ? method_kind::implicit_only : method_kind::imex;
-  task.stages = static_cast<std::size_t>(stages);
-  if (given.evaluations > 0) task.transports = given.evaluations;
-  task.demands = d;
-  task.demands.order = order;
-  task.demands.regime = choice<regime_demand>(
-      "--regime", given.regime,
-      {{"none", regime_demand::none}, {"slow", regime_demand::slow}, {"all", regime_demand::all}});
-  task.objective = choice<design_objective>("--objective", given.objective,
-                                            {{"r", design_objective::largest_r},
-                                             {"r/n_F", design_objective::efficiency},
-                                             {"error", design_objective::smallest_error},
-                                             {"band", design_objective::smallest_band},
-                                             {"mixed", design_objective::smallest_mixed}});
-  task.band_weight = given.band_weight;
-  task.seed = given.seed;
-  if (!given.from.empty()) {
-    const method& m = find_method(given.from);
-    if (m.kind != task.kind || m.is_tableau() || m.ends_with_update())
-      throw input_error(
-          fmt::format("command line: --from '{}' cannot be improved (it is not {} of the paper's class); "
-                      "name another method",
-                      given.from, to_string(task.kind)));
-    task.from = m.coefficients<double>();
-    const int has = schedule(*task.from).transport_evaluations();
-    require(given.evaluations == 0 || given.evaluations >= has, "--evaluations",
-            std::to_string(given.evaluations), fmt::format("'{}' has {}: as many, or more", given.from, has));
-  }
-  if (!given.implicit) {
-    require(stages >= 2, "--stages", std::to_string(stages),
-            "an IMEX method needs 2; use --implicit for a method without transport");
-    return task;
-  }
-  if (given.evaluations > 0 || given.regime != "none")
-    throw input_error(
-        "command line: --evaluations and --regime cannot be combined with --implicit (there is no "
-        "transport); leave them out");
-  // Without transport r is undefined.
-  task.objective = design_objective::smallest_error;
-  return task;
-}
-
 std::string state_of(const design_progress& p) {
   const std::string best =
       p.best ? fmt::format("r {:.6f}, error {:.4g}{}", p.best->r, p.best->error,
@@ -143,11 +41,13 @@ std::string state_of(const design_progress& p) {
   return fmt::format("{} starts, {} feasible, {}", p.starts, p.feasible, best);
 }
 
-json summary(const design_task& task, const options& given, const design_progress& found, double wall) {
+json summary(const design_task& task, const design_options& given, const design_progress& found,
+             double wall) {
   return {
       {"kind", to_string(task.kind)},
       {"order", task.demands.order},
-      {"stages", task.stages},
+      {"steps", task.steps},
+      {"stages", *given.stages},
       {"box", task.demands.box},
       {"objective", given.objective},
       {"seed", task.seed},
@@ -183,7 +83,12 @@ bool take_stages_out(design_task& task, method_writer& file, const std::function
   return true;
 }
 
-int design(const options& given) {
+method unpolished(const design_task& task, const design_candidate& candidate, const std::string& name) {
+  return task.steps == 2 ? to_polished_two_step_method(task, candidate, name, 15)
+                         : to_method(task, candidate, name);
+}
+
+int design(const design_options& given) {
   if (!given.embedded.empty())
     return design_embedded({given.embedded, given.order, given.cost, given.out, given.json});
   design_task task = task_of(given);
@@ -204,7 +109,7 @@ int design(const options& given) {
   limits.starts = given.starts;
   limits.stop = stop;
   limits.report = [&](const design_progress& p, bool improved) {
-    if (improved) file.write(to_method(task, *p.best, file.name()));
+    if (improved) file.write(unpolished(task, *p.best, file.name()));
     const double part = std::max(static_cast<double>(p.starts) / given.starts, elapsed() / given.seconds);
     bar.update(part, state_of(p));
   };
@@ -224,29 +129,35 @@ int design(const options& given) {
   }
   auto best = *found.best;
   if (given.sparsify > 0.0) best = sparsify(task, best, given.sparsify, interrupted);
-  const method polished = to_polished_method(task, best, file.name());
+  const bool two_steps = task.steps == 2;
+  const method polished = two_steps ? to_polished_two_step_method(task, best, file.name())
+                                    : to_polished_method(task, best, file.name());
   file.write(polished);
   result["start"] = best.start;
   result["error_constant"] = best.error;
   result["file"] = file.path();
-  result["method"] = check_json(polished);
+  result["method"] = two_steps ? two_step_json(polished) : check_json(polished);
   if (given.json) {
     print(result.dump(2) + "\n");
   } else {
     print(fmt::format("{}; best of start {}; written to '{}'\n\n{}", state_of(found), best.start, file.path(),
-                      check_text(polished)));
+                      two_steps ? two_step_text(polished) : check_text(polished)));
   }
   if (!result["method"]["claims_hold"].get<bool>())
     throw claim_error(fmt::format("the method in '{}' does not meet the demands ({}); try another seed",
-                                  file.path(), first_failure(polished)));
+                                  file.path(), result["method"]["failures"].front().get<std::string>()));
   return 0;
 }
 
 action define(CLI::App& command) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<design_options>();
   auto& d = given->demands;
   command.add_option("--order", given->order, "order of accuracy, or that of the embedded solution");
   command.add_option("--stages", given->stages, "number of stages; the last one is the result");
+  command
+      .add_option("--steps", given->steps,
+                  "1, or 2: stages also depend on the value and the transport one step earlier")
+      ->capture_default_str();
   command.add_flag("--implicit", given->implicit, "a method without transport, u' = Q(u)");
   command.add_option("--evaluations", given->evaluations, "transport evaluations per step (default: any)");
   command.add_option("--box", d.box, "largest d and |ddot|")->capture_default_str();

@@ -84,6 +84,7 @@ std::unique_ptr<collision_inverse> kinetic_task::inverse() const {
 
 /// Only collisions at centres distinguish them (problem_builder::with_smooth_collisions()).
 semidiscrete_problem& kinetic_task::problem_of(const std::string& integrator) const {
+  if (is_two_step_method(integrator)) return *problem_;
   if (!is_method_name(integrator)) return *smooth_;
   const method& m = find_method(integrator);
   const auto form = m.coefficients<double>();
@@ -93,7 +94,11 @@ semidiscrete_problem& kinetic_task::problem_of(const std::string& integrator) co
 }
 
 long kinetic_task::positive_steps(const std::string& name) const {
-  const double r = is_method_name(name) ? find_method(name).coefficients<double>().r : 1.0;
+  double r = 1.0;
+  if (is_two_step_method(name))
+    r = find_two_step_method(name).coefficients<double>().r;
+  else if (is_method_name(name))
+    r = find_method(name).coefficients<double>().r;
   return static_cast<long>(std::ceil(end_ / (r * problem_->forward_euler_step(0.0, initial_))));
 }
 

@@ -1,6 +1,7 @@
 // The command design as a process.
 #include "program.hpp"
 
+#include <cmath>
 #include <csignal>
 
 #include <gmock/gmock.h>
@@ -48,6 +49,44 @@ TEST(design, writes_a_method_that_can_be_checked_and_used) {
                 .code,
             0);
   EXPECT_EQ(read(folder.path() / "found.toml"), first);
+}
+
+TEST(design, writes_a_two_step_method_that_can_be_checked_and_improved_but_not_run) {
+  const work_folder folder;
+  const auto arguments = design({"--steps", "2", "--order", "2", "--stages", "3", "--evaluations", "2",
+                                 "--objective", "error", "--ssp", "0.5", "--starts", "40", "--json"});
+  const outcome result = run_apsis(folder, arguments);
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json found = json::parse(result.out);
+  EXPECT_EQ(found["method"]["order"], 2);
+  EXPECT_EQ(found["method"]["stages"], 3);
+  EXPECT_EQ(found["method"]["type"], "A");
+  EXPECT_LE(std::abs(found["method"]["second_root"].get<double>()), 0.5);
+  EXPECT_GE(found["method"]["ssp_coefficient"].get<double>(), 0.5);
+  const outcome check = run_apsis(folder, {"check", "found.toml", "--json"});
+  ASSERT_EQ(check.code, 0) << check.err;
+  EXPECT_EQ(json::parse(check.out), found["method"]);
+  const outcome run = run_apsis(folder, {"run", "paper/ode", "time.method=found.toml"});
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("'found' takes two steps (steps = 2), which needs equal steps"));
+  // From the method itself the search ends with one that is no worse.
+  const outcome again = run_apsis(
+      folder, {"design", "--out", "again.toml", "--steps", "2", "--order", "2", "--stages", "3",
+               "--objective", "error", "--ssp", "0.5", "--starts", "1", "--from", "found.toml", "--json"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  // Ipopt stops within 1e-9 of an optimum.
+  EXPECT_LE(json::parse(again.out)["method"]["error_constant"].get<double>(),
+            found["method"]["error_constant"].get<double>() * (1.0 + 1e-6));
+  for (const auto& [more, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--implicit"}, "--implicit cannot be combined with --steps 2"},
+           {{"--regime", "all"}, "--regime all cannot be combined with --steps 2"},
+           {{"--angle", "60"}, "--angle cannot be combined with --steps 2"}}) {
+    std::vector<std::string> wrong = {"--steps", "2", "--order", "2", "--stages", "3"};
+    wrong.insert(wrong.end(), more.begin(), more.end());
+    const outcome refused = run_apsis(folder, design(wrong));
+    EXPECT_EQ(refused.code, 2) << why;
+    EXPECT_THAT(refused.err, HasSubstr(why));
+  }
 }
 
 TEST(design, reports_the_nearest_residual_if_nothing_is_found) {

@@ -5,6 +5,7 @@
 #include <apsis/method/intermediate_regime.hpp>
 #include <apsis/method/order_conditions.hpp>
 #include <apsis/method/stability.hpp>
+#include <apsis/method/two_step.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -27,12 +28,13 @@ struct sample {
   Eigen::VectorXd x;
 };
 
-sample draw(method_kind kind, int order, std::size_t stages, regime_demand regime, std::uint64_t seed) {
+sample draw(method_kind kind, int order, std::size_t stages, regime_demand regime, std::uint64_t seed,
+            int steps = 1) {
   random_source random(seed);
   std::vector<char> transport(stages, 0);
   for (std::size_t i = 0; i + 1 < stages; ++i) transport[i] = static_cast<char>(i == 0 || !random.one_in(3));
-  auto pattern = full_pattern(kind, transport);
-  for (std::size_t i = 0; i < stages; ++i) {
+  auto pattern = full_pattern(kind, transport, steps);
+  for (auto i = static_cast<std::size_t>(steps) - 1; i < stages; ++i) {
     if (i + 1 == stages || random.one_in(2)) {
       pattern.ddot[i] = 0;
     } else if (random.one_in(3)) {
@@ -43,7 +45,7 @@ sample draw(method_kind kind, int order, std::size_t stages, regime_demand regim
   design_demands demands;
   demands.order = order;
   demands.regime = regime;
-  demands.least_angle = demanded_angle;
+  if (steps == 1) demands.least_angle = demanded_angle;
   design_problem problem(pattern, demands);
   Eigen::VectorXd x(problem.unknowns());
   for (Eigen::Index k = 0; k < x.size(); ++k)
@@ -56,6 +58,7 @@ struct kind_and_order {
   int order;
   std::size_t stages;
   regime_demand regime;
+  int steps = 1;
 };
 
 const std::vector<kind_and_order> all = {{method_kind::imex, 1, 2, regime_demand::none},
@@ -64,7 +67,9 @@ const std::vector<kind_and_order> all = {{method_kind::imex, 1, 2, regime_demand
                                          {method_kind::imex, 4, 6, regime_demand::none},
                                          {method_kind::implicit_only, 4, 5, regime_demand::none},
                                          {method_kind::implicit_only, 5, 6, regime_demand::none},
-                                         {method_kind::explicit_only, 3, 4, regime_demand::none}};
+                                         {method_kind::explicit_only, 3, 4, regime_demand::none},
+                                         {method_kind::imex, 3, 6, regime_demand::slow, 2},
+                                         {method_kind::imex, 4, 7, regime_demand::none, 2}};
 
 // Central differences with h = 1e-5 of quantities of size 1 with derivatives up to some hundreds: the
 // tolerance 1e-6, relative to the size of the row, covers h² times third derivatives and 1e-16/h.
@@ -92,10 +97,10 @@ Eigen::VectorXd gradient_of_sum(design_problem& problem, const Eigen::VectorXd& 
 
 TEST(design_derivatives, agree_with_differences) {
   for (std::size_t k = 0; k < all.size(); ++k) {
-    auto [problem, x] = draw(all[k].kind, all[k].order, all[k].stages, all[k].regime, k + 1);
+    auto [problem, x] = draw(all[k].kind, all[k].order, all[k].stages, all[k].regime, k + 1, all[k].steps);
     const bool transports = all[k].kind != method_kind::implicit_only;
     const auto J = problem.jacobian(x), limit_J = problem.limit_jacobian(x);
-    EXPECT_EQ(problem.limits() > 0, all[k].kind != method_kind::explicit_only);
+    EXPECT_EQ(problem.limits() > 0, all[k].kind != method_kind::explicit_only && all[k].steps == 1);
     Eigen::VectorXd of_error, of_band, of_layer;
     problem.half_square(measure::error, x, &of_error);
     if (transports) {
@@ -154,7 +159,7 @@ butcher_form<long double> butcher_of(const shu_osher_form<double>& m) {
 // triangular systems and differ by rounding errors times the size of the terms.
 TEST(design_conditions, agree_with_flux_and_stability_function_of_the_certificate) {
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (all[k].kind == method_kind::explicit_only) continue;
+    if (all[k].kind == method_kind::explicit_only || all[k].steps == 2) continue;
     auto [problem, x] = draw(all[k].kind, all[k].order, all[k].stages, all[k].regime, 200 + k);
     const auto butcher = butcher_of(problem.form(x));
     const auto limits = problem.limit_values(x);
@@ -184,6 +189,7 @@ TEST(design_conditions, agree_with_flux_and_stability_function_of_the_certificat
 
 TEST(design_conditions, agree_with_the_butcher_form) {
   for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k].steps == 2) continue;
     auto [problem, x] = draw(all[k].kind, all[k].order, all[k].stages, all[k].regime, 100 + k);
     const auto m = problem.form(x);
     const auto butcher = to_butcher(m);
@@ -219,6 +225,51 @@ TEST(design_conditions, agree_with_the_butcher_form) {
       expect("last = 1", terms.last);
       expect("layer = 1", terms.layer);
     }
+  }
+}
+
+// Of two-step methods: the certificate solves the rows one by one, without nodes. Tolerances as above.
+TEST(design_conditions, agree_with_the_certificate_of_two_step_methods) {
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k].steps == 1) continue;
+    auto [problem, x] = draw(all[k].kind, all[k].order, all[k].stages, all[k].regime, 300 + k, 2);
+    const auto m = problem.form(x);
+    const auto trees = rooted_trees(all[k].order, tree_colours::both);
+    const auto weights = two_step_weights(m, trees);
+    const auto residuals = problem.residuals(x);
+    int seen = 0;
+    for (std::size_t t = 0; t < trees.size(); ++t)
+      for (Eigen::Index e = 0; e < problem.equations(); ++e)
+        if (problem.equation_name(e) == trees[t].name) {
+          ++seen;
+          const double missing = weights[t] - 1.0 / trees[t].density;
+          EXPECT_NEAR(residuals(e), missing, 1e-13 * (1.0 + std::abs(missing))) << trees[t].name;
+        }
+    EXPECT_GE(seen, 15);
+    const auto leaf = static_cast<std::size_t>(
+        std::find_if(trees.begin(), trees.end(), [](const rooted_tree& t) { return t.name == "F"; }) -
+        trees.begin());
+    double sum = 0.0;
+    for (int l = -8; l <= 20; ++l) {  // 8 per decade
+      const double z = std::pow(10.0, l / 8.0);
+      double decay = 1.0;  // of a deviation that u^{n-1} and u^n have
+      {
+        const auto initial = initial_weights(m);
+        std::vector<double> y(m.stages(), 1.0);
+        for (std::size_t i = 1; i < y.size(); ++i) {
+          y[i] = initial[i];
+          for (std::size_t j = 0; j < i; ++j) y[i] += (m.P(i, j) + m.W(i, j)) * y[j];
+          y[i] /= 1.0 + z * (m.D(i, i) - z * m.ddot[i]);
+        }
+        decay = y.back();
+      }
+      // Σ b̂, which is 1 + b only if order 1 is satisfied, as it is not here.
+      const double b = weight_of_previous(m), sum_of_b_hat = weights[leaf] + b;
+      const double flux = two_step_at_finite_rate(m, z).flux * (1.0 + b);
+      const double residual = (flux - sum_of_b_hat) / z * (1.0 - decay) / -std::expm1(-z);
+      sum += residual * residual / 8.0;
+    }
+    EXPECT_NEAR(problem.half_square(measure::band, x), 0.5 * sum, 1e-11 * (1.0 + sum)) << k;
   }
 }
 

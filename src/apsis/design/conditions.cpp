@@ -62,18 +62,19 @@ condition_list needed(condition_list list) {
 }
 
 design_condition tree_condition(const std::vector<rooted_tree>& trees, std::size_t k, std::size_t stages) {
-  return {trees[k].name, {{1.0, {static_cast<int>(k)}, stages - 1}}, 1.0 / trees[k].density};
+  return {trees[k].name, {{1.0, {static_cast<int>(k)}, stages - 1}}, 1.0, trees[k].density};
 }
 
 /// Adds a response of the stages at ζ; returns the index of its real part, which its imaginary part follows.
 int add_response(condition_list& list, series_node::kind what, std::complex<double> zeta) {
-  list.nodes.push_back({what, {}, {}, zeta});
+  const double previous = what == series_node::kind::response ? 1.0 : 0.0;
+  list.nodes.push_back({what, {}, {}, zeta, previous});
   list.nodes.push_back({series_node::kind::imaginary, {}, {}});
   return static_cast<int>(list.nodes.size()) - 2;
 }
 
-int add_transport(condition_list& list, int child) {
-  list.nodes.push_back({series_node::kind::transport, {child}, {}});
+int add_transport(condition_list& list, int child, double previous = 0.0) {
+  list.nodes.push_back({series_node::kind::transport, {child}, {}, 0.0, previous});
   return static_cast<int>(list.nodes.size()) - 1;
 }
 
@@ -91,7 +92,8 @@ std::vector<double> radii(int to_a_decade) {
 }  // namespace
 
 condition_list order_equations(method_kind kind, int order, std::size_t stages,
-                               const std::vector<char>& transport, const std::vector<char>& relaxation) {
+                               const std::vector<char>& transport, const std::vector<char>& relaxation,
+                               int steps) {
   // Trees of order 2 are needed for the stage equations.
   const auto trees = rooted_trees(std::max(order, 2), colours_of(kind));
   condition_list list{series_of(trees), {}};
@@ -99,7 +101,7 @@ condition_list order_equations(method_kind kind, int order, std::size_t stages,
   for (std::size_t k = 0; k < trees.size() && trees[k].order <= order; ++k)
     if (!equal_abscissae || !repeats_another(k, trees))
       list.conditions.push_back(tree_condition(trees, k, stages));
-  for (std::size_t i = 0; i + 1 < stages && equal_abscissae; ++i)
+  for (std::size_t i = static_cast<std::size_t>(steps) - 1; i + 1 < stages && equal_abscissae; ++i)
     if (transport[i] != 0)
       list.conditions.push_back({fmt::format("c = c_hat at stage {}", i + 1),
                                  {{1.0, {index_of(trees, "G")}, i}, {-1.0, {index_of(trees, "F")}, i}},
@@ -121,16 +123,20 @@ void add_regime_equations(condition_list& list, regime_demand demand, std::size_
     return static_cast<int>(list.nodes.size()) - 1;
   };
   const int kept = add_node(series_node::kind::kept);
+  list.nodes.back().previous = 1.0;
   list.conditions.push_back({"last = 1", {{1.0, {kept}, stages - 1}}, 1.0});
-  list.conditions.push_back({"flux = 1", {{1.0, {add_transport(list, kept)}, stages - 1}}, 1.0});
+  list.conditions.push_back({"flux = 1", {{1.0, {add_transport(list, kept, -1.0)}, stages - 1}}, 1.0});
   if (demand != regime_demand::all) return;
   const int layer = add_node(series_node::kind::layer);
   list.conditions.push_back({"layer = 1", {{1.0, {add_transport(list, layer)}, stages - 1}}, 1.0});
 }
 
-condition_list band_terms(std::size_t stages) {
+condition_list band_terms(std::size_t stages, int steps) {
   const std::size_t last = stages - 1;
   condition_list list;
+  // Of two-step methods Σ b̂ = 1 + (weight of u^{n−1} in the result), by which flux is divided.
+  const int of_one =
+      steps == 2 ? add_transport(list, add_response(list, series_node::kind::response, 0.0)) : -1;
   for (const double z : radii(band_points)) {
     const int moved = add_response(list, series_node::kind::moved, -z);
     const int start = add_response(list, series_node::kind::response, -z);
@@ -138,6 +144,16 @@ condition_list band_terms(std::size_t stages) {
     // κ = moved + κ_s start, κ_s = moved_s/(1 − start_s); (flux(z) − 1)(1 − start_s) is a polynomial in
     // the stage values.
     const double w = std::sqrt(1.0 / band_points) / (z * -std::expm1(-z));
+    if (steps == 2) {
+      list.conditions.push_back({fmt::format("flux at z = {:.3g}", z),
+                                 {{w, {of_moved}, last},
+                                  {-w, {of_moved, start}, last},
+                                  {w, {moved, of_start}, last},
+                                  {w, {of_one, start}, last},
+                                  {-w, {of_one}, last}},
+                                 0.0});
+      continue;
+    }
     list.conditions.push_back({fmt::format("flux at z = {:.3g}", z),
                                {{w, {of_moved}, last},
                                 {-w, {of_moved, start}, last},
@@ -148,15 +164,17 @@ condition_list band_terms(std::size_t stages) {
   return list;
 }
 
-condition_list layer_terms(std::size_t stages) {
+condition_list layer_terms(std::size_t stages, int steps) {
   const std::size_t last = stages - 1;
   const double w = std::sqrt(1.0 / band_points);
   condition_list list;
   for (const double z : radii(band_points)) {
     const int start = add_response(list, series_node::kind::response, -z);
-    const int of_start = add_transport(list, start);
-    list.conditions.push_back(
-        {fmt::format("layer at z = {:.3g}", z), {{w, {of_start}, last}, {w / z, {start}, last}}, w / z});
+    if (steps == 1) {
+      const int of_start = add_transport(list, start);
+      list.conditions.push_back(
+          {fmt::format("layer at z = {:.3g}", z), {{w, {of_start}, last}, {w / z, {start}, last}}, w / z});
+    }
     // (last(z) − 1)(1 − start_s) = moved_s + start_s − 1.
     const int moved = add_response(list, series_node::kind::moved, -z);
     const double v = w / (z * -std::expm1(-z));

@@ -8,7 +8,8 @@
 
 namespace apsis {
 
-/// A polynomial equation Σ_t a_t Π_f y_f[stage_t] = target in stage vectors y, which a list of nodes defines.
+/// A polynomial equation Σ_t a_t Π_f y_f[stage_t] = target/divisor in stage vectors y, which a list of nodes
+/// defines.
 struct design_condition {
   /// A term a Π_f y_f[stage].
   struct term {
@@ -18,7 +19,8 @@ struct design_condition {
   };
   std::string name;         ///< for reports: "F[G,G]" for a tree, "c = c_hat at stage 2"
   std::vector<term> terms;  ///< their sum is the left-hand side
-  double target = 0.0;      ///< right-hand side, 1/γ(τ) for a tree
+  double target = 0.0,      ///< right-hand side times `divisor`
+      divisor = 1.0;        ///< γ(τ) for a tree, so that 1/γ(τ) is exact to the precision of the evaluation
 };
 
 /// Equations and the stage vectors that enter them.
@@ -42,7 +44,8 @@ enum class regime_demand {
 /// δ_i² = 0 with δ = Ac + ȧ − c²/2, so δ = 0 at each stage in `relaxation` (those with d > 0). The
 /// proofs are in docs/design.md.
 condition_list order_equations(method_kind kind, int order, std::size_t stages,
-                               const std::vector<char>& transport, const std::vector<char>& relaxation);
+                               const std::vector<char>& transport, const std::vector<char>& relaxation,
+                               int steps = 1);
 
 /// Adds those of the conditions (N1) to (N3) that are demanded.
 void add_regime_equations(condition_list& list, regime_demand demand, std::size_t stages);
@@ -53,12 +56,13 @@ condition_list error_terms(method_kind kind, int order, std::size_t stages);
 /// Returns terms whose residuals measure the error of the O(ε) term where ε ~ Δt (docs/plateaus.md, the
 /// band): with z = CΔt/ε, their 2-norm is that of (flux(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}) over log₁₀ z,
 /// 0.1 ≤ z ≤ 300.
-condition_list band_terms(std::size_t stages);
+condition_list band_terms(std::size_t stages, int steps = 1);
 
 /// Returns terms whose residuals measure the other errors of size ε where ε ~ Δt (docs/plateaus.md, the
 /// band): in the initial layer, b̂·λ(z) − (1 − R(−z))/z, and of the deviation from equilibrium at the end of a
-/// step, (last(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}). Their 2-norm is that over log₁₀ z, 0.1 ≤ z ≤ 300.
-condition_list layer_terms(std::size_t stages);
+/// step, (last(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}). Their 2-norm is that over log₁₀ z, 0.1 ≤ z ≤ 300. Of
+/// two-step methods the second alone, since the layer belongs to their first steps.
+condition_list layer_terms(std::size_t stages, int steps = 1);
 
 /// Returns (|R(ζ)|² − 1)/min(1, |ζ|)⁴ on the ray at angle `degrees` from the negative axis, which must be ≤ 0
 /// for A(α)-stability of the implicit part. 24 radii per decade, 0.1 ≤ |ζ| ≤ 300.
@@ -69,8 +73,8 @@ template <class Real>
 class condition_sweep {
  public:
   /// `slow[i]` marks stages with ḋ_i = 0 by design, see stage_series.
-  condition_sweep(const condition_list& list, const std::vector<char>& slow)
-      : series_(list.nodes, slow), conditions_(list.conditions) {}
+  condition_sweep(const condition_list& list, const std::vector<char>& slow, int steps = 1)
+      : series_(list.nodes, slow, steps), conditions_(list.conditions) {}
 
   /// Number of conditions.
   std::size_t size() const { return conditions_.size(); }
@@ -79,7 +83,7 @@ class condition_sweep {
 
   /// Returns the left-hand side minus target of condition k.
   Real residual(std::size_t k) const {
-    Real sum(-conditions_[k].target);
+    Real sum = Real(-conditions_[k].target) / Real(conditions_[k].divisor);
     for (const auto& term : conditions_[k].terms) {
       Real product(term.factor);
       for (const int node : term.nodes) product *= series_.value(node, term.stage);

@@ -1,5 +1,7 @@
 #include <apsis/design/design_problem.hpp>
 
+#include <apsis/method/precision.hpp>
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -8,7 +10,8 @@ namespace apsis {
 namespace {
 
 condition_list equations_of(const zero_pattern& pattern, const design_demands& demands) {
-  auto list = order_equations(pattern.kind, demands.order, pattern.stages(), pattern.transport(), pattern.d);
+  auto list = order_equations(pattern.kind, demands.order, pattern.stages(), pattern.transport(), pattern.d,
+                              pattern.steps);
   if (pattern.kind == method_kind::imex) add_regime_equations(list, demands.regime, pattern.stages());
   return list;
 }
@@ -40,13 +43,15 @@ std::vector<char> zero_pattern::transport() const {
   return used;
 }
 
-zero_pattern full_pattern(method_kind kind, const std::vector<char>& transport) {
+zero_pattern full_pattern(method_kind kind, const std::vector<char>& transport, int steps) {
   const std::size_t s = transport.size();
   zero_pattern p;
   p.kind = kind;
   p.P = p.W = matrix<char>(s, s);
   p.d.assign(s, static_cast<char>(kind != method_kind::explicit_only));
   p.ddot = p.d;
+  p.steps = steps;
+  if (steps == 2) p.d[0] = p.ddot[0] = 0;
   p.initial.assign(s, 1);
   for (std::size_t i = 0; i < s; ++i)
     for (std::size_t j = 0; j < i; ++j) {
@@ -60,9 +65,9 @@ design_problem::design_problem(zero_pattern pattern, const design_demands& deman
     : pattern_(std::move(pattern)),
       demands_(demands),
       slow_(slow_stages(pattern_)),
-      conditions_(equations_of(pattern_, demands_), slow_) {
+      conditions_(equations_of(pattern_, demands_), slow_, pattern_.steps) {
   if (demands_.least_angle > 0.0 && pattern_.kind != method_kind::explicit_only)
-    limits_.emplace(stability_limits(demands_.aimed_angle(), pattern_.stages()), slow_);
+    limits_.emplace(stability_limits(demands_.aimed_angle(), pattern_.stages()), slow_, pattern_.steps);
   for (const auto& c : equations_of(pattern_, demands_).conditions) names_.push_back(c.name);
   const std::size_t s = pattern_.stages();
   std::vector<std::pair<double, double>> bounds;
@@ -145,6 +150,15 @@ shu_osher_form<Real> design_problem::form_of(const std::vector<Real>& x) const {
   return m;
 }
 
+template shu_osher_form<mp_real> design_problem::form_of(const std::vector<mp_real>&) const;
+
+template <class Real>
+condition_sweep<Real> design_problem::sweep() const {
+  return condition_sweep<Real>(equations_of(pattern_, demands_), slow_, pattern_.steps);
+}
+
+template condition_sweep<mp_real> design_problem::sweep() const;
+
 shu_osher_form<double> design_problem::form(const Eigen::VectorXd& x) const {
   return form_of(std::vector<double>(x.begin(), x.end()));
 }
@@ -226,11 +240,13 @@ Eigen::MatrixXd design_problem::limit_jacobian(const Eigen::VectorXd& x) {
 
 design_problem::sweeps& design_problem::terms_of(measure what) {
   const auto ready = [this](std::optional<sweeps>& terms, const auto& list) -> sweeps& {
-    if (!terms) terms.emplace(list(pattern_.stages()), slow_);
+    if (!terms) terms.emplace(list(pattern_.stages()), slow_, pattern_.steps);
     return *terms;
   };
-  if (what == measure::band) return ready(band_, band_terms);
-  if (what == measure::layer) return ready(layer_, layer_terms);
+  if (what == measure::band)
+    return ready(band_, [this](std::size_t s) { return band_terms(s, pattern_.steps); });
+  if (what == measure::layer)
+    return ready(layer_, [this](std::size_t s) { return layer_terms(s, pattern_.steps); });
   return ready(error_, [this](std::size_t s) { return error_terms(pattern_.kind, demands_.order + 1, s); });
 }
 

@@ -18,6 +18,7 @@ struct zero_pattern {
   std::vector<char> d,                   ///< whether d_i may be nonzero
       ddot;                              ///< whether ḋ_i may be nonzero
   std::vector<char> initial;             ///< whether r_i may be nonzero; r_1 = 1 always
+  int steps = 1;                         ///< 2: the first row stands for u^{n−1}, with d = ḋ = 0
   /// Returns the number s of stages.
   std::size_t stages() const { return d.size(); }
   /// Returns which stages have a T that enters a later stage.
@@ -25,7 +26,7 @@ struct zero_pattern {
 };
 
 /// Returns the pattern with all coefficients free, where T is evaluated only at the stages in `transport`.
-zero_pattern full_pattern(method_kind kind, const std::vector<char>& transport);
+zero_pattern full_pattern(method_kind kind, const std::vector<char>& transport, int steps = 1);
 
 /// Requirements on a method in addition to its pattern.
 struct design_demands {
@@ -71,6 +72,11 @@ class design_problem {
   }
   /// Returns the name of equation k: a tree, "flux = 1", "weights of stage 3".
   const std::string& equation_name(Eigen::Index k) const { return names_[static_cast<std::size_t>(k)]; }
+  /// Returns for every row the indices of its weights, whose sum is 1.
+  const std::vector<std::vector<Eigen::Index>>& rows() const { return rows_; }
+  /// Returns the equations without the row sums, to be evaluated in `Real`: double or mp_real.
+  template <class Real>
+  condition_sweep<Real> sweep() const;
   /// Returns the index of r in x; −1 for methods without transport.
   Eigen::Index place_of_r() const { return r_place_; }
 
@@ -84,6 +90,9 @@ class design_problem {
 
   /// Returns the method with these unknowns; r = 1 if r is not an unknown.
   shu_osher_form<double> form(const Eigen::VectorXd& x) const;
+  /// The same in `Real`: double, tangent or mp_real.
+  template <class Real>
+  shu_osher_form<Real> form_of(const std::vector<Real>& x) const;
   /// Returns the unknowns of a method with the same number of stages; coefficients outside the
   /// pattern are dropped.
   Eigen::VectorXd unknowns_of(const shu_osher_form<double>& m) const;
@@ -131,13 +140,11 @@ class design_problem {
   template <class Real>
   static Real* entry(shu_osher_form<Real>& m, const unknown& u);
   template <class Real>
-  shu_osher_form<Real> form_of(const std::vector<Real>& x) const;
-  template <class Real>
   shu_osher_form<Real> empty_form() const;
   /// Sweeps for values and gradients, and for second derivatives.
   struct sweeps {
-    sweeps(const condition_list& list, const std::vector<char>& slow)
-        : first(list, slow), second(list, slow) {}
+    sweeps(const condition_list& list, const std::vector<char>& slow, int steps)
+        : first(list, slow, steps), second(list, slow, steps) {}
     condition_sweep<double> first;
     condition_sweep<tangent> second;
   };

@@ -127,14 +127,14 @@ zero_pattern with_more_transport(zero_pattern pattern, std::vector<char> transpo
   const auto chosen = draw_subset(random, without.size(), more);
   for (std::size_t k = 0; k < without.size(); ++k)
     if (chosen[k] != 0) transport[without[k]] = 1;
-  pattern.W = full_pattern(pattern.kind, transport).W;
+  pattern.W = full_pattern(pattern.kind, transport, pattern.steps).W;
   return pattern;
 }
 
 }  // namespace
 
 zero_pattern pattern_near(const design_task& task, const form_type& m) {
-  auto pattern = full_pattern(task.kind, transport_of(m));
+  auto pattern = full_pattern(task.kind, transport_of(m), task.steps);
   const bool stages_differ = task.demands.regime != regime_demand::none || is_fifth_order_implicit(task);
   for (std::size_t i = 0; i < m.stages() && stages_differ; ++i) {
     pattern.d[i] = static_cast<char>(m.D(i, i) != 0.0);
@@ -151,7 +151,7 @@ zero_pattern draw_pattern(const design_task& task, random_source& random) {
     if (more <= 0) return pattern;
     return with_more_transport(pattern, std::move(transport), static_cast<std::size_t>(more), random);
   }
-  auto pattern = full_pattern(task.kind, draw_transport(task, random));
+  auto pattern = full_pattern(task.kind, draw_transport(task, random), task.steps);
   const std::size_t s = task.stages;
   if (task.kind == method_kind::imex && task.demands.regime != regime_demand::none)
     for (std::size_t i = 0; i < s; ++i)

@@ -17,4 +17,8 @@ method to_method(const design_task& task, const design_candidate& candidate, con
 method to_polished_method(const design_task& task, const design_candidate& candidate, const std::string& name,
                           int digits = 45);
 
+/// The same for a two-step method (task.steps = 2, task.stages counts u^{n−1}).
+method to_polished_two_step_method(const design_task& task, const design_candidate& candidate,
+                                   const std::string& name, int digits = 45);
+
 }  // namespace apsis

@@ -14,9 +14,11 @@ matrix<double> with_gap(const matrix<double>& from, std::size_t at) {
 
 }  // namespace
 
-shu_osher_form<double> with_more_stages(shu_osher_form<double> m, std::size_t stages, random_source& random) {
+shu_osher_form<double> with_more_stages(shu_osher_form<double> m, std::size_t stages, random_source& random,
+                                        std::size_t given) {
   while (m.stages() < stages) {
-    const auto at = static_cast<std::size_t>(random.integer(1, static_cast<int>(m.stages())));
+    const auto at =
+        static_cast<std::size_t>(random.integer(static_cast<int>(given), static_cast<int>(m.stages())));
     m.P = with_gap(m.P, at);
     m.W = with_gap(m.W, at);
     m.D = with_gap(m.D, at);
@@ -26,6 +28,13 @@ shu_osher_form<double> with_more_stages(shu_osher_form<double> m, std::size_t st
     m.ddot.insert(m.ddot.begin() + static_cast<std::ptrdiff_t>(at), ddot);
   }
   return m;
+}
+
+shu_osher_form<double> with_previous_value(const shu_osher_form<double>& m) {
+  auto out = m;
+  for (auto* part : {&out.P, &out.W, &out.D}) *part = with_gap(*part, 0);
+  out.ddot.insert(out.ddot.begin(), 0.0);
+  return out;
 }
 
 }  // namespace apsis

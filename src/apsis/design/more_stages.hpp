@@ -9,6 +9,12 @@ namespace apsis {
 /// relaxes the stage before it (p = 1, random d, with or without ḋ) and has no weight in later stages, so the
 /// result of a step is the same, and a search that may change these weights starts from a solution of its
 /// equations.
-shu_osher_form<double> with_more_stages(shu_osher_form<double> m, std::size_t stages, random_source& random);
+/// The first `given` rows keep their places.
+shu_osher_form<double> with_more_stages(shu_osher_form<double> m, std::size_t stages, random_source& random,
+                                        std::size_t given = 1);
+
+/// Returns the two-step form (method/two_step.hpp) of a method of one step: a first row for u^{n−1}, which
+/// has no weight.
+shu_osher_form<double> with_previous_value(const shu_osher_form<double>& m);
 
 }  // namespace apsis

@@ -7,6 +7,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/stability.hpp>
+#include <apsis/method/two_step.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +40,8 @@ bool is_better(const design_task& task, const design_candidate& a, const design_
 bool is_acceptable(const design_task& task, const design_candidate& candidate) {
   const auto m = design_problem(candidate.pattern, task.demands).form(candidate.x);
   if (schedule(m).buffers() > task.demands.most_buffers) return false;
+  // The second root of a two-step method is the negative weight of u^{n−1}: errors of alternating sign halve.
+  if (task.steps == 2 && weight_of_previous(m) > 0.5) return false;
   if (task.kind == method_kind::explicit_only) return true;
   // A tiny d hardly moves the pole.
   constexpr double nearly = 1e-3;
@@ -112,7 +115,8 @@ std::optional<design_candidate> run_search_start(const design_task& task, int st
   random_source random(task.seed * 0x9E3779B97F4A7C15ULL +
                        static_cast<std::uint64_t>(start) * 0xD1B54A32D192ED03ULL);
   design_task here = task;
-  if (here.from) here.from = with_more_stages(*task.from, task.stages, random);
+  if (here.from)
+    here.from = with_more_stages(*task.from, task.stages, random, static_cast<std::size_t>(task.steps));
   const auto pattern = draw_pattern(here, random);
   design_problem problem(pattern, task.demands);
   const auto feasible = find_feasible(problem, draw_coefficients(here, problem, random, start == 0));

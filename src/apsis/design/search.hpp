@@ -12,7 +12,8 @@ namespace apsis {
 /// A design task: kind, order, stages, demands and objective of the method to be found.
 struct design_task {
   method_kind kind = method_kind::imex;  ///< class of equations
-  std::size_t stages = 3;                ///< number of stages, s
+  std::size_t stages = 3;                ///< number of stages, s; with two steps u^{n−1} is one of them
+  int steps = 1;                         ///< 2: stages also depend on u^{n−1} and its T, in the first row
   std::optional<int> transports;         ///< evaluations of T, n_F; if not given, each start draws a number
   design_demands demands;                ///< order, bounds and further requirements
   design_objective objective = design_objective::largest_r;  ///< objective

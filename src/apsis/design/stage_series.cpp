@@ -8,6 +8,8 @@ std::vector<series_node> series_of(const std::vector<rooted_tree>& trees) {
     series_node node;
     node.what = tree.root == colour::F ? series_node::kind::transport : series_node::kind::relaxation;
     node.children = tree.children;
+    node.previous = tree.order % 2 == 0 ? 1.0 : -1.0;
+    node.divisor = tree.density;
     for (std::size_t k = 0; tree.root == colour::G && k < tree.children.size(); ++k) {
       const rooted_tree& child = trees[static_cast<std::size_t>(tree.children[k])];
       if (child.root != colour::G) continue;

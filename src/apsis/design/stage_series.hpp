@@ -27,6 +27,8 @@ struct series_node {
   std::vector<int> children;    ///< the factors of Π children (nodes of kind transport and relaxation)
   std::vector<std::vector<int>> merged;  ///< the factors of each term of Ḋ (nodes of kind relaxation)
   std::complex<double> zeta = 0.0;       ///< ζ (nodes of kind response and moved)
+  double previous = 0.0,                 ///< y of u^{n−1} times `divisor` (two-step methods)
+      divisor = 1.0;                     ///< γ(τ) for a tree
 };
 
 /// Returns the nodes of the stage vectors of trees, in the same order (rooted_trees() puts children first).
@@ -37,12 +39,14 @@ std::vector<series_node> series_of(const std::vector<rooted_tree>& trees);
 /// gradient carries its own derivatives, that is, second derivatives.
 ///
 /// `slow[i]` marks stages with ḋ_i = 0 by design (not by value), so that χ and λ are smooth functions.
+///
+/// Of two-step methods the first row stands for u^{n−1}: its values are given by the nodes.
 template <class Real>
 class stage_series {
  public:
-  /// Arguments of a node must precede it; `slow` has one entry per stage.
-  stage_series(std::span<const series_node> nodes, std::vector<char> slow)
-      : nodes_(nodes.begin(), nodes.end()), slow_(std::move(slow)) {}
+  /// Arguments of a node must precede it; `slow` has one entry per stage, `steps` is 1 or 2.
+  stage_series(std::span<const series_node> nodes, std::vector<char> slow, int steps = 1)
+      : nodes_(nodes.begin(), nodes.end()), slow_(std::move(slow)), first_(steps == 2 ? 1 : 0) {}
 
   /// Computes all stage vectors of a method. Only the diagonal of D is used.
   void evaluate(const shu_osher_form<Real>& m) {
@@ -129,7 +133,8 @@ class stage_series {
     const bool moved = nodes_[n].what == series_node::kind::moved;
     Real* re = &y_[n * s_];
     Real* im = &y_[(n + 1) * s_];
-    for (std::size_t i = 0; i < s_; ++i) {
+    if (first_ == 1) re[0] = Real(nodes_[n].previous) / Real(nodes_[n].divisor);
+    for (std::size_t i = first_; i < s_; ++i) {
       complex_pair sum{Real(0.0), Real(0.0)};
       if (!moved) sum.re = initial_[i];
       for (std::size_t j = 0; j < i; ++j) {
@@ -154,7 +159,7 @@ class stage_series {
     const Real* im = &y_[(n + 1) * s_];
     Real* bar_re = &adjoint_[n * s_];
     Real* bar_im = &adjoint_[(n + 1) * s_];
-    for (std::size_t i = s_; i-- > 0;) {
+    for (std::size_t i = s_; i-- > first_;) {
       const auto q = denominator(zeta, i);
       const Real size = q.re * q.re + q.im * q.im;
       const complex_pair S{(bar_re[i] * q.re - bar_im[i] * q.im) / size,
@@ -175,6 +180,7 @@ class stage_series {
         }
       }
     }
+    if (first_ == 1) bar_re[0] = bar_im[0] = Real(0.0);
   }
 
   void evaluate_node(std::size_t n) {
@@ -184,8 +190,9 @@ class stage_series {
     Real* y = &y_[n * s_];
     Real* g = &g_[n * s_];
     Real* h = &h_[n * s_];
+    if (first_ == 1) y[0] = Real(node.previous) / Real(node.divisor);
     if (node.what == series_node::kind::kept || node.what == series_node::kind::layer) {
-      for (std::size_t i = 0; i < s_; ++i) {
+      for (std::size_t i = first_; i < s_; ++i) {
         y[i] = Real(0.0);
         if (slow_[i] == 0) continue;
         Real source = node.what == series_node::kind::layer ? initial_[i] : Real(0.0);
@@ -199,6 +206,7 @@ class stage_series {
     for (std::size_t i = 0; i < s_; ++i) {
       g[i] = product(node.children, i, none);
       Real sum(0.0);
+      if (i < first_) continue;
       if (relaxes) {
         h[i] = Real(0.0);
         for (const auto& factors : node.merged) h[i] += product(factors, i, none);
@@ -216,7 +224,7 @@ class stage_series {
     for (std::size_t i = 0; i < s_; ++i) {
       const Real a = adjoint_[n * s_ + i];
       adjoint_[n * s_ + i] = Real(0.0);
-      if (slow_[i] == 0) continue;
+      if (slow_[i] == 0 || i < first_) continue;
       const Real per_d = a / d_[i];
       out.D(i, i) -= per_d * y_[n * s_ + i];
       for (std::size_t j = 0; j < i; ++j) {
@@ -252,6 +260,7 @@ class stage_series {
     for (std::size_t i = s_; i-- > 0;) {
       const Real a = bar[i];
       bar[i] = Real(0.0);
+      if (i < first_) continue;
       for (std::size_t j = 0; j < i; ++j) {
         bar[j] += a * weight(i, j);
         M_bar_[i * s_ + j] += a * y[j];
@@ -280,6 +289,7 @@ class stage_series {
 
   std::vector<series_node> nodes_;
   std::vector<char> slow_, active_;
+  std::size_t first_;  ///< first row that is computed
   std::size_t s_ = 0;
   Real r_{};
   std::vector<Real> y_, g_, h_, adjoint_;    ///< nodes × stages

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/integrate.hpp>
+#include <apsis/integrate/equal_steps.hpp>
 
 #include <algorithm>
 #include <string>
@@ -68,8 +68,10 @@ class imex_bdf {
         starter_(find_method(k == 1 ? "forward-backward-euler" : "extrapolated-euler-" + std::to_string(k)),
                  p) {}
 
-  int order() const { return m_.steps(); }    ///< k
-  stepper<P>& starter() { return starter_; }  ///< method of the first k steps
+  int order() const { return m_.steps(); }         ///< k
+  int first_steps() const { return m_.steps(); }   ///< number of steps before the formula holds
+  std::string name() const { return "IMEX-BDF"; }  ///< for messages
+  stepper<P>& starter() { return starter_; }       ///< method of the first k steps
 
   /// Adds a value u at time t to an empty or incomplete history, Δt after the last one.
   void add(real t, real dt, const state& u) {
@@ -121,30 +123,5 @@ class imex_bdf {
   std::vector<target<state, real>> targets_;
   long known_ = 0;  ///< number of values in the history
 };
-
-/// Integrates u from t0 to t1 with equal steps, like integrate() with a stepper; a graded start divides the
-/// first of them. Throws input_error if the rule has no dt: the formula holds for equal steps only.
-template <problem P, class Observer = no_observer>
-integration_result<typename P::real> integrate(imex_bdf<P>& formula, typename P::state& u,
-                                               typename P::real t0, typename P::real t1,
-                                               step_rule<typename P::real> rule, Observer&& observer = {}) {
-  using real = typename P::real;
-  if (!rule.dt)
-    throw input_error("IMEX-BDF needs equal steps (its coefficients depend on earlier steps); give dt");
-  formula.restart();
-  const auto take = [&](const time_marcher<real>& march, real limit, typename P::state& state) {
-    const real dt = march.next(limit), t = march.t();
-    // Start-up steps count as one step.
-    const long whole = march.step() - std::max(0L, march.startup_steps() - 1);
-    if (!march.starting() && whole >= formula.order()) {
-      formula.step(t, dt, state);
-    } else {
-      if (!march.starting() && whole > 0) formula.add(t, dt, state);
-      formula.starter().step(t, dt, state);
-    }
-    return dt;
-  };
-  return integrate_with(take, formula.starter(), time_marcher<real>(t0, t1, rule.dt), u, rule, observer);
-}
 
 }  // namespace apsis

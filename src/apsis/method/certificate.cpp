@@ -15,12 +15,6 @@
 namespace apsis {
 namespace {
 
-/// Returns the largest admissible residual: 1000 units in the last decimal of the coefficients, 1e-50 if
-/// they are exact.
-mp_real tolerance_of(int digits) {
-  return digits > 0 ? pow(mp_real(10), 3 - digits) : mp_real(1e-50);
-}
-
 void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certificate& c) {
   for (int p = 1; p <= certificate::highest_order && c.order == p - 1; ++p) {
     const auto trees = rooted_trees(p, colours_of(c.kind));
@@ -146,7 +140,7 @@ void find_embedded_solution(const method& m, certificate& c) {
   const method extended = m.with_embedded_row();
   const auto form = extended.coefficients<mp_real>();
   const auto b = to_butcher(form);
-  const mp_real tolerance = tolerance_of(extended.precision());
+  const mp_real tolerance = residual_tolerance(extended.precision());
   certificate row;
   row.kind = m.kind;
   find_order(b, tolerance, row);
@@ -190,7 +184,7 @@ certificate certify(const method& m) {
   c.kind = m.kind;
   const auto form = m.coefficients<mp_real>();
   const auto b = to_butcher(form);
-  const mp_real tolerance = tolerance_of(m.precision());
+  const mp_real tolerance = residual_tolerance(m.precision());
   find_order(b, tolerance, c);
   find_ssp(b, tolerance, c);
   find_structure(m, form, b, c);

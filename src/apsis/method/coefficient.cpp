@@ -62,6 +62,10 @@ int decimals(const std::string& text) {
   return count >= shortest ? count : 0;
 }
 
+mp_real residual_tolerance(int decimals) {
+  return decimals > 0 ? pow(mp_real(10), 3 - decimals) : mp_real(1e-50);
+}
+
 std::string short_text(const mp_real& x) {
   return x.str(12);
 }

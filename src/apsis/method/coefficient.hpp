@@ -20,4 +20,8 @@ std::string short_text(const mp_real& x);
 /// order conditions; 0 for rationals and short decimals, which are exact.
 int decimals(const std::string& text);
 
+/// Returns the largest admissible residual of an equation that coefficients of this number of decimals
+/// satisfy: 1000 units in the last decimal, 1e-50 for exact ones (0 decimals).
+mp_real residual_tolerance(int decimals);
+
 }  // namespace apsis

@@ -139,6 +139,7 @@ std::string to_toml(const method& m) {
                                 quoted(m.citation));
   if (!m.origin.empty()) out += fmt::format("origin = {}\n", quoted(m.origin));
   if (!m.purpose.empty()) out += fmt::format("purpose = {}\n", quoted(m.purpose));
+  if (m.steps != 1) out += fmt::format("steps = {}\n", m.steps);
   out += fmt::format("kind = {}\n\n[claims]\norder = {}\n", quoted(to_string(m.kind)), m.claims.order);
   if (m.claims.ssp_coefficient)
     out += fmt::format("ssp_coefficient = {}\n", quoted(*m.claims.ssp_coefficient));

@@ -189,15 +189,15 @@ struct intermediate_band {
       at = 0.0;        ///< location z of the maximum
 };
 
-/// Maximizes over 10⁻³ ≤ z ≤ 10⁵: samples at 40 points per decade and refines every local maximum by golden
-/// section. Returns a NaN error where flux(z) is NaN.
-template <class Real>
-intermediate_band find_intermediate_band(const butcher_form<Real>& b) {
+/// Maximizes |excess(z)|/z, excess = flux − 1, over 10⁻³ ≤ z ≤ 10⁵: samples at 40 points per decade and
+/// refines every local maximum by golden section. Returns a NaN error where the excess is NaN.
+template <class Excess>
+intermediate_band find_band_of(const Excess& excess) {
   constexpr int per_decade = 40, first = -3 * per_decade, last = 5 * per_decade;
   const auto z_of = [](double k) { return std::pow(10.0, k / per_decade); };
   const auto error = [&](double k) {
     const double z = z_of(k);
-    return std::abs(static_cast<double>(at_finite_rate(b, Real(z)).flux - Real(1))) / z;
+    return std::abs(excess(z)) / z;
   };
   std::vector<double> errors;
   for (int k = first; k <= last; ++k) {
@@ -216,6 +216,13 @@ intermediate_band find_intermediate_band(const butcher_form<Real>& b) {
     if (peak.value > band.error) band = {peak.value, z_of(peak.at)};
   }
   return band;
+}
+
+/// Returns the band of a method of one step.
+template <class Real>
+intermediate_band find_intermediate_band(const butcher_form<Real>& b) {
+  return find_band_of(
+      [&b](double z) { return static_cast<double>(at_finite_rate(b, Real(z)).flux - Real(1)); });
 }
 
 }  // namespace apsis

@@ -61,6 +61,7 @@ class method {
   std::string origin;                    ///< how its coefficients were found; "" if the citation says so
   std::string purpose;                   ///< what it is recommended for, in a few words; "" if nothing
   method_kind kind = method_kind::imex;  ///< class of equations
+  int steps = 1;                         ///< 2: the first row of `exact` stands for u^{n−1} (two_step.hpp)
   method_claims claims;                  ///< verified by certify()
   shu_osher_form<std::string> exact;     ///< as in the file, omitted entries "0"
   std::optional<embedded_row> embedded;  ///< the embedded solution, if there is one
@@ -109,7 +110,7 @@ std::vector<std::string> method_names();
 bool is_method_name(std::string_view name);
 
 /// Parses the text of a method file without certifying the method; `file` appears in messages. Throws
-/// input_error with line and column.
+/// input_error with line and column, also for a method of two steps.
 method parse_method(std::string_view text, const std::string& file);
 
 /// Reads, parses and certifies a method file. Throws input_error, io_error or claim_error.

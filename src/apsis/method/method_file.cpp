@@ -7,6 +7,7 @@
 #include <apsis/method/internal/toml_section.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_text.hpp>
+#include <apsis/method/two_step.hpp>
 
 #include <algorithm>
 #include <array>
@@ -57,6 +58,9 @@ method_claims read_claims(const toml::table& root, const std::string& file) {
   }
   return claims;
 }
+
+const std::vector<std::string> all_keys = {"name",  "title",  "citation",  "origin",  "purpose", "kind",
+                                           "steps", "claims", "shu_osher", "butcher", "embedded"};
 
 matrix<std::string> zeros(std::size_t s) {
   matrix<std::string> m(s, s);
@@ -177,9 +181,23 @@ void read_butcher(const toml::table& table, const std::string& file, method& m) 
   m.exact = *exact;
 }
 
+/// u^{n−1} is given: its row is empty.
+void require_given_row(const toml::table& root, const std::string& file, const method& m) {
+  const toml_section top(root, file, "", all_keys);
+  if (m.kind != method_kind::imex || !top.has("shu_osher") || top.has("embedded"))
+    top.fail("steps",
+             "a two-step method is given by [shu_osher] with kind = \"imex\" and has no [embedded]; "
+             "change it");
+  const auto& e = m.exact;
+  if (coefficient_value(e.D(0, 0)) != 0 || coefficient_value(e.ddot[0]) != 0)
+    top.fail(
+        "steps",
+        "the first row of a two-step method stands for u^{n-1}, which is given; set its d and ddot to 0");
+}
+
 }  // namespace
 
-method parse_method(std::string_view text, const std::string& file) {
+method parse_any_method(std::string_view text, const std::string& file) {
   check_method_text(text, file);
   toml::table root;
   try {
@@ -190,9 +208,7 @@ method parse_method(std::string_view text, const std::string& file) {
                       "not TOML (" + std::string(failure.description()) + "); correct the syntax");
   }
   method m;
-  const toml_section top(root, file, "",
-                         {"name", "title", "citation", "origin", "purpose", "kind", "claims", "shu_osher",
-                          "butcher", "embedded"});
+  const toml_section top(root, file, "", all_keys);
   m.name = top.text("name");
   if (const auto problem = method_name_problem(m.name); !problem.empty()) top.fail("name", problem);
   m.title = top.text("title");
@@ -200,6 +216,7 @@ method parse_method(std::string_view text, const std::string& file) {
   if (top.has("origin")) m.origin = top.text("origin");
   if (top.has("purpose")) m.purpose = top.text("purpose");
   m.kind = read_kind(top);
+  if (top.has("steps")) m.steps = top.integer("steps", 1, 2);
   m.claims = read_claims(root, file);
   if (top.has("shu_osher") == top.has("butcher"))
     throw input_error(source_place{file, 1, 1},
@@ -210,11 +227,33 @@ method parse_method(std::string_view text, const std::string& file) {
   } else {
     read_butcher(need_table(root, "butcher", file), file, m);
   }
+  if (m.steps == 2) require_given_row(root, file, m);
   if (!top.has("embedded")) return m;
   if (!top.has("shu_osher"))
     throw input_error(place_of(top.need("embedded"), file),
                       "[embedded] is a row of the Shu-Osher form; give the method as [shu_osher]");
   read_embedded(need_table(root, "embedded", file), file, m);
+  return m;
+}
+
+method parse_method(std::string_view text, const std::string& file) {
+  method m = parse_any_method(text, file);
+  if (m.steps == 2)
+    throw input_error(
+        source_place{file, 1, 1},
+        fmt::format("'{}' takes two steps (steps = 2), which needs equal steps and the integrator "
+                    "apsis::two_step; choose a method of one step",
+                    m.name));
+  return m;
+}
+
+method parse_two_step_method(std::string_view text, const std::string& file) {
+  method m = parse_any_method(text, file);
+  if (m.steps != 2)
+    throw input_error(source_place{file, 1, 1},
+                      fmt::format("'{}' takes one step (there is no steps = 2); choose a two-step method, or "
+                                  "integrate with apsis::stepper",
+                                  m.name));
   return m;
 }
 

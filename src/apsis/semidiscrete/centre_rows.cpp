@@ -57,7 +57,7 @@ void values(const centre_rows::stencil& averages, bool limited, int width, doubl
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     const auto at = [&](int i) APSIS_PACKED {
-      return N::load(averages[static_cast<std::size_t>(i + centre_rows::reach)] + k);
+      return N::load(averages[static_cast<std::size_t>(std::ptrdiff_t{i} + centre_rows::reach)] + k);
     };
     value<N>(at, limited).store(points + k);
   });

@@ -120,7 +120,7 @@ class cell_centre_collision final : public collision {
     scratch_.prepare([&](auto& own) {
       const auto numbers = static_cast<std::size_t>(length) * static_cast<std::size_t>(u.stride());
       for (auto* rows : {&own.averages, &own.changes})
-        rows->reserve(static_cast<std::size_t>(length + 2 * centre_rows::reach));
+        rows->reserve(static_cast<std::size_t>(length) + 2 * static_cast<std::size_t>(centre_rows::reach));
       own.points.resize(numbers);
       own.solved.resize(numbers);
       if (!own.local) own.local = equation_.make_collision({length, u.stride(), limited_});

@@ -1,0 +1,242 @@
+// Two-step methods through integrate(): observed orders, the limit ε → 0, the error of the O(ε) terms where
+// ε ~ Δt, positivity, certificates and refusals.
+#include <apsis/integrate/two_step.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/relaxation_problem.hpp>
+#include <apsis/method/export.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <integrate/ode_model.hpp>
+#include <integrate/reference.hpp>
+
+namespace two_step_test {
+
+namespace {
+
+using real = long double;
+using state = std::vector<real>;
+using testing::HasSubstr;
+
+apsis::step_rule<real> equal(long steps) {
+  return apsis::step_rule<real>::fixed(real(1) / static_cast<real>(steps));
+}
+
+const apsis::method& starter() {
+  return apsis::find_method("md-imex-10-3-mixed");
+}
+
+/// Kaps' problem with ε = 1, whose solution from (1, 1) is u1 = e^{−t}, u2 = u1².
+real error_of(const apsis::method& m, long steps) {
+  auto problem = apsis::make_relaxation_problem<state>(
+      [](real, const state& u, state& out) { out = {u[1] - u[0] - u[0] * u[0], -2 * u[1]}; },
+      [](const state& u) { return u[0]; }, [](real w, state& out) { out = {w, w * w}; },
+      [](real) { return real(1); }, real(1));
+  apsis::two_step march(m, starter(), problem);
+  state u{1, 1};
+  apsis::integrate(march, u, real(0), real(1), equal(steps));
+  return std::abs(u[0] - std::exp(real(-1))) + std::abs(u[1] - std::exp(real(-2)));
+}
+
+TEST(two_step, observed_order_is_the_claimed_one) {
+  ASSERT_FALSE(apsis::two_step_method_names().empty());
+  for (const auto& name : apsis::two_step_method_names()) {
+    const auto m = apsis::find_two_step_method(name);
+    // The second error term is a tenth of the first at these steps.
+    EXPECT_NEAR(static_cast<double>(std::log2(error_of(m, 256) / error_of(m, 512))), m.claims.order, 0.15)
+        << name;
+  }
+}
+
+TEST(two_step, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
+  const auto exact = reference::limit(1);
+  for (const auto& name : apsis::two_step_method_names()) {
+    const auto m = apsis::find_two_step_method(name);
+    real moment[2], rest[2];
+    for (int i = 0; i < 2; ++i) {
+      auto problem = ode_model::as_relaxation<state>(1e-17L);
+      apsis::two_step march(m, starter(), problem);
+      state u{2, 0};
+      apsis::integrate(march, u, real(0), real(1), equal(256L << i));
+      moment[i] = std::abs(u[0] - exact[0]);
+      rest[i] = std::abs(u[1] - exact[1]);
+    }
+    // The second error term is a tenth of the first at these steps; ε is below every error.
+    EXPECT_NEAR(static_cast<double>(std::log2(moment[0] / moment[1])), m.claims.order, 0.2) << name;
+    EXPECT_NEAR(static_cast<double>(std::log2(rest[0] / rest[1])), m.claims.order, 0.2) << name;
+  }
+}
+
+// T depends on t: every row evaluates it at its own time.
+TEST(two_step, integrates_polynomials_below_its_order_exactly) {
+  for (const auto& name : apsis::two_step_method_names()) {
+    const auto m = apsis::find_two_step_method(name);
+    const auto degree = static_cast<real>(m.claims.order);
+    auto problem = apsis::make_relaxation_problem<state>(
+        [degree](real t, const state&, state& out) { out = {degree * std::pow(t, degree - 1), real(0)}; },
+        [](const state& u) { return u[0]; }, [](real w, state& out) { out = {w, real(0)}; },
+        [](real) { return real(1); }, real(1));
+    apsis::two_step march(m, starter(), problem);
+    state u{0, 0};
+    apsis::integrate(march, u, real(0), real(1), equal(16));
+    // Sums of 16 steps of some 50 products below 1.
+    EXPECT_LE(std::abs(u[0] - 1), 1e-17L) << name;
+  }
+}
+
+/// Rate of a moment that the deviation from equilibrium v = ε changes, w' = v, v' = 1 − v/ε, relative to the
+/// exact one ε, in the steady state of a run with Δt = zε.
+real observed_flux(const apsis::method& m, real z) {
+  const real epsilon = 1 / z;
+  auto problem = apsis::make_relaxation_problem<state>(
+      [](real, const state& u, state& out) { out = {u[1], real(1)}; }, [](const state& u) { return u[0]; },
+      [](real w, state& out) { out = {w, real(0)}; }, [](real) { return real(1); }, epsilon);
+  apsis::two_step march(m, starter(), problem);
+  state u{0, epsilon};
+  real before = 0;
+  const auto observe = [&](long step, real, real, const state& now) {
+    if (step == 399) before = now[0];
+    return true;
+  };
+  apsis::integrate(march, u, real(0), real(400), apsis::step_rule<real>::fixed(1), observe);
+  return (u[0] - before) / epsilon;
+}
+
+TEST(two_step, flux_of_a_run_is_the_certified_one_at_every_z) {
+  for (const auto& name : apsis::two_step_method_names()) {
+    const auto m = apsis::find_two_step_method(name);
+    const auto form = m.coefficients<real>();
+    for (const real z : {0.1L, 1.0L, 3.0L, 10.0L, 100.0L}) {
+      const real flux = apsis::two_step_at_finite_rate(form, z).flux;
+      // 400 sums of numbers up to 400ε are differenced.
+      EXPECT_NEAR(static_cast<double>(observed_flux(m, z) - flux), 0.0, 1e-13) << name << " " << z;
+    }
+    // Where the band has its maximum, flux differs from 1 by that much.
+    const auto band = apsis::certify_two_step(m).band;
+    EXPECT_NEAR(static_cast<double>(std::abs(observed_flux(m, static_cast<real>(band.at)) - 1)),
+                band.error * band.at, 1e-3 * band.error * band.at)
+        << name;
+  }
+}
+
+/// Smallest value of upwind differences for a step function that relaxes to itself, which is nonnegative for
+/// forward Euler steps up to Δx.
+real smallest_value(const apsis::method& m, real step) {
+  constexpr std::size_t cells = 40;
+  auto problem = apsis::make_relaxation_problem<state>(
+      [](real, const state& u, state& out) {
+        out.resize(cells);
+        for (std::size_t i = 0; i < cells; ++i) out[i] = u[(i + cells - 1) % cells] - u[i];
+      },
+      [](const state& u) { return u; }, [](const state& w, state& out) { out = w; },
+      [](const state&) { return real(1); }, real(1));
+  apsis::two_step march(m, starter(), problem);
+  state u(cells);
+  for (std::size_t i = 10; i < 20; ++i) u[i] = 1;
+  real smallest = 1;
+  // The first two steps are those of the starter, at half of its r.
+  const real first = real(0.5) * march.starter().r();
+  state before = u;
+  march.starter().step(0, first, u);
+  march.starter().step(0, first, u);
+  before = u;
+  march.starter().step(0, std::min(step, first), u);
+  march.restart();
+  march.add(0, step, before);
+  for (int n = 0; n < 5; ++n) {
+    march.step(0, step, u);
+    smallest = std::min(smallest, *std::min_element(u.begin(), u.end()));
+  }
+  return smallest;
+}
+
+TEST(two_step, is_positive_up_to_r_and_not_far_above) {
+  for (const auto& name : apsis::two_step_method_names()) {
+    const auto m = apsis::find_two_step_method(name);
+    const real r = m.coefficients<real>().r;
+    EXPECT_GE(smallest_value(m, r), 0) << name;
+    // The r of the form is a lower bound of the largest step.
+    EXPECT_LT(smallest_value(m, 6 * r), 0) << name;
+  }
+}
+
+TEST(two_step, failed_step_changes_nothing) {
+  const auto m = apsis::find_two_step_method(apsis::two_step_method_names().front());
+  int calls = 0, fails_at = -1;
+  auto problem = apsis::make_relaxation_problem<state>(
+      [&](real, const state& u, state& out) {
+        if (++calls == fails_at) throw apsis::numerical_error("no transport");
+        out = {u[1], -u[0]};
+      },
+      [](const state& u) { return u[0]; }, [](real w, state& out) { out = {w, std::sin(w)}; },
+      [](real) { return real(0.1L); }, real(1));
+  apsis::two_step march(m, starter(), problem);
+  const state first{1, 0};
+  state u{0.9L, 0.1L};
+  march.add(0, 0.1L, first);
+  state expected = u;
+  march.step(0, 0.1L, expected);
+  march.restart();
+  march.add(0, 0.1L, first);
+  calls = 0;
+  fails_at = 3;
+  state tried = u;
+  EXPECT_THROW(march.step(0, 0.1L, tried), apsis::numerical_error);
+  EXPECT_EQ(tried, u);
+  fails_at = -1;
+  march.step(0, 0.1L, tried);
+  EXPECT_EQ(tried, expected);
+}
+
+template <class Body>
+std::string complaint(const Body& body) {
+  try {
+    body();
+  } catch (const apsis::input_error& e) {
+    return e.what();
+  } catch (const apsis::claim_error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(two_step, is_refused_where_methods_of_one_step_are_wanted_and_the_reverse) {
+  const auto m = apsis::find_two_step_method(apsis::two_step_method_names().front());
+  EXPECT_THAT(complaint([&] { apsis::parse_method(apsis::to_toml(m), "m.toml"); }),
+              HasSubstr("takes two steps (steps = 2)"));
+  EXPECT_THAT(complaint([&] { apsis::parse_two_step_method(apsis::to_toml(starter()), "m.toml"); }),
+              HasSubstr("takes one step"));
+  EXPECT_THAT(complaint([] { apsis::find_two_step_method("md-imex-two-step"); }),
+              HasSubstr("unknown two-step method"));
+  auto problem = ode_model::as_relaxation<state>(1e-2L);
+  apsis::two_step march(m, starter(), problem);
+  state u{2, 0};
+  EXPECT_THAT(complaint([&] { apsis::integrate(march, u, real(0), real(1), apsis::step_rule<real>::ssp()); }),
+              HasSubstr("needs equal steps"));
+}
+
+TEST(two_step, certificate_names_a_claim_that_does_not_hold) {
+  auto m = apsis::find_two_step_method(apsis::two_step_method_names().front());
+  EXPECT_TRUE(apsis::certify_two_step(m).claims_hold());
+  EXPECT_EQ(apsis::to_toml(apsis::parse_two_step_method(apsis::to_toml(m), "m.toml")), apsis::to_toml(m));
+  auto wrong = m;
+  ++wrong.claims.order;
+  EXPECT_THAT(apsis::certify_two_step(wrong).failures, testing::ElementsAre(HasSubstr("the order is 3")));
+  wrong = m;
+  wrong.exact.D(1, 1) = "-0.1";
+  EXPECT_THAT(apsis::certify_two_step(wrong).failures.front(), HasSubstr("d_2 = -0.1 is negative"));
+  wrong = m;
+  wrong.exact.ddot[0] = "-0.1";
+  EXPECT_THAT(complaint([&] { apsis::parse_two_step_method(apsis::to_toml(wrong), "m.toml"); }),
+              HasSubstr("the first row of a two-step method stands for u^{n-1}"));
+}
+
+}  // namespace
+
+}  // namespace two_step_test

@@ -221,11 +221,8 @@ void check_mixed_bgk(const std::string& method, const std::vector<double>& toler
     const auto trace = testing::Message()
                        << method << ", tolerance " << tolerance << ": " << run.step() << " steps, error "
                        << error << ", forecast " << run.expected_plateau();
-    // Equal steps of md-imex-7-3-large-r, whose terms of size ε are not exact, need 29 times as many for a
-    // tenth of an error of 1e-5 (errors ~ Δt^0.68), and its steps of one tolerance are not exactly those.
-    const long most = method == "md-imex-7-3-large-r" ? 35 : 30;
     if (before > 0) {
-      EXPECT_LE(run.step(), most * before) << trace;
+      EXPECT_LE(run.step(), 30 * before) << trace;
     }
     EXPECT_LE(error, 25 * std::max(tolerance, run.expected_plateau())) << trace;
     before = run.step();

@@ -73,7 +73,7 @@ void check_two_steps(const design_task& task, const design_options& given) {
     refuse("--regime all", "the layer belongs to the first steps, which a method of one step takes: slow");
   if (given.demands.least_angle > 0.0) refuse("--angle", "it is implemented for methods of one step");
   if (task.from && task.from->stages() > task.stages)
-    refuse("--stages below those of --from", "stages are removed from methods of one step only");
+    refuse("fewer --stages than --from has", "stages are removed from methods of one step only");
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ std::string two_step_text(const method& m) {
   line("order", fmt::format("{} ({} conditions, residual {:.1e}), error constant {:.4g}", c.order,
                             c.conditions, number(c.order_residual), number(c.error_constant)));
   line("SSP coefficient r", fmt::format("{:.15g} of the form", number(c.ssp_coefficient)));
-  line("second root", fmt::format("{:.4g} (zero-stable below 1)", number(c.root)));
+  line("second root", fmt::format("{:.4g} (zero-stable if below 1 in modulus)", number(c.root)));
   line("type", c.type_a ? "A: asymptotic preserving" : "none");
   line("cost per step", fmt::format("{} transport evaluations, {} implicit solves", c.explicit_evaluations,
                                     c.implicit_solves));

@@ -95,33 +95,37 @@ void occupy_standard_descriptors() {
 }
 
 int fail(exit_code code, const std::string& message) {
-  // Of several processes, which end with the same error, one reports it.
-  if (!reports_errors()) return static_cast<int>(code);
-  // If standard error cannot be written, only the exit code reports the error.
-  std::fputs(fmt::format("error: {}\n", message).c_str(), stderr);
+  // Of several processes, which end with the same error, one reports it. If standard error cannot be written,
+  // only the exit code reports the error.
+  if (reports_errors()) std::fputs(fmt::format("error: {}\n", message).c_str(), stderr);
   return static_cast<int>(code);
+}
+
+int run_and_report_errors(int argc, char** argv) {
+  try {
+    return run_program(argc, argv);
+  } catch (const interruption&) {
+    return static_cast<int>(exit_code::interrupted);
+  } catch (const error& problem) {
+    return fail(problem.code(), problem.what());
+  } catch (const std::bad_alloc&) {
+    return fail(exit_code::numerical,
+                "not enough memory (the state and its stages do not fit); use fewer cells or velocities");
+  } catch (const std::exception& problem) {
+    return fail(exit_code::internal,
+                fmt::format("internal error: {} (a bug in apsis); please report it", problem.what()));
+  }
 }
 
 }  // namespace
 }  // namespace apsis::app
 
 int main(int argc, char** argv) {
-  using namespace apsis;
-  app::occupy_standard_descriptors();
+  apsis::app::occupy_standard_descriptors();
   // A file that exceeds its limit (ulimit -f) is an output error and must not kill the process.
   std::signal(SIGXFSZ, SIG_IGN);
-  try {
-    return app::run_program(argc, argv);
-  } catch (const app::interruption&) {
-    return static_cast<int>(exit_code::interrupted);
-  } catch (const error& problem) {
-    return app::fail(problem.code(), problem.what());
-  } catch (const std::bad_alloc&) {
-    return app::fail(
-        exit_code::numerical,
-        "not enough memory (the state and its stages do not fit); use fewer cells or velocities");
-  } catch (const std::exception& problem) {
-    return app::fail(exit_code::internal,
-                     fmt::format("internal error: {} (a bug in apsis); please report it", problem.what()));
-  }
+  const int code = apsis::app::run_and_report_errors(argc, argv);
+  // Processes that arrive here end alike. Only the one that reports returns the code: a launcher kills all
+  // others as soon as one returns a code other than 0, perhaps before the error is reported.
+  return apsis::app::reports_errors() ? code : 0;
 }

@@ -92,6 +92,21 @@ class Failures(Folder):
         self.assertEqual(len(errors(refused.stderr)), 1, refused.stderr)
         self.assertIn("2 processes were started", refused.stderr)
 
+    def exit_codes(self, count, *arguments):
+        """The exit code of every process by its rank."""
+        script = self.write("each.sh", '"$@"\necho $? > code-$OMPI_COMM_WORLD_RANK\n')
+        subprocess.run(["mpirun", "-n", str(count), "sh", script, str(PROGRAM), *arguments], cwd=self.folder, env=ENVIRONMENT,
+                       capture_output=True, timeout=LIMIT, check=True)
+        return [int((self.folder / f"code-{rank}").read_text()) for rank in range(count)]
+
+    def test_only_the_process_that_reports_an_error_returns_its_code(self):
+        # mpirun kills all processes once one has returned another code than 0, perhaps before the error is reported.
+        self.write("bad.toml", UNSTABLE.replace("cells = 40", "cells = -1"))
+        self.assertEqual(self.exit_codes(3, "run", "bad.toml"), [2, 0, 0])
+        self.assertEqual(self.exit_codes(3, "run", "bad.toml", "--no-such-option"), [2, 0, 0])
+        self.assertEqual(self.exit_codes(3, "list", "methods"), [2, 0, 0])
+        self.assertEqual(self.exit_codes(3, "run", *GAS, "--wall", "1e-9"), [130, 0, 0])
+
     @slow
     def test_of_a_restart_with_a_damaged_checkpoint(self):
         self.completed(2, "run", *GAS, "time.end=0.01", "--out", "out")

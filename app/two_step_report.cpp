@@ -48,7 +48,7 @@ std::string two_step_text(const method& m) {
   const auto line = [&out](const char* what, const std::string& value) {
     out += fmt::format("  {:<22} {}\n", what, value);
   };
-  line("steps", "2, of equal length; integrated by apsis::two_step, not by time.method");
+  line("steps", "2, of equal length (time.dt or time.cfl)");
   line("order", fmt::format("{} ({} conditions, residual {:.1e}), error constant {:.4g}", c.order,
                             c.conditions, number(c.order_residual), number(c.error_constant)));
   line("SSP coefficient r", fmt::format("{:.15g} of the form", number(c.ssp_coefficient)));

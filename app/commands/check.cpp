@@ -1,6 +1,7 @@
 #include "command_registry.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
+#include "multistep_report.hpp"
 #include "print.hpp"
 #include "two_step_report.hpp"
 
@@ -10,6 +11,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
+#include <apsis/method/multistep.hpp>
 #include <apsis/method/two_step.hpp>
 #include <apsis/verify/observed_limits.hpp>
 #include <apsis/verify/profile_errors.hpp>
@@ -138,12 +140,16 @@ int report(const method& m, const options& given) {
   return 0;
 }
 
-int report_two_steps(const method& m, const options& given) {
+void refuse_runs(const std::string& name, const options& given) {
   if (given.observe || given.profile)
     throw input_error(fmt::format(
-        "command line: --observe and --epsilon-profile need a method of one step ('{}' takes two); "
+        "command line: --observe and --epsilon-profile need a method of one step ('{}' takes several); "
         "leave them out",
-        m.name));
+        name));
+}
+
+int report_two_steps(const method& m, const options& given) {
+  refuse_runs(m.name, given);
   const auto result = two_step_json(m);
   print(given.json ? result.dump(2) + "\n" : two_step_text(m));
   if (!result["claims_hold"].get<bool>())
@@ -157,12 +163,16 @@ int check(const options& given) {
   end_on_interrupts();
   const std::string& what = given.what;
   if (is_method_name(what)) return report(find_method(what), given);
-  if (!is_method_file(what) && is_two_step_method(what))
-    return report_two_steps(find_two_step_method(what), given);
+  if (!is_method_file(what) && is_multistep_method(what)) {
+    refuse_runs(what, given);
+    const auto m = find_multistep_method(what);
+    print(given.json ? multistep_json(m).dump(2) + "\n" : multistep_text(m));
+    return 0;
+  }
   std::error_code ignored;
   if (!std::filesystem::exists(what, ignored))
     throw input_error(fmt::format("no method '{}' (neither in the catalogue nor a file); {}",
-                                  what.substr(0, 60), suggest(what, method_names())));
+                                  what.substr(0, 60), suggest(what, all_method_names())));
   // Parses without certifying: a method whose claims fail is reported, not rejected. A modified copy of a
   // catalogue file may retain its name here; a run rejects it.
   const std::string text = read_method_text(what);

@@ -10,6 +10,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/method/multistep.hpp>
 #include <apsis/model/gas_species.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
@@ -42,6 +43,21 @@ json families() {
                    {"description", f->description},
                    {"lowest", f->lowest},
                    {"highest", f->highest}});
+  return all;
+}
+
+json multistep() {
+  json all = json::array();
+  for (const auto& name : multistep_method_names()) {
+    const multistep_method m = find_multistep_method(name);
+    all.push_back({{"name", m.name},
+                   {"description", m.title},
+                   {"order", m.order},
+                   {"steps", m.steps},
+                   {"ssp_coefficient", m.ssp_coefficient},
+                   {"stages", m.stages},
+                   {"starter", m.starter}});
+  }
   return all;
 }
 
@@ -181,8 +197,19 @@ std::string family_lines() {
   return out;
 }
 
+std::string multistep_lines() {
+  std::string out = "\nmultistep: u^(n+1) from k values before it, at equal steps\n";
+  for (const auto& name : multistep_method_names()) {
+    const multistep_method m = find_multistep_method(name);
+    out += fmt::format("{:<26}k = {}, order {}, r = {:.3g}: {}\n", m.name, m.steps, m.order,
+                       m.ssp_coefficient, m.title);
+  }
+  return out;
+}
+
 std::string as_text(const std::string& what, const json& all) {
-  if (what == "methods") return method_table(all) + family_lines();
+  if (what == "methods") return method_table(all) + family_lines() + multistep_lines();
+  if (what == "multistep") return multistep_lines().substr(1);
   if (what == "families") return family_lines().substr(1);
   std::string out;
   for (const auto& item : all) {
@@ -196,9 +223,9 @@ std::string as_text(const std::string& what, const json& all) {
 
 const std::map<std::string, json (*)()>& lists() {
   static const std::map<std::string, json (*)()> all = {
-      {"methods", methods},       {"families", families}, {"models", models}, {"cases", cases},
-      {"schemes", schemes},       {"claims", claims},     {"keys", keys},     {"boundaries", boundaries},
-      {"quantities", quantities}, {"gases", gases}};
+      {"methods", methods},       {"families", families},     {"multistep", multistep}, {"models", models},
+      {"cases", cases},           {"schemes", schemes},       {"claims", claims},       {"keys", keys},
+      {"boundaries", boundaries}, {"quantities", quantities}, {"gases", gases}};
   return all;
 }
 

@@ -8,6 +8,9 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/method/method_file.hpp>
+#include <apsis/method/multistep.hpp>
+#include <apsis/method/two_step.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -44,10 +47,23 @@ int show(const options& given) {
       if (built_in.name == given.what) print(std::string(built_in.text));
   } else if (is_method_name(given.what)) {
     print(method_document(find_method(given.what), given.format.empty() ? "text" : given.format));
+  } else if (!is_method_file(given.what) && is_two_step_method(given.what)) {
+    if (!given.format.empty() && given.format != "toml")
+      throw input_error(fmt::format(
+          "command line: --format {} is for methods of one step ('{}' takes two); use --format toml",
+          given.format, given.what));
+    for (const auto& file : embedded::two_step_methods())
+      if (file.name == given.what) print(std::string(file.text));
+  } else if (is_multistep_method(given.what) && !is_method_file(given.what)) {
+    throw input_error(
+        fmt::format("method '{}' has no file (its coefficients are those of a formula); see: "
+                    "apsis check {}",
+                    given.what, given.what));
   } else if (std::filesystem::is_regular_file(given.what)) {
     print(method_document(load_method_file(given.what), given.format.empty() ? "text" : given.format));
   } else {
     std::vector<std::string> all = methods;
+    for (auto& name : two_step_method_names()) all.push_back(std::move(name));
     all.insert(all.end(), cases.begin(), cases.end());
     all.emplace_back("case");
     throw input_error(fmt::format("nothing is called '{}' (no method, built-in case or method file); {}",

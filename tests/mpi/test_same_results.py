@@ -129,6 +129,20 @@ class SameResults(Folder):
         self.expect_same("paper/bgk-mixed", "space.cells=24", "velocity.points=40", "time.end=0.05", "time.method=md-imex-8-3-mixed",
                          "time.tolerance=1e-4", "time.startup=graded", counts=(3,))
 
+    def test_multistep_methods_and_their_restarts(self):
+        self.write("step.toml", STEP.replace("safety = 1", "dt = 0.0005").replace("every = 0.01", "every = 0.005"))
+        for method in ("imex-bdf-3", "two-step-8-3-narrow"):
+            out = f"{method}-"
+            chosen = ("step.toml", f"time.method={method}", "space.cells=[15,13]")
+            self.completed(1, "run", *chosen, "--out", out + "one")
+            self.completed(3, "run", *chosen, "--out", out + "three")
+            self.assert_same_results(out + "one", out + "three")
+            self.completed(4, "run", *chosen, "time.end=0.012", "--out", out + "part")
+            self.completed(2, "run", *chosen, "--restart", out + "part/checkpoint.h5", "--out", out + "rest")
+            for name in ("fields.csv", "history.csv"):
+                self.assertEqual((self.folder / (out + "one") / name).read_text(), (self.folder / (out + "rest") / name).read_text())
+            self.assert_same_datasets(self.folder / (out + "one") / "solution.h5", self.folder / (out + "rest") / "solution.h5")
+
     @slow
     def test_a_steady_state(self):
         self.expect_same("gas/couette", "space.cells=12", "velocity.points=[16,12]", "time.steady=1e-3", "time.end=2", counts=(2,))

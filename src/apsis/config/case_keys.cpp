@@ -3,6 +3,7 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
+#include <apsis/method/multistep.hpp>
 #include <apsis/model/gas_species.hpp>
 #include <apsis/model/mean_free_path.hpp>
 #include <apsis/model/velocity_line_registry.hpp>
@@ -35,7 +36,7 @@ std::vector<std::string> initial_choices(const case_config& c) {
 /// A member of a family, or a method file; an invalid file throws with its own place.
 std::optional<std::string> check_method_outside_catalogue(const std::string& name) {
   if (is_method_file(name)) {
-    find_method(name);
+    static_cast<void>(order_of_method(name));
     return "";
   }
   const family_entry* family = find_family(name);
@@ -380,10 +381,11 @@ std::vector<case_key> face_keys() {
 std::vector<case_key> time_keys() {
   return {key("time.method", [](auto& c) -> auto& { return c.time.method; },
               {.required = true,
-               .choices = [](const case_config&) { return method_names(); },
-               .doc = "The time integrator, by its name in the catalogue, a member of a family (apsis list "
-                      "families) such as md-imex-chain-7-2, or a method file of yours (FILE.toml, relative "
-                      "to where the program runs).",
+               .choices = [](const case_config&) { return all_method_names(); },
+               .doc = "The time integrator, by its name in the catalogue, a multistep method for equal steps "
+                      "(apsis list multistep), a member of a family (apsis list families) such as "
+                      "md-imex-chain-7-2, or a method file of yours (FILE.toml, relative to where the "
+                      "program runs).",
                .also = check_method_outside_catalogue}),
           key("time.end", [](auto& c) -> auto& { return c.time.end; },
               {.required = true,

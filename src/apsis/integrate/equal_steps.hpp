@@ -10,7 +10,8 @@
 namespace apsis {
 
 /// A formula of several equal steps. add(t, Δt, u) records a value of the start-up, Δt after the last one;
-/// step(t, Δt, u) requires first_steps() − 1 of them before u; restart() discards them.
+/// step(t, Δt, u) requires first_steps() − 1 of them before u, known() counts them, and restart() discards
+/// them.
 template <class Formula>
 concept equal_step_formula = requires(Formula f, typename Formula::real t, typename Formula::state u) {
   { f.first_steps() } -> std::convertible_to<int>;
@@ -19,6 +20,7 @@ concept equal_step_formula = requires(Formula f, typename Formula::real t, typen
   f.add(t, t, u);
   f.step(t, t, u);
   f.restart();
+  { f.known() } -> std::convertible_to<long>;
 };
 
 /// Integrates u from t0 to t1 with equal steps, like integrate() with a stepper; a graded start divides the

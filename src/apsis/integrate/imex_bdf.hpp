@@ -1,7 +1,7 @@
 #pragma once
 
-#include <apsis/core/errors.hpp>
 #include <apsis/integrate/equal_steps.hpp>
+#include <apsis/method/multistep.hpp>
 
 #include <algorithm>
 #include <string>
@@ -9,45 +9,6 @@
 #include <vector>
 
 namespace apsis {
-
-/// Coefficients of a k-step formula with equal steps:
-///   u^{n+1} = Σ_{i=1}^k (a_i u^{n+1−i} + Δt c_i T(u^{n+1−i})) + Δt b Q(u^{n+1}).
-template <class Real>
-struct multistep_coefficients {
-  std::vector<Real> a,                                      ///< weights of earlier values, a_1 that of u^n
-      c;                                                    ///< of their transport
-  Real b{};                                                 ///< of the collision at the new time
-  int steps() const { return static_cast<int>(a.size()); }  ///< k
-};
-
-/// Returns IMEX-BDF of order k: the backward differentiation formula Σ_{j=1}^k ∇^j u^{n+1}/j = Δt (T +
-/// Q)^{n+1} with T extrapolated, T^{n+1} ≈ Σ_i (−1)^{i−1} C(k,i) T^{n+1−i}. Uniformly accurate in ε for data
-/// near equilibrium (Hu, Shu, Math. Comp. 90 (2021) 641–670); k = 2 … 5 are the formulas SBDF (Ascher, Ruuth,
-/// Wetton, SIAM J. Numer. Anal. 32 (1995) 797–823). Signs are not preserved: some a_i and c_i are negative
-/// for k ≥ 2. Throws input_error unless 1 ≤ k ≤ 5.
-template <class Real>
-multistep_coefficients<Real> imex_bdf_coefficients(int k) {
-  if (k < 1 || k > 5)
-    throw input_error("there is no IMEX-BDF method of order " + std::to_string(k) +
-                      " here (its orders are 1 to 5); choose one of these");
-  multistep_coefficients<Real> m;
-  Real leading(0);  // of u^{n+1}
-  for (int j = 1; j <= k; ++j) leading += Real(1) / Real(j);
-  const auto binomial = [](int n, int i) {
-    Real product(1);
-    for (int l = 1; l <= i; ++l) product = product * Real(n + 1 - l) / Real(l);
-    return product;
-  };
-  for (int i = 1; i <= k; ++i) {
-    const Real sign(i % 2 == 0 ? -1 : 1);
-    Real sum(0);
-    for (int j = i; j <= k; ++j) sum += binomial(j, i) / Real(j);
-    m.a.push_back(sign * sum / leading);
-    m.c.push_back(sign * binomial(k, i) / leading);
-  }
-  m.b = Real(1) / leading;
-  return m;
-}
 
 /// Advances any problem by IMEX-BDF: one evaluation of T and one stage solve for each step. As soon as u^n is
 /// known, T(u^n) is evaluated once and added to the accumulators of the next k steps, so that no T is stored.
@@ -65,8 +26,7 @@ class imex_bdf {
   imex_bdf(int k, P& p)
       : problem_(p),
         m_(imex_bdf_coefficients<real>(k)),
-        starter_(find_method(k == 1 ? "forward-backward-euler" : "extrapolated-euler-" + std::to_string(k)),
-                 p) {}
+        starter_(find_method(find_multistep_method("imex-bdf-" + std::to_string(k)).starter), p) {}
 
   int order() const { return m_.steps(); }         ///< k
   int first_steps() const { return m_.steps(); }   ///< number of steps before the formula holds
@@ -99,6 +59,24 @@ class imex_bdf {
   /// Discards the history.
   void restart() { known_ = 0; }
 
+  long known() const { return known_; }  ///< number of values in the history since restart()
+  /// Calls visit(v, w) for every v that later steps need in addition to u: the sum of earlier u, with weights
+  /// that add up to w, and of their transport.
+  template <class Visit>
+  void visit_kept(const Visit& visit) {
+    for (int i = 1; i < order() && known_ > 0; ++i) {
+      real sum(0);
+      for (long j = i + 1; j <= std::min<long>(order(), i + known_); ++j)
+        sum += m_.a[static_cast<std::size_t>(j - 1)];
+      visit(*accumulator(i), sum);
+    }
+  }
+  /// Continues from a history of `known` values: visit_kept() then gives the places of what was kept.
+  void resume(long known, const state& like) {
+    known_ = known;
+    allocate(like);
+  }
+
  private:
   /// Returns the accumulator of the value i steps after the next known one.
   state* accumulator(int i) {
@@ -108,12 +86,16 @@ class imex_bdf {
   /// Sets the targets of the next known value, for which the accumulators of the next k values exist. That of
   /// the last is the one of the value itself, which is no longer used.
   void set_targets(real dt, const state& u) {
-    while (static_cast<int>(accumulators_.size()) < order()) accumulators_.push_back(u);
+    allocate(u);
     targets_.clear();
     for (int i = 1; i <= order(); ++i) {
       const auto k = static_cast<std::size_t>(i - 1);
       targets_.push_back({accumulator(i), m_.a[k], dt * m_.c[k], i == order() || known_ == 0});
     }
+  }
+
+  void allocate(const state& like) {
+    while (static_cast<int>(accumulators_.size()) < order()) accumulators_.push_back(like);
   }
 
   P& problem_;

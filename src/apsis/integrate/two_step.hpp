@@ -46,6 +46,7 @@ class two_step {
   void add(real, real, const state& u) {
     allocate(u);
     rows_[0] = u;
+    known_ = 1;
   }
 
   /// Advances u from t to t + dt. Requires u^{n−1}, recorded or of the last step. If a stage throws, u and
@@ -64,10 +65,23 @@ class two_step {
     using std::swap;
     swap(rows_[0], u);
     swap(u, rows_[last]);
+    known_ = 1;
   }
 
   /// Discards u^{n−1}.
-  void restart() { solved_ = false; }
+  void restart() { known_ = 0; }
+
+  long known() const { return known_; }  ///< 1 if u^{n−1} is known, else 0
+  /// Calls visit(u^{n−1}, 1) if it is known.
+  template <class Visit>
+  void visit_kept(const Visit& visit) {
+    if (known_ > 0) visit(rows_[0], real(1));
+  }
+  /// Continues with u^{n−1} if `known` is 1: visit_kept() then gives its place.
+  void resume(long known, const state& like) {
+    known_ = known;
+    allocate(like);
+  }
 
  private:
   void allocate(const state& u) {
@@ -116,6 +130,7 @@ class two_step {
   std::vector<state> rows_;  ///< u^{n−1}, and the accumulators and values of the rows
   std::vector<target<state, real>> targets_;
   bool solved_ = false;  ///< whether the next row is solved already
+  long known_ = 0;       ///< number of earlier values that are known
 };
 
 }  // namespace apsis

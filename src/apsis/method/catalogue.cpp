@@ -5,7 +5,9 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
+#include <apsis/method/multistep.hpp>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -57,6 +59,11 @@ method make_named_method(std::string_view name) {
   std::vector<std::string> known = method_names();
   for (const family_entry* family : family_entries()) known.push_back(family->pattern);
   const std::string text(name.substr(0, 60));
+  const auto multistep = multistep_method_names();
+  if (std::find(multistep.begin(), multistep.end(), text) != multistep.end())
+    throw input_error("'" + text +
+                      "' is a multistep method (it takes part in runs, not where a method of one step is "
+                      "needed); choose one of: apsis list methods");
   throw input_error("unknown method '" + text + "'; " + suggest(text, known));
 }
 

@@ -54,32 +54,52 @@ std::vector<std::vector<double>> read_rows(const hdf5_file& file, const std::str
 }
 
 /// The state has the shape of the mesh, so that every process writes a box of it.
-void write_state(hdf5_file& file, const checkpoint& c) {
+void write_state(hdf5_file& file, const checkpoint& c, const std::string& name,
+                 const std::vector<double>& state) {
   auto extents = c.fields.axes.empty() ? hdf5_file::shape{c.cells} : mesh_shape(c.fields.axes);
   extents.push_back(c.components);
-  if (!c.part) return file.write("state", c.state, extents, "unknowns");
+  if (!c.part) return file.write(name, state, extents, "unknowns");
   dataset_part mine = *c.part;
   mine.first.push_back(0);
   mine.count.push_back(c.components);
-  file.write_part("state", c.state, extents, mine, "unknowns");
+  file.write_part(name, state, extents, mine, "unknowns");
 }
 
-void read_state(const hdf5_file& file, const std::string& path, const std::optional<dataset_part>& part,
-                checkpoint& c) {
-  const auto extents = file.extents("state");
-  if (extents.size() < 2 || extents.size() > 4) damaged(path, "'state' has a wrong shape");
+std::vector<double> read_state(const hdf5_file& file, const std::string& path,
+                               const std::optional<dataset_part>& part, const std::string& name,
+                               checkpoint& c) {
+  const auto extents = file.extents(name);
+  if (extents.size() < 2 || extents.size() > 4) damaged(path, fmt::format("'{}' has a wrong shape", name));
   c.cells = 1;
   for (std::size_t k = 0; k + 1 < extents.size(); ++k) c.cells *= extents[k];
   c.components = extents.back();
-  if (!part ||
-      part->first.size() + 1 != extents.size()) {  // a state of another shape is refused by its sizes
-    c.state = file.read("state");
-    return;
-  }
+  // A state of another shape is refused by its sizes.
+  if (!part || part->first.size() + 1 != extents.size()) return file.read(name);
   dataset_part mine = *part;
   mine.first.push_back(0);
   mine.count.push_back(c.components);
-  c.state = file.read_part("state", mine);
+  return file.read_part(name, mine);
+}
+
+std::string name_of_earlier(std::size_t k, const char* what) {
+  return fmt::format("earlier/{}/{}", k, what);
+}
+
+void write_earlier(hdf5_file& file, const checkpoint& c) {
+  for (std::size_t k = 0; k < c.earlier.size(); ++k) {
+    const earlier_value& value = c.earlier[k];
+    write_state(file, c, name_of_earlier(k, "state"), value.state);
+    if (!value.gains.empty()) file.write(name_of_earlier(k, "gains"), value.gains, {value.gains.size()});
+  }
+}
+
+void read_earlier(const hdf5_file& file, const std::string& path, const std::optional<dataset_part>& part,
+                  checkpoint& c) {
+  for (std::size_t k = 0; file.has(name_of_earlier(k, "state")); ++k) {
+    earlier_value value{read_state(file, path, part, name_of_earlier(k, "state"), c), {}};
+    if (file.has(name_of_earlier(k, "gains"))) value.gains = file.read(name_of_earlier(k, "gains"));
+    c.earlier.push_back(std::move(value));
+  }
 }
 
 }  // namespace
@@ -98,8 +118,9 @@ void write_checkpoint(const std::string& path, const checkpoint& c,
   for (const auto& [name, value] : c.numbers) file.write_attribute(name, value);
   file.write("case", c.case_text);
   file.write("commit", c.commit);
-  write_state(file, c);
+  write_state(file, c, "state", c.state);
   if (!c.gains.empty()) file.write("gains", c.gains, {c.gains.size()});
+  write_earlier(file, c);
   file.write("history/columns", joined(c.history.columns));
   write_rows(file, "history/rows", c.history.rows, c.history.columns.size());
   file.write("fields/names", joined(c.fields.names));
@@ -128,7 +149,8 @@ checkpoint read_checkpoint(const std::string& path, const std::optional<dataset_
   for (const auto& [name, value] : file.attributes()) c.numbers[name] = value;
   c.case_text = file.read_text("case");
   c.commit = file.read_text("commit");
-  read_state(file, path, part, c);
+  read_earlier(file, path, part, c);
+  c.state = read_state(file, path, part, "state", c);
   if (file.has("gains")) c.gains = file.read("gains");
   c.history.columns = split(file.read_text("history/columns"));
   c.history.rows = read_rows(file, path, "history/rows", c.history.columns.size());

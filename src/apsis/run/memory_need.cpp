@@ -4,6 +4,7 @@
 #include <apsis/exec/memory.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/phase/field.hpp>
+#include <apsis/run/multistep_stepper.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,11 +19,13 @@ constexpr int fewest_points = 4;  ///< of velocity.points
 
 int buffers_of(const run_setup& setup) {
   const method& m = setup.integrator();
+  const int of_step = setup.multistep() ? buffers_of(*setup.multistep())
+                      : setup.has_tolerance()
+                          ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
+                          : schedule(m.coefficients<double>()).buffers();
   const int compared = setup.config().time.steady ? 1 : 0;
   const int changes = setup.builder().collides_at_centres() ? 1 : 0;
-  return compared + changes +
-         (setup.has_tolerance() ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
-                                : schedule(m.coefficients<double>()).buffers());
+  return compared + changes + of_step;
 }
 
 std::string in_units(double bytes) {
@@ -65,11 +68,11 @@ memory_need::memory_need(const case_config& config, const run_setup& setup, int 
     : components_(setup.equation->components()),
       velocity_dimensions_(setup.equation->velocities().dimensions()),
       buffers_(buffers_of(setup)),
-      copies_(copies),
+      copies_(copies * (setup.multistep() ? setup.multistep()->steps : 1)),  // with earlier values
       snapshots_(1.0 + (config.output.every > 0.0 ? config.time.end / config.output.every : 0.0)),
       fields_(static_cast<double>(config.output.fields.empty() ? setup.equation->fields().size()
                                                                : config.output.fields.size())),
-      method_(setup.integrator().name) {
+      method_(setup.integrator_name()) {
   if (setup.has_space()) shape_ = config.space.cells;
   cells_ = product(shape_);
   const auto& points = config.velocity.points;

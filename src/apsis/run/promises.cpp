@@ -45,7 +45,7 @@ std::string reason_of_defect(const step_record& last, const run_setup& setup, do
         "stability allows); use space.limiter = \"positivity\" and time.safety = 1",
         last.negative_values);
   return fmt::format("(a step of {} explains {:.2g}: some equilibrium has other moments than the state); {}",
-                     setup.integrator().name, allowed,
+                     setup.integrator_name(), allowed,
                      setup.config().velocity.points > 0
                          ? "use velocity.equilibrium = \"discrete\", or more velocity.points"
                          : "check the moments of the equilibrium of the model");

@@ -1,5 +1,7 @@
 #include <apsis/run/rounding.hpp>
 
+#include <apsis/run/setup.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -43,6 +45,16 @@ rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equatio
   // Unknowns of both signs: the terms of a sum may be larger than what it is measured against.
   const double cancellation = equation.positive() ? 1.0 : 1024.0;
   return {2.0 * cancellation * unit_roundoff * (2.0 + of_moments), error.empty() ? 0.0 : error.back()};
+}
+
+rounding_bound rounding_of(const run_setup& setup) {
+  const rounding_bound of_first_steps =
+      rounding_of(setup.integrator().coefficients<double>(), *setup.equation);
+  const auto& multistep = setup.multistep();
+  if (!multistep) return of_first_steps;
+  const rounding_bound later = rounding_of(multistep->form, *setup.equation);
+  return {later.of_sums,
+          growth_of_errors(multistep->weights) * std::max(of_first_steps.of_step, later.of_step)};
 }
 
 }  // namespace apsis

@@ -20,4 +20,10 @@ struct rounding_bound {
 /// relaxation_model::moment_accuracy(); of_step is e of the last stage.
 rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equation);
 
+class run_setup;
+
+/// Returns the bound for a step of the method of a run. In a multistep method, errors of earlier values enter
+/// later changes: of_step grows by growth_of_errors().
+rounding_bound rounding_of(const run_setup& setup);
+
 }  // namespace apsis

@@ -78,7 +78,8 @@ bool evaluates_collisions(const method& m) {
 
 run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> processes)
     : equation(make_model(config)), config_(config), builder_(*equation) {
-  method_ = &find_method(config.time.method);
+  if (is_multistep_method(config.time.method)) multistep_ = find_multistep_method(config.time.method);
+  method_ = &find_method(multistep_ ? multistep_->starter : config.time.method);
   check_method();
   if (has_space())
     build_space(std::move(processes));
@@ -129,11 +130,12 @@ void run_setup::check_method() {
                        method_->name, config_.model.name));
   const auto form = method_->coefficients<double>();
   ssp_coefficient_ = is_convex(form, method_->kind, form.stages()) ? form.r : 0.0;
+  if (multistep_) ssp_coefficient_ = multistep_->ssp_coefficient;
   if (config_.time.safety && ssp_coefficient_ == 0.0)
     refuse(config_, "time.safety",
            fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give time.dt "
                        "or time.cfl",
-                       method_->name));
+                       integrator_name()));
   check_startup();
   check_tolerance();
 }
@@ -155,6 +157,12 @@ void run_setup::check_startup() const {
 
 void run_setup::check_tolerance() const {
   if (!has_tolerance()) return;
+  if (multistep_)
+    refuse(
+        config_, "time.tolerance",
+        fmt::format("time.tolerance cannot be kept: method '{}' needs equal steps (its coefficients depend "
+                    "on earlier steps); give time.dt or time.cfl, or choose a method of one step",
+                    multistep_->name));
   // The estimate is a difference of two numbers of double precision, relative to them.
   constexpr double finest = 64.0 * std::numeric_limits<double>::epsilon();
   if (*config_.time.tolerance < finest)
@@ -203,6 +211,10 @@ std::optional<std::vector<double>> run_setup::entropy_bounds() const {
     all.insert(all.end(), one.begin(), one.end());
   }
   return all;
+}
+
+std::size_t run_setup::stages() const {
+  return multistep_ ? multistep_->stages : method_->stages();
 }
 
 std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {

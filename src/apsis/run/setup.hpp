@@ -2,6 +2,7 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/method/multistep.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/run/simulation.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
@@ -25,8 +26,15 @@ class run_setup {
 
   /// Returns the case.
   const case_config& config() const { return config_; }
-  /// Returns the method time.method, of the catalogue or from a file.
+  /// Returns the method time.method, of the catalogue or from a file; the starter if that is a multistep
+  /// method.
   const method& integrator() const { return *method_; }
+  /// Returns time.method if it is a multistep method.
+  const std::optional<multistep_method>& multistep() const { return multistep_; }
+  /// Returns the name of time.method.
+  const std::string& integrator_name() const { return multistep_ ? multistep_->name : method_->name; }
+  /// Returns the number of stages of a step.
+  std::size_t stages() const;
   /// Returns the SSP coefficient r; 0 if the method has none.
   double ssp_coefficient() const { return ssp_coefficient_; }
 
@@ -102,6 +110,7 @@ class run_setup {
   problem_builder builder_;
   initial_data prescribed_;  ///< of the table [initial]
   const method* method_ = nullptr;
+  std::optional<multistep_method> multistep_;
   double ssp_coefficient_ = 0.0;
 };
 

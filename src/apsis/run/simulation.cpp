@@ -11,6 +11,7 @@
 #include <apsis/run/gathered_cells.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/monitor.hpp>
+#include <apsis/run/multistep_stepper.hpp>
 #include <apsis/run/promises.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/setup.hpp>
@@ -58,9 +59,10 @@ struct simulation::impl {
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
         watch(setup),
-        rounding(rounding_of(setup.integrator().coefficients<double>(), *setup.equation)),
+        rounding(rounding_of(setup)),
         state(start ? start(setup) : setup.initial_state()),
         march(times_of(setup)) {
+    if (setup.multistep()) multistep = make_multistep_stepper(*setup.multistep(), *problem);
     if (setup.has_tolerance()) control.emplace(*config.time.tolerance, setup.integrator().embedded->order);
     first = last = watch.start(state);
     totals.min_value = first.min_value;
@@ -119,14 +121,27 @@ struct simulation::impl {
 
   /// u ← u^{n+1}; returns Δt.
   double step() {
-    state.gains().clear();  // those of this step alone
+    count_gains_from_here();
     if (config.time.steady) before = state;
     if (control)
       return step_within_tolerance(integrator, march, *control, estimate, limit(), state, distance());
     const double dt = next_dt();
-    integrator.step(march.t(), dt, state);
+    if (multistep)
+      multistep->step(march, dt, state);
+    else
+      integrator.step(march.t(), dt, state);
     problem->settle();
     return dt;
+  }
+
+  /// Gains are those of a step alone; kept values have those before it, with the sign of their age.
+  void count_gains_from_here() {
+    if (multistep)
+      multistep->visit_kept([this](field& kept, double weight) {
+        kept.gains().resize(state.gains().size());
+        for (std::size_t k = 0; k < state.gains().size(); ++k) kept.gains()[k] -= weight * state.gains()[k];
+      });
+    state.gains().clear();
   }
 
   void record_step(double dt) {
@@ -156,6 +171,7 @@ struct simulation::impl {
   run_setup& setup;
   std::unique_ptr<semidiscrete_problem> problem;
   stepper<semidiscrete_problem> integrator;
+  std::unique_ptr<multistep_stepper> multistep;  ///< instead of the integrator, its starter
   monitor watch;
   rounding_bound rounding;
   field state, before;        ///< before a step; empty without time.steady
@@ -176,6 +192,23 @@ std::vector<double> without_padding(const field& u) {
   for (int cell = 0; cell < u.cells(); ++cell)
     values.insert(values.end(), u.row(cell), u.row(cell) + u.components());
   return values;
+}
+
+void copy_rows(const std::vector<double>& values, field& u) {
+  for (int cell = 0; cell < u.cells(); ++cell)
+    std::copy_n(values.data() + static_cast<std::ptrdiff_t>(cell) * u.components(), u.components(),
+                u.row(cell));
+}
+
+void check_sizes(const run_setup& setup, const kept_value& saved, const field& u) {
+  if (saved.unknowns.size() != static_cast<std::size_t>(u.cells()) * static_cast<std::size_t>(u.components()))
+    throw input_error(
+        "the saved state has another size than the case (it belongs to another case); restart with the case "
+        "it was written for");
+  if (!saved.gains.empty() && saved.gains.size() != size_of_whole_gains(setup))
+    throw input_error(
+        "the saved gains have another size than those of the case (they belong to another case); restart "
+        "with the case they were written for");
 }
 }  // namespace
 
@@ -261,7 +294,7 @@ run_summary simulation::summary() const {
   summary.rejected_steps = control ? control->rejected() : 0;
   const double work = static_cast<double>(summary.phase_points) *
                       static_cast<double>(summary.steps + summary.rejected_steps) *
-                      static_cast<double>(impl_->setup.integrator().stages() + (control ? 1 : 0));
+                      static_cast<double>(impl_->setup.stages() + (control ? 1 : 0));
   summary.t = t();
   summary.startup_steps = impl_->march.startup_steps();
   summary.point_stages_per_s = summary.wall_s > 0.0 ? work / summary.wall_s : 0.0;
@@ -329,6 +362,12 @@ run_state simulation::save() const {
   saved.unknowns = state();
   saved.march = impl_->march.save();
   if (impl_->control) saved.control = impl_->control->save();
+  if (impl_->multistep) {
+    saved.multistep = impl_->multistep->save();
+    impl_->multistep->visit_kept([&](const field& kept, double) {
+      saved.kept.push_back({without_padding(kept), whole_gains(impl_->setup, kept.gains())});
+    });
+  }
   saved.totals = summary();
   // Times that every process measures are those of the root.
   std::array<double, 2> seconds = {saved.totals.wall_s, saved.totals.cpu_s};
@@ -343,25 +382,29 @@ run_state simulation::save() const {
 
 void simulation::restore(const run_state& saved) {
   field& state = impl_->state;
-  if (saved.unknowns.size() !=
-      static_cast<std::size_t>(state.cells()) * static_cast<std::size_t>(components()))
-    throw input_error(
-        "the saved state has another size than the case (it belongs to another case); restart with the case "
-        "it was written for");
-  if (!saved.gains.empty() && saved.gains.size() != size_of_whole_gains(impl_->setup))
-    throw input_error(
-        "the saved gains have another size than those of the case (they belong to another case); restart "
-        "with the case they were written for");
-  for (int cell = 0; cell < state.cells(); ++cell)
-    std::copy_n(saved.unknowns.data() + static_cast<std::ptrdiff_t>(cell) * components(), components(),
-                state.row(cell));
+  check_sizes(impl_->setup, {saved.unknowns, saved.gains}, state);
+  for (const kept_value& kept : saved.kept) check_sizes(impl_->setup, kept, state);
+  copy_rows(saved.unknowns, state);
   // Before the first step the marcher is that of the case.
   if (saved.march.step > 0) impl_->march.resume(saved.march);
   if (impl_->control && saved.control) impl_->control->resume(*saved.control);
+  if (impl_->multistep && saved.multistep) {
+    impl_->multistep->resume(*saved.multistep, state);
+    std::size_t k = 0;
+    impl_->multistep->visit_kept([&](field& kept, double) {
+      if (k == saved.kept.size())
+        throw io_error(
+            "the checkpoint lacks values of earlier steps (damaged file); give another checkpoint");
+      const kept_value& value = saved.kept[k++];
+      copy_rows(value.unknowns, kept);
+      kept.gains() = own_gains(impl_->setup, value.gains);
+    });
+  }
   impl_->totals = saved.totals;
   impl_->first = saved.initial;
   impl_->last = saved.last;
   impl_->gains = own_gains(impl_->setup, saved.gains);
+  state.gains() = impl_->gains;  // a multistep method needs them once more
 }
 
 }  // namespace apsis

@@ -100,7 +100,7 @@ class planner {
             : (config.time.cfl ? *config.time.cfl : config.time.safety.value_or(1.0)) * setup.cfl_length();
     const double cells = setup.has_space() ? make_mesh(config).size() : 1.0;
     return config.time.end / step * cells * setup.equation->components() *
-           static_cast<double>(setup.integrator().stages());
+           static_cast<double>(setup.stages());
   }
 
   /// Every combination, the last key varying fastest.

@@ -1,6 +1,7 @@
 #include <apsis/verify/convergence_report.hpp>
 
 #include <apsis/method/method.hpp>
+#include <apsis/method/multistep.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/verify/settings.hpp>
 
@@ -118,7 +119,7 @@ panel panel_of(const convergence_table& table, int key, const std::string& value
     for (const auto& row : block.rows) {
       c.x.push_back(row.h);
       c.y.push_back(row.error);
-      orders.insert(find_method(row.config.time.method).claims.order);
+      orders.insert(order_of_method(row.config.time.method));
     }
     axes.curves.push_back(std::move(c));
   }

@@ -1,0 +1,84 @@
+#include <apsis/run/multistep_stepper.hpp>
+
+#include <apsis/core/log.hpp>
+#include <apsis/integrate/imex_bdf.hpp>
+#include <apsis/integrate/schedule.hpp>
+#include <apsis/integrate/two_step.hpp>
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+template <equal_step_formula Formula>
+class steps_of final : public multistep_stepper {
+ public:
+  steps_of(multistep_method m, Formula formula) : method_(std::move(m)), formula_(std::move(formula)) {}
+
+  void step(const time_marcher<double>& march, double dt, field& u) override {
+    warn_of_change();
+    if (dt != dt_) {
+      if (formula_.known() > 0 && !march.starting()) changed_at_ = march.t();
+      formula_.restart();
+      dt_ = dt;
+    }
+    try {
+      take(march, dt, u);
+    } catch (...) {
+      formula_.restart();
+      throw;
+    }
+  }
+
+  void visit_kept(const std::function<void(field&, double)>& visit) override { formula_.visit_kept(visit); }
+  multistep_progress save() const override { return {dt_, formula_.known()}; }
+  void resume(const multistep_progress& saved, const field& like) override {
+    dt_ = saved.dt;
+    formula_.resume(saved.known, like);
+  }
+
+ private:
+  void take(const time_marcher<double>& march, double dt, field& u) {
+    // The initial data, which may be far from equilibrium, are not in the history.
+    const bool first = march.starting() || march.step() == 0;
+    if (!first && formula_.known() + 1 >= formula_.first_steps()) return formula_.step(march.t(), dt, u);
+    if (!first) formula_.add(march.t(), dt, u);
+    formula_.starter().step(march.t(), dt, u);
+  }
+
+  /// Not for the last step to time.end, which has no successor.
+  void warn_of_change() {
+    if (changed_at_ < 0.0 || warned_) return;
+    log::warning(fmt::format(
+        "steps change their length at t = {:g}: '{}' begins again with {} steps of '{}', there and later; "
+        "for equal steps give time.dt, one that divides output.every",
+        changed_at_, method_.name, method_.steps, method_.starter));
+    warned_ = true;
+  }
+
+  multistep_method method_;
+  Formula formula_;
+  double dt_ = 0.0, changed_at_ = -1.0;
+  bool warned_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<multistep_stepper> make_multistep_stepper(const multistep_method& m,
+                                                          semidiscrete_problem& problem) {
+  if (m.rows) {
+    using formula = two_step<semidiscrete_problem>;
+    return std::make_unique<steps_of<formula>>(m, formula(*m.rows, find_method(m.starter), problem));
+  }
+  using formula = imex_bdf<semidiscrete_problem>;
+  return std::make_unique<steps_of<formula>>(m, formula(m.order, problem));
+}
+
+int buffers_of(const multistep_method& m) {
+  const int of_starter = schedule(find_method(m.starter).coefficients<double>()).buffers();
+  return of_starter + (m.rows ? static_cast<int>(m.rows->stages()) : m.steps);
+}
+
+}  // namespace apsis

@@ -1,0 +1,214 @@
+// Runs whose time.method takes several equal steps: the results of integrate(), observed orders, restarts,
+// conservation between walls, changes of the step, promises and refusals.
+#include "same_results.hpp"
+
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/imex_bdf.hpp>
+#include <apsis/integrate/two_step.hpp>
+#include <apsis/method/multistep.hpp>
+#include <apsis/method/two_step.hpp>
+#include <apsis/run/session.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <support/folder.hpp>
+
+namespace multistep_run_test {
+
+namespace {
+
+using namespace apsis;
+using testing::HasSubstr;
+
+/// A gas between two walls that move and heat it.
+case_config gas(const std::string& method, const std::string& time, const std::string& more = "") {
+  return parse_case(
+      fmt::format(
+          "[model]\nname = \"bgk\"\nepsilon = 0.05\n[initial]\nrho = \"1 + 0.1*cos(2*pi*x)\"\nu = 0\n"
+          "T = 1\n[space]\ncells = 12\ndomain = [0, 1]\nboundary = \"diffuse\"\n[boundary.left]\n"
+          "kind = \"diffuse\"\nT = 1.2\n[velocity]\nmax = 7\npoints = 24\n[time]\nmethod = \"{}\"\n{}\n{}",
+          method, time, more),
+      "gas.toml");
+}
+
+/// Relaxation of one cell, ε = 0.3, so that the errors are those of time alone.
+case_config decay(const std::string& method, long steps) {
+  return load_case("paper/ode", {"model.epsilon=0.3", "time.method=" + method, "time.end=1",
+                                 fmt::format("time.dt={:.17g}", 1.0 / static_cast<double>(steps))});
+}
+
+std::vector<double> end_of(const case_config& c) {
+  simulation run(c);
+  while (!run.finished()) run.advance();
+  return run.state();
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(sum);
+}
+
+/// Calls take(march) with the formula of the library for a problem.
+template <class Take>
+void with_formula(const multistep_method& m, semidiscrete_problem& problem, const Take& take) {
+  if (m.rows) {
+    two_step march(*m.rows, find_method(m.starter), problem);
+    take(march);
+  } else {
+    imex_bdf march(m.order, problem);
+    take(march);
+  }
+}
+
+std::string refusal_of(const case_config& c) {
+  try {
+    simulation run(c);
+  } catch (const input_error& refused) {
+    return refused.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST(multistep_run, has_the_bits_of_integrate) {
+  for (const auto& name : multistep_method_names()) {
+    for (const std::string start : {"", "startup = \"graded\"\n"}) {
+      const case_config c = gas(name, "dt = 0.002\nend = 0.04\n" + start);
+      const run_setup setup(c);
+      const auto problem = setup.make_problem();
+      field u = setup.initial_state();
+      auto rule = step_rule<double>::fixed(0.002);
+      if (!start.empty()) rule.start = startup::graded;
+      with_formula(find_multistep_method(name), *problem,
+                   [&](auto& march) { integrate(march, u, 0.0, 0.04, rule); });
+      const std::vector<double> found = end_of(c);
+      std::size_t different = 0;
+      for (int cell = 0; cell < u.cells(); ++cell)
+        for (int k = 0; k < u.components(); ++k)
+          different += found[static_cast<std::size_t>(cell * u.components() + k)] == u.row(cell)[k] ? 0 : 1;
+      EXPECT_EQ(different, 0U) << name << " " << start;
+    }
+  }
+}
+
+TEST(multistep_run, observed_order_is_the_claimed_one) {
+  const auto exact = end_of(decay("extrapolated-euler-8", 512));
+  for (const auto& name : multistep_method_names()) {
+    const int order = find_multistep_method(name).order;
+    // Coarse enough that errors stay above the rounding, fine enough for the first term to lead.
+    const long steps = order <= 3 ? 640 : 160;
+    const double coarse = distance(end_of(decay(name, steps)), exact),
+                 fine = distance(end_of(decay(name, 2 * steps)), exact);
+    EXPECT_NEAR(std::log2(coarse / fine), order, 0.3) << name;
+  }
+}
+
+TEST(multistep_run, continues_bit_for_bit_from_every_step) {
+  const test_folder folder;
+  for (const std::string name : {"imex-bdf-1", "imex-bdf-3", "imex-bdf-4", "two-step-10-3-mixed"}) {
+    const case_config c =
+        gas(name, "dt = 0.002\nend = 0.02\nstartup = \"graded\"\n", "[output]\nevery = 0.01\n");
+    const auto run = [&](const std::string& out, long steps, const std::string& from) {
+      session_options how;
+      how.out = folder / out;
+      if (!from.empty()) how.restart = folder / from;
+      long done = 0;
+      how.watch = [&done](const simulation& now) { done = now.step(); };
+      how.stop = [&done, steps] { return done >= steps; };
+      run_session session(c, how);
+      session.run();
+      return outcome{session.computed().state(), session.records().history(), session.records().fields()};
+    };
+    const auto whole = run("whole", 1000, "");
+    const auto steps = static_cast<long>(whole.history.rows.size()) - 1;
+    ASSERT_GE(steps, 10);
+    for (long at = 1; at < steps; ++at) {
+      run("half", at, "");
+      expect_same(whole, run("again", 1000, "half/checkpoint.h5"), fmt::format("{} from step {}", name, at));
+    }
+  }
+}
+
+TEST(multistep_run, a_checkpoint_without_the_earlier_values_is_refused) {
+  simulation run(gas("imex-bdf-3", "dt = 0.002\nend = 0.02\n"));
+  for (int n = 0; n < 6; ++n) run.advance();
+  run_state saved = run.save();
+  ASSERT_EQ(saved.kept.size(), 2U);
+  simulation other(gas("imex-bdf-3", "dt = 0.002\nend = 0.02\n"));
+  other.restore(saved);
+  saved.kept[1].unknowns.pop_back();
+  EXPECT_THAT([&] { other.restore(saved); },
+              testing::ThrowsMessage<input_error>(HasSubstr("the saved state has another size")));
+  saved.kept.pop_back();
+  EXPECT_THAT([&] { other.restore(saved); },
+              testing::ThrowsMessage<io_error>(HasSubstr("lacks values of earlier steps")));
+}
+
+TEST(multistep_run, conserves_what_does_not_cross_the_walls_to_rounding) {
+  for (const auto& name : multistep_method_names()) {
+    simulation run(gas(name, "dt = 0.002\nend = 0.2\n"));
+    ASSERT_TRUE(run.promises().conservation) << name;
+    while (!run.finished()) run.advance();
+    // A hundred steps of a few roundings each; energy through the walls is 1e-2.
+    EXPECT_LT(run.summary().conservation_defect, 1e-13) << name;
+    double received = 0.0;
+    for (const double amount : run.last().received) received = std::max(received, std::abs(amount));
+    EXPECT_GT(received, 1e-3) << name;
+  }
+}
+
+TEST(multistep_run, begins_again_where_the_length_of_steps_changes) {
+  for (const std::string name : {"imex-bdf-3", "two-step-8-3-narrow"}) {
+    testing::internal::CaptureStderr();
+    const auto uneven = end_of(gas(name, "cfl = 0.1\nend = 0.05\n", "[output]\nevery = 0.0131\n"));
+    EXPECT_THAT(
+        testing::internal::GetCapturedStderr(),
+        HasSubstr(fmt::format("'{}' begins again with {} steps of '{}'", name,
+                              find_multistep_method(name).steps, find_multistep_method(name).starter)));
+    testing::internal::CaptureStderr();
+    const auto even = end_of(gas(name, "cfl = 0.1\nend = 0.05\n"));
+    // The last step, which ends at time.end, is shorter too, but nothing comes after it.
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("begins again")));
+    // Both are third-order approximations: coefficients for equal steps in unequal ones would leave errors
+    // of the size of dt^2, 1e-4 here.
+    EXPECT_LT(distance(uneven, even) / distance(even, std::vector<double>(even.size(), 0.0)), 2e-6) << name;
+  }
+}
+
+TEST(multistep_run, two_step_methods_promise_positivity_within_their_steps_and_others_do_not) {
+  for (const auto& name : two_step_method_names()) {
+    simulation run(gas(name, "safety = 1\nend = 0.05\n"));
+    EXPECT_FALSE(run.promises().positivity) << "WENO without the limiter";
+    case_config limited = gas(name, "safety = 1\nend = 0.05\n");
+    limited.space.limiter = limiter_choice::positivity;
+    simulation kept(limited);
+    EXPECT_TRUE(kept.promises().positivity) << name;
+    while (!kept.finished()) kept.advance();
+    EXPECT_EQ(kept.summary().negative_values, 0) << name;
+  }
+  case_config limited = gas("imex-bdf-2", "dt = 0.0005\nend = 0.05\n");
+  limited.space.limiter = limiter_choice::positivity;
+  EXPECT_FALSE(simulation(limited).promises().positivity);
+}
+
+TEST(multistep_run, what_needs_one_step_methods_is_refused_by_name) {
+  EXPECT_THAT(refusal_of(gas("imex-bdf-3", "tolerance = 1e-4\ndt = 0.01\nend = 0.05\n")),
+              HasSubstr("time.tolerance cannot be kept: method 'imex-bdf-3' needs equal steps"));
+  EXPECT_THAT(refusal_of(gas("imex-bdf-3", "safety = 1\nend = 0.05\n")),
+              HasSubstr("time.safety needs a method with an SSP coefficient (that of 'imex-bdf-3' is 0)"));
+  EXPECT_THAT([] { static_cast<void>(find_method("imex-bdf-3")); },
+              testing::ThrowsMessage<input_error>(HasSubstr("'imex-bdf-3' is a multistep method")));
+}
+
+}  // namespace multistep_run_test

@@ -198,11 +198,10 @@ std::string family_lines() {
 }
 
 std::string multistep_lines() {
-  std::string out = "\nmultistep: u^(n+1) from k values before it, at equal steps\n";
+  std::string out = "\nmultistep: u^(n+1) from k values before it, at equal steps (docs/methods.md)\n";
   for (const auto& name : multistep_method_names()) {
     const multistep_method m = find_multistep_method(name);
-    out += fmt::format("{:<26}k = {}, order {}, r = {:.3g}: {}\n", m.name, m.steps, m.order,
-                       m.ssp_coefficient, m.title);
+    out += fmt::format("{:<26}k = {}, order {}, r = {:.3g}\n", m.name, m.steps, m.order, m.ssp_coefficient);
   }
   return out;
 }

@@ -54,7 +54,7 @@ int show(const options& given) {
           given.format, given.what));
     for (const auto& file : embedded::two_step_methods())
       if (file.name == given.what) print(std::string(file.text));
-  } else if (is_multistep_method(given.what) && !is_method_file(given.what)) {
+  } else if (!is_method_file(given.what) && is_multistep_method(given.what)) {
     throw input_error(
         fmt::format("method '{}' has no file (its coefficients are those of a formula); see: "
                     "apsis check {}",

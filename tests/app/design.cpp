@@ -51,7 +51,7 @@ TEST(design, writes_a_method_that_can_be_checked_and_used) {
   EXPECT_EQ(read(folder.path() / "found.toml"), first);
 }
 
-TEST(design, writes_a_two_step_method_that_can_be_checked_and_improved_but_not_run) {
+TEST(design, writes_a_two_step_method_that_can_be_checked_improved_and_run) {
   const work_folder folder;
   const auto arguments = design({"--steps", "2", "--order", "2", "--stages", "3", "--evaluations", "2",
                                  "--objective", "error", "--ssp", "0.5", "--starts", "40", "--json"});
@@ -67,8 +67,11 @@ TEST(design, writes_a_two_step_method_that_can_be_checked_and_improved_but_not_r
   ASSERT_EQ(check.code, 0) << check.err;
   EXPECT_EQ(json::parse(check.out), found["method"]);
   const outcome run = run_apsis(folder, {"run", "paper/ode", "time.method=found.toml"});
-  EXPECT_EQ(run.code, 2);
-  EXPECT_THAT(run.err, HasSubstr("'found' takes two steps (steps = 2), which needs equal steps"));
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("after 128 steps of found.toml"));
+  const outcome drawn = run_apsis(folder, {"plot", "found.toml"});
+  EXPECT_EQ(drawn.code, 2);
+  EXPECT_THAT(drawn.err, HasSubstr("'found' takes two steps (steps = 2), which needs equal steps"));
   // From the method itself the search ends with one that is no worse.
   const outcome again = run_apsis(
       folder, {"design", "--out", "again.toml", "--steps", "2", "--order", "2", "--stages", "3",

@@ -72,7 +72,7 @@ void with_formula(const multistep_method& m, semidiscrete_problem& problem, cons
 
 std::string refusal_of(const case_config& c) {
   try {
-    simulation run(c);
+    const simulation run(c);
   } catch (const input_error& refused) {
     return refused.what();
   }
@@ -94,9 +94,9 @@ TEST(multistep_run, has_the_bits_of_integrate) {
                    [&](auto& march) { integrate(march, u, 0.0, 0.04, rule); });
       const std::vector<double> found = end_of(c);
       std::size_t different = 0;
+      auto next = found.begin();
       for (int cell = 0; cell < u.cells(); ++cell)
-        for (int k = 0; k < u.components(); ++k)
-          different += found[static_cast<std::size_t>(cell * u.components() + k)] == u.row(cell)[k] ? 0 : 1;
+        for (int k = 0; k < u.components(); ++k) different += *next++ == u.row(cell)[k] ? 0 : 1;
       EXPECT_EQ(different, 0U) << name << " " << start;
     }
   }
@@ -188,7 +188,7 @@ TEST(multistep_run, begins_again_where_the_length_of_steps_changes) {
 
 TEST(multistep_run, two_step_methods_promise_positivity_within_their_steps_and_others_do_not) {
   for (const auto& name : two_step_method_names()) {
-    simulation run(gas(name, "safety = 1\nend = 0.05\n"));
+    const simulation run(gas(name, "safety = 1\nend = 0.05\n"));
     EXPECT_FALSE(run.promises().positivity) << "WENO without the limiter";
     case_config limited = gas(name, "safety = 1\nend = 0.05\n");
     limited.space.limiter = limiter_choice::positivity;

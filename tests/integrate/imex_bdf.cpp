@@ -76,10 +76,12 @@ TEST(imex_bdf, observed_order_is_the_number_of_steps) {
 // T(u⁰) off equilibrium is not used by the formula, and extrapolation removes its effect on the first steps.
 TEST(imex_bdf, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
   const auto exact = reference::limit(1);
+  // A list: clang-19 -O1 converts 128L << i to a long double that is NaN.
+  constexpr long steps[] = {128, 256};
   for (int k = 2; k <= 5; ++k) {
     real moment[2], rest[2];
     for (int i = 0; i < 2; ++i) {
-      const auto u = solve_ode_model(k, 1e-17L, equal(128L << i));
+      const auto u = solve_ode_model(k, 1e-17L, equal(steps[i]));
       moment[i] = std::abs(u[0] - exact[0]);
       rest[i] = std::abs(u[1] - exact[1]);
     }

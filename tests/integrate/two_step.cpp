@@ -56,6 +56,8 @@ TEST(two_step, observed_order_is_the_claimed_one) {
 
 TEST(two_step, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
   const auto exact = reference::limit(1);
+  // A list: clang-19 -O1 converts 256L << i to a long double that is NaN.
+  constexpr long steps[] = {256, 512};
   for (const auto& name : apsis::two_step_method_names()) {
     const auto m = apsis::find_two_step_method(name);
     real moment[2], rest[2];
@@ -63,7 +65,7 @@ TEST(two_step, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
       auto problem = ode_model::as_relaxation<state>(1e-17L);
       apsis::two_step march(m, starter(), problem);
       state u{2, 0};
-      apsis::integrate(march, u, real(0), real(1), equal(256L << i));
+      apsis::integrate(march, u, real(0), real(1), equal(steps[i]));
       moment[i] = std::abs(u[0] - exact[0]);
       rest[i] = std::abs(u[1] - exact[1]);
     }

@@ -1,9 +1,8 @@
 #include <apsis/run/multistep_stepper.hpp>
 
 #include <apsis/core/log.hpp>
-#include <apsis/integrate/imex_bdf.hpp>
+#include <apsis/integrate/multistep_formula.hpp>
 #include <apsis/integrate/schedule.hpp>
-#include <apsis/integrate/two_step.hpp>
 
 #include <utility>
 
@@ -50,11 +49,12 @@ class steps_of final : public multistep_stepper {
 
   /// Not for the last step to time.end, which has no successor.
   void warn_of_change() {
-    if (changed_at_ < 0.0 || warned_) return;
+    const int steps = formula_.first_steps() - 1;  // u itself is in the history
+    if (changed_at_ < 0.0 || warned_ || steps == 0) return;
     log::warning(fmt::format(
-        "steps change their length at t = {:g}: '{}' begins again with {} steps of '{}', there and later; "
-        "for equal steps give time.dt, one that divides output.every",
-        changed_at_, method_.name, method_.steps, method_.starter));
+        "steps change their length at t = {:g}: '{}' begins again there with {} step{} of '{}', and at every "
+        "later change; for equal steps give a time.dt that divides output.every",
+        changed_at_, method_.name, steps, steps == 1 ? "" : "s", method_.starter));
     warned_ = true;
   }
 
@@ -68,12 +68,9 @@ class steps_of final : public multistep_stepper {
 
 std::unique_ptr<multistep_stepper> make_multistep_stepper(const multistep_method& m,
                                                           semidiscrete_problem& problem) {
-  if (m.rows) {
-    using formula = two_step<semidiscrete_problem>;
-    return std::make_unique<steps_of<formula>>(m, formula(*m.rows, find_method(m.starter), problem));
-  }
-  using formula = imex_bdf<semidiscrete_problem>;
-  return std::make_unique<steps_of<formula>>(m, formula(m.order, problem));
+  return with_multistep_formula(m, problem, [&m](auto formula) -> std::unique_ptr<multistep_stepper> {
+    return std::make_unique<steps_of<decltype(formula)>>(m, std::move(formula));
+  });
 }
 
 int buffers_of(const multistep_method& m) {

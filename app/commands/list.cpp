@@ -199,10 +199,9 @@ std::string family_lines() {
 
 std::string multistep_lines() {
   std::string out = "\nmultistep: u^(n+1) from k values before it, at equal steps (docs/methods.md)\n";
-  for (const auto& name : multistep_method_names()) {
-    const multistep_method m = find_multistep_method(name);
-    out += fmt::format("{:<26}k = {}, order {}, r = {:.3g}\n", m.name, m.steps, m.order, m.ssp_coefficient);
-  }
+  for (const json& m : multistep())
+    out += fmt::format("{:<26}k = {}, order {}, r = {:.3g}\n", m["name"].get<std::string>(),
+                       m["steps"].get<int>(), m["order"].get<int>(), m["ssp_coefficient"].get<double>());
   return out;
 }
 

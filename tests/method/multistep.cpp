@@ -35,12 +35,12 @@ TEST(multistep, a_wrong_coefficient_lowers_the_order) {
 }
 
 TEST(multistep, errors_grow_as_the_roots_say) {
-  EXPECT_EQ(apsis::growth_of_errors({1.0}), 1.0);
+  EXPECT_EQ(apsis::error_amplification({1.0}), 1.0);
   // h_n − h_{n−1} = (−b)^n.
-  EXPECT_NEAR(apsis::growth_of_errors({1.25, -0.25}), 1.0 / 0.75, 1e-14);
-  EXPECT_NEAR(apsis::growth_of_errors({0.5, 0.5}), 1.0 / 0.5, 1e-14);
+  EXPECT_NEAR(apsis::error_amplification({1.25, -0.25}), 1.0 / 0.75, 1e-14);
+  EXPECT_NEAR(apsis::error_amplification({0.5, 0.5}), 1.0 / 0.5, 1e-14);
   // BDF of order 2 has the roots 1 and 1/3.
-  EXPECT_NEAR(apsis::growth_of_errors(apsis::find_multistep_method("imex-bdf-2").weights), 1.5, 1e-14);
+  EXPECT_NEAR(apsis::error_amplification(apsis::find_multistep_method("imex-bdf-2").weights), 1.5, 1e-14);
 }
 
 TEST(multistep, every_listed_method_is_found_and_has_consistent_data) {

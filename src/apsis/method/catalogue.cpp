@@ -61,9 +61,9 @@ method make_named_method(std::string_view name) {
   const std::string text(name.substr(0, 60));
   const auto multistep = multistep_method_names();
   if (std::find(multistep.begin(), multistep.end(), text) != multistep.end())
-    throw input_error("'" + text +
-                      "' is a multistep method (it takes part in runs, not where a method of one step is "
-                      "needed); choose one of: apsis list methods");
+    throw input_error(
+        "'" + text +
+        "' is a multistep method (a method of one step is needed here); see: apsis list methods");
   throw input_error("unknown method '" + text + "'; " + suggest(text, known));
 }
 

@@ -23,8 +23,7 @@ int bdf_order(const std::string& name) {
   return 0;
 }
 
-/// The rows u^{n−k+1} … u^{n−1} and u^{n+1}. T(u^n) has no place in it, so that it only serves where weights
-/// of values count.
+/// The rows u^{n−k+1} … u^{n−1} and u^{n+1}, without transport.
 shu_osher_form<double> rows_of(const multistep_coefficients<double>& m) {
   const auto earlier = m.a.size() - 1, rows = earlier + 1;
   shu_osher_form<double> form{matrix<double>(rows, rows), matrix<double>(rows, rows),
@@ -124,7 +123,7 @@ int order_of_method(const std::string& name) {
   return is_multistep_method(name) ? find_multistep_method(name).order : find_method(name).claims.order;
 }
 
-double growth_of_errors(const std::vector<double>& weights) {
+double error_amplification(const std::vector<double>& weights) {
   // Roots other than 1 have a modulus below 1, 0.71 for order 5; later terms are below the rounding.
   constexpr std::size_t most = 4096;
   std::vector<double> response(weights.size(), 0.0);  // h_n, h_{n−1}, …

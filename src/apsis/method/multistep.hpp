@@ -72,8 +72,10 @@ struct multistep_method {
   std::size_t stages = 1;       ///< number of implicit stages of a step
   double ssp_coefficient = 0;   ///< the smaller r of the method and of its starter; 0 if one is not convex
   std::vector<double> weights;  ///< of u^n, u^{n−1}, … in u^{n+1} for T = Q = 0
-  shu_osher_form<double> form;  ///< the first k − 1 rows stand for u^{n−k+1} … u^{n−1}
-  std::optional<method> rows;   ///< of a two-step method, as in its file
+  /// Weights of values and solves: the first k − 1 rows stand for u^{n−k+1} … u^{n−1}. Of IMEX-BDF it has no
+  /// transport, because T(u^n) has no place in it.
+  shu_osher_form<double> form;
+  std::optional<method> rows;  ///< of a two-step method, as in its file
 };
 
 /// Returns the multistep method called `name`: one of two-step-methods/, "imex-bdf-k", or the path FILE.toml
@@ -81,8 +83,8 @@ struct multistep_method {
 /// a file cannot be read.
 multistep_method find_multistep_method(const std::string& name);
 
-/// Whether find_multistep_method() is the one that knows `name`. Throws input_error if a method file is not
-/// valid, io_error if it cannot be read.
+/// Whether `name` is that of a multistep method, or the path of the file of a two-step method. Throws
+/// input_error if a method file is not valid, io_error if it cannot be read.
 bool is_multistep_method(const std::string& name);
 
 /// Returns the names of the multistep methods that the library contains.
@@ -94,9 +96,9 @@ std::vector<std::string> all_method_names();
 /// Returns the claimed order of a method of one or several steps. Throws like find_method().
 int order_of_method(const std::string& name);
 
-/// Returns the factor by which errors δ of every step grow in the change of a step, Σ_n |h_n − h_{n−1}| with
-/// h_n = Σ_i a_i h_{n−i} and h_0 = 1, the response of u to a single δ: 1/(1 − |b|) for the weights (1 − b,
-/// b).
-double growth_of_errors(const std::vector<double>& weights);
+/// Returns Σ_n |h_n − h_{n−1}|, the largest change of u in one step where every step adds an error of at most
+/// 1. h_n = Σ_i a_i h_{n−i} with h_0 = 1 is the effect of a single error after n steps. For the weights
+/// (1 − b, b), 0 ≤ b < 1, it is 1/(1 − b). Requires all roots but 1 within the unit circle.
+double error_amplification(const std::vector<double>& weights);
 
 }  // namespace apsis

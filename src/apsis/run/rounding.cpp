@@ -54,7 +54,7 @@ rounding_bound rounding_of(const run_setup& setup) {
   if (!multistep) return of_first_steps;
   const rounding_bound later = rounding_of(multistep->form, *setup.equation);
   return {later.of_sums,
-          growth_of_errors(multistep->weights) * std::max(of_first_steps.of_step, later.of_step)};
+          error_amplification(multistep->weights) * std::max(of_first_steps.of_step, later.of_step)};
 }
 
 }  // namespace apsis

@@ -134,7 +134,8 @@ struct simulation::impl {
     return dt;
   }
 
-  /// Gains are those of a step alone; kept values have those before it, with the sign of their age.
+  /// Gains count from the beginning of a step. Those of kept values, which are sums of earlier u, are shifted
+  /// by what u gained in the last step.
   void count_gains_from_here() {
     if (multistep)
       multistep->visit_kept([this](field& kept, double weight) {
@@ -404,7 +405,7 @@ void simulation::restore(const run_state& saved) {
   impl_->first = saved.initial;
   impl_->last = saved.last;
   impl_->gains = own_gains(impl_->setup, saved.gains);
-  state.gains() = impl_->gains;  // a multistep method needs them once more
+  state.gains() = impl_->gains;  // the next step shifts those of kept values by them
 }
 
 }  // namespace apsis

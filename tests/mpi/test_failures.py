@@ -62,6 +62,13 @@ class Failures(Folder):
 
     def test_of_numbers(self):
         self.write("unstable.toml", UNSTABLE)
+        self.expect_the_state_of_one_process()
+
+    def test_of_numbers_in_a_multistep_method(self):
+        self.write("unstable.toml", UNSTABLE.replace("md-imex-3-2", "imex-bdf-3").replace("cfl = 3.5", "dt = 0.01"))
+        self.expect_the_state_of_one_process()
+
+    def expect_the_state_of_one_process(self):
         alone = self.run_on(1, "run", "unstable.toml", "--out", "one")
         self.assertEqual(alone.returncode, 3, alone.stderr)
         for count in (3,):
@@ -71,8 +78,9 @@ class Failures(Folder):
             step = re.search(r"step \d+", errors(alone.stderr)[0])
             self.assertIsNotNone(step, alone.stderr)
             self.assertIn(step[0] + ",", errors(together.stderr)[0])
-            # The history so far is kept.
-            self.assertEqual((self.folder / f"on-{count}" / "history.csv").read_text(), (self.folder / "one" / "history.csv").read_text())
+            # The history so far and the state before the failed step are kept.
+            for name in ("history.csv", "fields.csv"):
+                self.assertEqual((self.folder / f"on-{count}" / name).read_text(), (self.folder / "one" / name).read_text(), name)
 
     @slow
     def test_of_a_folder_that_cannot_be_written(self):

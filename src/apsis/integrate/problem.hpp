@@ -77,6 +77,18 @@ concept problem_with_fused_stages =
       p.add_transport_and_solve(x, u, targets, due);
     };
 
+/// A problem whose errors may come after the call that met them, for processes that must not wait in vain for
+/// one that has failed:
+///   settle()   throws what the calls since the last settle() met; a step calls it before it changes u
+template <class P>
+concept problem_with_late_errors = problem<P> && requires(P p) { p.settle(); };
+
+/// Throws the late errors of a problem, if it has such.
+template <problem P>
+void settle(P& p) {
+  if constexpr (problem_with_late_errors<P>) p.settle();
+}
+
 /// A problem that knows the width of its initial layer, for a graded start:
 ///   relaxation_time(t, u)   smallest ε/C > 0 of the state; +infinity if nothing relaxes or ε = 0
 template <class P>

@@ -71,6 +71,7 @@ class stepper {
   /// Advances u = u^n at time t to u^{n+1}. Strong exception guarantee: if a stage throws, u is still u^n.
   void step(real t, real dt, state& u) {
     carry_out(t, dt, u);
+    settle(problem_);
     accept(u);
   }
 

@@ -62,6 +62,7 @@ class two_step {
       solved_ = false;
       if (i < last) scatter(i, t, dt);
     }
+    settle(problem_);
     using std::swap;
     swap(rows_[0], u);
     swap(u, rows_[last]);

@@ -130,7 +130,6 @@ struct simulation::impl {
       multistep->step(march, dt, state);
     else
       integrator.step(march.t(), dt, state);
-    problem->settle();
     return dt;
   }
 

@@ -12,19 +12,22 @@
 namespace apsis {
 
 /// Step-size controller: keeps the estimated error err of a step below a tolerance. A step is rejected if err
-/// > tol; after a rejected step and after an accepted one, respectively,
-///   Δt ← 0.9 Δt (tol/err)^{1/k},      Δt ← 0.9 Δt (tol/err)^{0.7/k} (err_{n−1}/tol)^{0.4/k},
-/// by a factor between 0.2 and 10, and no increase right after a rejection. err ~ Δt^k: k is the order of the
-/// embedded solution plus one. The second formula is Gustafsson's proportional–integral controller, which
-/// does not oscillate where stability or a step limit keeps err small or irregular (Hairer, Wanner, Solving
-/// Ordinary Differential Equations II, section IV.2; Söderlind, ACM Trans. Math. Softw. 29 (2003) 1–26).
+/// > tol. With the length that would have been the longest acceptable one, L_n = Δt_n (tol/err_n)^{1/k}, the
+/// next step is
+///   Δt = 0.9 L_n                                    after a rejected step,
+///   Δt = 0.9 L_n min(1, L_n/L_{n−1})                after an accepted one,
+/// between 0.2 times and twice the last one, and not longer right after a rejection. err ~ Δt^k: k is the order
+/// of the embedded solution plus one. This is Gustafsson's predictive controller (ACM Trans. Math. Softw. 20
+/// (1994) 496–517; Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.8): L follows its
+/// trend where it decreases, as it does where steps come to the length of ε, and is taken as it is where it
+/// increases, after a layer.
 template <class Real>
 class step_controller {
  public:
   /// State of the controller in a checkpoint; a restart from it is bitwise identical.
   struct progress {
     Real proposed = std::numeric_limits<Real>::infinity();  ///< proposed length of the next step
-    Real previous = Real(1);                                ///< err/tol of the last accepted step, ≥ 1e-4
+    Real longest = Real(0);                                 ///< L_n of the last accepted step; 0 if none
     bool after_rejection = false;                           ///< whether the last step was rejected
     long rejected = 0;                                      ///< number of rejected steps
 
@@ -32,7 +35,7 @@ class step_controller {
     template <class Self, class Visitor>
     static void visit_members(Self& self, Visitor&& visit) {
       visit("proposed", self.proposed);
-      visit("previous", self.previous);
+      visit("longest", self.longest);
       visit("after_rejection", self.after_rejection);
       visit("rejected", self.rejected);
     }
@@ -61,10 +64,11 @@ class step_controller {
     const Real k(order_ + 1), ratio = error / tolerance_;
     const bool good = ratio <= Real(1);
     if (good) {
-      const Real now = std::max(ratio, Real(1e-4));  // bounds the growth for tiny errors
-      const Real factor = Real(0.9) * pow(now, Real(-0.7) / k) * pow(now_.previous, Real(0.4) / k);
-      now_.proposed = dt * std::clamp(factor, Real(0.2), now_.after_rejection ? Real(1) : Real(10));
-      now_.previous = now;
+      const Real longest = dt * pow(std::max(ratio, Real(1e-4)), Real(-1) / k);  // finite for err = 0
+      const Real trend = now_.longest > Real(0) ? std::min(longest / now_.longest, Real(1)) : Real(1);
+      const Real most = now_.after_rejection ? Real(1) : Real(2);
+      now_.proposed = std::clamp(Real(0.9) * longest * trend, Real(0.2) * dt, most * dt);
+      now_.longest = longest;
     } else {
       const bool is_number = ratio < std::numeric_limits<Real>::infinity();
       const Real factor = is_number ? Real(0.9) * pow(ratio, Real(-1) / k) : Real(0);

@@ -1,7 +1,7 @@
 #include "contest.hpp"
 #include "measure/clock.hpp"
 
-#include <apsis/method/method.hpp>
+#include <apsis/method/certificate.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -52,6 +52,12 @@ std::vector<std::string> explicit_contestants() {
   for (const auto& name : method_names())
     if (find_method(name).kind == method_kind::explicit_only) names.push_back(name);
   return names;
+}
+
+league league_of(const std::string& method) {
+  const certificate& c = find_certificate(method);
+  if (!(c.ssp_coefficient > 0)) return league::any_sign;
+  return c.kind == method_kind::explicit_only ? league::other : league::ssp;
 }
 
 std::vector<double> two_per_decade(double loosest, double tightest) {

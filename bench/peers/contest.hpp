@@ -33,11 +33,14 @@ std::vector<double> two_per_decade(double loosest, double tightest);
 /// Class of contestants. A best row of the table is that of one or several classes.
 enum class league {
   ssp,       ///< methods of Apsis with an SSP coefficient, equal steps; count only without negative unknowns
-  any_sign,  ///< methods of the catalogue of Apsis without one, equal steps
+  any_sign,  ///< methods of the catalogue of Apsis without one, explicit ones too, equal steps
   adaptive,  ///< methods of Apsis, steps chosen by a tolerance
   baseline,  ///< methods of the literature that are in the library but not in its catalogue, equal steps
-  other      ///< other programs, and explicit methods
+  other      ///< other programs, and explicit SSP methods, the usual choice without any of them
 };
+
+/// Returns the class of a method of the catalogue with equal steps.
+league league_of(const std::string& method);
 
 /// A point of a work–precision diagram: a contestant with a given step length or tolerance.
 struct attempt {

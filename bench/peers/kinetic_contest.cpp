@@ -3,8 +3,6 @@
 #include "radau_kinetic.hpp"
 #include "sundials_kinetic.hpp"
 
-#include <apsis/method/certificate.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -29,8 +27,7 @@ void add_equal_steps(contest& all, kinetic_task& task, const std::string& name, 
 }
 
 void add_ours(contest& all, kinetic_task& task, const std::string& name, const kinetic_settings& settings) {
-  const bool ssp = find_certificate(name).ssp_coefficient > 0;
-  add_equal_steps(all, task, name, ssp ? league::ssp : league::any_sign, settings);
+  add_equal_steps(all, task, name, league_of(name), settings);
   const method& m = find_method(name);
   if (!m.embedded) return;
   for (const double tolerance : settings.tolerances)
@@ -120,7 +117,7 @@ void add_radau(contest& all, kinetic_task& task, const kinetic_settings& setting
 void add_explicit(contest& all, kinetic_task& task, const kinetic_settings& settings) {
   for (const auto& name : settings.explicit_methods)
     for (const long steps : settings.explicit_steps)
-      all.add({name, fmt::format("{} steps", steps), league::other,
+      all.add({name, fmt::format("{} steps", steps), league_of(name),
                [&task, name, steps, seconds = settings.seconds_others] {
                  return task.run(name, steps, false, seconds);
                }});

@@ -3,8 +3,6 @@
 #include "stiff_contest.hpp"
 #include "sundials_ode.hpp"
 
-#include <apsis/method/certificate.hpp>
-
 #include <string>
 #include <vector>
 
@@ -33,8 +31,7 @@ void add_equal_steps(contest& all, const stiff_task& task, const std::string& na
 void add_ours(contest& all, const stiff_task& task, long most_steps, double tightest) {
   for (const auto& name : imex_contestants()) {
     const method& m = find_method(name);
-    const bool ssp = find_certificate(name).ssp_coefficient > 0;
-    add_equal_steps(all, task, name, ssp ? league::ssp : league::any_sign, most_steps);
+    add_equal_steps(all, task, name, league_of(name), most_steps);
     if (!m.embedded) continue;
     for (const double tolerance : two_per_decade(1e-2, tightest))
       all.add({name + ", adaptive", fmt::format("tolerance {:.2g}", tolerance), league::adaptive,
@@ -43,7 +40,8 @@ void add_ours(contest& all, const stiff_task& task, long most_steps, double tigh
 }
 
 void add_explicit(contest& all, const stiff_task& task, long most_steps) {
-  for (const auto& name : explicit_contestants()) add_equal_steps(all, task, name, league::other, most_steps);
+  for (const auto& name : explicit_contestants())
+    add_equal_steps(all, task, name, league_of(name), most_steps);
 }
 
 void add_other_integrators(contest& all, const stiff_task& task, long most_steps) {
@@ -89,6 +87,9 @@ contest contestants(const stiff_task& task, bool quick) {
                  {0.1, 0.001}, tightest);
   add_sundials(all, task, "ARKODE 5, all implicit, tuned", {integrator::arkode_dirk, 5, true}, {0.1, 0.001},
                tightest);
+  for (const int order : {4, 5, 8})
+    add_sundials(all, task, fmt::format("ARKODE {}, explicit", order), {integrator::arkode_explicit, order},
+                 {0.0}, tightest);
   add_radau(all, task, tightest);
   return all;
 }
@@ -97,9 +98,9 @@ const char* const note =
     " Contestants: every IMEX method of the catalogue, and extrapolated Euler steps of orders 2 to 8, with 1 "
     "to "
     "8192 equal steps, with and without a graded start, and with steps chosen by a tolerance where it has an "
-    "embedded solution; explicit SSP methods; IMEX-BDF of orders 2 to 5 and the exponential method, with "
+    "embedded solution; explicit methods; IMEX-BDF of orders 2 to 5 and the exponential method, with "
     "equal steps; CVODE (BDF, dense); ARKODE (T "
-    "explicit, or all implicit); "
+    "explicit, or all implicit, or all explicit); "
     "Radau "
     "IIA of order 5 with the control of RADAU5 (bench/peers/radau_steps.hpp). CPU microseconds of a whole "
     "integration "

@@ -111,9 +111,11 @@ class sundials_ode {
  private:
   bool is_cvode() const { return options_.which == integrator::cvode; }
   ARKRhsFn explicit_part() const {
+    if (options_.which == integrator::arkode_explicit) return both_sides;
     return options_.which == integrator::arkode_imex ? explicit_side : nullptr;
   }
   ARKRhsFn implicit_part() const {
+    if (options_.which == integrator::arkode_explicit) return nullptr;
     return options_.which == integrator::arkode_imex ? implicit_side : both_sides;
   }
 
@@ -153,6 +155,7 @@ class sundials_ode {
     require(ARKStepSStolerances(memory_, options_.rtol, options_.atol), "ARKStepSStolerances");
     require(ARKStepSetOrder(memory_, options_.order), "ARKStepSetOrder");
     require(ARKStepSetMaxNumSteps(memory_, most_steps), "ARKStepSetMaxNumSteps");
+    if (options_.which == integrator::arkode_explicit) return;
     require(ARKStepSetLinearSolver(memory_, linear_, matrix_), "ARKStepSetLinearSolver");
     if (!options_.tuned) return;
     const bool imex = options_.which == integrator::arkode_imex;

@@ -6,9 +6,10 @@ namespace apsis::bench::peers {
 
 struct sundials_ode_options {
   enum class integrator {
-    cvode,        ///< BDF
-    arkode_imex,  ///< T explicit, Q/ε implicit
-    arkode_dirk,  ///< all implicit
+    cvode,            ///< BDF
+    arkode_imex,      ///< T explicit, Q/ε implicit
+    arkode_dirk,      ///< all implicit
+    arkode_explicit,  ///< all explicit
   } which = integrator::cvode;
   int order = 5;             ///< order of ARKODE
   bool tuned = false;        ///< exact Jacobian; ARKODE also deduces the implicit right-hand side

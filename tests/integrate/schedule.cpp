@@ -115,8 +115,10 @@ TEST(schedule, of_every_method_reproduces_its_stability_function) {
       p.transport = *rc::gen::inRange(-2000, 2000) * 1e-3;
       p.collision = -std::pow(10.0, *rc::gen::inRange(-3, 5));
       const double expected = direct(form, p.transport, p.collision);
-      // A dozen products; partial sums are up to 10³ times the result for DIRK methods.
-      RC_ASSERT(std::abs(stepped(form, p) - expected) <= 1e-12 * (1.0 + std::abs(expected)));
+      // A dozen products; partial sums are up to 10³ times the result for DIRK methods, and of size z for
+      // methods whose first stage evaluates Q.
+      const double rounding = 1e-12 + 2e-15 * std::abs(p.collision);
+      RC_ASSERT(std::abs(stepped(form, p) - expected) <= rounding * (1.0 + std::abs(expected)));
     });
   }
 }

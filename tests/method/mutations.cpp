@@ -133,6 +133,11 @@ TEST_P(every_method, is_rejected_for_the_right_reason_if_a_coefficient_is_off_by
         EXPECT_TRUE(c.claims_hold);
         continue;
       }
+      // A form that is not unique is refused where strong stability is read off it.
+      if (first_is_initial && mutant.weight_of_first_stage > 0 && m.claims.ssp_coefficient == "0") {
+        EXPECT_TRUE(same_butcher_form(m, changed) && c.claims_hold);
+        continue;
+      }
       ASSERT_FALSE(c.failures.empty());
       const auto other = other_causes.find({m.name, mutant.what});
       if (other != other_causes.end())

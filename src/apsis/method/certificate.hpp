@@ -52,8 +52,8 @@ struct certificate {
   mp_real order_residual;                ///< largest residual of the conditions up to `order`
   std::vector<failed_condition> next;    ///< violated conditions of order p + 1
   int conditions = 0;                    ///< number of conditions up to order p
-  mp_real error_constant;                ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order p + 1; NaN if
-                                         ///< p is highest_order
+  mp_real error_constant;                ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order p + 1; NaN for
+                                         ///< an IMEX method of highest_order
 
   bool unconditional = false;           ///< SSP without a step bound from Q
   bool bounded = true;                  ///< the explicit part sets a bound Δt ≤ r Δt_FE

@@ -17,15 +17,17 @@ namespace apsis::HWY_NAMESPACE::weno5 {
 /// first and second differences, which neighbouring cells share, and represent an edge value as the value of
 /// the cell plus a deviation.
 
-/// Second difference u_{i−1} − 2u_i + u_{i+1}, and 13/3 of its square.
+/// Second difference s = u_{i−1} − 2u_i + u_{i+1} and inner smoothness indicator β = ab + (4/3)s² of a cell
+/// with the differences a and b to its neighbours; the same as ((a + b)/2)² + (13/12)s².
 template <class N>
 struct bend {
-  N second, square;
-  HWY_INLINE bend(N before, N after) : second(after - before), square(N(13.0 / 3.0) * second * second) {}
+  N second, inner;
+  HWY_INLINE bend(N before, N after)
+      : second(after - before), inner(fma(N(4.0 / 3.0) * second, second, before * after)) {}
 };
 
-/// Stencil of cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} − u_i, and the second
-/// differences at i−1, i and i+1.
+/// Stencil of cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} − u_i and twice
+/// these, and the bends at i−1, i and i+1.
 template <class N>
 class window {
  public:
@@ -33,6 +35,8 @@ class window {
       : here(c),
         before(c - b),
         after(d - c),
+        twice_before(before + before),
+        twice_after(after + after),
         bend0(b - a, before),
         bend1(before, after),
         bend2(after, e - d),
@@ -46,6 +50,8 @@ class window {
     next_ = last_;
     before = after;
     after = last_difference_;
+    twice_before = twice_after;
+    twice_after = after + after;
     last_difference_ = value - last_;
     bend0 = bend1;
     bend1 = bend2;
@@ -53,41 +59,30 @@ class window {
     last_ = value;
   }
 
-  N here, before, after;
+  N here, before, after, twice_before, twice_after;
   bend<N> bend0, bend1, bend2;
 
  private:
   N next_, last_, last_difference_;
 };
 
-/// Smoothness indicators times four, 4β_k.
+/// Smoothness indicators β_k. The outer ones differ from the inner ones of the neighbours by 2as, with
+/// rounding errors of some 20 units at most, because these quadratic forms are definite.
 template <class N>
 struct smoothness {
   N s0, s1, s2;
 };
 
-/// Derivatives of the three candidates in the middle of the cell i, times 2Δx; the last one with the opposite
-/// sign.
 template <class N>
-struct slopes {
-  N y0, y1, y2;
-
-  HWY_INLINE slopes(const window<N>& u)
-      : y0(fma(N(2.0), u.before, u.bend0.second)),
-        y1(u.before + u.after),
-        y2(negative_fma(N(2.0), u.after, u.bend2.second)) {}
-};
-
-template <class N>
-HWY_INLINE smoothness<N> indicators(const window<N>& u, const slopes<N>& of) {
-  return {fma(of.y0, of.y0, u.bend0.square), fma(of.y1, of.y1, u.bend1.square),
-          fma(of.y2, of.y2, u.bend2.square)};
+HWY_INLINE smoothness<N> indicators(const window<N>& u) {
+  return {fma(u.twice_before, u.bend0.second, u.bend0.inner), u.bend1.inner,
+          negative_fma(u.twice_after, u.bend2.second, u.bend2.inner)};
 }
 
-/// Scales 4(β_k + δ) by the power of two that makes the larger of the outer two about 1, with a lower bound
+/// Scales β_k + δ by the power of two that makes the larger of the outer two about 1, with a lower bound
 /// of 1e-40: products of six of them neither overflow nor underflow, whatever the size of the data. The inner
-/// one needs no comparison: β₁ ≤ 2.67 (β₀ + β₂), since in terms of the differences a, b, c, d, 4β₁ ≤ 26 (b² +
-/// c²)/3, 4β₀ ≥ 3.25 b² for any a, and 4β₂ ≥ 3.25 c² for any d. For data so small that only δ remains, all
+/// one needs no comparison: β₁ ≤ 2.67 (β₀ + β₂), since in terms of the differences a, b, c, d, β₁ ≤ 13 (b² +
+/// c²)/6, β₀ ≥ 13 b²/16 for any a, and β₂ ≥ 13 c²/16 for any d. For data so small that only δ remains, all
 /// three are equal.
 template <class N>
 HWY_INLINE smoothness<N> scale(const smoothness<N>& s, N delta) {
@@ -105,30 +100,31 @@ struct factors {
 /// Terms of a stencil from which the edges of its cell are computed.
 template <class Weights, class N>
 struct edge_terms {
-  N here, before, after, second0, second2;
-  slopes<N> slope;
+  N here, before, after, twice_before, twice_after, second0, second2;
   smoothness<N> y;
 
   HWY_INLINE edge_terms(const window<N>& u)
       : here(u.here),
         before(u.before),
         after(u.after),
+        twice_before(u.twice_before),
+        twice_after(u.twice_after),
         second0(u.bend0.second),
         second2(u.bend2.second),
-        slope(u),
-        y(scale(indicators(u, slope), Weights::delta(u.here))) {}
+        y(scale(indicators(u), Weights::delta(u.here))) {}
 
-  /// Numerator at the right edge: twice the candidates minus u_i are r₀, r₁/3 and −r₂/3, with the weights g₀,
-  /// 6g₁ and 3g₂. Sums of differences and slopes, since processors have units for additions alone. `twice`:
-  /// 2g₁.
-  HWY_INLINE N right(const factors<N>& g, N twice) const {
-    const N r0 = fma(N(2.0 / 3.0), second0, before), r1 = slope.y1 + after, r2 = slope.y2 - after;
-    return negative_fma(g.g2, r2, fma(twice, r1, g.g0 * r0));
+  /// Numerator at the right edge: twice the candidates minus u_i are r₀, r₁/6 and −r₂/3, with the weights g₀,
+  /// 6g₁ and 3g₂.
+  HWY_INLINE N right(const factors<N>& g) const {
+    const N r0 = fma(N(2.0 / 3.0), second0, before), r1 = fma(N(2.0), twice_after, twice_before),
+            r2 = negative_fma(N(3.0), after, second2);
+    return negative_fma(g.g2, r2, fma(g.g1, r1, g.g0 * r0));
   }
   /// Numerator at the left edge of the mirrored cells.
-  HWY_INLINE N left(const factors<N>& g, N twice) const {
-    const N l0 = slope.y0 + before, l1 = slope.y1 + before, l2 = negative_fma(N(2.0 / 3.0), second2, after);
-    return fma(g.g0, l0, fma(twice, l1, g.g2 * l2));
+  HWY_INLINE N left(const factors<N>& g) const {
+    const N l0 = fma(N(3.0), before, second0), l1 = fma(N(2.0), twice_before, twice_after),
+            l2 = negative_fma(N(2.0 / 3.0), second2, after);
+    return fma(g.g0, l0, fma(g.g1, l1, g.g2 * l2));
   }
 };
 
@@ -141,9 +137,8 @@ struct right_fraction {
   HWY_INLINE right_fraction(const edge_terms<Weights, N>& u)
       : here(u.here), numerator(u.here), denominator(u.here) {
     const auto g = Weights::factors(u.y);
-    const N twice = g.g1 + g.g1;
-    numerator = u.right(g, twice);
-    denominator = fma(N(3.0), twice + g.g2, g.g0);
+    numerator = u.right(g);
+    denominator = fma(N(6.0), g.g1, fma(N(3.0), g.g2, g.g0));
   }
 
   HWY_INLINE N edge() const { return fma(N(0.5), numerator / denominator, here); }
@@ -159,10 +154,9 @@ struct both_fractions {
   HWY_INLINE both_fractions(const edge_terms<Weights, N>& u)
       : here(u.here), right(u.here), right_sum(u.here), left(u.here), left_sum(u.here) {
     const auto g = Weights::factors(u.y);
-    const N twice = g.g1 + g.g1;
-    right = u.right(g, twice);
-    left = u.left(g, twice);
-    const N common = fma(N(3.0), twice, g.g0 + g.g2);
+    right = u.right(g);
+    left = u.left(g);
+    const N common = fma(N(6.0), g.g1, g.g0 + g.g2);
     right_sum = fma(N(2.0), g.g2, common);
     left_sum = fma(N(2.0), g.g0, common);
   }

@@ -8,6 +8,8 @@
 #include <apsis/scheme/limiter-inl.hpp>
 #include <apsis/scheme/walk-inl.hpp>
 
+#include <algorithm>
+
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
@@ -19,26 +21,45 @@ HWY_INLINE N outflow(const Walk& way, const cells& run, int j) {
   return way.load_downstream(run.left, run.right, run.pitch, j);
 }
 
+/// The factors λ = β|v|/Δx of a pack of velocities for all targets, the same in all cells.
+template <class N>
+class step_factors {
+ public:
+  HWY_INLINE step_factors(std::span<const row_target> targets, N speed) : speed_(speed) {
+    for (std::size_t k = 0; k < std::min(targets.size(), kept); ++k)
+      (N(targets[k].beta) * speed).store(factors_ + longest * k);
+  }
+  HWY_INLINE N of(std::span<const row_target> targets, std::size_t k) const {
+    return k < kept ? N::load(factors_ + longest * k) : N(targets[k].beta) * speed_;
+  }
+
+ private:
+  static constexpr std::size_t kept = 16, longest = 8;  ///< a pack has 512 bits at most
+  alignas(64) double factors_[kept * longest];
+  N speed_;
+};
+
 template <class Walk, class N = typename Walk::number>
-HWY_INLINE void accumulate(const Walk& way, const cells& run, std::span<const row_target> targets, int j, N u,
-                           N speed, N difference) {
-  for (const auto& to : targets) {
-    // β|v|/Δx first: (|v|/Δx)(in − out) would round a second time among subnormal numbers, where 2.5 units
-    // count as much as 3, and u − (in − out) could become negative (docs/space.md, "Rounding").
-    N change = (N(to.beta) * speed) * difference;
-    if (run.source != nullptr) change = fma(N(to.beta), way.load(run.source, run.pitch, j), change);
-    const N add = fma(N(to.alpha), u, change);
+HWY_INLINE void accumulate(const Walk& way, const cells& run, std::span<const row_target> targets,
+                           const step_factors<N>& factors, int j, N u, N difference) {
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const auto& to = targets[k];
     way.prefetch(to.acc, to.pitch, j);
-    way.store(to.fresh ? add : way.load(to.acc, to.pitch, j) + add, to.acc, to.pitch, j);
+    N sum = to.fresh ? N(to.alpha) * u : fma(N(to.alpha), u, way.load(to.acc, to.pitch, j));
+    if (run.source != nullptr) sum = fma(N(to.beta), way.load(run.source, run.pitch, j), sum);
+    // λ first: (|v|/Δx)(in − out) would round a second time among subnormal numbers, where 2.5 units count as
+    // much as 3, and u − (in − out) could become negative (docs/space.md, "Rounding").
+    way.store(fma(factors.of(targets, k), difference, sum), to.acc, to.pitch, j);
   }
 }
 
 template <class Walk, class N = typename Walk::number>
 HWY_INLINE void add_along(const Walk& way, N speed, const cells& run, std::span<const row_target> targets) {
+  const step_factors<N> factors(targets, speed);
   N in = outflow(way, run, -1);
   for (int j = 0; j < run.count; ++j) {
     const N out = outflow(way, run, j);
-    accumulate(way, run, targets, j, way.load(run.u, j), speed, in - out);
+    accumulate(way, run, targets, factors, j, way.load(run.u, j), in - out);
     in = out;
   }
 }
@@ -80,6 +101,7 @@ HWY_INLINE N limited_flux(const limited_cell<N>& donor, const limited_cell<N>& r
 template <class Walk, class N = typename Walk::number>
 HWY_INLINE void add_limited_along(const Walk& way, N speed, const cells& run,
                                   std::span<const row_target> targets) {
+  const step_factors<N> factors(targets, speed);
   const N first = way.load(run.u, -2);
   const auto before = next_cell(way, run, -1, first, outflow(way, run, -2) - first);
   auto here = next_cell(way, run, 0, before.u, before.correction);
@@ -87,7 +109,7 @@ HWY_INLINE void add_limited_along(const Walk& way, N speed, const cells& run,
   for (int j = 0; j < run.count; ++j) {
     const auto after = next_cell(way, run, j + 1, here.u, here.correction);
     const N out = limited_flux(here, after);
-    accumulate(way, run, targets, j, here.u, speed, in - out);
+    accumulate(way, run, targets, factors, j, here.u, in - out);
     here = after;
     in = out;
   }

@@ -66,7 +66,7 @@ void fluxes_of_cell(const cells& run, bool limited, double* in, double* out);
 /// cells (exec/counted.hpp): the limiter repeats its work in a cell beyond either end.
 double operations(bool limited, int cells);
 /// Operation count per number and target.
-inline constexpr double operations_of_target = 4.0;
+inline constexpr double operations_of_target = 2.0;
 
 /// Adds α u to all targets, for targets with β = 0.
 void add_weights(const double* u, int width, std::span<const row_target> targets);

@@ -12,7 +12,7 @@ namespace apsis::HWY_NAMESPACE {
 struct weights_js {
   template <class N>
   static HWY_INLINE N delta(N) {
-    return N(4e-6);
+    return N(1e-6);
   }
   template <class N>
   static HWY_INLINE weno5::factors<N> factors(const weno5::smoothness<N>& y) {

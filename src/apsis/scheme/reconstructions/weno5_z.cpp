@@ -14,7 +14,7 @@ struct weights_z {
   /// value count as smooth, even where the first two derivatives vanish together.
   template <class N>
   static HWY_INLINE N delta(N u) {
-    return fma(4e-6 * u, u, N(4e-200));
+    return fma(1e-6 * u, u, N(1e-200));
   }
   template <class N>
   static HWY_INLINE weno5::factors<N> factors(const weno5::smoothness<N>& y) {

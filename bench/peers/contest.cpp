@@ -1,4 +1,5 @@
 #include "contest.hpp"
+#include "integrators.hpp"
 #include "measure/clock.hpp"
 
 #include <apsis/method/certificate.hpp>
@@ -55,6 +56,9 @@ std::vector<std::string> explicit_contestants() {
 }
 
 league league_of(const std::string& method) {
+  if (method == exponential_name) return league::baseline;
+  if (is_multistep_method(method))
+    return find_multistep_method(method).ssp_coefficient > 0 ? league::ssp : league::baseline;
   const certificate& c = find_certificate(method);
   if (!(c.ssp_coefficient > 0)) return league::any_sign;
   return c.kind == method_kind::explicit_only ? league::other : league::ssp;

@@ -32,14 +32,15 @@ std::vector<double> two_per_decade(double loosest, double tightest);
 
 /// Class of contestants. A best row of the table is that of one or several classes.
 enum class league {
-  ssp,       ///< methods of Apsis with an SSP coefficient, equal steps; count only without negative unknowns
+  ssp,  ///< methods of Apsis with an SSP coefficient, also of two steps, equal steps; count only without
+        ///< negative unknowns
   any_sign,  ///< methods of the catalogue of Apsis without one, explicit ones too, equal steps
   adaptive,  ///< methods of Apsis, steps chosen by a tolerance
-  baseline,  ///< methods of the literature that are in the library but not in its catalogue, equal steps
+  baseline,  ///< multistep and exponential methods of the literature, in the library too, equal steps
   other      ///< other programs, and explicit SSP methods, the usual choice without any of them
 };
 
-/// Returns the class of a method of the catalogue with equal steps.
+/// Returns the class of an integrator of the library with equal steps (integrators.hpp).
 league league_of(const std::string& method);
 
 /// A point of a work–precision diagram: a contestant with a given step length or tolerance.
@@ -50,7 +51,7 @@ struct attempt {
   outcome measured = {};
   bool counts = false;  ///< whether it is the cheapest of its kind for some error
 
-  /// Whether `apsis run` can do it: a method of the catalogue or of a family.
+  /// Whether it is a method of the catalogue, of a family or of two steps.
   bool ours() const { return of != league::other && of != league::baseline; }
 };
 

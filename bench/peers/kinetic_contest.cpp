@@ -129,7 +129,7 @@ void enter_all(contest& all, kinetic_task& task, const kinetic_settings& setting
   for (const auto& name : imex_contestants()) add_ours(all, task, name, settings);
   for (const auto& name : other_integrators())
     if (name != exponential_name || task.has_exact_collision())
-      add_equal_steps(all, task, name, league::baseline, settings);
+      add_equal_steps(all, task, name, league_of(name), settings);
   add_arkode(all, task, settings);
   add_cvode(all, task, settings);
   add_radau(all, task, settings);

@@ -45,7 +45,7 @@ void add_explicit(contest& all, const stiff_task& task, long most_steps) {
 }
 
 void add_other_integrators(contest& all, const stiff_task& task, long most_steps) {
-  for (const auto& name : other_integrators()) add_equal_steps(all, task, name, league::baseline, most_steps);
+  for (const auto& name : other_integrators()) add_equal_steps(all, task, name, league_of(name), most_steps);
 }
 
 void add_sundials(contest& all, const stiff_task& task, const std::string& name, sundials_ode_options options,
@@ -98,7 +98,8 @@ const char* const note =
     " Contestants: every IMEX method of the catalogue, and extrapolated Euler steps of orders 2 to 8, with 1 "
     "to "
     "8192 equal steps, with and without a graded start, and with steps chosen by a tolerance where it has an "
-    "embedded solution; explicit methods; IMEX-BDF of orders 2 to 5 and the exponential method, with "
+    "embedded solution; explicit methods; two-step methods, IMEX-BDF of orders 2 to 5 and the exponential "
+    "method, with "
     "equal steps; CVODE (BDF, dense); ARKODE (T "
     "explicit, or all implicit, or all explicit); "
     "Radau "

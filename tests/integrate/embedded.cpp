@@ -286,7 +286,8 @@ TEST(step_control, settles_where_the_error_is_close_to_the_tolerance) {
 }
 
 TEST(step_control, follows_the_trend_of_errors_that_grow) {
-  // Acceptable steps become shorter by 15 % from one to the next: 0.9 of the last one would be too long again.
+  // Acceptable steps become shorter by 15 % from one to the next: 0.9 of the last one would be too long
+  // again.
   step_controller<double> control(1e-6, 2);
   double longest = 1.0, dt = 0.9;
   for (int accepted = 0; accepted < 40;) {

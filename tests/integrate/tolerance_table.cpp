@@ -160,8 +160,8 @@ TEST(steps_near_equilibrium, grow_by_at_most_30_per_decade_of_the_tolerance_in_t
 }
 
 TEST(global_error, scales_with_the_tolerance_to_the_power_p_over_q_plus_1) {
-  // In the limit and where ε is resolved; plateaus intervene in between. Slopes over three decades differ from the
-  // asymptotic ones by up to 0.2, because steps of fourth order are still long.
+  // In the limit and where ε is resolved; plateaus intervene in between. Slopes over three decades differ
+  // from the asymptotic ones by up to 0.2, because steps of fourth order are still long.
   for (const auto& name :
        {"md-imex-3-2", "md-imex-8-3-mixed", "md-imex-8-3-accurate", "md-imex-14-4-accurate"}) {
     const apsis::method& m = apsis::find_method(name);

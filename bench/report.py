@@ -88,8 +88,8 @@ CONTESTS = {"peers-ode": "ODE model", "peers-prothero-robinson": "Prothero–Rob
 
 
 def winner(result, error, epsilon):
-    """Returns the cheapest run of Apsis for an error, and how many times its time the best of other programs and explicit methods
-    needs, and the best of the baselines."""
+    """Returns the cheapest run of Apsis for an error, and how many times its time the best of other programs and explicit SSP
+    methods needs, and the best of the baselines."""
     column = next((k for k, name in enumerate(result["columns"]) if name.startswith(f"error {error} ")), None)
     if column is None:
         return ""

@@ -165,8 +165,11 @@ std::string check_text(const method& m) {
   };
   line("order", fmt::format("{} ({} conditions, largest residual {:.1e})", c.order, c.conditions,
                             c.order_residual.convert_to<double>()));
-  line("error constant", fmt::format("{:.4g} (2-norm of the residuals of order {})",
-                                     c.error_constant.convert_to<double>(), c.order + 1));
+  const double constant = c.error_constant.convert_to<double>();
+  line("error constant",
+       std::isnan(constant)
+           ? fmt::format("not computed (conditions are known up to order {})", certificate::highest_order)
+           : fmt::format("{:.4g} (2-norm of the residuals of order {})", constant, c.order + 1));
   line("SSP coefficient", ssp_text(c));
   if (!c.limiting_entry.empty()) line("limited by", c.limiting_entry);
   if (m.kind == method_kind::imex)

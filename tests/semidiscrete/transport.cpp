@@ -143,6 +143,28 @@ TEST(transport, does_not_depend_on_the_number_of_threads_or_on_blocks) {
     for (int k = 0; k < 150; ++k) ASSERT_EQ(one.row(i)[k], three.row(i)[k]);
 }
 
+TEST(transport, of_many_targets_is_that_of_each_of_them) {
+  // Factors of 16 targets are kept, those of further ones computed in every cell.
+  const auto m = small_bgk(20);
+  const grid mesh = grid::line(13, 0.0, 2.0);
+  const field u = sample(mesh, 20, false, [](double x, int k) { return 2.0 + std::sin(3.0 * x + k); });
+  for (const auto kind : {limiter_kind::none, limiter_kind::fluxes}) {
+    const apsis::transport t(*m, space_of(mesh), scheme("weno5-z", kind));
+    std::vector<field> together(20, u), alone(20, u);
+    std::vector<apsis::target<field, double>> targets;
+    for (int k = 0; k < 20; ++k)
+      targets.push_back({&together[static_cast<std::size_t>(k)], 0.1 * k, 1e-3 * (k + 1), k % 2 == 0});
+    t.add_transport(0.0, u, targets);
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      auto one = targets[k];
+      one.acc = &alone[k];
+      t.add_transport(0.0, u, {&one, 1});
+      for (int i = 0; i < mesh.size(); ++i)
+        for (int c = 0; c < 20; ++c) ASSERT_EQ(together[k].row(i)[c], alone[k].row(i)[c]) << k;
+    }
+  }
+}
+
 namespace {
 
 /// Advection of three components with given velocities in two dimensions.

@@ -37,7 +37,7 @@ enum class league {
   any_sign,  ///< methods of the catalogue of Apsis without one, explicit ones too, equal steps
   adaptive,  ///< methods of Apsis, steps chosen by a tolerance
   baseline,  ///< multistep and exponential methods of the literature, in the library too, equal steps
-  other      ///< other programs, and explicit SSP methods, the usual choice without any of them
+  other      ///< other programs, and explicit SSP methods, the usual choice without stiffness
 };
 
 /// Returns the class of an integrator of the library with equal steps (integrators.hpp).

@@ -12,15 +12,13 @@
 namespace apsis {
 
 /// Step-size controller: keeps the estimated error err of a step below a tolerance. A step is rejected if err
-/// > tol. With the length that would have been the longest acceptable one, L_n = Δt_n (tol/err_n)^{1/k}, the
-/// next step is
+/// > tol. L_n = Δt_n (tol/err_n)^{1/k} is the longest step that would have been accepted; the next step is
 ///   Δt = 0.9 L_n                                    after a rejected step,
 ///   Δt = 0.9 L_n min(1, L_n/L_{n−1})                after an accepted one,
 /// between 0.2 times and twice the last one, and not longer right after a rejection. err ~ Δt^k: k is the
 /// order of the embedded solution plus one. This is Gustafsson's predictive controller (ACM Trans. Math.
-/// Softw. 20 (1994) 496–517; Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.8): L
-/// follows its trend where it decreases, as it does where steps come to the length of ε, and is taken as it
-/// is where it increases, after a layer.
+/// Softw. 20 (1994) 496–517; Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.8): a
+/// decrease of L, as where steps approach ε, is expected to continue, an increase, as after a layer, is not.
 template <class Real>
 class step_controller {
  public:

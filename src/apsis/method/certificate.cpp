@@ -16,7 +16,7 @@ namespace apsis {
 namespace {
 
 void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certificate& c) {
-  // The trees of order 9 are few with one colour, 286, and 89 894 with two.
+  // Order 9 has 286 trees of one colour, but 89 894 of two.
   const int last = certificate::highest_order + (c.kind == method_kind::imex ? 0 : 1);
   for (int p = 1; p <= last && c.order == p - 1; ++p) {
     const auto trees = rooted_trees(p, colours_of(c.kind));

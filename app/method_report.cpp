@@ -146,7 +146,7 @@ json check_json(const method& m) {
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
   if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(c);
-  if (m.kind != method_kind::explicit_only)
+  if (has_derivatives(m.kind))
     out["stability"] = {{"angle_degrees", c.stability.angle},
                         {"l_stable", c.stability.l_stable},
                         {"largest_on_negative_axis", c.stability.largest_on_negative_axis},
@@ -168,11 +168,11 @@ std::string check_text(const method& m) {
   const double constant = c.error_constant.convert_to<double>();
   line("error constant",
        std::isnan(constant)
-           ? fmt::format("not computed (conditions are known up to order {})", certificate::highest_order)
+           ? fmt::format("not computed (conditions are known up to order {})", c.order)
            : fmt::format("{:.4g} (2-norm of the residuals of order {})", constant, c.order + 1));
   line("SSP coefficient", ssp_text(c));
   if (!c.limiting_entry.empty()) line("limited by", c.limiting_entry);
-  if (m.kind == method_kind::imex)
+  if (m.kind == method_kind::imex || m.kind == method_kind::exponential)
     line("explicit part",
          fmt::format("SSP coefficient {:.15g} by itself", c.explicit_radius.convert_to<double>()));
   line("type", fmt::format("{}{}", c.type, c.gsa ? ", globally stiffly accurate" : ""));
@@ -184,15 +184,19 @@ std::string check_text(const method& m) {
          fmt::format("error of the viscous flux up to {:.2g} dt, largest at epsilon/C = dt/{:.2g}",
                      c.band.error, c.band.at));
   }
-  line("cost of a step", fmt::format("{} transport evaluations, {} implicit solves, {} buffers",
-                                     c.explicit_evaluations, c.implicit_solves, steps.buffers()));
+  if (m.kind == method_kind::exponential && c.ap)
+    line("where epsilon << dt", "terms of size epsilon vanish: exact collisions end in equilibrium");
+  line("cost of a step",
+       fmt::format("{} transport evaluations, {} {}, {} buffers", c.explicit_evaluations, c.implicit_solves,
+                   m.kind == method_kind::exponential ? "exact collisions" : "implicit solves",
+                   steps.buffers()));
   if (c.embedded) {
     const json e = embedded_json(m, c);
     line("embedded solution", embedded_text(e));
     line("", embedded_cost_text(e));
     if (!e["last"].is_null()) line("", embedded_term_text(e));
   }
-  if (m.kind != method_kind::explicit_only)
+  if (has_derivatives(m.kind))
     line("implicit part", fmt::format("{}, |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
                                       c.stability.l_stable ? "L-stable" : angle_text(c.stability.angle),
                                       c.stability.largest_on_negative_axis, c.stability.at_infinity));

@@ -32,7 +32,7 @@ std::string method_table(const json& all) {
     return line + "\n";
   };
   std::string out;
-  for (const auto kind : {method_kind::imex, method_kind::implicit_only, method_kind::explicit_only}) {
+  for (const auto kind : all_method_kinds) {
     out += fmt::format("{}{} methods\n", out.empty() ? "" : "\n", to_string(kind));
     out += row("name", "p", "s", "n_F", "solves", "r", "r/n_F", "error", "buffers", "emb", "AP", "eps",
                "recommended for");

@@ -127,9 +127,7 @@ void add_explicit(contest& all, kinetic_task& task, const kinetic_settings& sett
 
 void enter_all(contest& all, kinetic_task& task, const kinetic_settings& settings) {
   for (const auto& name : imex_contestants()) add_ours(all, task, name, settings);
-  for (const auto& name : other_integrators())
-    if (name != exponential_name || task.has_exact_collision())
-      add_equal_steps(all, task, name, league_of(name), settings);
+  for (const auto& name : other_integrators()) add_equal_steps(all, task, name, league_of(name), settings);
   add_arkode(all, task, settings);
   add_cvode(all, task, settings);
   add_radau(all, task, settings);

@@ -94,7 +94,7 @@ const char* const kinetic_note =
     "after "
     "any step. Contestants: every IMEX method of the catalogue and extrapolated Euler steps, with equal "
     "steps "
-    "and with steps chosen by a tolerance; two-step methods, IMEX-BDF of orders 2 to 5 and, on point values, "
+    "and with steps chosen by a tolerance; two-step methods, IMEX-BDF of orders 2 to 5 and "
     "the exponential "
     "method, with equal steps; runs of methods with "
     "an SSP coefficient count only with f ≥ 0 "

@@ -62,6 +62,7 @@ kinetic_task::kinetic_task(const std::string& case_name, std::vector<std::string
       setup_(config_),
       problem_(setup_.make_problem()),
       smooth_(problem_builder(setup_.builder()).with_smooth_collisions().build()),
+      exact_(problem_builder(setup_.builder()).with_exact_collision().build()),
       initial_(setup_.initial_state()) {
   const auto& [from, to] = config_.space.domain.front();
   const double dx = (to - from) / config_.space.cells.front();
@@ -82,11 +83,12 @@ std::unique_ptr<collision_inverse> kinetic_task::inverse() const {
                                            : make_bgk_inverse(equation(), rates_);
 }
 
-/// Only collisions at centres distinguish them (problem_builder::with_smooth_collisions()).
+/// Only collisions at centres distinguish the first two (problem_builder::with_smooth_collisions()).
 semidiscrete_problem& kinetic_task::problem_of(const std::string& integrator) const {
   if (is_two_step_method(integrator)) return *problem_;
   if (!is_method_name(integrator)) return *smooth_;
   const method& m = find_method(integrator);
+  if (m.kind == method_kind::exponential) return *exact_;
   const auto form = m.coefficients<double>();
   const bool keeps_signs =
       is_convex(form, m.kind, form.stages()) && form.r > 0.0 && schedule(form).collision_evaluations() == 0;
@@ -135,9 +137,7 @@ outcome kinetic_task::run(const std::string& name, long steps, bool graded, doub
     return measure(seconds_allowed, result,
                    [&](field& u, auto&& observer) { integrate(march, u, 0.0, end_, rule, observer); });
   };
-  if (name != exponential_name) return with_integrator(name, problem_of(name), run);
-  kinetic_flow flow(*problem_, equation(), rates_);
-  return with_integrator(name, flow, run);
+  return with_integrator(name, problem_of(name), run);
 }
 
 outcome kinetic_task::run_to_tolerance(const method& m, double tolerance, double seconds_allowed) {

@@ -2,7 +2,6 @@
 
 #include "collision_inverse.hpp"
 #include "contest.hpp"
-#include "kinetic_flow.hpp"
 
 #include <apsis/run/setup.hpp>
 
@@ -38,8 +37,6 @@ class kinetic_task {
   const field& initial() const { return initial_; }
   /// Returns the problem for integrators that keep no signs.
   semidiscrete_problem& problem() { return *smooth_; }
-  /// Whether exponential methods can run: the collision is pointwise.
-  bool has_exact_collision() const { return config_.space.formulation == formulation::finite_difference; }
   /// Returns the inverse of I − γJ for the Jacobian J of the collision.
   std::unique_ptr<collision_inverse> inverse() const;
   /// Returns the number of steps of an integrator in [0, end] at the largest Δt for which f stays
@@ -71,7 +68,8 @@ class kinetic_task {
   double end_;
   run_setup setup_;
   std::unique_ptr<semidiscrete_problem> problem_,
-      smooth_;  ///< for methods that keep no signs, with the same T and Q
+      smooth_,  ///< for methods that keep no signs, with the same T and Q
+      exact_;   ///< for exponential methods
   field initial_, reference_;
   std::vector<double> rates_;  ///< 1/ε of every cell: at its centre, or the mean over its Gauss points
 };

@@ -23,7 +23,7 @@ Tableau = Sequence[Sequence[Coefficient]]
 class Certificate:
     """Properties of a method, derived from its coefficients in 60 digits.
 
-    name of the method; kind "imex", "implicit only" or "explicit"; order of accuracy; conditions, the number of order conditions up to it, and
+    name of the method; kind "imex", "implicit", "explicit" or "exponential"; order of accuracy; conditions, the number of order conditions up to it, and
     order_residual, the largest of their residuals; error_constant, the 2-norm of the residuals of the next order;
     unconditional, SSP without a bound from Q; ssp_coefficient r, steps up to r Δt_FE keep what forward Euler keeps at any ε, None where any
     step does; explicit_radius, that of the explicit part alone; limiting_entry, the coefficient that limits r; type "A", "ARS", "CK",

@@ -3,6 +3,7 @@
 #include "march.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/exponential.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
 
 #include <algorithm>
@@ -88,12 +89,16 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
   if (of.admissible)
     problem.with_admissible([&](const state& v) { return of.admissible->truth((*of.admissible)(look(v))); });
   state all = u;
-  const auto count = march_through(
-      problem, u, t, m, choice, of.forward_euler_step.has_value(), largest_difference,
-      [&all](const state& now) { all.insert(all.end(), now.begin(), now.end()); },
-      [] {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      });
+  const auto march = [&](auto& of_method) {
+    return march_through(
+        of_method, u, t, m, choice, of.forward_euler_step.has_value(), largest_difference,
+        [&all](const state& now) { all.insert(all.end(), now.begin(), now.end()); },
+        [] {
+          if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        });
+  };
+  exact_collisions exact(problem);
+  const auto count = m.kind == method_kind::exponential ? march(exact) : march(problem);
   std::vector<py::ssize_t> shape_of_all = {static_cast<py::ssize_t>(t.size())};
   shape_of_all.insert(shape_of_all.end(), shape.begin(), shape.end());
   return {to_array(std::vector<double>(t)), to_array(std::move(all), shape_of_all), count.steps,

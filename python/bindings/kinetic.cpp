@@ -305,10 +305,7 @@ class kinetic_problem {
                       const step_choice& choice, std::optional<int> threads) {
     field u = to_field(u0);
     set_threads(threads.value_or(threads_for(u)));
-    const bool explicit_only = m.kind == method_kind::explicit_only;
-    if (explicit_only && !explicit_problem_)
-      explicit_problem_ = problem_builder(builder_).with_explicit_collision().build();
-    auto& problem = explicit_only ? *explicit_problem_ : *problem_;
+    auto& problem = problem_for(m.kind);
     std::vector<double> all;
     append(u, all);
     step_count count;
@@ -328,6 +325,19 @@ class kinetic_problem {
   }
 
  private:
+  /// The problem with the collisions that methods of a kind need.
+  semidiscrete_problem& problem_for(method_kind kind) {
+    if (kind == method_kind::explicit_only) {
+      if (!explicit_problem_) explicit_problem_ = problem_builder(builder_).with_explicit_collision().build();
+      return *explicit_problem_;
+    }
+    if (kind == method_kind::exponential) {
+      if (!exact_problem_) exact_problem_ = problem_builder(builder_).with_exact_collision().build();
+      return *exact_problem_;
+    }
+    return *problem_;
+  }
+
   /// Threads of `body` call functions of the user, which need the GIL.
   template <class Body>
   static void without_gil(const Body& body) {
@@ -392,7 +402,7 @@ class kinetic_problem {
 
   std::unique_ptr<model> equation_;
   problem_builder builder_;
-  std::unique_ptr<semidiscrete_problem> problem_, explicit_problem_;
+  std::unique_ptr<semidiscrete_problem> problem_, explicit_problem_, exact_problem_;
 };
 
 }  // namespace

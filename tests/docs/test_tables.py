@@ -60,7 +60,7 @@ def method_problems(rows, methods, members):
             certificate = methods[name]
             if str(certificate["order"]) != order:
                 problems.append(f"{name}: order {order}")
-            if {"implicit": "Q", "imex": "T + Q", "explicit": "T + Q, explicit"}[certificate["kind"]] != acts_on:
+            if {"implicit": "Q", "imex": "T + Q", "explicit": "T + Q, explicit", "exponential": "T + Q, exponential"}[certificate["kind"]] != acts_on:
                 problems.append(f"{name}: of {acts_on}")
             r = certificate["ssp_coefficient"]
             if said == "any step":

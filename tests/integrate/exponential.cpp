@@ -1,9 +1,10 @@
-// The exponential method through the stepper: exact relaxation, observed order, the limit ε → 0 and
-// positivity at its step bound.
+// Exponential methods through the stepper: exact relaxation, observed order, the limit ε → 0 and
+// positivity at the step bound.
 #include <apsis/integrate/exponential.hpp>
 
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
+#include <apsis/integrate/stepper.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include <numeric>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <integrate/ode_model.hpp>
 #include <integrate/reference.hpp>
@@ -25,7 +27,7 @@ template <class Problem, class State = typename Problem::state>
 State solve(Problem problem, State u, long steps) {
   using real = typename Problem::real;
   apsis::exact_collisions exact(problem);
-  apsis::stepper march(apsis::exponential_method<real>(), apsis::method_kind::imex, exact);
+  apsis::stepper march(apsis::find_method("exponential-2"), exact);
   apsis::integrate(march, u, real(0), real(1),
                    apsis::step_rule<real>::fixed(real(1) / static_cast<real>(steps)));
   return u;
@@ -45,6 +47,33 @@ TEST(exponential, flow_weights_are_exact_in_the_limits) {
   EXPECT_TRUE(std::isnan(apsis::flow_weights(1.0, std::nan(""), 1.0).of_u));
   // The smaller weight is accurate however small it is: 1 − e^{−z} = z up to z²/2.
   EXPECT_DOUBLE_EQ(apsis::flow_weights(1e-20, 1.0, 1.0).of_e, 1e-20);
+  EXPECT_DOUBLE_EQ(apsis::flow_weights(700.0, 1.0, 1.0).of_u, std::exp(-700.0));
+}
+
+TEST(exponential, flow_weights_sum_to_one_and_are_accurate) {
+  for (double z = 1e-18; z < 700.0; z *= 1.0371) {
+    const auto weights = apsis::flow_weights(z, 1.0, 1.0);
+    EXPECT_EQ(weights.of_u + weights.of_e, 1.0) << z;
+    const long double exact = static_cast<long double>(z);
+    // An ulp of a number x is at most 2.3e-16 x.
+    EXPECT_NEAR(static_cast<double>(weights.of_u / std::exp(-exact)), 1.0, 3e-16) << z;
+    EXPECT_NEAR(static_cast<double>(weights.of_e / -std::expm1(-exact)), 1.0, 3e-16) << z;
+  }
+}
+
+TEST(exponential, methods_and_problems_that_do_not_belong_together_are_refused) {
+  auto problem = ode_model::as_relaxation<state>(1.0L);
+  apsis::exact_collisions exact(problem);
+  EXPECT_THAT(
+      [&] { apsis::stepper march(apsis::find_method("exponential-2"), problem); },
+      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr(
+          "method 'exponential-2' cannot integrate this problem (it is exponential, and the collisions of "
+          "the problem are not solved exactly); wrap the problem in exact_collisions")));
+  EXPECT_THAT(
+      [&] { apsis::stepper march(apsis::find_method("md-imex-3-2"), exact); },
+      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr(
+          "method 'md-imex-3-2' cannot integrate this problem (its collisions are solved exactly, and the "
+          "method is not exponential)")));
 }
 
 TEST(exponential, relaxation_without_transport_is_exact_for_any_step) {
@@ -99,7 +128,7 @@ double smallest_value(double courant, double epsilon) {
       [](const auto& u) { return std::accumulate(u.begin(), u.end(), 0.0); },
       [](double w, auto& out) { out.assign(cells, w / cells); }, [](double) { return 1.0; }, epsilon);
   apsis::exact_collisions exact(problem);
-  apsis::stepper march(apsis::exponential_method<double>(), apsis::method_kind::imex, exact);
+  apsis::stepper march(apsis::find_method("exponential-2"), exact);
   EXPECT_EQ(march.require_ssp_coefficient(), 1.0);
   std::vector<double> u(cells, 0.0);
   u[0] = 1.0;

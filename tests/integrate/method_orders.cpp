@@ -3,6 +3,7 @@
 // methods are tested automatically.
 #include "support/catalogue.hpp"
 
+#include <apsis/integrate/exponential.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/method/certificate.hpp>
 
@@ -28,8 +29,16 @@ using state = std::vector<real>;
 
 state solve(const std::string& method, real epsilon, long steps, state u) {
   auto problem = ode_model::as_relaxation<state>(epsilon);
-  apsis::stepper march(apsis::find_method(method), problem);
-  apsis::integrate(march, u, real(0), real(1), step_rule<real>::fixed(real(1) / static_cast<real>(steps)));
+  const auto rule = step_rule<real>::fixed(real(1) / static_cast<real>(steps));
+  const apsis::method& m = apsis::find_method(method);
+  if (m.kind == method_kind::exponential) {
+    apsis::exact_collisions exact(problem);
+    apsis::stepper march(m, exact);
+    apsis::integrate(march, u, real(0), real(1), rule);
+  } else {
+    apsis::stepper march(m, problem);
+    apsis::integrate(march, u, real(0), real(1), rule);
+  }
   return u;
 }
 
@@ -82,9 +91,9 @@ TEST_P(every_method, has_its_certified_order) {
   EXPECT_NEAR(std::log2(error(GetParam(), steps) / error(GetParam(), 2 * steps)), c.order, tolerance);
 }
 
-class every_imex_method : public ::testing::TestWithParam<std::string> {};
+class every_method_with_limit : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(every_imex_method, has_its_certified_order_in_the_limit) {
+TEST_P(every_method_with_limit, has_its_certified_order_in_the_limit) {
   const certificate& c = apsis::find_certificate(GetParam());
   const auto near_equilibrium = in_the_limit(GetParam(), consistent);
   const auto far_from_it = in_the_limit(GetParam(), inconsistent);
@@ -106,18 +115,21 @@ TEST_P(every_imex_method, has_its_certified_order_in_the_limit) {
   }
 }
 
-std::vector<std::string> imex_methods() {
-  return methods_where([](const apsis::method& m) { return m.kind == method_kind::imex; });
+std::vector<std::string> methods_with_limit() {
+  return methods_where([](const apsis::method& m) {
+    return m.kind == method_kind::imex || m.kind == method_kind::exponential;
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(apsis::method_names()), test_name);
-INSTANTIATE_TEST_SUITE_P(catalogue, every_imex_method, ::testing::ValuesIn(imex_methods()), test_name);
+INSTANTIATE_TEST_SUITE_P(catalogue, every_method_with_limit, ::testing::ValuesIn(methods_with_limit()),
+                         test_name);
 
 const auto members =
     ::testing::Values("md-imex-chain-3-2", "md-imex-chain-7-2", "md-imex-chain-20-2", "md-imex-chain-64-2",
                       "md-imex-plateau-free-6-2", "md-imex-plateau-free-20-2");
 INSTANTIATE_TEST_SUITE_P(families, every_method, members, test_name);
-INSTANTIATE_TEST_SUITE_P(families, every_imex_method, members, test_name);
+INSTANTIATE_TEST_SUITE_P(families, every_method_with_limit, members, test_name);
 
 // Methods that are not globally stiffly accurate (docs/methods.md): u^{n+1} is not projected, and its
 // deviation from equilibrium depends on the weights b A⁻¹ of the stages.

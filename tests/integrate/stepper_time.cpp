@@ -1,4 +1,5 @@
 // Time dependence in the stepper, and the time loop.
+#include <apsis/integrate/exponential.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/method/certificate.hpp>
@@ -13,6 +14,14 @@ namespace stepper_time_test {
 
 namespace {
 
+/// A problem with the known solution u/(1 + su) of u' = −u².
+template <class Problem>
+struct with_known_square : Problem {
+  void advance_collision(long double, long double s, std::vector<long double>& u) const {
+    u[0] /= 1 + s * u[0];
+  }
+};
+
 /// u' = T(t) − u² with the solution 2 + sin t: T = cos t + (2 + sin t)².
 long double forced_error(const std::string& name, int steps) {
   using real = long double;
@@ -22,10 +31,17 @@ long double forced_error(const std::string& name, int steps) {
   };
   const auto square = [](const auto& u, auto& out) { out[0] = -u[0] * u[0]; };
   auto p = apsis::make_newton_problem<state>(force, square);
-  apsis::stepper s(apsis::find_method(name), p);
-  state u = {2};
-  apsis::integrate(s, u, real(0), real(1), apsis::step_rule<real>::fixed(real(1) / static_cast<real>(steps)));
-  return std::abs(u[0] - (2 + std::sin(real(1))));
+  const auto error = [&](auto& problem) {
+    apsis::stepper s(apsis::find_method(name), problem);
+    state u = {2};
+    apsis::integrate(s, u, real(0), real(1),
+                     apsis::step_rule<real>::fixed(real(1) / static_cast<real>(steps)));
+    return std::abs(u[0] - (2 + std::sin(real(1))));
+  };
+  if (apsis::find_method(name).kind != apsis::method_kind::exponential) return error(p);
+  with_known_square<decltype(p)> known{p};
+  apsis::exact_collisions exact(known);
+  return error(exact);
 }
 
 }  // namespace

@@ -129,9 +129,9 @@ class SameResults(Folder):
         self.expect_same("paper/bgk-mixed", "space.cells=24", "velocity.points=40", "time.end=0.05", "time.method=md-imex-8-3-mixed",
                          "time.tolerance=1e-4", "time.startup=graded", counts=(3,))
 
-    def test_multistep_methods_and_their_restarts(self):
+    def test_multistep_and_exponential_methods_and_their_restarts(self):
         self.write("step.toml", STEP.replace("safety = 1", "dt = 0.0005").replace("every = 0.01", "every = 0.005"))
-        for method in ("imex-bdf-3", "two-step-8-3-narrow"):
+        for method in ("imex-bdf-3", "two-step-8-3-narrow", "exponential-2"):
             out = f"{method}-"
             chosen = ("step.toml", f"time.method={method}", "space.cells=[15,13]")
             self.completed(1, "run", *chosen, "--out", out + "one")

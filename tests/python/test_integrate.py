@@ -16,7 +16,7 @@ def ode(epsilon, **more):
         rate=lambda w: 1.0 + w * w, epsilon=epsilon, **more)
 
 
-@pytest.mark.parametrize("name, order", [("md-imex-3-2", 2), ("md-imex-6-3", 3), ("md-imex-14-4-accurate", 4)])
+@pytest.mark.parametrize("name, order", [("md-imex-3-2", 2), ("md-imex-6-3", 3), ("md-imex-14-4-accurate", 4), ("exponential-2", 2)])
 def test_the_observed_order_is_that_of_the_method(name, order):
     exact = apsis.integrate(ode(1.0), [2.0, 0.0], (0, 1), name, dt=1 / 2048).u[-1]
     errors = [np.abs(apsis.integrate(ode(1.0), [2.0, 0.0], (0, 1), name, dt=dt).u[-1] - exact).sum() for dt in (1 / 64, 1 / 128)]

@@ -8,15 +8,16 @@ def bgk(**more):
     return apsis.KineticProblem("bgk", **{"cells": 20, "domain": (0, 2), "velocities": (15, 40), "epsilon": 1e-2, **more})
 
 
+@pytest.mark.parametrize("method", ["md-imex-6-3", "exponential-2"])
 @pytest.mark.parametrize("formulation", ["finite-volume", "finite-difference"])
-def test_it_equals_the_problem_of_the_case(formulation):
+def test_it_equals_the_problem_of_the_case(formulation, method):
     """Bit for bit the numbers of a run of the same problem from a case file."""
     case = apsis.run("paper/bgk-mixed", "space.cells=20", "velocity.points=40", f"space.formulation={formulation}", "model.epsilon=1e-2",
-                     "time.end=0.05", "time.method=md-imex-6-3", "time.dt=0.0005", threads=1)
+                     "time.end=0.05", f"time.method={method}", "time.dt=0.0005", threads=1)
     problem = bgk(formulation=formulation, positivity=True)
     np.testing.assert_array_equal(problem.x, case.x)
     np.testing.assert_array_equal(problem.v, case.v)
-    mine = apsis.integrate(problem, problem.sample("mixed-v"), (0, 0.05), "md-imex-6-3", dt=0.0005)
+    mine = apsis.integrate(problem, problem.sample("mixed-v"), (0, 0.05), method, dt=0.0005)
     assert mine.steps == case.summary["steps"]
     np.testing.assert_array_equal(mine.u[-1], case.f)
     np.testing.assert_array_equal(problem.fields(mine.u[-1])["rho"], case.fields["rho"][-1])

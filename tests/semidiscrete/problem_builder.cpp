@@ -164,6 +164,20 @@ TEST(problem_builder, an_equation_without_space_needs_no_mesh) {
   EXPECT_DOUBLE_EQ(u.row(0)[1], std::sin(2.0));  // ε = 0: the equilibrium sin u₁ of the paper's model
 }
 
+TEST(problem_builder, collisions_of_exponential_methods_are_exact_where_the_model_knows_them) {
+  const auto ode = made("ode"), decay = made("decay");
+  problem_builder builder(*ode);
+  const auto problem =
+      builder.with_epsilon([](const position&) { return 0.5; }).with_exact_collision().build();
+  auto u = builder.sample([](const position&, std::span<double> value) { value[0] = 2.0, value[1] = 0.0; });
+  problem->solve_collision(0.0, 0.1, 0.0, u);
+  // u₂' = 5 (sin 2 − u₂)/ε after a time of 0.1.
+  EXPECT_DOUBLE_EQ(u.row(0)[1], std::sin(2.0) * (1.0 - std::exp(-1.0)));
+  EXPECT_THAT(message_of([&] { problem_builder(*decay).with_exact_collision(); }),
+              HasSubstr("exponential methods cannot integrate this model (its collisions have no solution in "
+                        "closed form); choose an IMEX method"));
+}
+
 TEST(problem_builder, a_general_model_on_a_mesh_agrees_with_its_closed_form) {
   const auto closed = made("broadwell");
   const broadwell_as_general_model general;

@@ -76,12 +76,14 @@ TEST(strong_stability, third_order_imex_loses_positivity_of_the_broadwell_model_
 TEST(strong_stability, the_promise_is_sharp_for_operators_that_change_from_stage_to_stage) {
   // With collisions of moderate strength contributions of different stages still mix; they separate as ε → 0.
   for (const auto& [name, r] : promising_methods()) {
-    const bool is_explicit = find_method(name).kind == method_kind::explicit_only;
+    const auto kind = find_method(name).kind;
     double sharpest = infinity;
     for (const double epsilon : {infinity, 1.0, 1e-2, 1e-4}) {
-      if (is_explicit && epsilon < infinity) continue;
+      if (kind == method_kind::explicit_only && epsilon < infinity) continue;
       const auto limit = words(name, epsilon);
       EXPECT_GE(limit.kept, r * (1 - bisection)) << name << " " << epsilon;
+      // An exact collision of time 1/3 leaves e^{−33} of a negative number where epsilon = 0.01.
+      if (kind == method_kind::exponential && epsilon < 0.1) continue;
       EXPECT_GT(limit.excess, 0.0) << name << " " << epsilon;
       sharpest = std::min(sharpest, limit.lost);
     }

@@ -48,6 +48,24 @@ concept problem_with_explicit_collision =
       p.add_collision(x, u, targets);
     };
 
+/// A problem that reports whether it solves collisions exactly, as exponential methods need:
+///   collides_exactly()   whether solve_collision(t, s, 0, u) is u ← exp(sQ) u, the solution after a time s
+///   of
+///                        v' = Q(v), v(0) = u, instead of an implicit stage
+template <class P>
+concept problem_with_exact_collision = problem<P> && requires(const P p) {
+  { p.collides_exactly() } -> std::convertible_to<bool>;
+};
+
+/// Whether a problem solves its collisions exactly.
+template <problem P>
+bool collides_exactly(const P& p) {
+  if constexpr (problem_with_exact_collision<P>)
+    return p.collides_exactly();
+  else
+    return false;
+}
+
 /// A problem that reports whether it has transport, so that implicit-only methods are rejected:
 ///   has_transport(t, u)   whether T(t, u) ≠ 0
 template <class P>

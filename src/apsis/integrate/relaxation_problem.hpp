@@ -85,7 +85,7 @@ class relaxation_problem {
     require_valid(u);
   }
 
-  /// Required by `problem_with_exact_collision`: u ← e^{−z}u + (1 − e^{−z})E, z = sC/ε. Throws like
+  /// Required by `problem_with_known_collision`: u ← e^{−z}u + (1 − e^{−z})E, z = sC/ε. Throws like
   /// solve_collision().
   void advance_collision(real, real s, State& u) {
     const auto weights = flow_weights(s, relaxation(u), epsilon_);

@@ -32,7 +32,8 @@ class stepper {
   using real = typename P::real;    ///< type of time and coefficients
 
   /// Copies the method and stores a reference to the problem, which must outlive the stepper. Throws
-  /// input_error if the method evaluates Q explicitly and the problem cannot, or if an embedded solution is
+  /// input_error if the method evaluates Q explicitly and the problem cannot, if the method is exponential
+  /// and the problem does not solve its collisions exactly, or the reverse, or if an embedded solution is
   /// requested that the method does not have. A step of an implicit-only method throws input_error if the
   /// problem has transport (problem_with_transport_check).
   stepper(const method& m, P& p, solutions which = solutions::result)
@@ -66,6 +67,7 @@ class stepper {
                           "' evaluates Q explicitly (some stage uses Q of a stage without "
                           "implicit part) and the problem has no add_collision; choose an IMEX method");
     }
+    require_suitable_collisions();
   }
 
   /// Advances u = u^n at time t to u^{n+1}. Strong exception guarantee: if a stage throws, u is still u^n.
@@ -114,6 +116,20 @@ class stepper {
     std::size_t begin, end;  ///< range in targets_
     bool due;  ///< the next instruction solves the stage of a target, and the problem can fuse both
   };
+
+  /// Coefficients of implicit stages are no times of exact collisions, and the reverse.
+  void require_suitable_collisions() const {
+    const bool exact = collides_exactly(problem_);
+    if (exact == (kind_ == method_kind::exponential)) return;
+    throw input_error(
+        exact
+            ? "method '" + name_ +
+                  "' cannot integrate this problem (its collisions are solved exactly, and the method is not "
+                  "exponential); choose an exponential method"
+            : "method '" + name_ +
+                  "' cannot integrate this problem (it is exponential, and the collisions of the problem are "
+                  "not solved exactly); wrap the problem in exact_collisions, or choose an IMEX method");
+  }
 
   /// Implicit-only methods ignore T.
   void require_no_transport(real t, const state& u) {

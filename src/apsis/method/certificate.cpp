@@ -3,6 +3,8 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/method/claim_checks.hpp>
 #include <apsis/method/coefficient.hpp>
+#include <apsis/method/convexity.hpp>
+#include <apsis/method/exponential.hpp>
 #include <apsis/method/monotonicity.hpp>
 #include <apsis/method/order_conditions.hpp>
 #include <apsis/method/stability.hpp>
@@ -15,9 +17,21 @@
 namespace apsis {
 namespace {
 
+/// Returns the coefficients that satisfy the order conditions of a method.
+butcher_form<mp_real> conditioned_form(const shu_osher_form<mp_real>& form, method_kind kind) {
+  return to_butcher(kind == method_kind::exponential ? with_resolved_flows(form) : form);
+}
+
+/// Returns the largest order whose conditions are evaluated. Order 9 has 286 trees of one colour, but 89 894
+/// of two.
+int last_order(method_kind kind) {
+  if (kind == method_kind::exponential) return order_of_resolved_flows;
+  return certificate::highest_order + (kind == method_kind::imex ? 0 : 1);
+}
+
+/// `b`: the conditioned_form().
 void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certificate& c) {
-  // Order 9 has 286 trees of one colour, but 89 894 of two.
-  const int last = certificate::highest_order + (c.kind == method_kind::imex ? 0 : 1);
+  const int last = last_order(c.kind);
   for (int p = 1; p <= last && c.order == p - 1; ++p) {
     const auto trees = rooted_trees(p, colours_of(c.kind));
     const auto weights = elementary_weights(b, trees);
@@ -44,6 +58,16 @@ void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certif
     c.conditions = conditions;
   }
   c.error_constant = std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Exact collisions set no limit.
+void find_ssp_of_exponential(const shu_osher_form<mp_real>& form, const butcher_form<mp_real>& b,
+                             const mp_real& zero, certificate& c) {
+  c.unconditional = is_convex(form, c.kind, form.stages());
+  const mp_real largest = largest_step_of_form(form);
+  c.bounded = !c.unconditional || largest > 0;
+  c.ssp_coefficient = c.unconditional ? largest : mp_real(0);
+  c.explicit_radius = monotonicity_radius(b.A_hat, zero, c.ssp_coefficient);
 }
 
 void find_ssp(const butcher_form<mp_real>& b, const mp_real& zero, certificate& c) {
@@ -187,10 +211,14 @@ certificate certify(const method& m) {
   const auto form = m.coefficients<mp_real>();
   const auto b = to_butcher(form);
   const mp_real tolerance = residual_tolerance(m.precision());
-  find_order(b, tolerance, c);
-  find_ssp(b, tolerance, c);
+  find_order(conditioned_form(form, m.kind), tolerance, c);
+  if (m.kind == method_kind::exponential) {
+    find_ssp_of_exponential(form, b, tolerance, c);
+  } else {
+    find_ssp(b, tolerance, c);
+  }
   find_structure(m, form, b, c);
-  if (m.kind != method_kind::explicit_only) c.stability = analyse_stability(m.coefficients<long double>());
+  if (has_derivatives(m.kind)) c.stability = analyse_stability(m.coefficients<long double>());
   if (m.kind == method_kind::imex) {
     find_intermediate_regime(form, tolerance, c);
     c.band = find_intermediate_band(to_butcher(m.coefficients<long double>()));

@@ -44,20 +44,22 @@ struct embedded_certificate {
 
 /// Certificate of a method: its properties, derived from the coefficients alone.
 struct certificate {
-  static constexpr int highest_order = 8;  ///< conditions of higher order are not evaluated
+  static constexpr int highest_order = 8;  ///< conditions of higher order are not evaluated; order 4 of
+                                           ///< exponential methods
 
   std::string name;                      ///< name of the method
   method_kind kind = method_kind::imex;  ///< determines which order conditions apply
-  int order = 0;                         ///< order p by the order conditions, at most highest_order
+  int order = 0;                         ///< order p by the order conditions, at most the highest evaluated
   mp_real order_residual;                ///< largest residual of the conditions up to `order`
   std::vector<failed_condition> next;    ///< violated conditions of order p + 1
   int conditions = 0;                    ///< number of conditions up to order p
-  mp_real error_constant;                ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order p + 1; NaN for
-                                         ///< an IMEX method of highest_order
+  mp_real error_constant;                ///< 2-norm of φ(τ) − 1/γ(τ) over all trees τ of order p + 1; NaN if
+                                         ///< these are not evaluated
 
   bool unconditional = false;           ///< SSP without a step bound from Q
   bool bounded = true;                  ///< the explicit part sets a bound Δt ≤ r Δt_FE
-  mp_real ssp_coefficient = 0;          ///< r, from the Butcher form alone; undefined if !bounded
+  mp_real ssp_coefficient = 0;          ///< r, from the Butcher form alone, of exponential methods from the
+                                        ///< Shu–Osher form; undefined if !bounded
   mp_real radius_of_implicit_part = 0;  ///< radius of absolute monotonicity of A: relevant where Q satisfies
                                         ///< a forward Euler condition
   mp_real explicit_radius = 0;          ///< radius of absolute monotonicity of Â: SSP coefficient of the
@@ -72,7 +74,7 @@ struct certificate {
                                  ///< because then u^{n+1} itself is not projected to equilibrium
   int explicit_evaluations = 0;  ///< of T per step, n_F
   int implicit_solves = 0;       ///< stages with d_i ≠ 0 or ḋ_i ≠ 0
-  implicit_stability stability;  ///< default values for explicit methods
+  implicit_stability stability;  ///< default values for explicit and exponential methods
 
   // O(ε) terms for ε ≪ Δt (docs/plateaus.md); IMEX methods only.
   intermediate_regime<mp_real> regime;  ///< coefficients of these terms; undefined if !regime.applies

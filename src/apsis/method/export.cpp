@@ -154,8 +154,8 @@ std::string to_toml(const method& m) {
   out += fmt::format("P = {}\n", triangle(m.exact.P, 0, m.stages()));
   if (m.kind != method_kind::implicit_only)
     out += fmt::format("W = {}\n", triangle(m.exact.W, 0, m.stages()));
-  if (m.kind != method_kind::explicit_only)
-    out += fmt::format("d = {}\nddot = {}\n", list(diagonal_of(m.exact.D)), list(m.exact.ddot));
+  if (m.kind != method_kind::explicit_only) out += fmt::format("d = {}\n", list(diagonal_of(m.exact.D)));
+  if (has_derivatives(m.kind)) out += fmt::format("ddot = {}\n", list(m.exact.ddot));
   return m.embedded ? out + embedded_table(*m.embedded, m.kind) : out;
 }
 
@@ -176,12 +176,12 @@ std::string to_latex(const method& m, int digits) {
     if (m.kind != method_kind::implicit_only) parts.push_back("r &= " + number(e.r, digits));
     parts.push_back(array("P", s, s, of(e.P)));
     if (m.kind != method_kind::implicit_only) parts.push_back(array("W", s, s, of(e.W)));
-    if (m.kind != method_kind::explicit_only) {
+    if (m.kind != method_kind::explicit_only)
       parts.push_back(
           array("d", s, 1, [&](std::size_t i, std::size_t) { return number(e.D(i, i), digits); }));
+    if (has_derivatives(m.kind))
       parts.push_back(
           array("\\dot d", s, 1, [&](std::size_t i, std::size_t) { return number(e.ddot[i], digits); }));
-    }
   }
   if (m.embedded)
     for (auto& part : embedded_parts(*m.embedded, m.kind, digits)) parts.push_back(std::move(part));

@@ -15,8 +15,14 @@ std::string to_string(method_kind kind) {
       return "imex";
     case method_kind::explicit_only:
       return "explicit";
+    case method_kind::exponential:
+      return "exponential";
   }
   return "";
+}
+
+bool has_derivatives(method_kind kind) {
+  return kind == method_kind::imex || kind == method_kind::implicit_only;
 }
 
 tree_colours colours_of(method_kind kind) {
@@ -26,6 +32,7 @@ tree_colours colours_of(method_kind kind) {
     case method_kind::explicit_only:
       return tree_colours::F_only;
     case method_kind::imex:
+    case method_kind::exponential:
       break;
   }
   return tree_colours::both;

@@ -3,6 +3,7 @@
 #include <apsis/method/tableau.hpp>
 #include <apsis/method/trees.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,11 +15,19 @@ namespace apsis {
 enum class method_kind {
   implicit_only,  ///< u' = Q(u): no transport (trees of one colour)
   imex,           ///< u' = T(u) + Q(u): T explicit, Q implicit (trees of two colours)
-  explicit_only   ///< u' = T(u) + Q(u), both explicit with the same coefficients, A = Â
+  explicit_only,  ///< u' = T(u) + Q(u), both explicit with the same coefficients, A = Â
+  exponential     ///< u' = T(u) + Q(u): T explicit, Q by exact solutions (exponential.hpp)
 };
 
-/// Returns "implicit", "imex" or "explicit".
+/// All kinds, in the order of tables.
+inline constexpr std::array all_method_kinds = {method_kind::imex, method_kind::implicit_only,
+                                                method_kind::explicit_only, method_kind::exponential};
+
+/// Returns "implicit", "imex", "explicit" or "exponential".
 std::string to_string(method_kind kind);
+
+/// Whether stages of a method of this kind may contain Q̇.
+bool has_derivatives(method_kind kind);
 
 /// Returns the colours of the trees whose order conditions a method of this kind must satisfy.
 tree_colours colours_of(method_kind kind);

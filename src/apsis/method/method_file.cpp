@@ -20,10 +20,12 @@ namespace apsis {
 namespace {
 
 method_kind read_kind(const toml_section& top) {
-  static const std::vector<std::string> names = {"implicit", "imex", "explicit"};
   const std::string text = top.text("kind");
-  for (const auto kind : {method_kind::implicit_only, method_kind::imex, method_kind::explicit_only})
-    if (to_string(kind) == text) return kind;
+  std::vector<std::string> names;
+  for (const auto kind : all_method_kinds) {
+    names.push_back(to_string(kind));
+    if (names.back() == text) return kind;
+  }
   top.fail("kind", fmt::format("unknown kind '{}'; {}", text.substr(0, 40), suggest(text, names)));
 }
 
@@ -73,7 +75,8 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   const bool is_explicit = m.kind == method_kind::explicit_only;
   std::vector<std::string> keys = {"P"};
   if (m.kind != method_kind::implicit_only) keys.insert(keys.end(), {"W", "r"});
-  if (!is_explicit) keys.insert(keys.end(), {"d", "ddot"});
+  if (!is_explicit) keys.emplace_back("d");
+  if (has_derivatives(m.kind)) keys.emplace_back("ddot");
   const toml_section form(table, file, "shu_osher", keys);
   const std::size_t s = form.row_count("P");
   auto& e = m.exact;
@@ -87,14 +90,23 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
     if (!(coefficient_value(e.r) > 0)) form.fail("r", "'shu_osher.r' is not positive; give r > 0");
   }
   if (is_explicit) return;
-  const auto d = form.vector("d");
-  e.ddot = form.vector("ddot");
-  for (const auto& [key, size] : {std::pair{"d", d.size()}, std::pair{"ddot", e.ddot.size()}})
-    if (size != s)
+  const auto per_stage = [&](const std::string& key) {
+    auto values = form.vector(key);
+    if (values.size() != s)
       form.fail(key,
                 fmt::format("'shu_osher.{}' has {} entries (the method has {} stages); give one per stage",
-                            key, size, s));
-  for (std::size_t i = 0; i < s; ++i) e.D(i, i) = d[i];
+                            key, values.size(), s));
+    return values;
+  };
+  const auto d = per_stage("d");
+  if (has_derivatives(m.kind)) e.ddot = per_stage("ddot");
+  for (std::size_t i = 0; i < s; ++i) {
+    if (m.kind == method_kind::exponential && coefficient_value(d[i]) < 0)
+      form.fail("d", fmt::format("'shu_osher.d' has the entry {} (collisions cannot be solved backwards in "
+                                 "time); give times >= 0",
+                                 d[i]));
+    e.D(i, i) = d[i];
+  }
 }
 
 /// Reads [embedded], a row of the Shu–Osher form with the explicit and implicit parts that the method has.
@@ -195,6 +207,16 @@ void require_given_row(const toml::table& root, const std::string& file, const m
         "the first row of a two-step method stands for u^{n-1}, which is given; set its d and ddot to 0");
 }
 
+void check_exponential(const toml_section& top) {
+  if (top.has("butcher"))
+    top.fail("butcher",
+             "an exponential method has no [butcher] (its stages are exact solutions of the collision); give "
+             "[shu_osher]");
+  if (top.has("embedded"))
+    top.fail("embedded",
+             "an exponential method has no [embedded] (its error is not estimated); leave it out");
+}
+
 }  // namespace
 
 method parse_any_method(std::string_view text, const std::string& file) {
@@ -218,6 +240,7 @@ method parse_any_method(std::string_view text, const std::string& file) {
   m.kind = read_kind(top);
   if (top.has("steps")) m.steps = top.integer("steps", 1, 2);
   m.claims = read_claims(root, file);
+  if (m.kind == method_kind::exponential) check_exponential(top);
   if (top.has("shu_osher") == top.has("butcher"))
     throw input_error(source_place{file, 1, 1},
                       "the coefficients are missing or given twice (a method has either [shu_osher] or "

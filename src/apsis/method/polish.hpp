@@ -24,7 +24,8 @@ using polish_conditions = std::function<std::vector<mp_real>(const shu_osher_for
 /// method with minimal change, in 60 digits, preserving every zero, every exact rational and every row
 /// without weight on u^n. Third-order IMEX conditions are singular at a solution, because together they imply
 /// Σ b̂_i (c_i − ĉ_i)² = 0 with b̂ ≥ 0; therefore c = ĉ is imposed at every stage whose T contributes, and
-/// dependent equations are dropped. Throws numerical_error if the iteration does not converge.
+/// dependent equations are dropped. Throws numerical_error if the iteration does not converge, input_error
+/// for exponential methods.
 polish_result polish(const method& m, int digits = 45, const polish_conditions& conditions = {});
 
 }  // namespace apsis

@@ -78,6 +78,8 @@ class model {
   /// Returns a solver of collisions at points with scratch memory for one thread and batches within `limits`.
   /// The model must outlive it.
   virtual std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const = 0;
+  /// Whether make_collision() knows the exact solution of v' = Q(v)/ε.
+  virtual bool knows_collision() const { return false; }
   /// Whether make_collision() knows the relaxation time ε/C.
   virtual bool has_relaxation_time() const { return false; }
 
@@ -183,6 +185,8 @@ class relaxation_model : public model {
   /// Returns C(ω) > 0.
   virtual double rate(const double* omega) const = 0;
   std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const final;
+  /// E(ω) does not change during a collision, but targets of moments that relax do.
+  bool knows_collision() const final { return relaxing_count() == 0; }
   bool has_relaxation_time() const final { return true; }
   /// Returns the reason for a message: "temperature -0.3 is not positive".
   virtual std::string why_inadmissible(const double* omega) const = 0;

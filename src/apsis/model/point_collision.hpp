@@ -16,12 +16,19 @@ struct point_batch {
   bool cached = false;              ///< the rows were just written, which the profiler counts as no traffic
 };
 
+/// Result of point_collision::solve_stage().
+enum class stage_solution {
+  implicit,  ///< v = u + a Q(v)/ε + b Q̇(v)/ε²
+  exact      ///< v(a) of v' = Q(v)/ε, v(0) = u, for exponential methods
+};
+
 /// Largest batch of a point_collision, and its error messages.
 struct batch_limits {
   int points = 1;            ///< most points of a batch
   std::ptrdiff_t pitch = 0;  ///< of its rows, at least the number of components
   /// Steps within r Δt_FE keep nonnegative data so, which decides what error messages suggest.
   bool keeps_sign = false;
+  stage_solution stages = stage_solution::implicit;  ///< `exact` requires model::knows_collision()
 };
 
 /// The collision Q(u)/ε of a model at points of space: the stage solve that every method here is built on,
@@ -32,7 +39,8 @@ class point_collision {
   virtual ~point_collision() = default;
 
   /// In place, for the row of every point: u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², where Q̇ = Q'Q, a ≥ 0 and
-  /// b ≤ 0. Throws numerical_error with the cell where there is no solution.
+  /// b ≤ 0; or the exact solution, for which b is 0. Throws numerical_error with the cell where there is
+  /// none.
   virtual void solve_stage(double a, double b, const point_batch& at, double* u) = 0;
   /// Solves the stage at every point and returns weighted means over weights.size() consecutive points:
   /// means ← Σ_q weights_q v_q, one row for each group, at the same pitch. The rows u are overwritten.

@@ -1,4 +1,5 @@
 #include <apsis/core/errors.hpp>
+#include <apsis/core/relaxation_flow.hpp>
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/exec/aligned.hpp>
 #include <apsis/exec/profile.hpp>
@@ -13,14 +14,15 @@ namespace apsis {
 namespace {
 
 /// Stages have the closed form v = (u + μ E(ω))/(1 + μ), ω = ℛu, μ = aC/ε + |b|(C/ε)² (paper, proof of
-/// Proposition AP). All points of a batch pass one step (moments, equilibria, weights, combination) before
-/// the next begins: each step is a chain of dependent operations, and points are interleaved to hide its
-/// latency.
+/// Proposition AP); exact solutions are v = e^{−z}u + (1 − e^{−z})E(ω), z = aC/ε. All points of a batch pass
+/// one step (moments, equilibria, weights, combination) before the next begins: each step is a chain of
+/// dependent operations, and points are interleaved to hide its latency.
 class relaxation_collision final : public point_collision {
  public:
   relaxation_collision(const relaxation_model& equation, const batch_limits& limits)
       : equation_(equation),
         keeps_sign_(limits.keeps_sign),
+        exact_(limits.stages == stage_solution::exact),
         moments_(equation.moment_count()),
         pitch_(limits.pitch) {
     const auto points = static_cast<std::size_t>(limits.points);
@@ -121,6 +123,14 @@ class relaxation_collision final : public point_collision {
     const double* epsilon = at.epsilon;
     double *rates = rates_.data(), *weight_of_u = weight_of_u_.data(), *weight_of_e = weight_of_e_.data();
     for (int p = 0; p < points; ++p) rates[p] = equation_.rate(omega(p));
+    if (exact_) {
+      for (int p = 0; p < points; ++p) {
+        const auto weights = flow_weights(a, rates[p], epsilon[p]);
+        weight_of_u[p] = weights.of_u;
+        weight_of_e[p] = weights.of_e;
+      }
+      return;
+    }
 #pragma omp simd
     for (int p = 0; p < points; ++p) {
       const auto weights = relax_weights(a, b, rates[p], epsilon[p]);
@@ -158,7 +168,7 @@ class relaxation_collision final : public point_collision {
   const double* equilibrium(int p) const { return equilibria_.data() + p * pitch_; }
 
   const relaxation_model& equation_;
-  bool keeps_sign_;
+  bool keeps_sign_, exact_;
   std::ptrdiff_t moments_, pitch_;
   aligned_vector<double> omega_, equilibria_, rates_, weight_of_u_, weight_of_e_;
   std::vector<double> relaxing_;  ///< of one point

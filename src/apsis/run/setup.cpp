@@ -89,6 +89,7 @@ run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> pr
   set_prescribed_data();
   if (ssp_coefficient_ == 0.0 || evaluates_collisions(*method_)) builder_.with_smooth_collisions();
   if (method_->kind == method_kind::explicit_only) builder_.with_explicit_collision();
+  if (method_->kind == method_kind::exponential) builder_.with_exact_collision();
 }
 
 void run_setup::build_space(std::shared_ptr<communicator> processes) {
@@ -128,6 +129,12 @@ void run_setup::check_method() {
            fmt::format("method '{}' cannot integrate model '{}' (it is implicit only and the model has "
                        "transport); choose an IMEX or explicit method",
                        method_->name, config_.model.name));
+  if (method_->kind == method_kind::exponential && !equation->knows_collision())
+    refuse(
+        config_, "time.method",
+        fmt::format("method '{}' cannot integrate model '{}' (it is exponential, and collisions of the model "
+                    "have no solution in closed form); choose an IMEX method",
+                    method_->name, config_.model.name));
   const auto form = method_->coefficients<double>();
   ssp_coefficient_ = is_convex(form, method_->kind, form.stages()) ? form.r : 0.0;
   if (multistep_) ssp_coefficient_ = multistep_->ssp_coefficient;

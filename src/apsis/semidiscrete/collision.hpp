@@ -15,8 +15,9 @@ class collision {
  public:
   virtual ~collision() = default;
 
-  /// In place u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², a = Δt d ≥ 0, b = Δt² ḋ ≤ 0, t the time of the stage.
-  /// A relaxation keeps nonnegative rows so. Throws numerical_error with the cell where there is no solution.
+  /// In place u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², a = Δt d ≥ 0, b = Δt² ḋ ≤ 0, t the time of the stage;
+  /// or the exact solution after a time a (stage_solution), for which b is 0. A relaxation keeps nonnegative
+  /// rows so. Throws numerical_error with the cell where there is no solution.
   virtual void solve(double t, double a, double b, field& u) = 0;
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε. Throws numerical_error where ε = 0.
@@ -41,11 +42,12 @@ class cellwise_collision : public collision {
 };
 
 /// Returns the collision operator of point values, which is local to each cell. `epsilon` has one value per
-/// cell. `keeps_sign` as in model::make_collision(); `cells`: those of the gas, in increasing order, all if
+/// cell. `keeps_sign` and `stages` as in batch_limits; `cells`: those of the gas, in increasing order, all if
 /// there are none.
 std::unique_ptr<collision> make_pointwise_collision(const model& equation, std::vector<double> epsilon,
                                                     bool keeps_sign = false,
-                                                    std::vector<cell_range> cells = {});
+                                                    std::vector<cell_range> cells = {},
+                                                    stage_solution stages = stage_solution::implicit);
 
 /// Returns the collision operator of cell averages in one space dimension: stages are solved at the three
 /// Gauss–Legendre points of every cell, on the quartic through the reconstructed edges and the neighbouring
@@ -53,7 +55,8 @@ std::unique_ptr<collision> make_pointwise_collision(const model& equation, std::
 /// even if ε varies within the cell. `epsilon` holds three values per cell, in the order of the points.
 std::unique_ptr<collision> make_cell_average_collision(const model& equation, std::shared_ptr<domain> space,
                                                        spatial_discretization discretization,
-                                                       std::vector<double> epsilon);
+                                                       std::vector<double> epsilon,
+                                                       stage_solution stages = stage_solution::implicit);
 
 /// Returns the collision operator of cell averages in one space dimension at the centres of cells: a stage
 /// with explicit part ū solves v = p + a Q(v)/ε + b Q̇(v)/ε² at the centre of every cell, with the point
@@ -67,6 +70,7 @@ std::unique_ptr<collision> make_cell_average_collision(const model& equation, st
 /// between cells leave it so; each component on its own, so that the small numbers of the tails do not affect
 /// the others. `epsilon` has one value per cell.
 std::unique_ptr<collision> make_cell_centre_collision(const model& equation, std::shared_ptr<domain> space,
-                                                      bool limited, std::vector<double> epsilon);
+                                                      bool limited, std::vector<double> epsilon,
+                                                      stage_solution stages = stage_solution::implicit);
 
 }  // namespace apsis

@@ -19,11 +19,13 @@ namespace {
 class cell_average_collision final : public collision {
  public:
   cell_average_collision(const model& equation, std::shared_ptr<domain> space,
-                         spatial_discretization discretization, std::vector<double> epsilon)
+                         spatial_discretization discretization, std::vector<double> epsilon,
+                         stage_solution stages)
       : equation_(equation),
         space_(std::move(space)),
         discretization_(std::move(discretization)),
-        epsilon_(std::move(epsilon)) {
+        epsilon_(std::move(epsilon)),
+        stages_(stages) {
     space_->reserve(equation.components(), discretization_.scheme->ghost_width());
   }
 
@@ -89,7 +91,7 @@ class cell_average_collision final : public collision {
       own.block.reserve(discretization_, std::min(collision_block_length(u.stride()), u.cells()), 0,
                         u.stride());
       own.points.resize(static_cast<std::size_t>(points) * static_cast<std::size_t>(u.stride()));
-      if (!own.local) own.local = equation_.make_collision({points, u.stride(), limited()});
+      if (!own.local) own.local = equation_.make_collision({points, u.stride(), limited(), stages_});
     });
   }
 
@@ -134,6 +136,7 @@ class cell_average_collision final : public collision {
   std::shared_ptr<domain> space_;
   spatial_discretization discretization_;
   std::vector<double> epsilon_;
+  stage_solution stages_;
   field result_;
   per_thread<scratch> scratch_;
 };
@@ -142,13 +145,13 @@ class cell_average_collision final : public collision {
 
 std::unique_ptr<collision> make_cell_average_collision(const model& equation, std::shared_ptr<domain> space,
                                                        spatial_discretization discretization,
-                                                       std::vector<double> epsilon) {
+                                                       std::vector<double> epsilon, stage_solution stages) {
   if (space->mesh().dimensions() != 1)
     throw input_error(
         "the finite volume formulation collides at the Gauss points of intervals and knows one space "
         "dimension only; use the finite difference formulation");
   return std::make_unique<cell_average_collision>(equation, std::move(space), std::move(discretization),
-                                                  std::move(epsilon));
+                                                  std::move(epsilon), stages);
 }
 
 }  // namespace apsis

@@ -20,8 +20,12 @@ namespace {
 class cell_centre_collision final : public collision {
  public:
   cell_centre_collision(const model& equation, std::shared_ptr<domain> space, bool limited,
-                        std::vector<double> epsilon)
-      : equation_(equation), space_(std::move(space)), limited_(limited), epsilon_(std::move(epsilon)) {
+                        std::vector<double> epsilon, stage_solution stages)
+      : equation_(equation),
+        space_(std::move(space)),
+        limited_(limited),
+        epsilon_(std::move(epsilon)),
+        stages_(stages) {
     space_->reserve(equation.components(), centre_rows::reach);
   }
 
@@ -123,7 +127,7 @@ class cell_centre_collision final : public collision {
         rows->reserve(static_cast<std::size_t>(length) + 2 * static_cast<std::size_t>(centre_rows::reach));
       own.points.resize(numbers);
       own.solved.resize(numbers);
-      if (!own.local) own.local = equation_.make_collision({length, u.stride(), limited_});
+      if (!own.local) own.local = equation_.make_collision({length, u.stride(), limited_, stages_});
     });
   }
 
@@ -198,6 +202,7 @@ class cell_centre_collision final : public collision {
   std::shared_ptr<domain> space_;
   bool limited_;
   std::vector<double> epsilon_;
+  stage_solution stages_;
   field changes_,  ///< of the point values in a stage, or their rates
       result_;     ///< neighbours need the old averages
   std::array<aligned_vector<double>, 2>
@@ -208,12 +213,14 @@ class cell_centre_collision final : public collision {
 }  // namespace
 
 std::unique_ptr<collision> make_cell_centre_collision(const model& equation, std::shared_ptr<domain> space,
-                                                      bool limited, std::vector<double> epsilon) {
+                                                      bool limited, std::vector<double> epsilon,
+                                                      stage_solution stages) {
   if (space->mesh().dimensions() != 1)
     throw input_error(
         "collisions at the centres of cells map averages along one line and know one space dimension only; "
         "use the finite difference formulation");
-  return std::make_unique<cell_centre_collision>(equation, std::move(space), limited, std::move(epsilon));
+  return std::make_unique<cell_centre_collision>(equation, std::move(space), limited, std::move(epsilon),
+                                                 stages);
 }
 
 }  // namespace apsis

@@ -14,8 +14,12 @@ namespace {
 class pointwise_collision final : public cellwise_collision {
  public:
   pointwise_collision(const model& equation, std::vector<double> epsilon, bool keeps_sign,
-                      std::vector<cell_range> cells)
-      : equation_(equation), cells_(std::move(cells)), epsilon_(std::move(epsilon)), keeps_sign_(keeps_sign) {
+                      std::vector<cell_range> cells, stage_solution stages)
+      : equation_(equation),
+        cells_(std::move(cells)),
+        epsilon_(std::move(epsilon)),
+        keeps_sign_(keeps_sign),
+        stages_(stages) {
     if (cells_.empty()) cells_.push_back({0, static_cast<int>(epsilon_.size())});
   }
 
@@ -29,7 +33,7 @@ class pointwise_collision final : public cellwise_collision {
   void prepare(const field& u) override {
     const int points = points_per_batch(u.stride());
     scratch_.prepare([&](auto& own) {
-      if (!own.local) own.local = equation_.make_collision({points, u.stride(), keeps_sign_});
+      if (!own.local) own.local = equation_.make_collision({points, u.stride(), keeps_sign_, stages_});
     });
   }
 
@@ -88,6 +92,7 @@ class pointwise_collision final : public cellwise_collision {
   std::vector<cell_range> cells_;
   std::vector<double> epsilon_;
   bool keeps_sign_;
+  stage_solution stages_;
   struct scratch {
     std::unique_ptr<point_collision> local;
     aligned_vector<double> rates;  ///< Q/ε of a batch
@@ -99,8 +104,10 @@ class pointwise_collision final : public cellwise_collision {
 }  // namespace
 
 std::unique_ptr<collision> make_pointwise_collision(const model& equation, std::vector<double> epsilon,
-                                                    bool keeps_sign, std::vector<cell_range> cells) {
-  return std::make_unique<pointwise_collision>(equation, std::move(epsilon), keeps_sign, std::move(cells));
+                                                    bool keeps_sign, std::vector<cell_range> cells,
+                                                    stage_solution stages) {
+  return std::make_unique<pointwise_collision>(equation, std::move(epsilon), keeps_sign, std::move(cells),
+                                               stages);
 }
 
 }  // namespace apsis

@@ -133,6 +133,15 @@ problem_builder& problem_builder::with_explicit_collision() {
   return *this;
 }
 
+problem_builder& problem_builder::with_exact_collision() {
+  if (!equation_->knows_collision())
+    throw input_error(
+        "exponential methods cannot integrate this model (its collisions have no solution in closed form); "
+        "choose an IMEX method");
+  stages_ = stage_solution::exact;
+  return *this;
+}
+
 problem_builder& problem_builder::with_force(acceleration of) {
   force_ = std::move(of);
   return *this;
@@ -208,11 +217,12 @@ std::vector<double> problem_builder::epsilon_at_centres() const {
 
 std::unique_ptr<collision> problem_builder::make_collision(const std::shared_ptr<domain>& space) const {
   if (pointwise())
-    return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign(), mesh_.fluid());
+    return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign(), mesh_.fluid(), stages_);
   if (collides_at_centres())
     return make_cell_centre_collision(*equation_, space, keeps_sign() && !smooth_collisions_,
-                                      epsilon_at_centres());
-  return make_cell_average_collision(*equation_, space, complete_discretization(), epsilon_at(gauss3::xi));
+                                      epsilon_at_centres(), stages_);
+  return make_cell_average_collision(*equation_, space, complete_discretization(), epsilon_at(gauss3::xi),
+                                     stages_);
 }
 
 std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
@@ -234,7 +244,7 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
         "formulation");
   const auto space = std::make_shared<domain>(this->space());
   auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, complete_discretization(),
-                                                        make_collision(space));
+                                                        make_collision(space), stages_);
   if (force_) problem->set_force(*force_);
   if (source_) problem->set_source(*source_, unknowns());
   if (explicit_collision_) problem->treat_collision_explicitly();

@@ -67,6 +67,9 @@ class problem_builder {
   problem_builder& with_smooth_collisions();
   /// For methods that treat T and Q explicitly: forward_euler_step() is then that of T + Q/ε.
   problem_builder& with_explicit_collision();
+  /// For exponential methods: stage solves of the problem are exact solutions of the collision. Throws
+  /// input_error if the model does not know them.
+  problem_builder& with_exact_collision();
 
   /// Returns the problem. Throws input_error if the mesh or the reconstruction is missing, ε is not a finite
   /// number ≥ 0, only one face of a direction is periodic, cell averages have more than one space dimension,
@@ -118,6 +121,7 @@ class problem_builder {
   std::optional<formulation> unknowns_;
   std::optional<collision_points> collisions_;
   bool limited_ = false, explicit_collision_ = false, smooth_collisions_ = false;
+  stage_solution stages_ = stage_solution::implicit;
   scale epsilon_;
   std::optional<acceleration> force_;
   std::optional<source_rate> source_;

@@ -21,14 +21,16 @@ class semidiscrete_problem {
   using state = field;  ///< f[cell][component]
   using real = double;  ///< type of time and coefficients
 
-  /// `equation` must outlive the problem.
+  /// `equation` must outlive the problem; `stages`: what the collision solves.
   semidiscrete_problem(const model& equation, std::shared_ptr<domain> space,
-                       spatial_discretization discretization, std::unique_ptr<collision> q)
+                       spatial_discretization discretization, std::unique_ptr<collision> q,
+                       stage_solution stages = stage_solution::implicit)
       : space_(space),
         transport_(equation, std::move(space), std::move(discretization)),
         has_transport_(equation.space_dimensions() > 0 || equation.has_source()),
         collision_(std::move(q)),
-        cellwise_(dynamic_cast<cellwise_collision*>(collision_.get())) {}
+        cellwise_(dynamic_cast<cellwise_collision*>(collision_.get())),
+        stages_(stages) {}
 
   /// Adds a force to the transport. Throws input_error as force does.
   void set_force(acceleration of) { transport_.set_force(std::move(of)); }
@@ -46,8 +48,8 @@ class semidiscrete_problem {
   void add_transport(double t, const field& u, std::span<const target<field, double>> targets) {
     guarded(u, [&] { transport_.add_transport(t, u, targets); });
   }
-  /// u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε². Throws numerical_error where there is no equilibrium, or
-  /// Newton's method finds no solution.
+  /// u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², or the exact solution after a time a if it collides_exactly().
+  /// Throws numerical_error where there is no equilibrium, or Newton's method finds no solution.
   void solve_collision(double t, double a, double b, field& u) {
     guarded(u, [&] { collision_->solve(t, a, b, u); });
   }
@@ -84,6 +86,8 @@ class semidiscrete_problem {
     return 1.0 / (1.0 / of_transport +
                   1.0 / (rounding_allowance * lowest([&] { return collision_->forward_euler_step(u); })));
   }
+  /// Required by `problem_with_exact_collision`.
+  bool collides_exactly() const { return stages_ == stage_solution::exact; }
   /// Whether the model has space or a source.
   bool has_transport(double, const field&) const { return has_transport_; }
   /// Smallest ε/C > 0; +infinity where none is known, or ε = 0 everywhere.
@@ -120,6 +124,7 @@ class semidiscrete_problem {
   bool has_transport_;
   std::unique_ptr<collision> collision_;
   cellwise_collision* cellwise_;  ///< the collision if its cells are independent; else null
+  stage_solution stages_;
   bool explicit_collision_ = false;
   first_error failure_;
 };

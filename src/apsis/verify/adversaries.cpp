@@ -1,7 +1,7 @@
 #include <apsis/verify/adversaries.hpp>
 
 #include <apsis/core/extremes.hpp>
-#include <apsis/core/relaxation_weights.hpp>
+#include <apsis/core/relaxation_flow.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -55,11 +55,17 @@ void staged_problem::add_transport(double, const state& u, std::span<const targe
 }
 
 void staged_problem::solve_collision(double, double a, double b, state& u) {
-  if (std::isinf(epsilon_)) return;
+  if (!std::isinf(epsilon_)) relax(relax_weights(a, b, 1.0, epsilon_), u);
+}
+
+void staged_problem::advance_collision(double, double s, state& u) {
+  if (!std::isinf(epsilon_)) relax(flow_weights(s, 1.0, epsilon_), u);
+}
+
+void staged_problem::relax(const relaxation_weights<double>& weights, state& u) {
   const std::size_t n = u.size() - 1;
   work_.resize(u.size());
   relax_(number_of(u[n]), mass_of(u), std::span(work_).first(n));
-  const auto weights = relax_weights(a, b, 1.0, epsilon_);
   for (std::size_t i = 0; i < n; ++i) u[i] = weights.of_u * u[i] + weights.of_e * work_[i];
 }
 

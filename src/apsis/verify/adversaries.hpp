@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/core/random_source.hpp>
+#include <apsis/core/relaxation_weights.hpp>
 #include <apsis/integrate/array_state.hpp>
 
 #include <cstdint>
@@ -31,6 +32,8 @@ class ring_advection {
   }
   /// Leaves u unchanged: Q = 0.
   void solve_collision(double, double, double, state&) {}
+  /// Leaves u unchanged.
+  void advance_collision(double, double, state&) {}
   /// acc ← (fresh ? 0 : acc) + α u for every target.
   void add_collision(double, const state& u, std::span<const target<state, double>> targets) {
     accumulate<state>(targets, u, [&]() -> const state& {
@@ -71,6 +74,8 @@ class staged_problem {
   void add_transport(double t, const state& u, std::span<const target<state, double>> targets);
   /// u ← v with v = u + a Q(v) + b Q̇(v), in closed form.
   void solve_collision(double t, double a, double b, state& u);
+  /// u ← v(s) of v' = Q(v), v(0) = u.
+  void advance_collision(double t, double s, state& u);
   /// acc ← (fresh ? 0 : acc) + α u + β Q(u) for every target.
   void add_collision(double t, const state& u, std::span<const target<state, double>> targets);
   /// Δt_FE = 1.
@@ -78,6 +83,7 @@ class staged_problem {
 
  private:
   int number_of(double clock);
+  void relax(const relaxation_weights<double>& weights, state& u);
 
   motion move_;
   equilibrium relax_;

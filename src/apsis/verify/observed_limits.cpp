@@ -88,6 +88,7 @@ experiment permutations(const method& m, const std::vector<double>& epsilons) {
 
 /// A small case uses a method of the catalogue; any other one of the same kind sets up the same operators.
 const char* stand_in(method_kind kind) {
+  if (kind == method_kind::exponential) return "exponential-2";
   return kind == method_kind::explicit_only ? "ssprk-2-2" : "forward-backward-euler";
 }
 
@@ -142,6 +143,7 @@ std::vector<experiment> experiments_for(const method& m) {
       permutations(m, staged)};
   for (const auto& model : all_models()) {
     if (!has_space(*model.entry)) continue;
+    if (m.kind == method_kind::exponential && !model.equation->knows_collision()) continue;
     if (model.equation->collisions_decrease_entropy()) all.push_back(entropy(m, model.entry->name, stiff));
     if (model.equation->collisions_keep_sign())
       for (const char* form : {"finite-volume", "finite-difference"})

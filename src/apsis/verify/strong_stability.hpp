@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/exponential.hpp>
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/verify/step_search.hpp>
@@ -51,7 +52,8 @@ kept_property<State> stays_inside(std::string name, std::function<double(const S
 /// otherwise the classical radius in forward Euler steps of Q.
 double promised_coefficient(const certificate& c);
 
-/// A problem with observed stages: `look(u)` is called with every stage value.
+/// A problem with observed stages: `look(u)` is called with every stage value. For exponential methods,
+/// collisions are exact if they are known.
 template <problem P>
 class watched_problem {
  public:
@@ -60,8 +62,11 @@ class watched_problem {
   /// Accumulators of add_transport().
   using targets_type = std::span<const target<state, real>>;
 
-  /// `inner` must outlive this.
-  watched_problem(P& inner, std::function<void(const state&)> look) : inner_(inner), look_(std::move(look)) {}
+  /// `inner` must outlive this; `kind` is that of the method.
+  watched_problem(P& inner, method_kind kind, std::function<void(const state&)> look)
+      : inner_(inner),
+        exact_(problem_with_known_collision<P> && kind == method_kind::exponential),
+        look_(std::move(look)) {}
 
   /// Forwards to the problem; observes u if T(u) is evaluated.
   void add_transport(real t, const state& u, targets_type targets) {
@@ -75,7 +80,14 @@ class watched_problem {
   }
   /// Forwards to the problem and observes the solution.
   void solve_collision(real t, real a, real b, state& u) {
-    inner_.solve_collision(t, a, b, u);
+    if constexpr (problem_with_known_collision<P>) {
+      if (exact_)
+        inner_.advance_collision(t, a, u);
+      else
+        inner_.solve_collision(t, a, b, u);
+    } else {
+      inner_.solve_collision(t, a, b, u);
+    }
     look_(u);
   }
   /// Forwards to the problem.
@@ -86,9 +98,12 @@ class watched_problem {
   }
   /// Δt_FE of the problem.
   real forward_euler_step(real t, const state& u) const { return inner_.forward_euler_step(t, u); }
+  /// Whether collisions are exact.
+  bool collides_exactly() const { return exact_ || apsis::collides_exactly(inner_); }
 
  private:
   P& inner_;
+  bool exact_;
   std::function<void(const state&)> look_;
 };
 
@@ -111,7 +126,7 @@ step_limit largest_step(const method& m, P& equation, std::span<const typename P
     const double found = property.excess(*before, after);
     if (!(found <= excess)) excess = found;
   };
-  watched_problem<P> watched(equation, [&](const state& stage) {
+  watched_problem<P> watched(equation, m.kind, [&](const state& stage) {
     if (how.stages) judge(stage);
   });
   stepper march(m, watched);

@@ -1,0 +1,151 @@
+// Runs by exponential methods: the results of a step, conservation, promises, observed order, the limit ε →
+// 0, and models whose collisions have no known solution.
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/stepper.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace exponential_run_test {
+
+namespace {
+
+using namespace apsis;
+using testing::HasSubstr;
+
+constexpr const char* name = "exponential-2";
+
+/// A gas between two walls that heat it; ε varies within the cells.
+case_config gas(const std::string& space, const std::string& time, const std::string& epsilon = "0.01 + x") {
+  return parse_case(
+      fmt::format(
+          "[model]\nname = \"bgk\"\nepsilon = \"{}\"\n[initial]\nrho = \"1 + 0.1*cos(2*pi*x)\"\nu = "
+          "0\nT = 1\n[space]\ncells = 12\ndomain = [0, 1]\nboundary = \"diffuse\"\n{}\n[boundary.left]\n"
+          "kind = \"diffuse\"\nT = 1.2\n[velocity]\nmax = 7\npoints = 24\n[time]\nmethod = \"{}\"\n{}\n",
+          epsilon, space, name, time),
+      "gas.toml");
+}
+
+const std::vector<std::string> spaces = {"formulation = \"finite-difference\"",
+                                         "formulation = \"finite-volume\"",
+                                         "formulation = \"finite-volume\"\ncollisions = \"centres\"",
+                                         "formulation = \"finite-volume\"\nreconstruction = \"upwind1\""};
+
+std::vector<double> end_of(const case_config& c) {
+  simulation run(c);
+  while (!run.finished()) run.advance();
+  return run.state();
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(sum);
+}
+
+std::string refusal_of(const std::string& model, const std::string& more) {
+  try {
+    const simulation run(
+        parse_case(fmt::format("[model]\nname = \"{}\"\n{}\n[time]\nmethod = \"{}\"\nend = 0.1\ndt = 0.01\n",
+                               model, more, name),
+                   "case.toml"));
+  } catch (const input_error& refused) {
+    return refused.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+// Two collisions of times s and t are one of time s + t: an identity that only the exact solution has.
+TEST(exponential_run, collisions_of_a_case_are_exact) {
+  const case_config c = gas(spaces[0], "dt = 0.001\nend = 0.01\n");
+  const run_setup setup(c);
+  const auto problem = setup.make_problem();
+  ASSERT_TRUE(problem->collides_exactly());
+  field once = setup.initial_state();
+  // Out of equilibrium: transport of a large step.
+  stepper march(find_method(name), *problem);
+  march.step(0.0, 0.01, once);
+  field twice = once;
+  const field before = once;
+  problem->solve_collision(0.0, 0.05, 0.0, once);
+  problem->solve_collision(0.0, 0.02, 0.0, twice);
+  problem->solve_collision(0.0, 0.03, 0.0, twice);
+  double moved = 0.0;
+  for (int cell = 0; cell < once.cells(); ++cell)
+    for (int k = 0; k < once.components(); ++k) {
+      EXPECT_NEAR(once.row(cell)[k], twice.row(cell)[k], 1e-15) << cell << " " << k;
+      moved = std::max(moved, std::abs(once.row(cell)[k] - before.row(cell)[k]));
+    }
+  EXPECT_GT(moved, 1e-3);
+}
+
+TEST(exponential_run, keeps_conservation_and_positivity_in_every_discretization) {
+  for (const auto& space : spaces) {
+    const bool first_order = space.find("upwind1") != std::string::npos;
+    simulation run(gas(space + (first_order ? "" : "\nlimiter = \"positivity\""), "safety = 1\nend = 0.1\n"));
+    EXPECT_TRUE(run.promises().conservation) << space;
+    EXPECT_TRUE(run.promises().positivity) << space;
+    while (!run.finished()) run.advance();
+    // Some hundred steps of a few roundings each; energy through the walls is 1e-2.
+    EXPECT_LT(run.summary().conservation_defect, 1e-12) << space;
+    EXPECT_GE(run.summary().min_value, 0.0) << space;
+    EXPECT_EQ(run.summary().negative_values, 0) << space;
+  }
+}
+
+TEST(exponential_run, observed_order_is_two) {
+  for (const auto& space : spaces) {
+    const auto at = [&](long steps) {
+      return end_of(gas(space, fmt::format("dt = {:.17g}\nend = 0.02\n", 0.02 / static_cast<double>(steps)),
+                        "0.1 + x"));
+    };
+    const auto exact = at(1280);
+    const double coarse = distance(at(80), exact), fine = distance(at(160), exact);
+    // The reference has 1/64 of the error of the finer run.
+    EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.15) << space;
+  }
+}
+
+TEST(exponential_run, becomes_the_explicit_scheme_of_the_limit) {
+  // For ε = 0 every collision is the projection to equilibrium, for a relaxation of any method.
+  const auto end = [](const char* epsilon) {
+    return end_of(gas(spaces[0], "dt = 0.001\nend = 0.05\n", epsilon));
+  };
+  const auto limit = end("0");
+  EXPECT_EQ(end("1e-300"), limit);
+  // z = Δt/(3ε) = 33 leaves e^{−33} = 3e-15 of every deviation.
+  EXPECT_LT(distance(end("1e-5"), limit), 1e-12);
+  EXPECT_GT(distance(end("1e-3"), limit), 1e-4);
+}
+
+TEST(exponential_run, models_without_a_known_solution_of_their_collisions_are_refused_at_the_key) {
+  const std::string gas_data =
+      "epsilon = 0.1\n[initial]\nrho = 1\nT = 1\n[space]\ncells = 12\ndomain = [0, 1]\n[velocity]\nmax = "
+      "7\npoints = 24\n";
+  for (const std::string model : {"es-bgk", "shakhov", "decay"})
+    EXPECT_THAT(
+        refusal_of(model, model == "decay" ? "epsilon = 0.1" : gas_data),
+        HasSubstr("method 'exponential-2' cannot integrate model '" + model +
+                  "' (it is exponential, and collisions of the model have no solution in closed form); "
+                  "choose an IMEX method"));
+  EXPECT_EQ(refusal_of("bgk", gas_data), "");
+  EXPECT_EQ(refusal_of("ode", "epsilon = 0.1"), "");
+}
+
+TEST(exponential_run, a_tolerance_is_refused) {
+  EXPECT_THAT([] { const simulation run(gas(spaces[0], "tolerance = 1e-3\ncfl = 0.5\nend = 0.1\n")); },
+              testing::ThrowsMessage<input_error>(HasSubstr("time.tolerance cannot be kept")));
+}
+
+}  // namespace exponential_run_test

@@ -33,6 +33,7 @@ json embedded_json(const method& m, const certificate& c) {
           {"order_residual", c.embedded->order_residual.convert_to<double>()},
           {"estimate", c.embedded->estimate.convert_to<double>()},
           {"alignment", c.embedded->alignment.convert_to<double>()},
+          {"weight", c.embedded->weight},
           {"relaxes", c.embedded->relaxes},
           {"last", c.embedded->last ? json(c.embedded->last->convert_to<double>()) : json(nullptr)},
           {"explicit_evaluations", c.embedded->explicit_evaluations},
@@ -41,9 +42,11 @@ json embedded_json(const method& m, const certificate& c) {
 }
 
 std::string embedded_text(const json& e) {
-  return fmt::format("order {}, estimate {:.4g} (2-norm of its residuals of order {}), alignment {:.3g}{}",
+  const double weight = e["weight"].get<double>();
+  return fmt::format("order {}, estimate {:.4g} (2-norm of its residuals of order {}), alignment {:.3g}{}{}",
                      e["order"].get<int>(), e["estimate"].get<double>(), e["order"].get<int>() + 1,
-                     e["alignment"].get<double>(), e["convex"].get<bool>() ? "" : ", not convex");
+                     e["alignment"].get<double>(), weight > 1.0 ? fmt::format(", weight {:.3g}", weight) : "",
+                     e["convex"].get<bool>() ? "" : ", not convex");
 }
 
 std::string embedded_cost_text(const json& e) {

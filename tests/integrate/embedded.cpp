@@ -259,6 +259,26 @@ TEST(step_control, never_exceeds_the_limit_of_the_step_rule) {
   EXPECT_EQ(solve_to("md-imex-8-3", 1.0L, 1, real(1) / 8).rejected, 0);
 }
 
+TEST(error_estimate, is_multiplied_by_the_weight_but_for_the_part_that_relaxes) {
+  // u₂ relaxes to 0 without changing u₁, within ε ≪ Δt.
+  auto problem = apsis::make_relaxation_problem<std::vector<double>>(
+      apsis::no_transport{}, [](const auto& u) { return u[0]; }, [](double w, auto& out) { out = {w, 0.0}; },
+      [](double) { return 1.0; }, 1e-9);
+  const auto norm = [](const std::vector<double>& u, const std::vector<double>& v) {
+    return std::hypot(u[0] - v[0], u[1] - v[1]);
+  };
+  const std::vector<double> start{1.0, 0.0}, result{2.0, 0.0}, along{2.01, 0.0}, off{2.0, 0.01};
+  const auto of = [&](double weight, const std::vector<double>& other) {
+    apsis::error_estimate<decltype(problem)> estimate(weight);
+    return estimate(problem, 0.0, 1.0, start, {result, other}, norm);
+  };
+  for (const double weight : {1.0, 7.5}) {
+    EXPECT_NEAR(of(weight, along), weight * 0.01, 1e-14);  // the rounding of 2.01
+    // W w/(1 + w) with w = 1/(10 W), and 1/(1 + z) of v is 1e-9.
+    EXPECT_NEAR(of(weight, off), 0.01 * 0.1 / (1.0 + 0.1 / weight), 1e-9);
+  }
+}
+
 TEST(step_control, rejects_nan_errors_and_invalid_tolerances) {
   step_controller<double> control(1e-3, 2);
   EXPECT_FALSE(control.accepts(1.0, std::nan("")));

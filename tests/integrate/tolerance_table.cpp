@@ -98,13 +98,13 @@ void check_against_fixed_steps(const std::string& name, double epsilon, long mos
   }
 }
 
-/// Errors stay within a factor of 200 of the tolerance for every method: 30 for all but those of
-/// docs/methods.md. From tolerances below the forecast of the terms of size ε, steps resolve ε/C.
+/// Errors stay within a factor of 30 of the tolerance, of 100 for one method (docs/methods.md). From
+/// tolerances below the forecast of the terms of size ε, steps resolve ε/C.
 void check_all_tolerances(const std::string& name, double epsilon) {
   const apsis::method& m = apsis::find_method(name);
   for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
     const auto now = run_to(m, epsilon, tolerance);
-    EXPECT_LE(now.error, 200 * tolerance)
+    EXPECT_LE(now.error, (name == "md-imex-9-3-narrow" ? 100 : 30) * tolerance)
         << name << ", epsilon " << epsilon << ", tolerance " << tolerance << ": " << now.steps
         << " steps, error " << now.error << ", forecast " << now.forecast;
   }
@@ -147,7 +147,7 @@ TEST(tolerances, are_met_within_30_with_at_most_3_times_the_best_equal_steps_for
       check_against_fixed_steps(name, epsilon, 20000);
 }
 
-TEST(tolerances, are_met_within_200_by_all_methods_slow) {
+TEST(tolerances, are_met_within_30_by_all_methods_but_one_slow) {
   const auto names = imex_methods_with_embedded_row();
   ASSERT_GE(names.size(), 16u);
   for (const auto& name : names)

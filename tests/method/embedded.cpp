@@ -78,6 +78,25 @@ TEST(embedded_row, is_certified_with_its_estimate) {
   EXPECT_NEAR(c.embedded->alignment.convert_to<double>(), std::sqrt(0.5), 1e-15);
 }
 
+// The error constant over the estimate along the Taylor term, where both are factors of Δt^p.
+TEST(embedded_row, has_a_weight_where_its_estimate_is_far_below_the_error_constant) {
+  for (const std::string name : {"md-imex-16-4-efficient", "md-imex-8-3-large-r", "md-imex-5-2"}) {
+    const certificate& c = find_certificate(name);
+    const mp_real along = c.embedded->estimate * c.embedded->alignment;
+    EXPECT_GT(c.embedded->weight, 2.0) << name;
+    EXPECT_NEAR(c.embedded->weight * 18 * along.convert_to<double>(), c.error_constant.convert_to<double>(),
+                1e-13)
+        << name;
+    EXPECT_EQ(find_method(name).embedded->weight, c.embedded->weight) << name;
+  }
+  EXPECT_EQ(find_certificate("md-imex-8-3-accurate").embedded->weight, 1.0);  // the ratio is 12
+  EXPECT_EQ(find_certificate("md-imex-16-4-large-r").embedded->weight, 1.0);  // q = p − 2
+  EXPECT_EQ(find_certificate("extrapolated-euler-8").embedded->weight, 1.0);  // no error constant
+  // An estimate that has no part along the Taylor term.
+  EXPECT_LT(find_certificate("extrapolated-euler-6").embedded->alignment, 1e-50);
+  EXPECT_EQ(find_certificate("extrapolated-euler-6").embedded->weight, 1.0);
+}
+
 TEST(embedded_row, does_not_change_the_certificate_of_the_method) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded.has_value(); })) {
     method m = find_method(name);

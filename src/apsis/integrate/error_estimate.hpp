@@ -21,16 +21,20 @@ struct error_target {
 /// component off the equilibrium manifold has less weight where it relaxes within the step or belongs to an
 /// initial layer (docs/methods.md, "Embedded solutions"). With e = u^{n+1} − ũ and P(x) = x + aQ(P(x)), a →
 /// ∞, the projection to the manifold,
-///   estimate = ‖(w e + v(u^{n+1}) − v(ũ))/(1 + w)‖,   v(x) = x + (Δt/ρ²) Q(v(x)),   w = ρ/10,
-///   ρ = ‖P(u^{n+1}) − P(u^n)‖/‖u^{n+1} − u^n‖, between 1/100 and 1.
-/// To first order the component along the manifold has weight 1, and the rest (w + 1/(1 + z/ρ²))/(1 + w) with
-/// z = CΔt/ε: 1 for z → 0, 1/11 for z → ∞ while u follows its moments (ρ = 1), and 1/1000 at least in a
-/// layer, where the moments hardly change. For problems without relaxation_time the estimate is ‖e‖.
+///   estimate = W ‖(w e + v(u^{n+1}) − v(ũ))/(1 + w)‖,   v(x) = x + (Δt/ρ²) Q(v(x)),   w = ρ/(10 W),
+///   ρ = ‖P(u^{n+1}) − P(u^n)‖/‖u^{n+1} − u^n‖, between 1/100 and 1,
+/// and the weight W of the method (embedded_certificate). To first order the component along the manifold has
+/// weight W, and the rest W (w + 1/(1 + z/ρ²))/(1 + w) with z = CΔt/ε: W for z → 0, about 1/10 for z → ∞
+/// while u follows its moments (ρ = 1), and 1/1000 at least in a layer, where the moments hardly change. For
+/// problems without relaxation_time the estimate is W ‖e‖.
 template <problem P>
 class error_estimate {
  public:
   using state = typename P::state;  ///< type of u
   using real = typename P::real;    ///< type of errors
+
+  /// `weight`: W, of the method (stepper::weight_of_estimate).
+  explicit error_estimate(real weight = real(1)) : weight_(weight) {}
 
   /// Estimates the error of a step of length dt from `start` at time t. distance(u, v) is a norm of u − v,
   /// which may be relative to u. Buffers are allocated at the first call. Throws what the stage solve of
@@ -42,7 +46,7 @@ class error_estimate {
       if (!relaxes_) relaxes_ = p.relaxation_time(t, start) < std::numeric_limits<real>::infinity();
       if (*relaxes_) return weighted_estimate(p, t, dt, start, tried, distance);
     }
-    return distance(tried.result, tried.embedded);
+    return weight_ * distance(tried.result, tried.embedded);
   }
 
  private:
@@ -59,8 +63,8 @@ class error_estimate {
     };
     solve_both(start, real(1e100));  // a C/ε ≫ 1: P(x) up to rounding
     const real change = distance(tried.result, start), ratio = distance(of_result, of_other) / change;
-    if (!(change > real(0))) return distance(tried.result, tried.embedded);
-    const real rho = std::clamp(ratio, real(0.01), real(1)), w = rho / real(10);
+    if (!(change > real(0))) return weight_ * distance(tried.result, tried.embedded);
+    const real rho = std::clamp(ratio, real(0.01), real(1)), w = rho / (real(10) * weight_);
     solve_both(tried.embedded, dt / (rho * rho));
     // u^{n+1} minus the weighted error.
     const real share = real(1) / (real(1) + w);
@@ -68,7 +72,7 @@ class error_estimate {
     add(p, t, tried.embedded, w * share, sum, false);
     add(p, t, of_result, -share, sum, false);
     add(p, t, of_other, share, sum, false);
-    return distance(tried.result, sum);
+    return weight_ * distance(tried.result, sum);
   }
 
   static void add(P& p, real t, const state& u, real alpha, state& sum, bool fresh) {
@@ -76,6 +80,7 @@ class error_estimate {
     p.add_transport(t, u, {&to, 1});
   }
 
+  real weight_;
   std::vector<state> buffers_;
   std::optional<bool> relaxes_;
 };

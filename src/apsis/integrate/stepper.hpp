@@ -39,7 +39,9 @@ class stepper {
   stepper(const method& m, P& p, solutions which = solutions::result)
       : stepper(which == solutions::result ? m.coefficients<real>()
                                            : require_embedded_row(m).with_embedded_row().coefficients<real>(),
-                m.kind, p, m.name, which) {}
+                m.kind, p, m.name, which) {
+    if (m.embedded) weight_ = static_cast<real>(m.embedded->weight);
+  }
 
   /// The same for coefficients that are not in a file (a method under design); with result_and_embedded, the
   /// last row is the embedded solution.
@@ -101,6 +103,8 @@ class stepper {
           "dt, or choose a method with an SSP coefficient");
     return m_.r;
   }
+  /// Returns the factor of the estimated error of the method, 1 without a certificate.
+  real weight_of_estimate() const { return weight_; }
   const schedule& plan() const { return plan_; }  ///< schedule of a step
   P& problem() { return problem_; }               ///< the problem passed to the constructor
 
@@ -242,6 +246,7 @@ class stepper {
   schedule plan_;
   std::vector<real> initial_, abscissae_;
   bool convex_;
+  real weight_ = real(1);  ///< of the embedded solution
   std::vector<prepared> prepared_;
   std::vector<target<state, real>> targets_;
   real prepared_dt_ = real(0);

@@ -51,6 +51,13 @@ void require_own_name(const method& m, const std::string& path) {
     throw input_error(source_place{path, 0, 0}, problem);
 }
 
+/// Certifies a method and completes it by what its certificate says.
+certificate certify_and_complete(method& m) {
+  certificate c = certify(m);
+  if (m.embedded && c.embedded) m.embedded->weight = c.embedded->weight;
+  return c;
+}
+
 /// Makes a method of the catalogue or a member of a family. Throws input_error if there is none of this name.
 method make_named_method(std::string_view name) {
   for (const auto& file : embedded::methods())
@@ -80,7 +87,7 @@ const entry& find_entry(const std::string& name) {
   if (found != known.end()) return *found->second;
   auto made = std::make_unique<entry>();
   made->parsed = is_file ? parse_method(key.second, name) : make_named_method(name);
-  made->certified = certify(made->parsed);
+  made->certified = certify_and_complete(made->parsed);
   if (is_file && made->certified.claims_hold) require_own_name(made->parsed, name);
   return *known.emplace(std::move(key), std::move(made)).first->second;
 }
@@ -138,7 +145,7 @@ bool is_method_file(std::string_view name) {
 
 method load_method_file(const std::string& path) {
   method m = parse_method(read_method_text(path), path);
-  require_claims(certify(m));
+  require_claims(certify_and_complete(m));
   require_own_name(m, path);
   return m;
 }

@@ -9,6 +9,7 @@
 #include <apsis/method/order_conditions.hpp>
 #include <apsis/method/stability.hpp>
 
+#include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>
@@ -161,6 +162,14 @@ void check_embedded_signs(const shu_osher_form<mp_real>& form, const mp_real& to
   check("-embedded.ddot", -form.ddot[last], 0);
 }
 
+/// embedded_certificate::weight.
+double weight_of_estimate(const embedded_certificate& e, const certificate& c) {
+  constexpr double usual = 18.0;  // keeps errors within 30 tolerances (docs/methods.md)
+  const mp_real alignment = std::max(e.alignment, mp_real("0.1"));
+  const double ratio = mp_real(c.error_constant / (alignment * e.estimate)).convert_to<double>();
+  return e.order == c.order - 1 && ratio > usual ? ratio / usual : 1.0;
+}
+
 void find_embedded_solution(const method& m, certificate& c) {
   if (!m.embedded) return;
   const method extended = m.with_embedded_row();
@@ -186,6 +195,7 @@ void find_embedded_solution(const method& m, certificate& c) {
     for (std::size_t i = 0; i < s; ++i) evaluated = evaluated || form.W(i, j) != 0;
     e.explicit_evaluations += form.W(s, j) != 0 && !evaluated ? 1 : 0;
   }
+  e.weight = weight_of_estimate(e, c);
   c.embedded = e;
   if (m.embedded->order >= m.claims.order)
     c.failures.push_back(

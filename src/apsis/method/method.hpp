@@ -58,6 +58,7 @@ struct embedded_row {
       W;                       ///< w̃, one entry per stage
   std::string d = "0",         ///< d̃
       ddot = "0";              ///< d̃̇, with its sign
+  double weight = 1.0;  ///< factor of the estimated error, set by its certificate (embedded_certificate)
 };
 
 /// A time integrator as data. Coefficients are stored as the strings of the method file (exact rationals

@@ -61,7 +61,8 @@ struct simulation::impl {
         watch(setup),
         rounding(rounding_of(setup)),
         state(start ? start(setup) : setup.initial_state()),
-        march(times_of(setup)) {
+        march(times_of(setup)),
+        estimate(integrator.weight_of_estimate()) {
     if (setup.multistep()) multistep = make_multistep_stepper(*setup.multistep(), *problem);
     if (setup.has_tolerance()) control.emplace(*config.time.tolerance, setup.integrator().embedded->order);
     first = last = watch.start(state);

@@ -6,6 +6,7 @@
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/run/setup.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -225,7 +226,8 @@ void check_mixed_bgk(const std::string& method, const std::vector<double>& toler
       EXPECT_LE(run.step(), 30 * before) << trace;
     }
     EXPECT_LE(error, 25 * std::max(tolerance, run.expected_plateau())) << trace;
-    before = run.step();
+    before =
+        std::max(run.step(), 2L);  // a single step is as long as time.cfl allows, not as the tolerance does
   }
 }
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from .errors import FileError
+from .errors import FileError, InputError
 
 Array = NDArray[np.float64]
 Coefficient = Union[int, float, str, Fraction]
@@ -58,7 +58,8 @@ class Certificate:
         ssp = "any step" if self.ssp_coefficient is None else f"{self.ssp_coefficient:.6g}"
         return {"method": self.name, "kind": self.kind, "order": str(self.order), "SSP coefficient": ssp,
                 "type": self.type, "limit ε → 0": f"from {self.ap_data}",
-                "work per step": f"{self.explicit_evaluations} evaluations of T, {self.implicit_solves} implicit solves",
+                "work per step": f"{self.explicit_evaluations} evaluations of T, {self.implicit_solves} "
+                                f"{'exact collisions' if self.kind == 'exponential' else 'implicit solves'}",
                 "claims": "hold" if self.claims_hold else "; ".join(self.failures)}
 
     def __repr__(self) -> str:
@@ -80,7 +81,8 @@ class Method:
         u_i = r_i u^n + Σ p_ij u_j + Σ w_ij (u_j + (Δt/r) T(u_j)) + Δt Σ d_ij Q(u_j) + Δt² ḋ_i Q̇(u_i)
 
     as arrays P, W, D (s × s) and ddot (s) and the number r; Butcher form as A_hat, A, A_dot (s × s). `exact` has the
-    coefficients of the file as fractions.
+    coefficients of the file as fractions. In exponential methods d_ii are times of exact solutions of the collision, in units
+    of Δt, and A and A_dot do not exist: they raise InputError.
     """
 
     def __init__(self, core: _core.Method) -> None:
@@ -139,12 +141,18 @@ class Method:
     @cached_property
     def A(self) -> Array:
         """Butcher matrix of Q."""
+        self._require_stage_solves("A")
         return self._core.A
 
     @cached_property
     def A_dot(self) -> Array:
         """Butcher matrix of Q̇."""
+        self._require_stage_solves("A_dot")
         return self._core.A_dot
+
+    def _require_stage_solves(self, name: str) -> None:
+        if self.kind == "exponential":
+            raise InputError(f"method '{self.name}' has no {name} (its collisions are solved exactly); use D")
 
     @cached_property
     def exact(self) -> dict[str, list[list[Fraction]] | list[Fraction] | Fraction]:

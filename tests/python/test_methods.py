@@ -12,11 +12,13 @@ import pytest
 def test_arrays_fractions_and_certificate_agree(name):
     m = apsis.method(name)
     s = m.stages
-    assert m.P.shape == m.W.shape == m.D.shape == m.A.shape == m.A_hat.shape == m.A_dot.shape == (s, s)
+    assert m.P.shape == m.W.shape == m.D.shape == m.A_hat.shape == (s, s)
     # Â = R⁻¹W/r, A = R⁻¹D with R = I − P − W. Coefficients are of size 1 to 10; s terms.
     R = np.eye(s) - m.P - m.W
     np.testing.assert_allclose(R @ m.A_hat, m.W / m.r, atol=1e-12)
-    np.testing.assert_allclose(R @ m.A, m.D, atol=1e-12)
+    if m.kind != "exponential":
+        assert m.A.shape == m.A_dot.shape == (s, s)
+        np.testing.assert_allclose(R @ m.A, m.D, atol=1e-12)
     exact = m.exact
     # The convex weights of a double form are on a grid of 2^-53 or so.
     np.testing.assert_allclose([[float(x) for x in row] for row in exact["W"]], m.W, atol=1e-15)
@@ -125,3 +127,13 @@ def test_representations_are_short_and_escaped():
     assert "<td>0.904402</td>" in m.certificate._repr_html_()
     # Text of a file is escaped.
     assert set(re.findall(r"<(/?\w+)", m._repr_html_())) <= {f"{end}{tag}" for end in ("", "/") for tag in ("table", "tr", "th", "td")}
+
+
+def test_exponential_methods_have_no_butcher_matrix_of_the_collision():
+    m = apsis.method("exponential-2")
+    assert m.kind == "exponential" and m.D.diagonal().tolist() == [1 / 3] * 4
+    assert m.A_hat.shape == (4, 4)
+    assert "4 exact collisions" in m.certificate._repr_html_()
+    for name in ("A", "A_dot"):
+        with pytest.raises(apsis.InputError, match=rf"method 'exponential-2' has no {name} \(its collisions are solved exactly\); use D"):
+            getattr(m, name)

@@ -65,12 +65,12 @@ TEST(exponential, methods_and_problems_that_do_not_belong_together_are_refused) 
   auto problem = ode_model::as_relaxation<state>(1.0L);
   apsis::exact_collisions exact(problem);
   EXPECT_THAT(
-      [&] { apsis::stepper march(apsis::find_method("exponential-2"), problem); },
+      [&] { const apsis::stepper march(apsis::find_method("exponential-2"), problem); },
       testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr(
           "method 'exponential-2' cannot integrate this problem (it is exponential, and the collisions of "
           "the problem are not solved exactly); wrap the problem in exact_collisions")));
   EXPECT_THAT(
-      [&] { apsis::stepper march(apsis::find_method("md-imex-3-2"), exact); },
+      [&] { const apsis::stepper march(apsis::find_method("md-imex-3-2"), exact); },
       testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr(
           "method 'md-imex-3-2' cannot integrate this problem (its collisions are solved exactly, and the "
           "method is not exponential)")));

@@ -55,7 +55,7 @@ class relaxation_collision final : public point_collision {
     rows_.resize(weights.size());
     for (int first = 0; first < at.count; first += per_group, means += at.pitch) {
       for (int q = 0; q < per_group; ++q) {
-        const auto k = static_cast<std::size_t>(first + q);
+        const auto k = static_cast<std::size_t>(first) + static_cast<std::size_t>(q);
         const double weight = weights[static_cast<std::size_t>(q)];
         rows_[static_cast<std::size_t>(q)] = relaxation::contribution(
             weight, weight_of_u_[k], weight_of_e_[k], u + static_cast<std::ptrdiff_t>(first + q) * at.pitch,

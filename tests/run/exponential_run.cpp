@@ -1,5 +1,7 @@
 // Runs by exponential methods: the results of a step, conservation, promises, observed order, the limit ε →
 // 0, and models whose collisions have no known solution.
+#include "gas_between_walls.hpp"
+
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/stepper.hpp>
@@ -20,19 +22,14 @@ namespace exponential_run_test {
 namespace {
 
 using namespace apsis;
+using between_walls::distance, between_walls::end_of;
 using testing::HasSubstr;
 
 constexpr const char* name = "exponential-2";
 
-/// A gas between two walls that heat it; ε varies within the cells.
+/// ε varies within the cells.
 case_config gas(const std::string& space, const std::string& time, const std::string& epsilon = "0.01 + x") {
-  return parse_case(
-      fmt::format(
-          "[model]\nname = \"bgk\"\nepsilon = \"{}\"\n[initial]\nrho = \"1 + 0.1*cos(2*pi*x)\"\nu = "
-          "0\nT = 1\n[space]\ncells = 12\ndomain = [0, 1]\nboundary = \"diffuse\"\n{}\n[boundary.left]\n"
-          "kind = \"diffuse\"\nT = 1.2\n[velocity]\nmax = 7\npoints = 24\n[time]\nmethod = \"{}\"\n{}\n",
-          epsilon, space, name, time),
-      "gas.toml");
+  return between_walls::case_of({.method = name, .time = time, .space = space, .epsilon = epsilon});
 }
 
 const std::vector<std::string> spaces = {"formulation = \"finite-difference\"",
@@ -40,28 +37,11 @@ const std::vector<std::string> spaces = {"formulation = \"finite-difference\"",
                                          "formulation = \"finite-volume\"\ncollisions = \"centres\"",
                                          "formulation = \"finite-volume\"\nreconstruction = \"upwind1\""};
 
-std::vector<double> end_of(const case_config& c) {
-  simulation run(c);
-  while (!run.finished()) run.advance();
-  return run.state();
-}
-
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return std::sqrt(sum);
-}
-
 std::string refusal_of(const std::string& model, const std::string& more) {
-  try {
-    const simulation run(
-        parse_case(fmt::format("[model]\nname = \"{}\"\n{}\n[time]\nmethod = \"{}\"\nend = 0.1\ndt = 0.01\n",
-                               model, more, name),
-                   "case.toml"));
-  } catch (const input_error& refused) {
-    return refused.what();
-  }
-  return {};
+  return between_walls::refusal_of(
+      parse_case(fmt::format("[model]\nname = \"{}\"\n{}\n[time]\nmethod = \"{}\"\nend = 0.1\ndt = 0.01\n",
+                             model, more, name),
+                 "case.toml"));
 }
 
 }  // namespace

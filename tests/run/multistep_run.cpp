@@ -1,5 +1,6 @@
 // Runs whose time.method takes several equal steps: the results of integrate(), observed orders, restarts,
 // conservation between walls, changes of the step, promises and refusals.
+#include "gas_between_walls.hpp"
 #include "same_results.hpp"
 
 #include <apsis/config/case.hpp>
@@ -26,44 +27,17 @@ namespace multistep_run_test {
 namespace {
 
 using namespace apsis;
+using between_walls::distance, between_walls::end_of, between_walls::refusal_of;
 using testing::HasSubstr;
 
-/// A gas between two walls that move and heat it.
 case_config gas(const std::string& method, const std::string& time, const std::string& more = "") {
-  return parse_case(
-      fmt::format(
-          "[model]\nname = \"bgk\"\nepsilon = 0.05\n[initial]\nrho = \"1 + 0.1*cos(2*pi*x)\"\nu = 0\n"
-          "T = 1\n[space]\ncells = 12\ndomain = [0, 1]\nboundary = \"diffuse\"\n[boundary.left]\n"
-          "kind = \"diffuse\"\nT = 1.2\n[velocity]\nmax = 7\npoints = 24\n[time]\nmethod = \"{}\"\n{}\n{}",
-          method, time, more),
-      "gas.toml");
+  return between_walls::case_of({.method = method, .time = time, .more = more});
 }
 
 /// Relaxation of one cell, ε = 0.3, so that the errors are those of time alone.
 case_config decay(const std::string& method, long steps) {
   return load_case("paper/ode", {"model.epsilon=0.3", "time.method=" + method, "time.end=1",
                                  fmt::format("time.dt={:.17g}", 1.0 / static_cast<double>(steps))});
-}
-
-std::vector<double> end_of(const case_config& c) {
-  simulation run(c);
-  while (!run.finished()) run.advance();
-  return run.state();
-}
-
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return std::sqrt(sum);
-}
-
-std::string refusal_of(const case_config& c) {
-  try {
-    const simulation run(c);
-  } catch (const input_error& refused) {
-    return refused.what();
-  }
-  return {};
 }
 
 }  // namespace

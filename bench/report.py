@@ -310,6 +310,23 @@ def compact(results):
     return kept
 
 
+RUN = ("error", "seconds", "smallest")
+
+
+def packed(points):
+    """Returns one entry for the runs of a contestant, with the numbers of RUN for each."""
+    entries = {}
+    for point in points:
+        entry = {key: value for key, value in point.items() if key not in RUN}
+        entries.setdefault(json.dumps(entry), entry | {"runs": []})["runs"].append([point[key] for key in RUN])
+    return list(entries.values())
+
+
+def unpacked(entries):
+    """Returns the points of packed()."""
+    return [{key: value for key, value in entry.items() if key != "runs"} | dict(zip(RUN, run)) for entry in entries for run in entry["runs"]]
+
+
 def text_of(results):
     """Formats JSON with one line per row and run, so that diffs are readable."""
     text = json.dumps(results, ensure_ascii=False)
@@ -324,16 +341,32 @@ def read(path):
 
 
 def keep(results, folder):
+    """Writes the file of a machine; `results` are compact."""
     name = re.sub(r"[^a-z0-9]+", "-", processor(any_of(results)).lower()).strip("-")
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{name}.json").write_text(text_of(compact(results)), encoding="utf-8")
+    stored = {name: result | {"data": result["data"] | {"points": packed(result["data"]["points"])}} for name, result in results.items()}
+    (folder / f"{name}.json").write_text(text_of(stored), encoding="utf-8")
 
 
 def newest_first(folder):
     machines = [read(path) for path in sorted(folder.glob("*.json"))]
     if not machines:
         raise ReportError(f"no results in {folder}; run make bench")
+    for result in (result for machine in machines for result in machine.values()):
+        result["data"]["points"] = unpacked(result["data"]["points"])
     return sorted(machines, key=lambda results: any_of(results)["machine"]["date"], reverse=True)
+
+
+def forget_superseded(machines, folder):
+    """Removes the runs of contests that a newer file has: pictures show the newest, pages of older machines only rows."""
+    newer = set()
+    for machine in machines:
+        superseded = [result for name, result in machine.items() if name in newer and result["data"]["points"]]
+        for result in superseded:
+            result["data"] = {"points": []}
+        if superseded:
+            keep(machine, folder)
+        newer |= set(machine)
 
 
 def main():
@@ -344,8 +377,9 @@ def main():
     given = parser.parse_args()
     folder = given.docs / "data" / "speed"
     if given.results.exists():
-        keep(read(given.results), folder)
+        keep(compact(read(given.results)), folder)
     machines = newest_first(folder)
+    forget_superseded(machines, folder)
     results = {}
     for measured in reversed(machines):  # a table that the newest file lacks is that of an older one
         results.update(measured)

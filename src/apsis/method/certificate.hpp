@@ -40,10 +40,9 @@ struct embedded_certificate {
   std::optional<mp_real> last;   ///< its O(ε) term relative to the exact one (intermediate_regime::last)
   int explicit_evaluations = 0;  ///< additional evaluations of T, at stages where u^{n+1} needs none
   int implicit_solves = 0;       ///< additional stage solves: 0 or 1
-  /// W = max(1, C/(18 a C̃)) if q = p − 1, else 1, with the error constant C of the method, the estimate C̃ and
-  /// the alignment a, at least 0.1, so that aC̃ is the estimate along the Taylor term. Both C and C̃ are
-  /// factors of Δt^p, and after a time of order one the error of u is up to some C/(aC̃) times the estimates
-  /// of single steps, which are multiplied by W.
+  /// Factor W of the estimated error of a step: max(1, C/(18 a C̃)) if q = p − 1, else 1. C is the error
+  /// constant of the method, C̃ the estimate and a its alignment, at least 0.1. Then errors of u and estimates
+  /// are both of size Δt^p, and after a time of order one the error is about C/(aC̃) times the estimates.
   double weight = 1.0;
 };
 

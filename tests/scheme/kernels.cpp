@@ -65,14 +65,15 @@ expected borges(const stencil5& u) {
   return {static_cast<double>(with(tau)), static_cast<double>(std::abs(with(tau + lost) - with(tau)))};
 }
 
-/// Rows of a velocity distribution with tails below 1e-150, perturbed, with zeros and isolated spikes.
+/// Rows of a velocity distribution with tails below 1e-150, perturbed, with zeros and isolated spikes of the
+/// height `spike`.
 struct pencil {
   int width, cells, ghosts;
   aligned_vector<double> u;
   std::vector<const double*> rows;
 };
 
-pencil draw(int width, int cells, int ghosts, std::uint64_t seed) {
+pencil draw(int width, int cells, int ghosts, std::uint64_t seed, double spike) {
   pencil p{width, cells, ghosts, {}, {}};
   apsis::random_source random(seed);
   for (int i = 0; i < cells + 2 * ghosts; ++i)
@@ -81,7 +82,7 @@ pencil draw(int width, int cells, int ghosts, std::uint64_t seed) {
       double value = (1.0 + 0.2 * std::sin(x)) * std::exp(-v * v);
       const double kind = random.uniform(0.0, 1.0);
       if (kind < 0.1) value = 0.0;
-      if (kind > 0.98) value = 1e3;
+      if (kind > 0.98) value = spike;
       if (kind > 0.5 && kind < 0.9) value *= random.uniform(0.0, 2.0);
       p.u.push_back(value);
     }
@@ -107,9 +108,9 @@ stencil5 mirrored(stencil5 u) {
 /// of β at 1e-40 of the largest is far below that.
 constexpr double rounding = 2e-14;
 
-void expect_edges(const std::string& name, expected (*formula)(const stencil5&), int width) {
+void expect_edges(const std::string& name, expected (*formula)(const stencil5&), int width, double spike) {
   const auto scheme = apsis::find_reconstruction(name)->make();
-  const pencil p = draw(width, 20, scheme->ghost_width(), static_cast<std::uint64_t>(width));
+  const pencil p = draw(width, 20, scheme->ghost_width(), static_cast<std::uint64_t>(width), spike);
   const auto count = static_cast<std::size_t>(p.cells * width);
   aligned_vector<double> left(count), right(count), out(count), forward;
   for (int k = 0; k < width; ++k) forward.push_back(k % 3 == 0 ? 0.0 : 1.0);
@@ -149,7 +150,7 @@ TEST(kernels, a_scheme_that_defines_both_edges_alone_gets_its_outflow_edges_from
   const plain scheme;
   EXPECT_EQ(scheme.operations(true), 0.0) << "not counted";
   for (const int width : {1, 3, 8}) {
-    const pencil p = draw(width, 20, scheme.ghost_width(), static_cast<std::uint64_t>(width));
+    const pencil p = draw(width, 20, scheme.ghost_width(), static_cast<std::uint64_t>(width), 1e3);
     const auto count = static_cast<std::size_t>(p.cells * width);
     aligned_vector<double> left(count), right(count), out(count), forward;
     for (int k = 0; k < width; ++k) forward.push_back(k % 3 == 0 ? 0.0 : 1.0);
@@ -162,10 +163,40 @@ TEST(kernels, a_scheme_that_defines_both_edges_alone_gets_its_outflow_edges_from
 
 TEST(kernels, edges_agree_with_the_literature_for_every_instruction_set) {
   for_each_instruction_set([] {
-    for (const int width : {1, 3, 8, 40, 152}) {
-      expect_edges("weno5-z", borges, width);
-      expect_edges("weno5-js", jiang_shu, width);
-    }
+    // Products of the indicators of a spike of 1e60 overflow, numerators alone with one of 1e37.
+    for (const int width : {1, 3, 8, 40, 152})
+      for (const double spike : {1e3, 1e37, 1e60}) {
+        expect_edges("weno5-z", borges, width, spike);
+        expect_edges("weno5-js", jiang_shu, width, spike);
+      }
+  });
+}
+
+TEST(kernels, edges_depend_on_their_own_stencil_alone_whatever_the_size_of_other_data) {
+  // Otherwise results would depend on the partition into pencils, that is on the number of threads.
+  for_each_instruction_set([] {
+    for (const char* name : {"weno5-z", "weno5-js"})
+      for (const int width : {1, 3, 8, 40})
+        for (const double spike : {1e3, 1e20, 1e60}) {
+          const auto scheme = apsis::find_reconstruction(name)->make();
+          const pencil p = draw(width, 20, scheme->ghost_width(), static_cast<std::uint64_t>(width), spike);
+          const auto all = static_cast<std::size_t>(p.cells * width), one = static_cast<std::size_t>(width);
+          aligned_vector<double> left(all), right(all), out(all), own_left(one), own_right(one), own_out(one);
+          const aligned_vector<double> forward(one, 1.0);
+          const double* const* rows = p.rows.data() + p.ghosts;
+          scheme->edges(rows, p.cells, width, left.data(), right.data());
+          scheme->outflow_edges(rows, p.cells, width, forward.data(), out.data());
+          for (int i = 0; i < p.cells; ++i) {
+            scheme->edges(rows + i, 1, width, own_left.data(), own_right.data());
+            scheme->outflow_edges(rows + i, 1, width, forward.data(), own_out.data());
+            for (std::size_t k = 0; k < one; ++k) {
+              const std::size_t at = static_cast<std::size_t>(i) * one + k;
+              ASSERT_EQ(left[at], own_left[k]) << name << " " << spike << " " << i << " " << k;
+              ASSERT_EQ(right[at], own_right[k]) << name << " " << spike << " " << i << " " << k;
+              ASSERT_EQ(out[at], own_out[k]) << name << " " << spike << " " << i << " " << k;
+            }
+          }
+        }
   });
 }
 

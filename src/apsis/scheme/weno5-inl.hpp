@@ -17,18 +17,25 @@ namespace apsis::HWY_NAMESPACE::weno5 {
 /// first and second differences, which neighbouring cells share, and represent an edge value as the value of
 /// the cell plus a deviation.
 
-/// Second difference s = u_{i−1} − 2u_i + u_{i+1} and inner smoothness indicator β = ab + (4/3)s² of a cell
-/// with the differences a and b to its neighbours; the same as ((a + b)/2)² + (13/12)s².
+/// `Weights` has
+///   added          a constant that belongs to every smoothness indicator, or 0;
+///   of_any_size    whether the edges are correct for data of any size;
+///   smoothness(u)  the positive indicators y_k of a window;
+///   factors(y)     the g_k, up to a common factor.
+
+/// Second difference s = u_{i−1} − 2u_i + u_{i+1} of a cell with the differences a and b to its neighbours,
+/// and inner smoothness indicator β = ab + (4/3)s², the same as ((a + b)/2)² + (13/12)s², with a constant
+/// added.
 template <class N>
 struct bend {
   N second, inner;
-  HWY_INLINE bend(N before, N after)
-      : second(after - before), inner(fma(N(4.0 / 3.0) * second, second, before * after)) {}
+  HWY_INLINE bend(N before, N after, N added)
+      : second(after - before), inner(fma(N(4.0 / 3.0) * second, second, fma(before, after, added))) {}
 };
 
 /// Stencil of cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} − u_i and twice
 /// these, and the bends at i−1, i and i+1.
-template <class N>
+template <class Weights, class N>
 class window {
  public:
   HWY_INLINE window(N a, N b, N c, N d, N e)
@@ -37,9 +44,9 @@ class window {
         after(d - c),
         twice_before(before + before),
         twice_after(after + after),
-        bend0(b - a, before),
-        bend1(before, after),
-        bend2(after, e - d),
+        bend0(b - a, before, Weights::added),
+        bend1(before, after, Weights::added),
+        bend2(after, e - d, Weights::added),
         next_(d),
         last_(e),
         last_difference_(e - d) {}
@@ -55,7 +62,7 @@ class window {
     last_difference_ = value - last_;
     bend0 = bend1;
     bend1 = bend2;
-    bend2 = bend<N>(after, last_difference_);
+    bend2 = bend<N>(after, last_difference_, Weights::added);
     last_ = value;
   }
 
@@ -73,8 +80,8 @@ struct smoothness {
   N s0, s1, s2;
 };
 
-template <class N>
-HWY_INLINE smoothness<N> indicators(const window<N>& u) {
+template <class Weights, class N>
+HWY_INLINE smoothness<N> indicators(const window<Weights, N>& u) {
   return {fma(u.twice_before, u.bend0.second, u.bend0.inner), u.bend1.inner,
           negative_fma(u.twice_after, u.bend2.second, u.bend2.inner)};
 }
@@ -83,7 +90,7 @@ HWY_INLINE smoothness<N> indicators(const window<N>& u) {
 /// of 1e-40: products of six of them neither overflow nor underflow, whatever the size of the data. The inner
 /// one needs no comparison: β₁ ≤ 2.67 (β₀ + β₂), since in terms of the differences a, b, c, d, β₁ ≤ 13 (b² +
 /// c²)/6, β₀ ≥ 13 b²/16 for any a, and β₂ ≥ 13 c²/16 for any d. For data so small that only δ remains, all
-/// three are equal.
+/// three are equal. A power of two changes no rounding.
 template <class N>
 HWY_INLINE smoothness<N> scale(const smoothness<N>& s, N delta) {
   const N by = inverse_power_of_two(maximum(s.s0, s.s2) + delta), least = fma(delta, by, N(1e-40));
@@ -97,13 +104,23 @@ struct factors {
   N g0, g1, g2;
 };
 
+/// The same weights for data of any size.
+template <class Weights>
+struct scaled : Weights {
+  template <class N>
+  static HWY_INLINE weno5::smoothness<N> smoothness(const window<Weights, N>& u) {
+    return scale(Weights::smoothness(u), N(0.0));
+  }
+};
+
 /// Terms of a stencil from which the edges of its cell are computed.
 template <class Weights, class N>
 struct edge_terms {
   N here, before, after, twice_before, twice_after, second0, second2;
   smoothness<N> y;
 
-  HWY_INLINE edge_terms(const window<N>& u)
+  template <class Of>
+  HWY_INLINE edge_terms(const window<Of, N>& u)
       : here(u.here),
         before(u.before),
         after(u.after),
@@ -111,7 +128,7 @@ struct edge_terms {
         twice_after(u.twice_after),
         second0(u.bend0.second),
         second2(u.bend2.second),
-        y(scale(indicators(u), Weights::delta(u.here))) {}
+        y(Weights::smoothness(u)) {}
 
   /// Numerator at the right edge: twice the candidates minus u_i are r₀, r₁/6 and −r₂/3, with the weights g₀,
   /// 6g₁ and 3g₂.
@@ -128,9 +145,11 @@ struct edge_terms {
   }
 };
 
-/// Right edge u + numerator/(2 denominator) before the division.
+/// Right edge u + numerator/(2 denominator) before the division. Where the denominator is below `largest`,
+/// no product overflows: by the factors of weights_js, |numerator| < 1e255 there.
 template <class N>
 struct right_fraction {
+  static constexpr double largest = 1e200;
   N here, numerator, denominator;
 
   template <class Weights>
@@ -141,58 +160,114 @@ struct right_fraction {
     denominator = fma(N(6.0), g.g1, fma(N(3.0), g.g2, g.g0));
   }
 
+  HWY_INLINE N size() const { return denominator; }
   HWY_INLINE N edge() const { return fma(N(0.5), numerator / denominator, here); }
+
+  /// Takes the fields of `other` where those of this fraction may have overflowed.
+  HWY_INLINE void replace_if_too_large(const right_fraction& other) {
+    const auto fits = size() < N(largest);
+    numerator = select(fits, numerator, other.numerator);
+    denominator = select(fits, denominator, other.denominator);
+  }
 };
 
 /// Both edges with a single division; the left one is that of the mirrored cells, its numerator with
-/// the opposite sign.
+/// the opposite sign. The sums of weights differ by a factor of at most 3, and their product is as large as
+/// `largest` before a numerator overflows.
 template <class N>
 struct both_fractions {
-  N here, right, right_sum, left, left_sum;
+  static constexpr double largest = 1e300;
+  N here, right, right_sum, left, left_sum, product;
 
   template <class Weights>
   HWY_INLINE both_fractions(const edge_terms<Weights, N>& u)
-      : here(u.here), right(u.here), right_sum(u.here), left(u.here), left_sum(u.here) {
+      : here(u.here), right(u.here), right_sum(u.here), left(u.here), left_sum(u.here), product(u.here) {
     const auto g = Weights::factors(u.y);
     right = u.right(g);
     left = u.left(g);
     const N common = fma(N(6.0), g.g1, g.g0 + g.g2);
     right_sum = fma(N(2.0), g.g2, common);
     left_sum = fma(N(2.0), g.g0, common);
+    product = right_sum * left_sum;
   }
 
+  HWY_INLINE N size() const { return product; }
   HWY_INLINE void edges(N& left_edge, N& right_edge) const {
-    const N half = N(0.5) / (right_sum * left_sum);
+    const N half = N(0.5) / product;
     right_edge = fma(right, left_sum * half, here);
     left_edge = negative_fma(left, right_sum * half, here);
+  }
+
+  /// As in right_fraction.
+  HWY_INLINE void replace_if_too_large(const both_fractions& other) {
+    const auto fits = size() < N(largest);
+    right = select(fits, right, other.right);
+    right_sum = select(fits, right_sum, other.right_sum);
+    left = select(fits, left, other.left);
+    left_sum = select(fits, left_sum, other.left_sum);
+    product = select(fits, product, other.product);
   }
 };
 
 /// Calls put(fraction, j) for cells 0 … count−1 of the walk. The formulas of a cell form a dependency chain
 /// longer than the out-of-order window of a processor; they are split into three parts, and those of three
-/// cells are interleaved to hide latency.
+/// cells are interleaved to hide latency. Returns the sum of the sizes of the fractions.
 template <class Weights, template <class> class Fraction, class Walk, class Put>
-HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Put& put) {
+HWY_INLINE auto put_fractions(const Walk& way, const double* const* rows, int count, const Put& put) {
   using N = typename Walk::number;
+  using terms = edge_terms<Weights, N>;
   const auto value = [&](int j) APSIS_PACKED { return way.load_and_prefetch(rows, j); };
-  window<N> u(value(-2), value(-1), value(0), value(1), value(2));
-  edge_terms<Weights, N> newest(u);
+  N sizes(0.0);
+  const auto finish = [&](const Fraction<N>& cell, int j) APSIS_PACKED {
+    sizes = sizes + cell.size();
+    put(cell, j);
+  };
+  window<Weights, N> u(value(-2), value(-1), value(0), value(1), value(2));
+  terms newest(u);
   Fraction<N> waiting(newest);
   if (count > 1) {
     u.advance(value(3));
-    newest = edge_terms<Weights, N>(u);
+    newest = terms(u);
   }
   for (int j = 2; j < count; ++j) {
-    put(waiting, j - 2);
+    finish(waiting, j - 2);
     waiting = Fraction<N>(newest);
     u.advance(value(j + 2));
-    newest = edge_terms<Weights, N>(u);
+    newest = terms(u);
   }
   if (count > 1) {
-    put(waiting, count - 2);
+    finish(waiting, count - 2);
     waiting = Fraction<N>(newest);
   }
-  put(waiting, count - 1);
+  finish(waiting, count - 1);
+  return sizes;
+}
+
+/// Like put_fractions(), for data of any size. Each number decides for itself, so that an edge depends on its
+/// own stencil alone.
+template <class Weights, template <class> class Fraction, class Walk, class Put>
+HWY_NOINLINE void put_scaled_fractions(const Walk& way, const double* const* rows, int count,
+                                       const Put& put) {
+  using N = typename Walk::number;
+  for (int j = 0; j < count; ++j) {
+    const auto value = [&](int i) APSIS_PACKED { return way.load(rows, j + i); };
+    const window<Weights, N> u(value(-2), value(-1), value(0), value(1), value(2));
+    Fraction<N> cell(edge_terms<Weights, N>{u});
+    cell.replace_if_too_large(Fraction<N>(edge_terms<scaled<Weights>, N>(u)));
+    put(cell, j);
+  }
+}
+
+/// Calls put(fraction, j) for cells 0 … count−1 of the walk, and again for all of them if some fractions are
+/// too large: one addition finds out what a scaling of all of them by powers of two, eight operations, would
+/// avoid.
+template <class Weights, template <class> class Fraction, class Walk, class Put>
+HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Put& put) {
+  using N = typename Walk::number;
+  const N sizes = put_fractions<Weights, Fraction>(way, rows, count, put);
+  if constexpr (!Weights::of_any_size)
+    if (!N::all(sizes < N(Fraction<N>::largest)))
+      put_scaled_fractions<Weights, Fraction>(way, rows, count, put);
 }
 
 /// Computes both edges along a pencil with the weights of `Weights`; see reconstruction::edges
@@ -226,14 +301,22 @@ HWY_INLINE void sweep_outflow(const double* const* rows, int count, int width, c
 template <class Weights>
 double count_operations(bool both) {
   const counted x(0.0);
-  window<counted> u(x, x, x, x, x);
+  window<Weights, counted> u(x, x, x, x, x);
+  const auto add_size = [&](const auto& cell) {
+    if constexpr (!Weights::of_any_size) static_cast<void>(x + cell.size());
+  };
   return counted::operations_of([&] {
-    counted left(0.0), right(0.0);
     u.advance(x);
+    const edge_terms<Weights, counted> terms(u);
     if (both) {
-      both_fractions<counted>(edge_terms<Weights, counted>(u)).edges(left, right);
+      counted left(0.0), right(0.0);
+      const both_fractions<counted> cell(terms);
+      cell.edges(left, right);
+      add_size(cell);
     } else {
-      right_fraction<counted>(edge_terms<Weights, counted>(u)).edge();
+      const right_fraction<counted> cell(terms);
+      cell.edge();
+      add_size(cell);
     }
   });
 }

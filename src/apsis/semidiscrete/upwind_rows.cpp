@@ -76,15 +76,26 @@ void add(const cells& of, std::span<const row_target> targets) {
 /// harm.
 template <class N>
 struct limited_cell {
-  N u, edge, correction, fraction;
-  bool harms;  ///< some component has a fraction below 1
+  N u, edge, fraction;
+  bool moderate;  ///< the corrections of all components are small (limiter::is_moderate)
+  bool harms;     ///< some component has a fraction below 1
+
+  HWY_INLINE N correction() const { return edge - u; }
 };
 
+/// Cell j, whose corrections are not limited yet.
 template <class Walk, class N = typename Walk::number>
-HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j, N upstream, N correction_in) {
-  limited_cell<N> cell{way.load(run.u, j), outflow(way, run, j), N(0.0), N(1.0), false};
-  cell.correction = cell.edge - cell.u;
-  const limiter::harm_bound<N> of(upstream, cell.u, correction_in, cell.correction);
+HWY_INLINE limited_cell<N> load_cell(const Walk& way, const cells& run, int j) {
+  const N u = way.load(run.u, j), edge = outflow(way, run, j);
+  return {u, edge, N(1.0), limiter::is_moderate(u, edge), false};
+}
+
+template <class Walk, class N = typename Walk::number>
+HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j,
+                                     const limited_cell<N>& upstream) {
+  auto cell = load_cell(way, run, j);
+  if (cell.moderate && upstream.moderate) return cell;
+  const limiter::harm_bound<N> of(upstream.u, cell.u, upstream.correction(), cell.correction());
   cell.harms = of.exceeded();
   if (cell.harms) cell.fraction = of.fraction();
   return cell;
@@ -94,20 +105,20 @@ HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j, N
 template <class N>
 HWY_INLINE N limited_flux(const limited_cell<N>& donor, const limited_cell<N>& receiver) {
   if (!donor.harms && !receiver.harms) return donor.edge;
-  const N fraction = select(donor.correction > N(0.0), donor.fraction, receiver.fraction);
-  return select(fraction < N(1.0), fma(fraction, donor.correction, donor.u), donor.edge);
+  const N correction = donor.correction();
+  const N fraction = select(correction > N(0.0), donor.fraction, receiver.fraction);
+  return select(fraction < N(1.0), fma(fraction, correction, donor.u), donor.edge);
 }
 
 template <class Walk, class N = typename Walk::number>
 HWY_INLINE void add_limited_along(const Walk& way, N speed, const cells& run,
                                   std::span<const row_target> targets) {
   const step_factors<N> factors(targets, speed);
-  const N first = way.load(run.u, -2);
-  const auto before = next_cell(way, run, -1, first, outflow(way, run, -2) - first);
-  auto here = next_cell(way, run, 0, before.u, before.correction);
+  const auto before = next_cell(way, run, -1, load_cell(way, run, -2));
+  auto here = next_cell(way, run, 0, before);
   N in = limited_flux(before, here);
   for (int j = 0; j < run.count; ++j) {
-    const auto after = next_cell(way, run, j + 1, here.u, here.correction);
+    const auto after = next_cell(way, run, j + 1, here);
     const N out = limited_flux(here, after);
     accumulate(way, run, targets, factors, j, here.u, in - out);
     here = after;
@@ -131,10 +142,9 @@ void fluxes_of_cell(const cells& of, bool limited, double* in, double* out) {
       way.store(outflow(way, run, -1), in, 0, 0);
       return way.store(outflow(way, run, 0), out, 0, 0);
     }
-    const auto first = way.load(run.u, -2);
-    const auto before = next_cell(way, run, -1, first, outflow(way, run, -2) - first);
-    const auto here = next_cell(way, run, 0, before.u, before.correction);
-    const auto after = next_cell(way, run, 1, here.u, here.correction);
+    const auto before = next_cell(way, run, -1, load_cell(way, run, -2));
+    const auto here = next_cell(way, run, 0, before);
+    const auto after = next_cell(way, run, 1, here);
     way.store(limited_flux(before, here), in, 0, 0);
     way.store(limited_flux(here, after), out, 0, 0);
   });

@@ -8,11 +8,14 @@ HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
 /// g_k = 1/(β_k + 1e-6)² (Jiang & Shu, JCP 126, 1996). The constant 1e-6 is that of the reference and has the
-/// unit of the data squared.
+/// unit of the data squared. With it no product underflows, and none overflows for differences below 1e18.
 struct weights_js {
-  template <class N>
-  static HWY_INLINE N delta(N) {
-    return N(1e-6);
+  static constexpr double added = 1e-6;
+  static constexpr bool of_any_size = false;
+
+  template <class Window>
+  static HWY_INLINE auto smoothness(const Window& u) {
+    return weno5::indicators(u);
   }
   template <class N>
   static HWY_INLINE weno5::factors<N> factors(const weno5::smoothness<N>& y) {

@@ -10,11 +10,14 @@ namespace apsis::HWY_NAMESPACE {
 /// g_k = 1 + (τ/(β_k + δ))², τ = |β₀ − β₂| (Borges, Carmona, Costa & Don, JCP 227, 2008, with power 2, which
 /// preserves fifth order at smooth extrema).
 struct weights_z {
+  static constexpr double added = 0.0;
+  static constexpr bool of_any_size = true;
+
   /// δ is relative to the data, so that the scheme is scale-invariant: variations below a thousandth of the
   /// value count as smooth, even where the first two derivatives vanish together.
   template <class N>
-  static HWY_INLINE N delta(N u) {
-    return fma(1e-6 * u, u, N(1e-200));
+  static HWY_INLINE weno5::smoothness<N> smoothness(const weno5::window<weights_z, N>& u) {
+    return scale(indicators(u), fma(1e-6 * u.here, u.here, N(1e-200)));
   }
   template <class N>
   static HWY_INLINE weno5::factors<N> factors(const weno5::smoothness<N>& y) {

@@ -3,6 +3,7 @@
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/method/certificate.hpp>
+#include <apsis/method/precision.hpp>
 
 #include <cmath>
 #include <limits>
@@ -44,15 +45,49 @@ long double forced_error(const std::string& name, int steps) {
   return error(exact);
 }
 
+/// The same equation in multiprecision, for explicit methods: their errors are soon smaller than rounding
+/// errors of long double.
+struct forced_square {
+  using state = apsis::mp_real;
+  using real = apsis::mp_real;
+  using targets = std::span<const apsis::target<state, real>>;
+
+  void add_transport(real t, const state& u, targets to) {
+    const state sine = 2 + sin(t);
+    for (const auto& one : to) *one.acc = one.combine(*one.acc, u, state(cos(t) + sine * sine));
+  }
+  void add_collision(real, const state& u, targets to) {
+    for (const auto& one : to) *one.acc = one.combine(*one.acc, u, state(-u * u));
+  }
+  void solve_collision(real, real, real, state&) {}
+  real forward_euler_step(real, const state&) const { return 1; }
+};
+
+double explicit_error(const std::string& name, int steps) {
+  using real = apsis::mp_real;
+  forced_square problem;
+  apsis::stepper s(apsis::find_method(name), problem);
+  const real end = 3, dt = end / steps;
+  real u = 2;
+  for (int k = 0; k < steps; ++k) s.step(k * dt, dt, u);
+  return static_cast<double>(abs(u - (2 + sin(end))));
+}
+
 }  // namespace
 
 TEST(stepper, every_method_with_transport_has_its_order_for_time_dependent_transport) {
   for (const auto& name : apsis::method_names()) {
-    if (apsis::find_method(name).kind == apsis::method_kind::implicit_only) continue;
+    const apsis::method_kind kind = apsis::find_method(name).kind;
+    if (kind == apsis::method_kind::implicit_only) continue;
     const int order = apsis::find_certificate(name).order;
+    if (kind == apsis::method_kind::explicit_only) {
+      // The first error term of cash-karp-5 is so small that the second is 6 % of it in steps of 1/200.
+      EXPECT_NEAR(std::log2(explicit_error(name, 640) / explicit_error(name, 1280)), order, 0.1) << name;
+      continue;
+    }
     // The second error term is below 7 % of the first, even where the first is small; rounding in long double
-    // is far below both, in higher order with fewer steps.
-    const int steps = order < 5 ? 640 : order < 8 ? 80 : 32;
+    // is far below both, in fifth order with fewer steps.
+    const int steps = order < 5 ? 640 : 80;
     const long double slope = std::log2(forced_error(name, steps) / forced_error(name, 2 * steps));
     EXPECT_NEAR(static_cast<double>(slope), order, 0.1) << name;
   }

@@ -241,12 +241,41 @@ TEST(relaxation_problem, at_epsilon_zero_implicit_stages_are_the_equilibrium_and
   EXPECT_EQ(u, (row{2, std::sin(2.0)}));
 }
 
+namespace {
+
+/// Asserts that acc ← acc + α u + β (T + Q) at once is the same as with T and Q one after the other.
+template <class Problem>
+void expect_sum_of_both(Problem problem, const row& u, double alpha, double beta, bool fresh) {
+  row at_once{0.5, -0.25}, in_turn = at_once;
+  const apsis::target<row, double> together{&at_once, alpha, beta, fresh},
+      first{&in_turn, alpha, beta, fresh}, second{&in_turn, 0.0, beta, false};
+  problem.add_transport_and_collision(0, u, {&together, 1});
+  problem.add_transport(0, u, {&first, 1});
+  problem.add_collision(0, u, {&second, 1});
+  // Rounding errors of the largest term, Q ≤ 10 (3 + 3)/ε.
+  for (std::size_t k = 0; k < 2; ++k)
+    RC_ASSERT(std::abs(at_once[k] - in_turn[k]) <= 4 * rounding * (10 + 60 * std::abs(beta) / 0.01));
+}
+
+}  // namespace
+
+TEST(relaxation_problem, adds_transport_and_collision_at_once) {
+  check_property("T + Q", [] {
+    const double epsilon = magnitude(-2, 0), alpha = uniform(-1, 1), beta = one_in(4) ? 0.0 : uniform(-1, 1);
+    const row u{uniform(-3, 3), uniform(-3, 3)};
+    const bool fresh = one_in(2);
+    expect_sum_of_both(ode_model::as_relaxation(epsilon), u, alpha, beta, fresh);
+    expect_sum_of_both(ode_model::as_newton(epsilon), u, alpha, beta, fresh);
+  });
+}
+
 TEST(relaxation_problem, rejects_explicit_collision_at_epsilon_zero) {
   auto problem = ode_model::as_relaxation(0.0);
   const row u{2, 0};
   row acc(2);
   const apsis::target<row, double> to{&acc, 0.0, 1.0, true}, weight_only{&acc, 1.0, 0.0, true};
   EXPECT_THROW(problem.add_collision(0, u, {&to, 1}), apsis::input_error);
+  EXPECT_THROW(problem.add_transport_and_collision(0, u, {&to, 1}), apsis::input_error);
   problem.add_collision(0, u, {&weight_only, 1});
   EXPECT_EQ(acc, u);
 }

@@ -138,6 +138,49 @@ TEST(schedule, of_any_zero_pattern_reproduces_its_stability_function) {
   });
 }
 
+namespace {
+
+/// A problem that evaluates T and Q together.
+class joint : public counted {
+ public:
+  int joints = 0;
+
+  void add_transport_and_collision(double, const state& u,
+                                   std::span<const apsis::target<state, double>> targets) {
+    ++joints;
+    for (const auto& to : targets)
+      (*to.acc)[0] = to.combine((*to.acc)[0], u[0], (transport + collision) * u[0]);
+  }
+};
+
+}  // namespace
+
+TEST(stepper, evaluates_transport_and_collision_of_explicit_methods_together) {
+  for (const auto& name : apsis::method_names()) {
+    const apsis::method& m = apsis::find_method(name);
+    if (m.kind == apsis::method_kind::exponential) continue;
+    const auto form = m.coefficients<double>();
+    joint p;
+    p.transport = -0.3;
+    p.collision = -0.4;
+    apsis::stepper<joint> s(form, m.kind, p);
+    for (const double dt : {0.5, 0.25}) {  // coefficients are prepared once for each dt
+      p.transports = p.collisions = p.joints = 0;
+      std::vector<double> u = {1.0};
+      s.step(0.0, dt, u);
+      EXPECT_NEAR(u[0], direct(form, dt * p.transport, dt * p.collision), 1e-14) << name;
+      const schedule& plan = s.plan();
+      if (m.kind == apsis::method_kind::explicit_only) {
+        EXPECT_EQ(p.joints, plan.transport_evaluations()) << name;
+        EXPECT_EQ(p.transports + p.collisions, 0) << name;
+      } else {
+        EXPECT_EQ(p.transports + p.joints, plan.transport_evaluations()) << name;
+        EXPECT_EQ(p.collisions + p.joints, plan.collision_evaluations()) << name;
+      }
+    }
+  }
+}
+
 TEST(stepper, keeps_the_state_if_a_stage_fails) {
   for (const auto& name : apsis::method_names()) {
     const auto form = apsis::find_method(name).coefficients<double>();

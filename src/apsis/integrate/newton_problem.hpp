@@ -67,6 +67,19 @@ class newton_problem {
     });
   }
 
+  /// Required by `problem_with_joint_evaluation`.
+  void add_transport_and_collision(real t, const State& u, std::span<const target<State, real>> targets) {
+    accumulate<State>(targets, u, [&]() -> const State& {
+      work_ = u;
+      f_(t, u, work_);
+      load(u);
+      equation_.field.value(v_, equation_.g);
+      using size_type = decltype(u.size());
+      for (std::size_t i = 0; i < v_.size(); ++i) work_[static_cast<size_type>(i)] += equation_.g[i];
+      return work_;
+    });
+  }
+
   /// Sets u ← v. Throws numerical_error as guarded_newton does, or if u is not finite or not admissible; u
   /// is then unchanged.
   void solve_collision(real, real a, real b, State& u) {

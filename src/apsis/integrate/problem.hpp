@@ -48,6 +48,18 @@ concept problem_with_explicit_collision =
       p.add_collision(x, u, targets);
     };
 
+/// A problem that evaluates T and Q together, for explicit methods, which give both the same coefficients:
+///   add_transport_and_collision(t, u, targets)   for each target:
+///                                                acc ← (fresh ? 0 : acc) + α u + β (T(t, u) + Q(u))
+/// The sums of many stages, rather than T and Q, are most of the work for a small system.
+template <class P>
+concept problem_with_joint_evaluation =
+    problem_with_explicit_collision<P> &&
+    requires(P p, const typename P::state& u, typename P::real x,
+             std::span<const target<typename P::state, typename P::real>> targets) {
+      p.add_transport_and_collision(x, u, targets);
+    };
+
 /// A problem that reports whether it solves collisions exactly, as exponential methods need:
 ///   collides_exactly()   whether solve_collision(t, s, 0, u) is u ← exp(sQ) u, the solution after a time s
 ///   of

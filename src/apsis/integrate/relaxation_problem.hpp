@@ -98,14 +98,22 @@ class relaxation_problem {
   /// defined off equilibrium.
   void add_collision(real, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
-      if (epsilon_ == real(0))
-        throw input_error(
-            "epsilon = 0 and the method evaluates Q explicitly (Q is infinite off equilibrium); "
-            "choose a method of type A, which is implicit at every stage");
-      const real k = relaxation(u) / epsilon_;
+      const real k = finite_relaxation(u);
       using size_type = decltype(u.size());
       for (size_type i = 0; i < u.size(); ++i) work_[i] = k * (work_[i] - u[i]);
       return work_;
+    });
+  }
+
+  /// Required by `problem_with_joint_evaluation`. Throws like add_collision().
+  void add_transport_and_collision(real t, const State& u, std::span<const target<State, real>> targets) {
+    accumulate<State>(targets, u, [&]() -> const State& {
+      const real k = finite_relaxation(u);
+      if (flow_.size() != u.size()) flow_ = u;
+      transport_(t, u, flow_);
+      using size_type = decltype(u.size());
+      for (size_type i = 0; i < u.size(); ++i) flow_[i] += k * (work_[i] - u[i]);
+      return flow_;
     });
   }
 
@@ -157,6 +165,15 @@ class relaxation_problem {
 
   void match_size(const State& u) {
     if (work_.size() != u.size()) work_ = u;
+  }
+
+  /// work_ ← E(ℛu); returns C(ℛu)/ε.
+  real finite_relaxation(const State& u) {
+    if (epsilon_ == real(0))
+      throw input_error(
+          "epsilon = 0 and the method evaluates Q explicitly (Q is infinite off equilibrium); "
+          "choose a method of type A, which is implicit at every stage");
+    return relaxation(u) / epsilon_;
   }
 
   /// work_ ← E(ℛu); returns C(ℛu).
@@ -214,8 +231,8 @@ class relaxation_problem {
   real epsilon_;
   std::function<real(real, const State&)> forward_euler_;
   std::function<bool(const State&)> admissible_;
-  State work_{};
-  int unchecked_ = 2;  ///< number of evaluations of E still to be checked
+  State work_{}, flow_{};  ///< E, Q or T; T + Q
+  int unchecked_ = 2;      ///< number of evaluations of E still to be checked
 };
 
 /// @cond

@@ -118,7 +118,8 @@ class stepper {
     real delay;              ///< stage time minus t
     real a, b;               ///< coefficients of a stage solve
     std::size_t begin, end;  ///< range in targets_
-    bool due;  ///< the next instruction solves the stage of a target, and the problem can fuse both
+    bool due;    ///< the next instruction solves the stage of a target, and the problem can fuse both
+    bool joint;  ///< T and Q have the same coefficients, and the problem can evaluate both together
   };
 
   /// Coefficients of implicit stages are no times of exact collisions, and the reverse.
@@ -171,6 +172,10 @@ class stepper {
     if (now.what == action::solve_collision) {
       problem_.solve_collision(t + now.delay, now.a, now.b, *now.source);
     } else if (now.what == action::add_transport) {
+      if constexpr (problem_with_joint_evaluation<P>) {
+        if (now.joint)
+          return problem_.add_transport_and_collision(t + now.delay, *now.source, targets_of(now));
+      }
       problem_.add_transport(t + now.delay, *now.source, targets_of(now));
     } else if constexpr (problem_with_explicit_collision<P>) {
       problem_.add_collision(t + now.delay, *now.source, targets_of(now));
@@ -191,7 +196,8 @@ class stepper {
     targets_.clear();
     for (const auto& from : plan_.instructions()) {
       const auto j = static_cast<std::size_t>(from.stage) - 1;
-      prepared now{from.what, &buffer(from.buffer, u), real(0), real(0), real(0), targets_.size(), 0, false};
+      prepared now{from.what, &buffer(from.buffer, u), real(0), real(0), real(0), targets_.size(), 0, false,
+                   false};
       if (from.stage > 0) now.delay = abscissae_[j] * dt;
       if (from.what == action::solve_collision) {
         now.a = dt * m_.D(j, j);
@@ -199,7 +205,15 @@ class stepper {
       }
       for (const auto& to : from.to) targets_.push_back(make_target(from, to, dt, u));
       now.end = targets_.size();
-      if (!prepared_.empty()) prepared_.back().due = completes(prepared_.back(), now);
+      if (!prepared_.empty()) {
+        prepared& last = prepared_.back();
+        last.due = completes(last, now);
+        if (has_same_rates(last, now)) {
+          last.joint = true;
+          targets_.erase(targets_.begin() + static_cast<std::ptrdiff_t>(now.begin), targets_.end());
+          continue;
+        }
+      }
       prepared_.push_back(now);
     }
     prepared_dt_ = dt;
@@ -209,9 +223,25 @@ class stepper {
 
   /// Whether the stage solve `next` belongs to a target of `now`.
   bool completes(const prepared& now, const prepared& next) const {
-    if (now.what != action::add_transport || next.what != action::solve_collision) return false;
+    if (now.what != action::add_transport || now.joint || next.what != action::solve_collision) return false;
     const auto to = targets_of(now);
     return std::any_of(to.begin(), to.end(), [&](const auto& one) { return one.acc == next.source; });
+  }
+
+  /// Whether the collisions of `next` have the targets and coefficients that the transport of `now` has, so
+  /// that both can be evaluated together.
+  bool has_same_rates(const prepared& now, const prepared& next) const {
+    if (!problem_with_joint_evaluation<P> || now.joint || now.what != action::add_transport ||
+        next.what != action::add_collision || now.source != next.source)
+      return false;
+    const auto moved = targets_of(now), collided = targets_of(next);
+    auto collision = collided.begin();
+    for (const auto& to : moved) {
+      if (to.beta == real(0)) continue;
+      if (collision == collided.end() || collision->acc != to.acc || collision->beta != to.beta) return false;
+      ++collision;
+    }
+    return collision == collided.end();
   }
 
   target<state, real> make_target(const schedule::instruction& from, const schedule::contribution& to,

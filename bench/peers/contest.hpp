@@ -32,8 +32,8 @@ std::vector<double> two_per_decade(double loosest, double tightest);
 
 /// Class of contestants. A best row of the table is that of one or several classes.
 enum class league {
-  ssp,  ///< methods of Apsis with an SSP coefficient, also of two steps, equal steps; count only without
-        ///< negative unknowns
+  ssp,       ///< methods of Apsis with an SSP coefficient, also of two steps, equal steps; count only without
+             ///< negative unknowns
   any_sign,  ///< methods of the catalogue of Apsis without one, explicit ones too, equal steps
   adaptive,  ///< methods of Apsis, steps chosen by a tolerance
   baseline,  ///< multistep and exponential methods of the literature, in the library too, equal steps

@@ -64,9 +64,9 @@ double find_broadwell_reference(kinetic_task& task, bool quick) {
   return accept_reference(task, exact, second, quick ? 1e-6 : 1e-10);
 }
 
-/// Steps from four cells or ten relaxation times in length on (the rate is ρ/ε with ρ ≤ 5), of which only
-/// methods of many stages are stable. All but ssprk-2-2 have errors below 1e-8 with 1280 steps. None where
-/// they would exceed the time limit by far.
+/// Steps from the length of four cells or ten relaxation times on (the rate is ρ/ε with ρ ≤ 5); only methods
+/// of many stages are stable in the longest of them. All but ssprk-2-2 have errors below 1e-8 with 1280
+/// steps. None where they would exceed the time limit by far.
 std::vector<long> explicit_steps_of_broadwell(double end, double epsilon) {
   std::vector<long> all;
   const long least = std::max(20L, explicit_steps(end, epsilon / 5.0));

@@ -243,23 +243,23 @@ TEST(relaxation_problem, at_epsilon_zero_implicit_stages_are_the_equilibrium_and
 
 namespace {
 
-/// Asserts that acc ← acc + α u + β (T + Q) at once is the same as with T and Q one after the other.
+/// Asserts that acc ← acc + α u + β (T + Q) is the same with one call as with one for T and one for Q.
 template <class Problem>
 void expect_sum_of_both(Problem problem, const row& u, double alpha, double beta, bool fresh) {
-  row at_once{0.5, -0.25}, in_turn = at_once;
-  const apsis::target<row, double> together{&at_once, alpha, beta, fresh},
-      first{&in_turn, alpha, beta, fresh}, second{&in_turn, 0.0, beta, false};
+  row joint{0.5, -0.25}, in_turn = joint;
+  const apsis::target<row, double> together{&joint, alpha, beta, fresh}, first{&in_turn, alpha, beta, fresh},
+      second{&in_turn, 0.0, beta, false};
   problem.add_transport_and_collision(0, u, {&together, 1});
   problem.add_transport(0, u, {&first, 1});
   problem.add_collision(0, u, {&second, 1});
   // Rounding errors of the largest term, Q ≤ 10 (3 + 3)/ε.
   for (std::size_t k = 0; k < 2; ++k)
-    RC_ASSERT(std::abs(at_once[k] - in_turn[k]) <= 4 * rounding * (10 + 60 * std::abs(beta) / 0.01));
+    RC_ASSERT(std::abs(joint[k] - in_turn[k]) <= 4 * rounding * (10 + 60 * std::abs(beta) / 0.01));
 }
 
 }  // namespace
 
-TEST(relaxation_problem, adds_transport_and_collision_at_once) {
+TEST(relaxation_problem, adds_transport_and_collision_together) {
   check_property("T + Q", [] {
     const double epsilon = magnitude(-2, 0), alpha = uniform(-1, 1), beta = one_in(4) ? 0.0 : uniform(-1, 1);
     const row u{uniform(-3, 3), uniform(-3, 3)};

@@ -258,9 +258,8 @@ HWY_NOINLINE void put_scaled_fractions(const Walk& way, const double* const* row
   }
 }
 
-/// Calls put(fraction, j) for cells 0 … count−1 of the walk, and again for all of them if some fractions are
-/// too large: one addition finds out what a scaling of all of them by powers of two, eight operations, would
-/// avoid.
+/// Calls put(fraction, j) for cells 0 … count−1 of the walk, and again if some fraction is too large. The sum
+/// of sizes, one addition per number, replaces a scaling of the indicators of all cells, eight operations.
 template <class Weights, template <class> class Fraction, class Walk, class Put>
 HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Put& put) {
   using N = typename Walk::number;

@@ -301,7 +301,7 @@ template <class Weights>
 double count_operations(bool both) {
   const counted x(0.0);
   window<Weights, counted> u(x, x, x, x, x);
-  const auto add_size = [&](const auto& cell) {
+  const auto add_size = [&]([[maybe_unused]] const auto& cell) {
     if constexpr (!Weights::of_any_size) static_cast<void>(x + cell.size());
   };
   return counted::operations_of([&] {

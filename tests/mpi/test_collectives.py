@@ -5,7 +5,7 @@ import time
 import unittest
 from pathlib import Path
 
-from processes import ENVIRONMENT, main
+from processes import ENVIRONMENT, main, run
 
 COLLECTIVE = Path(os.environ["APSIS_COLLECTIVE"])
 
@@ -18,8 +18,7 @@ class Collectives(unittest.TestCase):
             failing = k % 3
             with self.subTest(name, failing=failing):
                 begun = time.monotonic()
-                done = subprocess.run(["mpirun", "-n", "3", str(COLLECTIVE), name, str(failing)], env=ENVIRONMENT, capture_output=True,
-                                      text=True, timeout=120, check=False)
+                done = run(["mpirun", "-n", "3", str(COLLECTIVE), name, str(failing)], env=ENVIRONMENT, timeout=120)
                 self.assertEqual(done.returncode, 3, done.stderr)
                 self.assertEqual([line for line in done.stderr.splitlines() if line.startswith("error:")],
                                  [f"error: process {failing}: this process fails"], done.stderr)
@@ -27,8 +26,7 @@ class Collectives(unittest.TestCase):
                 self.assertLess(time.monotonic() - begun, 60.0)
 
     def test_none_fails(self):
-        done = subprocess.run(["mpirun", "-n", "3", str(COLLECTIVE), "sum", "7"], env=ENVIRONMENT, capture_output=True, text=True,
-                              timeout=120, check=False)
+        done = run(["mpirun", "-n", "3", str(COLLECTIVE), "sum", "7"], env=ENVIRONMENT, timeout=120)
         self.assertEqual(done.returncode, 0, done.stderr)
 
 

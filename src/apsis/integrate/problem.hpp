@@ -51,7 +51,7 @@ concept problem_with_explicit_collision =
 /// A problem that evaluates T and Q together, for explicit methods, which give both the same coefficients:
 ///   add_transport_and_collision(t, u, targets)   for each target:
 ///                                                acc ← (fresh ? 0 : acc) + α u + β (T(t, u) + Q(u))
-/// The sums of many stages, rather than T and Q, are most of the work for a small system.
+/// For a small system the sums over stages take longer than T and Q.
 template <class P>
 concept problem_with_joint_evaluation =
     problem_with_explicit_collision<P> &&

@@ -145,8 +145,8 @@ struct edge_terms {
   }
 };
 
-/// Right edge u + numerator/(2 denominator) before the division. Where the denominator is below `largest`,
-/// no product overflows: by the factors of weights_js, |numerator| < 1e255 there.
+/// Right edge u + numerator/(2 denominator) before the division. With the factors of weights_js, no product
+/// overflows where the denominator is below `largest`: |numerator| < 1e255 there.
 template <class N>
 struct right_fraction {
   static constexpr double largest = 1e200;
@@ -172,8 +172,8 @@ struct right_fraction {
 };
 
 /// Both edges with a single division; the left one is that of the mirrored cells, its numerator with
-/// the opposite sign. The sums of weights differ by a factor of at most 3, and their product is as large as
-/// `largest` before a numerator overflows.
+/// the opposite sign. The sums of weights differ by a factor of at most 3, so that both are below 2e150 where
+/// their product is below `largest`; no numerator overflows there.
 template <class N>
 struct both_fractions {
   static constexpr double largest = 1e300;

@@ -92,6 +92,51 @@ TEST(collision_centre, values_invert_averages_up_to_the_tail_of_the_inverse) {
   }
 }
 
+TEST(collision_centre, values_of_constant_data_are_the_averages) {
+  // The differences vanish in floating point too.
+  for (const double average : {1.0, 0.1, 1e-300, 3e200}) {
+    centre_rows::stencil rows{};
+    rows.fill(&average);
+    double p = 0.0;
+    centre_rows::values(rows, true, 1, &p);
+    EXPECT_EQ(p, average);
+  }
+}
+
+TEST(collision_centre, subtract_reports_whether_an_average_becomes_negative) {
+  static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  check_property("subtract", [] {
+    const int n = *rc::gen::inRange(1, 40);
+    const auto number = [] { return *rc::gen::inRange(0, 1 << 20) / 1048576.0; };
+    const auto one_in = [](int several) { return *rc::gen::inRange(0, several) == 0; };
+    std::vector<double> solved, points, average, d(static_cast<std::size_t>(n), nan);
+    for (int k = 0; k < n; ++k) {
+      points.push_back(number());
+      solved.push_back(number());
+      average.push_back(one_in(9) ? 0.5 : points.back());  // v − p ≥ −p
+      if (one_in(60)) average.back() = nan;
+    }
+    const bool negative = centre_rows::subtract(solved.data(), points.data(), average.data(), n, d.data());
+    bool expected = false;
+    for (std::size_t k = 0; k < d.size(); ++k) {
+      RC_ASSERT(d[k] == solved[k] - points[k]);
+      expected = expected || average[k] + d[k] < 0.0;
+    }
+    RC_ASSERT(negative == expected);
+  });
+}
+
+TEST(collision_centre, lower_limits_points_where_the_average_would_be_negative_or_everywhere) {
+  const std::vector<double> average = {1.0, 1.0, 1.0, 2.0, 2.0, 0.5, 0.5, 1.0, 1.0},
+                            d = {-0.5, -2.0, -1.0, -3.0, 0.0, -1.0, 1.0, -1.5, -1.5},
+                            points = {3.0, 3.0, 3.0, 1.0, 3.0, 0.25, 2.0, 4.0, 0.5};
+  auto some = points, all = points;
+  centre_rows::lower(average.data(), d.data(), false, 9, some.data());
+  centre_rows::lower(average.data(), d.data(), true, 9, all.data());
+  EXPECT_THAT(some, testing::ElementsAre(3.0, 1.0, 3.0, 1.0, 3.0, 0.25, 2.0, 1.0, 0.5));
+  EXPECT_THAT(all, testing::ElementsAre(1.0, 1.0, 1.0, 1.0, 2.0, 0.25, 0.5, 1.0, 0.5));
+}
+
 TEST(collision_centre, is_of_fourth_order) {
   const auto m = small_bgk();
   EXPECT_GT(std::log2(error_of_stage(*m, 32, "periodic", 0) / error_of_stage(*m, 64, "periodic", 0)), 3.9);

@@ -22,35 +22,33 @@ constexpr double weights[] = {0.0,
 /// Row i of the stencil is at(i), i = −3 … 3.
 template <class N, class At>
 HWY_INLINE N value(const At& at, bool limited) {
-  const N here = at(0);
+  const N here = at(0), twice = here + here;
   N change(0.0);
   // The smallest terms first, and both sides together: mirrored data give mirrored bits.
-  for (int k = centre_rows::reach; k > 0; --k)
-    change = fma(N(weights[k]), (at(-k) - here) + (at(k) - here), change);
+  for (int k = centre_rows::reach; k > 0; --k) change = fma(N(weights[k]), (at(-k) + at(k)) - twice, change);
   const N all = here + change;
   return limited ? maximum(all, N(0.5) * here) : all;
 }
 
-/// Flux between two cells.
+/// A cell with the change d of its point value and b = u + d.
 template <class N>
-HWY_INLINE N flux(N d, N d_after, N b, N b_after, bool limited) {
-  const N all = N(1.0 / 24.0) * (d_after - d);
-  return limited ? maximum(minimum(all, N(0.5) * b_after), N(-0.5) * b) : all;
-}
-
-/// Numbers of three cells.
-template <class N>
-struct triple {
-  N before, here, after;
+struct changed_cell {
+  N d, b, half;
+  HWY_INLINE changed_cell(N u, N change) : d(change), b(u + change), half(N(0.5) * b) {}
 };
 
+/// Flux between two cells.
 template <class N>
-HWY_INLINE N average(const triple<N>& u, const triple<N>& d, bool limited) {
-  const N here = u.here + d.here, before = u.before + d.before, after = u.after + d.after;
-  const N all =
-      here + (flux(d.here, d.after, here, after, limited) - flux(d.before, d.here, before, here, limited));
+HWY_INLINE N flux(const changed_cell<N>& before, const changed_cell<N>& after, bool limited) {
+  const N all = N(1.0 / 24.0) * (after.d - before.d);
+  return limited ? maximum(minimum(all, after.half), -before.half) : all;
+}
+
+template <class N>
+HWY_INLINE N average(N b, N flux_before, N flux_after, bool limited) {
+  const N all = b + (flux_after - flux_before);
   // Rounding of halves of the smallest numbers.
-  return limited ? maximum(all, minimum(here, N(0.0))) : all;
+  return limited ? maximum(all, minimum(b, N(0.0))) : all;
 }
 
 void values(const centre_rows::stencil& averages, bool limited, int width, double* points) {
@@ -63,25 +61,50 @@ void values(const centre_rows::stencil& averages, bool limited, int width, doubl
   });
 }
 
-template <class N>
-HWY_INLINE triple<N> numbers_of(const centre_rows::three& rows, int k) {
-  return {N::load(rows.before + k), N::load(rows.here + k), N::load(rows.after + k)};
+bool subtract(const double* solved, const double* points, const double* average, int width, double* d) {
+  bool negative = false;
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    const N change = N::load(solved + k) - N::load(points + k);
+    change.store(d + k);
+    negative |= N::any(N::load(average + k) + change < N(0.0));
+  });
+  return negative;
 }
 
-void add_averages(const centre_rows::three& u, const centre_rows::three& d, bool limited, int width,
+void lower(const double* average, const double* d, bool all, int width, double* points) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using N = pack<decltype(lanes)>;
+    const N u = N::load(average + k), p = N::load(points + k), least = smaller(u, p);
+    (all ? least : select(u + N::load(d + k) < N(0.0), least, p)).store(points + k);
+  });
+}
+
+void add_averages(const double* const* u, const double* const* d, int count, bool limited, int width,
                   double* averages) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    average(numbers_of<N>(u, k), numbers_of<N>(d, k), limited).store(averages + k);
+    const auto cell = [&](int i)
+                          APSIS_PACKED { return changed_cell<N>(N::load(u[i] + k), N::load(d[i] + k)); };
+    changed_cell<N> here = cell(0);
+    N before = flux(cell(-1), here, limited);
+    double* to = averages + k;
+    for (int i = 0; i < count; ++i, to += width) {
+      const changed_cell<N> next = cell(i + 1);
+      const N after = flux(here, next, limited);
+      average(here.b, before, after, limited).store(to);
+      here = next;
+      before = after;
+    }
   });
 }
 
 double operations() {
   const counted x(0.0);
-  const triple<counted> row{x, x, x};
   return counted::operations_of([&] {
     value<counted>([&](int) { return x; }, true);
-    average(row, row, true);
+    const changed_cell<counted> next(x, x);
+    average(x, x, flux(next, next, true), true);
   });
 }
 
@@ -92,6 +115,8 @@ HWY_AFTER_NAMESPACE();
 namespace apsis {
 namespace {
 HWY_EXPORT(values);
+HWY_EXPORT(subtract);
+HWY_EXPORT(lower);
 HWY_EXPORT(add_averages);
 }  // namespace
 
@@ -101,8 +126,17 @@ void values(const stencil& averages, bool limited, int width, double* points) {
   HWY_DYNAMIC_DISPATCH(values)(averages, limited, width, points);
 }
 
-void add_averages(const three& u, const three& d, bool limited, int width, double* averages) {
-  HWY_DYNAMIC_DISPATCH(add_averages)(u, d, limited, width, averages);
+bool subtract(const double* solved, const double* points, const double* average, int width, double* d) {
+  return HWY_DYNAMIC_DISPATCH(subtract)(solved, points, average, width, d);
+}
+
+void lower(const double* average, const double* d, bool all, int width, double* points) {
+  HWY_DYNAMIC_DISPATCH(lower)(average, d, all, width, points);
+}
+
+void add_averages(const double* const* u, const double* const* d, int count, bool limited, int width,
+                  double* averages) {
+  HWY_DYNAMIC_DISPATCH(add_averages)(u, d, count, limited, width, averages);
 }
 
 double operations() {

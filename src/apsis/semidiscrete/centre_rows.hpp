@@ -23,18 +23,19 @@ using stencil = std::array<const double*, 2 * reach + 1>;
 /// exceed.
 void values(const stencil& averages, bool limited, int width, double* points);
 
-/// A cell and its neighbours i−1, i, i+1, one row each.
-struct three {
-  const double *before,  ///< row of cell i−1
-      *here,             ///< row of cell i
-      *after;            ///< row of cell i+1
-};
+/// d ← solved − points; returns whether average + d is negative somewhere.
+bool subtract(const double* solved, const double* points, const double* average, int width, double* d);
 
-/// averages ← u_i + (M d)_i = b_i + F_{i+½} − F_{i−½} with b = u + d and the fluxes F_{i+½} = (d_{i+1} −
-/// d_i)/24 between cells. `limited`: no flux takes more than half of b from the cell that it leaves, −b_i/2 ≤
+/// points ← min(points, average) where average + d is negative, or everywhere with `all`.
+void lower(const double* average, const double* d, bool all, int width, double* points);
+
+/// Rows of cells i = 0 … count−1, one after another: averages ← u_i + (M d)_i = b_i + F_{i+½} − F_{i−½} with
+/// b = u + d and the fluxes F_{i+½} = (d_{i+1} − d_i)/24 between cells; u[i] and d[i] are rows of i = −1 …
+/// count. `limited`: no flux takes more than half of b from the cell that it leaves, −b_i/2 ≤
 /// F_{i+½} ≤ b_{i+1}/2, so that averages ≥ 0 if b ≥ 0. It enters both cells alike: the sum over all cells
 /// does not change.
-void add_averages(const three& u, const three& d, bool limited, int width, double* averages);
+void add_averages(const double* const* u, const double* const* d, int count, bool limited, int width,
+                  double* averages);
 
 /// Operations of values() and add_averages() with limiter for one number of a row (exec/counted.hpp).
 double operations();

@@ -32,18 +32,22 @@ class cell_centre_collision final : public collision {
   /// The averages change by M d, d = v − p, whose rows have no moments: collisions conserve whatever p is.
   void solve(double, double a, double b, field& u) override {
     find_changes(u, limited_, [&](const point_batch& at, scratch& own) {
-      double* d = changes_.row(at.first_cell);
-      solve_change(a, b, at, own, d);
-      if (limited_)
-        for (int k = 0; k < at.count; ++k)
-          keep_sign(a, b, u.row(at.first_cell + k), batch(u, at.first_cell + k, at.first_cell + k + 1),
-                    own.points.data() + k * at.pitch, own, d + k * at.pitch);
+      std::copy_n(own.points.begin(), static_cast<std::size_t>(at.count * at.pitch), own.solved.begin());
+      own.local->solve_stage(a, b, at, own.solved.data());
+      for (int k = 0; k < at.count; ++k) {
+        const int cell = at.first_cell + k;
+        double *p = own.points.data() + k * at.pitch, *d = changes_.row(cell);
+        const double* solved = own.solved.data() + k * at.pitch;
+        if (centre_rows::subtract(solved, p, u.row(cell), u.stride(), d) && limited_)
+          keep_sign(a, b, u.row(cell), batch(u, cell, cell + 1), p, own, d);
+      }
     });
     if (result_.cells() != u.cells() || result_.components() != u.components())
       result_ = field(u.cells(), u.components());
-    for_changes(u, [&](int cell, const centre_rows::three& averages, const centre_rows::three& d, scratch&) {
-      centre_rows::add_averages(averages, d, limited_, u.stride(), result_.row(cell));
-    });
+    for_changes(u,
+                [&](int begin, int count, const double* const* averages, const double* const* d, scratch&) {
+                  centre_rows::add_averages(averages, d, count, limited_, u.stride(), result_.row(begin));
+                });
     result_.gains() = u.gains();
     std::swap(u, result_);
   }
@@ -54,12 +58,14 @@ class cell_centre_collision final : public collision {
       own.local->evaluate(at, own.points.data(), changes_.row(at.first_cell));
     });
     scratch_.prepare([&](auto& own) { own.rows.reserve(targets.size()); });
-    for_changes(u, [&](int cell, const centre_rows::three&, const centre_rows::three& q, scratch& own) {
+    for_changes(u, [&](int begin, int count, const double* const*, const double* const* q, scratch& own) {
       constexpr double side = 1.0 / 24.0;
-      const std::array<collision_rows::weighted_row, 3> points = {
-          {{side, q.before}, {1.0 - 2.0 * side, q.here}, {side, q.after}}};
-      upwind::rows_of(targets, cell, own.rows);
-      collision_rows::add(points, u.row(cell), u.stride(), own.rows);
+      for (int i = 0; i < count; ++i) {
+        const std::array<collision_rows::weighted_row, 3> points = {
+            {{side, q[i - 1]}, {1.0 - 2.0 * side, q[i]}, {side, q[i + 1]}}};
+        upwind::rows_of(targets, begin + i, own.rows);
+        collision_rows::add(points, u.row(begin + i), u.stride(), own.rows);
+      }
     });
   }
 
@@ -86,33 +92,17 @@ class cell_centre_collision final : public collision {
         .count = end - begin, .pitch = u.stride(), .epsilon = epsilon_.data() + begin, .first_cell = begin};
   }
 
-  /// d ← v − p for the points p of a batch.
-  static void solve_change(double a, double b, const point_batch& at, scratch& own, double* d) {
-    const auto count = static_cast<std::size_t>(at.count * at.pitch);
-    std::copy_n(own.points.begin(), count, own.solved.begin());
-    own.local->solve_stage(a, b, at, own.solved.data());
-    for (std::size_t k = 0; k < count; ++k) d[k] = own.solved[k] - own.points[k];
-  }
-
-  /// Where ū + v − p has a negative component, p is replaced by min(p, ū) in this component, then in all: v ≥
-  /// 0 and p ≤ ū leave none.
-  void keep_sign(double a, double b, const double* average, const point_batch& at, double* p, scratch& own,
-                 double* d) {
+  /// Where ū + d, d = v − p, has negative components, p is replaced by min(p, ū) in these, then in all: v ≥ 0
+  /// and p ≤ ū leave none.
+  static void keep_sign(double a, double b, const double* average, const point_batch& at, double* p,
+                        scratch& own, double* d) {
     constexpr int rounds = 3;
-    const int n = equation_.components();
-    for (int round = 0;; ++round) {
-      bool harms = false;
-      for (int k = 0; k < n; ++k) {
-        if (!(average[k] + d[k] < 0.0)) continue;
-        harms = true;
-        p[k] = std::min(p[k], average[k]);
-      }
-      if (!harms || round > rounds) return;
-      if (round == rounds)
-        for (int k = 0; k < n; ++k) p[k] = std::min(p[k], average[k]);
-      std::copy_n(p, at.pitch, own.solved.begin());
+    const int width = static_cast<int>(at.pitch);
+    for (int round = 0; round <= rounds; ++round) {
+      centre_rows::lower(average, d, round == rounds, width, p);
+      std::copy_n(p, width, own.solved.begin());
       own.local->solve_stage(a, b, at, own.solved.data());
-      for (int k = 0; k < n; ++k) d[k] = own.solved[static_cast<std::size_t>(k)] - p[k];
+      if (!centre_rows::subtract(own.solved.data(), p, average, width, d)) return;
     }
   }
 
@@ -168,7 +158,7 @@ class cell_centre_collision final : public collision {
     });
   }
 
-  /// Calls body(cell, averages, changes, scratch) for every cell.
+  /// Calls body(begin, count, averages, changes, scratch) for batches of cells, with rows i = −1 … count.
   template <class Body>
   void for_changes(const field& u, const Body& body) {
     parallel_blocks(u.cells(), points_per_batch(u.stride()), [&](int begin, int end) {
@@ -178,11 +168,7 @@ class cell_centre_collision final : public collision {
       // Rows of other processes are those of the changes by now.
       if (begin == 0) own.averages.front() = across_[0].data();
       if (end == u.cells()) own.averages.back() = across_[1].data();
-      for (int cell = begin; cell < end; ++cell) {
-        const auto at = static_cast<std::size_t>(cell - begin);
-        body(cell, {own.averages[at], own.averages[at + 1], own.averages[at + 2]},
-             {own.changes[at], own.changes[at + 1], own.changes[at + 2]}, own);
-      }
+      body(begin, end - begin, own.averages.data() + 1, own.changes.data() + 1, own);
     });
   }
 

@@ -440,11 +440,12 @@ void bind_kinetic(py::module_& m) {
       .def("collision", &kinetic_problem::collision)
       .def("solve_collision", &kinetic_problem::solve_collision)
       .def("forward_euler_step", &kinetic_problem::forward_euler_step)
-      .def("integrate", [](kinetic_problem& problem, const array& u0, const std::vector<double>& t,
-                           const apsis::method& by, std::optional<double> dt, double safety, bool graded,
-                           std::optional<double> tolerance, std::optional<int> threads) {
-        return problem.integrate(u0, t, by, {dt, safety, graded, tolerance}, threads);
-      });
+      .def("integrate",
+           [](kinetic_problem& problem, const array& u0, const std::vector<double>& t,
+              const apsis::method& by, std::optional<double> dt, double safety, std::optional<int> growth,
+              std::optional<double> tolerance, std::optional<int> threads) {
+             return problem.integrate(u0, t, by, {dt, safety, growth, tolerance}, threads);
+           });
 }
 
 }  // namespace apsis::python

@@ -15,7 +15,7 @@ namespace apsis::python {
 struct step_choice {
   std::optional<double> dt;         ///< dt, where it is given
   double safety = 1.0;              ///< factor of r Δt_FE without dt
-  bool graded = false;              ///< resolve the initial layer in the first interval
+  std::optional<int> growth;        ///< ratio of the times of a graded start; none: no graded start
   std::optional<double> tolerance;  ///< of the estimated error of a step
 };
 
@@ -52,7 +52,7 @@ step_count march_through(Problem& problem, typename Problem::state& u, const std
   const auto observe = [&check](long, double, double, const auto&) { check(); };
   step_count count;
   for (std::size_t k = 1; k < t.size(); ++k) {
-    const auto start = rule.with(choice.graded && k == 1 ? startup::graded : startup::none);
+    const auto start = choice.growth && k == 1 ? rule.with(startup::graded, *choice.growth) : rule;
     const auto done =
         control ? integrate_to_tolerance(march, u, t[k - 1], t[k], start, *control, difference, observe)
                 : integrate(march, u, t[k - 1], t[k], start, observe);

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace startup_test {
@@ -39,12 +41,12 @@ visited march_through(apsis::time_marcher<double> march, double proposed, double
   return out;
 }
 
-apsis::time_marcher<double> random_march(double& proposed) {
+apsis::time_marcher<double> random_march(double& proposed, int growth = apsis::default_growth) {
   const double t0 = random_input::one_in(2) ? 0.0 : random_input::uniform(-3.0, 3.0);
   const double length = random_input::magnitude(-3, 2);
   proposed = length / random_input::uniform(0.3, 40.0);
   const bool given = proposed <= length && random_input::one_in(2);
-  return {t0, t0 + length, given ? std::optional<double>(proposed) : std::nullopt};
+  return {t0, t0 + length, given ? std::optional<double>(proposed) : std::nullopt, growth};
 }
 
 TEST(startup, divides_the_first_step_and_keeps_all_later_times_bitwise) {
@@ -73,10 +75,46 @@ TEST(startup, divides_the_first_step_and_keeps_all_later_times_bitwise) {
   });
 }
 
+TEST(startup, with_any_ratio_keeps_later_times_and_takes_the_fewest_steps) {
+  check_property("ratio", [] {
+    double proposed = 0.0;
+    const int growth = random_input::integer(2, 64);
+    const auto march = random_march(proposed, growth);
+    const double width = proposed * random_input::magnitude(-14, 2);
+    const auto plain = march_through(march, proposed, -1.0), cut = march_through(march, proposed, width);
+    const auto extra = static_cast<std::size_t>(cut.startup_steps) - 1;
+    RC_ASSERT(cut.t.size() == plain.t.size() + extra);
+    for (std::size_t n = 1; n < plain.t.size(); ++n) RC_ASSERT(cut.t[n + extra] == plain.t[n]);
+    // A few divisions and a difference round each step.
+    const double rounding = 1e-14 * plain.dt[0];
+    double time = 0.0;
+    for (std::size_t k = 0; k <= extra; ++k) {
+      RC_ASSERT(k == 0 || std::abs(cut.dt[k] - (growth - 1) * time) <= rounding);
+      time += cut.dt[k];
+    }
+    RC_ASSERT(std::abs(time - plain.dt[0]) <= rounding);
+    RC_ASSERT(cut.dt[0] <= growth / 8.0 * width);
+    RC_ASSERT(extra == 0 || cut.dt[0] * (1.0 + 1e-13) > width / 8.0);
+  });
+}
+
+TEST(startup, refuses_ratios_that_are_not_from_2_to_64) {
+  for (const int growth : {-1, 0, 1, 65}) {
+    try {
+      apsis::time_marcher<double>(0.0, 1.0, 0.25, growth);
+      ADD_FAILURE() << growth;
+    } catch (const apsis::input_error& refused) {
+      EXPECT_EQ(std::string(refused.what()), "the growth of a graded start is " + std::to_string(growth) +
+                                                 " (the ratio of its times is from 2 to 64); give one in "
+                                                 "this range");
+    }
+  }
+}
+
 TEST(startup, is_restored_bitwise_from_a_save_at_any_step) {
   check_property("restart", [] {
     double proposed = 0.0;
-    const auto march = random_march(proposed);
+    const auto march = random_march(proposed, random_input::integer(2, 10));
     auto whole = march, part = march;
     const double width = proposed * random_input::magnitude(-9, 0);
     whole.start_up(proposed, width);
@@ -172,6 +210,34 @@ TEST(startup, makes_errors_for_inconsistent_data_as_small_as_for_consistent_data
   EXPECT_LT(10 * consistent, error("md-imex-3-2", near, epsilon, startup::none));
   EXPECT_LT(10 * resolved, error("md-imex-3-2", far, epsilon, startup::none));
   EXPECT_LT(10 * resolved, error("md-imex-3-2", far, epsilon, startup::graded));
+}
+
+/// Error on the ODE model with equal steps, the first graded with the given ratio, and the number of steps.
+std::pair<double, long> graded(const std::string& method, int steps, int growth, real epsilon) {
+  auto problem = ode_model::as_relaxation<state>(epsilon);
+  state u = {2, 0}, exact = u;
+  apsis::extrapolate(problem, exact, real(0), real(1), {1e-13L}, [](const state& a, const state& b) {
+    return std::max(std::abs(a[0] - b[0]), std::abs(a[1] - b[1]));
+  });
+  apsis::stepper march(apsis::find_method(method), problem);
+  const auto rule = step_rule<real>::fixed(real(1) / steps).with(startup::graded, growth);
+  const auto done = apsis::integrate(march, u, real(0), real(1), rule);
+  return {static_cast<double>(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1])), done.steps};
+}
+
+TEST(startup, a_larger_ratio_saves_methods_of_high_order_half_of_the_steps) {
+  // Without grading the error is 3e-8 (ε = 1e-4): a ratio of 4 resolves the layer as well, in half of the
+  // additional steps.
+  const auto [doubling, steps] = graded("extrapolated-euler-7", 6, 2, 1e-4L);
+  const auto [coarse, fewer] = graded("extrapolated-euler-7", 6, 4, 1e-4L);
+  EXPECT_LT(doubling, 1e-10);
+  EXPECT_LT(coarse, 1e-9);
+  EXPECT_LE(2 * (fewer - 6), steps - 6);
+}
+
+TEST(startup, a_larger_ratio_costs_methods_of_lower_order_accuracy) {
+  EXPECT_GT(graded("extrapolated-euler-4", 64, 8, 1e-2L).first,
+            10 * graded("extrapolated-euler-4", 64, 2, 1e-2L).first);
 }
 
 TEST(startup, takes_one_step_in_the_limit_and_requires_a_relaxation_time) {

@@ -233,6 +233,17 @@ def test_a_tolerance_needs_no_step():
     assert apsis.integrate(ode(1e-3), [2.0, 0.0], (0, 1), "md-imex-8-3-mixed", tolerance=1e-3, startup="graded").steps > 10
 
 
+def test_a_graded_start_takes_fewer_steps_with_a_larger_growth():
+    def steps(growth):
+        return apsis.integrate(ode(1e-4), [2.0, 0.0], (0, 1), "extrapolated-euler-7", dt=0.25, startup="graded",
+                               startup_growth=growth).steps
+
+    # The first of four steps becomes 1 + ceil(log(8 dt C/(g epsilon))/log(g)), with C = 5.
+    assert [steps(g) for g in (2, 4, 8, 64)] == [3 + 1 + 16, 3 + 1 + 8, 3 + 1 + 5, 3 + 1 + 2]
+    with pytest.raises(apsis.InputError, match="growth of a graded start is 1 .*from 2 to 64"):
+        steps(1)
+
+
 def test_a_method_that_cannot_integrate_the_problem_is_refused():
     with pytest.raises(apsis.InputError, match="imdrk-2-3.*transport"):
         apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), "imdrk-2-3", dt=0.1)

@@ -74,6 +74,18 @@ TEST(startup, restarts_in_its_middle_bit_for_bit) {
     c.time.cfl.reset();
     (rule[0] == 'c' ? c.time.cfl : c.time.safety) = rule[0] == 'c' ? 0.3 : 1.0;
     for (const long steps : {3L, 14L}) expect_same_after_restart(c, steps);
+    c.time.startup_growth = 8;
+    for (const long steps : {1L, 3L, 5L}) expect_same_after_restart(c, steps);
+  }
+}
+
+TEST(startup, takes_fewer_steps_with_a_larger_ratio) {
+  // 5·4/(256·1e-4) = 781 first steps of doubling times are 2^9.6, of fourfold times with a first step twice
+  // as long 4^4.3, and of eightfold times with a first step four times as long 8^2.5.
+  for (const auto& [growth, steps] : std::vector<std::pair<int, long>>{{2, 11}, {4, 6}, {8, 4}}) {
+    auto c = ode("extrapolated-euler-7", "1e-4", "graded");
+    c.time.startup_growth = growth;
+    EXPECT_EQ(finished(c).startup_steps, steps) << growth;
   }
 }
 
@@ -119,6 +131,16 @@ TEST(startup, is_refused_where_it_has_no_meaning) {
   EXPECT_THAT(complaint([] { return ode("md-imex-4-2", "1e-2", "gradd"); }),
               HasSubstr("did you mean 'graded'?"));
   EXPECT_EQ(complaint([] { return ode("ssprk-3-3", "1e-2", "none"); }), "");
+  const auto with_growth = [](const std::string& growth, const std::string& startup) {
+    return [=] {
+      return apsis::load_case("paper/ode", {"time.startup_growth=" + growth, "time.startup=" + startup});
+    };
+  };
+  EXPECT_THAT(complaint(with_growth("4", "none")),
+              HasSubstr("time.startup_growth has no meaning without a graded start"));
+  EXPECT_THAT(complaint(with_growth("1", "graded")), HasSubstr("time.startup_growth"));
+  EXPECT_THAT(complaint(with_growth("65", "graded")), HasSubstr("time.startup_growth"));
+  EXPECT_EQ(complaint(with_growth("64", "graded")), "");
   EXPECT_THAT(complaint([] { return apsis::load_case("paper/decay", {"time.startup=graded"}); }),
               HasSubstr("has no meaning for model 'decay' (its relaxation time is not known)"));
   EXPECT_EQ(apsis::load_case("paper/ode", {"time.startup=graded"}).time.startup,

@@ -4,6 +4,7 @@
 #include <apsis/config/initial_table.hpp>
 #include <apsis/config/output_tables.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/core/graded_start.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/model/gas_scales.hpp>
 #include <apsis/model/model.hpp>
@@ -92,8 +93,9 @@ struct case_config {
     double end = 0.0;
     std::optional<double> dt, cfl, safety;  ///< exactly one is set
     startup_choice startup = startup_choice::none;
-    std::optional<double> tolerance;  ///< of a step; dt, cfl or safety then says how long one may be
-    std::optional<double> steady;     ///< change of the state per time at which the run ends
+    int startup_growth = default_growth;  ///< ratio of the times of a graded start
+    std::optional<double> tolerance;      ///< of a step; dt, cfl or safety then says how long one may be
+    std::optional<double> steady;         ///< change of the state per time at which the run ends
   } time;
   /// Table [output].
   struct {

@@ -304,6 +304,13 @@ std::vector<case_key> time_keys() {
                       "the smallest epsilon/C, so that the initial layer of data out of equilibrium is "
                       "resolved; for methods whose layer is not 1 (apsis check). About log2(4 C dt/epsilon) "
                       "more steps, none for epsilon = 0."}),
+          key("time.startup_growth", [](auto& c) -> auto& { return c.time.startup_growth; },
+              {.lowest = 2,
+               .highest = largest_growth,
+               .doc = "Ratio g of the times of a graded start, whose first step is at most g/8 of the "
+                      "smallest epsilon/C and each further one g - 1 times the time before it. 4 or 8 takes "
+                      "half or a third of the steps with 10 to 100 times the error of the layer, which is "
+                      "small for methods of order 5 and more."}),
           key("time.tolerance", [](auto& c) -> auto& { return c.time.tolerance; },
               {.lowest = 0.0,
                .lowest_excluded = true,

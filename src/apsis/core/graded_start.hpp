@@ -19,8 +19,8 @@ Real longest_first_step(const Real& relaxation_time, int growth) {
 }
 
 /// Returns how often dt must be divided by `growth` to be at most `shortest`; at most as often as halves have
-/// digits of Real plus two, because the O(ε) effect of a thinner layer is below the rounding of one step. 0 if
-/// `shortest` is not positive: for ε = 0 there is no layer.
+/// digits of Real plus two, because the O(ε) effect of a thinner layer is below the rounding of one step. 0
+/// if `shortest` is not positive: for ε = 0 there is no layer.
 template <class Real>
 int graded_levels(Real dt, const Real& shortest, int growth) {
   const int halvings = std::bit_width(static_cast<unsigned>(growth)) - 1;
@@ -31,8 +31,8 @@ int graded_levels(Real dt, const Real& shortest, int growth) {
   return levels;
 }
 
-/// Returns the time after `k` + 1 of the steps into which a step dt is divided at m levels: dt/gᵐ, …, dt/g, dt
-/// with g = growth.
+/// Returns the time after `k` + 1 of the steps into which a step dt is divided at m levels: dt/gᵐ, …, dt/g,
+/// dt with g = growth.
 template <class Real>
 Real graded_time(Real dt, long levels, long k, int growth) {
   for (long n = levels - k; n > 0; --n) dt /= Real(growth);
@@ -49,8 +49,8 @@ Real graded_step(const Real& dt, long levels, long k, int growth) {
 }
 
 /// Returns the graded steps that replace the first step dt, for the smallest m for which the first is at most
-/// longest_first_step() (with the limit of graded_levels); {dt} if dt is short enough. They resolve an initial
-/// layer of the width `relaxation_time` with about log(8 dt/(g relaxation_time))/log(g) more steps.
+/// longest_first_step() (with the limit of graded_levels); {dt} if dt is short enough. They resolve an
+/// initial layer of the width `relaxation_time` with about log(8 dt/(g relaxation_time))/log(g) more steps.
 /// Dimensionless.
 template <class Real>
 std::vector<Real> graded_start(Real dt, const Real& relaxation_time, int growth = default_growth) {

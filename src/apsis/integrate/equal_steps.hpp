@@ -48,7 +48,8 @@ integration_result<typename Formula::real> integrate(Formula& formula, typename 
     }
     return dt;
   };
-  return integrate_with(take, formula.starter(), time_marcher<real>(t0, t1, rule.dt), u, rule, observer);
+  return integrate_with(take, formula.starter(), time_marcher<real>(t0, t1, rule.dt, rule.growth), u, rule,
+                        observer);
 }
 
 }  // namespace apsis

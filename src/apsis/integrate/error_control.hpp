@@ -121,15 +121,17 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
 }
 
 /// Sets the first step of a controller without a proposed step: first_step_length(), and with startup::graded
-/// at most ε/(4C), so that the initial layer is resolved to the tolerance. `longest` limits every step.
-/// Throws input_error for a graded start of a problem without relaxation_time.
+/// at most longest_first_step(ε/C), so that the initial layer is resolved to the tolerance. `longest` limits
+/// every step. Throws input_error for a graded start of a problem without relaxation_time.
 template <problem P, class Distance>
 void start_control(P& p, typename P::real t, const typename P::state& u, typename P::real longest,
-                   startup first, step_controller<typename P::real>& control, const Distance& distance) {
+                   const step_rule<typename P::real>& rule, step_controller<typename P::real>& control,
+                   const Distance& distance) {
   using real = typename P::real;
   if (control.proposed() < std::numeric_limits<real>::infinity()) return;
   real dt = first_step_length(p, t, u, longest, control.target(), distance);
-  if (first == startup::graded) dt = std::min(dt, real(initial_layer(p, t, u) / 4));
+  if (rule.start == startup::graded)
+    dt = std::min(dt, longest_first_step(initial_layer(p, t, u), rule.growth));
   control.start_with(dt);
 }
 
@@ -149,7 +151,7 @@ integration_result<typename P::real> integrate_to_tolerance(stepper<P>& method_s
   const time_marcher<real> march(t0, t1);
   if (!march.done()) {
     const real limit = rule_limit(method_stepper, rule, t0, u);
-    start_control(method_stepper.problem(), t0, u, std::min(limit, t1 - t0), rule.start, control, distance);
+    start_control(method_stepper.problem(), t0, u, std::min(limit, t1 - t0), rule, control, distance);
   }
   const auto take = [&](const time_marcher<real>& now, real limit, typename P::state& state) {
     return step_within_tolerance(method_stepper, now, control, estimate, limit, state, distance);

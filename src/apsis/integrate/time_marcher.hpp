@@ -1,11 +1,12 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/graded_start.hpp>
+#include <apsis/core/graded_start.hpp>
 
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 namespace apsis {
 
@@ -54,14 +55,19 @@ class time_marcher {
     }
   };
 
-  /// Throws input_error unless t0 ≤ t1 are finite, dt > 0 is finite, and the interval has at most 1e15 steps.
-  time_marcher(Real t0, Real t1, std::optional<Real> dt = std::nullopt)
-      : t0_(t0), t1_(t1), t_(t0), fixed_(dt) {
+  /// `growth` is the ratio of the times of a graded start-up. Throws input_error unless t0 ≤ t1 are finite,
+  /// dt > 0 is finite, the interval has at most 1e15 steps, and growth is from 2 to largest_growth.
+  time_marcher(Real t0, Real t1, std::optional<Real> dt = std::nullopt, int growth = default_growth)
+      : t0_(t0), t1_(t1), t_(t0), growth_(growth), fixed_(dt) {
     using std::isfinite, std::abs, std::ceil, std::round;
     if (!isfinite(t0) || !isfinite(t1) || t1 < t0)
       throw input_error(
           "the time interval does not exist (its end lies before its start, or is not finite); "
           "give finite t0 ≤ t1");
+    if (growth < 2 || growth > largest_growth)
+      throw input_error("the growth of a graded start is " + std::to_string(growth) +
+                        " (the ratio of its times is from 2 to " + std::to_string(largest_growth) +
+                        "); give one in this range");
     if (!dt) return;
     if (!(*dt > Real(0)) || !isfinite(*dt)) throw input_error("dt is not a positive number; give dt > 0");
     const Real length = t1 - t0;
@@ -94,13 +100,14 @@ class time_marcher {
     every_ = every;
   }
 
-  /// Divides the first step, of the length `proposed` by the rule, into steps that double, starting from
-  /// relaxation_time/4; both are limited by the interval. Has no effect after the first step, or if there
-  /// is no step.
+  /// Divides the first step, of the length `proposed` by the rule, into graded steps. The first of these is
+  /// at most longest_first_step(relaxation_time); both are limited by the interval. Has no effect after the
+  /// first step, or if there is no step.
   void start_up(Real proposed, Real relaxation_time) {
     if (n_ > 0 || done()) return;
     startup_length_ = next(proposed);
-    startup_steps_ = graded_levels(startup_length_, Real(relaxation_time / 4)) + 1;
+    startup_steps_ =
+        graded_levels(startup_length_, longest_first_step(relaxation_time, growth_), growth_) + 1;
   }
   /// Whether the next step is part of the start-up.
   bool starting() const { return startup_done_ < startup_steps_; }
@@ -194,7 +201,7 @@ class time_marcher {
     ++n_;
     if (starting() && (fixed_ || dt == startup_step())) {
       ++startup_done_;
-      t_ = t0_ + halved(startup_length_, startup_steps_ - startup_done_);
+      t_ = t0_ + graded_time(startup_length_, startup_steps_ - 1, startup_done_ - 1, growth_);
       if (starting()) return;
       // The last start-up step completes one step of full length.
       t_ = t0_;
@@ -236,7 +243,9 @@ class time_marcher {
     return stop < t1_ - rounding(t1_) ? stop : Real(0);
   }
 
-  Real startup_step() const { return graded_step(startup_length_, startup_steps_ - 1, startup_done_); }
+  Real startup_step() const {
+    return graded_step(startup_length_, startup_steps_ - 1, startup_done_, growth_);
+  }
   /// Returns the number of completed steps of full length; the start-up counts as one.
   long whole_steps() const {
     if (startup_steps_ == 0) return n_;
@@ -248,6 +257,7 @@ class time_marcher {
   long since_anchor_ = 0;
   long startup_steps_ = 0, startup_done_ = 0;
   Real startup_length_ = Real(0);
+  int growth_;
   Real every_ = Real(0);
   std::optional<Real> fixed_;
   long n_ = 0, count_ = 0;

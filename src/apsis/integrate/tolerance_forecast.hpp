@@ -28,7 +28,7 @@ typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, ty
   P& p = method_stepper.problem();
   error_estimate<P> estimate(method_stepper.weight_of_estimate());
   step_controller<real> control(target.tolerance, target.order);
-  start_control(p, t, u, longest, startup::none, control, distance);
+  start_control(p, t, u, longest, step_rule<real>::unlimited(), control, distance);
   real dt(0);
   for (int k = 0; k < 30; ++k) {  // factors of 5 cover 1e-20 to 1
     dt = std::min(longest, control.proposed());

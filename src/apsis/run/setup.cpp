@@ -148,7 +148,13 @@ void run_setup::check_method() {
 }
 
 void run_setup::check_startup() const {
-  if (!has_graded_start()) return;
+  if (!has_graded_start()) {
+    if (config_.time.startup_growth != default_growth)
+      refuse(config_, "time.startup_growth",
+             "time.startup_growth has no meaning without a graded start; give time.startup = \"graded\" too, "
+             "or remove it");
+    return;
+  }
   if (method_->kind == method_kind::explicit_only)
     refuse(
         config_, "time.startup",

@@ -86,12 +86,13 @@ struct simulation::impl {
   }
 
   void start_steps() {
-    const startup how = setup.has_graded_start() ? startup::graded : startup::none;
     if (control) {
       const double longest = std::min(limit(), config.time.end);
       warn_of_tolerance(longest);
-      start_control(*problem, march.t(), state, longest, how, *control, distance());
-    } else if (how == startup::graded) {
+      const auto first = step_rule<double>::unlimited().with(
+          setup.has_graded_start() ? startup::graded : startup::none, config.time.startup_growth);
+      start_control(*problem, march.t(), state, longest, first, *control, distance());
+    } else if (setup.has_graded_start()) {
       march.start_up(limit(), problem->relaxation_time(march.t(), state));
     }
   }

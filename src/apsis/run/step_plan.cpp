@@ -4,6 +4,7 @@
 #include <apsis/core/log.hpp>
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -13,7 +14,7 @@ time_marcher<double> times_of(const run_setup& setup) {
   const case_config& config = setup.config();
   const auto dt = setup.given_dt();
   const double every = config.output.every;
-  time_marcher<double> march(0.0, config.time.end, dt);
+  time_marcher<double> march(0.0, config.time.end, dt, config.time.startup_growth);
   try {
     march.stop_every(every);
     if (march.adjusted())
@@ -26,7 +27,7 @@ time_marcher<double> times_of(const run_setup& setup) {
                     "every snapshot); "
                     "give one that does for steps of equal length",
                     *dt, every));
-    march = time_marcher<double>(0.0, config.time.end);
+    march = time_marcher<double>(0.0, config.time.end, std::nullopt, config.time.startup_growth);
     march.stop_every(every);
   }
   return march;

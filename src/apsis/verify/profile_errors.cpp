@@ -1,7 +1,7 @@
 #include <apsis/verify/profile_errors.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/graded_start.hpp>
+#include <apsis/core/graded_start.hpp>
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/method/intermediate_regime.hpp>
 #include <apsis/run/setup.hpp>
@@ -60,10 +60,10 @@ struct step_sequence {
   long further;
 
   /// Graded as a run with time.startup = "graded" would be for this relaxation time, if it is positive.
-  step_sequence(double end, double longest, double relaxation_time)
+  step_sequence(double end, double longest, double relaxation_time, int growth)
       : further(std::max(std::lround(std::ceil(end / longest * (1.0 - 1e-12))), 1L) - 1) {
     dt = end / static_cast<double>(further + 1);
-    first = graded_start(dt, relaxation_time / 4);
+    first = graded_start(dt, relaxation_time, growth);
   }
 };
 
@@ -115,9 +115,10 @@ class response {
     solution_ = solve(*problem, start_, &middle_rates_);
   }
 
-  /// Returns the prediction for steps of length dt; `graded` as time.startup.
-  predicted_errors to(const butcher_form<double>& b, double dt, bool graded) const {
-    const step_sequence steps(end_, dt, graded ? relaxation_time_ : 0.0);
+  /// Returns the prediction for steps of length dt with the start-up of `config`.
+  predicted_errors to(const butcher_form<double>& b, double dt, const case_config& config) const {
+    const bool graded = config.time.startup == startup_choice::graded;
+    const step_sequence steps(end_, dt, graded ? relaxation_time_ : 0.0, config.time.startup_growth);
     predicted_errors out;
     out.dt = steps.dt;
     std::vector<double> flux;
@@ -170,7 +171,7 @@ class response {
 
   /// Solves with the same steps for every problem, so that their errors cancel in differences.
   field solve(semidiscrete_problem& problem, field u, std::vector<double>* at_half_time) const {
-    const step_sequence steps(end_, std::min(dt_, setup_.cfl_length()), relaxation_time_);
+    const step_sequence steps(end_, std::min(dt_, setup_.cfl_length()), relaxation_time_, default_growth);
     stepper march(find_method("ars-443"), problem);
     double t = 0.0;
     for (const double part : steps.first) {
@@ -242,7 +243,7 @@ profile_errors predict_profile_errors(const case_config& config, int halvings, c
   out.invariants = of.invariants();
   for (int k = 0; k <= halvings; ++k, dt /= 2) {
     control.report(static_cast<double>(k) / (halvings + 1), fmt::format("dt = {:.3g}", dt));
-    out.rows.push_back(of.to(b, dt, config.time.startup == startup_choice::graded));
+    out.rows.push_back(of.to(b, dt, config));
   }
   return out;
 }

@@ -2,8 +2,8 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/extremes.hpp>
+#include <apsis/core/graded_start.hpp>
 #include <apsis/integrate/extrapolation.hpp>
-#include <apsis/integrate/graded_start.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/run/setup.hpp>
 
@@ -82,7 +82,7 @@ field time_study::solve(const method& m, long steps, start_data data, first_step
       impl_->equation->moments(u.row(cell), omega.data());
       fastest = maximum(fastest, impl_->equation->rate(omega.data()));
     }
-    for (const double part : graded_start(dt, impl_->epsilon / (4.0 * fastest))) {
+    for (const double part : graded_start(dt, impl_->epsilon / fastest)) {
       march.step(t, part, u);
       t += part;
     }

@@ -81,7 +81,7 @@ void add_arkode(contest& all, kinetic_task& task, const kinetic_settings& settin
                  settings.few);
     auto constrained = options(order, linear_solver::collision_only, true);
     constrained.constrained = true;
-    add_sundials(all, task, tuned + ", f ≥ 0", constrained, {0.1}, {settings.few.rtol, {1e-4}});
+    add_sundials(all, task, tuned + ", f ≥ 0", constrained, {0.1}, {settings.fine.rtol, {1e-4}});
   }
 }
 
@@ -136,10 +136,9 @@ void enter_all(contest& all, kinetic_task& task, const kinetic_settings& setting
 
 std::vector<double> by_octaves(double from, double to) {
   std::vector<double> all;
-  for (double x = from; x > 0.99 * to; x /= 2.0) {
-    all.push_back(x);
-    if (0.75 * x > 0.99 * to) all.push_back(0.75 * x);
-  }
+  for (double octave = from; octave > 0.99 * to; octave /= 2.0)
+    for (const double x : {octave, 0.875 * octave, 0.75 * octave, 0.625 * octave})
+      if (x > 0.99 * to) all.push_back(x);
   return all;
 }
 

@@ -13,13 +13,14 @@ namespace {
 
 using integrator = sundials_ode_options::integrator;
 
-/// Equal steps, 1 to `most_steps` of them, with and without a graded start.
+/// Equal steps, 1 to `most_steps` of them, without and with graded starts of several growths.
 void add_equal_steps(contest& all, const stiff_task& task, const std::string& name, league of,
                      long most_steps) {
   const auto add = [&](long steps) {
-    for (const bool graded : {false, true})
-      all.add({name, fmt::format("{} steps{}", steps, graded ? ", graded start" : ""), of,
-               [&task, name, steps, graded] { return task.run(name, steps, graded); }});
+    for (const int growth : {0, 2, 4, 8})
+      all.add({name,
+               fmt::format("{} steps{}", steps, growth ? fmt::format(", graded start × {}", growth) : ""), of,
+               [&task, name, steps, growth] { return task.run(name, steps, growth); }});
   };
   add(1);
   for (long steps = 2; steps <= most_steps; steps *= 2) {
@@ -97,7 +98,8 @@ contest contestants(const stiff_task& task, bool quick) {
 const char* const note =
     " Contestants: every IMEX method of the catalogue, and extrapolated Euler steps of orders 2 to 8, with 1 "
     "to "
-    "8192 equal steps, with and without a graded start, and with steps chosen by a tolerance where it has an "
+    "8192 equal steps, without and with graded starts whose times grow by factors of 2, 4 and 8, and with "
+    "steps chosen by a tolerance where it has an "
     "embedded solution; explicit methods; two-step methods, IMEX-BDF of orders 2 to 5 and the exponential "
     "method, with "
     "equal steps; CVODE (BDF, dense); ARKODE (T "

@@ -102,10 +102,10 @@ class relaxation_task : public stiff_task {
          -rate / epsilon()}};
   }
 
-  outcome run(const std::string& name, long steps, bool graded) const override {
+  outcome run(const std::string& name, long steps, int growth) const override {
     auto problem = Definition::problem(epsilon());
-    const auto rule = step_rule<double>::fixed(1.0 / static_cast<double>(steps))
-                          .with(graded ? startup::graded : startup::none);
+    auto rule = step_rule<double>::fixed(1.0 / static_cast<double>(steps));
+    if (growth != 0) rule = rule.with(startup::graded, growth);
     return with_integrator(name, problem, [&](auto& march) {
       return measure([&](state& u, auto&& observer) { integrate(march, u, 0.0, 1.0, rule, observer); });
     });

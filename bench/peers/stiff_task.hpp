@@ -26,10 +26,10 @@ class stiff_task {
   virtual Eigen::Matrix2d transport_jacobian(const state& u) const = 0;
   virtual Eigen::Matrix2d collision_jacobian(const state& u) const = 0;
 
-  /// Runs `steps` equal steps of an integrator of integrators.hpp; `graded`: the first of them divided into
-  /// steps that resolve the initial layer. Seconds are those of one of many integrations, without the
-  /// construction of the stepper.
-  virtual outcome run(const std::string& name, long steps, bool graded) const = 0;
+  /// Runs `steps` equal steps of an integrator of integrators.hpp; with a `growth` other than 0, the first of
+  /// them is divided into steps that resolve the initial layer, whose times grow by this factor. Seconds are
+  /// those of one of many integrations, without the construction of the stepper.
+  virtual outcome run(const std::string& name, long steps, int growth) const = 0;
   /// Runs a method with an embedded solution to a tolerance of the steps, relative to u in the 2-norm.
   virtual outcome run_to_tolerance(const method& m, double tolerance) const = 0;
 

@@ -23,7 +23,7 @@ Real longest_first_step(const Real& relaxation_time, int growth) {
 /// if `shortest` is not positive: for ε = 0 there is no layer.
 template <class Real>
 int graded_levels(Real dt, const Real& shortest, int growth) {
-  const int halvings = std::bit_width(static_cast<unsigned>(growth)) - 1;
+  const int halvings = static_cast<int>(std::bit_width(static_cast<unsigned>(growth))) - 1;
   int levels = 0;
   for (; dt > shortest && shortest > Real(0) && levels * halvings < std::numeric_limits<Real>::digits + 2;
        ++levels)

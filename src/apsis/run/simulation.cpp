@@ -89,9 +89,9 @@ struct simulation::impl {
     if (control) {
       const double longest = std::min(limit(), config.time.end);
       warn_of_tolerance(longest);
-      const auto first = step_rule<double>::unlimited().with(
+      const auto rule = step_rule<double>::unlimited().with(
           setup.has_graded_start() ? startup::graded : startup::none, config.time.startup_growth);
-      start_control(*problem, march.t(), state, longest, first, *control, distance());
+      start_control(*problem, march.t(), state, longest, rule, *control, distance());
     } else if (setup.has_graded_start()) {
       march.start_up(limit(), problem->relaxation_time(march.t(), state));
     }

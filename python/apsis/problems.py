@@ -69,8 +69,8 @@ def integrate(problem: RelaxationProblem | KineticProblem, u0: ArrayLike, t: Seq
     """Integrates from u0 at t[0] and returns the states at all times of t.
 
     `method` is a name, a file or a Method. Steps have the length dt, shortened until it divides each interval, or
-    safety · r · Δt_FE, 0 < safety. startup = "graded" resolves the initial layer of data out of equilibrium in steps whose times grow by
-    the factor startup_growth, from 2 to 64: 4 or 8 saves methods of order 5 and more half or two thirds of them. With a tolerance steps are
+    safety · r · Δt_FE, 0 < safety. startup = "graded" resolves the initial layer of data out of equilibrium by short first
+    steps. startup_growth, from 2 to 64, is the ratio of their successive times: with 4 they are half as many as with 2 and less accurate. With a tolerance steps are
     shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it; then
     neither dt nor forward_euler_step is needed. `threads` is for problems on a mesh: all processors for large ones where it is not
     given; results do not depend on it.
@@ -80,6 +80,8 @@ def integrate(problem: RelaxationProblem | KineticProblem, u0: ArrayLike, t: Seq
                          "an apsis.KineticProblem")
     if startup not in ("none", "graded"):
         raise InputError(f"unknown start-up {startup!r} (there is no such name); give \"none\" or \"graded\"")
+    if startup == "none" and startup_growth != 2:
+        raise InputError("startup_growth has no meaning without a graded start; give startup = \"graded\" too, or remove it")
     integrator = method if isinstance(method, Method) else find_method(_name(method))
     steps_by = (None if dt is None else number("dt", dt), number("safety", safety, positive=True),
                 whole_number("startup_growth", startup_growth) if startup == "graded" else None,

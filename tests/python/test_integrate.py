@@ -242,6 +242,8 @@ def test_a_graded_start_takes_fewer_steps_with_a_larger_growth():
     assert [steps(g) for g in (2, 4, 8, 64)] == [3 + 1 + 16, 3 + 1 + 8, 3 + 1 + 5, 3 + 1 + 2]
     with pytest.raises(apsis.InputError, match="growth of a graded start is 1 .*from 2 to 64"):
         steps(1)
+    with pytest.raises(apsis.InputError, match="startup_growth has no meaning without a graded start"):
+        apsis.integrate(ode(1e-4), [2.0, 0.0], (0, 1), dt=0.25, startup_growth=4)
 
 
 def test_a_method_that_cannot_integrate_the_problem_is_refused():

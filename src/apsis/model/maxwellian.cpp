@@ -246,16 +246,16 @@ int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, 
                                 std::ptrdiff_t pitch, line_state* states) {
   std::array<velocity_rows::gaussian, most_line_states>
       curves;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-  int admissible = 0;
-  for (; admissible < rows; ++admissible, omega += 3) {
-    line_state& s = states[admissible];
-    s.rho = omega[0];
-    s.u = omega[1] / s.rho;
-    s.T = 2.0 * omega[2] / s.rho - s.u * s.u;
-    curves[static_cast<std::size_t>(admissible)] = {s.rho * (1.0 / std::sqrt(2.0 * std::numbers::pi * s.T)),
-                                                    s.u, s.T};
-    if (!s.admissible()) break;
+  // Without an exit, so that a division or root serves several rows.
+#pragma omp simd
+  for (int p = 0; p < rows; ++p) {
+    const double rho = omega[3 * p], u = omega[3 * p + 1] / rho;
+    const double T = 2.0 * omega[3 * p + 2] / rho - u * u;
+    states[p] = {rho, u, T};
+    curves[static_cast<std::size_t>(p)] = {rho * (1.0 / std::sqrt(2.0 * std::numbers::pi * T)), u, T};
   }
+  int admissible = 0;
+  while (admissible < rows && states[admissible].admissible()) ++admissible;
   gaussians_on(grid.last_line(), curves.data(), admissible, m, pitch);
   return admissible;
 }

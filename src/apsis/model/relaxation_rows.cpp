@@ -69,12 +69,6 @@ void combine(double weight_of_u, double weight_of_e, const double* e, int width,
   HWY_DYNAMIC_DISPATCH(combine)(weight_of_u, e, u, width, u);
 }
 
-weighted_rows contribution(double weight, double weight_of_u, double weight_of_e, const double* u,
-                           const double* e) {
-  if (weight_of_e <= weight_of_u) return {weight, weight * weight_of_e, u, e};
-  return {weight, weight * weight_of_u, e, u};
-}
-
 void mean(std::span<const weighted_rows> points, int width, double* mean) {
   if (points.size() == 3) {
     HWY_DYNAMIC_DISPATCH(mean_of_three)(points.data(), width, mean);

@@ -23,8 +23,11 @@ struct weighted_rows {
 };
 
 /// Returns the contribution of a point, with the weights of combine().
-weighted_rows contribution(double weight, double weight_of_u, double weight_of_e, const double* u,
-                           const double* e);
+inline weighted_rows contribution(double weight, double weight_of_u, double weight_of_e, const double* u,
+                                  const double* e) {
+  if (weight_of_e <= weight_of_u) return {weight, weight * weight_of_e, u, e};
+  return {weight, weight * weight_of_u, e, u};
+}
 
 /// mean ← the sum over the points; three points are the fast case.
 void mean(std::span<const weighted_rows> points, int width, double* mean);

@@ -98,8 +98,8 @@ HWY_INLINE N exponential(N x) {
 }
 
 /// v − u of all points of vector k.
-HWY_INLINE N distances(const velocity_rows::points& line, double u, int k) {
-  const int length = static_cast<int>(hn::Lanes(wide()));
+HWY_INLINE N distances(const velocity_rows::points& line, double u, double k) {
+  const auto length = static_cast<double>(hn::Lanes(wide()));
   return line.spacing * (N(hn::Iota(wide(), 0.0)) + N(k * length + 0.5 - 0.5 * line.n)) - N(u);
 }
 
@@ -155,24 +155,19 @@ class first_vectors {
  public:
   first_vectors(const velocity_rows::points& line, const velocity_rows::gaussian* of, int rows)
       : line_(line) {
-    alignas(64) double u[most_lanes], T[most_lanes];
-    for (int p = 0; p < length; ++p) {
-      u[p] = p < rows ? of[p].u : 0.0;
-      T[p] = p < rows ? of[p].T : 1.0;
-    }
     const int vectors = (line.n + length - 1) / length;
-    const N at = (N::load(u) / N(line.spacing) + N(0.5 * line.n)) / N(length);
+    const N at = (gathered(&of->u, rows) / N(line.spacing) + N(0.5 * line.n)) / N(length);
     N(hn::Floor(smaller(larger(at, N(0.0)), N(static_cast<double>(vectors - 1))).v)).store(centre_);
-    const N per = N(0.5) / N::load(T);
+    const N per = N(0.5) / gathered(&of->T, rows);
     per.store(per_);
-    exponential(N(-2.0 * jump() * jump()) * per).store(change_);
     // All of them before the first row is filled: exponentials are long chains, which then overlap.
     for (int p = 0; p < rows; ++p) {
-      const N x = distances(line, u[p], static_cast<int>(centre_[p]));
+      const N x = distances(line, of[p].u, centre_[p]);
       const N value = of[p].a * exponential(-(x * x) * per_[p]);
       select(value > N(1e-300), value, N(0.0)).store(values_[p]);
       exponential(-(2.0 * jump() * x + N(jump() * jump())) * per_[p]).store(right_[p]);
     }
+    exponential(N(-2.0 * jump() * jump()) * per).store(change_);
   }
 
   void fill_row(int p, const velocity_rows::gaussian& of, double* m) const {
@@ -194,6 +189,13 @@ class first_vectors {
 
  private:
   static constexpr int length = static_cast<int>(hn::MaxLanes(wide()));
+  /// A number of each Gaussian, and of the last one where there are fewer than a vector has numbers.
+  static HWY_INLINE N gathered(const double* of_first, int rows) {
+    constexpr int apart = sizeof(velocity_rows::gaussian) / sizeof(double);
+    const hn::RebindToSigned<wide> index;
+    const auto row = hn::Min(hn::Iota(index, 0), hn::Set(index, rows - 1));
+    return N(hn::GatherIndex(wide(), of_first, hn::Mul(row, hn::Set(index, apart))));
+  }
   double jump() const { return line_.spacing * length; }
 
   const velocity_rows::points& line_;

@@ -73,6 +73,16 @@ field rough(int cells, int components) {
   return u;
 }
 
+/// The value at the centre of a cell; average(i) points to that of cell i − 6.
+template <class Average>
+double value_at_centre(const Average& average, bool limited) {
+  std::array<const double*, 2 * centre_rows::reach + 1> rows{};
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = average(i);
+  double p = 0.0;
+  centre_rows::values(rows.data() + centre_rows::reach, 1, limited, 1, &p);
+  return p;
+}
+
 }  // namespace
 
 TEST(collision_centre, values_invert_averages_up_to_the_tail_of_the_inverse) {
@@ -83,10 +93,7 @@ TEST(collision_centre, values_invert_averages_up_to_the_tail_of_the_inverse) {
     std::array<double, 2 * centre_rows::reach + 1> averages{};
     for (int i = -centre_rows::reach; i <= centre_rows::reach; ++i)
       averages[static_cast<std::size_t>(i + centre_rows::reach)] = factor * std::cos(theta * i);
-    centre_rows::stencil rows{};
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = &averages[i];
-    double p = 0.0;
-    centre_rows::values(rows, false, 1, &p);
+    const double p = value_at_centre([&](std::size_t i) { return &averages[i]; }, false);
     // The rest of the series, A Σ_{k>6} |ρ|^k |2 cos(θk) − 2| ≤ 4 A |ρ|⁷/(1 − |ρ|).
     EXPECT_NEAR(p, 1.0, 2e-9) << theta;
   }
@@ -95,12 +102,31 @@ TEST(collision_centre, values_invert_averages_up_to_the_tail_of_the_inverse) {
 TEST(collision_centre, values_of_constant_data_are_the_averages) {
   // The differences vanish in floating point too.
   for (const double average : {1.0, 0.1, 1e-300, 3e200}) {
-    centre_rows::stencil rows{};
-    rows.fill(&average);
-    double p = 0.0;
-    centre_rows::values(rows, true, 1, &p);
-    EXPECT_EQ(p, average);
+    EXPECT_EQ(value_at_centre([&](std::size_t) { return &average; }, true), average);
   }
+}
+
+TEST(collision_centre, values_of_neighbours_do_not_depend_on_their_number) {
+  check_property("values of some cells", [] {
+    const int count = *rc::gen::inRange(1, 12), n = *rc::gen::inRange(1, 20);
+    const bool limited = *rc::gen::arbitrary<bool>();
+    const auto cells = static_cast<std::size_t>(count) + 2 * centre_rows::reach,
+               width = static_cast<std::size_t>(n);
+    std::vector<std::vector<double>> averages(cells);
+    std::vector<const double*> rows;
+    for (auto& row : averages) {
+      row = *rc::gen::container<std::vector<double>>(
+          width, rc::gen::map(rc::gen::inRange(0, 1 << 20), [](int k) { return k / 1048576.0; }));
+      rows.push_back(row.data());
+    }
+    std::vector<double> together(static_cast<std::size_t>(count) * width);
+    centre_rows::values(rows.data() + centre_rows::reach, count, limited, n, together.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      std::vector<double> alone(width);
+      centre_rows::values(rows.data() + centre_rows::reach + i, 1, limited, n, alone.data());
+      for (std::size_t k = 0; k < width; ++k) RC_ASSERT(together[i * width + k] == alone[k]);
+    }
+  });
 }
 
 TEST(collision_centre, subtract_reports_whether_an_average_becomes_negative) {

@@ -7,6 +7,9 @@
 #include <apsis/exec/counted.hpp>
 #include <apsis/exec/simd-inl.hpp>
 
+#include <cstddef>
+#include <utility>
+
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
@@ -25,6 +28,7 @@ HWY_INLINE N value(const At& at, bool limited) {
   const N here = at(0), twice = here + here;
   N change(0.0);
   // The smallest terms first, and both sides together: mirrored data give mirrored bits.
+#pragma GCC unroll 6
   for (int k = centre_rows::reach; k > 0; --k) change = fma(N(weights[k]), (at(-k) + at(k)) - twice, change);
   const N all = here + change;
   return limited ? maximum(all, N(0.5) * here) : all;
@@ -51,13 +55,30 @@ HWY_INLINE N average(N b, N flux_before, N flux_after, bool limited) {
   return limited ? maximum(all, minimum(b, N(0.0))) : all;
 }
 
-void values(const centre_rows::stencil& averages, bool limited, int width, double* points) {
+/// Values of sizeof...(Row) − 12 cells, so that neighbours share the loads of their rows.
+template <class N, std::size_t... Row>
+HWY_INLINE void values_of_some(const double* const* u, bool limited, int k, int width, double* points,
+                               std::index_sequence<Row...>) {
+  constexpr int cells = static_cast<int>(sizeof...(Row)) - 2 * centre_rows::reach;
+  const N rows[] = {N::load(u[static_cast<std::ptrdiff_t>(Row) - centre_rows::reach] + k)...};
+#pragma GCC unroll 4
+  for (int i = 0; i < cells; ++i) {
+    const auto at = [&](int j) APSIS_PACKED { return rows[i + j + centre_rows::reach]; };
+    value<N>(at, limited).store(points + i * width + k);
+  }
+}
+
+void values(const double* const* u, int count, bool limited, int width, double* points) {
+  constexpr int together = 4;
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    const auto at = [&](int i) APSIS_PACKED {
-      return N::load(averages[static_cast<std::size_t>(std::ptrdiff_t{i} + centre_rows::reach)] + k);
-    };
-    value<N>(at, limited).store(points + k);
+    int i = 0;
+    for (; i + together <= count; i += together)
+      values_of_some<N>(u + i, limited, k, width, points + i * width,
+                        std::make_index_sequence<together + 2 * centre_rows::reach>());
+    for (; i < count; ++i)
+      values_of_some<N>(u + i, limited, k, width, points + i * width,
+                        std::make_index_sequence<1 + 2 * centre_rows::reach>());
   });
 }
 
@@ -122,8 +143,8 @@ HWY_EXPORT(add_averages);
 
 namespace centre_rows {
 
-void values(const stencil& averages, bool limited, int width, double* points) {
-  HWY_DYNAMIC_DISPATCH(values)(averages, limited, width, points);
+void values(const double* const* u, int count, bool limited, int width, double* points) {
+  HWY_DYNAMIC_DISPATCH(values)(u, count, limited, width, points);
 }
 
 bool subtract(const double* solved, const double* points, const double* average, int width, double* d) {

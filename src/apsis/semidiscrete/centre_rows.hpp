@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 namespace apsis {
 
 /// The map between cell averages and values at cell centres, row by row, for the instruction set of this
@@ -13,15 +11,12 @@ namespace centre_rows {
 /// Number of neighbours on either side on which a value at a centre depends.
 inline constexpr int reach = 6;
 
-/// Averages of the cells i−6 … i+6.
-using stencil = std::array<const double*, 2 * reach + 1>;
-
-/// points ← P ū, the values at the centre of cell i by the nearest terms of M⁻¹, whose weights decay like
-/// ρ^|k|,
+/// Rows of cells i = 0 … count−1, one after another: points ← P ū, the values at the centres by the nearest
+/// terms of M⁻¹, whose weights decay like ρ^|k|,
 ///   p_i = ū_i + A Σ_{k=1}^6 ρ^k (ū_{i−k} − 2ū_i + ū_{i+k}),  ρ = √120 − 11 = −0.0455,  A = 24/(22 + 2ρ),
-/// so that |I − P M| ≤ 2·10⁻⁹. `limited`: at least half the average, which smooth data that the mesh resolves
-/// exceed.
-void values(const stencil& averages, bool limited, int width, double* points);
+/// so that |I − P M| ≤ 2·10⁻⁹; averages[i] is the row of ū_i, i = −6 … count+5. `limited`: at least half the
+/// average, which smooth data that the mesh resolves exceed.
+void values(const double* const* averages, int count, bool limited, int width, double* points);
 
 /// d ← solved − points; returns whether average + d is negative somewhere.
 bool subtract(const double* solved, const double* points, const double* average, int width, double* d);

@@ -147,12 +147,8 @@ class cell_centre_collision final : public collision {
       {
         const profile::section timed(kernel::points, static_cast<double>(end - begin) * u.stride(),
                                      {centre_rows::operations(), 4.0 * sizeof(double)});
-        double* points = own.points.data();
-        for (int cell = begin; cell < end; ++cell, points += u.stride()) {
-          centre_rows::stencil averages;
-          std::copy_n(own.averages.begin() + (cell - begin), averages.size(), averages.begin());
-          centre_rows::values(averages, limited, u.stride(), points);
-        }
+        centre_rows::values(own.averages.data() + centre_rows::reach, end - begin, limited, u.stride(),
+                            own.points.data());
       }
       body(batch(u, begin, end), own);
     });

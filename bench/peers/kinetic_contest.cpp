@@ -136,9 +136,11 @@ void enter_all(contest& all, kinetic_task& task, const kinetic_settings& setting
 
 std::vector<double> by_octaves(double from, double to) {
   std::vector<double> all;
-  for (double octave = from; octave > 0.99 * to; octave /= 2.0)
-    for (const double x : {octave, 0.875 * octave, 0.75 * octave, 0.625 * octave})
-      if (x > 0.99 * to) all.push_back(x);
+  for (double octave = from; octave > 0.99 * to; octave /= 2.0) {
+    const int lengths = octave > 1.0 ? 8 : 4;
+    for (int k = 0; k < lengths; ++k)
+      if (const double x = octave * (1.0 - 0.5 * k / lengths); x > 0.99 * to) all.push_back(x);
+  }
   return all;
 }
 

@@ -106,6 +106,37 @@ TEST(point_collision, means_are_the_weighted_sums_of_the_solutions) {
   }
 }
 
+TEST(point_collision, changes_lead_to_the_solutions_and_never_below_zero) {
+  apsis::random_source random(23);
+  for (const std::string name : {"bgk", "shakhov", "es-bgk", "broadwell", "discrete-velocity", "decay"}) {
+    const auto equation = made(name);
+    const int components = equation->components();
+    const auto width = static_cast<std::size_t>(components);
+    constexpr int points = 5;
+    const auto solver = equation->make_collision({.points = points, .pitch = components});
+    for (int round = 0; round < 40; ++round) {
+      std::vector<double> epsilons(points), u(points * width), change(points * width, -1.0);
+      for (double& epsilon : epsilons) epsilon = std::pow(10.0, random.uniform(-14.0, 2.0));
+      // A third of the components is large, others are down to 1e-12 and zero: far from equilibrium.
+      for (std::size_t k = 0; k < u.size(); ++k)
+        u[k] = k % 3 == 0   ? random.uniform(0.5, 1.0)
+               : k % 7 == 1 ? 0.0
+                            : std::pow(10.0, random.uniform(-12.0, 0.0));
+      const point_batch at{.count = points, .pitch = components, .epsilon = epsilons.data()};
+      auto v = u;
+      solver->solve_stage(0.1, -0.02, at, v.data());
+      solver->solve_stage_changes(0.1, -0.02, at, u.data(), change.data());
+      for (std::size_t k = 0; k < u.size(); ++k) {
+        // Differences of numbers of this size; v itself has some roundings.
+        EXPECT_NEAR(change[k], v[k] - u[k], 1e-15 * (u[k] + std::abs(v[k]))) << name;
+        if (v[k] >= 0.0) {
+          EXPECT_GE(u[k] + change[k], 0.0) << name;
+        }
+      }
+    }
+  }
+}
+
 TEST(point_collision, in_the_limit_yields_the_equilibrium_or_fails_with_the_cell) {
   const auto closed = made("broadwell");
   const broadwell_as_general_model general;

@@ -1,5 +1,6 @@
 #include <apsis/model/point_collision.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace apsis {
@@ -18,6 +19,14 @@ void point_collision::solve_stage_means(double a, double b, const point_batch& a
       mean[k] = sum;
     }
   }
+}
+
+void point_collision::solve_stage_changes(double a, double b, const point_batch& at, const double* u,
+                                          double* change) {
+  const std::ptrdiff_t numbers = at.count * at.pitch;
+  std::copy_n(u, numbers, change);
+  solve_stage(a, b, at, change);
+  for (std::ptrdiff_t k = 0; k < numbers; ++k) change[k] -= u[k];
 }
 
 double point_collision::forward_euler_step(const double*, double) {

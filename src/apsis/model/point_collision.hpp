@@ -46,6 +46,10 @@ class point_collision {
   /// means ← Σ_q weights_q v_q, one row for each group, at the same pitch. The rows u are overwritten.
   virtual void solve_stage_means(double a, double b, const point_batch& at, double* u,
                                  std::span<const double> weights, double* means);
+  /// change ← v − u for every point, with the v of solve_stage(), at the same pitch. If v ≥ 0, u + change ≥ 0
+  /// in floating point too.
+  virtual void solve_stage_changes(double a, double b, const point_batch& at, const double* u,
+                                   double* change);
   /// q ← Q(u)/ε for every point, at the same pitch. Throws numerical_error where ε = 0 or Q does not exist.
   virtual void evaluate(const point_batch& at, const double* u, double* q) = 0;
 

@@ -65,6 +65,20 @@ class relaxation_collision final : public point_collision {
     }
   }
 
+  /// v − u = w (E − u) with the weight w ≤ 1 of E, which for E ≥ 0 is at least −u however it is rounded.
+  /// Stages with relaxing moments have targets that are negative where u keeps v ≥ 0.
+  void solve_stage_changes(double a, double b, const point_batch& at, const double* u,
+                           double* change) override {
+    if (!relaxing_.empty()) return point_collision::solve_stage_changes(a, b, at, u, change);
+    find_targets(a, b, at, u);
+    const profile::section timed(kernel::relaxation, numbers(at),
+                                 {relaxation::operations_of_combine, at.cached ? 0.0 : sizeof(double)});
+    find_weights(a, b, at);
+    for (int p = 0; p < at.count; ++p)
+      relaxation::change(weight_of_e_[static_cast<std::size_t>(p)], equilibrium(p), u + p * at.pitch,
+                         width(at), change + p * at.pitch);
+  }
+
   void evaluate(const point_batch& at, const double* u, double* q) override {
     find_targets(0.0, 0.0, at, u);
     for (int p = 0; p < at.count; ++p)

@@ -61,7 +61,7 @@ HWY_INLINE void values_of_some(const double* const* u, bool limited, int k, int 
                                std::index_sequence<Row...>) {
   constexpr int cells = static_cast<int>(sizeof...(Row)) - 2 * centre_rows::reach;
   const N rows[] = {N::load(u[static_cast<std::ptrdiff_t>(Row) - centre_rows::reach] + k)...};
-#pragma GCC unroll 4
+#pragma GCC unroll 3
   for (int i = 0; i < cells; ++i) {
     const auto at = [&](int j) APSIS_PACKED { return rows[i + j + centre_rows::reach]; };
     value<N>(at, limited).store(points + i * width + k);
@@ -69,7 +69,7 @@ HWY_INLINE void values_of_some(const double* const* u, bool limited, int k, int 
 }
 
 void values(const double* const* u, int count, bool limited, int width, double* points) {
-  constexpr int together = 4;
+  constexpr int together = 3;
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     int i = 0;
@@ -82,13 +82,11 @@ void values(const double* const* u, int count, bool limited, int width, double* 
   });
 }
 
-bool subtract(const double* solved, const double* points, const double* average, int width, double* d) {
+bool is_negative(const double* average, const double* d, int width) {
   bool negative = false;
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    const N change = N::load(solved + k) - N::load(points + k);
-    change.store(d + k);
-    negative |= N::any(N::load(average + k) + change < N(0.0));
+    negative |= N::any(N::load(average + k) + N::load(d + k) < N(0.0));
   });
   return negative;
 }
@@ -136,7 +134,7 @@ HWY_AFTER_NAMESPACE();
 namespace apsis {
 namespace {
 HWY_EXPORT(values);
-HWY_EXPORT(subtract);
+HWY_EXPORT(is_negative);
 HWY_EXPORT(lower);
 HWY_EXPORT(add_averages);
 }  // namespace
@@ -147,8 +145,8 @@ void values(const double* const* u, int count, bool limited, int width, double* 
   HWY_DYNAMIC_DISPATCH(values)(u, count, limited, width, points);
 }
 
-bool subtract(const double* solved, const double* points, const double* average, int width, double* d) {
-  return HWY_DYNAMIC_DISPATCH(subtract)(solved, points, average, width, d);
+bool is_negative(const double* average, const double* d, int width) {
+  return HWY_DYNAMIC_DISPATCH(is_negative)(average, d, width);
 }
 
 void lower(const double* average, const double* d, bool all, int width, double* points) {

@@ -18,8 +18,8 @@ inline constexpr int reach = 6;
 /// average, which smooth data that the mesh resolves exceed.
 void values(const double* const* averages, int count, bool limited, int width, double* points);
 
-/// d ← solved − points; returns whether average + d is negative somewhere.
-bool subtract(const double* solved, const double* points, const double* average, int width, double* d);
+/// Returns whether average + d is negative somewhere.
+bool is_negative(const double* average, const double* d, int width);
 
 /// points ← min(points, average) where average + d is negative, or everywhere with `all`.
 void lower(const double* average, const double* d, bool all, int width, double* points);

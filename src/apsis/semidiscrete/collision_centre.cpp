@@ -32,14 +32,14 @@ class cell_centre_collision final : public collision {
   /// The averages change by M d, d = v − p, whose rows have no moments: collisions conserve whatever p is.
   void solve(double, double a, double b, field& u) override {
     find_changes(u, limited_, [&](const point_batch& at, scratch& own) {
-      std::copy_n(own.points.begin(), static_cast<std::size_t>(at.count * at.pitch), own.solved.begin());
-      own.local->solve_stage(a, b, at, own.solved.data());
-      for (int k = 0; k < at.count; ++k) {
+      double *points = own.points.data(), *d = changes_.row(at.first_cell);
+      own.local->solve_stage_changes(a, b, at, points, d);
+      const int width = u.stride();
+      if (!limited_ || !centre_rows::is_negative(u.row(at.first_cell), d, at.count * width)) return;
+      for (int k = 0; k < at.count; ++k, points += width, d += width) {
         const int cell = at.first_cell + k;
-        double *p = own.points.data() + k * at.pitch, *d = changes_.row(cell);
-        const double* solved = own.solved.data() + k * at.pitch;
-        if (centre_rows::subtract(solved, p, u.row(cell), u.stride(), d) && limited_)
-          keep_sign(a, b, u.row(cell), batch(u, cell, cell + 1), p, own, d);
+        if (centre_rows::is_negative(u.row(cell), d, width))
+          keep_sign(a, b, u.row(cell), batch(u, cell, cell + 1), points, *own.local, d);
       }
     });
     if (result_.cells() != u.cells() || result_.components() != u.components())
@@ -81,8 +81,7 @@ class cell_centre_collision final : public collision {
  private:
   struct scratch {
     std::vector<const double*> averages, changes;  ///< rows of a batch and of its neighbours
-    aligned_vector<double> points,                 ///< values at the centres of a batch
-        solved;                                    ///< solutions there
+    aligned_vector<double> points;                 ///< values at the centres of a batch
     std::unique_ptr<point_collision> local;
     std::vector<upwind::row_target> rows;
   };
@@ -95,14 +94,13 @@ class cell_centre_collision final : public collision {
   /// Where ū + d, d = v − p, has negative components, p is replaced by min(p, ū) in these, then in all: v ≥ 0
   /// and p ≤ ū leave none.
   static void keep_sign(double a, double b, const double* average, const point_batch& at, double* p,
-                        scratch& own, double* d) {
+                        point_collision& local, double* d) {
     constexpr int rounds = 3;
     const int width = static_cast<int>(at.pitch);
     for (int round = 0; round <= rounds; ++round) {
       centre_rows::lower(average, d, round == rounds, width, p);
-      std::copy_n(p, width, own.solved.begin());
-      own.local->solve_stage(a, b, at, own.solved.data());
-      if (!centre_rows::subtract(own.solved.data(), p, average, width, d)) return;
+      local.solve_stage_changes(a, b, at, p, d);
+      if (!centre_rows::is_negative(average, d, width)) return;
     }
   }
 
@@ -116,7 +114,6 @@ class cell_centre_collision final : public collision {
       for (auto* rows : {&own.averages, &own.changes})
         rows->reserve(static_cast<std::size_t>(length) + 2 * static_cast<std::size_t>(centre_rows::reach));
       own.points.resize(numbers);
-      own.solved.resize(numbers);
       if (!own.local) own.local = equation_.make_collision({length, u.stride(), limited_, stages_});
     });
   }

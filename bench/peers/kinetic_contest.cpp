@@ -79,28 +79,25 @@ void add_arkode(contest& all, kinetic_task& task, const kinetic_settings& settin
                  options(order, linear_solver::spgmr, false), {0.0}, settings.defaults);
     add_sundials(all, task, tuned + ", GMRES", options(order, linear_solver::preconditioned, true), {0.1},
                  settings.few);
-    auto constrained = options(order, linear_solver::collision_only, true);
-    constrained.constrained = true;
-    add_sundials(all, task, tuned + ", f ≥ 0", constrained, {0.1}, {settings.fine.rtol, {1e-4}});
   }
 }
 
-void add_cvode(contest& all, kinetic_task& task, const kinetic_settings& settings) {
+void add_cvode(contest& all, kinetic_task& task, const kinetic_settings& settings, bool constrained,
+               const std::string& more) {
   const ladder& fine = settings.fine;
+  const auto options = [&](linear_solver linear, bool tuned) {
+    return make_options(settings, sundials_options::integrator::cvode, 5, linear, tuned, constrained);
+  };
+  add_sundials(all, task, "CVODE, tuned, GMRES" + more, options(linear_solver::preconditioned, false),
+               {0.1, 0.01}, fine);
+  add_sundials(all, task, "CVODE, tuned" + more, options(linear_solver::collision_only, true), {0.1}, fine);
+}
+
+void add_cvode(contest& all, kinetic_task& task, const kinetic_settings& settings) {
   add_sundials(all, task, "CVODE, defaults",
                make_options(settings, sundials_options::integrator::cvode, 5, linear_solver::spgmr, false),
                {0.0}, settings.defaults);
-  for (const bool constrained : {false, true}) {
-    const char* more = constrained ? ", f ≥ 0" : "";
-    add_sundials(all, task, fmt::format("CVODE, tuned, GMRES{}", more),
-                 make_options(settings, sundials_options::integrator::cvode, 5, linear_solver::preconditioned,
-                              false, constrained),
-                 {0.1, 0.01}, fine);
-    add_sundials(all, task, fmt::format("CVODE, tuned{}", more),
-                 make_options(settings, sundials_options::integrator::cvode, 5, linear_solver::collision_only,
-                              true, constrained),
-                 {0.1}, fine);
-  }
+  add_cvode(all, task, settings, false, "");
 }
 
 void add_radau(contest& all, kinetic_task& task, const kinetic_settings& settings) {
@@ -114,10 +111,11 @@ void add_radau(contest& all, kinetic_task& task, const kinetic_settings& setting
     }
 }
 
-void add_explicit(contest& all, kinetic_task& task, const kinetic_settings& settings) {
+void add_explicit(contest& all, kinetic_task& task, const kinetic_settings& settings,
+                  const std::string& more) {
   for (const auto& name : settings.explicit_methods)
     for (const long steps : settings.explicit_steps)
-      all.add({name, fmt::format("{} steps", steps), league_of(name),
+      all.add({name + more, fmt::format("{} steps", steps), league_of(name),
                [&task, name, steps, seconds = settings.seconds_others] {
                  return task.run(name, steps, false, seconds);
                }});
@@ -131,7 +129,18 @@ void enter_all(contest& all, kinetic_task& task, const kinetic_settings& setting
   add_arkode(all, task, settings);
   add_cvode(all, task, settings);
   add_radau(all, task, settings);
-  add_explicit(all, task, settings);
+  enter_nonnegative(all, task, settings, "");
+}
+
+void enter_nonnegative(contest& all, kinetic_task& task, const kinetic_settings& settings,
+                       const std::string& more) {
+  for (const int order : {3, 4})
+    add_sundials(all, task, fmt::format("ARKODE {}, tuned, f ≥ 0{}", order, more),
+                 make_options(settings, sundials_options::integrator::arkode, order,
+                              linear_solver::collision_only, true, true),
+                 {0.1}, {settings.fine.rtol, {1e-4}});
+  add_cvode(all, task, settings, true, ", f ≥ 0" + more);
+  add_explicit(all, task, settings, more);
 }
 
 std::vector<double> by_octaves(double from, double to) {

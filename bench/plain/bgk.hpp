@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace apsis::bench::plain {
@@ -26,35 +26,16 @@ class bgk {
     std::vector<double> epsilon;  ///< three per cell, at the Gauss points from left to right
   };
 
-  bgk(mesh space, method scheme);
+  virtual ~bgk() = default;
 
   /// Advances f[cell · velocities + j] by one step.
-  void step(double dt, std::vector<double>& f);
-
- private:
-  std::size_t at(int cell, int j) const {
-    return static_cast<std::size_t>(cell) * static_cast<std::size_t>(velocities_) +
-           static_cast<std::size_t>(j);
-  }
-  const double* neighbour(const std::vector<double>& f, int cell) const;
-
-  /// Computes left_ and right_, the edge values of every cell.
-  void reconstruct(const std::vector<double>& f);
-  void limit(const std::vector<double>& f);
-  void transport(const std::vector<double>& f, std::vector<double>& out);
-  void collide(double a, double b, std::vector<double>& f);
-  void gauss_values(const std::vector<double>& f, int cell);
-  void maxwellian(const std::vector<double>& f);
-  void sum_stage(int i, double dt, const std::vector<double>& f, std::vector<double>& u) const;
-
-  mesh mesh_;
-  method method_;
-  int velocities_;
-  double dv_;
-  std::vector<std::vector<double>> stages_, transports_;
-  std::vector<bool> transported_;  ///< whether T of the stage enters a later one
-  std::vector<double> left_, right_, result_, maxwellian_;
-  std::vector<double> gauss_[3];
+  virtual void step(double dt, std::vector<double>& f) = 0;
 };
+
+/// Compiled with the flags of the library's kernels.
+std::unique_ptr<bgk> make_bgk(bgk::mesh space, method scheme);
+/// The same source with -O3 -march=native -ffast-math: for this processor only, and rounded as the compiler
+/// likes.
+std::unique_ptr<bgk> make_native_bgk(bgk::mesh space, method scheme);
 
 }  // namespace apsis::bench::plain

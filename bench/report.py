@@ -344,11 +344,13 @@ def read(path):
 
 
 def keep(results, folder):
-    """Writes the file of a machine; `results` are compact."""
+    """Writes the file of a machine, with its older tables that are not measured again; `results` are compact."""
     name = re.sub(r"[^a-z0-9]+", "-", processor(any_of(results)).lower()).strip("-")
     folder.mkdir(parents=True, exist_ok=True)
     stored = {name: result | {"data": result["data"] | {"points": packed(result["data"]["points"])}} for name, result in results.items()}
-    (folder / f"{name}.json").write_text(text_of(stored), encoding="utf-8")
+    path = folder / f"{name}.json"
+    older = read(path) if path.exists() else {}
+    path.write_text(text_of(older | stored), encoding="utf-8")
 
 
 def newest_first(folder):

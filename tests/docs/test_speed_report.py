@@ -1,0 +1,47 @@
+"""bench/report.py keeps what was measured before: a file with some tables replaces these only."""
+import copy
+import importlib.util
+import json
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def report():
+    sys.path.insert(0, str(ROOT / "bench"))
+    spec = importlib.util.spec_from_file_location("speed_report", ROOT / "bench/report.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def result(rows, points=()):
+    return {"title": "", "note": "", "columns": ["method"], "rows": rows, "repeats": 1,
+            "machine": {"date": "2026-11-26T00:00:00Z", "processor": "Test 1"}, "data": {"points": list(points)}}
+
+
+RUN = {"contestant": "a", "epsilon": 1.0, "error": 1e-3, "seconds": 0.5, "smallest": 0.25, "league": "ssp", "ours": True,
+       "setting": "dt = 1", "steps": 4}
+
+
+class SpeedReport(unittest.TestCase):
+    def test_a_new_table_replaces_itself_and_no_other(self):
+        module = report()
+        with tempfile.TemporaryDirectory() as folder:
+            folder = Path(folder)
+            module.keep(module.compact({"peers-kaps": result([["a"]], [copy.deepcopy(RUN)]), "plain": result([["old"]])}), folder)
+            before = module.newest_first(folder)[0]
+            module.keep(module.compact({"plain": result([["new"]])}), folder)
+            after = module.newest_first(folder)[0]
+            self.assertEqual(len(list(folder.glob("*.json"))), 1)
+            self.assertEqual(after["plain"]["rows"], [["new"]])
+            self.assertEqual(after["peers-kaps"], before["peers-kaps"])
+            self.assertEqual({point["error"] for point in after["peers-kaps"]["data"]["points"]}, {1e-3})
+            self.assertIn("runs", json.loads(next(folder.glob("*.json")).read_text())["peers-kaps"]["data"]["points"][0])
+
+
+if __name__ == "__main__":
+    unittest.main()

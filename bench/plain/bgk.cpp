@@ -118,9 +118,9 @@ void loops::step(double dt, std::vector<double>& f) {
 }
 
 void loops::sum_stage(int i, double dt, const std::vector<double>& f, std::vector<double>& u) const {
-  const int s = method_.stages;
+  const auto s = static_cast<std::size_t>(method_.stages);
   const auto entry = [s](const std::vector<double>& m, int row, int column) {
-    return m[static_cast<std::size_t>(row * s + column)];
+    return m[static_cast<std::size_t>(row) * s + static_cast<std::size_t>(column)];
   };
   double initial = 1.0;
   for (int j = 0; j < i; ++j) initial -= entry(method_.P, i, j) + entry(method_.W, i, j);

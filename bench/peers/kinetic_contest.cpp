@@ -82,8 +82,8 @@ void add_arkode(contest& all, kinetic_task& task, const kinetic_settings& settin
   }
 }
 
-void add_cvode(contest& all, kinetic_task& task, const kinetic_settings& settings, bool constrained,
-               const std::string& more) {
+void add_tuned_cvode(contest& all, kinetic_task& task, const kinetic_settings& settings, bool constrained,
+                     const std::string& more) {
   const ladder& fine = settings.fine;
   const auto options = [&](linear_solver linear, bool tuned) {
     return make_options(settings, sundials_options::integrator::cvode, 5, linear, tuned, constrained);
@@ -97,7 +97,7 @@ void add_cvode(contest& all, kinetic_task& task, const kinetic_settings& setting
   add_sundials(all, task, "CVODE, defaults",
                make_options(settings, sundials_options::integrator::cvode, 5, linear_solver::spgmr, false),
                {0.0}, settings.defaults);
-  add_cvode(all, task, settings, false, "");
+  add_tuned_cvode(all, task, settings, false, "");
 }
 
 void add_radau(contest& all, kinetic_task& task, const kinetic_settings& settings) {
@@ -129,17 +129,17 @@ void enter_all(contest& all, kinetic_task& task, const kinetic_settings& setting
   add_arkode(all, task, settings);
   add_cvode(all, task, settings);
   add_radau(all, task, settings);
-  enter_nonnegative(all, task, settings, "");
+  enter_constrained_and_explicit(all, task, settings, "");
 }
 
-void enter_nonnegative(contest& all, kinetic_task& task, const kinetic_settings& settings,
-                       const std::string& more) {
+void enter_constrained_and_explicit(contest& all, kinetic_task& task, const kinetic_settings& settings,
+                                    const std::string& more) {
   for (const int order : {3, 4})
     add_sundials(all, task, fmt::format("ARKODE {}, tuned, f ≥ 0{}", order, more),
                  make_options(settings, sundials_options::integrator::arkode, order,
                               linear_solver::collision_only, true, true),
                  {0.1}, {settings.fine.rtol, {1e-4}});
-  add_cvode(all, task, settings, true, ", f ≥ 0" + more);
+  add_tuned_cvode(all, task, settings, true, ", f ≥ 0" + more);
   add_explicit(all, task, settings, more);
 }
 

@@ -35,8 +35,8 @@ void enter_all(contest& all, kinetic_task& task, const kinetic_settings& setting
 
 /// Enters ARKODE and CVODE with the constraint f ≥ 0 and the explicit methods, with `more` behind their
 /// names.
-void enter_nonnegative(contest& all, kinetic_task& task, const kinetic_settings& settings,
-                       const std::string& more);
+void enter_constrained_and_explicit(contest& all, kinetic_task& task, const kinetic_settings& settings,
+                                    const std::string& more);
 
 /// Returns from, 7/8, 3/4 and 5/8 of it, the same of from/2, … down to `to`; twice as many above 1, where the
 /// longest step that keeps f ≥ 0 is found by trial.

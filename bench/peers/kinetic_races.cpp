@@ -136,7 +136,7 @@ result_table race_on_mixed_regime(unknowns which, const std::vector<double>& err
   if (which == unknowns::averages_at_centres) {
     at_gauss_points.emplace("paper/bgk-mixed", std::vector<std::string>{}, task.end());
     find_mixed_reference(*at_gauss_points, unknowns::averages, quick);
-    enter_nonnegative(all, *at_gauss_points, choices, ", Gauss points");
+    enter_constrained_and_explicit(all, *at_gauss_points, choices, ", Gauss points");
   }
   all.run(quick ? 0 : options.repeats, 3.0);
   result_table result;

@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#ifndef APSIS_MAKE_BGK  // the build for this processor has the other name
+// bench/CMakeLists.txt compiles this file a second time, for this processor, with another name.
+#ifndef APSIS_MAKE_BGK
 #define APSIS_MAKE_BGK make_bgk
 #endif
 

@@ -34,8 +34,8 @@ class bgk {
 
 /// Compiled with the flags of the library's kernels.
 std::unique_ptr<bgk> make_bgk(bgk::mesh space, method scheme);
-/// The same source with -O3 -march=native -ffast-math: for this processor only, and rounded as the compiler
-/// likes.
+/// The same source compiled with -O3 -march=native -ffast-math: for this processor only, and without the
+/// guarantees of IEEE 754.
 std::unique_ptr<bgk> make_native_bgk(bgk::mesh space, method scheme);
 
 }  // namespace apsis::bench::plain

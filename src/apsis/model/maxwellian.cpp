@@ -246,7 +246,7 @@ int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, 
                                 std::ptrdiff_t pitch, line_state* states) {
   std::array<velocity_rows::gaussian, most_line_states>
       curves;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-  // Without an exit, so that a division or root serves several rows.
+  // No early exit, so that the compiler can vectorize the divisions and roots.
 #pragma omp simd
   for (int p = 0; p < rows; ++p) {
     const double rho = omega[3 * p], u = omega[3 * p + 1] / rho;

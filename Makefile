@@ -75,7 +75,7 @@ tidy: ## run clang-tidy over the library, the program and the Python package
 	cmake --build build/clang --target app/apsis
 	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app|paper|validation|python)/.*'
 
-bench: ## measure every table of docs/speed.md into results/bench/speed.json (an hour, on an idle machine)
+bench: ## measure every table of docs/speed.md into results/bench/speed.json (two hours, on an idle machine)
 	@scripts/install-packages.sh test
 	cmake --preset release -DAPSIS_BENCH=ON $(WHOLE) >/dev/null
 	cmake --build build/release --target apsis_measure

@@ -113,7 +113,7 @@ std::optional<gas_scales> read_gas_scales(const case_text& text, const model_ent
   const double length = required(text, config, config.gas.length, "length", "1 mm");
   gas_species gas = make_gas(text, config, temperature);
   const double pressure = read_pressure(text, config, gas.mass, temperature);
-  const gas_scales scales(std::move(gas), pressure, temperature, length);
+  gas_scales scales(std::move(gas), pressure, temperature, length);
   for (const auto& one : scales.quantities())
     if (!std::isnormal(one.value) && one.name != "viscosity_exponent")
       throw input_error(

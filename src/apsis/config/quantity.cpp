@@ -179,10 +179,10 @@ number_and_unit split(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   number_and_unit parts;
-  const char* end = text.data() + text.size();
-  const auto [stop, problem] = std::from_chars(text.data(), end, parts.number);
+  const char *begin = text.data(), *end = begin + text.size();
+  const auto [stop, problem] = std::from_chars(begin, end, parts.number);
   if (problem != std::errc() || !std::isfinite(parts.number)) return {};
-  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
+  text.remove_prefix(static_cast<std::size_t>(stop - begin));
   if (text.empty() || text.front() != ' ') return {};
   while (text.front() == ' ') text.remove_prefix(1);
   if (in_symbol(text.front()) || text.front() == '1' || text.front() == '(') parts.unit = text;

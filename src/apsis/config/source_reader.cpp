@@ -54,7 +54,7 @@ space_time_formula compile(const case_config& config, const model& equation, con
 
 /// A row by functions of the velocity, one for each set of components.
 source_rate rate_by_functions(const case_config& config, const model& equation) {
-  const velocity_set velocities = equation.velocities();
+  const velocity_set& velocities = equation.velocities();
   std::vector<space_time_formula> formulas;
   const auto names = functions_of(equation);
   for (const auto& [name, texts] : config.source_term)

@@ -27,7 +27,8 @@ std::map<std::string, dimension> measures_of_variables(const model& equation) {
     if (kind->variables == nullptr) continue;
     try {
       add(kind->variables(equation));
-    } catch (const input_error&) {  // the model cannot have this kind
+    } catch (const input_error&) {
+      continue;  // the model cannot have this kind
     }
   }
   return measures;

@@ -80,8 +80,8 @@ std::string grids_on_mesh(const field_series& fields, const std::string& file, b
   std::string grids;
   for (std::size_t k = 0; k < count; ++k) {
     const auto item = [&](const std::string& name) {
-      return count > 1 ? part_item(dimensions, k, count, shape, file + ":/snapshots/" + name)
-                       : data_item(dimensions, file + ":/fields/" + name);
+      return count > 1 ? part_item(dimensions, k, count, shape, fmt::format("{}:/snapshots/{}", file, name))
+                       : data_item(dimensions, fmt::format("{}:/fields/{}", file, name));
     };
     std::string values;
     for (const auto& name : fields.names) values += node_values(name, item(name));

@@ -104,7 +104,8 @@ std::vector<int> memory_need::cells_that_fit(double limit) const {
   const double share = limit / bytes(1.0, components_) / cells_;
   const double factor = std::min(1.0, std::pow(share, 1.0 / static_cast<double>(shape_.size())));
   std::vector<int> cells = scaled(shape_, factor, 1);
-  return bytes(product(cells), components_) <= limit ? cells : std::vector<int>{};
+  if (!(bytes(product(cells), components_) <= limit)) return {};
+  return cells;
 }
 
 std::vector<int> memory_need::points_that_fit(double limit) const {

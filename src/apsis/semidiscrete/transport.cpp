@@ -44,21 +44,21 @@ struct transport::scratch {
 
   /// The boxes of a mesh, which are made again only for another width or number of threads.
   const tiling& boxes(const domain& space, int longest, int parts) {
-    if (made && longest == longest_made && parts == parts_made) return *made;
-    made.emplace(space.mesh(), longest, parts);
-    longest_made = longest;
-    parts_made = parts;
+    if (made_ && longest == longest_made_ && parts == parts_made_) return *made_;
+    made_.emplace(space.mesh(), longest, parts);
+    longest_made_ = longest;
+    parts_made_ = parts;
     for (auto& numbers : waves) numbers.clear();
-    for (int number = 0; number < made->count(); ++number)
-      waves[space.is_inner(made->box(number)) ? 0 : 1].push_back(number);
-    return *made;
+    for (int number = 0; number < made_->count(); ++number)
+      waves[space.is_inner(made_->box(number)) ? 0 : 1].push_back(number);
+    return *made_;
   }
   /// Numbers of the boxes that depend on no other process, and of the others.
   std::array<std::vector<int>, 2> waves;
 
  private:
-  std::optional<tiling> made;
-  int longest_made = 0, parts_made = 0;
+  std::optional<tiling> made_;
+  int longest_made_ = 0, parts_made_ = 0;
 };
 
 /// How a sweep is divided into tasks: boxes of the tiling, or boxes times parts of the rows.

@@ -97,17 +97,18 @@ class plane_broadwell_model final : public relaxation_model {
 
   const std::vector<initial_data>& initial() const override { return initial_; }
   std::vector<data_form> data_forms() const override {
-    data_form equilibria{"equilibrium",
-                         {{"rho", "density (dimensionless)"}, {"m", "momentum (dimensionless)", 2}},
-                         [this](std::span<const double> given, std::span<double> f) {
-                           if (!(std::abs(given[1]) + std::abs(given[2]) <= given[0]))
-                             return fmt::format(
-                                 "no equilibrium has density {:.6g} and momentum ({:.6g}, {:.6g}), since "
-                                 "|m_x| + |m_y| > rho",
-                                 given[0], given[1], given[2]);
-                           equilibrium(given.data(), f.data());
-                           return std::string();
-                         }};
+    const data_form equilibria{
+        "equilibrium",
+        {{"rho", "density (dimensionless)"}, {"m", "momentum (dimensionless)", 2}},
+        [this](std::span<const double> given, std::span<double> f) {
+          if (!(std::abs(given[1]) + std::abs(given[2]) <= given[0]))
+            return fmt::format(
+                "no equilibrium has density {:.6g} and momentum ({:.6g}, {:.6g}), since "
+                "|m_x| + |m_y| > rho",
+                given[0], given[1], given[2]);
+          equilibrium(given.data(), f.data());
+          return std::string();
+        }};
     data_form particles{"densities of particles", {}, [](std::span<const double> given, std::span<double> f) {
                           std::copy(given.begin(), given.end(), f.begin());
                           return std::string();

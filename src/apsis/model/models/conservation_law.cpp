@@ -129,10 +129,10 @@ class law_model final : public relaxation_model {
       for (int direction = 0; direction < D_; ++direction) {
         fluxes_[static_cast<std::size_t>(direction)].evaluate(omega + done * n_, count, F.data());
         for (int p = 0; p < count; ++p) {
-          const double* u = omega + (done + p) * n_;
+          const double *u = omega + (done + p) * n_, *flux = F.data() + p;
           double* row = e + (done + p) * pitch + 2 * direction;
           for (int k = 0; k < n_; ++k, row += 2 * D_) {
-            const double share = u[k] / D, over_a = F[static_cast<std::size_t>(k * count + p)] / a_;
+            const double share = u[k] / D, over_a = flux[k * count] / a_;
             row[0] = 0.5 * (share + over_a);
             row[1] = 0.5 * (share - over_a);
           }

@@ -33,8 +33,8 @@ struct kinetic_settings {
 /// tolerance, ARKODE, CVODE, Radau and explicit methods. The task must outlive the contest.
 void enter_all(contest& all, kinetic_task& task, const kinetic_settings& settings);
 
-/// Enters ARKODE and CVODE with the constraint f ≥ 0 and the explicit methods, with `more` behind their
-/// names.
+/// Enters ARKODE and CVODE with the constraint f ≥ 0 and the explicit methods, with `more`
+/// appended to their names.
 void enter_constrained_and_explicit(contest& all, kinetic_task& task, const kinetic_settings& settings,
                                     const std::string& more);
 

@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-// bench/CMakeLists.txt compiles this file a second time, for this processor, with another name.
+// bench/CMakeLists.txt compiles this file a second time, for this processor, where the function has another
+// name.
 #ifndef APSIS_MAKE_BGK
 #define APSIS_MAKE_BGK make_bgk
 #endif

@@ -42,7 +42,7 @@ struct transport::scratch {
   per_thread<std::vector<upwind::row_target>> rows;
   std::vector<double> given;  ///< by force and source
 
-  /// The boxes of a mesh, which are made again only for another width or number of threads.
+  /// The boxes of a mesh, rebuilt only for another width or number of threads.
   const tiling& boxes(const domain& space, int longest, int parts) {
     if (made_ && longest == longest_made_ && parts == parts_made_) return *made_;
     made_.emplace(space.mesh(), longest, parts);

@@ -4,6 +4,7 @@
 #include "processes.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/printable.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/core/version.hpp>
 
@@ -97,7 +98,7 @@ void occupy_standard_descriptors() {
 int fail(exit_code code, const std::string& message) {
   // Of several processes, which end with the same error, one reports it. If standard error cannot be written,
   // only the exit code reports the error.
-  if (reports_errors()) std::fputs(fmt::format("error: {}\n", message).c_str(), stderr);
+  if (reports_errors()) std::fputs(fmt::format("error: {}\n", printable(message)).c_str(), stderr);
   return static_cast<int>(code);
 }
 

@@ -4,7 +4,8 @@
 
 namespace apsis::app {
 
-/// Writes results to standard output. Throws io_error if that fails.
+/// Writes results to standard output, as printable() text, which in JSON and TOML stands for the same
+/// characters. Throws io_error if that fails.
 void print(const std::string& text);
 
 }  // namespace apsis::app

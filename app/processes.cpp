@@ -4,6 +4,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/core/printable.hpp>
 #include <apsis/exec/launcher.hpp>
 
 #include <cstdio>
@@ -32,7 +33,8 @@ int on_all_processes(const std::function<int(const std::shared_ptr<communicator>
   } catch (const std::exception& failure) {
     // Where all fail, the root reports the error.
     if (processes->is_single() || processes->all_arrive(patience)) throw;
-    std::fputs(fmt::format("error: process {}: {}\n", processes->rank(), failure.what()).c_str(), stderr);
+    std::fputs(fmt::format("error: process {}: {}\n", processes->rank(), printable(failure.what())).c_str(),
+               stderr);
     processes->abort(static_cast<int>(code_of(failure)));
     throw;
   }

@@ -2,6 +2,8 @@
 
 #include "arrays.hpp"
 
+#include <apsis/core/printable.hpp>
+
 #include <exception>
 #include <utility>
 
@@ -11,7 +13,7 @@ namespace {
 /// Raises one of the exceptions of apsis.errors, with the message of the library.
 void raise(const char* name, const error& problem, const failure_site* site = nullptr) {
   const py::object type = py::module_::import("apsis.errors").attr(name);
-  const py::object exception = type(problem.what());
+  const py::object exception = type(printable(problem.what()));
   if (site != nullptr) {
     exception.attr("step") = site->step;
     exception.attr("t") = site->t;

@@ -3,12 +3,15 @@
 
 #include <apsis/core/errors.hpp>
 
+#include <csignal>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <support/folder.hpp>
+#include <sys/resource.h>
 
 namespace text_file_test {
 
@@ -59,13 +62,53 @@ TEST(text_file, that_cannot_be_read_is_named_in_the_error) {
   }
 }
 
-TEST(text_file, that_cannot_be_written_completely_is_named_with_a_suggestion) {
+TEST(text_file, that_cannot_be_written_is_named_with_its_reason_and_a_suggestion) {
   const test_folder folder;
-  // /dev/full can be opened but rejects all writes, like a full disk.
-  for (const std::string& path : {folder / "none/f", folder / "", std::string("/dev/full")}) {
-    const std::string text = complaint([&] { write_text_file(path, "text", "set TMPDIR"); });
-    EXPECT_EQ(text, "cannot write '" + path + "' (no permission or no space left); set TMPDIR");
+  std::filesystem::create_directory(folder / "folder");
+  write_text_file(folder / "file", "");
+  const std::string gone = "there is no folder '" + (folder / "none") + "', it may have been deleted";
+  const std::pair<std::string, std::string> refused[] = {
+      {folder / "none/f", gone},
+      {folder / "folder", "something that is not a file has this name"},
+      {"/dev/full", "something that is not a file has this name"},
+      {folder / "file/f", "Not a directory"},
+      {folder / std::string(300, 'n'), "File name too long"},
+      {"/proc/self/f", "No such file or directory"}};
+  for (const auto& [path, reason] : refused) {
+    const std::string text = complaint([&, &path = path] { write_text_file(path, "text", "set TMPDIR"); });
+    EXPECT_EQ(text, "cannot write '" + path + "' (" + reason + "); set TMPDIR");
   }
+  EXPECT_TRUE(std::filesystem::exists("/dev/full"));
+}
+
+TEST(text_file, of_a_full_disk_is_an_error) {
+  const test_folder folder;
+  // A limit of the length of files acts as a full disk.
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string text =
+      complaint([&] { write_text_file(folder / "f", std::string(5000, 'a'), "free some"); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(text, "cannot write '" + (folder / "f") + "' (File too large); free some");
+}
+
+TEST(text_file, is_never_written_through_a_link) {
+  const test_folder folder;
+  write_text_file(folder / "mine", "precious");
+  std::filesystem::create_symlink(folder / "mine", folder / "symbolic");
+  std::filesystem::create_hard_link(folder / "mine", folder / "hard");
+  std::filesystem::create_symlink(folder / "new", folder / "dangling");
+  for (const char* planted : {"symbolic", "hard", "dangling"}) {
+    write_text_file(folder / planted, "result");
+    EXPECT_EQ(read_text_file(folder / planted, 100, "file"), "result") << planted;
+    EXPECT_FALSE(std::filesystem::is_symlink(folder / planted)) << planted;
+  }
+  EXPECT_EQ(read_text_file(folder / "mine", 100, "file"), "precious");
+  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
 }
 
 }  // namespace text_file_test

@@ -1,5 +1,7 @@
 #include <apsis/core/log.hpp>
 
+#include <apsis/core/printable.hpp>
+
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -25,7 +27,7 @@ bool supports_colour() {
 void write(std::string_view name, std::string_view colour, const std::string& message) {
   std::string line(name);
   if (supports_colour()) line = std::string(colour) + line + "\033[m";
-  line += ": " + message + "\n";
+  line += ": " + printable(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

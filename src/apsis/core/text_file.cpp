@@ -1,12 +1,16 @@
 #include <apsis/core/text_file.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/new_file.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace apsis {
 
@@ -26,11 +30,20 @@ std::string read_text_file(const std::string& path, std::size_t longest, const s
 }
 
 void write_text_file(const std::string& path, const std::string& text, const std::string& suggestion) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out)
-    throw io_error(fmt::format("cannot write '{}' (no permission or no space left); {}", path, suggestion));
+  const int file = create_new_file(path);
+  int problem = file < 0 ? errno : 0;
+  for (std::string_view rest = text; problem == 0 && !rest.empty();) {
+    const ssize_t put = write(file, rest.data(), rest.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0)
+      problem = put < 0 ? errno : ENOSPC;
+    else
+      rest.remove_prefix(static_cast<std::size_t>(put));
+  }
+  if (file >= 0 && close(file) != 0 && problem == 0) problem = errno;
+  if (problem != 0)
+    throw io_error(
+        fmt::format("cannot write '{}' ({}); {}", path, why_not_written(path, problem), suggestion));
 }
 
 }  // namespace apsis

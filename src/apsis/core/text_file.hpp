@@ -10,7 +10,8 @@ namespace apsis {
 /// its end or is a folder.
 std::string read_text_file(const std::string& path, std::size_t longest, const std::string& kind);
 
-/// Writes a file. Throws io_error, whose message ends in `suggestion`, if not all of it could be written.
+/// Writes a file anew, never through a link (create_new_file). Throws io_error, whose message has the reason
+/// and ends in `suggestion`, if not all of it could be written.
 void write_text_file(const std::string& path, const std::string& text,
                      const std::string& suggestion = "free some space or choose another place");
 

@@ -10,6 +10,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/agreement.hpp>
+#include <apsis/exec/interruption.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/output/case_json.hpp>
@@ -60,7 +61,14 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
       if (bar.due()) bar.update(now.t() / end, step_text(now));
     };
   options.session.stepped = [&bar] { bar.finish(); };
-  run_session session(config, options.session);
+  std::optional<run_session> prepared;
+  {
+    const interruptible before_steps([] {
+      if (interrupted()) throw interrupted_error();
+    });
+    prepared.emplace(config, options.session);
+  }
+  run_session& session = *prepared;
   if (options.profile) profile::start();
   const run_end end = session.run();
   const simulation& computed = session.computed();

@@ -56,6 +56,22 @@ TEST_P(every_signal, ends_converge_within_a_step_and_states_what_it_waits_for) {
   EXPECT_TRUE(json::parse(read(folder.path() / "o/converge.json")).empty());
 }
 
+TEST_P(every_signal, ends_a_run_before_its_first_step_and_leaves_nothing_behind) {
+  const work_folder folder;
+  // Ten million cells with ten formulas each: minutes of sampling.
+  folder.file("c.toml",
+              "[model]\nname = \"bgk\"\nepsilon = 0.1\n[velocity]\nmax = 8\npoints = 16\n[space]\ncells = "
+              "1500000\ndomain = [0, 1]\n[time]\nmethod = \"md-imex-6-3\"\nend = 1.0\ndt = 1e-9\n[initial]\nrho = \"1 + 0.1*sin(x)\"\n"
+              "u = \"sin(x)/10\"\nT = \"1 + exp(-x)/10\"\n");
+  process run(folder, {"run", "c.toml", "--threads", "1", "--out", "o"});
+  ASSERT_TRUE(run.wait_for("needs ")) << run.said();
+  run.send(GetParam());
+  const outcome stopped = run.wait();
+  EXPECT_EQ(stopped.code, 130) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("error: interrupted before the first step (there is nothing to save)"));
+  EXPECT_FALSE(fs::exists(folder.path() / "o"));
+}
+
 TEST_P(every_signal, ends_commands_that_have_nothing_to_save) {
   using words = std::vector<std::string>;
   std::vector<words> commands = {{"check", "m.toml", "--observe"}};

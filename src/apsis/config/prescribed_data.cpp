@@ -1,6 +1,7 @@
 #include <apsis/config/prescribed_data.hpp>
 
 #include <apsis/core/suggest.hpp>
+#include <apsis/exec/interruption.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -277,7 +278,10 @@ std::vector<double> prescribed_data::jumps(const grid& mesh) const {
       return std::min(x - mesh.centre(0, 0), mesh.centre(mesh.size() - 1, 0) - x) >
              (1e-9 - 0.5) * mesh.spacing(0);
     });
-    for (int cell = 0; cell < mesh.size() && !covers; ++cell) covers = one.contains(mesh.centre(cell));
+    for (int cell = 0; cell < mesh.size() && !covers; ++cell) {
+      interruptible::poll();
+      covers = one.contains(mesh.centre(cell));
+    }
     if (!covers)
       throw input_error(one.place,
                         fmt::format("the region '{}' covers no point of the mesh (its condition is 0 "
@@ -300,6 +304,7 @@ std::vector<double> prescribed_data::region::ends(const grid& mesh) const {
   double before = lower;
   bool was_inside = inside(before);
   for (long k = 0; k <= steps; ++k) {
+    interruptible::poll();
     // Midpoints of equal intervals, since regions often end where cells do, and the end of the domain.
     const double at =
         k == steps ? upper

@@ -1,6 +1,7 @@
 #include <apsis/exec/agreement.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/exec/interruption.hpp>
 
 #include <array>
 #include <cstring>
@@ -14,7 +15,7 @@ namespace {
 
 /// An error as it is sent to the other processes.
 struct sent_error {
-  enum kind : int { other, memory, input, numerical, output, claim };
+  enum kind : int { other, memory, input, numerical, output, claim, interrupted };
   int what = other;
   std::int64_t length = 0;  ///< of the message
   failure_site site;
@@ -37,6 +38,8 @@ sent_error describe(const std::exception_ptr& mine, std::string& message) {
     set(sent_error::output, failure.what());
   } catch (const claim_error& failure) {
     set(sent_error::claim, failure.what());
+  } catch (const interrupted_error& failure) {
+    set(sent_error::interrupted, failure.what());
   } catch (const std::bad_alloc&) {
     set(sent_error::memory, "");
   } catch (const std::exception& failure) {
@@ -58,6 +61,8 @@ sent_error describe(const std::exception_ptr& mine, std::string& message) {
       throw io_error(message);
     case sent_error::claim:
       throw claim_error(message);
+    case sent_error::interrupted:
+      throw interrupted_error();
     case sent_error::memory:
       throw std::bad_alloc();
     default:

@@ -2,6 +2,7 @@
 
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/exec/interruption.hpp>
 #include <apsis/run/initial_table_file.hpp>
 #include <apsis/scheme/cell_polynomials.hpp>
 
@@ -88,6 +89,7 @@ class reader {
     const std::vector<bool> solid = source_.solid_rows(given.front().size());
     std::vector<double> numbers(given.size()), row(size(rows.components));
     for (int cell = 0; cell < rows.cells; ++cell) {
+      interruptible::poll();
       for (std::size_t k = 0; k < given.size(); ++k) numbers[k] = given[k][size(cell)];
       if (solid[size(cell)]) {
         rows.values.insert(rows.values.end(), row.size(), 0.0);

@@ -10,6 +10,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
+#include <apsis/exec/interruption.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/convexity.hpp>
 #include <apsis/model/expression.hpp>
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -41,6 +43,7 @@ std::pair<std::vector<double>, std::vector<double>> extremes_of_fields(const mod
   std::vector<double> lowest(values.size(), std::numeric_limits<double>::infinity()), highest(values.size());
   for (double& value : highest) value = -std::numeric_limits<double>::infinity();
   for (int cell = 0; cell < u.cells(); ++cell) {
+    interruptible::poll();
     if (mesh.solid(cell) >= 0) continue;
     equation.macroscopic(u.row(cell), values.data());
     for (std::size_t k = 0; k < values.size(); ++k) {
@@ -275,7 +278,8 @@ field run_setup::initial_state() const {
 
 field run_setup::checked(field u, bool computed) const {
   together(processes(), [&] { check_cells(u, computed); });
-  auto [lowest, highest] = extremes_of_fields(*equation, mesh(), u);
+  std::vector<double> lowest, highest;
+  together(processes(), [&] { std::tie(lowest, highest) = extremes_of_fields(*equation, mesh(), u); });
   for (double& value : highest) value = -value;
   processes().lowest(lowest);
   processes().lowest(highest);
@@ -287,6 +291,7 @@ field run_setup::checked(field u, bool computed) const {
 
 void run_setup::check_cells(const field& u, bool computed) const {
   for (int cell = 0; cell < u.cells(); ++cell) {
+    interruptible::poll();
     if (mesh().solid(cell) >= 0) continue;
     const unsupported_initial_data found = equation->check_supported(u.row(cell));
     if (found.problem.empty()) continue;
@@ -318,10 +323,10 @@ double run_setup::equilibrium_defect(const field& u) const {
   std::vector<double> e(static_cast<std::size_t>(u.components()));
   std::vector<double> before(count), after(count), scales(count);
   std::vector<exact_sum> missed(count), all(count);
-  for (int cell = 0; cell < u.cells(); ++cell) {
-    if (mesh().solid(cell) >= 0) continue;
+  const auto add_cell = [&](int cell) {
+    if (mesh().solid(cell) >= 0) return;
     relaxation->moments(u.row(cell), omega.data());
-    if (!relaxation->equilibrium(omega.data(), e.data())) continue;  // reported by the first step
+    if (!relaxation->equilibrium(omega.data(), e.data())) return;  // reported by the first step
     equation->invariant_densities(u.row(cell), before.data());
     equation->invariant_densities(e.data(), after.data());
     equation->invariant_scales(before, scales.data());
@@ -329,7 +334,13 @@ double run_setup::equilibrium_defect(const field& u) const {
       missed[k].add(std::abs(after[k] - before[k]));
       all[k].add(scales[k]);
     }
-  }
+  };
+  together(processes(), [&] {
+    for (int cell = 0; cell < u.cells(); ++cell) {
+      interruptible::poll();
+      add_cell(cell);
+    }
+  });
   const std::vector<double> defects = global_values(processes(), missed),
                             sizes = global_values(processes(), all);
   double worst = 0.0;

@@ -2,6 +2,7 @@
 
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/exec/interruption.hpp>
 #include <apsis/scheme/quartic.hpp>
 #include <apsis/semidiscrete/centre_rows.hpp>
 
@@ -200,6 +201,7 @@ std::vector<double> problem_builder::epsilon_at(std::span<const double> offsets)
   std::vector<double> values;
   for (int cell = 0; cell < mesh_.size(); ++cell)
     for (const double offset : offsets) {
+      interruptible::poll();
       position x = has_space() ? mesh_.centre(cell) : position{};
       x[0] += offset * mesh_.spacing(0);
       values.push_back(epsilon_(x));
@@ -256,6 +258,7 @@ field problem_builder::sample(const data& value, const std::vector<double>& jump
   std::vector<double> values(static_cast<std::size_t>(u.components()));
   const bool averages = has_space() && unknowns() == formulation::finite_volume;
   for (int cell = 0; cell < u.cells(); ++cell) {
+    interruptible::poll();
     if (mesh_.solid(cell) >= 0) continue;
     const position centre = has_space() ? mesh_.centre(cell) : position{};
     const double half = 0.5 * mesh_.spacing(0);

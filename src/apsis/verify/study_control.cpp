@@ -1,5 +1,6 @@
 #include <apsis/verify/study_control.hpp>
 
+#include <apsis/exec/interruption.hpp>
 #include <apsis/exec/parallel.hpp>
 
 #include <mutex>
@@ -21,6 +22,7 @@ void run_all(const study_control& control, const std::string& what, int count,
   control.report(0.0, what);
   parallel_tasks(count, [&](int k) {
     control.check();
+    const interruptible before_steps([&control] { control.check(); });
     body(k);
     const std::lock_guard lock(guard);
     control.report(static_cast<double>(++done) / count, what);

@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <iterator>
 #include <memory>
 #include <sstream>
 #include <thread>
@@ -232,6 +233,109 @@ TEST(a_manifest, records_version_command_and_host_of_a_run) {
       shell(folder, "$APSIS run paper/ode time.dt=1/16 time.end=2 --restart o/checkpoint.h5 --out p").code,
       0);
   EXPECT_EQ(json::parse(read(folder.path() / "p/manifest.json"))["restart"], "o/checkpoint.h5");
+}
+
+namespace {
+
+/// Names under which a run writes into its folder before its files are complete, and their final names.
+const std::vector<std::string> written_names = {".lock",
+                                                ".probe.partial",
+                                                ".history.csv.partial",
+                                                ".fields.csv.partial",
+                                                ".solution.h5.partial",
+                                                ".solution.xdmf.partial",
+                                                ".checkpoint.h5.partial",
+                                                ".manifest.json.partial",
+                                                "history.csv",
+                                                "fields.csv",
+                                                "solution.h5",
+                                                "checkpoint.h5"};
+
+}  // namespace
+
+TEST(a_result_folder, of_others_has_no_link_through_which_a_run_writes) {
+  for (const std::string& name : written_names)
+    for (const bool hard : {false, true}) {
+      const work_folder folder;
+      folder.file("mine", "precious");
+      fs::create_directory(folder.path() / "o");
+      if (hard)
+        fs::create_hard_link(folder.path() / "mine", folder.path() / "o" / name);
+      else
+        fs::create_symlink(folder.path() / "mine", folder.path() / "o" / name);
+      const outcome done = shell(folder, "$APSIS run paper/ode --out o");
+      EXPECT_EQ(read(folder.path() / "mine"), "precious") << name << hard;
+      if (name == ".lock") {
+        EXPECT_EQ(done.code, 4) << done.err;
+        EXPECT_THAT(done.err, testing::AnyOf(HasSubstr("it is a symbolic link"), HasSubstr("this name too")));
+      } else {
+        EXPECT_EQ(done.code, 0) << name << done.err;
+        EXPECT_FALSE(fs::is_symlink(folder.path() / "o" / name)) << name;
+      }
+    }
+}
+
+TEST(a_result_folder, has_no_link_to_another_folder_for_its_series) {
+  const work_folder folder;
+  fs::create_directories(folder.path() / "elsewhere");
+  folder.file("elsewhere/mine", "precious");
+  fs::create_directory(folder.path() / "o");
+  const std::string run =
+      "$APSIS run paper/bgk-mixed space.cells=12 velocity.points=40 output.every=0.005 "
+      "output.distribution=snapshots time.end=0.01 --out o";
+  for (const std::string name : {"snapshots", ".snapshots.partial"}) {
+    fs::remove_all(folder.path() / "o" / name);
+    fs::create_directory_symlink(folder.path() / "elsewhere", folder.path() / "o" / name);
+    EXPECT_EQ(shell(folder, run).code, 0) << name << read(folder.path() / "err.txt");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "elsewhere"), {}), 1) << name;
+  }
+  fs::remove_all(folder.path() / "o/snapshots");
+  fs::create_directory_symlink(folder.path() / "elsewhere", folder.path() / "o/.snapshots.partial");
+  const outcome resumed = shell(folder, run + " time.end=0.02 --restart o/checkpoint.h5");
+  EXPECT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_EQ(read(folder.path() / "elsewhere/mine"), "precious");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "elsewhere"), {}), 1);
+}
+
+TEST(a_folder, that_was_deleted_during_a_run_is_named_as_the_reason) {
+  const work_folder folder;
+  process run(folder, into(endless, "o"));
+  await([&] { return read(folder.path() / "o/.lock").find('\n') != std::string::npos; });
+  fs::remove_all(folder.path() / "o");
+  run.send(SIGINT);
+  const outcome stopped = run.wait();
+  EXPECT_EQ(stopped.code, 4) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("cannot write 'o/.history.csv.partial' (there is no folder 'o', it may "
+                                     "have been deleted); choose another folder"));
+}
+
+TEST(messages_and_results, do_not_obey_a_case) {
+  const work_folder folder;
+  folder.file("c.toml",
+              "title = \"\\u001b]0;owned\\u0007 \\u009b31m \\u202e\"\n[model]\nname = \"ode\"\n"
+              "\"k\\u001bey\" = 1\n");
+  const outcome refused = shell(folder, "$APSIS run c.toml");
+  EXPECT_EQ(refused.code, 2) << refused.err;
+  folder.file("d.toml", read(folder.path() / "c.toml").substr(0, read(folder.path() / "c.toml").find("\"k")));
+  for (const std::string command :
+       {"run d.toml", "run d.toml --json", "show case d.toml", "run 'n\x1b[31m'"}) {
+    const outcome shown = shell(folder, "$APSIS " + command);
+    for (const std::string& text : {refused.err, shown.out, shown.err}) {
+      EXPECT_EQ(text.find('\x1b'), std::string::npos) << command;
+      EXPECT_EQ(text.find('\a'), std::string::npos) << command;
+      EXPECT_EQ(text.find("\xc2\x9b"), std::string::npos) << command;
+      EXPECT_EQ(text.find("\xe2\x80\xae"), std::string::npos) << command;
+    }
+    if (command == "run d.toml") {
+      EXPECT_EQ(shown.code, 0) << shown.err;
+      EXPECT_THAT(shown.out, HasSubstr("\\u001b]0;owned\\u0007 \\u009b31m \\u202e"));
+    }
+    if (command == "run d.toml --json") {
+      EXPECT_EQ(json::parse(shown.out)["case"]["title"],
+                "\x1b]0;owned\a \xc2\x9b"
+                "31m \xe2\x80\xae");
+    }
+  }
 }
 
 }  // namespace safety_of_results_test

@@ -2,10 +2,12 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/text_file.hpp>
+#include <apsis/exec/interruption.hpp>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string_view>
 #include <system_error>
@@ -35,14 +37,13 @@ std::vector<std::string_view> entries_of(std::string_view line) {
   return entries;
 }
 
-double number_of(std::string_view text, const source_place& place, const std::string& column) {
+/// Returns the number of an entry; NaN for one that is not a finite number.
+double number_of(std::string_view text) {
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
   double value = 0.0;
   const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (problem != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-    throw input_error(place, fmt::format("'{}' in column '{}' is not a finite number; change it",
-                                         text.substr(0, 40), column));
-  return value;
+  const bool finite = problem == std::errc() && end == digits.data() + digits.size() && std::isfinite(value);
+  return finite ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -57,6 +58,7 @@ column_file read_columns(const std::string& path) {
   std::istringstream lines(text);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
+    interruptible::poll();
     std::string_view rest = line;
     if (number == 1 && rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark
     rest = trimmed(rest);
@@ -73,8 +75,14 @@ column_file read_columns(const std::string& path) {
     if (entries.size() != names.size())
       throw input_error(place, fmt::format("{} entries (the first line names {} columns); give {}",
                                            entries.size(), names.size(), names.size()));
-    for (std::size_t k = 0; k < names.size(); ++k)
-      table.columns[names[k]].push_back(number_of(entries[k], place, names[k]));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const double value = number_of(entries[k]);
+      table.columns[names[k]].push_back(value);
+      if (std::isnan(value))
+        table.problems.try_emplace(
+            names[k], fmt::format("{}'{}' in column '{}' is not a finite number; change it", to_string(place),
+                                  entries[k].substr(0, 40), names[k]));
+    }
     table.lines.push_back(number);
   }
   if (table.lines.empty())

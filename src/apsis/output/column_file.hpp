@@ -9,13 +9,15 @@ namespace apsis {
 
 /// Named columns of numbers from a text.
 struct column_file {
-  std::map<std::string, std::vector<double>> columns;  ///< equally long
+  std::map<std::string, std::vector<double>> columns;  ///< equally long; NaN where there is no finite number
+  std::map<std::string, std::string> problems;         ///< of a column: its first entry that is none
   std::vector<int> lines;                              ///< line of each row, from 1
 };
 
 /// Reads comma-separated numbers below a line of names. Blank lines and lines that begin with # are skipped.
-/// Throws input_error with file and line: no names, the same name twice, another number of entries, or an
-/// entry that is not a finite number; io_error if the file cannot be read.
+/// A column may have entries that are not finite numbers, since nobody may ask for it. Throws input_error
+/// with file and line: no names, the same name twice, or another number of entries; io_error if the file
+/// cannot be read.
 column_file read_columns(const std::string& path);
 
 }  // namespace apsis

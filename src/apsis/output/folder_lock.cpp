@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/core/new_file.hpp>
 #include <apsis/output/provenance.hpp>
 
 #include <cerrno>
@@ -17,10 +18,6 @@
 
 namespace apsis {
 namespace {
-
-std::string reason(int code) {
-  return std::generic_category().message(code);
-}
 
 /// Returns the line that the holder wrote: "process 123 on host since …".
 std::string holder(const std::filesystem::path& lock) {
@@ -48,13 +45,19 @@ folder_lock::folder_lock(std::filesystem::path folder) : path_(std::move(folder)
   }
 }
 
+void folder_lock::refuse(const std::string& why) const {
+  throw io_error(fmt::format("cannot write '{}' ({}); choose another folder with --out or free some space",
+                             path_.string(), why));
+}
+
 void folder_lock::take() {
   while (true) {
-    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (file_ < 0)
-      throw io_error(
-          fmt::format("cannot write '{}' ({}); choose another folder with --out or free some space",
-                      path_.string(), reason(errno)));
+    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (file_ < 0) refuse(why_not_written(path_.string(), errno));
+    // A name of another file of the user, planted by others, must not be written to.
+    struct stat found = {};
+    if (fstat(file_, &found) != 0 || !S_ISREG(found.st_mode) || found.st_nlink > 1)
+      refuse("another file may have this name too, or it is not a file");
     if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
       const int why = errno;
       if (why == EWOULDBLOCK)
@@ -63,7 +66,7 @@ void folder_lock::take() {
             "--out",
             path_.parent_path().string(), holder(path_)));
       log::warning(fmt::format("'{}' cannot be locked ({}); do not start a second run into this folder",
-                               path_.parent_path().string(), reason(why)));
+                               path_.parent_path().string(), std::generic_category().message(why)));
       return;
     }
     if (names(path_, file_)) break;
@@ -73,8 +76,7 @@ void folder_lock::take() {
   if (ftruncate(file_, 0) != 0 || pwrite(file_, me.data(), me.size(), 0) != static_cast<ssize_t>(me.size())) {
     const int why = errno;
     unlink(path_.c_str());
-    throw io_error(fmt::format("cannot write '{}' ({}); choose another folder with --out or free some space",
-                               path_.string(), reason(why)));
+    refuse(why_not_written(path_.string(), why));
   }
 }
 

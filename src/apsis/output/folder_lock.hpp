@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace apsis {
 
@@ -9,7 +10,7 @@ namespace apsis {
 class folder_lock {
  public:
   /// Locks an existing folder. Throws io_error if another process holds the lock, which the message names, or
-  /// if the lock file cannot be created. A file system without locks only causes a warning.
+  /// if the lock file cannot be created, or is a link. A file system without locks only causes a warning.
   explicit folder_lock(std::filesystem::path folder);
   /// Removes the file and releases the lock.
   ~folder_lock();
@@ -18,6 +19,7 @@ class folder_lock {
 
  private:
   void take();
+  [[noreturn]] void refuse(const std::string& why) const;
 
   std::filesystem::path path_;
   int file_ = -1;

@@ -1,17 +1,24 @@
 #include <apsis/output/hdf5_file.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/new_file.hpp>
 #include <apsis/exec/agreement.hpp>
+#include <apsis/exec/memory.hpp>
+#include <apsis/output/hdf5_storage.hpp>
+#include <apsis/output/lzf_filter.hpp>
 #include <apsis/output/parallel_access.hpp>
 #include <apsis/output/recording_driver.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <functional>
 #include <numeric>
-#include <system_error>
+#include <optional>
+#include <set>
 
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 namespace apsis {
 namespace {
@@ -42,6 +49,12 @@ void silence() {
   static_cast<void>(once);
 }
 
+/// Of all files of this process.
+std::recursive_mutex& access_to_hdf5() {
+  static std::recursive_mutex of_all;
+  return of_all;
+}
+
 handle text_type(std::size_t length) {
   const hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, std::max<std::size_t>(length, 1));
@@ -61,6 +74,18 @@ handle creation_properties(hid_t what) {
   const hid_t list = H5Pcreate(what);
   H5Pset_obj_track_times(list, false);
   return {list, H5Pclose};
+}
+
+/// Creates the file that all processes open after that, so that none writes through a link.
+void create_on_root(const std::string& path, communicator& processes) {
+  together(processes, [&] {
+    if (!processes.is_root()) return;
+    const int file = create_new_file(path);
+    if (file < 0)
+      throw io_error(fmt::format("'{}': cannot be created ({}); choose another folder", path,
+                                 why_not_written(path, errno)));
+    ::close(file);
+  });
 }
 
 /// Selects a part of a dataset, or nothing if the part has no numbers.
@@ -85,6 +110,25 @@ bool write_selected(hid_t data, hid_t space, const dataset_part& part, const dou
   return select(space, part) && H5Dwrite(data, H5T_NATIVE_DOUBLE, memory, space, transfer, values) >= 0;
 }
 
+/// Returns the text of an attribute, of fixed length or, as other programs write it, of any length.
+std::optional<std::string> text_of_attribute(hid_t attribute) {
+  const handle type(H5Aget_type(attribute), H5Tclose);
+  const handle space(H5Aget_space(attribute), H5Sclose);
+  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1 ||
+      H5Tget_size(type) > longest_text)
+    return std::nullopt;
+  if (H5Tis_variable_str(type) <= 0) {
+    std::string text(H5Tget_size(type), '\0');
+    if (H5Aread(attribute, type, text.data()) < 0) return std::nullopt;
+    return text.substr(0, text.find('\0'));
+  }
+  char* found = nullptr;
+  if (H5Aread(attribute, type, static_cast<void*>(&found)) < 0 || found == nullptr) return std::nullopt;
+  std::string text = found;
+  H5free_memory(found);
+  return text;
+}
+
 /// Creates the parent groups of "a/b/name".
 bool make_groups(hid_t file, const std::string& name) {
   const handle properties = creation_properties(H5P_GROUP_CREATE);
@@ -99,10 +143,13 @@ bool make_groups(hid_t file, const std::string& name) {
 
 }  // namespace
 
-hdf5_file::hdf5_file(std::string path, std::int64_t id) : path_(std::move(path)), id_(id) {}
+hdf5_file::hdf5_file(std::string path) : access_(access_to_hdf5()), path_(std::move(path)) {
+  silence();
+}
 
 hdf5_file::hdf5_file(hdf5_file&& other) noexcept
-    : path_(std::move(other.path_)),
+    : access_(std::move(other.access_)),
+      path_(std::move(other.path_)),
       id_(std::exchange(other.id_, -1)),
       error_(std::move(other.error_)),
       processes_(std::move(other.processes_)),
@@ -119,7 +166,7 @@ void hdf5_file::fail(const std::string& what) const {
 void hdf5_file::fail_to_write(const std::string& what) {
   const std::string message =
       fmt::format("{} ({}); free some space or choose another folder", what,
-                  *error_ != 0 ? std::generic_category().message(*error_) : "no reason given by HDF5");
+                  *error_ != 0 ? why_not_written(path_, *error_) : "no reason given by HDF5");
   if (!is_shared()) fail(message);
   // The other processes wait in the next call.
   if (failure_.empty()) failure_ = message;
@@ -131,12 +178,12 @@ hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes) {
 
 hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes,
                             const std::shared_ptr<communicator>& processes) {
-  silence();
+  hdf5_file file(path);
   const handle creation = creation_properties(H5P_FILE_CREATE);
   H5Pset_userblock(creation, free_bytes);
   // Version 1.8 and later can have attributes of more than 64 KiB, such as a long case.
-  hdf5_file file(path, -1);
   file.processes_ = processes;
+  if (file.is_shared()) create_on_root(path, *processes);
   const handle access(
       file.is_shared() ? make_parallel_access(*processes) : make_recording_access(file.error_.get()),
       H5Pclose);
@@ -152,8 +199,9 @@ hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes,
 }
 
 hdf5_file hdf5_file::open(const std::string& path) {
-  silence();
-  hdf5_file file(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  hdf5_file file(path);
+  register_lzf_filter();
+  file.id_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file.id_ < 0)
     file.fail("cannot be opened (missing, damaged, or not an HDF5 file); give a file written by apsis");
   return file;
@@ -226,7 +274,8 @@ void hdf5_file::write_attribute(const std::string& name, const std::string& valu
 }
 
 bool hdf5_file::has(const std::string& name) const {
-  return H5Lexists(id_, name.c_str(), H5P_DEFAULT) > 0;
+  return H5Lexists(id_, name.c_str(), H5P_DEFAULT) > 0 &&
+         H5Oexists_by_name(id_, name.c_str(), H5P_DEFAULT) > 0;
 }
 
 bool hdf5_file::has_attribute(const std::string& name) const {
@@ -257,25 +306,21 @@ std::string hdf5_file::units(const std::string& name) const {
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!data.good() || H5Aexists(data, "units") <= 0) return "";
   const handle attribute(H5Aopen(data, "units", H5P_DEFAULT), H5Aclose);
-  const handle type(H5Aget_type(attribute), H5Tclose);
-  const handle space(H5Aget_space(attribute), H5Sclose);
-  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1 ||
-      H5Tget_size(type) > longest_text)
-    fail(fmt::format("the attribute 'units' of '{}' is not text; remove it", name));
-  if (H5Tis_variable_str(type) <= 0) {
-    std::string text(H5Tget_size(type), '\0');
-    if (H5Aread(attribute, type, text.data()) < 0)
-      fail(fmt::format("the attribute 'units' of '{}' cannot be read (damaged file); give another file",
-                       name));
-    return text.substr(0, text.find('\0'));
-  }
-  // As other programs write text, of any length.
-  char* found = nullptr;
-  if (H5Aread(attribute, type, static_cast<void*>(&found)) < 0 || found == nullptr)
-    fail(fmt::format("the attribute 'units' of '{}' cannot be read (damaged file); give another file", name));
-  std::string text = found;
-  H5free_memory(found);
-  return text;
+  const auto text = text_of_attribute(attribute);
+  if (!text) fail(fmt::format("the attribute 'units' of '{}' is not text; remove it", name));
+  return *text;
+}
+
+/// Throws unless the numbers of a dataset can be read, and this many of them fit into memory.
+void hdf5_file::check_numbers(const std::string& name, std::int64_t data, std::uint64_t count) const {
+  if (const std::string problem = problem_of_storage(data); !problem.empty())
+    fail(fmt::format("'{}' {}", name, problem));
+  constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
+  const double needed = static_cast<double>(count) * sizeof(double);
+  if (needed < gibibyte) return;
+  if (const memory_limit there = available_memory(); needed > there.bytes)
+    fail(fmt::format("'{}' claims {:.3g} GiB of numbers (the {} has {:.3g} GiB left); give a smaller table",
+                     name, needed / gibibyte, there.source, there.bytes / gibibyte));
 }
 
 std::vector<double> hdf5_file::read(const std::string& name) const {
@@ -286,10 +331,7 @@ std::vector<double> hdf5_file::read(const std::string& name) const {
     count *= n;
   }
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  // Missing storage reads as zeros: a truncated file must not be mistaken for one with a zero state.
-  const std::uint64_t bytes = stored(name) == precision::float32 ? sizeof(float) : sizeof(double);
-  if (count > 0 && H5Dget_storage_size(data) < count * bytes)
-    fail(fmt::format("'{}' is incomplete (damaged file); give another file", name));
+  check_numbers(name, data, count);
   std::vector<double> values(count);
   if (H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     fail(fmt::format("'{}' cannot be read (damaged file); give another file", name));
@@ -303,10 +345,8 @@ std::vector<double> hdf5_file::read_part(const std::string& name, const dataset_
       fail(fmt::format("'{}' has another shape (damaged file); give another file", name));
   const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   const handle space(H5Dget_space(data), H5Sclose);
-  const std::uint64_t bytes = stored(name) == precision::float32 ? sizeof(float) : sizeof(double);
-  if (H5Dget_storage_size(data) < bytes * static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space)))
-    fail(fmt::format("'{}' is incomplete (damaged file); give another file", name));
   const hsize_t numbers = size_of(part);
+  check_numbers(name, data, numbers);
   std::vector<double> values(numbers);
   const handle memory(H5Screate_simple(1, &numbers, nullptr), H5Sclose);
   if (numbers > 0 && (!select(space, part) ||
@@ -339,23 +379,42 @@ double hdf5_file::read_attribute(const std::string& name) const {
 
 namespace {
 
-/// Adds the datasets of a group and its subgroups. Returns false if an object cannot be read.
-bool list_datasets(hid_t group, const std::string& prefix, std::vector<std::string>& names) {
+/// Calls see(name, type of the link) for every link of a group, in alphabetical order.
+template <class See>
+void for_links(hid_t group, const See& see) {
   H5G_info_t info;
-  if (H5Gget_info(group, &info) < 0) return false;
+  if (H5Gget_info(group, &info) < 0) return;
   for (hsize_t k = 0; k < info.nlinks; ++k) {
-    std::vector<char> name(256);
-    if (H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, k, name.data(), name.size(), H5P_DEFAULT) <
-        0)
-      return false;
-    const handle object(H5Oopen(group, name.data(), H5P_DEFAULT), H5Oclose);
-    if (!object.good()) return false;
-    const std::string path = prefix + name.data();
-    const auto type = H5Iget_type(object);
-    if (type == H5I_DATASET) names.push_back(path);
-    if (type == H5I_GROUP && !list_datasets(object, path + "/", names)) return false;
+    H5L_info_t link;
+    const auto length =
+        H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, k, nullptr, 0, H5P_DEFAULT);
+    if (length < 0 || static_cast<std::size_t>(length) > longest_text ||
+        H5Lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, k, &link, H5P_DEFAULT) < 0)
+      continue;
+    std::string name(static_cast<std::size_t>(length), '\0');
+    H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, k, name.data(), name.size() + 1, H5P_DEFAULT);
+    see(name, link.type);
   }
-  return true;
+}
+
+#if H5_VERSION_GE(1, 12, 0)
+using object_info = H5O_info1_t;
+#else
+using object_info = H5O_info_t;
+#endif
+
+/// Adds the datasets of a group and its subgroups, each group once: links may form circles.
+void list_datasets(hid_t group, const std::string& prefix, std::set<haddr_t>& seen,
+                   std::vector<std::string>& names) {
+  for_links(group, [&](const std::string& name, H5L_type_t link) {
+    const handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
+    const auto type = object.good() ? H5Iget_type(object) : H5I_BADID;
+    if (type == H5I_DATASET) names.push_back(prefix + name);
+    object_info info;
+    if (type == H5I_GROUP && link == H5L_TYPE_HARD && H5Oget_info1(object, &info) >= 0 &&
+        seen.insert(info.addr).second)
+      list_datasets(object, prefix + name + "/", seen, names);
+  });
 }
 
 }  // namespace
@@ -363,8 +422,22 @@ bool list_datasets(hid_t group, const std::string& prefix, std::vector<std::stri
 std::vector<std::string> hdf5_file::datasets() const {
   std::vector<std::string> names;
   const handle root(H5Gopen2(id_, "/", H5P_DEFAULT), H5Gclose);
-  if (!root.good() || !list_datasets(root, "", names))
-    fail("its contents cannot be listed (damaged file); give another file");
+  std::set<haddr_t> seen;
+  if (object_info info; root.good() && H5Oget_info1(root, &info) >= 0) seen.insert(info.addr);
+  if (seen.empty()) fail("its contents cannot be listed (damaged file); give another file");
+  list_datasets(root, "", seen, names);
+  return names;
+}
+
+std::vector<std::string> hdf5_file::number_sets(const std::string& group) const {
+  std::vector<std::string> names;
+  const handle from(H5Gopen2(id_, group.empty() ? "/" : group.c_str(), H5P_DEFAULT), H5Gclose);
+  if (!from.good()) return names;
+  for_links(from, [&](const std::string& name, H5L_type_t) {
+    const handle object(H5Oopen(from, name.c_str(), H5P_DEFAULT), H5Oclose);
+    if (object.good() && H5Iget_type(object) == H5I_DATASET && holds_real_numbers(object))
+      names.push_back(name);
+  });
   return names;
 }
 
@@ -372,13 +445,9 @@ std::string hdf5_file::read_text_attribute(const std::string& name) const {
   const handle attribute(H5Aopen(id_, name.c_str(), H5P_DEFAULT), H5Aclose);
   if (!attribute.good())
     fail(fmt::format("has no text '{}' (not written by this program?); give another file", name));
-  const handle type(H5Aget_type(attribute), H5Tclose);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Tget_size(type) > longest_text)
-    fail(fmt::format("'{}' is not text (damaged file); give another file", name));
-  std::string text(H5Tget_size(type), '\0');
-  if (H5Aread(attribute, type, text.data()) < 0)
-    fail(fmt::format("'{}' cannot be read (damaged file); give another file", name));
-  return text;
+  const auto text = text_of_attribute(attribute);
+  if (!text) fail(fmt::format("'{}' is not text (damaged file); give another file", name));
+  return *text;
 }
 
 std::vector<std::pair<std::string, double>> hdf5_file::attributes() const {

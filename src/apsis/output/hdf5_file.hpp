@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +23,8 @@ struct dataset_part {
 
 /// An HDF5 file with the operations that results need. The destructor closes identifiers, objects carry no
 /// time stamps (equal results give equal bytes), and HDF5 does not print errors itself. Every member throws
-/// io_error with the name of the file.
+/// io_error with the name of the file. While one exists, those of other threads wait: not every build of HDF5
+/// is safe for threads.
 class hdf5_file {
  public:
   using shape = std::vector<std::uint64_t>;  ///< extents of a dataset, the last index running fastest
@@ -72,7 +74,8 @@ class hdf5_file {
   precision stored(const std::string& name) const;
   /// Returns the attribute "units" of a dataset; "" if it has none.
   std::string units(const std::string& name) const;
-  /// Returns all numbers of a dataset in row-major order. Throws if the dataset is incomplete.
+  /// Returns all numbers of a dataset in row-major order, expanded if they are compressed. Throws if the
+  /// dataset is incomplete, its numbers lie in other files, or they do not fit into memory.
   std::vector<double> read(const std::string& name) const;
   /// Returns the numbers of a part of a dataset in row-major order. Throws if the dataset is incomplete.
   std::vector<double> read_part(const std::string& name, const dataset_part& part) const;
@@ -80,25 +83,31 @@ class hdf5_file {
   std::string read_text(const std::string& name) const;
   /// Returns a number from the attributes of the file.
   double read_attribute(const std::string& name) const;
-  /// Returns the sorted names of all datasets, with the path of their groups ("fields/rho").
+  /// Returns the sorted names of all datasets, with the path of their groups ("fields/rho"). Links to groups
+  /// are not followed.
   std::vector<std::string> datasets() const;
+  /// Returns the sorted names of the datasets of real numbers in a group, or without a name in the file
+  /// itself, also of linked ones. Texts, other objects and dangling links are left out.
+  std::vector<std::string> number_sets(const std::string& group = "") const;
   /// Returns text from the attributes of the file.
   std::string read_text_attribute(const std::string& name) const;
   /// Returns all numbers among the attributes of the file, by name.
   std::vector<std::pair<std::string, double>> attributes() const;
 
  private:
-  hdf5_file(std::string path, std::int64_t id);
+  explicit hdf5_file(std::string path);
   void write_numbers(const std::string& name, const double* values, const shape& extents,
                      const dataset_part* part, const std::string& long_name, precision stored,
                      const std::string& units);
   /// Whether several processes write the file.
   bool is_shared() const { return processes_ && !processes_->is_single(); }
+  void check_numbers(const std::string& name, std::int64_t data, std::uint64_t count) const;
   [[noreturn]] void fail(const std::string& what) const;
   void fail_to_write(const std::string& what);
 
+  std::unique_lock<std::recursive_mutex> access_;  ///< released last
   std::string path_;
-  std::int64_t id_;
+  std::int64_t id_ = -1;
   std::unique_ptr<int> error_ = std::make_unique<int>(0);  ///< errno of the first write that failed
   std::shared_ptr<communicator> processes_;
   std::string failure_;  ///< of a file that several processes write, until close()

@@ -1,12 +1,13 @@
 #include <apsis/output/recording_driver.hpp>
 
+#include <apsis/core/new_file.hpp>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <iterator>
 #include <new>
 
-#include <fcntl.h>
 #include <hdf5.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -47,7 +48,7 @@ void record(recorded_file& file, int why) {
 H5FD_t* open_file(const char* name, unsigned /*flags*/, hid_t access, haddr_t /*largest*/) {
   const auto* info = static_cast<const access_info*>(H5Pget_driver_info(access));
   if (info == nullptr) return nullptr;
-  const int id = open(name, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int id = create_new_file(name);
   struct stat status = {};
   if (id < 0 || fstat(id, &status) != 0) {
     *info->error = errno;

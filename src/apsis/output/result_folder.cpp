@@ -1,6 +1,7 @@
 #include <apsis/output/result_folder.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/new_file.hpp>
 #include <apsis/core/text_file.hpp>
 
 #include <algorithm>
@@ -27,6 +28,15 @@ constexpr const char* advice = "choose another folder with --out or free some sp
 
 [[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::string& why) {
   throw io_error(fmt::format("cannot {} '{}' ({}); {}", verb, path.string(), why, advice));
+}
+[[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::error_code& why) {
+  cannot(verb, path, why_not_written(path.string(), why.value()));
+}
+
+/// Whether there is a folder that is none of another place: files are not written through links.
+bool is_own_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::symlink_status(path, ignored).type() == fs::file_type::directory;
 }
 
 /// Flushes the directory so that renames are durable.
@@ -99,7 +109,7 @@ void result_folder::publish(const std::string& name, const std::function<void(co
   prepare(name, write);
   std::error_code problem;
   fs::rename(temporary(name), path_ / name, problem);
-  if (problem) cannot("write", path_ / name, problem.message());
+  if (problem) cannot("write", path_ / name, problem);
   sync_folder(path_);
   prepared_.erase(std::find(prepared_.begin(), prepared_.end(), name));
   keep_ = true;
@@ -113,8 +123,9 @@ void result_folder::begin_series(const std::string& series) {
   if (std::find(series_.begin(), series_.end(), series) != series_.end()) return;
   std::error_code problem;
   fs::remove_all(temporary(series), problem);
-  fs::create_directories(temporary(series), problem);
-  if (problem) cannot("create the folder", temporary(series), problem.message());
+  // Not with its parents: a result folder that was deleted is an error.
+  fs::create_directory(temporary(series), problem);
+  if (problem || !is_own_folder(temporary(series))) cannot("create the folder", temporary(series), problem);
   series_.push_back(series);
 }
 
@@ -125,7 +136,7 @@ void result_folder::add_to_series(const std::string& series, const std::string& 
   write(beside.string());
   std::error_code problem;
   fs::rename(beside, target, problem);
-  if (problem) cannot("write", target, problem.message());
+  if (problem) cannot("write", target, problem);
 }
 
 std::vector<fs::path> result_folder::files_of_series(const std::string& series) const {
@@ -142,7 +153,7 @@ void result_folder::resume_series(const std::string& series, const fs::path& fro
   // A killed run left them under the temporary name.
   const fs::path left = from / temporary(series).filename();
   std::error_code problem;
-  const fs::path source = fs::exists(left, problem) ? left : from / series;
+  const fs::path source = is_own_folder(left) ? left : from / series;
   const bool here = fs::equivalent(source, temporary(series), problem);
   if (here) {
     keep_ = true;  // files of an earlier run, kept if this one fails
@@ -157,7 +168,7 @@ void result_folder::resume_series(const std::string& series, const fs::path& fro
     if (name.string().front() == '.' || !keep(entry.path().string())) continue;
     fs::create_hard_link(entry.path(), temporary(series) / name, problem);
     if (problem) fs::copy_file(entry.path(), temporary(series) / name, problem);
-    if (problem) cannot("copy", entry.path(), problem.message());
+    if (problem) cannot("copy", entry.path(), problem);
   }
 }
 
@@ -171,7 +182,7 @@ void result_folder::commit_series() {
       continue;
     }
     fs::rename(temporary(name), path_ / name, problem);
-    if (problem) cannot("write", path_ / name, problem.message());
+    if (problem) cannot("write", path_ / name, problem);
     keep_ = true;
   }
   series_.clear();
@@ -194,7 +205,7 @@ void result_folder::commit() {
   for (const auto& name : prepared_) {
     problem.clear();
     fs::rename(temporary(name), path_ / name, problem);
-    if (problem) cannot("write", path_ / name, problem.message());
+    if (problem) cannot("write", path_ / name, problem);
     keep_ = true;
   }
   sync_folder(path_);

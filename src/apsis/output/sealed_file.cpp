@@ -1,8 +1,10 @@
 #include <apsis/output/sealed_file.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/new_file.hpp>
 
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -71,13 +73,16 @@ std::string word_after(const std::string& block, const std::string& key) {
 }
 
 void write_through(const std::string& path, const std::string& block) {
-  const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  const int file = open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
+  errno = 0;
   const bool written = file >= 0 &&
                        pwrite(file, block.data(), block.size(), 0) == static_cast<ssize_t>(block.size()) &&
                        fsync(file) == 0;
+  const int problem = errno;
   const bool closed = file < 0 || close(file) == 0;
   if (!written || !closed)
-    throw io_error(fmt::format("'{}' cannot be written completely (disk full?); free some space", path));
+    throw io_error(fmt::format("'{}' cannot be written completely ({}); free some space", path,
+                               why_not_written(path, problem)));
 }
 
 }  // namespace

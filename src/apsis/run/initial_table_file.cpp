@@ -21,6 +21,9 @@ namespace {
 
 const std::string none = "dimensionless";
 
+/// No table is longer, so that a damaged file does not exhaust memory.
+constexpr std::uint64_t most_rows = 1'000'000'000;
+
 /// Datasets of a result that are no columns.
 const std::set<std::string> not_columns = {"f", "v", "v_weights", "v_x", "v_y", "v_z", "t"};
 
@@ -57,13 +60,6 @@ initial_table_file::initial_table_file(const case_config& config, const model& e
     is_hdf5(path_) ? read_hdf5() : read_csv();
   } catch (const io_error& problem) {
     refuse(problem.what());
-  }
-  for (const auto& [name, values] : columns_) {
-    const std::vector<bool> solid = solid_rows(values.size());
-    for (std::size_t k = 0; k < values.size(); ++k)
-      if (!std::isfinite(values[k]) && !solid[k])
-        refuse(fmt::format("'{}' is {} in {} (a finite number is needed); change it", name, values[k],
-                           place_of_row(k)));
   }
   for (const double value : state_)
     if (!std::isfinite(value)) refuse("its state has values that are not finite; give another file");
@@ -107,7 +103,9 @@ void initial_table_file::read_csv() {
   try {
     column_file table = read_columns(path_);
     columns_ = std::move(table.columns);
+    problems_ = std::move(table.problems);
     lines_ = std::move(table.lines);
+    for (const auto& [name, values] : columns_) names_.insert(name);
   } catch (const input_error& problem) {
     refuse(problem.what());
   }
@@ -125,6 +123,7 @@ void initial_table_file::read_csv() {
     if (config_.prescribed.time) refuse("it has no times (no column 't'); remove initial.time");
     return;
   }
+  if (const auto problem = problems_.find("t"); problem != problems_.end()) refuse(problem->second);
   std::vector<double> times = found->second;
   times.erase(std::unique(times.begin(), times.end()), times.end());
   const double t = times[chosen(times)];
@@ -136,22 +135,26 @@ void initial_table_file::read_csv() {
     for (const auto& [name, values] : columns_) kept[name].push_back(values[k]);
     lines.push_back(lines_[k]);
   }
+  // What is no number at another time does not matter.
+  std::erase_if(problems_, [&kept](const auto& one) {
+    const auto& values = kept[one.first];
+    return std::none_of(values.begin(), values.end(), [](double x) { return std::isnan(x); });
+  });
   columns_ = std::move(kept);
   lines_ = std::move(lines);
 }
 
 void initial_table_file::read_hdf5() {
-  const hdf5_file file = hdf5_file::open(path_);
-  if (file.has_attribute("manifest")) take_manifest(file.read_text_attribute("manifest"));
+  file_.emplace(hdf5_file::open(path_));
+  if (file_->has_attribute("manifest")) take_manifest(file_->read_text_attribute("manifest"));
   if (config_.prescribed.time && manifest_.is_null())
     refuse("it has no times (it is not a result); remove initial.time");
-  read_fields(file);
+  read_fields(*file_);
 }
 
 void initial_table_file::read_fields(const hdf5_file& file) {
   const bool several = !manifest_.is_null() && file.has("snapshots") && file.has("snapshots/t");
   const bool result = !manifest_.is_null();
-  const auto names = file.datasets();
   std::optional<std::size_t> earlier;  // a snapshot before the end
   std::vector<double> times = {result ? file.read_attribute("t") : 0.0};
   if (several) times = file.read("snapshots/t");
@@ -163,28 +166,98 @@ void initial_table_file::read_fields(const hdf5_file& file) {
     const std::size_t k = chosen(times);
     if (k + 1 < times.size()) earlier = k;
   }
-  const std::string group = earlier ? "snapshots/" : "fields/";
-  for (const auto& name : names) {
-    const bool in_group = name.rfind(group, 0) == 0;
-    const std::string column = in_group ? name.substr(group.size()) : name;
-    if (column.find('/') != std::string::npos || not_columns.contains(column)) continue;
-    const auto shape = file.extents(name);
-    if (shape.size() != mesh_rank() + (earlier && in_group ? 1U : 0U)) continue;
-    if (earlier && in_group && shape[0] != times.size())
-      refuse(fmt::format("'{}' has {} snapshots of {} (damaged file); give another file", name, shape[0],
-                         times.size()));
-    std::vector<double> values = file.read(name);
-    if (earlier && in_group) {
-      const auto cells = static_cast<std::ptrdiff_t>(values.size() / shape[0]);
-      const auto first = values.begin() + static_cast<std::ptrdiff_t>(*earlier) * cells;
-      values = std::vector<double>(first, first + cells);
-    }
-    columns_[column] = std::move(values);
-    units_[column] = file.units(name);
-  }
+  find_columns("", std::nullopt, 0);
+  find_columns(earlier ? "snapshots" : "fields", earlier, times.size());
   expand_coordinates(file);
   if (!earlier) return read_state(file);
   read_snapshot_of_state(times[*earlier]);
+}
+
+/// Finds the datasets of a group with a number for each cell; `snapshot`: one of `snapshots`, which are their
+/// first extent.
+void initial_table_file::find_columns(const std::string& group, std::optional<std::size_t> snapshot,
+                                      std::size_t snapshots) {
+  for (const auto& name : file_->number_sets(group)) {
+    if (not_columns.contains(name)) continue;
+    const std::string dataset = group.empty() ? name : fmt::format("{}/{}", group, name);
+    const auto shape = file_->extents(dataset);
+    if (shape.size() != mesh_rank() + (snapshot ? 1U : 0U)) continue;
+    if (snapshot && shape[0] != snapshots)
+      refuse(fmt::format("'{}' has {} snapshots of {} (damaged file); give another file", dataset, shape[0],
+                         snapshots));
+    stored_[name] = {dataset, snapshot};
+    names_.insert(name);
+  }
+}
+
+/// The number of cells of which a column has a number.
+std::uint64_t initial_table_file::rows_of(const std::string& name) const {
+  const auto stored = stored_.find(name);
+  if (stored == stored_.end()) return columns_.at(name).size();
+  const auto shape = file_->extents(stored->second.dataset);
+  std::uint64_t rows = 1;
+  for (std::size_t k = stored->second.snapshot ? 1 : 0; k < shape.size(); ++k) {
+    if (shape[k] > most_rows || rows * shape[k] > most_rows)
+      refuse(fmt::format("'{}' claims more than {} numbers (damaged file); give another file",
+                         stored->second.dataset, most_rows));
+    rows *= shape[k];
+  }
+  return rows;
+}
+
+/// The numbers of a column as they are in the file. Its size is known before it is read: a small file may
+/// claim to be large.
+std::vector<double> initial_table_file::load(const std::string& name) const {
+  if (const auto problem = problems_.find(name); problem != problems_.end()) refuse(problem->second);
+  check_rows(name, rows_of(name));
+  const auto stored = stored_.find(name);
+  std::vector<double> values;
+  try {
+    if (stored == stored_.end()) {
+      values = columns_.at(name);
+    } else if (const auto& [dataset, snapshot] = stored->second; !snapshot) {
+      values = file_->read(dataset);
+    } else {
+      dataset_part part{{}, file_->extents(dataset)};
+      part.first.assign(part.count.size(), 0);
+      part.first.front() = *snapshot;
+      part.count.front() = 1;
+      values = file_->read_part(dataset, part);
+    }
+  } catch (const io_error& problem) {
+    refuse(problem.what());
+  }
+  const std::vector<bool> solid = solid_rows(values.size());
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!std::isfinite(values[k]) && !solid[k])
+      refuse(fmt::format("'{}' is {} in {} (a finite number is needed); change it", name, values[k],
+                         place_of_row(k)));
+  return values;
+}
+
+/// In several space dimensions the rows are those of the cells of the case, on a line those of x.
+void initial_table_file::check_rows(const std::string& name, std::uint64_t rows) const {
+  if (mesh_rank() > 1) {
+    const auto cells = static_cast<std::uint64_t>(make_mesh(config_).size());
+    if (rows != cells) refuse_cells(rows, cells);
+  } else if (has_column("x") && (rows != rows_of("x") || rows == 0)) {
+    refuse(
+        fmt::format("'{}' has {} numbers and 'x' has {}; give one for each cell", name, rows, rows_of("x")));
+  }
+}
+
+void initial_table_file::refuse_cells(std::uint64_t rows, std::uint64_t cells) const {
+  refuse(
+      fmt::format("it has {} cells and the case {} (in several space dimensions data are not "
+                  "interpolated); use its space.cells and space.domain",
+                  rows, cells));
+}
+
+/// The unit that the file gives for a column.
+std::string initial_table_file::unit_text(const std::string& name) const {
+  if (const auto unit = units_.find(name); unit != units_.end()) return unit->second;
+  const auto stored = stored_.find(name);
+  return stored == stored_.end() ? "" : file_->units(stored->second.dataset);
 }
 
 /// Dimensions of the datasets with a number for each cell.
@@ -192,19 +265,28 @@ std::size_t initial_table_file::mesh_rank() const {
   return static_cast<std::size_t>(std::max(equation_.space_dimensions(), 1));
 }
 
-/// In several dimensions the file has a coordinate for each axis: repeats them for every cell.
+/// In several dimensions the file has a coordinate for each axis: repeats them for every cell, if there are
+/// as many as the case has.
 void initial_table_file::expand_coordinates(const hdf5_file& file) {
   if (mesh_rank() < 2) return;
+  const auto cells = static_cast<std::uint64_t>(make_mesh(config_).size());
+  std::uint64_t found = 1;
+  for (std::size_t k = 0; k < mesh_rank(); ++k) {
+    const std::string name(1, "xyz"[k]);
+    const auto shape = file.has(name) ? file.extents(name) : hdf5_file::shape{};
+    if (shape.size() != 1 || shape[0] > cells) return;
+    found *= shape[0];
+  }
+  if (found != cells) return;
   std::vector<mesh_axis> axes;
   for (std::size_t k = 0; k < mesh_rank(); ++k) {
     const std::string name(1, "xyz"[k]);
-    if (!file.has(name)) return;
     axes.push_back({name, file.read(name)});
     units_[name] = file.units(name);
+    names_.insert(name);
   }
   for (std::size_t k = 0; k < axes.size(); ++k) {
     std::vector<double>& column = columns_[axes[k].name];
-    column.clear();
     for (std::size_t cell = 0; cell < mesh_size(axes); ++cell)
       column.push_back(centre_of_cell(axes, cell, k));
   }
@@ -221,15 +303,11 @@ std::vector<bool> initial_table_file::solid_rows(std::size_t rows) const {
 
 void initial_table_file::check_cells(const grid& mesh, int rows) const {
   if (rows != mesh.size())
-    refuse(
-        fmt::format("it has {} cells and the case {} (in several space dimensions data are not "
-                    "interpolated); use its space.cells and space.domain",
-                    rows, mesh.size()));
+    refuse_cells(static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(mesh.size()));
   constexpr double digits = 1e-2;  // of a cell, for centres written with few digits
   for (int k = 0; k < mesh.dimensions(); ++k) {
     const std::string name(1, "xyz"[k]);
-    if (!columns_.contains(name))
-      refuse(fmt::format("it has no column '{}' (centres of the cells); add it", name));
+    if (!has_column(name)) refuse(fmt::format("it has no column '{}' (centres of the cells); add it", name));
     const std::vector<double> centres = column({name}, dimensions::length);
     for (int cell = 0; cell < mesh.size(); ++cell) {
       const double found = centres[static_cast<std::size_t>(cell)], wanted = mesh.centre(cell, k);
@@ -245,13 +323,21 @@ void initial_table_file::check_cells(const grid& mesh, int rows) const {
 
 void initial_table_file::read_state(const hdf5_file& file) {
   if (!file.has("f")) return;
-  if (same_unknowns(file))
-    state_ = file.read("f");
-  else
-    log::warning(
+  if (!same_unknowns(file))
+    return log::warning(
         fmt::format("initial data: the distribution of '{}' is not used (its velocities or units are "
                     "others); the run begins in equilibrium with its fields",
                     path_));
+  const auto shape = file.extents("f");
+  std::uint64_t cells = 1;
+  for (std::size_t k = 0; k + 1 < shape.size(); ++k) cells *= std::min(shape[k], most_rows);
+  if (const auto wanted = static_cast<std::uint64_t>(make_mesh(config_).size());
+      mesh_rank() > 1 && cells != wanted)
+    refuse_cells(cells, wanted);
+  if (mesh_rank() == 1 && has_column("x") && rows_of("x") != cells)
+    refuse(fmt::format("'x' has {} numbers and the state has {} cells; give one for each cell", rows_of("x"),
+                       cells));
+  state_ = file.read("f");
 }
 
 /// The distribution of an earlier time is in a file of its own, if it was written in every cell.
@@ -279,7 +365,12 @@ bool initial_table_file::same_unknowns(const hdf5_file& file) const {
   if (shape.size() != mesh_rank() + 1 || shape.back() != static_cast<std::uint64_t>(equation_.components()))
     return false;
   const velocity_set& mine = equation_.velocities();
-  if (mine.dimensions() > 0 && (!file.has("v") || file.read("v") != velocity_points(mine))) return false;
+  if (mine.dimensions() > 0) {
+    const std::vector<double> points = velocity_points(mine);
+    std::uint64_t count = 1;
+    for (const auto n : file.has("v") ? file.extents("v") : hdf5_file::shape{0}) count *= n;
+    if (count != points.size() || file.read("v") != points) return false;
+  }
   if (manifest_.is_null()) return true;
   const auto scales = at(manifest_, {"scales"});
   if (!scales.is_null() && config_.scales && scales != to_json(*config_.scales)) return false;
@@ -308,14 +399,11 @@ std::size_t initial_table_file::chosen(const std::vector<double>& times) const {
 }
 
 bool initial_table_file::has_any(const std::vector<std::string>& names) const {
-  return std::any_of(names.begin(), names.end(),
-                     [this](const auto& name) { return columns_.contains(name); });
+  return std::any_of(names.begin(), names.end(), [this](const auto& name) { return has_column(name); });
 }
 
 std::vector<std::string> initial_table_file::columns() const {
-  std::vector<std::string> names;
-  for (const auto& [name, values] : columns_) names.push_back(name);
-  return names;
+  return {names_.begin(), names_.end()};
 }
 
 /// The unit of a column of the file in units of the case.
@@ -344,14 +432,9 @@ double initial_table_file::factor(const std::string& name, const std::string& un
 std::vector<double> initial_table_file::column(const std::vector<std::string>& names,
                                                const dimension& measure) const {
   const auto name =
-      std::find_if(names.begin(), names.end(), [this](const auto& one) { return columns_.contains(one); });
-  std::vector<double> values = columns_.at(*name);
-  const std::size_t rows = columns_.contains("x") ? columns_.at("x").size() : values.size();
-  if (values.size() != rows || values.empty())
-    refuse(fmt::format("'{}' has {} numbers and 'x' has {}; give one for each cell", *name, values.size(),
-                       rows));
-  const auto unit = units_.find(*name);
-  const double by = factor(*name, unit == units_.end() ? "" : unit->second, measure);
+      std::find_if(names.begin(), names.end(), [this](const auto& one) { return has_column(one); });
+  std::vector<double> values = load(*name);
+  const double by = factor(*name, unit_text(*name), measure);
   if (by != 1.0)
     for (double& value : values) value *= by;
   return values;
@@ -367,7 +450,7 @@ initial_table_file::line_ends initial_table_file::ends(int cells) const {
             : 1.0;
     return {domain[0].get<double>() * unit, domain[1].get<double>() * unit, 1e-9};
   }
-  if (!columns_.contains("x")) refuse("it has no column 'x' (centres of the cells); add it");
+  if (!has_column("x")) refuse("it has no column 'x' (centres of the cells); add it");
   const std::vector<double> x = column({"x"}, dimensions::length);
   if (x.size() != static_cast<std::size_t>(cells))
     refuse(fmt::format("'x' has {} numbers and the state has {} cells; give one for each cell", x.size(),

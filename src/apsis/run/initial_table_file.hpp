@@ -8,6 +8,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@
 namespace apsis {
 
 /// The file `initial.file` of a case at the time `initial.time`: columns of numbers and, of an earlier
-/// result, the state. All numbers are converted to the units of the case.
+/// result, the state. All numbers are converted to the units of the case. Columns that nobody asks for, and
+/// other content of an HDF5 file, are not read.
 class initial_table_file {
  public:
   /// Reads the file. Throws input_error at the place of the key.
@@ -65,6 +67,13 @@ class initial_table_file {
   void read_snapshot_of_state(double t);
   void expand_coordinates(const hdf5_file& file);
   std::size_t mesh_rank() const;
+  void find_columns(const std::string& group, std::optional<std::size_t> snapshot, std::size_t snapshots);
+  bool has_column(const std::string& name) const { return names_.contains(name); }
+  std::uint64_t rows_of(const std::string& name) const;
+  std::vector<double> load(const std::string& name) const;
+  [[noreturn]] void refuse_cells(std::uint64_t rows, std::uint64_t cells) const;
+  void check_rows(const std::string& name, std::uint64_t rows) const;
+  std::string unit_text(const std::string& name) const;
   void take_manifest(const std::string& text);
   bool same_unknowns(const hdf5_file& file) const;
   std::size_t chosen(const std::vector<double>& times) const;
@@ -75,7 +84,16 @@ class initial_table_file {
   std::string path_;
   json manifest_;  ///< of an earlier result; null for other files
   formulation unknowns_ = formulation::finite_volume;
+  /// A column of an HDF5 file: its dataset, and which snapshot of one with several.
+  struct stored_column {
+    std::string dataset;
+    std::optional<std::size_t> snapshot;
+  };
+  std::optional<hdf5_file> file_;
+  std::set<std::string> names_;                  ///< of the columns
+  std::map<std::string, stored_column> stored_;  ///< those that are read when they are asked for
   std::map<std::string, std::vector<double>> columns_;
+  std::map<std::string, std::string> problems_;  ///< of columns that are no numbers
   std::map<std::string, std::string> units_;
   std::vector<int> lines_;
   std::vector<double> state_;

@@ -372,6 +372,8 @@ void run_session::save_failure(const std::string& message) {
   together(processes(), [&] {
     if (!folder_ || !std::filesystem::exists(folder_->path() / result_folder::manifest)) return;
     earlier = true;
+    if (const auto failed = folder_->path() / "failed"; std::filesystem::is_symlink(failed))
+      std::filesystem::remove(failed);  // nothing is written through a link
     beside = std::make_unique<result_folder>(folder_->path() / "failed");
     if (simulation_.config().output.distribution == distribution_choice::snapshots)
       beside->resume_series(snapshots, folder_->path(), [](const std::string&) { return true; });

@@ -1,7 +1,9 @@
 #include "arrays.hpp"
 #include "callback.hpp"
 #include "given_data.hpp"
+#include "library_call.hpp"
 #include "march.hpp"
+#include "problem_pool.hpp"
 #include "quantities.hpp"
 
 #include <apsis/boundary/boundary_registry.hpp>
@@ -172,7 +174,8 @@ grid make_grid(const description& of) {
 constexpr std::array<std::array<const char*, 2>, 3> face_names = {
     {{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
 
-/// A model on a mesh, by the problem_builder of the library.
+/// A model on a mesh, by the problem_builder of the library. Threads may share the object: what its calls
+/// write is their own.
 class kinetic_problem {
  public:
   kinetic_problem(const description& of, const py::object& epsilon)
@@ -202,7 +205,8 @@ class kinetic_problem {
     } else {
       builder_.with_epsilon([value = epsilon.cast<double>()](const position&) { return value; });
     }
-    problem_ = builder_.build();
+    const interruptible building(raise_pending_signals);
+    implicit_.take();
   }
 
   int components() const { return equation_->components(); }
@@ -234,7 +238,15 @@ class kinetic_problem {
     const auto& all = equation_->initial();
     std::vector<std::string> names;
     for (const auto& data : all) {
-      if (data.name == name) return checked(builder_.sample(data.point_value, data.jumps));
+      if (data.name == name) {
+        field u;
+        const interruptible sampling(raise_pending_signals);
+        {
+          const py::gil_scoped_release others;
+          u = builder_.sample(data.point_value, data.jumps);
+        }
+        return checked(u);
+      }
       names.push_back(data.name);
     }
     throw input_error(fmt::format("unknown initial data '{}' (there is no such name); {}", name.substr(0, 60),
@@ -243,6 +255,7 @@ class kinetic_problem {
 
   py::array_t<double> sample_function(const py::function& function, const std::vector<double>& jumps) const {
     const callback data(function, "initial");
+    const interruptible sampling(raise_pending_signals);
     const int dimensions = equation_->space_dimensions();
     std::vector<double> row(static_cast<std::size_t>(components()));
     return checked(builder_.sample(
@@ -254,6 +267,7 @@ class kinetic_problem {
   }
 
   py::array_t<double> state(const py::dict& variables, const std::vector<double>& jumps) const {
+    const interruptible sampling(raise_pending_signals);
     return checked(make_state(variables, *equation_, builder_, jumps, "state"));
   }
 
@@ -276,7 +290,7 @@ class kinetic_problem {
     field result = to_field(u);
     const field state = result;
     const target<field, double> to{&result, 0.0, 1.0, true};
-    without_gil([&] { problem_->add_transport(t, state, {&to, 1}); });
+    call(state, [&](semidiscrete_problem& of) { of.add_transport(t, state, {&to, 1}); });
     return from_field(result);
   }
 
@@ -284,39 +298,36 @@ class kinetic_problem {
     field result = to_field(u);
     const field state = result;
     const target<field, double> to{&result, 0.0, 1.0, true};
-    without_gil([&] { problem_->add_collision(t, state, {&to, 1}); });
+    call(state, [&](semidiscrete_problem& of) { of.add_collision(t, state, {&to, 1}); });
     return from_field(result);
   }
 
   py::array_t<double> solve_collision(const array& u, double a, double b, double t) {
     field state = to_field(u);
-    without_gil([&] { problem_->solve_collision(t, a, b, state); });
+    call(state, [&](semidiscrete_problem& of) { of.solve_collision(t, a, b, state); });
     return from_field(state);
   }
 
-  double forward_euler_step(const array& u) const {
+  double forward_euler_step(const array& u) {
     const field state = to_field(u);
     double dt = 0.0;
-    without_gil([&] { dt = problem_->forward_euler_step(0.0, state); });
+    call(state, [&](const semidiscrete_problem& of) { dt = of.forward_euler_step(0.0, state); });
     return dt;
   }
 
   py::tuple integrate(const array& u0, const std::vector<double>& t, const method& m,
                       const step_choice& choice, std::optional<int> threads) {
     field u = to_field(u0);
-    set_threads(threads.value_or(threads_for(u)));
-    auto& problem = problem_for(m.kind);
+    const library_call own(threads.value_or(threads_for(u)));
+    const auto problem = problems_for(m.kind).take();
     std::vector<double> all;
     append(u, all);
     step_count count;
     {
       const py::gil_scoped_release others;
       count = march_through(
-          problem, u, t, m, choice, true, largest_difference, [&all](const field& now) { append(now, all); },
-          [] {
-            const py::gil_scoped_acquire python;
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-          });
+          *problem, u, t, m, choice, true, largest_difference, [&all](const field& now) { append(now, all); },
+          raise_pending_signals);
     }
     return py::make_tuple(
         to_array(std::vector<double>(t)),
@@ -325,24 +336,20 @@ class kinetic_problem {
   }
 
  private:
-  /// The problem with the collisions that methods of a kind need.
-  semidiscrete_problem& problem_for(method_kind kind) {
-    if (kind == method_kind::explicit_only) {
-      if (!explicit_problem_) explicit_problem_ = problem_builder(builder_).with_explicit_collision().build();
-      return *explicit_problem_;
-    }
-    if (kind == method_kind::exponential) {
-      if (!exact_problem_) exact_problem_ = problem_builder(builder_).with_exact_collision().build();
-      return *exact_problem_;
-    }
-    return *problem_;
+  /// The problems with the collisions that methods of a kind need.
+  problem_pool& problems_for(method_kind kind) {
+    if (kind == method_kind::explicit_only) return explicit_;
+    return kind == method_kind::exponential ? exact_ : implicit_;
   }
 
-  /// Threads of `body` call functions of the user, which need the GIL.
+  /// Runs body(problem) with a problem of its own. Its threads call functions of the user, which need the
+  /// GIL.
   template <class Body>
-  static void without_gil(const Body& body) {
+  void call(const field& u, const Body& body) {
+    const library_call own(threads_for(u));
+    const auto problem = implicit_.take();
     const py::gil_scoped_release others;
-    body();
+    body(*problem);
   }
 
   static py::tuple coordinates(const position& x, int dimensions) {
@@ -402,7 +409,9 @@ class kinetic_problem {
 
   std::unique_ptr<model> equation_;
   problem_builder builder_;
-  std::unique_ptr<semidiscrete_problem> problem_, explicit_problem_, exact_problem_;
+  problem_pool implicit_{[this] { return builder_.build(); }},
+      explicit_{[this] { return problem_builder(builder_).with_explicit_collision().build(); }},
+      exact_{[this] { return problem_builder(builder_).with_exact_collision().build(); }};
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "arrays.hpp"
 #include "given_data.hpp"
+#include "library_call.hpp"
 
 #include <apsis/config/case_schema.hpp>
+#include <apsis/core/errors.hpp>
 #include <apsis/core/first_error.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/version.hpp>
@@ -16,6 +18,7 @@
 #include <apsis/run/session.hpp>
 #include <apsis/run/setup.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -135,6 +138,26 @@ class silence_of_others {
   bool silenced_;
 };
 
+/// The right to call processes together, of one thread at a time: two that do so in another order on each
+/// process would wait for each other for ever.
+class turn_of_processes {
+ public:
+  explicit turn_of_processes(bool needed) : held_(needed) {
+    if (held_ && taken_.exchange(true))
+      throw input_error(
+          "comm cannot be used (another thread of this process has a run with processes); wait for its end");
+  }
+  ~turn_of_processes() {
+    if (held_) taken_ = false;
+  }
+  turn_of_processes(const turn_of_processes&) = delete;
+  turn_of_processes& operator=(const turn_of_processes&) = delete;
+
+ private:
+  static inline std::atomic<bool> taken_ = false;
+  bool held_;
+};
+
 /// Collective; complete on the root.
 py::dict result_of(const run_session& session, run_end end) {
   const simulation& run = session.computed();
@@ -179,12 +202,13 @@ py::object run_case(const std::optional<std::string>& text, const std::string& n
                     const std::optional<std::string>& restart, std::optional<double> wall,
                     std::optional<int> threads, const progress_function& progress, const py::object& initial,
                     const std::vector<double>& jumps, std::optional<int> communicator_handle) {
+  const turn_of_processes turn(communicator_handle.has_value());
   const auto processes = communicator_handle ? processes_of(*communicator_handle) : single_process();
   const silence_of_others quiet(*processes);
   case_config config;
   together(*processes,
            [&] { config = text ? parse_case(*text, name, overrides) : load_case(name, overrides); });
-  set_threads(threads.value_or(threads_for(config, *processes)));
+  const library_call own(threads.value_or(threads_for(config, *processes)));
   attendant asks(progress);
   session_options how;
   how.processes = processes;
@@ -212,7 +236,10 @@ py::object run_case(const std::optional<std::string>& text, const std::string& n
   run_end end{};
   {
     const py::gil_scoped_release others;
-    session = std::make_unique<run_session>(std::move(config), how);
+    {
+      const interruptible before_steps(raise_pending_signals);
+      session = std::make_unique<run_session>(std::move(config), how);
+    }
     end = session->run();
   }
   failure.rethrow();

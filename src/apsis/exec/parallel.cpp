@@ -19,7 +19,9 @@
 namespace apsis {
 namespace {
 
-std::atomic<int> thread_count = 1;
+/// Of the loops that this thread starts. Were it that of the process, a thread of Python could change it
+/// between the preparation of scratch memory for the threads of a loop and the loop.
+thread_local int thread_count = 1;
 std::atomic<std::size_t> fewest_shared = fewest_shared_numbers;
 
 /// Returns the team of the calling thread, created on demand. A forked process does not use the team

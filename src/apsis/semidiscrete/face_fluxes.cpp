@@ -44,10 +44,13 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
     for (std::size_t k = 0; k < here.inward.size(); ++k)
       if (!(here.inward[k] < 0.0)) values[k] = 0.0;
     double* incoming = here.incoming.row(place);
-    thread_local std::vector<const double*> ghosts;
+    // Taken, not shared: a function of the user in the boundary may call another problem on this thread.
+    thread_local std::vector<const double*> spare;
+    std::vector<const double*> ghosts = std::exchange(spare, {});
     space_->ghost_rows(surface, place, ghosts);
     space_->side(surface)->incoming_beside(where, t, space_->meeting_point(surface, place), values, ghosts,
                                            incoming);
+    spare = std::move(ghosts);
     const int cell = space_->cell_at(surface, place);
     for (std::size_t k = 0; k < here.inward.size(); ++k)
       if (here.inward[k] > 0.0) values[k] = incoming[k];

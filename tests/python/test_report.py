@@ -2,13 +2,14 @@
 import base64
 import json
 import re
+import shutil
 import sys
 from pathlib import Path
 
 import apsis
 import pytest
 from apsis.report import __main__ as command
-from apsis.report import make_report
+from apsis.report import make_report, page
 from apsis.report.claims import markdown
 from apsis.report.page import number
 from apsis.plot.run_result import read_history
@@ -226,3 +227,136 @@ def test_the_browser_test_detects_a_bad_page(chromium, tmp_path):
     assert seen["content"] > 400 and seen["broken"] == 1
     assert any("gone.png" in url for url in chromium.requests())
     assert chromium.console() != []
+
+
+# --- results that come from others -----------------------------------------------------------------------------------------------
+
+SCRIPT = "<script>alert(1)</script>"
+
+
+def leaves(document, path=()):
+    """Paths of all values of a JSON document, and of all keys."""
+    inner = document.items() if isinstance(document, dict) else enumerate(document) if isinstance(document, list) else ()
+    for key, value in inner:
+        yield (*path, key)
+        yield from leaves(value, (*path, key))
+
+
+def replaced(document, path, value):
+    changed = json.loads(json.dumps(document))
+    at = changed
+    for key in path[:-1]:
+        at = at[key]
+    at[path[-1]] = value
+    return changed
+
+
+def renamed(document, path):
+    changed = json.loads(json.dumps(document))
+    at = changed
+    for key in path[:-1]:
+        at = at[key]
+    if isinstance(at, dict):
+        at[SCRIPT] = at[path[-1]]
+    return changed
+
+
+def attacks(document):
+    for path in leaves(document):
+        yield path, replaced(document, path, SCRIPT)
+        yield path, replaced(document, path, [SCRIPT])
+        yield path, renamed(document, path)
+
+
+def check_pages(folder, name, document, monkeypatch):
+    """No value and no name of a document reaches the page as markup; what cannot be shown is an error of one line."""
+    # Pictures are images of their own, and take seconds.
+    monkeypatch.setattr("apsis.report.run.figures", lambda result: {})
+    for module in ("claims", "study", "validation"):
+        monkeypatch.setattr(f"apsis.report.{module}.page.embedded", lambda figure, *words: f"<p>{page.text(' '.join(map(str, words[:3])))}</p>")
+        monkeypatch.setattr(f"apsis.report.{module}.draw", lambda picture: None)
+    shown = 0
+    for path, changed in attacks(document):
+        (folder / name).write_text(json.dumps(changed), encoding="utf-8")
+        try:
+            html = page_of(folder)
+        except PictureError:
+            continue
+        shown += 1
+        assert "<script" not in html, path
+        markdown_page = folder / "claims.md"
+        assert not markdown_page.exists() or "<script" not in markdown_page.read_text(encoding="utf-8").replace("\\<script", ""), path
+    assert shown > 10
+
+
+def test_no_value_of_a_manifest_is_markup(run, tmp_path, monkeypatch):
+    shutil.copytree(run, tmp_path / "run")
+    check_pages(tmp_path / "run", "manifest.json", json.loads((run / "manifest.json").read_text(encoding="utf-8")), monkeypatch)
+
+
+def test_no_value_of_a_reproduction_is_markup(tmp_path, monkeypatch):
+    check_pages(tmp_path, "reproduce.json", document(claim(), claim(id="C2", holds=False, error="e", remarks=["r"])), monkeypatch)
+
+
+def test_no_value_of_a_validation_is_markup(tmp_path, monkeypatch):
+    value = {"settings": ["a=1"], "value": 1.0, "published": 1.1, "difference": 0.1, "tolerance": 0.2, "holds": True, "wall_s": 1.0}
+    given = {**document(), "quantities": [{"name": "q", "description": "d", "source": "s", "values": [value], "pictures": []}]}
+    check_pages(tmp_path, "validate.json", given, monkeypatch)
+
+
+def test_no_value_of_a_study_is_markup(tmp_path, monkeypatch):
+    manifest = {"apsis": "0", "build": document()["build"], "machine": document()["machine"], "state": "complete",
+                "study": {"case": "c", "runs": 2, "measure": "m"}}
+    (tmp_path / "converge.json").write_text(json.dumps([{"dt": 0.1, SCRIPT: SCRIPT}]), encoding="utf-8")
+    check_pages(tmp_path, "manifest.json", manifest, monkeypatch)
+
+
+def test_columns_of_a_history_are_text(run, tmp_path):
+    shutil.copytree(run, tmp_path / "run")
+    path = tmp_path / "run/history.csv"
+    header, *rows = path.read_text(encoding="utf-8").splitlines()
+    path.write_text("\n".join([f"{header},total_{SCRIPT},flux_{SCRIPT}_{SCRIPT}", *(f"{row},1,1" for row in rows)]), encoding="utf-8")
+    assert "<script" not in page_of(tmp_path / "run")
+
+
+def test_titles_of_results_are_not_formulas(run, tmp_path):
+    """Matplotlib takes $…$ as a formula and refuses what is none."""
+    shutil.copytree(run, tmp_path / "run")
+    manifest = json.loads((run / "manifest.json").read_text(encoding="utf-8"))
+    manifest["case"]["title"] = r"costs $\frac{ and $1 \x1b[31m"
+    (tmp_path / "run/manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    assert page_of(tmp_path / "run").count("<img ") == 3
+
+
+def test_files_are_not_written_through_links(run, tmp_path):
+    shutil.copytree(run, tmp_path / "run")
+    mine = tmp_path / "mine"
+    mine.write_text("precious")
+    shutil.rmtree(tmp_path / "run/pictures", ignore_errors=True)
+    (tmp_path / "run/pictures").mkdir()
+    for name in (".report.html.partial", "report.html", "pictures/.fields.png.partial", "pictures/fields.png"):
+        (tmp_path / "run" / name).unlink(missing_ok=True)
+        (tmp_path / "run" / name).symlink_to(mine)
+    page_of(tmp_path / "run")
+    assert mine.read_text() == "precious"
+    assert not any(path.is_symlink() for path in (tmp_path / "run").rglob("*"))
+    shutil.rmtree(tmp_path / "run/pictures")
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "run/pictures").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(PictureError, match="is a symbolic link .*; remove it"):
+        make_report(tmp_path / "run")
+    assert not list((tmp_path / "elsewhere").iterdir())
+
+
+def test_names_of_pictures_stay_in_their_folder(tmp_path):
+    damaged = picture(panel(curves=[curve("a", [1, 0.5], [1, 0.5])])) | {"name": "../../escape"}
+    with pytest.raises(PictureError, match="names a picture '../../escape'"):
+        page_of_claims(tmp_path, claim(pictures=[damaged]))
+
+
+def test_messages_do_not_obey_a_file(tmp_path, capsys):
+    folder = tmp_path / "\x1b[31mred"
+    folder.mkdir()
+    assert command.main([str(folder)]) == 4
+    told = capsys.readouterr().err
+    assert "\x1b" not in told and "\\u001b[31mred" in told

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from . import comparison, methods, pictures, results, run_result
-from .style import FORMATS, PictureError, exit_code_of, save
+from .style import FORMATS, PictureError, exit_code_of, picture_path, pictures_in, printable, save
 
 DESCRIPTION = """Draws what apsis computed, as WHAT/pictures/*.png:
 
@@ -68,16 +68,18 @@ def of_document(document: dict[str, Any], path: Path) -> Iterable[tuple[str, Any
 def drawn(what: str, options: argparse.Namespace) -> tuple[Path, Iterable[tuple[str, Any]]]:
     """Returns the folder for the pictures of a result, and the pictures."""
     path = Path(what)
+    folder = path if path.is_dir() else path.parent
+    pictures_here = options.out or pictures_in(folder)
     if path.is_dir():
         for name in ("picture.json", "reproduce.json", "validate.json"):
             if (path / name).exists():
-                return path / "pictures", of_document(run_result.read_json(path / name), path / name)
+                return pictures_here, of_document(run_result.read_json(path / name), path / name)
         result = run_result.read_result(path)
         made = results.figures(result, options.slice).items()
-        return path / "pictures", chain(made, results.frames(result, options.slice)) if options.frames else made
+        return pictures_here, chain(made, results.frames(result, options.slice)) if options.frames else made
     if path.suffix == ".json":
         document = run_result.read_json(path)
-        return Path() if "A_hat" in document else path.parent / "pictures", of_document(document, path)
+        return Path() if "A_hat" in document else pictures_here, of_document(document, path)
     return Path(), of_method(method_description(what))
 
 
@@ -88,21 +90,19 @@ def compare(what: list[str], slice_at: str | None) -> Iterable[tuple[str, Any]]:
         label, separator, folder = word.rpartition("=")
         runs.append((label if separator else Path(folder).resolve().name, run_result.read_result(folder)))
     for line in comparison.differences(runs):
-        print(line)
+        print(printable(line))
     return comparison.comparisons(runs, slice_at)
 
 
 def draw_all(options: argparse.Namespace) -> None:
     if options.compare:
         for suffix, figure in compare(options.what, options.slice):
-            print(save(figure, (options.out or Path()) / f"{options.compare}{suffix}.{options.format}"))
+            print(printable(str(save(figure, (options.out or Path()) / f"{options.compare}{suffix}.{options.format}"))))
         return
     for what in options.what:
         folder, figures = drawn(what, options)
         for name, figure in figures:
-            if Path(name).name != name or name.startswith("."):  # a name from a file that apsis did not write
-                raise PictureError(f"'{what}' names a picture '{name}' (it must be a file name without folder); correct the name")
-            print(save(figure, (options.out or folder) / f"{name}.{options.format}"))
+            print(printable(str(save(figure, picture_path(options.out or folder, str(name), options.format)))))
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -114,7 +114,7 @@ def tableau_figure(method: Description) -> Any:
         axes.set_yticks(range(stages), [f"{c:.3g}" for c in m.sum(axis=1)], fontsize=7)
         axes.set_xlabel("stage")
         axes.set_ylabel("row sum")
-        axes.set_title(name, fontsize=10)
+        axes.set_title(name, fontsize=10, gid="formula")
         figure.colorbar(image, ax=axes, shrink=0.8)
         if stages <= 10:
             write_numbers(axes, m, largest)

@@ -10,7 +10,7 @@ import numpy as np
 from . import maps
 from .probes import probe_figures
 from .run_result import Array, RunResult
-from .style import BLACK, BLUE, COLOURS, GREY, PictureError, earlier_times, panels, plt
+from .style import BLACK, BLUE, COLOURS, GREY, PictureError, earlier_times, panels, plt, show_literally
 from .surfaces import surface_figures
 
 
@@ -175,7 +175,7 @@ def figures(result: RunResult, slice_at: str | None = None) -> dict[str, Any]:
     """Returns all pictures of a run by name: fields, distribution, history, profiles along probes and walls."""
     made = {"fields": fields_figure(result, slice_at), "distribution": distribution_figure(result), "history": history_figure(result),
             **dict(probe_figures(result, title_of(result))), **dict(surface_figures(result))}
-    return {name: figure for name, figure in made.items() if figure is not None}
+    return {name: show_literally(figure) for name, figure in made.items() if figure is not None}
 
 
 def frames(result: RunResult, slice_at: str | None = None) -> Iterator[tuple[str, Any]]:

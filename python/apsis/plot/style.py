@@ -1,20 +1,26 @@
 """The style of all pictures (colours, markers, fonts), and writing of picture files."""
 from __future__ import annotations
 
+import os
 import sys
+import unicodedata
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
+from matplotlib.axis import Axis  # noqa: E402
+from matplotlib.text import Text  # noqa: E402
 
 __all__ = ["BLACK", "BLUE", "COLOURS", "FORMATS", "GREEN", "GREY", "LINES", "MARKERS", "ORANGE", "PURPLE", "PictureError", "SKY",
-           "UNDATED", "VERMILLION", "earlier_times", "exit_code_of", "palette", "panels", "plt", "save", "whole_file"]
+           "UNDATED", "VERMILLION", "earlier_times", "exit_code_of", "palette", "panels",
+           "picture_path", "pictures_in", "plt", "printable", "save", "show_literally",
+           "whole_file"]
 
 # Okabe and Ito: distinct for colour-blind readers, and in lightness for print.
 BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
@@ -30,11 +36,16 @@ plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "sav
                      "figure.constrained_layout.use": True, "svg.fonttype": "path", "svg.hashsalt": "apsis"})
 
 
+def printable(text: str) -> str:
+    """Returns a text that a terminal shows and does not obey: controls and marks of the direction of writing become "\\u001b"."""
+    return "".join(f"\\u{ord(c):04x}" if c not in "\n\t" and unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp") else c for c in text)
+
+
 class PictureError(Exception):
     """A picture that cannot be drawn. exit_code is the exit code of the program."""
 
     def __init__(self, message: str, exit_code: int = 4) -> None:
-        super().__init__(message)
+        super().__init__(printable(message))
         self.exit_code = exit_code
 
 
@@ -68,13 +79,32 @@ def earlier_times(count: int) -> list[int]:
     return [int(k) for k in np.unique(np.linspace(0, count - 1, 5).astype(int))] if count > 0 else []
 
 
+def picture_path(folder: Path, name: str, kind: str) -> Path:
+    """Returns the path of a picture in a folder, whose name may come from a file that apsis did not write. Raises PictureError."""
+    if Path(name).name != name or name.startswith(".") or "\0" in name:
+        raise PictureError(f"'{folder.parent}' names a picture '{name}' (it must be a file name without folder); correct the name")
+    return folder / f"{name}.{kind}"
+
+
+def pictures_in(folder: Path) -> Path:
+    """Returns the folder of the pictures of a result. Raises PictureError if it is a link: nothing is written through one."""
+    pictures = folder / "pictures"
+    if pictures.is_symlink():
+        raise PictureError(f"'{pictures}' is a symbolic link (pictures would be written to another place); remove it")
+    return pictures
+
+
 @contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
-    """Yields a temporary path that is renamed when complete. Raises PictureError."""
+def whole_file(path: Path) -> Iterator[BinaryIO]:
+    """Yields a file of a temporary name that gets its own when complete. It is new, since a link of the temporary name may lead to
+    any file of the user. Raises PictureError."""
     partial = path.with_name(f".{path.name}.partial")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        yield partial
+        with suppress(FileNotFoundError):
+            partial.unlink()
+        with os.fdopen(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0), 0o666), "wb") as file:
+            yield file
         partial.replace(path)
     except OSError as problem:
         with suppress(OSError):
@@ -82,9 +112,19 @@ def whole_file(path: Path) -> Iterator[Path]:
         raise PictureError(f"cannot write '{path}' ({problem.strerror}); choose another folder or free some space") from problem
 
 
+def show_literally(figure: Any) -> Any:
+    """Makes titles and labels of a figure, which may come from a file, text: Matplotlib takes "$…$" as a formula and ends where that is
+    none. Numbers at ticks stay, and texts with the gid "formula"."""
+    numbers = {label for axis in figure.findobj(Axis) for label in (*axis.get_ticklabels(which="both"), axis.get_offset_text())}
+    for one in figure.findobj(Text):
+        if one not in numbers and one.get_gid() != "formula":
+            one.set_parse_math(False)
+    return figure
+
+
 def save(figure: Any, path: Path) -> Path:
     """Writes the figure in the format of the extension, without a date, so that equal data give equal files."""
-    with whole_file(path) as partial:
-        figure.savefig(partial, format=path.suffix[1:], metadata=UNDATED.get(path.suffix))
+    with whole_file(path) as file:
+        show_literally(figure).savefig(file, format=path.suffix[1:], metadata=UNDATED.get(path.suffix))
     plt.close(figure)
     return path

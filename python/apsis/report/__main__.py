@@ -4,13 +4,13 @@ from __future__ import annotations
 import argparse
 import sys
 
-from ..plot.style import exit_code_of
+from ..plot.style import exit_code_of, printable
 from .make import make_report
 
 
 def make_all(folders: list[str]) -> None:
     for folder in folders:
-        print(make_report(folder))
+        print(printable(str(make_report(folder))))
 
 
 def main(arguments: list[str] | None = None) -> int:

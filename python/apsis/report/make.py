@@ -9,8 +9,8 @@ from . import claims, run, study, validation
 
 
 def write(path: Path, content: str) -> None:
-    with whole_file(path) as partial:
-        partial.write_text(content, encoding="utf-8")
+    with whole_file(path) as file:
+        file.write(content.encode("utf-8", "backslashreplace"))
 
 
 def make_report(folder: str | Path) -> Path:
@@ -30,7 +30,7 @@ def make_report(folder: str | Path) -> Path:
         else:
             raise PictureError(f"'{folder}' holds no results (neither manifest.json nor reproduce.json); give a folder that "
                                "apsis run --out, apsis converge --out, apsis reproduce or apsis validate wrote")
-    except (KeyError, TypeError, IndexError) as problem:
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as problem:
         raise PictureError(f"results in '{folder}' are damaged or of another version ({type(problem).__name__}: {problem}); "
                            "make them anew") from problem
     write(folder / "report.html", content)

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..plot.style import UNDATED, save
+from ..plot.style import UNDATED, picture_path, printable, save, show_literally
 
 STYLE = """
 :root { color-scheme: light; }
@@ -38,40 +38,48 @@ PAGE = """<!DOCTYPE html>
 """
 
 
+class Html(str):
+    """Markup of this program. Any other text is escaped where it enters a page: a result folder may come from others."""
+
+
 def page(title: str, body: str) -> str:
     return PAGE.format(title=text(title), style=STYLE, body=body)
 
 
-def text(value: Any) -> str:
-    return html.escape(str(value))
+def text(value: Any) -> Html:
+    """Returns a value as escaped text; markup stays."""
+    return value if isinstance(value, Html) else Html(html.escape(printable(str(value))))
 
 
 def number(value: float | None) -> str:
     """Formats a number: counts as integers, measurements to four digits."""
     if value is None:
         return "not a number"
+    if not isinstance(value, (int, float)):
+        raise TypeError(f"{value!r} is not a number")
     return f"{value:.0f}" if float(value).is_integer() and abs(value) < 1e6 else f"{value:.4g}"
 
 
-def verdict(good: bool, words: tuple[str, str] = ("holds", "fails")) -> str:
-    return f'<span class="{"yes" if good else "no"}">{words[0] if good else words[1]}</span>'
+def verdict(good: bool, words: tuple[str, str] = ("holds", "fails")) -> Html:
+    return Html(f'<span class="{"yes" if good else "no"}">{text(words[0] if good else words[1])}</span>')
 
 
-def table(columns: Sequence[str], rows: Iterable[Sequence[str]], title: str = "") -> str:
-    """Returns an HTML table. Cells are HTML, columns and title plain text; without columns a table of names and values."""
+def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], title: str = "") -> str:
+    """Returns an HTML table; without columns a table of names and values."""
     head = "<thead><tr>" + "".join(f"<th>{text(c)}</th>" for c in columns) + "</tr></thead>" if columns else ""
-    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>\n" for row in rows)
+    body = "".join("<tr>" + "".join(f"<td>{text(cell)}</td>" for cell in row) + "</tr>\n" for row in rows)
     caption = f"<caption>{text(title)}</caption>" if title else ""
     return f'<div class="wide"><table>{caption}{head}<tbody>\n{body}</tbody></table></div>\n'
 
 
 def embedded(figure: Any, name: str, title: str, caption: str, folder: Path) -> str:
-    """Returns the figure as an <img> with embedded data and writes it to <folder>/<name>.png."""
+    """Returns the figure as an <img> with embedded data and writes it to <folder>/<name>.png. Raises PictureError."""
+    path = picture_path(folder, name, "png")
     stream = io.BytesIO()
     width = figure.get_figwidth()
-    figure.savefig(stream, format="svg", metadata=UNDATED[".svg"])
+    show_literally(figure).savefig(stream, format="svg", metadata=UNDATED[".svg"])
     data = base64.b64encode(stream.getvalue()).decode("ascii")
-    save(figure, folder / f"{name}.png")
+    save(figure, path)
     # 10-point letters remain 7.7 pixels high on a narrow screen, where wide pictures scroll.
     return (f'<figure><img style="min-width: {0.58 * 96 * width:.0f}px" alt="{text(title)}" src="data:image/svg+xml;base64,{data}">'
             f'<figcaption><b>{text(title)}.</b> {text(caption)}</figcaption></figure>\n')
@@ -81,4 +89,4 @@ def provenance(document: dict[str, Any], version: str) -> str:
     """Returns one line with version, machine and time."""
     build, machine = document["build"], document["machine"]
     return (f'apsis {text(version)}, {text(build["compiler"])}, {text(build["build_type"])}, '
-            f'{text(build["instruction_set"])}; {text(machine["processor"])}, {machine["threads"]} threads')
+            f'{text(build["instruction_set"])}; {text(machine["processor"])}, {text(machine["threads"])} threads')

@@ -8,8 +8,9 @@ from typing import Any
 from ..plot.maps import dimensions
 from ..plot.results import distribution_name, end_of, figures, title_of
 from ..plot.run_result import RunResult, read_result
+from ..plot.style import pictures_in
 from . import page
-from .page import number, table, text, verdict
+from .page import Html, number, table, text, verdict
 
 CAPTIONS = {
     "fields": ("Macroscopic fields", "At the end, and at earlier snapshots in grey."),
@@ -37,13 +38,13 @@ def summary(result: RunResult) -> str:
     manifest, numbers = result.manifest, result.manifest["result"]
     good = manifest["state"] == "complete"
     units = "Quantities with a unit in their label are in SI units." if "units" in manifest else "All quantities are dimensionless."
-    out = (f'<p>{verdict(good, (manifest["state"], manifest["state"]))} at t = {end_of(result):.10g} after {numbers["steps"]} steps of '
+    out = (f'<p>{verdict(good, (manifest["state"], manifest["state"]))} at t = {end_of(result):.10g} after {text(numbers["steps"])} steps of '
            f'<code>{text(manifest["method"])}</code> of length {number(numbers["dt"])} or less; '
            f'{numbers["wall_s"]:.2f} s of computing. {units}</p>\n')
     if manifest.get("message"):
         out += f'<p class="no">{text(manifest["message"])}</p>\n'
     if "state" in numbers:
-        out += table(["unknown", "at the end"], [[text(result.label(name)), repr(value)]
+        out += table(["unknown", "at the end"], [[result.label(name), repr(value)]
                                                  for name, value in zip(result.fields, numbers["state"])])
     return out
 
@@ -63,7 +64,7 @@ def promises(manifest: dict[str, Any]) -> str:
             kept = verdict(manifest["result"]["negative_values"] == 0, ("kept", "broken"))
         else:
             kept = "one was broken, see above"
-        rows.append([f"{name}: {text(what)}", kept, "none offered" if value is None else f"{measured} {number(value) if key else ''}".strip()])
+        rows.append([f"{name}: {what}", kept, "none offered" if value is None else f"{measured} {number(value) if key else ''}".strip()])
     return table(["promise", "verdict", "measured"], rows)
 
 
@@ -77,7 +78,7 @@ def balances(result: RunResult) -> str:
     units = [result.unit(f"flux_{next(iter(faces))}_{name}") for name in quantities]
     columns = ["from", *(f"{name.replace('_', ' ')}{'' if unit == 'dimensionless' else f' ({unit})'}"
                          for name, unit in zip(quantities, units))]
-    rows = [[text(face), *(number(float(result.history[f"flux_{face}_{name}"][-1])) for name in quantities)] for face in faces]
+    rows = [[face, *(number(float(result.history[f"flux_{face}_{name}"][-1])) for name in quantities)] for face in faces]
     return "<h2>Balances</h2>\n" + table(columns, rows, "Received by the gas per unit of time at the end")
 
 
@@ -96,13 +97,13 @@ def report(folder: Path) -> str:
     """Returns the page; pictures are also written to <folder>/pictures. Raises PictureError."""
     result = read_result(folder)
     manifest = result.manifest
-    pictures = "".join(page.embedded(figure, name, *caption(name, result), folder / "pictures")
+    pictures = "".join(page.embedded(figure, name, *caption(name, result), pictures_in(folder))
                        for name, figure in figures(result).items())
     rest = {key: value for key, value in manifest.items() if key not in ("case", "message")}
     body = (summary(result) + "<h2>Promises</h2>\n" + promises(manifest) + balances(result)
             + ("<h2>Pictures</h2>\n" + pictures if pictures else "")
             + "<h2>Case</h2>\n" + case_text(result)
-            + "<h2>Manifest</h2>\n" + table([], [[f"<code>{text(name)}</code>", text(value)] for name, value in flattened(rest)])
+            + "<h2>Manifest</h2>\n" + table([], [[Html(f"<code>{text(name)}</code>"), value] for name, value in flattened(rest)])
             + f'<p class="small">{page.provenance(manifest, manifest["apsis"])}. Source of the case: '
               f'{text(manifest["case"]["source"])}.</p>\n')
     return page.page(title_of(result), body)

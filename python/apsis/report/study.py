@@ -6,12 +6,13 @@ from typing import Any
 
 from ..plot.pictures import draw
 from ..plot.run_result import read_json, read_json_list
+from ..plot.style import pictures_in
 from . import page
-from .page import number, table, text
+from .page import Html, number, table, text
 
 
 def cell(value: Any) -> str:
-    return "" if value is None else number(value) if isinstance(value, (int, float)) else text(value)
+    return "" if value is None else number(value) if isinstance(value, (int, float)) else str(value)
 
 
 def runs_table(runs: list[dict[str, Any]]) -> str:
@@ -29,9 +30,9 @@ def report(folder: Path) -> str:
     if picture.exists():
         data = read_json(picture)
         title = data["title"]
-        drawing = page.embedded(draw(data), data["name"], data["title"], data["caption"], folder / "pictures")
-    rows = [[f"<code>{text(name)}</code>", text(value)] for name, value in study.items()]
-    body = (f"<p>{text(manifest['state'])}: {study['runs']} runs; {text(study['measure'])}. All quantities are dimensionless.</p>\n"
+        drawing = page.embedded(draw(data), data["name"], data["title"], data["caption"], pictures_in(folder))
+    rows = [[Html(f"<code>{text(name)}</code>"), value] for name, value in study.items()]
+    body = (f"<p>{text(manifest['state'])}: {text(study['runs'])} runs; {text(study['measure'])}. All quantities are dimensionless.</p>\n"
             + drawing + "<h2>Runs</h2>\n" + runs_table(read_json_list(folder / "converge.json")) + "<h2>Study</h2>\n" + table([], rows)
             + f'<p class="small">{page.provenance(manifest, manifest["apsis"])}</p>\n')
     return page.page(title, body)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ..plot.pictures import draw
+from ..plot.style import pictures_in
 from . import page
 from .page import number, table, text, verdict
 
@@ -16,7 +17,7 @@ def difference(value: float | None) -> str:
 
 
 def section(quantity: Quantity, folder: Path) -> str:
-    rows = [[text(" ".join(v["settings"]) or "as is"), number(v["value"]), number(v["published"]), difference(v["difference"]),
+    rows = [[" ".join(v["settings"]) or "as is", number(v["value"]), number(v["published"]), difference(v["difference"]),
              f"{v['tolerance']:.0e}", verdict(v["holds"]), f"{v['wall_s']:.1f}"] for v in quantity["values"]]
     out = [f'<h2 id="{text(quantity["name"])}">{text(quantity["name"])}</h2>\n<p>{text(quantity["description"])}. Published: '
            f'{text(quantity["source"])}.</p>\n',
@@ -34,4 +35,4 @@ def report(document: dict[str, Any], folder: Path) -> str:
              + " Each was computed by one run of a case of the program. All quantities are dimensionless.</p>"
              + f'<p class="small">{page.provenance(document, document["version"])}; {document["wall_s"]:.0f} s.</p>')
     return page.page("Published values of gas flows",
-                     intro + "".join(section(q, folder / "pictures") for q in document["quantities"]))
+                     intro + "".join(section(q, pictures_in(folder)) for q in document["quantities"]))

@@ -320,7 +320,7 @@ def test_columns_of_a_history_are_text(run, tmp_path):
 
 
 def test_titles_of_results_are_not_formulas(run, tmp_path):
-    """Matplotlib takes $…$ as a formula and refuses what is none."""
+    """Matplotlib takes $…$ as a formula, and fails where it cannot read one."""
     shutil.copytree(run, tmp_path / "run")
     manifest = json.loads((run / "manifest.json").read_text(encoding="utf-8"))
     manifest["case"]["title"] = r"costs $\frac{ and $1 \x1b[31m"

@@ -113,8 +113,8 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
 
 
 def show_literally(figure: Any) -> Any:
-    """Makes titles and labels of a figure, which may come from a file, text: Matplotlib takes "$…$" as a formula and ends where that is
-    none. Numbers at ticks stay, and texts with the gid "formula"."""
+    """Makes titles and labels of a figure, which may come from a file, text: Matplotlib takes "$…$" as a formula, and fails where
+    it cannot read one. Numbers at ticks stay, and texts with the gid "formula"."""
     numbers = {label for axis in figure.findobj(Axis) for label in (*axis.get_ticklabels(which="both"), axis.get_offset_text())}
     for one in figure.findobj(Text):
         if one not in numbers and one.get_gid() != "formula":

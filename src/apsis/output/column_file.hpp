@@ -10,7 +10,7 @@ namespace apsis {
 /// Named columns of numbers from a text.
 struct column_file {
   std::map<std::string, std::vector<double>> columns;  ///< equally long; NaN where there is no finite number
-  std::map<std::string, std::string> problems;         ///< of a column: its first entry that is none
+  std::map<std::string, std::string> problems;         ///< of a column: why its first NaN is one
   std::vector<int> lines;                              ///< line of each row, from 1
 };
 

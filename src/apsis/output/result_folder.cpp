@@ -33,7 +33,7 @@ constexpr const char* advice = "choose another folder with --out or free some sp
   cannot(verb, path, why_not_written(path.string(), why.value()));
 }
 
-/// Whether there is a folder that is none of another place: files are not written through links.
+/// Whether the path is a folder and not a link to one: files are not written through links.
 bool is_own_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::symlink_status(path, ignored).type() == fs::file_type::directory;

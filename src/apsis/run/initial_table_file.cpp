@@ -135,7 +135,7 @@ void initial_table_file::read_csv() {
     for (const auto& [name, values] : columns_) kept[name].push_back(values[k]);
     lines.push_back(lines_[k]);
   }
-  // What is no number at another time does not matter.
+  // Only entries at the chosen time matter.
   std::erase_if(problems_, [&kept](const auto& one) {
     const auto& values = kept[one.first];
     return std::none_of(values.begin(), values.end(), [](double x) { return std::isnan(x); });
@@ -190,7 +190,7 @@ void initial_table_file::find_columns(const std::string& group, std::optional<st
   }
 }
 
-/// The number of cells of which a column has a number.
+/// Returns the number of cells of a column, as the file claims it.
 std::uint64_t initial_table_file::rows_of(const std::string& name) const {
   const auto stored = stored_.find(name);
   if (stored == stored_.end()) return columns_.at(name).size();

@@ -93,7 +93,7 @@ class initial_table_file {
   std::set<std::string> names_;                  ///< of the columns
   std::map<std::string, stored_column> stored_;  ///< those that are read when they are asked for
   std::map<std::string, std::vector<double>> columns_;
-  std::map<std::string, std::string> problems_;  ///< of columns that are no numbers
+  std::map<std::string, std::string> problems_;  ///< of columns with entries that are not finite numbers
   std::map<std::string, std::string> units_;
   std::vector<int> lines_;
   std::vector<double> state_;

@@ -3,6 +3,7 @@ import json
 import math
 
 import apsis
+import h5py
 import numpy as np
 import pytest
 from apsis.plot import __main__ as command
@@ -294,3 +295,18 @@ def test_results_without_a_picture_are_refused(tmp_path, monkeypatch, capsys):
         assert file in capsys.readouterr().err
         (tmp_path / "run" / file).write_bytes(kept)
     assert command.main([str(tmp_path / "run"), "--out", str(tmp_path / "none.json")]) == 4
+
+
+def test_what_others_add_to_a_result_is_ignored(tmp_path):
+    run(tmp_path / "run", "paper/broadwell")
+    before = read_result(tmp_path / "run")
+    with h5py.File(tmp_path / "run/solution.h5", "a") as file:
+        for group in ("", "fields/"):
+            file[group + "comment"] = "by hand"
+            file[group + "lost"] = h5py.SoftLink("/nowhere")
+            file[group + "none"] = h5py.Empty("f8")
+            file[group + "pairs"] = np.zeros(3, [("a", "f8")])
+        file["again"] = h5py.SoftLink("/")
+        file.create_dataset("huge", (2**40,), "f8", chunks=(1024,), compression="gzip")
+    after = read_result(tmp_path / "run")
+    assert list(after.fields) == list(before.fields) and list(after.arrays) == list(before.arrays)

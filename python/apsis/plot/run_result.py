@@ -5,6 +5,7 @@ import csv
 import json
 import re
 import textwrap
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from .style import PictureError
 
 Array = NDArray[np.float64]
+ARRAYS = ("f", "x", "y", "z", "v", "v_weights", "v_x", "v_y", "v_z", "epsilon")
 
 
 @dataclass(frozen=True)
@@ -125,19 +127,27 @@ def read_result(folder: str | Path) -> RunResult:
     labels: dict[str, str] = {}
     try:
         with h5py.File(path) as file:
-            arrays = {name: np.asarray(item, dtype=float) for name, item in file.items() if isinstance(item, h5py.Dataset)}
+            arrays = {name: np.asarray(item, dtype=float) for name, item in number_sets(file) if name in ARRAYS}
             for group, found in groups.items():
-                for name, item in file.get(group, {}).items():
+                for name, item in number_sets(file.get(group)):
                     found[name] = np.asarray(item, dtype=float)
                     labels[name] = words(item.attrs.get("long_name", f"{name} (dimensionless)"))
             case = words(file.attrs.get("case", ""))
-    except OSError as problem:
+    except (OSError, MemoryError) as problem:
         raise PictureError(f"cannot read '{path}' ({problem}); run the case again with --out") from problem
     fields = groups["fields"]
     in_order = {name: fields[name] for name in (*columns_of(folder / "fields.csv"), *fields) if name in fields}
     return RunResult(folder, manifest, in_order, groups["snapshots"], arrays, history, labels, case, groups["marginals"],
                      {table.stem: read_history(table) for table in sorted((folder / "probes").glob("*.csv"))},
                      {table.stem: read_surface(table) for table in sorted((folder / "surfaces").glob("*.csv"))})
+
+
+def number_sets(group: Any) -> Iterator[tuple[str, Any]]:
+    """Names and datasets of real numbers of a group; texts, other objects and dangling links, which others may add, are left out."""
+    for name in group if isinstance(group, h5py.Group) else ():
+        item = group.get(name)
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "iuf" and item.shape is not None:
+            yield name, item
 
 
 def columns_of(path: Path) -> list[str]:

@@ -72,6 +72,19 @@ TEST(scalar_flux, the_fastest_wave_inside_an_interval_is_found) {
   EXPECT_EQ(apsis::scalar_flux("burgers", 0, 1).fastest(0.5, 0.5).speed, 0.5);
 }
 
+TEST(scalar_flux, slopes_of_formulas_have_steps_of_the_size_of_the_data) {
+  // Data of any units: F(u) = s Φ(u/s) has the slope Φ'(u/s).
+  for (const double s : {1e-200, 1e-12, 1.0, 1e9}) {
+    const apsis::scalar_flux F("s*(u/s)^2/((u/s)^2 + 0.5*(1 - u/s)^2)", 0.0, 0.0, {{"s", s}}),
+        unit("buckley-leverett", 0.0, 0.5);
+    const auto found = F.fastest(0.0, s), expected = unit.fastest(0.0, 1.0);
+    EXPECT_NEAR(found.speed, expected.speed, 1e-9) << s;
+    EXPECT_NEAR(found.u / s, expected.u, 1e-4) << s;  // flat at the maximum
+  }
+  // 1 | 0 data with tails that underflow.
+  EXPECT_NEAR(apsis::scalar_flux("u^2/2", 0.0, 0.0).fastest(2.96e-323, 1.0).speed, 1.0, 1e-10);
+}
+
 TEST(relaxation, transport_and_collision_are_those_of_the_paper_in_u1_and_u2) {
   check_property("characteristic variables", [] {
     const double a = *rc::gen::element(0.5, 1.0, 3.0), F = 0.4;

@@ -123,6 +123,27 @@ TEST(system_flux, differentiates_where_slopes_vanish_or_formulas_end) {
   EXPECT_TRUE(std::isnan(speed("u", std::nan(""))));
 }
 
+TEST(system_flux, differentiates_at_values_that_are_rounding_beside_the_data) {
+  // The slope at u → 0 is that at 0, whatever the size of u; the speed of the data is 1.
+  const auto slope = [](const std::string& formula, double u) {
+    return system_flux({"u"}, {formula}).characteristic_speeds(&u, 1.0).speed;
+  };
+  for (const double u : {5e-324, 2.96e-323, 1e-310, 1e-200, 1e-100, 1e-20, 0.0}) {
+    EXPECT_NEAR(slope("u^2/2", u), 0.0, 1e-12) << u;
+    EXPECT_NEAR(slope("u^3", u), 0.0, 1e-12) << u;
+    EXPECT_NEAR(slope("u + u^2", u), 1.0, 1e-10) << u;
+    // F itself is of size 1: differences over a part of u would be its rounding.
+    EXPECT_NEAR(slope("(u + 1)^2/2", u), 1.0, 1e-10) << u;
+    EXPECT_NEAR(slope("exp(u)", u), 1.0, 1e-10) << u;
+    EXPECT_NEAR(slope("u^2/(u^2 + 0.5*(1 - u)^2)", u), 0.0, 1e-10) << u;
+  }
+  // A film of water that has nearly run dry, at rest: sqrt(g h).
+  for (const double h : {1e-12, 1e-100, 1e-140}) {
+    const double u[] = {h, 0.0};
+    EXPECT_NEAR(shallow_water().characteristic_speeds(u, 3.0).speed / std::sqrt(9.81 * h), 1.0, 1e-6) << h;
+  }
+}
+
 TEST(system_flux, of_several_states_equals_that_of_each) {
   const std::vector<double> u = {1.0, 0.5, 2.0, -0.25, 0.125, 3.0, 1e-3, 0.0};
   std::vector<double> together(8), alone(2);

@@ -2,9 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace apsis {
+
+namespace {
+
+double value_of(const system_flux& formula, double u) {
+  double F = 0.0;
+  formula.evaluate(&u, 1, &F);
+  return F;
+}
+
+double slope_of(const system_flux& formula, double u, double size) {
+  double slope = 0.0;
+  return formula.differentiate(&u, 0, size, &slope) ? slope : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
 
 const std::vector<std::string>& scalar_flux::names() {
   static const std::vector<std::string> all = {"linear", "burgers", "buckley-leverett"};
@@ -17,7 +33,7 @@ scalar_flux::scalar_flux(const std::string& text, double slope, double viscosity
   const auto found = std::find(names().begin(), names().end(), text);
   kind_ = static_cast<kind>(found - names().begin());  // past the last name: a formula
   if (kind_ == kind::formula)
-    formula_ = std::make_unique<expression>(text, source_place{}, formula_kind{{"u"}, false, constants});
+    formula_ = std::make_unique<system_flux>(std::vector<std::string>{"u"}, std::vector{text}, constants);
 }
 
 double scalar_flux::operator()(double u) const {
@@ -29,11 +45,11 @@ double scalar_flux::operator()(double u) const {
     case kind::buckley_leverett:
       return u * u / (u * u + M_ * (1.0 - u) * (1.0 - u));
     default:
-      return formula_->value(u);
+      return value_of(*formula_, u);
   }
 }
 
-double scalar_flux::derivative(double u) const {
+double scalar_flux::derivative(double u, double size) const {
   switch (kind_) {
     case kind::linear:
       return b_;
@@ -44,26 +60,15 @@ double scalar_flux::derivative(double u) const {
       return 2.0 * M_ * u * (1.0 - u) / (denominator * denominator);
     }
     default:
-      return slope_of_formula(u);
+      return slope_of(*formula_, u, size);
   }
-}
-
-double scalar_flux::slope_of_formula(double u) const {
-  // Truncation h⁴ and rounding 1e-16/h are both near 1e-12.
-  const double h = 1e-3 * (1.0 + std::abs(u));
-  const auto F = [this, u](double by) { return formula_->value(u + by); };
-  const double central = (8.0 * (F(h) - F(-h)) - (F(2.0 * h) - F(-2.0 * h))) / (12.0 * h);
-  if (std::isfinite(central)) return central;
-  // At an end of the interval on which F is defined.
-  const auto one_sided = [&F](double s) { return (4.0 * F(s) - F(2.0 * s) - 3.0 * F(0.0)) / (2.0 * s); };
-  const double ahead = one_sided(1e-3 * h);
-  return std::isfinite(ahead) ? ahead : one_sided(-1e-3 * h);
 }
 
 scalar_flux::wave scalar_flux::fastest(double low, double high) const {
   constexpr int intervals = 2000;
   const double step = (high - low) / intervals;
-  const auto at = [this](double u) { return wave{u, std::abs(derivative(u))}; };
+  const double largest = std::max(std::abs(low), std::abs(high)), size = largest > 0.0 ? largest : 1.0;
+  const auto at = [this, size](double u) { return wave{u, std::abs(derivative(u, size))}; };
   wave best = at(low);
   for (int k = 0; k <= intervals; ++k) {
     const wave here = at(k == intervals ? high : low + k * step);

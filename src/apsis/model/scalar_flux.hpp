@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/model/expression.hpp>
+#include <apsis/model/system_flux.hpp>
 
 #include <memory>
 #include <string>
@@ -21,8 +21,9 @@ class scalar_flux {
 
   /// Returns F(u).
   double operator()(double u) const;
-  /// Returns F'(u): exact for predefined names, by fourth-order differences for formulas.
-  double derivative(double u) const;
+  /// Returns F'(u): exact for predefined names, by fourth-order differences for formulas, whose first steps
+  /// are a small part of the largest value `size` > 0 of the data; NaN if there is no finite derivative.
+  double derivative(double u, double size = 1.0) const;
 
   /// A value u and its characteristic speed.
   struct wave {
@@ -38,12 +39,10 @@ class scalar_flux {
  private:
   enum class kind { linear, burgers, buckley_leverett, formula };
 
-  double slope_of_formula(double u) const;
-
   std::string text_;
   kind kind_;
   double b_, M_;
-  std::unique_ptr<expression> formula_;
+  std::unique_ptr<system_flux> formula_;  ///< of the single variable u
 };
 
 }  // namespace apsis

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
-#include <span>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -112,15 +111,14 @@ void system_flux::evaluate(const double* u, int points, double* F) const {
   for (std::size_t k = 0; k < n; ++k) formulas_[k].values({u, n * count}, {F + k * count, count});
 }
 
-/// slopes ← ∂F/∂u_k by Richardson extrapolation of central differences with steps h and 2h, whose difference
-/// estimates the error of the less accurate one. h starts at a small part of the scale of u and shrinks until
-/// the estimate is at most 1e-6 of the slope, so that the error, of order h⁴, is near its square, or until it
-/// is rounding or, where the slope vanishes, much smaller than at the start. A variable that is 0 (a momentum
-/// at rest) has no scale of its own, only that of the others, from which the right step may be far.
-bool system_flux::differentiate(const double* u, int variable, double* slopes) const {
+/// Richardson extrapolation of central differences with steps h and 2h, whose difference estimates the error
+/// of the less accurate one. h starts at a small part of the size and shrinks until the estimate is at most
+/// 1e-6 of the slope, so that the error, of order h⁴, is near its square, or until it is rounding or, where
+/// the slope vanishes, much smaller than at the start.
+bool system_flux::differentiate(const double* u, int variable, double size, double* slopes) const {
   constexpr double accurate = 1e-6, rounding = 1e-14;
   constexpr int most_shrinkings = 14;
-  const auto n = static_cast<std::size_t>(size()), k = static_cast<std::size_t>(variable);
+  const auto n = variables_.size(), k = static_cast<std::size_t>(variable);
   std::array<double, 4 * most> at{}, F{};
   std::array<double, most> at_start{};  // errors of the first step
   const auto evaluate_at = [&](const std::array<double, 4>& steps) {
@@ -130,10 +128,7 @@ bool system_flux::differentiate(const double* u, int variable, double* slopes) c
     }
     evaluate(at.data(), 4, F.data());
   };
-  double scale = 0.0;
-  for (std::size_t j = 0; j < n; ++j) scale = std::max(scale, std::abs(u[j]));
-  scale = std::max(std::abs(u[k]), scale > 0.0 ? 0.1 * scale : 1.0);
-  double h = 2.5e-4 * scale;
+  double h = 2.5e-4 * size;
   for (int shrinking = 0; shrinking < most_shrinkings; ++shrinking, h *= 0.125) {
     evaluate_at({h, -h, 2.0 * h, -2.0 * h});
     bool enough = true;
@@ -158,7 +153,7 @@ bool system_flux::differentiate(const double* u, int variable, double* slopes) c
     }
   };
   std::array<double, most> farther{};
-  for (const double s : {1e-6 * scale, -1e-6 * scale}) {
+  for (const double s : {1e-6 * size, -1e-6 * size}) {
     from_one_side(16.0 * s, farther.data());
     from_one_side(s, slopes);
     bool finite = true;
@@ -171,14 +166,33 @@ bool system_flux::differentiate(const double* u, int variable, double* slopes) c
   return false;
 }
 
-system_flux::waves system_flux::characteristic_speeds(const double* u) const {
-  std::array<double, most> slopes{};
-  square_matrix derivative(size(), size());
-  for (int k = 0; k < size(); ++k) {
-    if (!differentiate(u, k, slopes.data())) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
-    for (int j = 0; j < size(); ++j) derivative(j, k) = slopes[static_cast<std::size_t>(j)];
+/// derivative[n k + j] ← ∂F_j/∂u_k. A variable that is 0 (a momentum at rest) has no size but that of its
+/// flux and of the others, from which the right step may be far. Values whose squares underflow, as WENO
+/// leaves beside clean data, count as 0.
+bool system_flux::differentiate_all(const double* u, double typical, std::span<double> derivative) const {
+  constexpr double nothing = 1e-150;
+  const std::size_t n = variables_.size();
+  std::array<double, most> F{}, sizes{};
+  evaluate(u, 1, F.data());
+  double largest = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double flux = std::abs(F[k]) / typical;
+    sizes[k] = std::abs(u[k]) + (std::isfinite(flux) ? flux : 0.0);
+    largest = std::max(largest, sizes[k]);
   }
-  return waves_of(std::move(derivative));
+  const double least = largest > nothing ? 0.1 * largest : 1.0;
+  for (std::size_t k = 0; k < n; ++k)
+    if (!differentiate(u, static_cast<int>(k), std::max(sizes[k], least), &derivative[n * k])) return false;
+  return true;
+}
+
+system_flux::waves system_flux::characteristic_speeds(const double* u, double typical) const {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  std::array<double, most * most> slopes{};
+  // A speed far below that of the waves makes first steps that leave the domain of F.
+  if (!differentiate_all(u, typical, slopes) && !differentiate_all(u, infinite, slopes))
+    return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  return waves_of(Eigen::Map<const square_matrix>(slopes.data(), size(), size()));
 }
 
 std::string system_flux::text_of(const double* u) const {

@@ -2,6 +2,8 @@
 
 #include <apsis/model/expression.hpp>
 
+#include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,14 +36,18 @@ class system_flux {
     double speed = 0.0,   ///< max |λ| over the eigenvalues λ of F'(u); NaN if F is not differentiable at u
         imaginary = 0.0;  ///< max |Im λ|; 0 where the law is hyperbolic, up to rounding
   };
-  /// Returns the characteristic speeds at u. F' is a fourth-order difference.
-  waves characteristic_speeds(const double* u) const;
+  /// Returns the characteristic speeds at u. F' is a fourth-order difference, whose first steps are a small
+  /// part of |u_k| + |F_k(u)|/a with a speed `typical` = a > 0 of the data: u_k alone may be rounding.
+  waves characteristic_speeds(const double* u,
+                              double typical = std::numeric_limits<double>::infinity()) const;
+  /// slopes ← ∂F/∂u_k at u; the first step is a small part of `size` > 0. Returns whether they are finite.
+  bool differentiate(const double* u, int k, double size, double* slopes) const;
 
   /// Returns "h = 1, q = 0.5" for messages.
   std::string text_of(const double* u) const;
 
  private:
-  bool differentiate(const double* u, int variable, double* slopes) const;
+  bool differentiate_all(const double* u, double typical, std::span<double> derivative) const;
 
   std::vector<std::string> variables_;
   std::vector<expression> formulas_;

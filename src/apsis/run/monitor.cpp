@@ -175,7 +175,8 @@ std::optional<condition_violation> monitor::violation_in(const field& u, const t
     together(setup_.processes(), [&] {
       if (t.violating < 0) return;
       const double* row = u.row(t.violating);
-      throw numerical_error(equation_.check_supported(row).problem,
+      const auto found = equation_.check_supported(row);
+      throw numerical_error(found.reached.empty() ? found.problem : found.reached,
                             {-1, 0.0, setup_.number_in_whole_mesh(t.violating), row[0]});
     });
   } catch (const numerical_error& first) {

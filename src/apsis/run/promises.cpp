@@ -66,9 +66,8 @@ bool conserves_to_rounding(const run_setup& setup, const field& initial, const r
 void check_promises(const run_promises& promises, const step_record& last, const run_setup& setup,
                     const rounding_bound& rounding) {
   if (!promises.condition.empty() && last.violation)
-    throw numerical_error(
-        "broken promise: " + last.violation->problem + ", or use a smaller step if the solution oscillates",
-        {last.step, last.t, last.violation->cell, last.violation->value});
+    throw numerical_error("broken promise: " + last.violation->problem,
+                          {last.step, last.t, last.violation->cell, last.violation->value});
   if (promises.positivity && last.negative_values > 0)
     broken(fmt::format("{} values are negative (the configuration entails positivity)", last.negative_values),
            last, last.min_value);

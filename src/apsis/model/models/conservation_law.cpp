@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -47,6 +48,15 @@ std::vector<system_flux> fluxes_of(const model_config& config) {
   return fluxes;
 }
 
+/// Returns the formulas of quantities that must be positive.
+std::vector<expression> positive_quantities(const model_config& config) {
+  std::vector<expression> quantities;
+  for (const auto& formula : config.lists.at("positive"))
+    quantities.emplace_back(formula, source_place{},
+                            formula_kind{config.lists.at("variables"), false, config.constants});
+  return quantities;
+}
+
 /// The velocities ±a along each of D directions.
 velocity_set speeds_along(int D, double a, int sets) {
   const auto directions = static_cast<std::size_t>(D);
@@ -69,6 +79,7 @@ class law_model final : public relaxation_model {
  public:
   explicit law_model(const model_config& config)
       : fluxes_(fluxes_of(config)),
+        positive_(positive_quantities(config)),
         n_(fluxes_.front().size()),
         D_(config.space_dimensions),
         a_(config.parameters.at("speed")),
@@ -185,15 +196,19 @@ class law_model final : public relaxation_model {
     return {form};
   }
 
-  std::string condition() const override { return "subcharacteristic condition"; }
+  std::string condition() const override {
+    return positive_.empty() ? "subcharacteristic condition"
+                             : "subcharacteristic condition and model.positive";
+  }
   unsupported_initial_data check_supported(const double* f) const override {
+    if (const auto found = check_positive(f); !found.problem.empty()) return found;
     for (std::size_t k = 0; k < fluxes_.size(); ++k)
       if (const auto found = check_waves(f, k); !found.problem.empty()) return found;
     return {};
   }
 
   double automatic_value(const std::string&, const std::vector<std::vector<double>>& rows) const override {
-    double fastest = 0.0;
+    double fastest = n_ == 1 ? fastest_between(rows) : 0.0;
     for (const auto& row : rows) {
       const double speed = fastest_wave(row.data());
       if (!std::isfinite(speed)) {
@@ -216,6 +231,9 @@ class law_model final : public relaxation_model {
   /// √δ and a triple one by its cube root.
   static constexpr double not_real = 1e-3;
 
+  static constexpr const char* more_robust =
+      "use more cells, a smaller step, or space.reconstruction = \"upwind1\", which does not overshoot";
+
   /// Rounds up to four digits.
   static double rounded_up(double x) {
     const double digits = 3.0 - std::floor(std::log10(x)), unit = std::pow(10.0, std::abs(digits));
@@ -230,7 +248,7 @@ class law_model final : public relaxation_model {
   system_flux::waves speeds_of(const double* f, std::size_t direction) const {
     std::array<double, system_flux::most_variables> u{};
     moments(f, u.data());
-    return fluxes_[direction].characteristic_speeds(u.data());
+    return fluxes_[direction].characteristic_speeds(u.data(), a_);
   }
 
   /// The largest speed of all directions; NaN where a flux is not differentiable.
@@ -244,6 +262,40 @@ class law_model final : public relaxation_model {
     return fastest;
   }
 
+  /// The largest finite speed of one variable between its smallest and largest value: the waves of a jump
+  /// take all values between its sides, where a flux that is not convex may be steeper.
+  double fastest_between(const std::vector<std::vector<double>>& rows) const {
+    constexpr int intervals = 2000;
+    double low = std::numeric_limits<double>::infinity(), high = -low, fastest = 0.0;
+    for (const auto& row : rows) {
+      double u = 0.0;
+      moments(row.data(), &u);
+      low = std::min(low, u);
+      high = std::max(high, u);
+    }
+    for (int k = 0; k <= intervals; ++k) {
+      const double u = low + (high - low) * k / intervals;
+      for (const system_flux& flux : fluxes_)
+        if (const double speed = flux.characteristic_speeds(&u).speed; std::isfinite(speed))
+          fastest = std::max(fastest, speed);
+    }
+    return fastest;
+  }
+
+  unsupported_initial_data check_positive(const double* f) const {
+    if (positive_.empty()) return {};
+    std::array<double, system_flux::most_variables> u{};
+    moments(f, u.data());
+    for (const expression& quantity : positive_) {
+      const double value = quantity.value({u.data(), static_cast<std::size_t>(n_)});
+      if (value > 0.0) continue;
+      const std::string problem = fmt::format("{} is {:.6g} at {} (model.positive requires it to be > 0)",
+                                              quantity.text(), value, text_of(u.data()));
+      return {"model.positive", problem + "; change the data", problem + "; " + more_robust};
+    }
+    return {};
+  }
+
   unsupported_initial_data check_waves(const double* f, std::size_t direction) const {
     const auto waves = speeds_of(f, direction);
     const double D = static_cast<double>(D_);
@@ -252,19 +304,29 @@ class law_model final : public relaxation_model {
     moments(f, u.data());
     const std::string at = text_of(u.data()), key = fmt::format("model.{}", flux_lists.at(direction));
     if (!std::isfinite(waves.speed))
-      return {key,
-              fmt::format("{} has no finite derivative at {}; change the formulas or the data", key, at)};
+      return outside_law(key, fmt::format("{} has no finite derivative at {}", key, at), "");
     if (waves.imaginary > not_real * a_)
-      return {key,
-              fmt::format("{} is not hyperbolic at {} (F' has an eigenvalue with the imaginary part "
-                          "{:.6g}, and perturbations of short wavelength grow without bound); change the "
-                          "formulas or the data",
-                          key, at, waves.imaginary)};
-    return {"model.speed",
-            fmt::format("model.speed = {:g} is too small (an eigenvalue of F' is {:.6g} in size at {}, and "
-                        "the subcharacteristic condition is |lambda| <= speed{}); give at least {:g}",
-                        a_, waves.speed, at, D_ == 1 ? "" : fmt::format("/{} in {} dimensions", D_, D_),
-                        rounded_up(D * waves.speed))};
+      return outside_law(
+          key, fmt::format("{} is not hyperbolic at {}", key, at),
+          fmt::format("F' has an eigenvalue with the imaginary part {:.6g}, and perturbations of "
+                      "short wavelength grow without bound",
+                      waves.imaginary));
+    const std::string too_small = fmt::format(
+        "model.speed = {:g} is too small (an eigenvalue of F' is {:.6g} in size at {}, and the "
+        "subcharacteristic condition is |lambda| <= speed{}); give at least {:g}",
+        a_, waves.speed, at, D_ == 1 ? "" : fmt::format("/{} in {} dimensions", D_, D_),
+        rounded_up(D * waves.speed));
+    return {"model.speed", too_small, too_small + ", or use a smaller step if the solution oscillates"};
+  }
+
+  /// `reason`: in addition to that of a run, which started inside the law.
+  unsupported_initial_data outside_law(const std::string& key, const std::string& problem,
+                                       const std::string& reason) const {
+    const std::string data = reason.empty() ? problem : fmt::format("{} ({})", problem, reason);
+    const char* const left = "the solution left the states for which the law is valid";
+    return {key, data + "; change the formulas or the data",
+            fmt::format("{} ({}{}{}); {}{}", problem, reason, reason.empty() ? "" : ": ", left, more_robust,
+                        positive_.empty() ? "; name depths, densities or pressures in model.positive" : "")};
   }
 
   static std::array<double, 2> smooth(double x) {
@@ -300,7 +362,8 @@ class law_model final : public relaxation_model {
                         {0.0}});
   }
 
-  std::vector<system_flux> fluxes_;  ///< of each direction
+  std::vector<system_flux> fluxes_;   ///< of each direction
+  std::vector<expression> positive_;  ///< quantities that must be positive
   int n_, D_;
   double a_, margin_;
   velocity_set velocities_;
@@ -352,7 +415,13 @@ const model_entry model_conservation_law = {
                .doc = "variables that change their sign in a mirror across x, as a momentum; the boundary "
                       "'symmetry' needs them"},
               {.name = "odd_y", .value = {}, .variables = "", .doc = "the same in a mirror across y"},
-              {.name = "odd_z", .value = {}, .variables = "", .doc = "the same in a mirror across z"}},
+              {.name = "odd_z", .value = {}, .variables = "", .doc = "the same in a mirror across z"},
+              {.name = "positive",
+               .value = {},
+               .variables = "variables",
+               .doc =
+                   "formulas of quantities that must be positive, such as a depth, a density or a pressure; "
+                   "checked for the data and at every step"}},
     .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<law_model>(config);
     }};

@@ -181,6 +181,135 @@ TEST(source, that_is_none_is_refused) {
   EXPECT_THROW(finish(run), apsis::numerical_error);
 }
 
+namespace {
+
+/// Shallow water on 40 cells with a source.
+std::string water_with(const std::string& source, const std::string& step = "cfl = 0.5") {
+  return fmt::format(R"toml(
+[model]
+name = "conservation-law"
+variables = ["h", "q"]
+flux = ["q", "q^2/h + h^2/2"]
+speed = 4
+epsilon = 1e-8
+[initial]
+h = 1
+q = 0.5
+[space]
+cells = 40
+formulation = "finite-difference"
+[time]
+method = "md-imex-6-3"
+end = 1
+{}
+[source]
+{})toml",
+                     step, source);
+}
+
+simulation finished(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  simulation run(apsis::parse_case(text, "law.toml", overrides));
+  finish(run);
+  return run;
+}
+
+}  // namespace
+
+TEST(source, of_a_law_depends_on_its_variables) {
+  // Uniform water with friction −3q|q|/h: q' = −3q² from 1/2. Without a source of h, which stays 1.
+  const auto error = [](double dt) {
+    const simulation run = finished(water_with("q = \"-3*q*abs(q)/h\"\n"), {fmt::format("time.dt={}", dt)});
+    const auto fields = run.fields();
+    for (const double h : fields.values[0]) EXPECT_NEAR(h, 1.0, 1e-14);
+    return std::abs(fields.values[1].front() - 0.5 / (1.0 + 1.5));
+  };
+  const double coarse = error(0.02), fine = error(0.01);
+  // The method has order 3; the next term changes the slope by a tenth.
+  EXPECT_NEAR(std::log2(coarse / fine), 3.0, 0.2);
+  EXPECT_LT(fine, 1e-5);
+}
+
+TEST(source, of_a_law_keeps_the_balance_of_what_it_gives) {
+  // Rain and friction over a wave: the balances contain them, on averages too.
+  for (const char* form : {"finite-volume", "finite-difference"}) {
+    const simulation run =
+        finished(water_with("h = \"0.1*x\"\nq = \"-q/h\"\n"),
+                 {"initial.q=\"0.3*sin(2*pi*x)\"", fmt::format("space.formulation={}", form)});
+    EXPECT_LT(run.summary().conservation_defect, 1e-13) << form;
+    EXPECT_NEAR(received(run, "source", "h"), 0.05, 1e-14) << form;
+  }
+}
+
+TEST(source, of_a_law_adds_no_term_of_size_epsilon) {
+  // u_t + (u²/2)_x = −u with uniform data: u = e^−t exactly for every ε, because the source keeps equilibria.
+  const std::string text = R"toml(
+[model]
+name = "NAME"
+KEYS
+speed = 2
+epsilon = 0.05
+[initial]
+VARIABLE = 1
+[source]
+VARIABLE = "-VARIABLE"
+[space]
+cells = 8
+[time]
+method = "md-imex-6-3"
+dt = 0.01
+end = 1
+)toml";
+  const auto replaced = [&text](const std::string& name, const std::string& keys,
+                                const std::string& variable) {
+    std::string out = text;
+    for (const auto& [from, to] :
+         {std::pair<std::string, std::string>{"NAME", name}, {"KEYS", keys}, {"VARIABLE", variable}})
+      for (auto at = out.find(from); at != std::string::npos; at = out.find(from, at + to.size()))
+        out.replace(at, from.size(), to);
+    return out;
+  };
+  const simulation law =
+                       finished(replaced("conservation-law", "variables = [\"u\"]\nflux = [\"u^2/2\"]", "u")),
+                   relaxation = finished(replaced("relaxation", "flux = \"burgers\"", "u1"));
+  // The error of the method, 1e-8; a source of another flux would leave the flux wrong by ε.
+  EXPECT_NEAR(law.fields().values[0].front(), std::exp(-1.0), 1e-7);
+  EXPECT_NEAR(relaxation.fields().values[0].front(), std::exp(-1.0), 1e-7);
+  EXPECT_NEAR(relaxation.fields().values[1].front(), 0.5 * std::exp(-2.0), 1e-6);
+}
+
+TEST(source, that_is_faster_than_the_steps_is_reported_and_limits_safety) {
+  testing::internal::CaptureStderr();
+  simulation(apsis::parse_case(water_with("q = \"-1000*q\"\n"), "law.toml"));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("the source is too fast for the step"));
+  testing::internal::CaptureStderr();
+  simulation(apsis::parse_case(water_with("q = \"-q\"\n"), "law.toml"));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("too fast")));
+  simulation safe(
+      apsis::parse_case(water_with("q = \"-1000*q\"\n", "safety = 1"), "law.toml", {"time.end=0.05"}));
+  EXPECT_LT(safe.dt(), 1e-3);
+  finish(safe);
+  EXPECT_NEAR(safe.fields().values[1].front(), 0.0, 1e-6);
+}
+
+TEST(source, of_a_law_that_has_no_value_ends_the_run_with_its_state) {
+  try {
+    finished(water_with("q = \"-sqrt(0.3 - t)*q\"\n"));
+    FAIL() << "accepted";
+  } catch (const apsis::numerical_error& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("'source.q' is "));
+    EXPECT_THAT(failure.what(), HasSubstr("at h = 1, q = 0."));
+  }
+  EXPECT_THAT(([] {
+                try {
+                  finished(water_with("q = \"-w*q\"\n"));
+                } catch (const apsis::input_error& failure) {
+                  return std::string(failure.what());
+                }
+                return std::string();
+              })(),
+              HasSubstr("law.toml:20:5: expression '-w*q'"));
+}
+
 TEST(source, of_a_conservation_law_is_that_of_its_variables) {
   simulation run(apsis::parse_case(R"toml(
 [model]

@@ -6,8 +6,11 @@
 #include <apsis/model/gas_model.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,9 +50,13 @@ bool by_functions(const case_config& config, const model& equation) {
 }
 
 space_time_formula compile(const case_config& config, const model& equation, const std::string& name,
-                           std::size_t k, int velocity = 0) {
-  return {config.source_term.at(name)[k], place_of(config, "source." + name), config.constants,
-          equation.space_dimensions(), velocity};
+                           std::size_t k, int velocity = 0, const std::vector<std::string>& state = {}) {
+  return {config.source_term.at(name)[k],
+          place_of(config, "source." + name),
+          config.constants,
+          equation.space_dimensions(),
+          velocity,
+          state};
 }
 
 /// A row by functions of the velocity, one for each set of components.
@@ -73,7 +80,8 @@ source_rate rate_by_functions(const case_config& config, const model& equation) 
   }
   const bool steady =
       std::all_of(formulas.begin(), formulas.end(), [](const auto& one) { return one.is_steady(); });
-  const auto value = [formulas, velocities, names](double t, const position& x, std::span<double> row) {
+  const auto value = [formulas, velocities, names](double t, const position& x, std::span<const double>,
+                                                   std::span<double> row) {
     const auto n = static_cast<std::size_t>(velocities.size());
     for (std::size_t set = 0; set < formulas.size(); ++set)
       for (std::size_t j = 0; j < n; ++j) {
@@ -87,6 +95,80 @@ source_rate rate_by_functions(const case_config& config, const model& equation) 
   };
   return {value, steady};
 }
+
+/// Formulas of the variables of a law, which may depend on these variables.
+class rate_by_state {
+ public:
+  rate_by_state(const case_config& config, const model& equation)
+      : form_(form_of(equation, place_of(config, "source"))), equation_(equation) {
+    std::vector<std::string> names;
+    for (const auto& variable : form_.variables) names.push_back(variable.name);
+    for (const auto& name : names) {
+      const auto given = config.source_term.find(name);
+      if (given == config.source_term.end()) {
+        formulas_.emplace_back();
+        continue;
+      }
+      if (given->second.size() > 1)
+        throw input_error(place_of(config, "source." + name),
+                          fmt::format("'source.{}' has {} components (the variable has 1); give 1", name,
+                                      given->second.size()));
+      formulas_.emplace_back(compile(config, equation, name, 0, 0, names));
+    }
+  }
+
+  void operator()(double t, const position& x, std::span<const double> u, std::span<double> row) const {
+    values state{}, rates{};
+    form_.source->variables(u, state);
+    evaluate(t, x, state, rates);
+    form_.source->row(state, rates, row);
+  }
+
+  /// The Frobenius norm of D⁻¹ ∂S/∂u D with the sizes D of the variables: it bounds the eigenvalues.
+  double growth(double t, const position& x, std::span<const double> u) const {
+    constexpr double part = 1e-6;
+    const std::size_t n = formulas_.size();
+    values state{}, rates{}, beside{}, sizes{};
+    form_.source->variables(u, state);
+    evaluate(t, x, state, rates);
+    equation_.invariant_scales({state.data(), n}, sizes.data());
+    const double largest = *std::max_element(sizes.begin(), sizes.end());
+    for (double& size : sizes) size = std::max(size, largest > 0.0 ? 0.1 * largest : 1.0);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+      values moved = state;
+      moved[k] += part * sizes[k];
+      evaluate(t, x, moved, beside);
+      for (std::size_t j = 0; j < n; ++j) {
+        const double slope = (beside[j] - rates[j]) / (part * sizes[j]);
+        sum += slope * slope;
+      }
+    }
+    return std::sqrt(sum);
+  }
+
+ private:
+  using values = std::array<double, 16>;
+
+  void evaluate(double t, const position& x, const values& state, values& rates) const {
+    for (std::size_t k = 0; k < formulas_.size(); ++k) {
+      if (!formulas_[k]) continue;
+      rates[k] = formulas_[k]->at_state(t, x, state);
+      if (!std::isfinite(rates[k]))
+        fail(t, x, fmt::format("'source.{}' is {} at {}", form_.variables[k].name, rates[k], text_of(state)));
+    }
+  }
+  std::string text_of(const values& state) const {
+    std::vector<std::string> parts;
+    for (std::size_t k = 0; k < formulas_.size(); ++k)
+      parts.push_back(fmt::format("{} = {:.6g}", form_.variables[k].name, state[k]));
+    return fmt::format("{}", fmt::join(parts, ", "));
+  }
+
+  data_form form_;
+  const model& equation_;
+  std::vector<std::optional<space_time_formula>> formulas_;  ///< empty where the rate is 0
+};
 
 /// The formulas of all components of the variables; none for those at their defaults.
 struct compiled {
@@ -125,7 +207,8 @@ source_rate rate_by_variables(const case_config& config, const model& equation) 
   const bool scales = names.size() == 3 && names.front().name == "rho" && names.back().name == "T";
   const bool steady = std::all_of(all.formulas.begin(), all.formulas.end(),
                                   [](const auto& one) { return !one || one->is_steady(); });
-  const auto value = [all, scales](double t, const position& x, std::span<double> row) {
+  const auto value = [all, scales](double t, const position& x, std::span<const double>,
+                                   std::span<double> row) {
     std::vector<double> values = all.defaults;
     for (std::size_t k = 0; k < values.size(); ++k)
       if (all.formulas[k]) values[k] = all.formulas[k]->at(t, x);
@@ -157,12 +240,21 @@ void read_source_values(const case_text& text, const model& equation, case_confi
 
 std::optional<source_rate> make_source(const case_config& config, const model& equation) {
   if (config.source_term.empty()) return std::nullopt;
+  if (form_of(equation, place_of(config, "source")).source) {
+    const auto rate = std::make_shared<const rate_by_state>(config, equation);
+    return source_rate{
+        [rate](double t, const position& x, std::span<const double> u, std::span<double> row) {
+          (*rate)(t, x, u, row);
+        },
+        false,
+        [rate](double t, const position& x, std::span<const double> u) { return rate->growth(t, x, u); }};
+  }
   source_rate rate = by_functions(config, equation) ? rate_by_functions(config, equation)
                                                     : rate_by_variables(config, equation);
   std::vector<double> row(static_cast<std::size_t>(equation.components()));
   const grid mesh = make_mesh(config);
   for (int cell = 0; cell < mesh.size(); ++cell) try {
-      rate.value(0.0, mesh.centre(cell), row);
+      rate.value(0.0, mesh.centre(cell), {}, row);
     } catch (const numerical_error& failure) {
       throw input_error(place_of(config, "source"), failure.problem());
     }

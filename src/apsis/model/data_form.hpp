@@ -20,6 +20,15 @@ struct data_variable {
   bool of_velocity = false;          ///< a function of the velocity too
 };
 
+/// Sources S(t, x, u) of a model in which a row follows from its variables.
+struct source_of_state {
+  /// values ← the variables of the row u.
+  std::function<void(std::span<const double> u, std::span<double> values)> variables;
+  /// row ← E'(values) rates: the change per unit of time of an equilibrium whose variables change at `rates`.
+  std::function<void(std::span<const double> values, std::span<const double> rates, std::span<double> row)>
+      row;
+};
+
 /// One way to prescribe a row: a Maxwellian by density, velocity and temperature, or the components.
 struct data_form {
   std::string description;               ///< "Maxwellian"
@@ -27,6 +36,7 @@ struct data_form {
   /// u ← the row with these values of the variables. Returns why there is none ("density -1 is not
   /// positive"), or "".
   std::function<std::string(std::span<const double> values, std::span<double> u)> row;
+  std::optional<source_of_state> source = {};  ///< if a source may depend on the variables
 };
 
 }  // namespace apsis

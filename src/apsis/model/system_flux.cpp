@@ -166,13 +166,12 @@ bool system_flux::differentiate(const double* u, int variable, double size, doub
   return false;
 }
 
-/// derivative[n k + j] ← ∂F_j/∂u_k. A variable that is 0 (a momentum at rest) has no size but that of its
-/// flux and of the others, from which the right step may be far. Values whose squares underflow, as WENO
-/// leaves beside clean data, count as 0.
-bool system_flux::differentiate_all(const double* u, double typical, std::span<double> derivative) const {
+/// A variable that is 0 (a momentum at rest) has no size but that of its flux and of the others, from which
+/// the right step may be far. Values whose squares underflow, as WENO leaves beside clean data, count as 0.
+void system_flux::find_sizes(const double* u, double typical, double* sizes) const {
   constexpr double nothing = 1e-150;
   const std::size_t n = variables_.size();
-  std::array<double, most> F{}, sizes{};
+  std::array<double, most> F{};
   evaluate(u, 1, F.data());
   double largest = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
@@ -181,9 +180,37 @@ bool system_flux::differentiate_all(const double* u, double typical, std::span<d
     largest = std::max(largest, sizes[k]);
   }
   const double least = largest > nothing ? 0.1 * largest : 1.0;
+  for (std::size_t k = 0; k < n; ++k) sizes[k] = std::max(sizes[k], least);
+}
+
+/// derivative[n k + j] ← ∂F_j/∂u_k.
+bool system_flux::differentiate_all(const double* u, double typical, std::span<double> derivative) const {
+  const std::size_t n = variables_.size();
+  std::array<double, most> sizes{};
+  find_sizes(u, typical, sizes.data());
   for (std::size_t k = 0; k < n; ++k)
-    if (!differentiate(u, static_cast<int>(k), std::max(sizes[k], least), &derivative[n * k])) return false;
+    if (!differentiate(u, static_cast<int>(k), sizes[k], &derivative[n * k])) return false;
   return true;
+}
+
+void system_flux::derivative_along(const double* u, const double* d, double typical, double* along) const {
+  constexpr double part = 1e-5;  // truncation part² and rounding 1e-16/part are both near 1e-11
+  const std::size_t n = variables_.size();
+  std::array<double, most> sizes{};
+  std::array<double, 2 * most> sides{}, F{};
+  find_sizes(u, typical, sizes.data());
+  double longest = 0.0;
+  for (std::size_t k = 0; k < n; ++k) longest = std::max(longest, std::abs(d[k]) / sizes[k]);
+  std::fill_n(along, n, 0.0);
+  if (!(longest > 0.0)) return;
+  const double h = part / longest;
+  for (std::size_t k = 0; k < n; ++k) {
+    sides[k] = u[k] + h * d[k];
+    sides[n + k] = u[k] - h * d[k];
+  }
+  evaluate(sides.data(), 2, F.data());
+  for (std::size_t k = 0; k < n; ++k)
+    if (const double slope = (F[2 * k] - F[2 * k + 1]) / (2.0 * h); std::isfinite(slope)) along[k] = slope;
 }
 
 system_flux::waves system_flux::characteristic_speeds(const double* u, double typical) const {

@@ -40,6 +40,8 @@ class system_flux {
   /// part of |u_k| + |F_k(u)|/a with a speed `typical` = a > 0 of the data: u_k alone may be rounding.
   waves characteristic_speeds(const double* u,
                               double typical = std::numeric_limits<double>::infinity()) const;
+  /// along ← F'(u) d by a central difference, 0 where it is not finite; `typical` as above.
+  void derivative_along(const double* u, const double* d, double typical, double* along) const;
   /// slopes ← ∂F/∂u_k at u; the first step is a small part of `size` > 0. Returns whether they are finite.
   bool differentiate(const double* u, int k, double size, double* slopes) const;
 
@@ -47,6 +49,8 @@ class system_flux {
   std::string text_of(const double* u) const;
 
  private:
+  /// |u_k| + |F_k(u)|/typical, at least a tenth of the largest; positive.
+  void find_sizes(const double* u, double typical, double* sizes) const;
   bool differentiate_all(const double* u, double typical, std::span<double> derivative) const;
 
   std::vector<std::string> variables_;

@@ -71,6 +71,7 @@ struct simulation::impl {
     totals.phase_points = static_cast<long>(setup.whole_mesh().size()) * state.components();
     if (march.done()) return;
     warn_of_stiff_collision(setup, problem->relaxation_time(march.t(), state), next_dt());
+    warn_of_fast_source(problem->growth_of_source(march.t(), state), next_dt());
     // The first step may be shorter than those that follow.
     setup.decide_promises(promises, limit(), forward_euler_limit(), first.negative_values == 0,
                           conserves_to_rounding(setup, state, rounding));

@@ -15,6 +15,10 @@ time_marcher<double> times_of(const run_setup& setup);
 /// `relaxation`; `dt` is the first step.
 void warn_of_stiff_collision(const run_setup& setup, double relaxation, double dt);
 
+/// Warns if the source of a law, which is explicit, changes the variables faster than steps dt resolve:
+/// `growth` is source_rate::growth.
+void warn_of_fast_source(double growth, double dt);
+
 /// Warns if the forecast error exceeds time.tolerance, and suggests remedies.
 void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation);
 

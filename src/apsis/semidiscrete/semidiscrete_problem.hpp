@@ -79,9 +79,17 @@ class semidiscrete_problem {
   void settle() {
     if (space_->shared()) agree_on_errors(space_->processes(), failure_.take());
   }
-  /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it.
-  double forward_euler_step(double, const field& u) const {
-    const double of_transport = transport_.forward_euler_step();
+  /// Returns the largest |∂S/∂u| of a source, per unit of time; 0 without one that depends on u.
+  double growth_of_source(double t, const field& u) const {
+    if (!transport_.source_depends_on_state()) return 0.0;
+    return -lowest([&] { return -transport_.growth_of_source(t, u); });
+  }
+  /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it. A source
+  /// that depends on u limits it by 1/|∂S/∂u|.
+  double forward_euler_step(double t, const field& u) const {
+    double of_transport = transport_.forward_euler_step();
+    if (const double growth = growth_of_source(t, u); growth > 0.0)
+      of_transport = 1.0 / (1.0 / of_transport + growth);
     if (!explicit_collision_) return of_transport;
     return 1.0 / (1.0 / of_transport +
                   1.0 / (rounding_allowance * lowest([&] { return collision_->forward_euler_step(u); })));

@@ -6,6 +6,7 @@
 #include <apsis/scheme/quartic.hpp>
 #include <apsis/semidiscrete/global_integrals.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -21,7 +22,7 @@ source::source(const model& equation, std::shared_ptr<domain> space, source_rate
       averages_(unknowns == formulation::finite_volume),
       values_(space_->mesh().size(), equation.components()) {}
 
-void source::compute_cell(double t, int cell, std::vector<double>& row) {
+void source::compute_cell(double t, int cell, const field& u, std::vector<double>& row) {
   const grid& mesh = space_->mesh();
   double* sum = values_.row(cell);
   std::fill_n(sum, values_.components(), 0.0);
@@ -29,7 +30,7 @@ void source::compute_cell(double t, int cell, std::vector<double>& row) {
   for (std::size_t q = 0; q < points; ++q) {
     position x = mesh.centre(cell);
     if (averages_) x[0] += gauss3::xi[q] * mesh.spacing(0);
-    rate_.value(t, x, row);
+    rate_.value(t, x, {u.row(cell), row.size()}, row);
     const double weight = averages_ ? gauss3::weight[q] : 1.0;
     for (std::size_t k = 0; k < row.size(); ++k) {
       if (!std::isfinite(row[k]) || (row[k] < 0.0 && equation_.positive()))
@@ -42,7 +43,7 @@ void source::compute_cell(double t, int cell, std::vector<double>& row) {
   }
 }
 
-void source::compute(double t) {
+void source::compute(double t, const field& u) {
   constexpr int block = 8;
   const std::size_t invariants = equation_.invariants().size();
   std::vector<double> densities(static_cast<std::size_t>(values_.cells()) * invariants);
@@ -51,7 +52,7 @@ void source::compute(double t) {
     parallel_blocks(values_.cells(), block, [&](int begin, int end) {
       std::vector<double> row(static_cast<std::size_t>(values_.components()));
       for (int cell = begin; cell < end; ++cell) {
-        if (space_->mesh().solid(cell) < 0) compute_cell(t, cell, row);
+        if (space_->mesh().solid(cell) < 0) compute_cell(t, cell, u, row);
         equation_.invariant_densities(values_.row(cell),
                                       densities.data() + static_cast<std::size_t>(cell) * invariants);
       }
@@ -62,8 +63,17 @@ void source::compute(double t) {
   known_ = rate_.steady;
 }
 
-void source::add(double t, std::span<const target<field, double>> targets) {
-  if (!known_) compute(t);
+double source::growth(double t, const field& u) const {
+  const auto components = static_cast<std::size_t>(u.components());
+  double largest = 0.0;
+  for (int cell = 0; cell < u.cells(); ++cell)
+    if (space_->mesh().solid(cell) < 0)
+      largest = std::max(largest, rate_.growth(t, space_->mesh().centre(cell), {u.row(cell), components}));
+  return largest;
+}
+
+void source::add(double t, const field& u, std::span<const target<field, double>> targets) {
+  if (!known_) compute(t, u);
   constexpr int block = 64;
   parallel_blocks(values_.cells(), block, [&](int begin, int end) {
     for (const auto& to : targets)

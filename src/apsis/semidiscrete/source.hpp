@@ -13,22 +13,28 @@
 
 namespace apsis {
 
-/// A source S(t, x) ≥ 0 as a part of T: point values at the centres of cells, or averages by three Gauss
-/// points. It does not limit Δt_FE: a forward Euler step that keeps u ≥ 0 keeps u + Δt S ≥ 0. Dimensionless.
+/// A source S(t, x, u) as a part of T: point values at the centres of cells, or averages by three Gauss
+/// points, where u is the average, so that a source that depends on u is of second order there. Where the
+/// unknowns are nonnegative, so is S, and it does not limit Δt_FE: a forward Euler step that keeps u ≥ 0
+/// keeps u + Δt S ≥ 0. Dimensionless.
 class source {
  public:
   /// `equation` must outlive the object.
   source(const model& equation, std::shared_ptr<domain> space, source_rate rate, formulation unknowns);
 
-  /// acc ← acc + β S(t) for every target. Throws numerical_error where S is not finite, or negative in a
+  /// acc ← acc + β S(t, u) for every target. Throws numerical_error where S is not finite, or negative in a
   /// model whose unknowns are not.
-  void add(double t, std::span<const target<field, double>> targets);
+  void add(double t, const field& u, std::span<const target<field, double>> targets);
+  /// Whether S depends on u.
+  bool depends_on_state() const { return static_cast<bool>(rate_.growth); }
+  /// Returns the largest source_rate::growth of the cells of this process.
+  double growth(double t, const field& u) const;
   /// Returns the invariants that the last add() gave per unit of time and β.
   const std::vector<double>& given() const { return given_; }
 
  private:
-  void compute(double t);
-  void compute_cell(double t, int cell, std::vector<double>& row);
+  void compute(double t, const field& u);
+  void compute_cell(double t, int cell, const field& u, std::vector<double>& row);
 
   const model& equation_;
   std::shared_ptr<domain> space_;

@@ -91,6 +91,10 @@ void transport::set_source(source_rate rate, formulation unknowns) {
   source_ = std::make_unique<source>(equation_, space_, std::move(rate), unknowns);
 }
 
+double transport::growth_of_source(double t, const field& u) const {
+  return source_depends_on_state() ? source_->growth(t, u) : 0.0;
+}
+
 double transport::forward_euler_step() const {
   double rate = force_ ? force_->rate() : 0.0;  // 1/0 is the infinity of a model without space
   double fastest = 0.0;                         // every component moves with one velocity
@@ -129,7 +133,7 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
     given = force_->given();
   }
   if (source_) {
-    failure.run([&] { source_->add(t, targets); });
+    failure.run([&] { source_->add(t, u, targets); });
     given.insert(given.end(), source_->given().begin(), source_->given().end());
   }
   failure.rethrow();

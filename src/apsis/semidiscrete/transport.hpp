@@ -45,6 +45,10 @@ class transport {
   /// 2010), else 1, which for first-order upwind keeps positivity, total variation and entropy. +infinity
   /// without space.
   double forward_euler_step() const;
+  /// Returns source::growth() of this process; 0 without a source that depends on u.
+  double growth_of_source(double t, const field& u) const;
+  /// Whether there is a source that depends on u.
+  bool source_depends_on_state() const { return source_ && source_->depends_on_state(); }
 
  private:
   void add_source(const field& u, std::span<const target<field, double>> targets) const;

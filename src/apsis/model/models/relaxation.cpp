@@ -54,11 +54,18 @@ class relaxation_system final : public relaxation_model {
   const std::vector<initial_data>& initial() const override { return initial_; }
   std::vector<data_form> data_forms() const override {
     const data_variable u1{"u1", "conserved quantity (dimensionless)"};
+    const source_of_state source = {
+        [this](std::span<const double> f, std::span<double> values) { moments(f.data(), values.data()); },
+        [this](std::span<const double> values, std::span<const double> rates, std::span<double> f) {
+          const double slope = flux_.derivative(values[0]);
+          from_fields(rates[0], std::isfinite(slope) ? slope * rates[0] : 0.0, f.data());
+        }};
     return {{"equilibrium, u2 = F(u1)",
              {u1},
              [this](std::span<const double> given, std::span<double> f) {
                return equilibrium(given.data(), f.data()) ? "" : why_inadmissible(given.data());
-             }},
+             },
+             source},
             {"u1 and its flux u2",
              {u1, {"u2", "flux (dimensionless)"}},
              [this](std::span<const double> given, std::span<double> f) {

@@ -61,6 +61,11 @@ class OneFile(unittest.TestCase):
         self.assertIn("planted-wall", keys["space.boundary"]["choices"])
         self.assertIn("planted-upwind", keys["space.reconstruction"]["choices"])
 
+    def test_the_tables_of_methods_in_the_docs_need_no_row(self):
+        done = subprocess.run([sys.executable, "-m", "unittest", "test_tables.Methods"], cwd=SOURCE / "tests/docs", text=True,
+                              env=os.environ | {"APSIS_BUILD": str(Path(self.program).parents[1])}, capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_a_command_is_found_and_in_the_help(self):
         self.assertEqual(output_of(self.program, "planted"), "planted and found\n")
         self.assertIn("Show that a command is one file", output_of(self.program, "--help"))

@@ -13,9 +13,9 @@ constexpr double plate_speed = 0.01;
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
   const double safety = steady_safety(positive_number(parameters, "delta"));
-  std::vector<std::string> deck = {"parameters.delta=" + parameters.at("delta"), "parameters.U=0.01",
-                                   "model.name=" + parameters.at("model"),
-                                   fmt::format("time.safety={}", safety)};
+  std::vector<std::string> deck = {
+      "parameters.delta=" + parameters.at("delta"), fmt::format("parameters.U={}", plate_speed),
+      "model.name=" + parameters.at("model"), fmt::format("time.safety={}", safety)};
   if (one_of(parameters, "deck", {"default", "fine"}) == "fine") deck.push_back("space.cells=80");
   const simulation run = make("gas/couette", deck);
   const double stress = 0.5 * (last_flux(run, "right", "momentum_y") - last_flux(run, "left", "momentum_y"));

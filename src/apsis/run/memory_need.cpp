@@ -93,12 +93,6 @@ std::string memory_need::text() const {
   return fmt::format("{} of memory ({})", in_units(bytes()), unknowns());
 }
 
-std::string memory_need::details() const {
-  return fmt::format(
-      "{} of memory ({} in {} buffers of method '{}', {} copies for results, {:.0f} snapshots of the fields)",
-      in_units(bytes()), unknowns(), buffers_, method_, copies_, snapshots_);
-}
-
 std::vector<int> memory_need::cells_that_fit(double limit) const {
   if (shape_.empty() || !(limit > 0.0)) return {};
   const double share = limit / bytes(1.0, components_) / cells_;

@@ -18,8 +18,6 @@ class memory_need {
   double bytes() const { return bytes(cells_, components_); }
   /// Returns "1.2 GB of memory (16 x 12 cells x 144 unknowns)".
   std::string text() const;
-  /// Returns the same with the numbers of buffers, copies and snapshots.
-  std::string details() const;
 
   /// Returns the largest space.cells of the same shape that fits into `limit` bytes; empty if none does.
   std::vector<int> cells_that_fit(double limit) const;

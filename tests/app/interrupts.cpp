@@ -61,7 +61,8 @@ TEST_P(every_signal, ends_a_run_before_its_first_step_and_leaves_nothing_behind)
   // Ten million cells with ten formulas each: minutes of sampling.
   folder.file("c.toml",
               "[model]\nname = \"bgk\"\nepsilon = 0.1\n[velocity]\nmax = 8\npoints = 16\n[space]\ncells = "
-              "1500000\ndomain = [0, 1]\n[time]\nmethod = \"md-imex-6-3\"\nend = 1.0\ndt = 1e-9\n[initial]\nrho = \"1 + 0.1*sin(x)\"\n"
+              "1500000\ndomain = [0, 1]\n[time]\nmethod = \"md-imex-6-3\"\nend = 1.0\ndt = "
+              "1e-9\n[initial]\nrho = \"1 + 0.1*sin(x)\"\n"
               "u = \"sin(x)/10\"\nT = \"1 + exp(-x)/10\"\n");
   process run(folder, {"run", "c.toml", "--threads", "1", "--out", "o"});
   ASSERT_TRUE(run.wait_for("needs ")) << run.said();

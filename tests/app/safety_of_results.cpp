@@ -311,12 +311,13 @@ TEST(a_folder, that_was_deleted_during_a_run_is_named_as_the_reason) {
 
 TEST(messages_and_results, do_not_obey_a_case) {
   const work_folder folder;
-  folder.file("c.toml",
-              "title = \"\\u001b]0;owned\\u0007 \\u009b31m \\u202e\"\n[model]\nname = \"ode\"\n"
-              "\"k\\u001bey\" = 1\n");
+  const std::string begins =
+      "title = \"\\u001b]0;owned\\u0007 \\u009b31m \\u202e\"\n[model]\nname = \"ode\"\nepsilon = 1.0\n";
+  folder.file("c.toml", begins + "\"k\\u001bey\" = 1\n");
+  folder.file("d.toml", begins + "[time]\nmethod = \"md-imex-6-3\"\nend = 1.0\ndt = 0.125\n");
   const outcome refused = shell(folder, "$APSIS run c.toml");
   EXPECT_EQ(refused.code, 2) << refused.err;
-  folder.file("d.toml", read(folder.path() / "c.toml").substr(0, read(folder.path() / "c.toml").find("\"k")));
+  EXPECT_THAT(refused.err, HasSubstr("k\\u001bey"));
   for (const std::string command :
        {"run d.toml", "run d.toml --json", "show case d.toml", "run 'n\x1b[31m'"}) {
     const outcome shown = shell(folder, "$APSIS " + command);

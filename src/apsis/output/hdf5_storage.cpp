@@ -25,6 +25,21 @@ class properties {
   hid_t id_;
 };
 
+/// The extents of a dataset.
+class dataspace {
+ public:
+  explicit dataspace(hid_t data) : id_(H5Dget_space(data)) {}
+  ~dataspace() {
+    if (id_ >= 0) H5Sclose(id_);
+  }
+  dataspace(const dataspace&) = delete;
+  dataspace& operator=(const dataspace&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+};
+
 /// Name of a filter that the library does not have; "" if it has all.
 std::string missing_filter(const properties& of) {
   const int count = H5Pget_nfilters(of);
@@ -41,20 +56,17 @@ std::string missing_filter(const properties& of) {
 
 /// Whether every number of a dataset was written. The size in the file says nothing about compressed chunks.
 bool is_complete(hid_t data, const properties& of) {
-  const hid_t space = H5Dget_space(data);
-  std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(H5Sget_simple_extent_ndims(space), 0)));
+  const dataspace space(data);
+  const int rank = H5Sget_simple_extent_ndims(space);
+  std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(rank, 0))), chunk(extents.size());
   H5Sget_simple_extent_dims(space, extents.data(), nullptr);
-  H5Sclose(space);
   if (std::find(extents.begin(), extents.end(), hsize_t{0}) != extents.end()) return true;
   if (H5Pget_layout(of) != H5D_CHUNKED) {
     H5D_space_status_t status = H5D_SPACE_STATUS_ERROR;
     return H5Dget_space_status(data, &status) >= 0 && status == H5D_SPACE_STATUS_ALLOCATED;
   }
-  std::vector<hsize_t> chunk(extents.size());
   hsize_t written = 0, needed = 1;
-  if (H5Pget_chunk(of, static_cast<int>(chunk.size()), chunk.data()) < 0 ||
-      H5Dget_num_chunks(data, H5S_ALL, &written) < 0)
-    return false;
+  if (H5Pget_chunk(of, rank, chunk.data()) < 0 || H5Dget_num_chunks(data, space, &written) < 0) return false;
   for (std::size_t k = 0; k < chunk.size(); ++k) needed *= (extents[k] + chunk[k] - 1) / chunk[k];
   return written >= needed;
 }
@@ -62,12 +74,10 @@ bool is_complete(hid_t data, const properties& of) {
 }  // namespace
 
 bool holds_real_numbers(std::int64_t data) {
-  const hid_t type = H5Dget_type(data), space = H5Dget_space(data);
+  const hid_t type = H5Dget_type(data);
   const H5T_class_t kind = H5Tget_class(type);
-  const bool filled = H5Sget_simple_extent_type(space) != H5S_NULL;
   H5Tclose(type);
-  H5Sclose(space);
-  return filled && (kind == H5T_INTEGER || kind == H5T_FLOAT);
+  return H5Sget_simple_extent_type(dataspace(data)) != H5S_NULL && (kind == H5T_INTEGER || kind == H5T_FLOAT);
 }
 
 std::string problem_of_storage(std::int64_t data) {

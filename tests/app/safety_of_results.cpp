@@ -317,9 +317,8 @@ TEST(messages_and_results, do_not_obey_a_case) {
   folder.file("d.toml", begins + "[time]\nmethod = \"md-imex-6-3\"\nend = 1.0\ndt = 0.125\n");
   const outcome refused = shell(folder, "$APSIS run c.toml");
   EXPECT_EQ(refused.code, 2) << refused.err;
-  EXPECT_THAT(refused.err, HasSubstr("k\\u001bey"));
-  for (const std::string command :
-       {"run d.toml", "run d.toml --json", "show case d.toml", "run 'n\x1b[31m'"}) {
+  EXPECT_THAT(refused.err, HasSubstr("k?ey"));
+  for (const std::string command : {"run d.toml", "run d.toml --json", "run 'n\x1b[31m'"}) {
     const outcome shown = shell(folder, "$APSIS " + command);
     for (const std::string& text : {refused.err, shown.out, shown.err}) {
       EXPECT_EQ(text.find('\x1b'), std::string::npos) << command;

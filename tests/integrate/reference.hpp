@@ -15,6 +15,9 @@ pair radau(long double epsilon, long double t_end);
 /// CVODE at its tightest tolerances, in double precision: BDF for ε ≤ 0.1, Adams above.
 pair cvode(double epsilon, double t_end);
 
+/// Robertson's problem from (1, 0, 0), by BDF in double precision.
+std::array<double, 3> cvode_robertson(double t_end);
+
 /// The solution of the limit ε = 0 from u1(0) = 2: u1' = sin u1 gives tan(u1/2) = tan(1) e^t, u2 = sin u1.
 pair limit(long double t_end);
 

@@ -1,8 +1,8 @@
 #include "integrate/reference.hpp"
 
 #include <cmath>
-#include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
@@ -35,33 +35,76 @@ void require(int flag, const char* what) {
   if (flag < 0) throw std::runtime_error(what);
 }
 
-}  // namespace
-
-pair cvode(double epsilon, double t_end) {
+/// Integrates y to t_end; right-hand side and Jacobian get `data`.
+std::vector<double> integrate(int formula, CVRhsFn f, CVLsJacFn jacobian, void* data,
+                              std::vector<double> start, double relative, const std::vector<double>& absolute,
+                              double t_end) {
   SUNContext context = nullptr;
   require(SUNContext_Create(nullptr, &context), "SUNContext_Create");
-  N_Vector y = N_VNew_Serial(2, context);
-  NV_Ith_S(y, 0) = 2;
-  NV_Ith_S(y, 1) = 0;
-  void* memory = CVodeCreate(epsilon > 0.1 ? CV_ADAMS : CV_BDF, context);
-  require(CVodeInit(memory, slope, 0, y), "CVodeInit");
-  require(CVodeSStolerances(memory, 2e-15, 1e-16), "CVodeSStolerances");
-  require(CVodeSetUserData(memory, &epsilon), "CVodeSetUserData");
+  const auto n = static_cast<sunindextype>(start.size());
+  N_Vector y = N_VNew_Serial(n, context), tolerances = N_VNew_Serial(n, context);
+  for (sunindextype k = 0; k < n; ++k) {
+    NV_Ith_S(y, k) = start[static_cast<std::size_t>(k)];
+    NV_Ith_S(tolerances, k) = absolute[static_cast<std::size_t>(k)];
+  }
+  void* memory = CVodeCreate(formula, context);
+  require(CVodeInit(memory, f, 0, y), "CVodeInit");
+  require(CVodeSVtolerances(memory, relative, tolerances), "CVodeSVtolerances");
+  require(CVodeSetUserData(memory, data), "CVodeSetUserData");
   require(CVodeSetMaxNumSteps(memory, 10000000), "CVodeSetMaxNumSteps");
   require(CVodeSetStopTime(memory, t_end), "CVodeSetStopTime");
-  SUNMatrix matrix = SUNDenseMatrix(2, 2, context);
+  SUNMatrix matrix = SUNDenseMatrix(n, n, context);
   SUNLinearSolver solver = SUNLinSol_Dense(y, matrix, context);
   require(CVodeSetLinearSolver(memory, solver, matrix), "CVodeSetLinearSolver");
   require(CVodeSetJacFn(memory, jacobian), "CVodeSetJacFn");
   double t = 0;
   require(CVode(memory, t_end, y, &t, CV_NORMAL), "CVode");
-  const pair u{NV_Ith_S(y, 0), NV_Ith_S(y, 1)};
+  for (sunindextype k = 0; k < n; ++k) start[static_cast<std::size_t>(k)] = NV_Ith_S(y, k);
   CVodeFree(&memory);
   SUNLinSolFree(solver);
   SUNMatDestroy(matrix);
   N_VDestroy(y);
+  N_VDestroy(tolerances);
   SUNContext_Free(&context);
-  return u;
+  return start;
+}
+
+int robertson(realtype, N_Vector y, N_Vector out, void*) {
+  const double first = -0.04 * NV_Ith_S(y, 0) + 1e4 * NV_Ith_S(y, 1) * NV_Ith_S(y, 2),
+               third = 3e7 * NV_Ith_S(y, 1) * NV_Ith_S(y, 1);
+  NV_Ith_S(out, 0) = first;
+  NV_Ith_S(out, 1) = -first - third;
+  NV_Ith_S(out, 2) = third;
+  return 0;
+}
+
+int robertson_jacobian(realtype, N_Vector y, N_Vector, SUNMatrix m, void*, N_Vector, N_Vector, N_Vector) {
+  const double by_second = 1e4 * NV_Ith_S(y, 2), by_third = 1e4 * NV_Ith_S(y, 1),
+               squared = 6e7 * NV_Ith_S(y, 1);
+  SM_ELEMENT_D(m, 0, 0) = -0.04;
+  SM_ELEMENT_D(m, 0, 1) = by_second;
+  SM_ELEMENT_D(m, 0, 2) = by_third;
+  SM_ELEMENT_D(m, 1, 0) = 0.04;
+  SM_ELEMENT_D(m, 1, 1) = -by_second - squared;
+  SM_ELEMENT_D(m, 1, 2) = -by_third;
+  SM_ELEMENT_D(m, 2, 0) = 0;
+  SM_ELEMENT_D(m, 2, 1) = squared;
+  SM_ELEMENT_D(m, 2, 2) = 0;
+  return 0;
+}
+
+}  // namespace
+
+pair cvode(double epsilon, double t_end) {
+  const auto u = integrate(epsilon > 0.1 ? CV_ADAMS : CV_BDF, slope, jacobian, &epsilon, {2, 0}, 2e-15,
+                           {1e-16, 1e-16}, t_end);
+  return {u[0], u[1]};
+}
+
+std::array<double, 3> cvode_robertson(double t_end) {
+  const auto u = integrate(CV_BDF, robertson, robertson_jacobian, nullptr, {1, 0, 0}, 1e-11,
+                           {1e-18, 1e-24, 1e-14}, t_end);
+  return {u[0], u[1], u[2]};
 }
 
 }  // namespace reference

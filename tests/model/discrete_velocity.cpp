@@ -288,4 +288,26 @@ TEST(discrete_velocity, tables_without_sense_are_refused) {
               HasSubstr("velocities of 2 components (space has 3 dimensions); give 3"));
 }
 
+TEST(discrete_velocity, slow_collisions_beside_fast_ones_are_not_lost) {
+  // Two squares that do not meet, with rates 1 and `slow`: each must relax as if it were alone. With squares
+  // of Δt/ε the matrix of a stage has entries of size 1 and 1/slow².
+  const texts squares = {"1, 0", "-1, 0", "0, 1", "0, -1", "2, 0", "-2, 0", "0, 2", "0, -2"};
+  const std::vector<double> first{1.0, 0.5, 0.2, 0.3}, second{0.9, 0.4, 0.1, 0.6};
+  std::vector<double> both = first;
+  both.insert(both.end(), second.begin(), second.end());
+  for (const double slow : {1e-4, 1e-8, 1e-12}) {
+    const auto together = gas(squares, {"1, 2, 3, 4", fmt::format("5, 6, 7, 8, {}", slow)});
+    const auto alone = gas({"2, 0", "-2, 0", "0, 2", "0, -2"}, {fmt::format("1, 2, 3, 4, {}", slow)});
+    for (const double b : {0.0, -0.4}) {
+      const auto found = stage(*together, 0.7, b, slow, both);
+      const auto wanted = stage(*alone, 0.7, b, slow, second);
+      // A few roundings; squares left 7e-11 for 1e-8.
+      for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(found[4 + j], wanted[j], 1e-14) << slow << " " << b;
+      EXPECT_GT(std::abs(found[4] - second[0]), 1e-3) << "the slow collision is frozen, " << slow;
+      EXPECT_NEAR(found[0] * found[1], found[2] * found[3], 3 * slow);  // the fast one is near equilibrium
+      EXPECT_NEAR(found[0] + found[1] + found[2] + found[3], 2.0, 1e-14);
+    }
+  }
+}
+
 }  // namespace discrete_velocity_test

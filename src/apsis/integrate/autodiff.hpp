@@ -47,23 +47,39 @@ class vector_field {
   void second_product(std::span<const Real> u, std::span<const Real> x, std::span<Real> jx,
                       std::span<Real> kx) {
     jacobian_product(u, x, jx);
-    const std::size_t n = u.size();
+    second_order(u.size(), [&](std::size_t i, const auto& s, const auto& t, const auto& st) {
+      return s * x[i] + t * Real(out1_[i].derivative(0)) + st * jx[i] + u[i];
+    });
+    for (std::size_t i = 0; i < u.size(); ++i) kx[i] = out2_[i].derivative(1, 1);
+  }
+
+  /// jx ← G'(u) x and hx ← G''(u)[k, x]: the coefficients of s and s t in G(u + s x + t k).
+  void curvature(std::span<const Real> u, std::span<const Real> k, std::span<const Real> x,
+                 std::span<Real> jx, std::span<Real> hx) {
+    second_order(u.size(), [&](std::size_t i, const auto& s, const auto& t, const auto&) {
+      return s * x[i] + t * k[i] + u[i];
+    });
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      jx[i] = out2_[i].derivative(1, 0);
+      hx[i] = out2_[i].derivative(1, 1);
+    }
+  }
+
+ private:
+  /// out2_ ← G(component(0, …), component(1, …), …) of the variables s, t and their product.
+  template <class Component>
+  void second_order(std::size_t n, const Component& component) {
     const nested_dual<Real> t(Real(0), true);              // the inner variable
     const nested_dual<Real> s(dual<Real>(Real(0), true));  // a dual number becomes the outer variable
     const nested_dual<Real> st = s * t;
     in2_.resize(n);
     out2_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Real g = out1_[i].derivative(0);
-      in2_[i] = s * x[i] + t * g + st * jx[i] + u[i];
-    }
+    for (std::size_t i = 0; i < n; ++i) in2_[i] = component(i, s, t, st);
     const std::span<const nested_dual<Real>> in(in2_);
     std::span<nested_dual<Real>> out(out2_);
     g_(in, out);
-    for (std::size_t i = 0; i < n; ++i) kx[i] = out2_[i].derivative(1, 1);
   }
 
- private:
   /// out1_ ← G(u + s x).
   void first_order(std::span<const Real> u, std::span<const Real> x) {
     in1_.resize(u.size());
@@ -79,5 +95,72 @@ class vector_field {
   std::vector<dual<Real>> in1_, out1_;
   std::vector<nested_dual<Real>> in2_, out2_;
 };
+
+/// Derivatives written by hand, for G whose code does not accept dual numbers:
+///   value(u, out)              out ← G(u)
+///   jacobian_product(u, x, jx)   jx ← G'(u) x; it enters Ġ = G'G, so its error is one of the solution
+///   curvature(u, k, x, hx)       hx ← G''(u)[k, x]; its error only slows Newton's method
+template <class G, class Real>
+concept differentiated = requires(G& g, std::span<const Real> in, std::span<Real> out) {
+  g.value(in, out);
+  g.jacobian_product(in, in, out);
+  g.curvature(in, in, in, out);
+};
+
+/// The functions of vector_field for derivatives written by hand.
+template <class Real, differentiated<Real> G>
+class given_derivatives {
+ public:
+  /// Stores g with the functions of `differentiated`.
+  explicit given_derivatives(G g) : g_(std::move(g)) {}
+
+  /// out ← G(u).
+  void value(std::span<const Real> u, std::span<Real> out) { g_.value(u, out); }
+  /// g ← G(u), g_dot ← G'(u) G(u).
+  void time_derivatives(std::span<const Real> u, std::span<Real> g, std::span<Real> g_dot) {
+    g_.value(u, g);
+    g_.jacobian_product(u, g, g_dot);
+  }
+  /// jx ← G'(u) x.
+  void jacobian_product(std::span<const Real> u, std::span<const Real> x, std::span<Real> jx) {
+    g_.jacobian_product(u, x, jx);
+  }
+  /// jx ← G'(u) x and kx ← (G'(u)² + G''(u)[·, G]) x.
+  void second_product(std::span<const Real> u, std::span<const Real> x, std::span<Real> jx,
+                      std::span<Real> kx) {
+    rate_.resize(u.size());
+    bent_.resize(u.size());
+    g_.value(u, rate_);
+    g_.curvature(u, rate_, x, bent_);
+    g_.jacobian_product(u, x, jx);
+    g_.jacobian_product(u, jx, kx);
+    for (std::size_t i = 0; i < u.size(); ++i) kx[i] += bent_[i];
+  }
+  /// jx ← G'(u) x and hx ← G''(u)[k, x].
+  void curvature(std::span<const Real> u, std::span<const Real> k, std::span<const Real> x,
+                 std::span<Real> jx, std::span<Real> hx) {
+    g_.jacobian_product(u, x, jx);
+    g_.curvature(u, k, x, hx);
+  }
+
+ private:
+  G g_;
+  std::vector<Real> rate_, bent_;
+};
+
+namespace detail {
+template <class Real, class G>
+struct field_of {
+  using type = vector_field<Real, G>;
+};
+template <class Real, differentiated<Real> G>
+struct field_of<Real, G> {
+  using type = given_derivatives<Real, G>;
+};
+}  // namespace detail
+
+/// given_derivatives for a G with derivatives written by hand, else vector_field.
+template <class Real, class G>
+using field_of = typename detail::field_of<Real, G>::type;
 
 }  // namespace apsis

@@ -5,12 +5,29 @@
 
 namespace apsis {
 
+/// Coefficients and explicit part of R(v) = v − u_e − a G(v) − b Ġ(v).
+template <class Real>
+struct stage_terms {
+  Real a,                               ///< a ≥ 0
+      b;                                ///< b ≤ 0
+  std::span<const Real> explicit_part;  ///< u_e
+  Real size = Real(0);                  ///< a size of the state, for v and u_e that are parts of it
+};
+
 /// Interface of a stage equation R(v) = v − u_e − a G(v) − b Ġ(v) = 0 to Newton's method;
 /// n unknowns, dimensionless.
 template <class Real>
 class stage_equation {
  public:
   virtual ~stage_equation() = default;
+  virtual stage_terms<Real> terms() const = 0;  ///< a, b and u_e
+  /// Sets g ← G(v).
+  virtual void rate(std::span<const Real> v, std::span<Real> g) = 0;
+  /// Sets jx ← G'(v) x.
+  virtual void rate_product(std::span<const Real> v, std::span<const Real> x, std::span<Real> jx) = 0;
+  /// Sets jx ← G'(v) x and hx ← G''(v)[k, x].
+  virtual void rate_curvature(std::span<const Real> v, std::span<const Real> k, std::span<const Real> x,
+                              std::span<Real> jx, std::span<Real> hx) = 0;
   virtual std::size_t size() const = 0;  ///< n
   /// Sets r ← R(v).
   virtual void residual(std::span<const Real> v, std::span<Real> r) = 0;
@@ -28,6 +45,9 @@ enum class linear_solver {
   dense,      ///< LU of R', assembled from the differential in unit directions
   krylov      ///< matrix-free restarted GMRES on the differential
 };
+
+/// Unknowns above which dense systems are reported before a run: LU takes n³ operations in every Newton step.
+inline constexpr std::size_t most_unknowns_of_newton = 200;
 
 /// Options of guarded_newton().
 struct newton_options {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/integrate/array_state.hpp>
 #include <apsis/integrate/autodiff.hpp>
 #include <apsis/integrate/guarded_newton.hpp>
 #include <apsis/integrate/problem.hpp>
 
+#include <cstdio>
 #include <functional>
 #include <limits>
 #include <span>
@@ -20,6 +22,7 @@ namespace apsis {
 ///   f(t, u, out)   out ← F(t, u) on states; no_transport{} if F = 0
 ///   g(u, out)      out ← G(u) for any scalar type, on std::span of N numbers:
 ///                  [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; }
+/// g may also be an object with derivatives written by hand (`differentiated`, autodiff.hpp).
 /// newton_problem{f, g} has the state std::vector<double>, make_newton_problem<State>(f, g) any other.
 ///
 /// A stage with d = 0 and ḋ < 0 is singular where Δt λ = ±i/√|ḋ| for an eigenvalue λ of G'. That cannot
@@ -92,6 +95,7 @@ class newton_problem {
             "reduce the time step, or use an SSP method");
       return;
     }
+    warn_of_cost();
     equation_.a = a;
     equation_.b = b;
     equation_.explicit_part = v_;
@@ -124,6 +128,15 @@ class newton_problem {
 
     std::size_t size() const override { return explicit_part.size(); }
     bool admissible(std::span<const real> v) override { return !admissible_set || admissible_set(v); }
+    stage_terms<real> terms() const override { return {a, b, explicit_part}; }
+    void rate(std::span<const real> v, std::span<real> out) override { field.value(v, out); }
+    void rate_product(std::span<const real> v, std::span<const real> x, std::span<real> jx) override {
+      field.jacobian_product(v, x, jx);
+    }
+    void rate_curvature(std::span<const real> v, std::span<const real> k, std::span<const real> x,
+                        std::span<real> jx, std::span<real> hx) override {
+      field.curvature(v, k, x, jx, hx);
+    }
 
     void residual(std::span<const real> v, std::span<real> r) override {
       if (b != real(0)) {
@@ -150,11 +163,26 @@ class newton_problem {
       }
     }
 
-    vector_field<real, G> field;
+    field_of<real, G> field;
     std::function<bool(std::span<const real>)> admissible_set;
     real a = real(0), b = real(0);
     std::vector<real> explicit_part, g, g_dot;
   };
+
+  /// Warns once, before the first solve.
+  void warn_of_cost() {
+    if (options_.solver != linear_solver::dense || warned_ || v_.size() <= most_unknowns_of_newton) return;
+    warned_ = true;
+    const double n = static_cast<double>(v_.size());
+    char text[320];
+    std::snprintf(
+        text, sizeof text,
+        "a stage has %.0f unknowns, and each of its Newton steps takes about n^3 = %.0e operations (dense "
+        "linear systems); use linear_solver::krylov if G is not stiff, or relaxation_problem, whose "
+        "stages are closed formulas",
+        n, n * n * n);
+    log::warning(text);
+  }
 
   void load(const State& u) {
     using size_type = decltype(u.size());
@@ -173,6 +201,7 @@ class newton_problem {
   F f_;
   equation equation_;
   newton_options options_;
+  bool warned_ = false;  ///< of the cost of dense systems
   newton_report report_;
   std::function<real(real, const State&)> forward_euler_;
   State work_{};

@@ -2,11 +2,14 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/relaxation_weights.hpp>
+#include <apsis/integrate/unsquared_newton.hpp>
 #include <apsis/model/model.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include <Eigen/Dense>
 
@@ -16,6 +19,80 @@ namespace {
 /// w₀, w₁/ν, w₂/ν² of the equation of a stage.
 struct stage_weights {
   double zeroth, first, second;
+};
+
+/// The equation of a stage in the coordinates y = Bᵀv of the reachable directions, v = u + B(y − Bᵀu).
+class reachable_stage final : public stage_equation<double> {
+ public:
+  reachable_stage(const binary_collisions& collisions, const Eigen::VectorXd& u, double a, double b)
+      : collisions_(collisions),
+        u_(u),
+        a_(a),
+        b_(b),
+        start_(collisions.reachable().transpose() * u),
+        change_(u.size()) {}
+
+  std::size_t size() const override { return static_cast<std::size_t>(start_.size()); }
+  stage_terms<double> terms() const override {
+    return {a_, b_, {start_.data(), size()}, u_.lpNorm<Eigen::Infinity>()};
+  }
+  bool admissible(std::span<const double>) override { return true; }
+  void rate(std::span<const double> y, std::span<double> g) override {
+    collisions_.change(state(y).data(), change_.data());
+    vector(g).noalias() = collisions_.reachable().transpose() * change_;
+  }
+  void rate_product(std::span<const double> y, std::span<const double> x, std::span<double> jx) override {
+    vector(jx).noalias() = derivative_at(y) * vector(x);
+  }
+  void rate_curvature(std::span<const double> y, std::span<const double> k, std::span<const double> x,
+                      std::span<double> jx, std::span<double> hx) override {
+    rate_product(y, x, jx);
+    // Q is quadratic: Q''[k, x] = Q'(k) x.
+    if (!of_rate_.is_at(k)) collisions_.derivative(lifted(k).data(), scratch_, of_rate_.move_to(k));
+    vector(hx).noalias() = of_rate_.matrix * vector(x);
+  }
+  // The solver of squares is used elsewhere.
+  void residual(std::span<const double>, std::span<double>) override {}
+  void differential(std::span<const double>, std::span<const double>, std::span<double>,
+                    std::span<double>) override {}
+
+  /// Returns the state of the coordinates y.
+  Eigen::VectorXd state(std::span<const double> y) const {
+    return u_ + collisions_.reachable() * (vector(y) - start_);
+  }
+
+ private:
+  /// A matrix that depends on a point, and the last point it was computed at.
+  struct remembered {
+    std::vector<double> point;
+    Eigen::MatrixXd matrix;
+    bool is_at(std::span<const double> y) const {
+      return std::equal(y.begin(), y.end(), point.begin(), point.end());
+    }
+    Eigen::MatrixXd& move_to(std::span<const double> y) {
+      point.assign(y.begin(), y.end());
+      return matrix;
+    }
+  };
+
+  static Eigen::Map<const Eigen::VectorXd> vector(std::span<const double> x) {
+    return {x.data(), static_cast<Eigen::Index>(x.size())};
+  }
+  static Eigen::Map<Eigen::VectorXd> vector(std::span<double> x) {
+    return {x.data(), static_cast<Eigen::Index>(x.size())};
+  }
+  Eigen::VectorXd lifted(std::span<const double> k) const { return collisions_.reachable() * vector(k); }
+  const Eigen::MatrixXd& derivative_at(std::span<const double> y) {
+    if (!of_state_.is_at(y)) collisions_.derivative(state(y).data(), scratch_, of_state_.move_to(y));
+    return of_state_.matrix;
+  }
+
+  const binary_collisions& collisions_;
+  const Eigen::VectorXd& u_;
+  double a_, b_;
+  Eigen::VectorXd start_, change_;
+  remembered of_state_, of_rate_;
+  Eigen::MatrixXd scratch_;
 };
 
 class binary_collision_solver final : public point_collision {
@@ -39,10 +116,14 @@ class binary_collision_solver final : public point_collision {
       const double share = strength_of_stage(a, b, frequency, at.epsilon[p]).share;
       const stage_weights of = {weights.of_u, weights.of_e * (1.0 - share) / frequency,
                                 weights.of_e * share / frequency / frequency};
-      if (!solve(of, weights.of_e))
+      const bool found = solve(of, weights.of_e);
+      if (loses_directions_) {
+        solve_unsquared(found, a / at.epsilon[p], b / (at.epsilon[p] * at.epsilon[p]), p, at);
+      } else if (!found) {
         fail(weights.of_u == 0.0 ? "there is no equilibrium with these moments"
                                  : "Newton's method does not converge",
              p, at);
+      }
       // Without Q̇ the solution is nonnegative, and so are its roundings.
       if (share == 0.0 && weights.of_u > 0.0)
         collisions_.gain_over_loss(u_.data(), of.first / of.zeroth, v_.data());
@@ -80,10 +161,28 @@ class binary_collision_solver final : public point_collision {
         {-1, std::nan(""), at.first_cell + p / at.points_per_cell, at.epsilon[p]});
   }
 
+  /// v_ ← the solution of a stage whose slow directions are lost in the rounding errors of squares; v_ is the
+  /// start if it was found.
+  void solve_unsquared(bool found, double a, double b, int p, const point_batch& at) {
+    reachable_stage equation(collisions_, u_, a, b);
+    if (!found) v_ = u_;
+    Eigen::VectorXd y = basis_.transpose() * v_;
+    const std::span<double> out(y.data(), static_cast<std::size_t>(y.size()));
+    try {
+      unsquared_newton<double>(equation, out, {});
+    } catch (const numerical_error& failure) {
+      failure_site site = failure.site();
+      site.cell = at.first_cell + p / at.points_per_cell;
+      throw numerical_error(failure.problem(), site);
+    }
+    v_ = equation.state(out);
+  }
+
   /// v_ ← the solution of the stage. Newton's method starts at u where collisions are few, else at the
   /// solution of a relaxation with the same equilibrium, then at the equilibrium and at u.
   bool solve(const stage_weights& of, double weight_of_e) {
     constexpr double few = 0.2;
+    loses_directions_ = false;
     const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(basis_.cols());
     if (weight_of_e < few && newton(of, nothing)) return true;
     Eigen::VectorXd e(n_);
@@ -112,7 +211,7 @@ class binary_collision_solver final : public point_collision {
 
   bool newton(const stage_weights& of, Eigen::VectorXd xi) {
     constexpr int most_iterations = 60;
-    constexpr double smallest_part = 1e-8, quadratic = 1e-9;
+    constexpr double smallest_part = 1e-8, quadratic = 1e-9, smallest_rcond = 1e-8;
     const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(basis_.cols(), basis_.cols());
     evaluate_at(of, xi);
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -122,6 +221,8 @@ class binary_collision_solver final : public point_collision {
         slope += of.second * (k_ * k_ + along_);
       }
       const Eigen::PartialPivLU<Eigen::MatrixXd> lu(slope);
+      // At ε = 0 every direction is fast.
+      loses_directions_ = of.second > 0.0 && of.zeroth > 0.0 && lu.rcond() < smallest_rcond;
       const Eigen::VectorXd step = -lu.solve(residual_);
       if (!step.allFinite()) return false;
       const double length = step.lpNorm<Eigen::Infinity>();
@@ -149,6 +250,7 @@ class binary_collision_solver final : public point_collision {
   const Eigen::MatrixXd& basis_;
   Eigen::VectorXd u_, v_, change_, projected_, residual_;
   Eigen::MatrixXd k_, along_, scratch_;
+  bool loses_directions_ = false;  ///< whether the matrix of the last solve was singular to rounding
 };
 
 }  // namespace

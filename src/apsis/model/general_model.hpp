@@ -17,6 +17,7 @@ class general_model : public model {
 
   /// q ← Q(u); rows of components() numbers.
   virtual void collision(const number* u, number* q) const = 0;
+  int newton_unknowns() const override { return components(); }
   /// Whether a row may be the solution of a stage (Newton iterates stay inside).
   virtual bool admissible(const double* u) const = 0;
   std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const final;

@@ -83,6 +83,9 @@ class model {
   virtual bool knows_collision() const { return false; }
   /// Whether make_collision() knows the relaxation time ε/C.
   virtual bool has_relaxation_time() const { return false; }
+  /// Returns the number n of unknowns of the systems that Newton's method solves at a point, with n³
+  /// operations each; 0 if stages are closed formulas.
+  virtual int newton_unknowns() const { return 0; }
 
   /// Whether components are nonnegative by definition, so that positivity can be promised.
   virtual bool positive() const { return false; }

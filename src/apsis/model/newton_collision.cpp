@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 #include <type_traits>
@@ -55,7 +56,9 @@ struct no_source {
 class newton_collision final : public point_collision {
  public:
   explicit newton_collision(const general_model& equation)
-      : components_(equation.components()), local_({}, collision_callable{&equation}) {
+      : components_(equation.components()),
+        local_({}, collision_callable{&equation},
+               newton_options{.dense_limit = std::numeric_limits<std::size_t>::max()}) {
     local_.with_admissible([&equation](std::span<const double> u) { return equation.admissible(u.data()); });
   }
 

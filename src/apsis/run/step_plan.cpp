@@ -2,8 +2,10 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/integrate/guarded_newton.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -50,6 +52,19 @@ void warn_of_fast_source(double growth, double dt) {
       "{:.2g}, where explicit steps are stable up to about 1); give a time.dt or time.cfl that is {:.2g} times "
       "as long, or time.safety, which includes the source",
       growth * dt, 1.0 / (growth * dt)));
+}
+
+void warn_of_dense_stages(const run_setup& setup) {
+  const int n = setup.equation->newton_unknowns();
+  if (n <= static_cast<int>(most_unknowns_of_newton) || setup.integrator().kind == method_kind::explicit_only)
+    return;
+  log::warning(
+      fmt::format("a collision has {} unknowns, and each Newton step of a stage takes about n^3 = {:.0e} "
+                  "operations at every "
+                  "point (its linear systems are dense); choose a model whose stages are closed formulas, "
+                  "such as bgk, or "
+                  "fewer velocities",
+                  n, std::pow(static_cast<double>(n), 3)));
 }
 
 void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation) {

@@ -19,6 +19,9 @@ void warn_of_stiff_collision(const run_setup& setup, double relaxation, double d
 /// `growth` is source_rate::growth.
 void warn_of_fast_source(double growth, double dt);
 
+/// Warns of implicit stages whose dense Newton systems have more than 200 unknowns.
+void warn_of_dense_stages(const run_setup& setup);
+
 /// Warns if the forecast error exceeds time.tolerance, and suggests remedies.
 void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation);
 

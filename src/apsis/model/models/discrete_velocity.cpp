@@ -75,6 +75,7 @@ class discrete_velocity_model final : public model {
   std::unique_ptr<point_collision> make_collision(const batch_limits&) const override {
     return make_binary_collision(collisions_);
   }
+  int newton_unknowns() const override { return static_cast<int>(collisions_.reachable().cols()); }
   bool has_relaxation_time() const override { return true; }
 
   bool positive() const override { return true; }

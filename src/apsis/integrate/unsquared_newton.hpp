@@ -1,0 +1,26 @@
+#pragma once
+
+#include <apsis/integrate/guarded_newton.hpp>
+
+#include <span>
+
+namespace apsis {
+
+/// Solves the stage equation for v and its rate k = G(v) together,
+///   v − u_e − a k − b G'(v) k = 0,   k − G(v) = 0,
+/// a system of 2n unknowns that contains neither the square of G' nor G'(v) G(v), whose rounding errors are
+/// those of G times (Δt λ)². An error of the size of rounding in G thus moves v by ε_mach Δt λ, not
+/// ε_mach (Δt λ)².
+///
+/// Newton's method with exact derivatives, LU and the natural monotonicity test (Deuflhard, Newton Methods
+/// for Nonlinear Problems, section 3.3). Corrections are measured in units of their own rounding errors,
+/// |M⁻¹| ε_mach Σ|terms|, so that no choice of units or scales enters; the iteration ends when every unknown
+/// is accurate to a few of these.
+///
+/// Throws numerical_error like guarded_newton(), and if rounding errors move v by more than 1e-3 of the
+/// largest of v, u_e and stage_terms::size: then the stage is singular to working precision.
+template <class Real>
+newton_report unsquared_newton(stage_equation<Real>& equation, std::span<Real> v,
+                               const newton_options& options);
+
+}  // namespace apsis

@@ -2,6 +2,7 @@
 
 #include <apsis/core/word_wrap.hpp>
 #include <apsis/integrate/schedule.hpp>
+#include <apsis/integrate/step_estimate.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/intermediate_regime.hpp>
@@ -39,6 +40,25 @@ json embedded_json(const method& m, const certificate& c) {
           {"explicit_evaluations", c.embedded->explicit_evaluations},
           {"implicit_solves", c.embedded->implicit_solves},
           {"buffers", steps.buffers()}};
+}
+
+json estimate_json(const method& m) {
+  const step_estimate how = estimate_of(m);
+  return {{"by", how.doubles ? "step doubling" : "embedded solution"},
+          {"order", how.order},
+          {"weight", how.weight}};
+}
+
+/// How the error of a step is estimated, with what it costs.
+std::string estimate_text(const method& m) {
+  const step_estimate how = estimate_of(m);
+  if (!how.doubles)
+    return fmt::format("embedded solution: weight {:.3g} times the difference of order {}", how.weight,
+                       how.order + 1);
+  return fmt::format(
+      "step doubling: weight {:.3g} times the difference of order {} between one step and two "
+      "halves, at three times the cost of a step",
+      how.weight, how.order + 1);
 }
 
 std::string embedded_text(const json& e) {
@@ -146,6 +166,7 @@ json check_json(const method& m) {
       {"r_per_evaluation", figure_of_merit(c)},
       {"buffers", steps.buffers()},
       {"embedded", embedded_json(m, c)},
+      {"estimate", estimate_json(m)},
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
   if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(c);
@@ -199,6 +220,7 @@ std::string check_text(const method& m) {
     line("", embedded_cost_text(e));
     if (!e["last"].is_null()) line("", embedded_term_text(e));
   }
+  line("estimated error", estimate_text(m));
   if (has_derivatives(m.kind))
     line("implicit part", fmt::format("{}, |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
                                       c.stability.l_stable ? "L-stable" : angle_text(c.stability.angle),

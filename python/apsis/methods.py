@@ -29,7 +29,8 @@ class Certificate:
     step does; explicit_radius, that of the explicit part alone; limiting_entry, the coefficient that limits r; type "A", "ARS", "CK",
     "explicit" or "none"; gsa, globally stiffly accurate: the last stage is the result; ap, asymptotic preserving from any data, and ap_data,
     from which; explicit_evaluations of T and implicit_solves in a step; angle in degrees of A(α)-stability of the implicit part, and
-    whether it is l_stable; keeps, the terms of size ε that are right for ε ≪ Δt: "none", "slow" or "all"; claims_hold, and the
+    whether it is l_stable; keeps, the terms of size ε that are right for ε ≪ Δt: "none", "slow" or "all"; estimate of the error of a
+    step, "embedded solution of order 2" or "step doubling"; claims_hold, and the
     failures where the claims of the file do not."""
 
     name: str
@@ -51,6 +52,7 @@ class Certificate:
     angle: float
     l_stable: bool
     keeps: str
+    estimate: str
     claims_hold: bool
     failures: list[str]
 

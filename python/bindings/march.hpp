@@ -6,6 +6,7 @@
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/integrate.hpp>
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,17 @@ struct step_count {
       rejected = 0;  ///< rejected for their estimated error
 };
 
+/// max_i |a_i − b_i|, or NaN if one is.
+inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = std::abs(a[i] - b[i]);
+    if (!(difference <= largest)) largest = difference;
+    if (std::isnan(difference)) return difference;
+  }
+  return largest;
+}
+
 /// Integrates u from t[0] through t[1], t[2], …; record(u) is called at each of these times, and check()
 /// after each step. `limited`: the problem knows Δt_FE. Throws what the integrator throws, and input_error
 /// if the step size is unknown.
@@ -38,17 +50,12 @@ step_count march_through(Problem& problem, typename Problem::state& u, const std
   if (!choice.dt && !limited && !choice.tolerance)
     throw input_error(
         "the step size is unknown (neither dt, tolerance nor forward_euler_step is given); give one of them");
-  if (choice.tolerance && !m.embedded)
-    throw input_error(
-        "method '" + m.name +
-        "' cannot keep a tolerance (it has no embedded solution to estimate errors with); give dt alone, or "
-        "another method");
   stepper march(m, problem, choice.tolerance ? solutions::result_and_embedded : solutions::result);
   const auto rule = choice.dt ? step_rule<double>::fixed(*choice.dt)
                     : limited ? step_rule<double>::ssp(choice.safety)
                               : step_rule<double>::unlimited();
   std::optional<step_controller<double>> control;
-  if (choice.tolerance) control.emplace(*choice.tolerance, m.embedded->order);
+  if (choice.tolerance) control.emplace(*choice.tolerance, estimate_of(m).order);
   const auto observe = [&check](long, double, double, const auto&) { check(); };
   step_count count;
   for (std::size_t k = 1; k < t.size(); ++k) {

@@ -1,6 +1,7 @@
 #include "arrays.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/step_estimate.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/export.hpp>
@@ -101,6 +102,8 @@ py::dict certificate_of(const method& m) {
   all["angle"] = c.stability.angle;
   all["l_stable"] = c.stability.l_stable;
   all["keeps"] = c.kept_terms();
+  const step_estimate how = estimate_of(m);
+  all["estimate"] = how.doubles ? "step doubling" : "embedded solution of order " + std::to_string(how.order);
   all["claims_hold"] = c.claims_hold;
   all["failures"] = c.failures;
   return all;

@@ -85,20 +85,23 @@ constexpr double tolerance = 0.17;
 
 TEST_P(every_embedded_row, has_its_certified_order) {
   const int q = apsis::find_certificate(GetParam()).embedded->order;
-  EXPECT_NEAR(std::log2(error_carried_on(GetParam(), 4096) / error_carried_on(GetParam(), 8192)), q,
+  const long steps = q > 3 ? 256 : 4096;  // above rounding
+  EXPECT_NEAR(std::log2(error_carried_on(GetParam(), steps) / error_carried_on(GetParam(), 2 * steps)), q,
               tolerance);
 }
 
 TEST_P(every_embedded_row, estimates_a_term_of_order_q_plus_1) {
   const int q = apsis::find_certificate(GetParam()).embedded->order;
-  const real dt = real(1) / 1024;
+  const real dt = real(1) / (q > 3 ? 128 : 1024);
   const auto slope = [&](real epsilon, real rest) {
     return std::log2(estimate(GetParam(), epsilon, rest, dt) / estimate(GetParam(), epsilon, rest, dt / 2));
   };
   EXPECT_NEAR(slope(1, inconsistent), q + 1, tolerance);
   // In the limit ũ is on the equilibrium manifold like u^{n+1}, and only the trees of T alone remain. Terms
   // of size ε/Δt, which data out of equilibrium leave, are 1e-19, far below the smallest estimate, 1e-14.
-  if (apsis::find_method(GetParam()).kind == method_kind::imex) {
+  // That of a tableau is no stage.
+  const apsis::method& m = apsis::find_method(GetParam());
+  if (m.kind == method_kind::imex && !m.is_tableau()) {
     EXPECT_NEAR(slope(1e-22L, consistent), q + 1, tolerance);
     EXPECT_NEAR(slope(1e-22L, inconsistent), q + 1, tolerance);
   }
@@ -187,18 +190,6 @@ TEST(embedded_schedule, of_any_zero_pattern_computes_both_solutions) {
     RC_ASSERT(std::abs(tried.embedded[0] - last[0]) <= 1e-11 * (1.0 + std::abs(last[0])));
     RC_ASSERT(u[0] == 1.0);
   });
-}
-
-TEST(embedded_solution, of_a_method_without_one_is_rejected) {
-  auto problem = ode_model::as_relaxation<state>(1);
-  const apsis::method& m = apsis::find_method("ars-443");
-  try {
-    const apsis::stepper march(m, problem, solutions::result_and_embedded);
-    FAIL();
-  } catch (const apsis::input_error& refused) {
-    EXPECT_THAT(refused.what(), ::testing::HasSubstr("method 'ars-443' has no embedded solution"));
-    EXPECT_THAT(refused.what(), ::testing::HasSubstr("md-imex-3-2"));
-  }
 }
 
 struct controlled {

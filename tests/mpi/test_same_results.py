@@ -129,6 +129,10 @@ class SameResults(Folder):
         self.expect_same("paper/bgk-mixed", "space.cells=24", "velocity.points=40", "time.end=0.05", "time.method=md-imex-8-3-mixed",
                          "time.tolerance=1e-4", "time.startup=graded", counts=(3,))
 
+    def test_doubled_steps_to_a_tolerance(self):
+        self.expect_same("paper/bgk-mixed", "space.cells=24", "velocity.points=40", "time.end=0.02", "time.method=ars-443",
+                         "time.tolerance=1e-4", counts=(3,))
+
     def test_multistep_and_exponential_methods_and_their_restarts(self):
         self.write("step.toml", STEP.replace("safety = 1", "dt = 0.0005").replace("every = 0.01", "every = 0.005"))
         for method in ("imex-bdf-3", "two-step-8-3-narrow", "exponential-2"):

@@ -318,7 +318,9 @@ std::vector<case_key> time_keys() {
                       "to the method's embedded solution relative to that of the state; errors off "
                       "equilibrium, which relax, count less in steps shorter than the tolerance asks for "
                       "(docs/methods.md). dt, cfl or safety then limits the step; startup = graded starts in "
-                      "the initial layer. For methods with an embedded solution (apsis list methods)."}),
+                      "the initial layer. Methods without an embedded solution (apsis list methods) compare "
+                      "two steps "
+                      "of half the length with one instead, and continue with the two."}),
           key("time.steady", [](auto& c) -> auto& { return c.time.steady; },
               {.measure = dimensions::none / dimensions::time,
                .lowest = 0.0,

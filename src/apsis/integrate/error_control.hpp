@@ -147,7 +147,7 @@ integration_result<typename P::real> integrate_to_tolerance(stepper<P>& method_s
                                                             const Distance& distance,
                                                             Observer&& observer = {}) {
   using real = typename P::real;
-  error_estimate<P> estimate(method_stepper.weight_of_estimate());
+  error_estimate<P> estimate(method_stepper.weight_of_estimate(), method_stepper.resolves_collisions());
   const time_marcher<real> march(t0, t1);
   if (!march.done()) {
     const real limit = rule_limit(method_stepper, rule, t0, u);

@@ -26,15 +26,18 @@ struct error_target {
 /// and the weight W of the method (embedded_certificate). To first order the component along the manifold has
 /// weight W, and the rest W (w + 1/(1 + z/ρ²))/(1 + w) with z = CΔt/ε: W for z → 0, about 1/10 for z → ∞
 /// while u follows its moments (ρ = 1), and 1/1000 at least in a layer, where the moments hardly change. For
-/// problems without relaxation_time the estimate is W ‖e‖.
+/// problems without relaxation_time, and for steps that resolve collisions, the estimate is W ‖e‖.
 template <problem P>
 class error_estimate {
  public:
   using state = typename P::state;  ///< type of u
   using real = typename P::real;    ///< type of errors
 
-  /// `weight`: W, of the method (stepper::weight_of_estimate).
-  explicit error_estimate(real weight = real(1)) : weight_(weight) {}
+  /// `weight`: W, of the method (stepper::weight_of_estimate). `resolves`: whether steps resolve collisions
+  /// (stepper::resolves_collisions).
+  explicit error_estimate(real weight = real(1), bool resolves = false) : weight_(weight) {
+    if (resolves) relaxes_ = false;
+  }
 
   /// Estimates the error of a step of length dt from `start` at time t. distance(u, v) is a norm of u − v,
   /// which may be relative to u. Buffers are allocated at the first call. Throws what the stage solve of

@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/integrate/schedule.hpp>
+#include <apsis/integrate/step_estimate.hpp>
 #include <apsis/method/convexity.hpp>
 #include <apsis/method/method.hpp>
 
@@ -13,14 +14,14 @@
 
 namespace apsis {
 
-/// Solutions computed in a step: u^{n+1}, optionally with the embedded solution.
+/// Solutions computed in a step: u^{n+1}, optionally with a second one for an estimate of its error.
 enum class solutions { result, result_and_embedded };
 
 /// Both solutions of a step; valid until the next step(), attempt() or accept() of the stepper.
 template <class State>
 struct attempted_step {
   const State &result,  ///< u^{n+1}
-      &embedded;        ///< ũ
+      &embedded;        ///< ũ, or the result of a single step where steps are doubled
 };
 
 /// Advances any problem by one step of any method, executing the schedule of the method. Buffers are
@@ -33,14 +34,16 @@ class stepper {
 
   /// Copies the method and stores a reference to the problem, which must outlive the stepper. Throws
   /// input_error if the method evaluates Q explicitly and the problem cannot, if the method is exponential
-  /// and the problem does not solve its collisions exactly, or the reverse, or if an embedded solution is
-  /// requested that the method does not have. A step of an implicit-only method throws input_error if the
-  /// problem has transport (problem_with_transport_check).
+  /// and the problem does not solve its collisions exactly, or the reverse. A step of an implicit-only method
+  /// throws input_error if the problem has transport (problem_with_transport_check). With
+  /// result_and_embedded, a method without an embedded solution doubles steps: see step_estimate.
   stepper(const method& m, P& p, solutions which = solutions::result)
-      : stepper(which == solutions::result ? m.coefficients<real>()
-                                           : require_embedded_row(m).with_embedded_row().coefficients<real>(),
-                m.kind, p, m.name, which) {
-    if (m.embedded) weight_ = static_cast<real>(m.embedded->weight);
+      : stepper(which == solutions::result_and_embedded && m.embedded
+                    ? m.with_embedded_row().coefficients<real>()
+                    : m.coefficients<real>(),
+                m.kind, p, m.name, m.embedded ? which : solutions::result) {
+    weight_ = static_cast<real>(estimate_of(m).weight);
+    doubles_ = which == solutions::result_and_embedded && !m.embedded;
   }
 
   /// The same for coefficients that are not in a file (a method under design); with result_and_embedded, the
@@ -74,16 +77,25 @@ class stepper {
 
   /// Advances u = u^n at time t to u^{n+1}. Strong exception guarantee: if a stage throws, u is still u^n.
   void step(real t, real dt, state& u) {
-    carry_out(t, dt, u);
+    carry_out(whole_step_, t, dt, u);
     settle(problem_);
     accept(u);
   }
 
-  /// Computes u^{n+1} and the embedded solution from u = u^n, which does not change: accept(u) takes the
+  /// Computes u^{n+1} and the second solution from u = u^n, which does not change: accept(u) takes the
   /// step, the next attempt discards it. Requires solutions::result_and_embedded.
   attempted_step<state> attempt(real t, real dt, state& u) {
-    carry_out(t, dt, u);
-    return {buffer(plan_.result_buffer(), u), buffer(plan_.embedded_buffer(), u)};
+    carry_out(whole_step_, t, dt, u);
+    if (!doubles_) return {buffer(plan_.result_buffer(), u), buffer(plan_.embedded_buffer(), u)};
+    using std::swap;
+    while (kept_.size() < 2) kept_.push_back(u);
+    state &single = kept_[0], &middle = kept_[1];
+    const real half = dt / real(2);
+    swap(single, buffer(plan_.result_buffer(), u));
+    carry_out(first_half_, t, half, u);
+    swap(middle, buffer(plan_.result_buffer(), u));
+    carry_out(second_half_, t + half, half, middle);
+    return {buffer(plan_.result_buffer(), u), single};
   }
   /// Sets u to the u^{n+1} of the last attempt, which was made from the same u.
   void accept(state& u) {
@@ -105,6 +117,8 @@ class stepper {
   }
   /// Returns the factor of the estimated error of the method, 1 without a certificate.
   real weight_of_estimate() const { return weight_; }
+  /// Whether collisions are explicit, so that steps resolve their relaxation times.
+  bool resolves_collisions() const { return kind_ == method_kind::explicit_only; }
   const schedule& plan() const { return plan_; }  ///< schedule of a step
   P& problem() { return problem_; }               ///< the problem passed to the constructor
 
@@ -117,9 +131,21 @@ class stepper {
     state* source;
     real delay;              ///< stage time minus t
     real a, b;               ///< coefficients of a stage solve
-    std::size_t begin, end;  ///< range in targets_
+    std::size_t begin, end;  ///< range in the targets of the step
     bool due;    ///< the next instruction solves the stage of a target, and the problem can fuse both
     bool joint;  ///< T and Q have the same coefficients, and the problem can evaluate both together
+  };
+
+  /// The instructions of a step for the dt and the address of u of its last execution.
+  struct prepared_step {
+    std::vector<prepared> instructions;
+    std::vector<target<state, real>> targets;
+    real dt = real(0);
+    const state *u = nullptr, *buffers = nullptr;  // a copy of a stepper has its own
+
+    std::span<const target<state, real>> targets_of(const prepared& now) const {
+      return std::span<const target<state, real>>(targets).subspan(now.begin, now.end - now.begin);
+    }
   };
 
   /// Coefficients of implicit stages are no times of exact collisions, and the reverse.
@@ -147,43 +173,38 @@ class stepper {
     }
   }
 
-  void carry_out(real t, real dt, state& u) {
+  void carry_out(prepared_step& plan, real t, real dt, state& u) {
     require_no_transport(t, u);
     while (static_cast<int>(buffers_.size()) + 1 < plan_.buffers()) buffers_.push_back(u);
-    if (prepared_.empty() || dt != prepared_dt_ || &u != prepared_u_ || buffers_.data() != prepared_buffers_)
-      prepare(dt, u);
-    for (std::size_t i = 0; i < prepared_.size(); ++i) {
-      const prepared& now = prepared_[i];
+    if (plan.instructions.empty() || dt != plan.dt || &u != plan.u || buffers_.data() != plan.buffers)
+      prepare(plan, dt, u);
+    for (std::size_t i = 0; i < plan.instructions.size(); ++i) {
+      const prepared& now = plan.instructions[i];
       if constexpr (problem_with_fused_stages<P>) {
         if (now.due) {
-          problem_.add_transport_and_solve(t + now.delay, *now.source, targets_of(now),
-                                           collision_of(prepared_[i + 1], t));
+          problem_.add_transport_and_solve(t + now.delay, *now.source, plan.targets_of(now),
+                                           collision_of(plan.instructions[i + 1], t));
           ++i;
           continue;
         }
       }
-      execute(now, t);
+      execute(now, plan.targets_of(now), t);
     }
   }
 
   state& buffer(int b, state& u) { return b == 0 ? u : buffers_[static_cast<std::size_t>(b) - 1]; }
 
-  void execute(const prepared& now, real t) {
+  void execute(const prepared& now, std::span<const target<state, real>> targets, real t) {
     if (now.what == action::solve_collision) {
       problem_.solve_collision(t + now.delay, now.a, now.b, *now.source);
     } else if (now.what == action::add_transport) {
       if constexpr (problem_with_joint_evaluation<P>) {
-        if (now.joint)
-          return problem_.add_transport_and_collision(t + now.delay, *now.source, targets_of(now));
+        if (now.joint) return problem_.add_transport_and_collision(t + now.delay, *now.source, targets);
       }
-      problem_.add_transport(t + now.delay, *now.source, targets_of(now));
+      problem_.add_transport(t + now.delay, *now.source, targets);
     } else if constexpr (problem_with_explicit_collision<P>) {
-      problem_.add_collision(t + now.delay, *now.source, targets_of(now));
+      problem_.add_collision(t + now.delay, *now.source, targets);
     }
-  }
-
-  std::span<const target<state, real>> targets_of(const prepared& now) const {
-    return std::span<const target<state, real>>(targets_).subspan(now.begin, now.end - now.begin);
   }
 
   due_collision<state, real> collision_of(const prepared& now, real t) const {
@@ -191,50 +212,52 @@ class stepper {
   }
 
   /// Computes all coefficients that depend on dt; most runs have a single dt and a single u.
-  void prepare(real dt, state& u) {
-    prepared_.clear();
-    targets_.clear();
+  void prepare(prepared_step& plan, real dt, state& u) {
+    auto& prepared_instructions = plan.instructions;
+    auto& targets = plan.targets;
+    prepared_instructions.clear();
+    targets.clear();
     for (const auto& from : plan_.instructions()) {
       const auto j = static_cast<std::size_t>(from.stage) - 1;
-      prepared now{from.what, &buffer(from.buffer, u), real(0), real(0), real(0), targets_.size(), 0, false,
+      prepared now{from.what, &buffer(from.buffer, u), real(0), real(0), real(0), targets.size(), 0, false,
                    false};
       if (from.stage > 0) now.delay = abscissae_[j] * dt;
       if (from.what == action::solve_collision) {
         now.a = dt * m_.D(j, j);
         now.b = dt * dt * m_.ddot[j];
       }
-      for (const auto& to : from.to) targets_.push_back(make_target(from, to, dt, u));
-      now.end = targets_.size();
-      if (!prepared_.empty()) {
-        prepared& last = prepared_.back();
-        last.due = completes(last, now);
-        if (has_same_rates(last, now)) {
+      for (const auto& to : from.to) targets.push_back(make_target(from, to, dt, u));
+      now.end = targets.size();
+      if (!prepared_instructions.empty()) {
+        prepared& last = prepared_instructions.back();
+        last.due = completes(plan, last, now);
+        if (has_same_rates(plan, last, now)) {
           last.joint = true;
-          targets_.erase(targets_.begin() + static_cast<std::ptrdiff_t>(now.begin), targets_.end());
+          targets.erase(targets.begin() + static_cast<std::ptrdiff_t>(now.begin), targets.end());
           continue;
         }
       }
-      prepared_.push_back(now);
+      prepared_instructions.push_back(now);
     }
-    prepared_dt_ = dt;
-    prepared_u_ = &u;
-    prepared_buffers_ = buffers_.data();
+    plan.dt = dt;
+    plan.u = &u;
+    plan.buffers = buffers_.data();
   }
 
   /// Whether the stage solve `next` belongs to a target of `now`.
-  bool completes(const prepared& now, const prepared& next) const {
+  static bool completes(const prepared_step& plan, const prepared& now, const prepared& next) {
     if (now.what != action::add_transport || now.joint || next.what != action::solve_collision) return false;
-    const auto to = targets_of(now);
+    const auto to = plan.targets_of(now);
     return std::any_of(to.begin(), to.end(), [&](const auto& one) { return one.acc == next.source; });
   }
 
   /// Whether the collisions of `next` have the targets and coefficients that the transport of `now` has, so
   /// that both can be evaluated together.
-  bool has_same_rates(const prepared& now, const prepared& next) const {
+  static bool has_same_rates(const prepared_step& plan, const prepared& now, const prepared& next) {
     if (!problem_with_joint_evaluation<P> || now.joint || now.what != action::add_transport ||
         next.what != action::add_collision || now.source != next.source)
       return false;
-    const auto moved = targets_of(now), collided = targets_of(next);
+    const auto moved = plan.targets_of(now), collided = plan.targets_of(next);
     auto collision = collided.begin();
     for (const auto& to : moved) {
       if (to.beta == real(0)) continue;
@@ -276,12 +299,10 @@ class stepper {
   schedule plan_;
   std::vector<real> initial_, abscissae_;
   bool convex_;
-  real weight_ = real(1);  ///< of the embedded solution
-  std::vector<prepared> prepared_;
-  std::vector<target<state, real>> targets_;
-  real prepared_dt_ = real(0);
-  const state *prepared_u_ = nullptr, *prepared_buffers_ = nullptr;  // a copy of a stepper has its own
-  std::vector<state> buffers_;
+  real weight_ = real(1);  ///< of the estimated error
+  bool doubles_ = false;   ///< whether an attempt is a single step and two of half its length
+  prepared_step whole_step_, first_half_, second_half_;
+  std::vector<state> buffers_, kept_;  ///< kept_: the result of the single step, and of the first half
 };
 
 }  // namespace apsis

@@ -26,7 +26,7 @@ typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, ty
                               const Distance& distance) {
   using real = typename P::real;
   P& p = method_stepper.problem();
-  error_estimate<P> estimate(method_stepper.weight_of_estimate());
+  error_estimate<P> estimate(method_stepper.weight_of_estimate(), method_stepper.resolves_collisions());
   step_controller<real> control(target.tolerance, target.order);
   start_control(p, t, u, longest, step_rule<real>::unlimited(), control, distance);
   real dt(0);

@@ -15,7 +15,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace apsis {
 namespace {
@@ -108,15 +107,6 @@ std::vector<std::string> method_names() {
   std::vector<std::string> names;
   for (const auto& file : embedded::methods()) names.emplace_back(file.name);
   return names;
-}
-
-const method& require_embedded_row(const method& m) {
-  if (m.embedded) return m;
-  std::vector<std::string> names;
-  for (const auto& file : embedded::methods())
-    if (parse_method(file.text, std::string(file.name)).embedded) names.emplace_back(file.name);
-  throw input_error(fmt::format("method '{}' has no embedded solution; choose one that has one: {}", m.name,
-                                fmt::join(names, ", ")));
 }
 
 bool is_method_name(std::string_view name) {

@@ -170,12 +170,21 @@ double weight_of_estimate(const embedded_certificate& e, const certificate& c) {
   return e.order == c.order - 1 && ratio > usual ? ratio / usual : 1.0;
 }
 
+/// Returns the number of decimals that the order of ũ can be checked to: of the method, or of a row with
+/// fewer.
+int precision_of(const method& extended, const embedded_row& row) {
+  int own = std::max(decimals(row.d), decimals(row.ddot));
+  for (const auto* weights : {&row.P, &row.W})
+    for (const auto& weight : *weights) own = std::max(own, decimals(weight));
+  return own > 0 ? std::min(own, extended.precision()) : extended.precision();
+}
+
 void find_embedded_solution(const method& m, certificate& c) {
   if (!m.embedded) return;
   const method extended = m.with_embedded_row();
   const auto form = extended.coefficients<mp_real>();
   const auto b = to_butcher(form);
-  const mp_real tolerance = residual_tolerance(extended.precision());
+  const mp_real tolerance = residual_tolerance(precision_of(extended, *m.embedded));
   certificate row;
   row.kind = m.kind;
   find_order(b, tolerance, row);

@@ -53,6 +53,11 @@ mp_real coefficient_value(const std::string& text) {
   return mp_real(unsigned_text.substr(0, slash)) / mp_real(unsigned_text.substr(slash + 1));
 }
 
+std::string negated(const std::string& text) {
+  if (coefficient_value(text) == 0) return text;
+  return text[0] == '-' ? text.substr(1) : "-" + (text[0] == '+' ? text.substr(1) : text);
+}
+
 int decimals(const std::string& text) {
   const auto point = text.find('.');
   if (point == std::string::npos) return 0;

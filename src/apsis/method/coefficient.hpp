@@ -13,6 +13,9 @@ bool is_coefficient(const std::string& text);
 /// Returns the value of a valid coefficient to the precision of mp_real.
 mp_real coefficient_value(const std::string& text);
 
+/// Returns −x of a valid coefficient, with the same digits.
+std::string negated(const std::string& text);
+
 /// Returns a number with 12 significant digits, for messages.
 std::string short_text(const mp_real& x);
 

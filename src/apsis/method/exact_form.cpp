@@ -72,11 +72,6 @@ shu_osher_form<std::string> to_decimals(const shu_osher_form<mp_real>& form, met
   return e;
 }
 
-std::string negative(const std::string& text) {
-  if (coefficient_value(text) == 0) return text;
-  return text[0] == '-' ? text.substr(1) : "-" + (text[0] == '+' ? text.substr(1) : text);
-}
-
 /// Returns the form with R = I, or nothing if Ȧ is not diagonal.
 std::optional<shu_osher_form<std::string>> increments(const butcher_form<std::string>& b, method_kind kind) {
   const std::size_t s = b.stages();
@@ -89,7 +84,7 @@ std::optional<shu_osher_form<std::string>> increments(const butcher_form<std::st
     e.ddot.push_back(b.A_dot(i, i));
     for (std::size_t j = 0; j < i; ++j) {
       if (coefficient_value(b.A_dot(i, j)) != 0) return std::nullopt;
-      e.P(i, j) = negative(b.A_hat(i, j));
+      e.P(i, j) = negated(b.A_hat(i, j));
     }
   }
   return e;

@@ -98,6 +98,12 @@ std::string embedded_table(const embedded_row& row, method_kind kind) {
   return out;
 }
 
+/// The same of a tableau, which has an IMEX method.
+std::string embedded_weights(const embedded_row& row) {
+  return fmt::format("\n[embedded]\norder = {}\n{}b_hat = {}\n", row.order,
+                     row.origin.empty() ? "" : fmt::format("origin = {}\n", quoted(row.origin)), list(row.W));
+}
+
 /// Formats a number as LaTeX: "\frac{1}{2}", "0.25".
 std::string number(const std::string& text, int digits) {
   const auto slash = text.find('/');
@@ -148,7 +154,7 @@ std::string to_toml(const method& m) {
     out += fmt::format("explicit_radius = {}\n", quoted(*m.claims.explicit_radius));
   if (m.claims.l_stable) out += fmt::format("l_stable = {}\n", *m.claims.l_stable);
   if (m.claims.intermediate) out += fmt::format("intermediate = {}\n", quoted(*m.claims.intermediate));
-  if (m.is_tableau()) return out + butcher_table(m);
+  if (m.is_tableau()) return out + butcher_table(m) + (m.embedded ? embedded_weights(*m.embedded) : "");
   out += "\n[shu_osher]\n";
   if (m.kind != method_kind::implicit_only) out += fmt::format("r = {}\n", quoted(m.exact.r));
   out += fmt::format("P = {}\n", triangle(m.exact.P, 0, m.stages()));

@@ -66,7 +66,8 @@ method method::with_embedded_row() const {
   m.embedded.reset();
   m.exact.P = grown(exact.P, embedded->P);
   m.exact.W = grown(exact.W, embedded->W);
-  m.exact.D = grown(exact.D, {});
+  // A tableau has the same weights for T and Q.
+  m.exact.D = grown(exact.D, is_tableau() ? embedded->W : std::vector<std::string>{});
   m.exact.D(s, s) = embedded->d;
   m.exact.ddot.push_back(embedded->ddot);
   return m;

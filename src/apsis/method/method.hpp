@@ -53,7 +53,8 @@ struct method_claims {
 struct embedded_row {
   int order = 0;               ///< q, below the order of the method
   std::string origin;          ///< how it was found; "" if not stated
-  bool convex = true;          ///< whether all weights are ≥ 0; otherwise only the signs of d̃ and d̃̇ hold
+  bool convex = true;          ///< whether all weights are ≥ 0; otherwise only the signs of d̃ and d̃̇ hold.
+                               ///< False of a tableau, whose weights W are those of Q too
   std::vector<std::string> P,  ///< p̃, one entry per stage
       W;                       ///< w̃, one entry per stage
   std::string d = "0",         ///< d̃
@@ -108,10 +109,6 @@ class method {
 /// with the closest name if there is no such method, or with the range of S if a family has no such member;
 /// claim_error if a claim fails; io_error if a file cannot be read.
 const method& find_method(std::string_view name);
-
-/// Returns m. Throws input_error, with the names of the catalogue methods that have an embedded row, if
-/// m has none.
-const method& require_embedded_row(const method& m);
 
 /// Returns the names of the catalogue, sorted; members of families are not listed.
 std::vector<std::string> method_names();

@@ -134,6 +134,35 @@ void read_embedded(const toml::table& table, const std::string& file, method& m)
   m.embedded = row;
 }
 
+/// Reads [embedded] of a tableau, ũ = u^n + Δt Σ_j b̃_j (T(u_j) + Q(u_j)), as a row with r = 1.
+void read_embedded_weights(const toml::table& table, const std::string& file, method& m) {
+  const std::string key = "b_hat";
+  const toml_section form(table, file, "embedded", {"order", "origin", key});
+  const bool is_explicit = m.kind == method_kind::explicit_only;
+  if (!is_explicit && !(m.kind == method_kind::imex && m.is_tableau()))
+    form.fail(
+        "order",
+        "[embedded] of this [butcher] cannot be read (it is neither explicit nor an IMEX tableau); give the "
+        "method as [shu_osher], or leave [embedded] out: steps are then doubled");
+  if (coefficient_value(m.exact.r) != 1)
+    form.fail(
+        "order",
+        "[embedded] of this [butcher] cannot be read (the method has an SSP coefficient and another form); "
+        "give the method as [shu_osher], or leave [embedded] out: steps are then doubled");
+  embedded_row row;
+  row.order = form.integer("order", 1, 8);
+  if (form.has("origin")) row.origin = form.text("origin");
+  row.convex = false;
+  row.W = form.vector(key);
+  if (row.W.size() > m.stages())
+    form.fail(key,
+              fmt::format("'embedded.{}' has {} entries (the method has {} stages); give at most that many",
+                          key, row.W.size(), m.stages()));
+  row.W.resize(m.stages(), "0");
+  for (const auto& weight : row.W) row.P.push_back(negated(weight));
+  m.embedded = row;
+}
+
 /// Reads the rows of `key` and, if u^{n+1} is not the last stage, appends the row `weights` of the update.
 matrix<std::string> read_tableau(const toml_section& form, const std::string& key, const std::string& weights,
                                  std::size_t diagonal, std::size_t s, bool update) {
@@ -252,10 +281,11 @@ method parse_any_method(std::string_view text, const std::string& file) {
   }
   if (m.steps == 2) require_given_row(root, file, m);
   if (!top.has("embedded")) return m;
-  if (!top.has("shu_osher"))
-    throw input_error(place_of(top.need("embedded"), file),
-                      "[embedded] is a row of the Shu-Osher form; give the method as [shu_osher]");
-  read_embedded(need_table(root, "embedded", file), file, m);
+  const auto& embedded = need_table(root, "embedded", file);
+  if (top.has("shu_osher"))
+    read_embedded(embedded, file, m);
+  else
+    read_embedded_weights(embedded, file, m);
   return m;
 }
 

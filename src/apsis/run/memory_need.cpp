@@ -19,10 +19,12 @@ constexpr int fewest_points = 4;  ///< of velocity.points
 
 int buffers_of(const run_setup& setup) {
   const method& m = setup.integrator();
+  const bool compares = setup.has_tolerance() && m.embedded.has_value();
+  // A doubled step keeps the results of the single step and of the first half.
+  const int of_doubling = setup.has_tolerance() && !compares ? 2 : 0;
   const int of_step = setup.multistep() ? buffers_of(*setup.multistep())
-                      : setup.has_tolerance()
-                          ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
-                          : schedule(m.coefficients<double>()).buffers();
+                      : compares ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
+                                 : schedule(m.coefficients<double>()).buffers() + of_doubling;
   const int compared = setup.config().time.steady ? 1 : 0;
   const int changes = setup.builder().collides_at_centres() ? 1 : 0;
   return compared + changes + of_step;

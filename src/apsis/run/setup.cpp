@@ -187,11 +187,6 @@ void run_setup::check_tolerance() const {
                "time.tolerance = {:g} cannot be kept (the rounding of an estimate is of this size); give "
                "at least {:.2g}",
                *config_.time.tolerance, finest));
-  try {
-    require_embedded_row(*method_);
-  } catch (const input_error& missing) {
-    refuse(config_, "time.tolerance", std::string("time.tolerance cannot be kept: ") + missing.what());
-  }
 }
 
 std::vector<std::string> run_setup::open_faces() const {
@@ -231,6 +226,11 @@ std::optional<std::vector<double>> run_setup::entropy_bounds() const {
 
 std::size_t run_setup::stages() const {
   return multistep_ ? multistep_->stages : method_->stages();
+}
+
+std::size_t run_setup::stages_of_step() const {
+  if (!has_tolerance()) return stages();
+  return method_->embedded ? stages() + 1 : 3 * stages();
 }
 
 std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {

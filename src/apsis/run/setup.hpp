@@ -35,6 +35,8 @@ class run_setup {
   const std::string& integrator_name() const { return multistep_ ? multistep_->name : method_->name; }
   /// Returns the number of stages of a step.
   std::size_t stages() const;
+  /// Returns the number of stages that a step computes, those of its estimated error included.
+  std::size_t stages_of_step() const;
   /// Returns the SSP coefficient r; 0 if the method has none.
   double ssp_coefficient() const { return ssp_coefficient_; }
 

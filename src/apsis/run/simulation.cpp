@@ -62,14 +62,15 @@ struct simulation::impl {
         rounding(rounding_of(setup)),
         state(start ? start(setup) : setup.initial_state()),
         march(times_of(setup)),
-        estimate(integrator.weight_of_estimate()) {
+        estimate(integrator.weight_of_estimate(), integrator.resolves_collisions()) {
     if (setup.multistep()) multistep = make_multistep_stepper(*setup.multistep(), *problem);
-    if (setup.has_tolerance()) control.emplace(*config.time.tolerance, setup.integrator().embedded->order);
+    if (setup.has_tolerance()) control.emplace(*config.time.tolerance, estimate_of(setup.integrator()).order);
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
     totals.phase_points = static_cast<long>(setup.whole_mesh().size()) * state.components();
     if (march.done()) return;
+    warn_of_dense_stages(setup);
     warn_of_stiff_collision(setup, problem->relaxation_time(march.t(), state), next_dt());
     warn_of_fast_source(problem->growth_of_source(march.t(), state), next_dt());
     // The first step may be shorter than those that follow.
@@ -297,7 +298,7 @@ run_summary simulation::summary() const {
   summary.rejected_steps = control ? control->rejected() : 0;
   const double work = static_cast<double>(summary.phase_points) *
                       static_cast<double>(summary.steps + summary.rejected_steps) *
-                      static_cast<double>(impl_->setup.stages() + (control ? 1 : 0));
+                      static_cast<double>(impl_->setup.stages_of_step());
   summary.t = t();
   summary.startup_steps = impl_->march.startup_steps();
   summary.point_stages_per_s = summary.wall_s > 0.0 ? work / summary.wall_s : 0.0;

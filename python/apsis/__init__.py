@@ -9,7 +9,8 @@ All quantities are dimensionless.
 """
 from ._core import model_names as models
 from ._core import version as _version
-from .errors import ClaimError, Error, FileError, InputError, NumericalError
+from .errors import ClaimError, CostWarning, Error, FileError, InputError, NumericalError
+from .general import GeneralProblem
 from .kinetic import KineticProblem
 from .methods import Certificate, Method, OrderCondition, method, methods, order_conditions, read_method
 from .problems import RelaxationProblem, Solution, integrate
@@ -18,6 +19,6 @@ from .stored import open
 
 __version__: str = _version()
 
-__all__ = ["Case", "Certificate", "ClaimError", "Error", "FileError", "InputError", "KineticProblem", "Method", "NumericalError",
+__all__ = ["Case", "Certificate", "ClaimError", "CostWarning", "Error", "FileError", "GeneralProblem", "InputError", "KineticProblem", "Method", "NumericalError",
            "OrderCondition", "RelaxationProblem", "Result", "Solution", "cases", "integrate", "method", "methods", "models",
            "open", "order_conditions", "read_method", "run"]

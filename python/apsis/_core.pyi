@@ -55,6 +55,11 @@ def integrate(transport: Callable[..., Any], moments: Callable[..., Any], equili
               admissible: Optional[Callable[..., bool]], epsilon: float, u0: ArrayLike, t: Sequence[float], method: Method,
               dt: Optional[float], safety: float, growth: Optional[int],
               tolerance: Optional[float]) -> tuple[Array, Array, int, int]: ...
+def integrate_general(collision: Callable[..., Any], product: Callable[..., Any], curvature: Callable[..., Any],
+                      transport: Optional[Callable[..., Any]], forward_euler_step: Optional[Callable[..., float]],
+                      admissible: Optional[Callable[..., bool]], local: bool, krylov: bool, u0: ArrayLike, t: Sequence[float], method: Method,
+                      dt: Optional[float], safety: float, growth: Optional[int],
+                      tolerance: Optional[float]) -> tuple[Array, Array, int, int]: ...
 def run(text: Optional[str], name: str, overrides: list[str], out: Optional[str], restart: Optional[str],
         wall: Optional[float], threads: Optional[int], progress: Optional[Callable[..., Any]], initial: Any,
         jumps: list[float], communicator: Optional[int]) -> Optional[dict[str, Any]]: ...

@@ -23,6 +23,18 @@ def number(name: str, value: Any, positive: bool = False) -> float:
     return found
 
 
+def finite(name: str, value: Any, lowest: float = -math.inf, highest: float = math.inf) -> float:
+    """`value` as a finite float in an interval. Raises InputError if it is not."""
+    found = number(name, value)
+    if not math.isfinite(found):
+        raise InputError(f"{name} = {found:g} is not finite; give a finite number")
+    if found < lowest:
+        raise InputError(f"{name} = {found:g} is below {lowest:g}; give {name} ≥ {lowest:g}")
+    if found > highest:
+        raise InputError(f"{name} = {found:g} is above {highest:g}; give {name} ≤ {highest:g}")
+    return found
+
+
 def whole_number(name: str, value: Any) -> int:
     """`value` as an int. Raises InputError unless it is an integer."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):

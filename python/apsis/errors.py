@@ -29,6 +29,10 @@ class FileError(Error, OSError):
     exit_code = 4
 
 
+class CostWarning(UserWarning):
+    """A computation takes far longer than another one with the same result."""
+
+
 class ClaimError(Error):
     """A method lacks a property that its file claims."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .arguments import number, real_array, whole_number
+from .arguments import finite, number, real_array, whole_number
 from .errors import InputError
 
 Array = NDArray[np.float64]
@@ -122,16 +122,18 @@ class KineticProblem:
         return self._core.fields(real_array("u", u))
 
     def transport(self, u: ArrayLike, t: float = 0.0) -> Array:
-        """Returns T(t, u) in the shape of u."""
-        return self._core.transport(real_array("u", u), number("t", t))
+        """Returns T(t, u) in the shape of u. Raises InputError unless t is finite."""
+        return self._core.transport(real_array("u", u), finite("t", t))
 
     def collision(self, u: ArrayLike, t: float = 0.0) -> Array:
         """Returns Q(u)/ε in the shape of u. Raises NumericalError if ε = 0 somewhere."""
-        return self._core.collision(real_array("u", u), number("t", t))
+        return self._core.collision(real_array("u", u), finite("t", t))
 
     def solve_collision(self, u: ArrayLike, a: float, b: float = 0.0, t: float = 0.0) -> Array:
-        """Returns the solution v of the stage equation v = u + a Q(v)/ε + b Q'(v)Q(v)/ε², a ≥ 0, b ≤ 0."""
-        return self._core.solve_collision(real_array("u", u), number("a", a), number("b", b), number("t", t))
+        """Returns the solution v of the stage equation v = u + a Q(v)/ε + b Q'(v)Q(v)/ε², a ≥ 0, b ≤ 0.
+
+        Raises InputError for other a and b, for which a stage may have no solution, and unless a, b and t are finite."""
+        return self._core.solve_collision(real_array("u", u), finite("a", a, lowest=0.0), finite("b", b, highest=0.0), finite("t", t))
 
     def forward_euler_step(self, u: ArrayLike) -> float:
         """Returns Δt_FE of the transport; infinite without space."""

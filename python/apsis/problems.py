@@ -1,6 +1,7 @@
 """Problems defined by functions on arrays."""
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
@@ -9,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import number, real_array, whole_number
-from .errors import InputError
+from .errors import CostWarning, InputError
+from .general import Derivatives, GeneralProblem
 from .kinetic import KineticProblem
 from .methods import Method, html_table, method as find_method
 
@@ -42,12 +44,15 @@ class RelaxationProblem:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """States u[k] at the times t[k], with the numbers of accepted and rejected steps."""
+    """States u[k] at the times t[k], with the numbers of accepted and rejected steps.
+
+    derivatives of a GeneralProblem: "jacobian", "complex steps" or "finite differences"; "" for other problems."""
 
     t: Array
     u: Array
     steps: int
     rejected: int
+    derivatives: str = ""
 
     def __repr__(self) -> str:
         return (f"<apsis.Solution: {len(self.t)} states of shape {self.u.shape[1:]} from t = {self.t[0]:g} to {self.t[-1]:g}, "
@@ -63,7 +68,7 @@ class Solution:
                 and np.array_equal(self.t, other.t, equal_nan=True) and np.array_equal(self.u, other.u, equal_nan=True))
 
 
-def integrate(problem: RelaxationProblem | KineticProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str | Method = "md-imex-6-3", *,
+def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str | Method = "md-imex-6-3", *,
               dt: float | None = None, safety: float = 1.0, startup: str = "none", startup_growth: int = 2, tolerance: float | None = None,
               threads: int | None = None) -> Solution:
     """Integrates from u0 at t[0] and returns the states at all times of t.
@@ -72,12 +77,13 @@ def integrate(problem: RelaxationProblem | KineticProblem, u0: ArrayLike, t: Seq
     safety · r · Δt_FE, 0 < safety. startup = "graded" resolves the initial layer of data out of equilibrium by short first
     steps. startup_growth, from 2 to 64, is the ratio of their successive times: with 4 they are half as many as with 2 and less accurate. With a tolerance steps are
     shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it; then
-    neither dt nor forward_euler_step is needed. `threads` is for problems on a mesh: all processors for large ones where it is not
+    neither dt nor forward_euler_step is needed. Methods without an embedded solution take each step twice, in one piece and in two
+    halves, and compare. `threads` is for problems on a mesh: all processors for large ones where it is not
     given; results do not depend on it.
     Raises InputError, NumericalError with step and t, and exceptions of the functions."""
-    if not isinstance(problem, (RelaxationProblem, KineticProblem)):
-        raise InputError(f"problem is a {type(problem).__name__} (an equation is needed); give an apsis.RelaxationProblem or "
-                         "an apsis.KineticProblem")
+    if not isinstance(problem, (RelaxationProblem, GeneralProblem, KineticProblem)):
+        raise InputError(f"problem is a {type(problem).__name__} (an equation is needed); give an apsis.RelaxationProblem, an "
+                         "apsis.GeneralProblem or an apsis.KineticProblem")
     if startup not in ("none", "graded"):
         raise InputError(f"unknown start-up {startup!r} (there is no such name); give \"none\" or \"graded\"")
     if startup == "none" and startup_growth != 2:
@@ -90,14 +96,46 @@ def integrate(problem: RelaxationProblem | KineticProblem, u0: ArrayLike, t: Seq
     if isinstance(problem, KineticProblem):
         return Solution(*problem._core.integrate(real_array("u0", u0), times_wanted, integrator._core, *steps_by,
                                                  None if threads is None else whole_number("threads", threads)))
-    for name in ("transport", "moments", "equilibrium", "rate", "forward_euler_step", "admissible"):
-        function = getattr(problem, name)
-        if not callable(function) and not (function is None and name in ("forward_euler_step", "admissible")):
-            raise InputError(f"{name} of the problem is a {type(function).__name__} (it must be callable); give a function")
+    if isinstance(problem, GeneralProblem):
+        return _integrate_general(problem, real_array("u0", u0), times_wanted, integrator, steps_by)
+    _require_functions(problem, ("transport", "moments", "equilibrium", "rate"), ("forward_euler_step", "admissible"))
     times, states, steps, rejected = _core.integrate(
         problem.transport, problem.moments, problem.equilibrium, problem.rate, problem.forward_euler_step, problem.admissible,
         number("epsilon", problem.epsilon), real_array("u0", u0), times_wanted, integrator._core, *steps_by)
     return Solution(times, states, steps, rejected)
+
+
+def _require_functions(problem: object, needed: Sequence[str], optional: Sequence[str]) -> None:
+    for name in (*needed, *optional):
+        function = getattr(problem, name)
+        if not callable(function) and not (function is None and name in optional):
+            raise InputError(f"{name} of the problem is a {type(function).__name__} (it must be callable); give a function")
+
+
+def _warn_of_cost(unknowns: int, integrator: Method) -> None:
+    """A warning before an expensive run."""
+    if unknowns <= 200 or integrator.kind == "explicit":
+        return
+    warnings.warn(f"a stage has {unknowns} unknowns (each of its Newton steps takes about {unknowns:.0e}^3 = {unknowns**3:.0e} operations "
+                  f"and {3 * unknowns} calls of collision); if Q acts cell by cell, give u0 as [cells, unknowns] and local=True, if it "
+                  "is not stiff solver=\"krylov\", or a RelaxationProblem if Q has that form", CostWarning, stacklevel=4)
+
+
+def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], integrator: Method, steps_by: tuple[Any, ...]) -> Solution:
+    _require_functions(problem, ("collision",), ("transport", "jacobian", "forward_euler_step", "admissible"))
+    if u0.size == 0:
+        raise InputError("u0 has no numbers; give an initial state")
+    if problem.local and u0.ndim == 0:
+        raise InputError("local = True needs an axis of the unknowns of a cell (u0 is a number); give u0 as [cells, unknowns]")
+    if problem.solver not in ("dense", "krylov"):
+        raise InputError(f"unknown solver {problem.solver!r} (there is no such name); give \"dense\" or \"krylov\"")
+    if problem.solver == "dense":
+        _warn_of_cost(u0.shape[-1] if problem.local else u0.size, integrator)
+    derivatives = Derivatives(problem.collision, problem.jacobian, u0.reshape(-1, u0.shape[-1])[0].copy() if problem.local else u0.copy())
+    found = _core.integrate_general(problem.collision, derivatives.product, derivatives.curvature, problem.transport,
+                                    problem.forward_euler_step, problem.admissible, bool(problem.local), problem.solver == "krylov", u0, times, integrator._core,
+                                    *steps_by)
+    return Solution(*found, derivatives=derivatives.by)
 
 
 def _name(method: object) -> str:

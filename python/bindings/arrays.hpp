@@ -48,6 +48,7 @@ inline py::array_t<double> to_fixed_array(const std::vector<double>& numbers,
 void bind_errors(py::module_& m);
 void bind_methods(py::module_& m);
 void bind_integrate(py::module_& m);
+void bind_general(py::module_& m);
 void bind_runs(py::module_& m);
 void bind_kinetic(py::module_& m);
 

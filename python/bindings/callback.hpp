@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,5 +49,12 @@ class callback {
   py::function function_;
   std::string name_;
 };
+
+/// The callback of a function that may be missing.
+inline std::optional<callback> optional_callback(const std::optional<py::function>& function,
+                                                 const char* name) {
+  if (!function) return std::nullopt;
+  return callback(*function, name);
+}
 
 }  // namespace apsis::python

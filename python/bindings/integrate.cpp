@@ -45,26 +45,10 @@ class moments_value {
   mutable std::optional<array> numbers_;
 };
 
-std::optional<callback> optional_callback(const std::optional<py::function>& function, const char* name) {
-  if (!function) return std::nullopt;
-  return callback(*function, name);
-}
-
 struct result {
   py::array_t<double> t, u;
   long steps, rejected;
 };
-
-/// max_i |a_i − b_i|, or NaN if one is.
-double largest_difference(const state& a, const state& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double difference = std::abs(a[i] - b[i]);
-    if (!(difference <= largest)) largest = difference;
-    if (std::isnan(difference)) return difference;
-  }
-  return largest;
-}
 
 /// States at the times t[0] < t[1] < …, beginning with u0 itself.
 result integrate_python(const functions& of, double epsilon, const array& u0, const std::vector<double>& t,

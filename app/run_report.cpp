@@ -2,6 +2,7 @@
 #include "scales_text.hpp"
 
 #include <apsis/model/model_registry.hpp>
+#include <apsis/model/velocity_support.hpp>
 #include <apsis/run/result_units.hpp>
 
 #include <cmath>
@@ -11,6 +12,27 @@
 #include <fmt/ranges.h>
 
 namespace apsis::app {
+
+namespace {
+
+/// Returns what a gas needed of its velocities.
+std::string velocities_text(const run_summary& s, const case_config& c) {
+  std::string text =
+      fmt::format("at most {:.2g} of the mass of a Maxwellian beyond their ends", s.velocity_beyond);
+  if (s.velocity_missed > velocity_limits::good) {
+    text += fmt::format(", {:.2g} of its energy missed", s.velocity_missed);
+    const result_units units(c);
+    if (s.velocity_needed > 0.0)
+      text += fmt::format(" (velocities up to {:.4g}{} would do)",
+                          s.velocity_needed * units.factor(dimensions::velocity),
+                          units.suffix(dimensions::velocity));
+  }
+  if (c.force.acceleration)
+    text += fmt::format("; the force moved {:.2g} of the mass into the last ones", s.velocity_held);
+  return text;
+}
+
+}  // namespace
 
 std::string summary_text(const simulation& run, run_end end) {
   const run_summary s = run.summary();
@@ -53,6 +75,7 @@ std::string summary_text(const simulation& run, run_end end) {
   }
   if (!std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));
+  if (std::isfinite(s.velocity_room)) line("velocities", velocities_text(s, c));
   if (!has_space(*find_model(c.model.name))) {
     std::string values;
     for (const double x : run.state()) values += fmt::format("{}{:.17g}", values.empty() ? "" : "  ", x);

@@ -121,6 +121,11 @@ class KineticProblem:
         """Returns the macroscopic fields of a state by name, [cells] each."""
         return self._core.fields(real_array("u", u))
 
+    def velocity_missed(self, u: ArrayLike) -> Array:
+        """Returns what the velocities of a gas miss of the Maxwellian of each cell, [cells]: up to 0.001 is good, above 0.1 initial data are
+        refused (docs/velocities.md). NaN where a cell has no Maxwellian, and for models without."""
+        return self._core.velocity_missed(real_array("u", u))
+
     def transport(self, u: ArrayLike, t: float = 0.0) -> Array:
         """Returns T(t, u) in the shape of u. Raises InputError unless t is finite."""
         return self._core.transport(real_array("u", u), finite("t", t))

@@ -8,15 +8,18 @@
 
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/choices.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/model/model_registry.hpp>
+#include <apsis/model/velocity_support.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -286,6 +289,23 @@ class kinetic_problem {
     return out;
   }
 
+  py::array_t<double> velocity_missed(const array& u) const {
+    const field state = to_field(u);
+    const auto support = support_of(*equation_);
+    std::vector<double> missed(static_cast<std::size_t>(state.cells()),
+                               std::numeric_limits<double>::quiet_NaN());
+    if (!support) return to_array(std::move(missed));
+    const gas& molecules = support->molecules();
+    std::vector<double> omega(static_cast<std::size_t>(molecules.moment_count()));
+    fluid_state of_cell;
+    for (int cell = 0; cell < state.cells(); ++cell) {
+      molecules.moments(state.row(cell), 0, 1, omega.data());
+      if (const auto fit = support->fit_of_moments(omega.data(), of_cell))
+        missed[static_cast<std::size_t>(cell)] = fit->missed;
+    }
+    return to_array(std::move(missed));
+  }
+
   py::array_t<double> transport(const array& u, double t) {
     field result = to_field(u);
     const field state = result;
@@ -404,7 +424,30 @@ class kinetic_problem {
     for (int cell = 0; cell < u.cells(); ++cell)
       if (const auto found = equation_->check_supported(u.row(cell)); !found.problem.empty())
         throw input_error(fmt::format("{} [cell {}]", found.problem, cell));
+    warn_of_velocities(u);
     return from_field(u);
+  }
+
+  /// Warns of the cell whose Maxwellian the velocities of a gas miss most, if they miss too much.
+  void warn_of_velocities(const field& u) const {
+    const auto support = support_of(*equation_);
+    if (!support) return;
+    const gas& molecules = support->molecules();
+    std::vector<double> omega(static_cast<std::size_t>(molecules.moment_count()));
+    velocity_fit worst;
+    fluid_state state, of_worst;
+    int worst_cell = -1;
+    for (int cell = 0; cell < u.cells(); ++cell) {
+      molecules.moments(u.row(cell), 0, 1, omega.data());
+      const auto fit = support->fit_of_moments(omega.data(), state);
+      if (!fit || !(fit->missed > std::max(worst.missed, velocity_limits::good))) continue;
+      worst = *fit;
+      of_worst = state;
+      worst_cell = cell;
+    }
+    if (worst_cell < 0) return;
+    const auto found = velocity_problem(molecules, of_worst, worst, {.subject = "the data"});
+    log::warning(fmt::format("{} [cell {}]", found.problem, worst_cell));
   }
 
   std::unique_ptr<model> equation_;
@@ -445,6 +488,7 @@ void bind_kinetic(py::module_& m) {
       .def("sample_function", &kinetic_problem::sample_function)
       .def("state", &kinetic_problem::state)
       .def("fields", &kinetic_problem::fields)
+      .def("velocity_missed", &kinetic_problem::velocity_missed)
       .def("transport", &kinetic_problem::transport)
       .def("collision", &kinetic_problem::collision)
       .def("solve_collision", &kinetic_problem::solve_collision)

@@ -1,4 +1,5 @@
 """A case on any number of processes and threads has the same results, bit for bit, also across restarts (docs/processes.md)."""
+import json
 import unittest
 
 from processes import Folder, main, slow
@@ -84,6 +85,29 @@ end = 0.01
 cfl = 0.4
 """
 
+# Jets that meet and heat the gas beyond what its velocities hold.
+JETS = """
+title = "Jets"
+[model]
+name = "bgk"
+epsilon = 0.1
+[initial]
+rho = 1
+u = "x > 0.5 ? -3 : 3"
+T = 0.1
+[space]
+cells = 23
+boundary = "outflow"
+limiter = "positivity"
+[velocity]
+max = 11
+points = 110
+[time]
+method = "md-imex-6-3"
+end = 0.05
+safety = 1
+"""
+
 
 class SameResults(Folder):
     def expect_same(self, case, *overrides, counts=(2, 3, 4), threads=(1, 1, 2)):
@@ -103,6 +127,20 @@ class SameResults(Folder):
         for count, blocks in ((3, "[1,3]"), (4, "[4,1]"), (6, "[2,3]")):
             self.completed(count, "run", "step.toml", f"space.blocks={blocks}", "--out", f"on-{count}")
             self.assert_same_results("one", f"on-{count}")
+
+    def test_of_velocities_that_end_too_early(self):
+        self.write("jets.toml", JETS)
+        self.expect_same("jets.toml", counts=(3,))
+        numbers = [{name: value for name, value in json.loads((self.folder / folder / "manifest.json").read_text())["result"].items()
+                    if name.startswith("velocity_")} for folder in ("one", "on-3")]
+        self.assertEqual(*numbers)
+        self.assertGreater(numbers[0]["velocity_missed"], 1e-3)
+        ends = [self.run_on(count, "run", "jets.toml", "velocity.max=5", "velocity.points=50") for count in (1, 3)]
+        for end in ends:
+            self.assertEqual(end.returncode, 3, end.stderr)
+        said = [[line for line in end.stderr.splitlines() if "velocity.max = 5 is too small" in line] for end in ends]
+        self.assertEqual(*said)
+        self.assertIn(len(said[0]), (1, 2))  # the error, and before it at most one warning
 
     @slow
     def test_a_periodic_box_in_space(self):

@@ -105,6 +105,7 @@ def test_a_run_in_the_plane_has_maps_probes_and_balances(tmp_path):
     drag = history["flux_step_momentum_x"][-1]
     assert re.search(rf"<td>step</td><td>[^<]*</td><td>{re.escape(number(drag))}</td>", page)
     assert "<th>momentum x</th>" in page
+    assert "<h2>Velocities</h2>" in page and "smallest thermal speed over the spacing" in page
 
 
 def test_a_run_without_space_shows_its_numbers(tmp_path):

@@ -272,21 +272,18 @@ TEST(walls, a_steady_state_ends_the_run) {
   EXPECT_EQ(second.state(), run.state());
 }
 
-TEST(walls, that_the_velocities_do_not_hold_are_reported_before_the_run) {
+TEST(walls, that_the_velocities_miss_are_reported_before_the_run) {
   const auto warning_of = [](const std::vector<std::string>& overrides) {
     testing::internal::CaptureStderr();
     run_of(overrides);
     return testing::internal::GetCapturedStderr();
   };
-  EXPECT_THAT(warning_of({"boundary.left.T=1.1"}), testing::Not(testing::HasSubstr("do not hold")));
+  EXPECT_THAT(warning_of({"boundary.left.T=1.1"}), testing::Not(testing::HasSubstr("velocity.")));
   EXPECT_THAT(warning_of({"boundary.left.T=4"}),
-              testing::HasSubstr(
-                  "the velocities do not hold the gas of [boundary.left] at t = 0: velocity.max = 7 is "
-                  "too small for the data"));
+              testing::HasSubstr("velocity.max = 7 is too small for the gas of [boundary.left] at t = 0 ("));
   EXPECT_THAT(
       warning_of({"boundary.right.T=\"1 + 20*t\""}),
-      testing::AllOf(testing::HasSubstr("[boundary.right] at t = 0.0"), testing::HasSubstr("give at least")));
-  EXPECT_THAT(warning_of({"boundary.right.T=0.01"}), testing::HasSubstr("velocity.points = 20 is too few"));
+      testing::AllOf(testing::HasSubstr("[boundary.right] at t = "), testing::HasSubstr("give at least")));
 }
 
 TEST(walls, a_sliver_before_the_end_has_no_change_of_its_own) {

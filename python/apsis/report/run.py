@@ -49,6 +49,22 @@ def summary(result: RunResult) -> str:
     return out
 
 
+def velocities(manifest: dict[str, Any]) -> str:
+    """A table of how well the velocities represent the gas; nothing for other models, and for results of earlier versions."""
+    numbers = manifest["result"]
+    if numbers.get("velocity_room") is None:
+        return ""
+    rows = [["largest share of the mass of a Maxwellian beyond the ends", number(numbers["velocity_beyond"])],
+            ["largest share of its mass, mean or energy that the velocities miss", number(numbers["velocity_missed"])],
+            ["smallest distance from a bulk velocity to an end, in thermal speeds", number(numbers["velocity_room"])],
+            ["smallest thermal speed over the spacing", number(numbers["velocity_resolution"])]]
+    if numbers["velocity_needed"]:
+        rows.append(["largest velocity that would do", number(numbers["velocity_needed"])])
+    if manifest["case"].get("force"):
+        rows.append(["share of the mass that the force moved into the last velocities", number(numbers["velocity_held"])])
+    return "<h2>Velocities</h2>\n" + table([], rows)
+
+
 def promises(manifest: dict[str, Any]) -> str:
     """Describes the promises: a run ends when one is broken, so a completed run kept them at every step."""
     broken = str(manifest.get("message", "")).startswith("broken promise")
@@ -100,7 +116,7 @@ def report(folder: Path) -> str:
     pictures = "".join(page.embedded(figure, name, *caption(name, result), pictures_in(folder))
                        for name, figure in figures(result).items())
     rest = {key: value for key, value in manifest.items() if key not in ("case", "message")}
-    body = (summary(result) + "<h2>Promises</h2>\n" + promises(manifest) + balances(result)
+    body = (summary(result) + "<h2>Promises</h2>\n" + promises(manifest) + balances(result) + velocities(manifest)
             + ("<h2>Pictures</h2>\n" + pictures if pictures else "")
             + "<h2>Case</h2>\n" + case_text(result)
             + "<h2>Manifest</h2>\n" + table([], [[Html(f"<code>{text(name)}</code>"), value] for name, value in flattened(rest)])

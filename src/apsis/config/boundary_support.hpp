@@ -2,13 +2,20 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/model/velocity_support.hpp>
 
 #include <string>
+#include <vector>
 
 namespace apsis {
 
-/// Returns why the velocities of a gas do not hold the Maxwellian that a face emits between t = 0 and
-/// time.end, with the face and the time; "" if they hold all of them. Formulas are sampled at 201 times.
-std::string unsupported_boundary(const case_config& config, const model& equation);
+/// Returns the words for messages about the velocities of a case.
+velocity_words words_of(const case_config& config, const std::string& subject);
+
+/// Checks the Maxwellians that walls, open ends and the source of a case emit between t = 0 and time.end on
+/// the velocities of a gas, by the rule of velocity_support.hpp. Formulas are sampled. Throws input_error at
+/// the table that emits a Maxwellian beyond velocity_limits::bad. Returns a warning for each beyond
+/// velocity_limits::good.
+std::vector<std::string> check_emitted_gas(const case_config& config, const model& equation);
 
 }  // namespace apsis

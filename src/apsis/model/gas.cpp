@@ -3,12 +3,12 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/model/velocity_line_registry.hpp>
 #include <apsis/model/velocity_rows.hpp>
+#include <apsis/model/velocity_support.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -54,30 +54,6 @@ variances variances_at(const velocity_line& line, double u) {
   const auto after = std::upper_bound(v.begin(), v.end(), u);
   if (after == v.begin() || after == v.end()) return {0.0, farthest};
   return {(u - *(after - 1)) * (*after - u), farthest};
-}
-
-/// Why a quadrature does not hold a Gaussian: what it misses of mass, mean and variance, or of one half.
-unsupported_initial_data check_quadrature(const velocity_line& line, double u, double width) {
-  double mass = 0.0, energy = 0.0;
-  for (std::size_t j = 0; j < line.v().size(); ++j) {
-    const double c = (line.v()[j] - u) / width;
-    const double part =
-        line.weights()[j] / width * std::exp(-0.5 * c * c) / std::sqrt(2.0 * std::numbers::pi);
-    mass += part;
-    energy += part * c * c;
-  }
-  // Discrete conservation repairs moments; a grid that is this far off does not resolve the data.
-  constexpr double tolerable = 0.01;
-  const double defect = std::max(std::abs(mass - 1.0), std::abs(energy - 1.0));
-  if (defect <= tolerable) return {};
-  const std::string why = fmt::format(
-      "the {} velocities up to {:.3g} miss {:.2g} of the mass or the energy of u = "
-      "{:.3g}, T = {:.3g}",
-      line.points(), line.max(), defect, u, width * width);
-  if (std::abs(u) + 3.0 * width > line.max())
-    return {"velocity.max", fmt::format("velocity.max is too small for the data ({}); give at least {:.1f}",
-                                        why, std::abs(u) + 6.0 * width)};
-  return {"velocity.points", fmt::format("velocity.points is too small for the data ({}); give more", why)};
 }
 
 velocity_set points_of(const velocity_grid& grid, int sets) {
@@ -294,34 +270,9 @@ unsupported_initial_data gas::check_supported(const double* row) const {
             fmt::format("the initial data have no Maxwellian (density {:.6g}, temperature {:.6g}); "
                         "change them",
                         s.rho, s.T)};
-  const double width = std::sqrt(s.T);
-  for (int k = 0; k < dimensions(); ++k) {
-    auto found = check_line(grid_.line(k), s.u[k], width);
-    if (!found.problem.empty()) return found;
-  }
-  return {};
-}
-
-/// Why a line does not hold a Gaussian of this mean and width.
-unsupported_initial_data gas::check_line(const velocity_line& line, double u, double width) const {
-  // Mass fraction of the local Maxwellian beyond the grid; 1e-8 is below the accuracy of the cases.
-  const double beyond = 0.5 * std::erfc((line.max() - std::abs(u)) / (std::numbers::sqrt2 * width));
-  if (line.uniform() && beyond > 1e-8)
-    return {"velocity.max",
-            fmt::format(
-                "velocity.max = {:g} is too small for the data (a fraction {:.2g} of the mass of u = {:.3g}, "
-                "T = {:.3g} lies beyond it); give at least {:.1f}",
-                line.max(), beyond, u, width * width, std::abs(u) + 6.0 * width)};
-  if (!line.uniform()) return check_quadrature(line, u, width);
-  const double widest = choice_ == equilibrium_choice::formula ? 1.0 : 2.0;
-  if (line.spacing() > widest * width)
-    return {
-        "velocity.points",
-        fmt::format(
-            "velocity.points = {} is too few for the data (the spacing {:.3g} is more than {:g} times the "
-            "thermal speed sqrt(T) = {:.3g}); give at least {:.0f}",
-            line.points(), line.spacing(), widest, width, std::ceil(2.0 * line.max() / (widest * width)))};
-  return {};
+  const velocity_fit fit = velocity_support(*this).fit(s);
+  if (!(fit.missed > velocity_limits::bad)) return {};
+  return velocity_problem(*this, s, fit, {.subject = "the data"});
 }
 
 std::string gas::row_of(std::span<const double> given, std::span<double> row) const {

@@ -51,7 +51,7 @@ class gas {
   /// Returns the operation count of moments and equilibrium per component.
   double operations() const;
 
-  /// Returns why the grid does not support a row of data.
+  /// Returns why the grid does not support a row of data, by the rule of velocity_support.hpp.
   unsupported_initial_data check_supported(const double* row) const;
   /// Returns the equilibrium of (ρ, u, T) as data of a case. This object must outlive it.
   data_form maxwellian_form() const;
@@ -59,7 +59,6 @@ class gas {
  private:
   static constexpr int most_moments = 5;
   double weighted_entropy(const double* row) const;
-  unsupported_initial_data check_line(const velocity_line& line, double u, double width) const;
   /// of_g ← ω of g alone in the equilibrium of ω; returns h/g.
   double moments_of_g(const double* omega, double* of_g) const;
   bool equilibrium_of_g(const double* of_g, double* g) const;

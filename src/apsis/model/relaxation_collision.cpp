@@ -5,6 +5,7 @@
 #include <apsis/exec/profile.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/model/relaxation_rows.hpp>
+#include <apsis/model/velocity_support.hpp>
 
 #include <limits>
 #include <memory>
@@ -109,10 +110,12 @@ class relaxation_collision final : public point_collision {
     equation_.moments_of_rows(u, at.pitch, at.count, omega(0));
     const int p = relaxing_.empty() ? equation_.equilibria(omega(0), at.count, equilibria_.data(), pitch_)
                                     : relaxed_targets(a, b, at, u);
-    if (p < at.count)
-      throw numerical_error(
-          "no local equilibrium (" + equation_.why_inadmissible(omega(p)) + "); " + advice(),
-          {-1, unknown, cell(p, at), *omega(p)});
+    if (p == at.count) return;
+    const std::string beyond = why_beyond_velocities(equation_, omega(p));
+    throw numerical_error(
+        "no local equilibrium (" + (beyond.empty() ? equation_.why_inadmissible(omega(p)) + "); " + advice()
+                                                   : beyond + "); use a larger velocity.max"),
+        {-1, unknown, cell(p, at), *omega(p)});
   }
 
   /// Returns the number of points before the first without a target.

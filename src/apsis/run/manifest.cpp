@@ -35,6 +35,7 @@ json numbers(const simulation& run) {
   run_summary::visit_members(s, [&out](const char* name, const auto& x) { out[name] = x; });
   const result_units units(run.config());
   for (const char* time : {"t", "dt"}) out[time] = out[time].get<double>() * units.factor(dimensions::time);
+  out["velocity_needed"] = s.velocity_needed * units.factor(dimensions::velocity);
   if (std::isnan(run.initial_record().entropy)) out["max_entropy_increase"] = nullptr;
   if (!has_space(*find_model(run.config().model.name))) out["state"] = run.state();
   return out;

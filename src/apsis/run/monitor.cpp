@@ -21,6 +21,7 @@ struct monitor::partial {
   long negative = 0;
   int not_finite = none, violating = none;  ///< first cells
   double value = 0.0;                       ///< that is not finite
+  velocity_extremes velocities;
 
   static constexpr int none = std::numeric_limits<int>::max();
 };
@@ -31,13 +32,14 @@ monitor::monitor(const run_setup& setup)
       volume_(setup.cell_volume()),
       ends_(setup.open_ends()),
       entropy_bounds_(setup.entropy_bounds().value_or(std::vector<double>{})),
-      parts_(std::make_unique<per_thread<partial>>()) {}
+      parts_(std::make_unique<per_thread<partial>>()),
+      velocities_(setup) {}
 
 monitor::~monitor() = default;
 
 void monitor::check_cells(const field& u, int begin, int end, partial& own) const {
   const std::size_t count = own.densities.size();
-  const bool conditional = !equation_.condition().empty();
+  const bool conditional = !equation_.condition().empty(), watched = velocities_.active();
   const profile::section timed(kernel::monitor, static_cast<double>(end - begin) * u.stride(),
                                {0.0, sizeof(double)});
   for (int cell = begin; cell < end; ++cell) {
@@ -52,6 +54,7 @@ void monitor::check_cells(const field& u, int begin, int end, partial& own) cons
     own.negative += below;
     equation_.invariant_densities(row, own.densities.data());
     equation_.invariant_scales(own.densities, own.scales.data());
+    if (watched) velocities_.look(own.densities.data(), cell, own.velocities);
     for (std::size_t k = 0; k < count; ++k) {
       own.sums[k].add(own.densities[k]);
       own.sums[count + k].add(own.scales[k]);
@@ -87,6 +90,7 @@ monitor::partial monitor::check_block(const field& u) const {
     if (own->not_finite < empty.not_finite) empty.value = own->value;
     empty.not_finite = std::min(empty.not_finite, own->not_finite);
     empty.violating = std::min(empty.violating, own->violating);
+    empty.velocities.add(own->velocities);
   }
   return empty;
 }
@@ -106,7 +110,12 @@ monitor::totals monitor::sum(const field& u) const {
   std::array<std::int64_t, 2> counts = {mine.negative, mine.violating == partial::none ? 0 : 1};
   processes.sum(counts);
   totals t;
-  t.lowest = global_lowest(processes, mine.lowest);
+  std::array<double, 3> least = {mine.lowest, mine.velocities.margins.room,
+                                 mine.velocities.margins.resolution};
+  processes.lowest(least);
+  t.lowest = least[0];
+  t.velocities = mine.velocities;
+  t.margins = {least[1], least[2]};
   t.negative = counts[0];
   t.violated = counts[1] > 0;
   if (mine.violating != partial::none) t.violating = mine.violating;
@@ -120,9 +129,14 @@ monitor::totals monitor::sum(const field& u) const {
 }
 
 step_record monitor::start(const field& u) {
-  const totals t = sum(u);
+  totals t = sum(u);
   invariants_ = t.invariants;
   scales_ = t.scales;
+  if (velocities_.active()) {
+    velocities_.set_mass(invariants_.front());
+    t = sum(u);  // without cells of little mass
+  }
+  keep_velocities(t);
   step_record record;
   record.received.assign(ends_.size() * invariants_.size(), 0.0);
   record.flux = record.received;
@@ -134,15 +148,30 @@ step_record monitor::start(const field& u) {
   return record;
 }
 
-step_record monitor::check(const field& u, double dt, const step_record& previous) const {
+void monitor::keep_velocities(const totals& t) {
+  extremes_ = t.velocities;
+  margins_ = t.margins;
+}
+
+void monitor::watch_velocities(const field& u, const step_record& last, run_summary& summary) {
+  if (last.step == 0) return velocities_.start(extremes_, margins_, u, summary);
+  if (held_ > 0.0) velocities_.add_held(held_ / last.total.front(), u, last, summary);
+  velocities_.update(extremes_, margins_, u, last, summary);
+}
+
+step_record monitor::check(const field& u, double dt, const step_record& previous) {
+  if (velocities_.active()) velocities_.set_mass(previous.total.front());
   const totals t = sum(u);
+  keep_velocities(t);
   step_record record;
   record.min_value = t.lowest;
   record.negative_values = t.negative;
   record.entropy = t.entropy;
   record.entropy_change = t.entropy - previous.entropy;
   record.violation = violation_in(u, t);
-  const std::vector<double> gained = gained_through_faces(u.gains());
+  std::vector<double> gained = gained_through_faces(u.gains());
+  held_ = gained.back();
+  gained.pop_back();
   for (std::size_t k = 0; k < entropy_bounds_.size(); ++k)
     record.entropy_change -= entropy_bounds_[k] * gained[k];
   record.received = previous.received;
@@ -154,16 +183,18 @@ step_record monitor::check(const field& u, double dt, const step_record& previou
   return record;
 }
 
-/// The sums of the gains of all ends at each face, [face][invariant].
+/// The sums of the gains of all ends at each face, [face][invariant], and what a force holds at the ends of
+/// the velocities, which is the last gain.
 std::vector<double> monitor::gained_through_faces(const std::vector<double>& gains) const {
   const std::size_t count = invariants_.size();
-  std::vector<exact_sum> sums(ends_.size() * count);
+  std::vector<exact_sum> sums(ends_.size() * count + 1);
   std::size_t first = 0;
   for (std::size_t face = 0; face < ends_.size(); ++face) {
     for (std::size_t k = first; k < std::min(first + ends_[face] * count, gains.size()); ++k)
       sums[face * count + (k - first) % count].add(gains[k]);
     first += ends_[face] * count;
   }
+  if (first < gains.size()) sums.back().add(gains[first]);
   return global_values(setup_.processes(), sums);
 }
 

@@ -4,6 +4,7 @@
 #include <apsis/phase/field.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
+#include <apsis/run/velocity_watch.hpp>
 
 #include <cstddef>
 #include <memory>
@@ -27,7 +28,11 @@ class monitor {
 
   /// Returns the record of the state after a step of length dt, whose gains through the faces are those of
   /// the step; without step and t. Throws numerical_error at the first number that is not finite.
-  step_record check(const field& u, double dt, const step_record& previous) const;
+  step_record check(const field& u, double dt, const step_record& previous);
+
+  /// Enters what the last start() or check() found about the velocities of a gas into `summary`; see
+  /// velocity_watch::update() for warnings and errors. `u`: the state that was checked.
+  void watch_velocities(const field& u, const step_record& last, run_summary& summary);
 
  private:
   struct totals {
@@ -36,6 +41,8 @@ class monitor {
     long negative = 0;
     bool violated = false;  ///< the condition of the model, in some cell
     int violating = -1;     ///< the first such cell of this process
+    velocity_extremes velocities;
+    velocity_margins margins;  ///< of all processes
   };
   struct partial;
   void check_cells(const field& u, int begin, int end, partial& own) const;
@@ -43,6 +50,7 @@ class monitor {
   totals sum(const field& u) const;
   std::optional<condition_violation> violation_in(const field& u, const totals& t) const;
   std::vector<double> gained_through_faces(const std::vector<double>& gains) const;
+  void keep_velocities(const totals& t);
   void compare(const totals& t, const std::vector<double>& before, const std::vector<double>& gained,
                step_record& record) const;
 
@@ -53,6 +61,10 @@ class monitor {
   std::vector<double> entropy_bounds_;  ///< of what is received, [face][invariant]
   std::unique_ptr<per_thread<partial>> parts_;
   std::vector<double> invariants_, scales_;  ///< of the initial state
+  velocity_watch velocities_;
+  velocity_extremes extremes_;  ///< of the last state
+  velocity_margins margins_;    ///< of all processes
+  double held_ = 0.0;           ///< mass held at the ends of the velocities in the last step
 };
 
 }  // namespace apsis

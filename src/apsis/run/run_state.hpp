@@ -76,6 +76,15 @@ struct run_summary {
   double max_entropy_increase = 0.0;  ///< largest entropy_change; 0 if none was positive
   long phase_points = 0;              ///< cells × components
   double point_stages_per_s = 0.0;    ///< phase_points · stages per second of wall time, with rejected steps
+  /// Of a gas: smallest distance from a bulk velocity to an end of the velocities, in thermal speeds √T, of
+  /// all cells and steps that velocity_watch examines.
+  double velocity_room = std::numeric_limits<double>::infinity();
+  double velocity_resolution =
+      std::numeric_limits<double>::infinity();  ///< smallest thermal speed over the spacing
+  double velocity_beyond = 0.0,                 ///< largest share of the mass of a Maxwellian beyond the ends
+      velocity_missed = 0.0,                    ///< largest velocity_fit::missed; 0 if every cell was safe
+      velocity_needed = 0.0;                    ///< largest velocity that would do; 0 if the room is enough
+  double velocity_held = 0.0;  ///< mass that a force moved into the last velocities, relative to the mass
   double cpu_s = 0.0;  ///< CPU time of the calling thread in steps since the start or the last restart
 
   /// Calls visit(name, member) for every member of `self` that belongs to the result, in the order of the
@@ -94,6 +103,12 @@ struct run_summary {
     visit("max_entropy_increase", self.max_entropy_increase);
     visit("phase_points", self.phase_points);
     visit("point_stages_per_s", self.point_stages_per_s);
+    visit("velocity_room", self.velocity_room);
+    visit("velocity_resolution", self.velocity_resolution);
+    visit("velocity_beyond", self.velocity_beyond);
+    visit("velocity_missed", self.velocity_missed);
+    visit("velocity_needed", self.velocity_needed);
+    visit("velocity_held", self.velocity_held);
   }
 };
 

@@ -15,6 +15,7 @@
 #include <apsis/method/convexity.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/run/initial_file.hpp>
+#include <apsis/run/velocity_watch.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <algorithm>
@@ -264,8 +265,6 @@ field run_setup::initial_state() const {
     refuse(config_, "initial.from",
            "the case has no initial data (they were given in Python); run it with apsis.run(case, "
            "initial=...), or continue from a checkpoint");
-  if (const std::string problem = unsupported_boundary(config_, *equation); !problem.empty())
-    log::warning(problem);
   state_of_file read;
   together(processes(), [&] {
     if (config_.prescribed.file.empty())
@@ -277,7 +276,10 @@ field run_setup::initial_state() const {
 }
 
 field run_setup::checked(field u, bool computed) const {
-  together(processes(), [&] { check_cells(u, computed); });
+  std::vector<std::string> warnings;
+  together(processes(), [&] { warnings = check_emitted_gas(config_, *equation); });
+  for (const std::string& warning : warnings) log::warning(warning);
+  check_cells(u, computed);
   std::vector<double> lowest, highest;
   together(processes(), [&] { std::tie(lowest, highest) = extremes_of_fields(*equation, mesh(), u); });
   for (double& value : highest) value = -value;
@@ -290,16 +292,49 @@ field run_setup::checked(field u, bool computed) const {
 }
 
 void run_setup::check_cells(const field& u, bool computed) const {
-  for (int cell = 0; cell < u.cells(); ++cell) {
-    interruptible::poll();
-    if (mesh().solid(cell) >= 0) continue;
-    const unsupported_initial_data found = equation->check_supported(u.row(cell));
-    if (found.problem.empty()) continue;
-    const std::string problem = fmt::format("{} [cell {}]", found.problem, number_in_whole_mesh(cell));
-    if (!computed || found.key.rfind("velocity.", 0) != 0) refuse(config_, found.key, problem);
-    log::warning(problem);
-    break;
-  }
+  const auto support = support_of(*equation);
+  std::vector<double> omega(support ? static_cast<std::size_t>(support->molecules().moment_count()) : 0),
+      worst(omega.size());
+  double missed = 0.0;
+  int worst_cell = -1;
+  together(processes(), [&] {
+    for (int cell = 0; cell < u.cells(); ++cell) {
+      interruptible::poll();
+      if (mesh().solid(cell) >= 0) continue;
+      fluid_state state;
+      std::optional<velocity_fit> fit;
+      if (support) {
+        support->molecules().moments(u.row(cell), 0, 1, omega.data());
+        if (support->is_safe(support->margins(omega.data()))) continue;
+        fit = support->fit_of_moments(omega.data(), state);
+      }
+      if (!fit || fit->missed > velocity_limits::bad) {
+        const unsupported_initial_data found =
+            fit ? velocity_problem(support->molecules(), state, *fit, words_of(config_, "the data"))
+                : equation->check_supported(u.row(cell));
+        if (!found.problem.empty() && !(computed && fit))
+          refuse(config_, found.key, fmt::format("{} [cell {}]", found.problem, number_in_whole_mesh(cell)));
+      }
+      if (!fit || !(fit->missed > missed)) continue;
+      missed = fit->missed;
+      worst = omega;
+      worst_cell = cell;
+    }
+  });
+  if (support) warn_of_velocities(*support, missed, worst_cell, worst);
+}
+
+/// Warns of the cell of all processes whose Maxwellian the velocities miss most, if they miss too much.
+void run_setup::warn_of_velocities(const velocity_support& support, double missed, int cell,
+                                   const std::vector<double>& omega) const {
+  const bool mine = cell >= 0 && missed > velocity_limits::good;
+  const auto found = worst_of_all(processes(), missed, mine ? number_in_whole_mesh(cell) : -1, omega);
+  if (!found) return;
+  fluid_state state;
+  const auto fit = support.fit_of_moments(found->omega.data(), state);
+  const auto problem =
+      velocity_problem(support.molecules(), state, *fit, words_of(config_, "the data")).problem;
+  log::warning(fmt::format("{} [cell {}]", problem, found->cell));
 }
 
 std::optional<field> run_setup::exact_state(double t) const {

@@ -4,6 +4,7 @@
 #include <apsis/method/method.hpp>
 #include <apsis/method/multistep.hpp>
 #include <apsis/model/model_registry.hpp>
+#include <apsis/model/velocity_support.hpp>
 #include <apsis/run/simulation.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
 
@@ -101,6 +102,8 @@ class run_setup {
  private:
   const initial_data& data() const;
   void check_cells(const field& u, bool computed) const;
+  void warn_of_velocities(const velocity_support& support, double missed, int cell,
+                          const std::vector<double>& omega) const;
   void build_space(std::shared_ptr<communicator> processes);
   void set_epsilon();
   void set_prescribed_data();

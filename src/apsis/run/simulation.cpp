@@ -68,6 +68,7 @@ struct simulation::impl {
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
+    watch.watch_velocities(state, first, totals);
     totals.phase_points = static_cast<long>(setup.whole_mesh().size()) * state.components();
     if (march.done()) return;
     warn_of_dense_stages(setup);
@@ -282,6 +283,7 @@ const step_record& simulation::advance() {
   run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.totals.cpu_s += thread_seconds() - cpu;
   check_promises(run.promises, run.last, run.setup, run.rounding);
+  run.watch.watch_velocities(run.state, run.last, run.totals);
   return run.last;
 }
 

@@ -68,7 +68,7 @@ force::force(const model& equation, std::shared_ptr<domain> space, acceleration 
     if (!(bound >= 0.0) || std::isinf(bound))
       throw input_error(
           fmt::format("the largest acceleration is {} (a finite number is needed); change it", bound));
-  of_cells_.resize(size(space_->mesh().size()) * invariants_);
+  of_cells_.resize(size(space_->mesh().size()) * (invariants_ + 1));
   given_.resize(invariants_);
 }
 
@@ -104,7 +104,9 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
       });
     });
   });
-  given_ = global_integrals(*space_, of_cells_, invariants_);
+  given_ = global_integrals(*space_, of_cells_, invariants_ + 1);
+  held_ = given_.back();
+  given_.pop_back();
   failure.rethrow();
 }
 
@@ -126,6 +128,7 @@ void force::load_acceleration(double t, int begin, int end, workspace& here) con
 void force::add_cells(double t, const field& u, std::span<const target<field, double>> targets, int begin,
                       int end, workspace& here) const {
   load_acceleration(t, begin, end, here);
+  for (int cell = begin; cell < end; ++cell) sums_of(cell)[invariants_] = 0.0;
   std::fill(here.sum.begin(), here.sum.end(), 0.0);
   for (int direction = 0; direction < static_cast<int>(lattice_.points.size()); ++direction)
     if (acceleration_.largest[size(direction)] > 0.0) add_direction(u, {direction, begin, end}, here);
@@ -174,8 +177,14 @@ void force::add_direction(const field& u, const place& at, workspace& here) cons
     const int last = upper ? n - 1 : 0;
     double* change = here.change.data() + static_cast<std::ptrdiff_t>(last) * width;
     upwind::fluxes_of_cell(run_of(last, 1), limited_, here.in.data(), here.out.data());
-    for (std::size_t k = 0; k < size(width); ++k)
-      if ((here.forward[k] != 0.0) == upper) change[k] += here.per_cell[k] * here.out[k];
+    for (std::size_t k = 0; k < size(width); ++k) {
+      if ((here.forward[k] != 0.0) != upper) continue;
+      change[k] += here.per_cell[k] * here.out[k];
+      const int lane = static_cast<int>(k) % lanes;
+      const int cell = at.begin + static_cast<int>(k) / lanes;
+      sums_of(cell)[invariants_] +=
+          mass_at(static_cast<int>(first_of(lane) + last * apart), here.per_cell[k] * here.in[k]);
+    }
   }
   for (int cell = 0; cell < cells; ++cell)
     for (int lane = 0; lane < lanes; ++lane) {
@@ -185,11 +194,17 @@ void force::add_direction(const field& u, const place& at, workspace& here) cons
     }
 }
 
+/// Of the functions on the velocities, the first is the density of the mass.
+double force::mass_at(int component, double value) const {
+  const auto weights = equation_.velocities().weights();
+  return component < equation_.velocities().size() ? weights[size(component)] * value : 0.0;
+}
+
 void force::store(const field& u, std::span<const target<field, double>> targets, int begin, int end,
                   workspace& here) const {
   for (int cell = begin; cell < end; ++cell) {
     const double* change = here.sum.data() + static_cast<std::ptrdiff_t>(cell - begin) * u.stride();
-    equation_.invariant_densities(change, of_cells_.data() + size(cell) * invariants_);
+    equation_.invariant_densities(change, sums_of(cell));
     for (const auto& to : targets) {
       double* acc = to.acc->row(cell);
       for (int k = 0; k < u.components(); ++k) {

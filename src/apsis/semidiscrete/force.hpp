@@ -34,6 +34,9 @@ class force {
   void add(double t, const field& u, std::span<const target<field, double>> targets) const;
   /// Returns the invariants that the last add() gave per unit of time and β.
   const std::vector<double>& given() const { return given_; }
+  /// Returns the mass per unit of time and β that entered the last points of the lattice in the last add(), in
+  /// the direction of the force: it cannot leave.
+  double held() const { return held_; }
   /// Returns Σ_k |a_k|/Δv with the bounds.
   double rate() const;
 
@@ -44,6 +47,11 @@ class force {
                  workspace& here) const;
   void load_acceleration(double t, int begin, int end, workspace& here) const;
   void add_direction(const field& u, const place& at, workspace& here) const;
+  double mass_at(int component, double value) const;
+  /// Returns what a cell is given of the invariants, and the mass that entered the last points.
+  double* sums_of(int cell) const {
+    return of_cells_.data() + static_cast<std::size_t>(cell) * (invariants_ + 1);
+  }
   void store(const field& u, std::span<const target<field, double>> targets, int begin, int end,
              workspace& here) const;
 
@@ -55,6 +63,7 @@ class force {
   std::shared_ptr<const reconstruction> scheme_;
   std::size_t invariants_;
   mutable std::vector<double> of_cells_, given_;
+  mutable double held_ = 0.0;
   std::unique_ptr<per_thread<workspace>> workspaces_;
 };
 

@@ -136,6 +136,7 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
     failure.run([&] { source_->add(t, u, targets); });
     given.insert(given.end(), source_->given().begin(), source_->given().end());
   }
+  if (force_) given.push_back(force_->held());
   failure.rethrow();
   // One process keeps what all have received together.
   if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);

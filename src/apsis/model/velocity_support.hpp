@@ -1,0 +1,93 @@
+#pragma once
+
+#include <apsis/model/gas.hpp>
+#include <apsis/model/gas_scales.hpp>
+#include <apsis/model/model.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// Limits of velocity_fit::missed: the one rule for data, walls, sources and states during a run
+/// (docs/velocities.md).
+namespace velocity_limits {
+inline constexpr double good = 1e-3,  ///< up to here nothing is reported
+    bad = 0.1;                        ///< beyond, data are refused and a run ends
+}  // namespace velocity_limits
+
+/// The part of a Maxwellian that discrete velocities miss. With the Gaussian G of mean u and variance T along a
+/// direction, and c = (v − u)/√T, sums over the velocities miss |Σ w G − 1|, |Σ w c G| and |Σ w c² G − 1|.
+struct velocity_fit {
+  double missed = 0.0;  ///< the largest of the three, of all directions
+  double beyond =
+      0.0;            ///< share of the mass beyond the ends of the velocities, the largest of all directions
+  int direction = 0;  ///< direction with the largest `missed`
+  bool ends = false;  ///< at least half of `missed` is energy beyond the ends; otherwise the spacing
+};
+
+/// Squares of the two ratios that decide how well velocities represent a Maxwellian; smaller is worse.
+struct velocity_margins {
+  double room,     ///< smallest (distance from u_k to an end of the velocities)²/T
+      resolution;  ///< smallest T/Δv², Δv the spacing at u_k
+};
+
+/// How well the velocities of a gas represent Maxwellians. A line of velocities ends half a weight beyond its
+/// last points, a uniform one at ±max.
+class velocity_support {
+ public:
+  /// `of` must outlive the object.
+  explicit velocity_support(const gas& of);
+
+  /// Returns what the velocities miss of the Maxwellian of an admissible state.
+  velocity_fit fit(const fluid_state& state) const;
+  /// Returns fit() of the moments ω, whose state is also stored; nothing if it is not admissible.
+  std::optional<velocity_fit> fit_of_moments(const double* omega, fluid_state& state) const;
+  /// Returns the margins of the moments ω, in a few operations; infinite where ρ ≤ 0 or T ≤ 0.
+  velocity_margins margins(const double* omega) const;
+  static constexpr double safe_room = 6.0,  ///< in thermal speeds
+      safe_resolution = 1.0;                ///< thermal speeds per spacing
+  /// Whether both margins are finite and beyond these. Uniform velocities then miss less than 3e-7, other
+  /// sets less than velocity_limits::good.
+  static bool is_safe(const velocity_margins& of);
+  const gas& molecules() const { return gas_; }  ///< the gas
+
+ private:
+  /// The velocities of a direction.
+  struct line {
+    double lower, upper;       ///< ends
+    double first, per_gap;     ///< first velocity, and entries of `gaps` per unit of velocity
+    std::vector<double> gaps;  ///< squares of the spacing; one of a uniform line
+  };
+  /// Square of the widest spacing at u and at u ± 2 √T.
+  static double gap_square(const line& of, double u, double T);
+
+  const gas& gas_;
+  std::vector<line> lines_;
+};
+
+/// Returns the support of the velocities of a gas; nothing for models whose equilibria are no Maxwellians.
+std::optional<velocity_support> support_of(const model& equation);
+
+/// Words of a message about velocities.
+struct velocity_words {
+  std::string subject;                 ///< "the data"
+  const gas_scales* scales = nullptr;  ///< adds values in SI units
+  bool from_file = false;              ///< the velocities are given, not velocity.max
+  double needed = 0.0;                 ///< largest velocity that would do, if more than the state needs
+};
+/// Returns the key that must change, and the problem with what would do.
+unsupported_initial_data velocity_problem(const gas& of, const fluid_state& state, const velocity_fit& fit,
+                                          const velocity_words& words);
+
+/// Returns the largest velocity that a Maxwellian needs along a direction: |u| + 6 √T, beyond which lie 1e-7
+/// of its energy.
+double velocity_needed(double u, double T);
+
+/// Returns the reason if moments have no equilibrium because the bulk velocity of a gas has reached an end of
+/// its velocities; "" otherwise.
+std::string why_beyond_velocities(const model& equation, const double* omega);
+
+}  // namespace apsis

@@ -1,0 +1,216 @@
+#include <apsis/run/velocity_watch.hpp>
+
+#include <apsis/config/boundary_support.hpp>
+#include <apsis/config/force_reader.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+constexpr double least_share_of_density = 1e-3, fewest_collisions = 0.1;
+
+/// Of the gas in the whole mesh.
+double volume_of_gas(const run_setup& setup) {
+  long cells = 0;
+  for (const cell_range& range : setup.whole_mesh().fluid()) cells += range.end - range.begin;
+  return static_cast<double>(cells) * setup.cell_volume();
+}
+
+/// The negative part of the mass of a row.
+double negative_mass(const gas& molecules, const double* row) {
+  const auto weights = molecules.velocities().weights();
+  double sum = 0.0;
+  for (std::size_t j = 0; j < weights.size(); ++j) sum += weights[j] * std::max(-row[j], 0.0);
+  return sum;
+}
+
+bool has_walls(const case_config& config) {
+  if (!config.solids.empty()) return true;
+  for (std::size_t k = 0; k < 2 * config.space.cells.size(); ++k) {
+    const std::string kind = config.faces[k].kind.value_or(config.space.boundary);
+    if (kind == "diffuse" || kind == "symmetry") return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void velocity_extremes::add(const velocity_extremes& other) {
+  if (std::tie(other.margins.room, other.room_cell) < std::tie(margins.room, room_cell)) {
+    margins.room = other.margins.room;
+    room_cell = other.room_cell;
+  }
+  if (std::tie(other.margins.resolution, other.resolution_cell) <
+      std::tie(margins.resolution, resolution_cell)) {
+    margins.resolution = other.margins.resolution;
+    resolution_cell = other.resolution_cell;
+  }
+}
+
+velocity_watch::velocity_watch(const run_setup& setup)
+    : setup_(setup), support_(support_of(*setup.equation)) {
+  if (!support_) return;
+  epsilon_ = setup.epsilon_at_centres();
+  volume_ = volume_of_gas(setup);
+}
+
+void velocity_watch::set_mass(double mass) {
+  least_density_ = least_share_of_density * mass / volume_;
+}
+
+bool velocity_watch::collides(int cell, const double* omega) const {
+  const auto& relaxation = dynamic_cast<const relaxation_model&>(*setup_.equation);
+  return relaxation.rate(omega) * setup_.config().time.end >=
+         fewest_collisions * epsilon_[static_cast<std::size_t>(cell)];
+}
+
+void velocity_watch::look(const double* omega, int cell, velocity_extremes& own) const {
+  if (!(omega[0] >= least_density_)) return;
+  const velocity_margins here = support_->margins(omega);
+  if (!(here.room <= own.margins.room) && !(here.resolution <= own.margins.resolution)) return;
+  if (velocity_support::is_safe(here) || collides(cell, omega)) own.add({here, cell, cell});
+}
+
+/// The state of a cell of one process, `none` on the others; nothing where an unstable step has made it
+/// negative.
+std::optional<velocity_watch::candidate> velocity_watch::shared(int cell, const field& u) const {
+  const bool mine = cell != velocity_extremes::none;
+  const gas& molecules = support_->molecules();
+  std::vector<double> omega(static_cast<std::size_t>(molecules.moment_count()));
+  if (mine) molecules.moments(u.row(cell), 0, 1, omega.data());
+  omega.push_back(mine ? negative_mass(molecules, u.row(cell)) : 0.0);
+  const auto worst =
+      worst_of_all(setup_.processes(), 1.0, mine ? setup_.number_in_whole_mesh(cell) : -1, omega);
+  candidate found{worst ? worst->cell : -1, {}, {}};
+  constexpr double harmless = 0.01;
+  if (!worst || worst->omega.back() > harmless * worst->omega.front()) return std::nullopt;
+  const auto fit = support_->fit_of_moments(worst->omega.data(), found.state);
+  if (!fit) return std::nullopt;
+  found.fit = *fit;
+  return found;
+}
+
+/// The states of cells that fit worse than those before; their numbers enter the totals.
+std::vector<velocity_watch::candidate> velocity_watch::new_extremes(const velocity_extremes& mine,
+                                                                    const velocity_margins& margins,
+                                                                    const field& u,
+                                                                    run_summary& totals) const {
+  const double room = std::sqrt(margins.room), resolution = std::sqrt(margins.resolution);
+  const bool less_room = room < totals.velocity_room, coarser = resolution < totals.velocity_resolution;
+  std::vector<candidate> found;
+  const auto add = [&](bool worse, int cell, double own, double of_all) {
+    if (!worse) return;
+    if (const auto one = shared(own == of_all ? cell : velocity_extremes::none, u)) found.push_back(*one);
+  };
+  if (less_room) {
+    totals.velocity_room = room;
+    totals.velocity_beyond = std::max(totals.velocity_beyond, 0.5 * std::erfc(room / std::numbers::sqrt2));
+  }
+  if (coarser) totals.velocity_resolution = resolution;
+  add(less_room && room < velocity_support::safe_room, mine.room_cell, mine.margins.room, margins.room);
+  add(coarser && resolution < velocity_support::safe_resolution, mine.resolution_cell,
+      mine.margins.resolution, margins.resolution);
+  for (const candidate& one : found) {
+    totals.velocity_beyond = std::max(totals.velocity_beyond, one.fit.beyond);
+    totals.velocity_missed = std::max(totals.velocity_missed, one.fit.missed);
+    for (int k = 0; k < support_->molecules().dimensions(); ++k)
+      totals.velocity_needed = std::max(totals.velocity_needed, velocity_needed(one.state.u[k], one.state.T));
+  }
+  return found;
+}
+
+void velocity_watch::start(const velocity_extremes& mine, const velocity_margins& margins, const field& u,
+                           run_summary& totals) {
+  if (!active()) return;
+  for (const candidate& one : new_extremes(mine, margins, u, totals))
+    if (one.fit.missed > velocity_limits::good) warned(one.fit) = true;
+}
+
+void velocity_watch::update(const velocity_extremes& mine, const velocity_margins& margins, const field& u,
+                            const step_record& at, run_summary& totals) {
+  if (!active()) return;
+  for (const candidate& one : new_extremes(mine, margins, u, totals)) judge(one, u, at);
+}
+
+void velocity_watch::judge(const candidate& worst, const field& u, const step_record& at) {
+  if (!(worst.fit.missed > velocity_limits::good)) return;
+  const bool hopeless = worst.fit.ends && worst.fit.missed > velocity_limits::bad;
+  if (!hopeless && warned(worst.fit)) return;
+  warned(worst.fit) = true;
+  velocity_words words =
+      words_of(setup_.config(),
+               hopeless ? "the gas" : fmt::format("the gas in cell {} at t = {:.6g}", worst.cell, at.t));
+  words.needed = velocity_that_would_do(u, at);
+  const std::string problem = velocity_problem(support_->molecules(), worst.state, worst.fit, words).problem;
+  if (hopeless) throw numerical_error(problem, {at.step, at.t, worst.cell, worst.state.T});
+  log::warning(problem);
+}
+
+void velocity_watch::add_held(double share, const field& u, const step_record& at,
+                              run_summary& totals) const {
+  constexpr double much = 0.01;
+  const double before = totals.velocity_held;
+  totals.velocity_held += share;
+  if (!(before <= much && totals.velocity_held > much)) return;
+  const double needed = velocity_that_would_do(u, at);
+  log::warning(
+      fmt::format("the force moves the gas into the ends of the velocity grid (a fraction {:.2g} of its mass "
+                  "until t = {:.6g}, "
+                  "which cannot leave there); give velocity.max = {:.3g} or more",
+                  totals.velocity_held, at.t, needed));
+}
+
+/// The largest velocity that the gas needs now, and where its streams come to rest: relative to walls, or
+/// without walls relative to the mean velocity, where a force may also accelerate it until the end.
+double velocity_watch::velocity_that_would_do(const field& u, const step_record& at) const {
+  const gas& molecules = support_->molecules();
+  const auto d = static_cast<std::size_t>(molecules.dimensions());
+  std::array<double, 3> rest{}, speed{};
+  if (!has_walls(setup_.config())) {
+    for (std::size_t k = 0; k < d; ++k) rest[k] = at.total[1 + k] / at.total[0];
+    if (const auto of = make_acceleration(setup_.config(), *setup_.equation))
+      for (std::size_t k = 0; k < d; ++k) speed[k] = of->largest[k] * (setup_.config().time.end - at.t);
+  }
+  double needed = 0.0;
+  std::array<double, 5> omega{};
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    if (setup_.mesh().solid(cell) >= 0) continue;
+    molecules.moments(u.row(cell), 0, 1, omega.data());
+    const fluid_state s = molecules.state(omega.data());
+    if (!(s.rho >= least_density_) || !s.admissible()) continue;
+    double square = 0.0;
+    for (std::size_t k = 0; k < d; ++k) square += (s.u[k] - rest[k]) * (s.u[k] - rest[k]);
+    for (std::size_t k = 0; k < d; ++k)
+      needed = std::max({needed, velocity_needed(std::abs(s.u[k]) + speed[k], s.T),
+                         velocity_needed(rest[k], s.T + square / molecules.degrees_of_freedom())});
+  }
+  std::array<double, 1> negative = {-needed};
+  setup_.processes().lowest(negative);
+  return -negative[0];
+}
+
+std::optional<worst_velocities> worst_of_all(communicator& processes, double missed, long number,
+                                             const std::vector<double>& omega) {
+  std::array<double, 1> most = {number < 0 ? unlimited : -missed};
+  processes.lowest(most);
+  std::array<double, 1> first = {number >= 0 && -missed == most[0] ? static_cast<double>(number) : unlimited};
+  const double own = first[0];
+  processes.lowest(first);
+  if (first[0] == unlimited) return std::nullopt;
+  worst_velocities found{static_cast<long>(first[0]), omega};
+  if (own != first[0]) std::fill(found.omega.begin(), found.omega.end(), unlimited);
+  processes.lowest(found.omega);
+  return found;
+}
+
+}  // namespace apsis

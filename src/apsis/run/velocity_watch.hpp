@@ -1,0 +1,85 @@
+#pragma once
+
+#include <apsis/model/velocity_support.hpp>
+#include <apsis/phase/field.hpp>
+#include <apsis/run/run_state.hpp>
+#include <apsis/run/setup.hpp>
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace apsis {
+
+/// The cells of this process whose Maxwellians fit the velocities worst.
+struct velocity_extremes {
+  static constexpr int none = std::numeric_limits<int>::max();
+
+  velocity_margins margins = {std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::infinity()};
+  int room_cell = none, resolution_cell = none;
+
+  /// Adds those of other cells. Of equal cells the first counts, in whatever order they are added.
+  void add(const velocity_extremes& other);
+};
+
+/// Watches whether the velocities of a gas represent the Maxwellian of every cell in a run
+/// (docs/velocities.md). Cells with less than a thousandth of the mean density are not watched, nor those
+/// whose molecules collide less than a tenth of a time until time.end: there the Maxwellian has no effect.
+class velocity_watch {
+ public:
+  /// `setup` must outlive the object.
+  explicit velocity_watch(const run_setup& setup);
+
+  /// Whether the model is a gas.
+  bool active() const { return support_.has_value(); }
+  /// Sets the mass of the gas in the domain.
+  void set_mass(double mass);
+  /// Adds a cell with moments ω to `own`.
+  void look(const double* omega, int cell, velocity_extremes& own) const;
+
+  /// Enters the worst cells of all processes after a step into the totals. Warns when they miss more than
+  /// velocity_limits::good for the first time. Throws numerical_error when more than velocity_limits::bad
+  /// lies beyond the ends. `margins`: the smallest of all processes. Collective.
+  void update(const velocity_extremes& mine, const velocity_margins& margins, const field& u,
+              const step_record& at, run_summary& totals);
+  /// The same for the initial state without warnings, which the setup gives.
+  void start(const velocity_extremes& mine, const velocity_margins& margins, const field& u,
+             run_summary& totals);
+  /// Adds a share of the mass that a force moved into the last velocities in a step. Warns when it exceeds
+  /// one percent. Collective.
+  void add_held(double share, const field& u, const step_record& at, run_summary& totals) const;
+
+ private:
+  struct candidate {
+    long cell;
+    fluid_state state;
+    velocity_fit fit;
+  };
+  bool collides(int cell, const double* omega) const;
+  std::vector<candidate> new_extremes(const velocity_extremes& mine, const velocity_margins& margins,
+                                      const field& u, run_summary& totals) const;
+  std::optional<candidate> shared(int cell, const field& u) const;
+  void judge(const candidate& worst, const field& u, const step_record& at);
+  double velocity_that_would_do(const field& u, const step_record& at) const;
+  bool& warned(const velocity_fit& fit) { return fit.ends ? warned_of_ends_ : warned_of_spacing_; }
+
+  const run_setup& setup_;
+  std::optional<velocity_support> support_;
+  std::vector<double> epsilon_;  ///< of the cells of this process
+  double volume_ = 1.0;          ///< of the gas
+  double least_density_ = 0.0;
+  bool warned_of_ends_ = false, warned_of_spacing_ = false;
+};
+
+/// The cell of all processes whose Maxwellian the velocities miss most.
+struct worst_velocities {
+  long cell;                  ///< its number in the whole mesh
+  std::vector<double> omega;  ///< its moments
+};
+/// Returns it from what they miss in the worst cell of this process, the number of that cell in the whole
+/// mesh, negative if there is none, and its moments; nothing where no process has a cell. Collective.
+std::optional<worst_velocities> worst_of_all(communicator& processes, double missed, long number,
+                                             const std::vector<double>& omega);
+
+}  // namespace apsis

@@ -1,5 +1,5 @@
-// The part of a Maxwellian that velocities miss: against the normal distribution, and the cheap bounds against the
-// sums.
+// The part of a Maxwellian that velocities miss: against the normal distribution, and the cheap bounds
+// against the sums.
 #include <apsis/model/velocity_support.hpp>
 
 #include <apsis/model/gas_model.hpp>

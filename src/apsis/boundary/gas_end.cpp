@@ -77,13 +77,13 @@ void gas_end::incoming_beside(const face& where, double t, const position& at, c
       0.5 * state.rho * (square + molecules_.degrees_of_freedom() * state.T);
   if (state.admissible() && molecules_.equilibrium(omega.data(), values)) return;
   if (!state.admissible() || !(outward(state, where) > sound(state.T)))
-    fail(
-        fmt::format("no Maxwellian has the state outside of a boundary '{}' (density {:.6g}, normal velocity "
-                    "{:.6g}, temperature {:.6g}{}); change its values, or use more velocity.points or a larger "
-                    "velocity.max",
-                    name_, state.rho, outward(state, where), state.T,
-                    state.admissible() ? ": " + molecules_.why_inadmissible(omega.data()) : ""),
-        t);
+    fail(fmt::format(
+             "no Maxwellian has the state outside of a boundary '{}' (density {:.6g}, normal velocity "
+             "{:.6g}, temperature {:.6g}{}); change its values, or use more velocity.points or a larger "
+             "velocity.max",
+             name_, state.rho, outward(state, where), state.T,
+             state.admissible() ? ": " + molecules_.why_inadmissible(omega.data()) : ""),
+         t);
   // Gas that leaves faster than the velocities of the grid: nothing enters.
   std::fill_n(values, molecules_.velocities().components(), 0.0);
 }

@@ -18,8 +18,8 @@ inline constexpr double good = 1e-3,  ///< up to here nothing is reported
     bad = 0.1;                        ///< beyond, data are refused and a run ends
 }  // namespace velocity_limits
 
-/// The part of a Maxwellian that discrete velocities miss. With the Gaussian G of mean u and variance T along a
-/// direction, and c = (v − u)/√T, sums over the velocities miss |Σ w G − 1|, |Σ w c G| and |Σ w c² G − 1|.
+/// The part of a Maxwellian that discrete velocities miss. With the Gaussian G of mean u and variance T along
+/// a direction, and c = (v − u)/√T, sums over the velocities miss |Σ w G − 1|, |Σ w c G| and |Σ w c² G − 1|.
 struct velocity_fit {
   double missed = 0.0;  ///< the largest of the three, of all directions
   double beyond =

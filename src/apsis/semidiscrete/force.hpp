@@ -34,8 +34,8 @@ class force {
   void add(double t, const field& u, std::span<const target<field, double>> targets) const;
   /// Returns the invariants that the last add() gave per unit of time and β.
   const std::vector<double>& given() const { return given_; }
-  /// Returns the mass per unit of time and β that entered the last points of the lattice in the last add(), in
-  /// the direction of the force: it cannot leave.
+  /// Returns the mass per unit of time and β that entered the last points of the lattice in the last add(),
+  /// in the direction of the force: it cannot leave.
   double held() const { return held_; }
   /// Returns Σ_k |a_k|/Δv with the bounds.
   double rate() const;

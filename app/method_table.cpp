@@ -1,6 +1,9 @@
 #include "method_table.hpp"
+#include "text_table.hpp"
 
 #include <apsis/method/method.hpp>
+
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,33 +25,39 @@ std::string entry(const json& number, const std::string& none = "-") {
   return number.is_null() ? none : fmt::format("{:.4g}", number.get<double>());
 }
 
+std::vector<std::string> row_of(const json& c) {
+  const bool has_terms = c.contains("intermediate_regime") && !c["intermediate_regime"].is_null();
+  const auto whole = [&c](const char* name) { return std::to_string(c[name].get<int>()); };
+  return {c["name"].get<std::string>(),
+          whole("order"),
+          whole("stages"),
+          whole("explicit_evaluations"),
+          whole("implicit_solves"),
+          entry(c["ssp_coefficient"], "unbounded"),
+          entry(c["r_per_evaluation"]),
+          entry(c["error_constant"]),
+          whole("buffers"),
+          c["embedded"].is_null() ? "-" : std::to_string(c["embedded"]["order"].get<int>()),
+          short_data(c["ap_data"].get<std::string>()),
+          has_terms ? c["intermediate_regime"]["keeps"].get<std::string>() : std::string("-"),
+          c["purpose"].get<std::string>()};
+}
+
 }  // namespace
 
 std::string method_table(const json& all) {
-  const auto row = [](const auto&... cells) {
-    std::string line =
-        fmt::format("{:<23}{:>3}{:>4}{:>5}{:>8}{:>10}{:>7}{:>9}{:>8}{:>4}  {:<9}{:<6}{}", cells...);
-    line.erase(line.find_last_not_of(' ') + 1);
-    return line + "\n";
-  };
-  std::string out;
+  const std::vector<std::string> head = {"name",           "p",     "s",       "n_F", "solves", "r",
+                                         "r/n_F",          "error", "buffers", "emb", "AP",     "eps",
+                                         "recommended for"};
+  text_table table({true, false, false, false, false, false, false, false, false, false, true, true, true});
   for (const auto kind : all_method_kinds) {
-    out += fmt::format("{}{} methods\n", out.empty() ? "" : "\n", to_string(kind));
-    out += row("name", "p", "s", "n_F", "solves", "r", "r/n_F", "error", "buffers", "emb", "AP", "eps",
-               "recommended for");
-    for (const auto& c : all) {
-      if (c["kind"] != to_string(kind)) continue;
-      const bool has_terms = c.contains("intermediate_regime") && !c["intermediate_regime"].is_null();
-      out += row(c["name"].get<std::string>(), c["order"].get<int>(), c["stages"].get<int>(),
-                 c["explicit_evaluations"].get<int>(), c["implicit_solves"].get<int>(),
-                 entry(c["ssp_coefficient"], "unbounded"), entry(c["r_per_evaluation"]),
-                 entry(c["error_constant"]), c["buffers"].get<int>(),
-                 c["embedded"].is_null() ? "-" : std::to_string(c["embedded"]["order"].get<int>()),
-                 short_data(c["ap_data"].get<std::string>()),
-                 has_terms ? c["intermediate_regime"]["keeps"].get<std::string>() : std::string("-"),
-                 c["purpose"].get<std::string>());
-    }
+    if (kind != all_method_kinds.front()) table.add_line("");
+    table.add_line(fmt::format("{} methods", to_string(kind)));
+    table.add(head);
+    for (const auto& c : all)
+      if (c["kind"] == to_string(kind)) table.add(row_of(c));
   }
+  const std::string out = table.text();
   return out + R"(
 p order, s stages, n_F transport evaluations, solves of Q, r SSP coefficient, error: 2-norm of the residuals of
 order p + 1, buffers of the size of a state, emb: order of the embedded solution, from which the error of a step is

@@ -2,6 +2,7 @@
 #include "method_report.hpp"
 #include "method_table.hpp"
 #include "print.hpp"
+#include "text_table.hpp"
 
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/case.hpp>
@@ -10,6 +11,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/method/method_choice.hpp>
 #include <apsis/method/multistep.hpp>
 #include <apsis/model/gas_species.hpp>
 #include <apsis/model/model_registry.hpp>
@@ -173,6 +175,29 @@ json keys() {
   return all;
 }
 
+/// The table by which time.method = "auto" is chosen.
+json choices() {
+  json all = json::array();
+  for (const choice_row& row : choice_table()) {
+    const std::string steps = !row.tolerance_from ? "equal steps"
+                              : *row.tolerance_from > 0.0
+                                  ? fmt::format("tolerance >= {:g}", *row.tolerance_from)
+                                  : "any tolerance";
+    const std::string bounds = !row.signs ? "" : *row.signs ? ", bounds preserved" : ", no bounds";
+    const std::string ratio =
+        row.explicit_method ? fmt::format(", C dt/epsilon <= {:g}", resolved_ratio) : std::string();
+    all.push_back({{"name", row.method},
+                   {"description", fmt::format("{} problem, {}{}{}: {} ({})", row.problem, steps, bounds,
+                                               ratio, row.why, row.origin)},
+                   {"problem", row.problem},
+                   {"signs", row.signs ? json(*row.signs) : json(nullptr)},
+                   {"explicit", row.explicit_method},
+                   {"tolerance_from", row.tolerance_from ? json(*row.tolerance_from) : json(nullptr)},
+                   {"origin", row.origin}});
+  }
+  return all;
+}
+
 json gases() {
   json all = json::array();
   for (const gas_species& g : known_gases())
@@ -191,39 +216,39 @@ json gases() {
 }
 
 std::string family_lines() {
-  std::string out = "\nfamilies: every S of the range gives a method\n";
+  text_table table({true, true});
   for (const family_entry* f : family_entries())
-    out += fmt::format("{:<26}S = {} ... {}: {}\n", f->pattern, f->lowest, f->highest, f->description);
-  return out;
+    table.add({f->pattern, fmt::format("S = {} ... {}: {}", f->lowest, f->highest, f->description)});
+  return "\nfamilies: every S of the range gives a method\n" + table.text();
 }
 
 std::string multistep_lines() {
-  std::string out = "\nmultistep: u^(n+1) from k values before it, at equal steps (docs/methods.md)\n";
+  text_table table({true, true});
   for (const json& m : multistep())
-    out += fmt::format("{:<26}k = {}, order {}, r = {:.3g}\n", m["name"].get<std::string>(),
-                       m["steps"].get<int>(), m["order"].get<int>(), m["ssp_coefficient"].get<double>());
-  return out;
+    table.add({m["name"].get<std::string>(),
+               fmt::format("k = {}, order {}, r = {:.3g}", m["steps"].get<int>(), m["order"].get<int>(),
+                           m["ssp_coefficient"].get<double>())});
+  return "\nmultistep: u^(n+1) from k values before it, at equal steps (docs/methods.md)\n" + table.text();
 }
 
 std::string as_text(const std::string& what, const json& all) {
   if (what == "methods") return method_table(all) + family_lines() + multistep_lines();
   if (what == "multistep") return multistep_lines().substr(1);
   if (what == "families") return family_lines().substr(1);
-  std::string out;
+  text_table table({true, true});
   for (const auto& item : all) {
-    out += fmt::format("{:<34}{}\n", item["name"].get<std::string>(), item["description"].get<std::string>());
+    table.add({item["name"].get<std::string>(), item["description"].get<std::string>()});
     if (item.contains("variables"))
-      for (const auto& variable : item["variables"])
-        out += fmt::format("{:<36}{}\n", "", variable.get<std::string>());
+      for (const auto& variable : item["variables"]) table.add({"", "  " + variable.get<std::string>()});
   }
-  return out;
+  return table.text();
 }
 
 const std::map<std::string, json (*)()>& lists() {
   static const std::map<std::string, json (*)()> all = {
       {"methods", methods},       {"families", families},     {"multistep", multistep}, {"models", models},
       {"cases", cases},           {"schemes", schemes},       {"claims", claims},       {"keys", keys},
-      {"boundaries", boundaries}, {"quantities", quantities}, {"gases", gases}};
+      {"boundaries", boundaries}, {"quantities", quantities}, {"gases", gases},         {"choices", choices}};
   return all;
 }
 

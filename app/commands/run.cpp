@@ -8,7 +8,9 @@
 #include "run_report.hpp"
 #include "threads_option.hpp"
 
+#include <apsis/config/case_explanation.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/interruption.hpp>
 #include <apsis/exec/parallel.hpp>
@@ -35,7 +37,7 @@ struct run_options {
   std::vector<std::string> overrides;
   session_options session;
   std::optional<int> threads;
-  bool json = false, profile = false;
+  bool json = false, profile = false, explain = false;
 };
 
 /// "step 1234/2900  t = 0.21  min 1.20e-31"
@@ -69,6 +71,8 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
     prepared.emplace(config, options.session);
   }
   run_session& session = *prepared;
+  if (options.explain)
+    log::info(fmt::format("values of {}:\n{}", config.source, explanation_text(session.computed().config())));
   if (options.profile) profile::start();
   const run_end end = session.run();
   const simulation& computed = session.computed();
@@ -108,6 +112,8 @@ action define(CLI::App& command) {
   command.add_flag("--json", options->json, "print only one JSON object on standard output");
   add_threads(command, options->threads, "threads to use",
               "all processors for a large case and 1 for a small one");
+  command.add_flag("--explain", options->explain,
+                   "log every value of the case, with a mark whether it is given, a default or derived");
   command.add_flag("--profile", options->profile,
                    "report the time of each kernel and its fraction of the ceilings of this machine");
   command.add_option("--restart", options->session.restart, "continue from a checkpoint.h5 of the same case");

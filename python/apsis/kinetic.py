@@ -72,6 +72,7 @@ class KineticProblem:
             [number("largest_acceleration", x) for x in _listed(largest_acceleration)], reconstruction, formulation, collisions, bool(positivity),
             epsilon if callable(epsilon) else number("epsilon", epsilon))
         self.model = model
+        self._positivity = bool(positivity)
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -44,7 +44,8 @@ class RelaxationProblem:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """States u[k] at the times t[k], with the numbers of accepted and rejected steps.
+    """States u[k] at the times t[k], with the numbers of accepted and rejected steps, the name of the method, and why it was
+    chosen; reason is "" if the caller named the method.
 
     derivatives of a GeneralProblem: "jacobian", "complex steps" or "finite differences"; "" for other problems."""
 
@@ -52,15 +53,17 @@ class Solution:
     u: Array
     steps: int
     rejected: int
+    method: str = ""
+    reason: str = ""
     derivatives: str = ""
 
     def __repr__(self) -> str:
         return (f"<apsis.Solution: {len(self.t)} states of shape {self.u.shape[1:]} from t = {self.t[0]:g} to {self.t[-1]:g}, "
-                f"{self.steps} steps, {self.rejected} rejected>")
+                f"{self.steps} steps{f' of {self.method}' if self.method else ''}, {self.rejected} rejected>")
 
     def _repr_html_(self) -> str:
         return html_table({"times": f"{len(self.t)}, from {self.t[0]:g} to {self.t[-1]:g}", "shape of a state": str(self.u.shape[1:]),
-                           "steps": str(self.steps), "rejected steps": str(self.rejected)})
+                           "method": self.method, "steps": str(self.steps), "rejected steps": str(self.rejected)})
 
     def __eq__(self, other: object) -> bool:
         """Bitwise equality, including NaN."""
@@ -68,12 +71,14 @@ class Solution:
                 and np.array_equal(self.t, other.t, equal_nan=True) and np.array_equal(self.u, other.u, equal_nan=True))
 
 
-def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str | Method = "md-imex-6-3", *,
+def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str | Method = "auto", *,
               dt: float | None = None, safety: float = 1.0, startup: str = "none", startup_growth: int = 2, tolerance: float | None = None,
               threads: int | None = None) -> Solution:
     """Integrates from u0 at t[0] and returns the states at all times of t.
 
-    `method` is a name, a file or a Method. Steps have the length dt, shortened until it divides each interval, or
+    `method` is a name, a file or a Method. "auto" chooses by the table of `apsis list choices`; the choice and its reason are in the
+    result. Without dt, with forward_euler_step, admissible or positivity, it preserves bounds. A warning on standard error names a
+    method that fits where dt is unfit for ε (docs/plateaus.md). Steps have the length dt, shortened until it divides each interval, or
     safety · r · Δt_FE, 0 < safety. startup = "graded" resolves the initial layer of data out of equilibrium by short first
     steps. startup_growth, from 2 to 64, is the ratio of their successive times: with 4 they are half as many as with 2 and less accurate. With a tolerance steps are
     shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it; then
@@ -88,21 +93,36 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
         raise InputError(f"unknown start-up {startup!r} (there is no such name); give \"none\" or \"graded\"")
     if startup == "none" and startup_growth != 2:
         raise InputError("startup_growth has no meaning without a graded start; give startup = \"graded\" too, or remove it")
-    integrator = method if isinstance(method, Method) else find_method(_name(method))
+    chosen, reason = _chosen(problem, dt, startup, tolerance) if _is_auto(method) else (method, "")
+    integrator = chosen if isinstance(chosen, Method) else find_method(_name(chosen))
     steps_by = (None if dt is None else number("dt", dt), number("safety", safety, positive=True),
                 whole_number("startup_growth", startup_growth) if startup == "graded" else None,
                 None if tolerance is None else number("tolerance", tolerance))
     times_wanted = real_array("t", t).ravel().tolist()
     if isinstance(problem, KineticProblem):
         return Solution(*problem._core.integrate(real_array("u0", u0), times_wanted, integrator._core, *steps_by,
-                                                 None if threads is None else whole_number("threads", threads)))
+                                                 None if threads is None else whole_number("threads", threads)), integrator.name, reason)
     if isinstance(problem, GeneralProblem):
-        return _integrate_general(problem, real_array("u0", u0), times_wanted, integrator, steps_by)
+        return _integrate_general(problem, real_array("u0", u0), times_wanted, integrator, steps_by, reason)
     _require_functions(problem, ("transport", "moments", "equilibrium", "rate"), ("forward_euler_step", "admissible"))
     times, states, steps, rejected = _core.integrate(
         problem.transport, problem.moments, problem.equilibrium, problem.rate, problem.forward_euler_step, problem.admissible,
         number("epsilon", problem.epsilon), real_array("u0", u0), times_wanted, integrator._core, *steps_by)
-    return Solution(times, states, steps, rejected)
+    return Solution(times, states, steps, rejected, integrator.name, reason)
+
+
+def _is_auto(method: object) -> bool:
+    return isinstance(method, str) and method == "auto"
+
+
+def _chosen(problem: RelaxationProblem | GeneralProblem | KineticProblem, dt: float | None, startup: str, tolerance: float | None) -> tuple[str, str]:
+    """The method for a problem, and why."""
+    kinetic = isinstance(problem, KineticProblem)
+    # Without dt the SSP coefficient sets the step.
+    bounded = problem._positivity or (dt is None and tolerance is None) if isinstance(problem, KineticProblem) else not (
+        problem.forward_euler_step is None and problem.admissible is None)
+    tolerated = None if tolerance is None else number("tolerance", tolerance)
+    return _core.choose_method(kinetic, bounded, startup == "graded", tolerated, None)
 
 
 def _require_functions(problem: object, needed: Sequence[str], optional: Sequence[str]) -> None:
@@ -121,7 +141,8 @@ def _warn_of_cost(unknowns: int, integrator: Method) -> None:
                   "is not stiff solver=\"krylov\", or a RelaxationProblem if Q has that form", CostWarning, stacklevel=4)
 
 
-def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], integrator: Method, steps_by: tuple[Any, ...]) -> Solution:
+def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], integrator: Method, steps_by: tuple[Any, ...],
+                       reason: str) -> Solution:
     _require_functions(problem, ("collision",), ("transport", "jacobian", "forward_euler_step", "admissible"))
     if u0.size == 0:
         raise InputError("u0 has no numbers; give an initial state")
@@ -135,7 +156,7 @@ def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], i
     found = _core.integrate_general(problem.collision, derivatives.product, derivatives.curvature, problem.transport,
                                     problem.forward_euler_step, problem.admissible, bool(problem.local), problem.solver == "krylov", u0, times, integrator._core,
                                     *steps_by)
-    return Solution(*found, derivatives=derivatives.by)
+    return Solution(*found, integrator.name, reason, derivatives.by)
 
 
 def _name(method: object) -> str:

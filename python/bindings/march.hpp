@@ -3,11 +3,16 @@
 #include "arrays.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/integrate.hpp>
+#include <apsis/integrate/rate_loss.hpp>
+#include <apsis/method/method_choice.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace apsis::python {
@@ -37,6 +42,43 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
   return largest;
 }
 
+/// Returns body(), or false if a function of the user raises an exception: it may refuse a state that only an
+/// estimate meets, and the integration reports all others. Interrupts are not suppressed.
+template <class Body>
+bool without_exceptions(const Body& body) {
+  try {
+    return body();
+  } catch (py::error_already_set& raised) {
+    const py::gil_scoped_acquire lock;
+    if (!raised.matches(PyExc_Exception)) throw;
+    return false;
+  }
+}
+
+/// Warns on standard error if the method loses terms of size ε in steps of the given length, estimated from u
+/// and again at the times of the results (rate_loss.hpp). Returns whether it warned.
+template <class Problem, class Difference>
+bool warn_of_loss(Problem& problem, const typename Problem::state& u, double t, double end, const method& m,
+                  const step_choice& choice, const rate_response& response, bool layer,
+                  const Difference& difference) {
+  const double dt = std::min(*choice.dt, end - t);
+  const auto found = find_rate_loss(problem, t, u, dt, response, difference, layer);
+  if (!found) return false;
+  const loss_verdict verdict = judge_loss(*found, 0.0, end - t, choice.tolerance);
+  if (!verdict.large) return false;
+  std::string remedy = "give a smaller dt";
+  for (const choice_row& row : choice_table()) {
+    const auto other = find_rate_response(row.method);
+    if (!other || row.method == m.name || row.tolerance_from) continue;
+    const auto left = find_rate_loss(problem, t, u, dt, *other, difference, layer);
+    if (!left || judge_loss(*left, 0.0, end - t, {}).expected > 0.1 * verdict.expected) continue;
+    remedy = "choose method = \"" + row.method + "\", or a smaller dt";
+    break;
+  }
+  log::warning(describe_loss(m.name, *found, t, dt, end, verdict.expected) + "; " + remedy);
+  return true;
+}
+
 /// Integrates u from t[0] through t[1], t[2], …; record(u) is called at each of these times, and check()
 /// after each step. `limited`: the problem knows Δt_FE. Throws what the integrator throws, and input_error
 /// if the step size is unknown.
@@ -57,8 +99,17 @@ step_count march_through(Problem& problem, typename Problem::state& u, const std
   std::optional<step_controller<double>> control;
   if (choice.tolerance) control.emplace(*choice.tolerance, estimate_of(m).order);
   const auto observe = [&check](long, double, double, const auto&) { check(); };
+  // Equal steps alone: with a tolerance the estimated error shortens them.
+  const bool watched = choice.dt && !choice.tolerance && !collides_exactly(problem);
+  const auto response = watched ? find_rate_response(m) : std::nullopt;
+  bool warned = false;
   step_count count;
   for (std::size_t k = 1; k < t.size(); ++k) {
+    if (response && !warned)
+      warned = without_exceptions([&] {
+        return warn_of_loss(problem, u, t[k - 1], t.back(), m, choice, *response, k == 1 && !choice.growth,
+                            difference);
+      });
     const auto start = choice.growth && k == 1 ? rule.with(startup::graded, *choice.growth) : rule;
     const auto done =
         control ? integrate_to_tolerance(march, u, t[k - 1], t[k], start, *control, difference, observe)

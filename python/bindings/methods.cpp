@@ -6,8 +6,10 @@
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/export.hpp>
 #include <apsis/method/family_registry.hpp>
+#include <apsis/method/method_choice.hpp>
 #include <apsis/method/order_conditions.hpp>
 
+#include <optional>
 #include <string>
 
 #include <pybind11/stl.h>
@@ -112,6 +114,11 @@ py::dict certificate_of(const method& m) {
 }  // namespace
 
 void bind_methods(py::module_& m) {
+  m.def("choose_method", [](bool space, bool signs, bool graded, std::optional<double> tolerance,
+                            std::optional<double> ratio) {
+    const method_choice chosen = choose_method({space, signs, graded, tolerance, ratio, ratio});
+    return py::make_tuple(chosen.method, chosen.reason);
+  });
   py::class_<method>(m, "Method")
       .def_readonly("name", &method::name)
       .def_readonly("title", &method::title)

@@ -81,7 +81,6 @@ const std::vector<bad_case> all = {
     {"missing_cells", "cells = 40\n", "", "5:1", "key 'space.cells' is missing"},
     {"missing_velocity_max", "max = 15.0\n", "", "9:1", "key 'velocity.max' is missing"},
     {"missing_model", "name = \"bgk\"\n", "", "1:1", "key 'model.name' is missing"},
-    {"missing_method", "method = \"md-imex-3-2\"\n", "", "12:1", "key 'time.method' is missing"},
     {"missing_end", "end = 0.5\n", "", "12:1", "key 'time.end' is missing"},
     {"missing_step", "cfl = 0.04\n", "", "12:1", "no step size is given"},
     {"text_for_integer", "cells = 40", "cells = \"40\"", "6:1", "an integer is needed"},

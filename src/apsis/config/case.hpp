@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct solid_table {
 struct case_config {
   std::string source;                          ///< file or name of the built-in case
   std::map<std::string, source_place> places;  ///< places of keys and tables, for later messages
+  std::set<std::string> given;                 ///< paths of the keys that the case or an override sets
   std::string title;                           ///< one line
   formula_constants constants;                 ///< table [parameters]: constants of all formulas
   /// Table [gas], as given: quantities with units as text.
@@ -89,7 +91,8 @@ struct case_config {
   } velocity;
   /// Table [time].
   struct {
-    std::string method;
+    std::string method = "auto";  ///< automatic_method until with_chosen_method() replaces it
+    std::string method_reason;    ///< why the program chose the method; "" if the case names it
     double end = 0.0;
     std::optional<double> dt, cfl, safety;  ///< exactly one is set
     startup_choice startup = startup_choice::none;

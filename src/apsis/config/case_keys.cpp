@@ -2,6 +2,7 @@
 #include <apsis/config/internal/key_of_member.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/method/method_choice.hpp>
 #include <apsis/method/method_file.hpp>
 #include <apsis/method/multistep.hpp>
 #include <apsis/model/gas_species.hpp>
@@ -25,6 +26,13 @@ auto names_in(Entries (*entries)()) {
     for (const auto* entry : entries()) names.push_back(entry->name);
     return names;
   };
+}
+
+/// "auto" and the names of all methods.
+std::vector<std::string> method_choices(const case_config&) {
+  std::vector<std::string> names = all_method_names();
+  names.emplace_back(automatic_method);
+  return names;
 }
 
 std::vector<std::string> initial_choices(const case_config& c) {
@@ -268,12 +276,12 @@ std::vector<case_key> face_keys() {
 
 std::vector<case_key> time_keys() {
   return {key("time.method", [](auto& c) -> auto& { return c.time.method; },
-              {.required = true,
-               .choices = [](const case_config&) { return all_method_names(); },
-               .doc = "The time integrator, by its name in the catalogue, a multistep method for equal steps "
-                      "(apsis list multistep), a member of a family (apsis list families) such as "
-                      "md-imex-chain-7-2, or a method file of yours (FILE.toml, relative to where the "
-                      "program runs).",
+              {.choices = method_choices,
+               .doc = "The time integrator. auto: chosen by the kind of problem, the tolerance, bounds to "
+                      "preserve and C dt/epsilon (apsis list choices); the first line of the log states it. "
+                      "Otherwise its name in the catalogue, a multistep method for equal steps (apsis list "
+                      "multistep), a member of a family (apsis list families) such as md-imex-chain-7-2, or "
+                      "a method file of yours (FILE.toml, relative to where the program runs).",
                .also = check_method_outside_catalogue}),
           key("time.end", [](auto& c) -> auto& { return c.time.end; },
               {.required = true,

@@ -7,6 +7,7 @@
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/gas_reader.hpp>
 #include <apsis/config/initial_reader.hpp>
+#include <apsis/config/method_of_case.hpp>
 #include <apsis/config/output_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/config/solid_reader.hpp>
@@ -31,6 +32,7 @@ class resolver {
 
   case_config resolve() {
     config_.source = file_;
+    for (const auto& item : text_.values) config_.given.insert(item.first);
     note_places();
     check_tables();
     find_the_model();
@@ -50,7 +52,7 @@ class resolver {
     check_together();
     read_output_tables(text_, *model_, config_);
     choose_parameters();
-    return config_;
+    return with_chosen_method(std::move(config_));
   }
 
  private:

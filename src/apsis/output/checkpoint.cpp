@@ -172,4 +172,8 @@ checkpoint read_checkpoint(const std::string& path, const std::optional<dataset_
   return c;
 }
 
+std::string read_case_of_checkpoint(const std::string& path) {
+  return hdf5_file::open(path).read_text("case");
+}
+
 }  // namespace apsis

@@ -50,4 +50,7 @@ void write_checkpoint(const std::string& path, const checkpoint& c,
 checkpoint read_checkpoint(const std::string& path, const std::optional<dataset_part>& part = std::nullopt,
                            bool verify = true);
 
+/// Returns checkpoint::case_text alone, unverified. Throws io_error if the file cannot be read.
+std::string read_case_of_checkpoint(const std::string& path);
+
 }  // namespace apsis

@@ -1,6 +1,7 @@
 #include <apsis/run/manifest.hpp>
 
 #include <apsis/core/version.hpp>
+#include <apsis/method/method_choice.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/output/provenance.hpp>
@@ -59,6 +60,13 @@ void add_units(json& out, const simulation& run) {
   out["units"] = names;
 }
 
+/// Adds how the method was given where the program chose it.
+void add_choice(json& out, const case_config& config) {
+  if (config.time.method_reason.empty()) return;
+  out["method_given"] = automatic_method;
+  out["method_reason"] = config.time.method_reason;
+}
+
 }  // namespace
 
 std::string to_string(run_end end) {
@@ -77,6 +85,7 @@ std::string to_string(run_end end) {
 
 json to_json(const simulation& run, const run_records& records) {
   json out = {{"case", apsis::to_json(run.config())}, {"method", run.config().time.method}};
+  add_choice(out, run.config());
   out.update(numbers(run));
   json fields = json::object();
   const field_series series = result_units(run.config()).convert(records.fields());
@@ -99,6 +108,7 @@ json manifest(const simulation& run, const session_record& session) {
   out["written"] = time_stamp();
   out["case"] = apsis::to_json(run.config());
   out["method"] = run.config().time.method;
+  add_choice(out, run.config());
   out["promises"] = {{"positivity", run.promises().positivity},
                      {"conservation", run.promises().conservation},
                      {"entropy", run.promises().entropy}};

@@ -1,6 +1,7 @@
 #include <apsis/run/session.hpp>
 
 #include <apsis/config/case_schema.hpp>
+#include <apsis/config/method_of_case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/version.hpp>
@@ -58,9 +59,29 @@ constexpr long many_steps = 100'000'000;
       saved.cells, saved.components, cells, components));
 }
 
+/// Returns the case with the method of the checkpoint where the program chose it: a run continues with the
+/// method with which it began, whatever a newer table of choices says.
+case_config with_method_of_restart(case_config config, const session_options& options) {
+  if (!options.restart || config.time.method_reason.empty()) return config;
+  std::string text;
+  together(*options.processes, [&] {
+    if (options.processes->is_root()) text = read_case_of_checkpoint(*options.restart);
+  });
+  broadcast_text(*options.processes, text);
+  const std::string before = parse_case(text, *options.restart).time.method;
+  if (before == config.time.method) return config;
+  config.time.method = before;
+  config.time.method_reason = "the method of the checkpoint";
+  return config;
+}
+
 /// Returns the case if the state and, for results, its checkpoint and solution.h5 fit into memory together;
 /// reports what it needs.
-case_config with_room_for_results(case_config config, const session_options& options) {
+case_config with_room_for_results(const case_config& configured, const session_options& options) {
+  case_config config = with_method_of_restart(with_chosen_method(configured), options);
+  if (!config.time.method_reason.empty())
+    log::info(fmt::format("{}: time.method = \"{}\" is {} ({})", config.source, automatic_method,
+                          config.time.method, config.time.method_reason));
   together(*options.processes, [&] {
     const run_setup setup(config, options.processes);
     const int copies = options.out ? 2 : 0;

@@ -3,6 +3,7 @@
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/boundary_support.hpp>
 #include <apsis/config/force_reader.hpp>
+#include <apsis/config/method_of_case.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/config/solid_reader.hpp>
 #include <apsis/config/source_reader.hpp>
@@ -81,9 +82,10 @@ bool evaluates_collisions(const method& m) {
 }  // namespace
 
 run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> processes)
-    : equation(make_model(config)), config_(config), builder_(*equation) {
-  if (is_multistep_method(config.time.method)) multistep_ = find_multistep_method(config.time.method);
-  method_ = &find_method(multistep_ ? multistep_->starter : config.time.method);
+    : equation(make_model(config)), config_(with_chosen_method(config)), builder_(*equation) {
+  const std::string& name = config_.time.method;
+  if (is_multistep_method(name)) multistep_ = find_multistep_method(name);
+  method_ = &find_method(multistep_ ? multistep_->starter : name);
   check_method();
   if (has_space())
     build_space(std::move(processes));
@@ -236,6 +238,10 @@ std::size_t run_setup::stages_of_step() const {
 
 std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
   return builder_.build();
+}
+
+std::unique_ptr<semidiscrete_problem> run_setup::make_implicit_problem() const {
+  return problem_builder(builder_).with_implicit_collision().build();
 }
 
 void run_setup::set_prescribed_data() {

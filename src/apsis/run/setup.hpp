@@ -43,6 +43,8 @@ class run_setup {
 
   /// Returns the semi-discrete problem of the case. This setup, whose model it refers to, must outlive it.
   std::unique_ptr<semidiscrete_problem> make_problem() const;
+  /// Returns the problem with implicit stage solves, whatever the method needs.
+  std::unique_ptr<semidiscrete_problem> make_implicit_problem() const;
   /// Returns cell averages (finite volume) or point values (finite difference) of the initial data. Throws
   /// input_error if the velocity grid does not support them.
   field initial_state() const;

@@ -1,5 +1,6 @@
 #include <apsis/run/simulation.hpp>
 
+#include <apsis/config/method_of_case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/exec/agreement.hpp>
@@ -9,6 +10,7 @@
 #include <apsis/run/find_fields.hpp>
 #include <apsis/run/find_surfaces.hpp>
 #include <apsis/run/gathered_cells.hpp>
+#include <apsis/run/loss_watch.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/multistep_stepper.hpp>
@@ -52,7 +54,7 @@ std::unique_ptr<semidiscrete_problem> problem_of(const run_setup& setup) {
 
 struct simulation::impl {
   impl(case_config configured, const state_source& start, const std::shared_ptr<communicator>& processes)
-      : config(std::move(configured)),
+      : config(with_chosen_method(std::move(configured))),
         made(setup_that_fits(config, processes)),
         setup(*made),
         problem(problem_of(setup)),
@@ -62,7 +64,8 @@ struct simulation::impl {
         rounding(rounding_of(setup)),
         state(start ? start(setup) : setup.initial_state()),
         march(times_of(setup)),
-        estimate(integrator.weight_of_estimate(), integrator.resolves_collisions()) {
+        estimate(integrator.weight_of_estimate(), integrator.resolves_collisions()),
+        losses(setup, *problem) {
     if (setup.multistep()) multistep = make_multistep_stepper(*setup.multistep(), *problem);
     if (setup.has_tolerance()) control.emplace(*config.time.tolerance, estimate_of(setup.integrator()).order);
     first = last = watch.start(state);
@@ -78,6 +81,7 @@ struct simulation::impl {
     setup.decide_promises(promises, limit(), forward_euler_limit(), first.negative_values == 0,
                           conserves_to_rounding(setup, state, rounding));
     start_steps();
+    start_watch();
   }
 
   /// ‖u − v‖₂/‖u‖₂, after the errors that processes met while they computed u and v.
@@ -105,6 +109,14 @@ struct simulation::impl {
     expected = forecast_tolerance(integrator, march.t(), state, config.time.end, longest, control->target(),
                                   bounds, distance());
     warn_of_plateau(setup, *expected, problem->relaxation_time(march.t(), state));
+  }
+
+  /// Estimates what the method loses in the usual steps. A forecast above the tolerance has been reported.
+  void start_watch() {
+    const double dt = expected ? expected->dt : limit();
+    if (expected && expected->error > *config.time.tolerance) return;
+    const bool layer = !control && !setup.has_graded_start();
+    losses.start(march.t(), state, std::min(dt, config.time.end - march.t()), layer);
   }
 
   double forward_euler_limit() {
@@ -156,6 +168,7 @@ struct simulation::impl {
     gains = state.gains();
     // The change of a sliver that is left before time.end would be its rounding.
     constexpr double sliver = 1e-6;
+    if (!march.starting()) losses.after_step(march.step(), march.t(), dt, state);
     if (config.time.steady) last.change = dt < sliver * totals.dt ? change : distance()(state, before) / dt;
     last.step = march.step();
     last.t = march.t();
@@ -185,6 +198,7 @@ struct simulation::impl {
   std::optional<step_controller<double>> control;
   error_estimate<semidiscrete_problem> estimate;
   std::optional<tolerance_forecast<double>> expected;
+  loss_watch losses;
   run_promises promises;
   step_record first, last;
   run_summary totals;
@@ -263,6 +277,9 @@ bool simulation::next_step_depends_on_end() const {
   const bool far = step() > 0 && !impl_->march.starting() && config().time.end - t() > 64.0 * last().dt;
   if (far || finished()) return false;
   return impl_->march.shaped_by_end(impl_->proposed());
+}
+double simulation::expected_loss() const {
+  return impl_->losses.expected();
 }
 double simulation::expected_plateau() const {
   return impl_->expected ? impl_->expected->error : 0.0;

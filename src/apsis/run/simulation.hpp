@@ -72,6 +72,9 @@ class simulation {
   /// Returns the forecast of the relative error from terms of size ε in a run with time.tolerance; a warning
   /// is given if it exceeds the tolerance. 0 if the steps resolve the relaxation, or without tolerance.
   double expected_plateau() const;
+  /// Returns the estimate of the relative error at time.end from terms of size ε that the method loses in its
+  /// steps (loss_watch); a warning is given where it matters. 0 if nothing is lost or nothing is known.
+  double expected_loss() const;
   /// Returns the number of snapshot times k · output.every, k ≥ 1, up to t(); steps end at each of them
   /// exactly.
   long snapshot_times_passed() const;

@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/integrate/guarded_newton.hpp>
+#include <apsis/method/rate_errors.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -43,6 +44,12 @@ void warn_of_stiff_collision(const run_setup& setup, double relaxation, double d
         "method '{}' is explicit and stable in steps of about epsilon/C = {:.1g} only, about {:.1g} of them "
         "to time.end = {:g} (the collision is stiff); choose an IMEX method such as md-imex-8-3-mixed",
         setup.integrator().name, relaxation, steps, end));
+  else if (!setup.has_tolerance() && !std::isfinite(rate_errors_at(setup.integrator(), dt / relaxation).flux))
+    log::warning(fmt::format(
+        "method '{}' is explicit and unstable in steps of {:.2g} (they are {:.2g} times as long as the "
+        "relaxation time epsilon/C); choose an IMEX method such as md-imex-8-3-mixed, or give time.dt below "
+        "{:.1g}",
+        setup.integrator().name, dt, dt / relaxation, relaxation));
 }
 
 void warn_of_fast_source(double growth, double dt) {

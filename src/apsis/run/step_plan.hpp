@@ -12,7 +12,7 @@ namespace apsis {
 time_marcher<double> times_of(const run_setup& setup);
 
 /// Warns of an explicit method with a stiff collision, which needs more than 10⁸ steps of about ε/C =
-/// `relaxation`; `dt` is the first step.
+/// `relaxation`, or is unstable in given steps; `dt` is the first step.
 void warn_of_stiff_collision(const run_setup& setup, double relaxation, double dt);
 
 /// Warns if the source of a law, which is explicit, changes the variables faster than steps dt resolve:

@@ -134,6 +134,11 @@ problem_builder& problem_builder::with_explicit_collision() {
   return *this;
 }
 
+problem_builder& problem_builder::with_implicit_collision() {
+  stages_ = stage_solution::implicit;
+  return *this;
+}
+
 problem_builder& problem_builder::with_exact_collision() {
   if (!equation_->knows_collision())
     throw input_error(

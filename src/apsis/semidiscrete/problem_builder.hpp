@@ -70,6 +70,8 @@ class problem_builder {
   /// For exponential methods: stage solves of the problem are exact solutions of the collision. Throws
   /// input_error if the model does not know them.
   problem_builder& with_exact_collision();
+  /// Undoes with_exact_collision().
+  problem_builder& with_implicit_collision();
 
   /// Returns the problem. Throws input_error if the mesh or the reconstruction is missing, ε is not a finite
   /// number ≥ 0, only one face of a direction is periodic, cell averages have more than one space dimension,

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/method/method_choice.hpp>
+
+namespace apsis {
+
+/// Returns what the choice of a method for the case depends on. CΔt/ε is that of the initial data at up to
+/// 64 points; C = 1 where the data are not in the case.
+method_request request_of(const case_config& config);
+
+/// Returns the case with a method in place of time.method = "auto", and the reason in time.method_reason;
+/// another case unchanged. The same on all processes.
+case_config with_chosen_method(case_config config);
+
+}  // namespace apsis

@@ -1,0 +1,174 @@
+#pragma once
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/problem.hpp>
+#include <apsis/method/rate_errors.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace apsis {
+
+/// What a method loses of the terms of size ε in steps Δt (docs/plateaus.md), relative to the state. All
+/// values are estimates of first order in the deviation D from equilibrium.
+template <class Real>
+struct rate_loss {
+  Real rate{},      ///< error of the moments per unit of time, ‖E′ℛT′(E) (flux(z) − 1) D‖
+      diffusion{},  ///< effect of D on the moments per unit of time, ‖E′ℛT′(E) D‖
+      change{},     ///< change of the moments per unit of time, by transport and by D
+      result{},     ///< error of the deviation from equilibrium in u, ‖(last(z) − 1) D‖
+      deviation{};  ///< deviation from equilibrium, ‖D‖
+  Real layer{};     ///< error of the moments by the initial layer; 0 where it was not requested
+};
+
+namespace rate_loss_parts {
+
+/// Estimates the loss at one state. Every state-sized buffer is released with it.
+template <problem P, class Distance>
+class probe {
+ public:
+  using real = typename P::real;
+  using state = typename P::state;
+  using coefficients = std::array<double, rate_response::terms>;
+
+  probe(P& p, real t, const state& u, real dt, const Distance& distance)
+      : p_(p), t_(t), dt_(dt), u_(u), distance_(distance), equilibrium_(u), spare_(u), from_(u) {
+    p_.solve_collision(t_, at_equilibrium, real(0), equilibrium_);
+  }
+
+  rate_loss<real> operator()(const rate_response& response, bool with_layer) {
+    rate_loss<real> loss;
+    state base = transported(equilibrium_), moved = base;
+    p_.solve_collision(t_ + dt_, at_equilibrium, real(0), moved);
+    coefficients whole;
+    whole.fill(1.0);  // Σ_k (1 − s) s^k D = (1 − s^terms) D
+    state part = deviations(base, moved, whole, true);
+    if (!find_size(part)) return loss;
+    loss.deviation = size(part);
+    loss.diffusion = effect(part, moved) / dt_;
+    add(equilibrium_, real(-1), real(0), spare_, false);  // of the moments after a step with D
+    loss.change = size(spare_) / dt_;
+    part = deviations(base, moved, response.flux, true);
+    loss.rate = effect(part, moved) / dt_;
+    part = deviations(base, moved, response.last, true);
+    add(moved, real(response.last_growth), real(0), part, false);  // zD, before any solve
+    add(base, real(-response.last_growth), real(0), part, false);
+    loss.result = size(part);
+    if (with_layer) {
+      part = deviations(u_, equilibrium_, response.layer, false);
+      loss.layer = effect(part, moved);
+    }
+    return loss;
+  }
+
+ private:
+  static constexpr real at_equilibrium = real(1e100);  ///< Δt that leaves no deviation
+
+  void add(const state& from, real alpha, real beta, state& to, bool fresh) {
+    const target<state, real> sum{&to, alpha, beta, fresh};
+    p_.add_transport(t_, from, {&sum, 1});
+  }
+
+  /// Returns M + Δt T(v) with the equilibrium M of u.
+  state transported(const state& v) {
+    state sum = u_;
+    add(equilibrium_, real(1), real(0), sum, true);
+    add(v, real(0), dt_, sum, false);
+    return sum;
+  }
+
+  /// Returns Σ_k c_k (end − v_k), where v_k is `from` after k solves, or k + 1 if `solved_first`.
+  state deviations(const state& from, const state& end, const coefficients& c, bool solved_first) {
+    state now = from, sum = u_;
+    real all(0);
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      if (k > 0 || solved_first) p_.solve_collision(t_ + dt_, dt_, real(0), now);
+      add(now, real(-c[k]), real(0), sum, k == 0);
+      all += real(c[k]);
+    }
+    add(end, all, real(0), sum, false);
+    return sum;
+  }
+
+  /// Stores the size of u, or that of the slow solution M − D where it is larger, as u may vanish at the
+  /// start. Returns false if both vanish.
+  bool find_size(const state& deviation) {
+    state zero = u_, slow = u_;
+    add(u_, real(0), real(0), zero, true);
+    add(equilibrium_, real(1), real(0), slow, true);
+    add(deviation, real(-1), real(0), slow, false);
+    const real of_u = distance_(u_, zero);
+    size_ = std::max(of_u, distance_(slow, zero));
+    if (!(of_u > real(0))) from_ = slow;
+    return size_ > real(0);
+  }
+
+  /// Returns ‖change‖/‖u‖, for distances that are relative to their first argument.
+  real size(const state& change) {
+    state shifted = from_;
+    add(change, real(1), real(0), shifted, false);
+    return distance_(from_, shifted) / size_;
+  }
+
+  /// Returns the size of the change of the equilibrium after Δt by a deviation x, and leaves the equilibrium
+  /// after Δt with it in spare_.
+  real effect(const state& x, const state& moved) {
+    state deviating = u_;
+    add(equilibrium_, real(1), real(0), deviating, true);
+    add(x, real(-1), real(0), deviating, false);
+    spare_ = transported(deviating);
+    p_.solve_collision(t_ + dt_, at_equilibrium, real(0), spare_);
+    state difference = u_;
+    add(moved, real(1), real(0), difference, true);
+    add(spare_, real(-1), real(0), difference, false);
+    return size(difference);
+  }
+
+  P& p_;
+  real t_, dt_, size_{};
+  const state& u_;
+  const Distance& distance_;
+  state equilibrium_, spare_, from_;  // from_: a state that does not vanish
+};
+
+}  // namespace rate_loss_parts
+
+/// Estimates at state u what a method with this response loses in steps dt, with two to four evaluations of T
+/// and repeated implicit Euler solves: M + Δt T(M), with the equilibrium M of u, deviates from equilibrium by
+/// zD, and every solve divides that by 1 + z. `distance` as for error_estimate; `with_layer`: also what the
+/// initial layer of u adds. Returns nothing where a solve fails: the run itself reports invalid data.
+template <problem P, class Distance>
+std::optional<rate_loss<typename P::real>> find_rate_loss(P& p, typename P::real t,
+                                                          const typename P::state& u, typename P::real dt,
+                                                          const rate_response& response,
+                                                          const Distance& distance, bool with_layer) {
+  try {
+    return rate_loss_parts::probe<P, Distance>(p, t, u, dt, distance)(response, with_layer);
+  } catch (const numerical_error&) {
+    return std::nullopt;
+  }
+}
+
+/// What a loss means for a run.
+struct loss_verdict {
+  double expected = 0.0,  ///< estimated relative error
+      rate = 0.0;         ///< rate_loss::rate where it counts
+  bool large = false;     ///< whether it is worth a warning
+};
+
+/// Judges a loss from now on, `done` being the error of the moments so far. It counts where the terms of size
+/// ε are wrong by more than a twentieth, over the rest of the time, or until the moments have changed by
+/// their own size if that is shorter: later states have other losses. It is large if the expected error
+/// exceeds 10⁻³, and 30 tolerances of a run to a tolerance; or if it exceeds 10⁻⁵ and the moments are wrong
+/// by a tenth of all that changes them.
+loss_verdict judge_loss(const rate_loss<double>& loss, double done, double rest,
+                        std::optional<double> tolerance);
+
+/// Returns the first half of a warning: "method 'NAME' is unfit for steps of … (…)".
+std::string describe_loss(const std::string& method, const rate_loss<double>& loss, double t, double dt,
+                          double end, double expected);
+
+}  // namespace apsis

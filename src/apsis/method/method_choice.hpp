@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace apsis {
+
+/// The value of time.method for which the program chooses the method.
+inline constexpr std::string_view automatic_method = "auto";
+
+/// What the choice of a method depends on.
+struct method_request {
+  bool space = false;                    ///< the problem is discretized in space
+  bool signs = false;                    ///< bounds of the solution, such as f ≥ 0, must be preserved
+  bool graded_start = false;             ///< the first steps resolve the initial layer
+  std::optional<double> tolerance = {};  ///< of a step; without it steps are equal
+  /// Smallest and largest CΔt/ε over the domain; nothing if unknown.
+  std::optional<double> lowest_ratio = {}, highest_ratio = {};
+};
+
+/// A row of the table of choices. The first row that applies decides.
+struct choice_row {
+  std::string problem;                   ///< "space", "system", or "any"
+  std::optional<bool> signs;             ///< nothing: with and without
+  bool explicit_method = false;          ///< the method resolves ε/C: only where CΔt/ε ≤ resolved_ratio
+  std::optional<double> tolerance_from;  ///< smallest tolerance of the row; nothing: equal steps
+  std::string method;                    ///< name of the method
+  std::string why;                       ///< the property that won, for the log
+  std::string origin;                    ///< the measurement that decides
+};
+
+/// Largest CΔt/ε at which an explicit method may be chosen: stable, with room for a rate that grows.
+inline constexpr double resolved_ratio = 0.5;
+
+/// Returns the table: methods that win the benchmarks of docs/speed.md, checked against docs/data/speed.
+const std::vector<choice_row>& choice_table();
+
+/// A method and why it was chosen.
+struct method_choice {
+  std::string method,  ///< its name
+      reason;          ///< "equal steps on a mesh, C dt/epsilon = 0.02 to 30: …"
+};
+
+/// Chooses by the table. The result depends on the request alone.
+method_choice choose_method(const method_request& wanted);
+
+}  // namespace apsis

@@ -8,7 +8,8 @@ namespace apsis {
 /// Maximum number of threads.
 inline constexpr int most_threads = 256;
 
-/// Sets the number of threads of loops over cells; 0 stands for all processors available to this process.
+/// Sets the number of threads of loops over cells that the calling thread starts; 0 stands for all processors
+/// available to this process.
 /// Throws input_error unless 0 ≤ n ≤ most_threads.
 void set_threads(int n);
 /// Returns the value of OMP_NUM_THREADS, at most most_threads, or, if it is not set, the number of processors
@@ -16,7 +17,7 @@ void set_threads(int n);
 int default_threads();
 /// Returns the value of OMP_NUM_THREADS as in default_threads(); 0 if it is not set.
 int requested_threads();
-/// Returns the number of threads set; initially 1.
+/// Returns the number of threads set by the calling thread; initially 1.
 int threads();
 /// Returns the number of threads of a loop started here: 1 inside another loop or below loops_over.
 int threads_here();

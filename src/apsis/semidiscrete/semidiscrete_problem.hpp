@@ -14,6 +14,8 @@ namespace apsis {
 
 /// A model on a mesh, or at one point without space, as a problem of the integrator (integrate/problem.hpp).
 ///
+/// It has scratch memory: one call at a time, also where a function in a boundary or a force calls again.
+///
 /// On several processes every member function is collective. An error on one of them does not end the stage,
 /// in which the others wait for its rows: it is kept until settle(), which throws it on all.
 class semidiscrete_problem {

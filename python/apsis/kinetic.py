@@ -40,7 +40,8 @@ class KineticProblem:
     parameters   numbers, options and lists of texts of the model by name
     boundary     of every face, or (lower, upper), or a sequence of such pairs, or {"left": …, "right": …} with "bottom", "top", "back"
     and "front" for further directions. A face is a kind, or a mapping of the kind and its variables, {"kind": "diffuse", "T": lambda t,
-    x: 1 + 0.1 * t, "velocity": [0, 0.1]}: numbers, functions of the time and the coordinates, or lists of them for vectors
+    x: 1 + 0.1 * t, "velocity": [0, 0.1]}: numbers, functions of the time and the coordinates, or lists of them for vectors. The
+    functions f, g and h of the kind "given" have v_x, v_y, v_z, numbers, as further arguments
     acceleration of the molecules: a number or a function of the time and the coordinates, or a list of them for each dimension
     largest_acceleration   bound of the absolute values of functions, a number or one for each dimension
     formulation  "finite-volume" (cell averages) or "finite-difference" (point values)
@@ -108,13 +109,16 @@ class KineticProblem:
         return self._core.sample_function(initial, [number("jumps", x) for x in jumps])
 
     def state(self, *, jumps: Sequence[float] = (), **variables: ArrayLike | Callable[..., ArrayLike] | Sequence[Any]) -> Array:
-        """Returns the state with these variables of the model; of a gas the Maxwellians of density, velocity and temperature.
+        """Returns the state with these variables of the model: of a gas the Maxwellians of rho, u and T, or f (g and h of a
+        reduced gas) as a function of the velocity.
 
             problem.state(rho=lambda x: 1 + 0.1 * np.sin(x), T=1)
             0.7 * problem.state(rho=rho, u=1, T=1) + 0.3 * problem.state(rho=rho, u=-1, T=1)
+            problem.state(f=lambda x, v_x: (1 + 0.1 * np.sin(x)) * np.exp(-v_x**2 / 2))
 
         A variable is a number, a function of the coordinates, or an array with a value for each cell; a vector is a list of
-        these, a function that returns all components, or an array [cells, components]. Functions give averages as in sample(), or
+        these, a function that returns all components, or an array [cells, components]. f, g and h are functions of the coordinates
+        and of v_x, v_y, v_z, an array [velocities] for each velocity dimension, that return an array [velocities]. Functions give averages as in sample(), or
         point values; arrays are the averages, or the point values, of cells. Raises InputError with the point or the cell."""
         return self._core.state(variables, sorted(number("jumps", x) for x in jumps))
 

@@ -129,10 +129,12 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     a limit in seconds. progress(step, steps, t, smallest) is called about 20 times a second; False ends the run, with a checkpoint in
     `out`.
 
-    `initial` replaces the initial data of the case: an array [cells, components]; a function of x, in a model with a velocity grid
-    of (x, v), that returns all components; or a mapping of the variables of the model, {"rho": lambda x: 1 + x, "T": 1}: numbers,
-    functions of x, or arrays with a value for each cell. Functions are averaged over cells as formulas are, exactly between their
-    `jumps`. The results and a restart refer to the data as `from = "python"`; a restart takes the state of the checkpoint.
+    `initial` replaces the initial data of the case: an array [cells, components]; a function that returns all components; or a
+    mapping of the variables of the model, {"rho": lambda x: 1 + x, "T": 1}: numbers, functions of the coordinates x, y, z, or arrays
+    with a value for each cell. A function of all components has the arguments x, y, z, v_x, v_y, v_z in a model with a velocity grid,
+    as many as there are dimensions: coordinates are numbers, and every component of the velocity is an array [components]. So have
+    "f", or "g" and "h", in a mapping, whose arrays of velocities and values are [velocities]. Functions are averaged over cells as
+    formulas are, exactly between their `jumps`. The results and a restart refer to the data as `from = "python"`; a restart takes the state of the checkpoint.
 
     `comm` is a communicator of mpi4py, whose processes share the mesh and call the function together. The result is that of its
     first process; the others get None.

@@ -44,11 +44,23 @@ array numbers_of(const py::object& given, const std::string& name) {
   return check(name, given).cast<array>();
 }
 
-/// A variable of `size` components: numbers, a function, or values of cells.
+/// Velocities as arguments of a function: an array of each component, v_x, v_y, v_z, with `count` numbers.
+py::tuple velocity_arguments(const velocity_set& set, int count) {
+  py::tuple all(static_cast<std::size_t>(set.dimensions()));
+  for (int k = 0; k < set.dimensions(); ++k) {
+    const auto speeds = set.speeds(k).first(static_cast<std::size_t>(count));
+    all[static_cast<std::size_t>(k)] =
+        to_fixed_array(std::vector<double>(speeds.begin(), speeds.end()), {count});
+  }
+  return all;
+}
+
+/// A variable of `size` components: numbers, a function, or values of cells. `v`: the further arguments of
+/// functions, nothing unless it is a function of the velocity, whose components are its values there.
 class given_variable {
  public:
-  given_variable(const py::object& given, int size, int cells, std::string name)
-      : name_(std::move(name)), size_(size) {
+  given_variable(const py::object& given, int size, int cells, std::string name, py::tuple v = py::tuple(0))
+      : name_(std::move(name)), size_(size), velocity_(std::move(v)) {
     if (PyCallable_Check(given.ptr()) != 0) {
       functions_.emplace_back(py::reinterpret_borrow<py::function>(given), name_);
       return;
@@ -79,7 +91,8 @@ class given_variable {
     std::vector<double> values(static_cast<std::size_t>(size_));
     if (!functions_.empty()) {
       const callback& function = functions_.front();
-      const py::object returned = function(*coordinates(x, dimensions));
+      const py::tuple arguments = coordinates(x, dimensions) + velocity_;
+      const py::object returned = function(*arguments);
       if (size_ == 1)
         values[0] = function.number(returned);
       else
@@ -107,7 +120,7 @@ class given_variable {
                           fmt::format("{}[{}]", name_, parts_.size()));
   }
 
-  /// One number is the component along x.
+  /// One number is the component along x, or the value at all velocities.
   void take_numbers(const array& given, int cells) {
     const std::vector<py::ssize_t> shape(given.shape(), given.shape() + given.ndim());
     using extents = std::vector<py::ssize_t>;
@@ -123,11 +136,13 @@ class given_variable {
                       name_, shape_text(given),
                       size_ == 1 ? fmt::format("({},)", cells) : fmt::format("({}, {})", cells, size_)));
     }
-    numbers_.resize(std::max(numbers_.size(), static_cast<std::size_t>(size_)));
+    const double others = velocity_.empty() ? 0.0 : numbers_.front();
+    numbers_.resize(std::max(numbers_.size(), static_cast<std::size_t>(size_)), others);
   }
 
   std::string name_;
   int size_;
+  py::tuple velocity_;
   bool of_cells_ = false;
   std::vector<double> numbers_;
   std::vector<callback> functions_;    ///< at most one
@@ -173,8 +188,10 @@ class variables_sampler {
           std::vector<double>(static_cast<std::size_t>(variable.size), variable.value.value_or(0.0)));
       if (variable.size == 1) value = py::float_(variable.value.value_or(0.0));
       if (given.contains(variable.name)) value = given[variable.name.c_str()];
-      variables_.emplace_back(value, variable.size, builder.mesh().size(),
-                              fmt::format("{}['{}']", name_, variable.name));
+      const velocity_set& set = equation.velocities();
+      variables_.emplace_back(value, variable.of_velocity ? set.size() : variable.size, builder.mesh().size(),
+                              fmt::format("{}['{}']", name_, variable.name),
+                              variable.of_velocity ? velocity_arguments(set, set.size()) : py::tuple(0));
     }
   }
 
@@ -217,22 +234,13 @@ class variables_sampler {
   std::vector<given_variable> variables_;
 };
 
-/// The velocities of all components, [components] or [components, dimensions].
-py::array_t<double> velocities_of(const model& equation) {
-  const velocity_set& set = equation.velocities();
-  std::vector<double> all;
-  for (int j = 0; j < set.components(); ++j)
-    for (int k = 0; k < set.dimensions(); ++k) all.push_back(set.speeds(k)[static_cast<std::size_t>(j)]);
-  return set.dimensions() > 1 ? to_fixed_array(all, {set.components(), set.dimensions()})
-                              : to_fixed_array(all, {set.components()});
-}
-
 field sample_function(const py::function& given, const model& equation, const problem_builder& builder,
                       const std::vector<double>& jumps, const std::string& name) {
   const callback function(given, name);
   const int dimensions = equation.space_dimensions();
   const bool of_velocities = !equation.lattice().points.empty();
-  const py::tuple v = of_velocities ? py::make_tuple(velocities_of(equation)) : py::tuple(0);
+  const velocity_set& set = equation.velocities();
+  const py::tuple v = of_velocities ? velocity_arguments(set, set.components()) : py::tuple(0);
   std::vector<double> row(static_cast<std::size_t>(equation.components()));
   return builder.sample(
       [&](const position& x, std::span<double> u) {

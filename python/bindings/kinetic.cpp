@@ -114,6 +114,16 @@ std::unique_ptr<model> make_equation(const description& of) {
   return entry.make(config);
 }
 
+/// A function of t, x and v of Python.
+face_quantity velocity_function(const py::handle& given, const std::string& name, const model& equation) {
+  const shared_callback function(py::reinterpret_borrow<py::function>(given), name);
+  const auto space = static_cast<std::size_t>(equation.space_dimensions()),
+             velocity = static_cast<std::size_t>(equation.velocities().dimensions());
+  return {[function, space, velocity](double t, const position& x, const position& v) {
+    return function.at(t, std::span(x).first(space), std::span(v).first(velocity));
+  }};
+}
+
 /// The boundary of a face; `name` is that of its argument.
 std::shared_ptr<const boundary> make_face(const given_face& of, const model& equation,
                                           const std::string& name) {
@@ -121,7 +131,12 @@ std::shared_ptr<const boundary> make_face(const given_face& of, const model& equ
   for (const auto& [key, list] : of.second) {
     const std::string variable = py::str(key);
     const std::string own = fmt::format("{}['{}']", name, variable);
+    const bool of_velocity = is_of_velocity(of.first, equation, variable);
     for (const auto item : list) {
+      if (of_velocity && PyCallable_Check(item.ptr()) != 0) {
+        values[variable].push_back(velocity_function(item, own, equation));
+        continue;
+      }
       quantity_in_time value = to_quantity(item, own, equation.space_dimensions());
       values[variable].push_back(value.function ? face_quantity(std::move(value.function))
                                                 : face_quantity(value.number));

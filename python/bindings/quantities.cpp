@@ -15,12 +15,12 @@ shared_callback::shared_callback(py::function function, std::string name)
         delete of;
       }) {}
 
-double shared_callback::at(double t, const position& x, int dimensions) const {
+double shared_callback::at(double t, std::span<const double> x, std::span<const double> v) const {
   const py::gil_scoped_acquire python;
-  const py::tuple arguments(static_cast<std::size_t>(1 + dimensions));
+  const py::tuple arguments(1 + x.size() + v.size());
   arguments[0] = t;
-  for (int k = 0; k < dimensions; ++k)
-    arguments[static_cast<std::size_t>(k) + 1] = x[static_cast<std::size_t>(k)];
+  for (std::size_t k = 0; k < x.size(); ++k) arguments[1 + k] = x[k];
+  for (std::size_t k = 0; k < v.size(); ++k) arguments[1 + x.size() + k] = v[k];
   const double value = held_->number((*held_)(*arguments));
   if (!std::isfinite(value))
     throw input_error(fmt::format("{} returned {} at t = {:.10g} (a finite number is needed); return one",
@@ -32,8 +32,10 @@ quantity_in_time to_quantity(const py::handle& given, const std::string& name, i
   const auto object = py::reinterpret_borrow<py::object>(given);
   if (PyCallable_Check(given.ptr()) != 0) {
     const shared_callback function(py::reinterpret_borrow<py::function>(object), name);
-    return {0.0,
-            [function, dimensions](double t, const position& x) { return function.at(t, x, dimensions); }};
+    const auto count = static_cast<std::size_t>(dimensions);
+    return {0.0, [function, count](double t, const position& x) {
+              return function.at(t, std::span(x).first(count));
+            }};
   }
   const double value = py::isinstance<py::str>(given) ? std::nan("") : PyFloat_AsDouble(given.ptr());
   if (PyErr_Occurred() != nullptr) PyErr_Clear();

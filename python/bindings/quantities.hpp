@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ class shared_callback {
   /// `name`: that of the argument, for messages. Needs the GIL.
   shared_callback(py::function function, std::string name);
 
-  /// Returns function(t, x, …) with the coordinates of a point of `dimensions` dimensions.
-  double at(double t, const position& x, int dimensions) const;
+  /// Returns function(t, x, …, v_x, …) with the coordinates of a point and, of a function of the velocity,
+  /// its components.
+  double at(double t, std::span<const double> x, std::span<const double> v = {}) const;
 
  private:
   std::shared_ptr<const callback> held_;

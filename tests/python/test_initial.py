@@ -69,6 +69,73 @@ def test_a_function_of_x_and_v_is_the_distribution():
     assert relaxed.f.shape == (20, 2) and relaxed.f.sum(axis=1)[0] == pytest.approx(0.75 * 0.025)
 
 
+def maxwellian(*v):
+    return (2 * np.pi) ** (-len(v) / 2) * np.exp(-sum(one**2 for one in v) / 2)
+
+
+@pytest.mark.parametrize("d", [1, 2, 3])
+@pytest.mark.parametrize("reduced", [False, True])
+def test_functions_get_an_array_of_each_component_of_the_velocity(d, reduced):
+    degrees, points = (d + 1 if reduced else d), {1: 24, 2: 12, 3: 8}[d]
+    shapes = []
+
+    def state(x, *v):
+        shapes.append([np.shape(one) for one in (x, *v)])
+        n = points**d
+        g = (1 + 0.1 * x + 0.05 * v[-1]) * maxwellian(*v)
+        if reduced:
+            g[n:] *= 1 + 0.01 * v[0][n:]  # h = (D - d) T g of another temperature
+        return g
+
+    of_model = {"velocity_dimensions": d, "degrees_of_freedom": degrees}
+    options = {"model": of_model, "velocity": {"max": 7, "points": points}, "space": {"cells": 7, "reconstruction": "upwind1"}, "time": {"end": 0}}
+    by_state = apsis.run(case(**options), initial=state).f
+    components = points**d * (2 if reduced else 1)
+    assert shapes[0] == [()] + d * [(components,)]
+
+    def of_velocity(x, *v):
+        assert [one.shape for one in v] == d * [(points**d,)] and not v[0].flags.writeable
+        return (1 + 0.1 * x + 0.05 * v[-1]) * maxwellian(*v)
+    functions = {"f": of_velocity}
+    if reduced:
+        functions = {"g": of_velocity, "h": lambda x, *v: of_velocity(x, *v) * (1 + 0.01 * v[0])}
+    np.testing.assert_array_equal(apsis.run(case(**options), initial=functions).f, by_state)
+    problem = apsis.KineticProblem("bgk", cells=7, domain=(0, 1), velocities=(7, points), parameters=of_model, reconstruction="upwind1")
+    np.testing.assert_array_equal(problem.state(**functions), by_state)
+    # The same as formulas of a case.
+    names = ["v_x", "v_y", "v_z"][:d]
+    f = f"(1 + 0.1*x + 0.05*{names[-1]})*(2*pi)^(-{d}/2)*exp(-({' + '.join(name + '^2' for name in names)})/2)"
+    formulas = {"g": f, "h": f + "*(1 + 0.01*v_x)"} if reduced else {"f": f}
+    np.testing.assert_allclose(apsis.run(case(formulas, **options)).f, by_state, rtol=1e-13, atol=1e-300)
+
+
+def test_arrays_are_values_at_the_velocities_of_cells():
+    problem = gas()
+    values = maxwellian(problem.v) * np.linspace(1, 2, 20)[:, None]
+    np.testing.assert_array_equal(problem.state(f=values), values)
+    np.testing.assert_array_equal(problem.state(f=values[3]), np.tile(values[3], (20, 1)))
+    for wrong, says in ((values[:, :39], "state['f'] has the shape (20, 39)"), (lambda x, v: v[1:], "state['f'] returned an array of shape (39,)"),
+                        (lambda x, v: -maxwellian(v), "state has no distribution at x = "), (lambda x, v: v * np.nan, "state has no distribution")):
+        with pytest.raises(apsis.InputError) as refused:
+            problem.state(f=wrong)
+        assert says in str(refused.value)
+    with pytest.raises(apsis.InputError, match="do not belong together"):
+        problem.state(f=values, T=1)
+
+
+def test_a_given_boundary_is_a_function_of_the_velocity():
+    seen = []
+
+    def entering(t, x, v_x):
+        seen.append((t, x, v_x))
+        return 0.5 * float(maxwellian(v_x))
+    problem = gas(boundary=({"kind": "given", "f": entering}, "outflow"), formulation="finite-difference")
+    same = gas(boundary=({"kind": "inflow", "rho": 0.5, "T": 1}, "outflow"), formulation="finite-difference")
+    u = problem.state(rho=1, T=1)
+    np.testing.assert_allclose(problem.transport(u), same.transport(u), rtol=0, atol=1e-8)  # the discrete Maxwellian of the inflow
+    assert {v for _, _, v in seen} == set(problem.v[problem.v > 0]) and all(isinstance(v, float) for _, _, v in seen)
+
+
 def test_averages_of_functions_with_jumps_are_exact():
     problem = gas()
     u = problem.state(rho=lambda x: 1.0 if x < 0.43 else 3.0, T=1, jumps=[0.43])

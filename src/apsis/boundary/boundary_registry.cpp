@@ -23,6 +23,14 @@ const boundary_entry& find_boundary(const std::string& name) {
                                 suggest(name, boundary_names())));
 }
 
+bool is_of_velocity(const std::string& kind, const model& equation, const std::string& variable) {
+  const boundary_entry& entry = find_boundary(kind);
+  if (entry.variables == nullptr) return false;
+  const auto all = entry.variables(equation);
+  return std::any_of(all.begin(), all.end(),
+                     [&](const data_variable& one) { return one.name == variable && one.of_velocity; });
+}
+
 std::shared_ptr<const boundary> make_boundary(const std::string& name) {
   const boundary_entry& entry = find_boundary(name);
   if (entry.variables != nullptr)

@@ -71,6 +71,9 @@ std::vector<std::string> boundary_names();
 
 /// Returns the kind of a name. Throws input_error with the nearest name if there is none.
 const boundary_entry& find_boundary(const std::string& name);
+/// Whether a variable of a kind is a function of the velocity. Throws input_error as find_boundary() does, or
+/// if the model cannot have this kind.
+bool is_of_velocity(const std::string& kind, const model& equation, const std::string& variable);
 
 /// Returns the boundary of a kind without variables. Throws input_error with the nearest name if there is no
 /// such kind, or if it has variables.

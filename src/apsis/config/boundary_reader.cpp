@@ -37,15 +37,6 @@ face_quantity compile(const std::string& text, const source_place& place, const 
       [formula](double t, const position& x, const position& v) { return formula.at(t, x, v); });
 }
 
-/// Whether a variable of a kind of boundary is a function of the velocity.
-bool is_of_velocity(const std::string& kind, const model& equation, const std::string& variable) {
-  const boundary_entry& entry = find_boundary(kind);
-  if (entry.variables == nullptr) return false;
-  const auto all = entry.variables(equation);
-  return std::any_of(all.begin(), all.end(),
-                     [&](const data_variable& one) { return one.name == variable && one.of_velocity; });
-}
-
 }  // namespace
 
 std::vector<std::string> boundary_variables(const std::string& kind, const model& equation,

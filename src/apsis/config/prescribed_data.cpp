@@ -28,17 +28,23 @@ std::string position_text(const position& x, int dimensions) {
 
 }  // namespace
 
+/// The formula of a component of a variable.
+struct prescribed_data::formula {
+  expression text;
+  bool of_velocity = false;  ///< depends also on the velocity
+};
+
 /// A state, or a part of one: formulas of the variables of a form; a region need not have all of them.
 struct prescribed_data::state {
   struct part {
     expression weight;
     data_form form;
-    std::vector<expression> values;
+    std::vector<formula> values;
     source_place place;
   };
   data_form form;
-  std::vector<std::optional<expression>> values;  ///< in the order of the form, vectors expanded
-  std::vector<part> parts;                        ///< replace `values` if there are any
+  std::vector<std::optional<formula>> values;  ///< in the order of the form, vectors expanded
+  std::vector<part> parts;                     ///< replace `values` if there are any
   source_place place;
 };
 
@@ -58,7 +64,12 @@ class prescribed_data::compiler {
         forms_(equation.data_forms()),
         place_of_(place_of),
         on_mesh_(equation.space_dimensions() > 0),
-        kind_(formula_of_position(equation.space_dimensions(), false, config.constants)) {}
+        kind_(formula_of_position(equation.space_dimensions(), false, config.constants)),
+        kind_of_velocity_(kind_) {
+    static const char* const names[] = {"v_x", "v_y", "v_z"};
+    for (int k = 0; k < equation.velocities().dimensions(); ++k)
+      kind_of_velocity_.variables.emplace_back(names[k]);
+  }
 
   state base() const {
     if (table_.given_elsewhere()) return {};
@@ -110,7 +121,7 @@ class prescribed_data::compiler {
           throw input_error(place_of_(path),
                             fmt::format("key '{}.{}' is missing (it is the {}, and {}); add it", path,
                                         variable.name, variable.doc, why));
-        made.values[at].emplace(fmt::format("{}", *variable.value), source_place{}, kind_);
+        made.values[at].emplace(expression(fmt::format("{}", *variable.value), source_place{}, kind_));
       }
   }
 
@@ -182,14 +193,14 @@ class prescribed_data::compiler {
     whole.form = form_with(names, path);
     whole.values = values_of(path, given.state, whole.form);
     complete(whole, path, "a part is a whole state");
-    std::vector<expression> values;
+    std::vector<formula> values;
     for (auto& value : whole.values) values.push_back(std::move(*value));
     return {compile(path + ".weight", given.weight), whole.form, std::move(values), place_of_(path)};
   }
 
-  std::vector<std::optional<expression>> values_of(const std::string& path, const state_formulas& formulas,
-                                                   const data_form& form) const {
-    std::vector<std::optional<expression>> values;
+  std::vector<std::optional<formula>> values_of(const std::string& path, const state_formulas& formulas,
+                                                const data_form& form) const {
+    std::vector<std::optional<formula>> values;
     for (const auto& variable : form.variables) {
       const std::size_t first = values.size(), count = size(variable);
       values.resize(first + count);
@@ -201,8 +212,13 @@ class prescribed_data::compiler {
             place_of_(key),
             fmt::format("'{}' has {} components (the model has {}); give {}, or one alone along x", key,
                         given->second.size(), count, count));
-      for (std::size_t c = 0; c < count; ++c)
-        values[first + c].emplace(compile(key, c < given->second.size() ? given->second[c] : "0"));
+      for (std::size_t c = 0; c < count; ++c) {
+        const std::string text = c < given->second.size() ? given->second[c] : "0";
+        if (variable.of_velocity)
+          values[first + c].emplace(expression(text, place_of_(key), kind_of_velocity_), true);
+        else
+          values[first + c].emplace(compile(key, text));
+      }
     }
     return values;
   }
@@ -211,12 +227,12 @@ class prescribed_data::compiler {
   std::vector<data_form> forms_;
   const places& place_of_;
   bool on_mesh_;
-  formula_kind kind_;
+  formula_kind kind_, kind_of_velocity_;
 };
 
 prescribed_data::prescribed_data(const case_config& config, const model& equation, const places& place_of,
                                  row_function below)
-    : below_(std::move(below)), dimensions_(equation.space_dimensions()) {
+    : below_(std::move(below)), dimensions_(equation.space_dimensions()), velocities_(equation.velocities()) {
   const compiler from(config, equation, place_of);
   base_ = std::make_unique<state>(from.base());
   regions_ = from.regions();
@@ -229,7 +245,7 @@ void prescribed_data::operator()(const position& x, std::span<double> u) const {
   const auto covers = [&x](const region& one) { return one.contains(x); };
   if (below_ && std::none_of(regions_.begin(), regions_.end(), covers)) return below_(x, u);
   const state* top = base_.get();  // of parts, or of the form of all layers
-  std::vector<const expression*> values(base_->values.size());
+  std::vector<const formula*> values(base_->values.size());
   source_place place = base_->place;
   const auto lay = [&](const state& layer) {
     place = layer.place;
@@ -251,18 +267,36 @@ void prescribed_data::operator()(const position& x, std::span<double> u) const {
   };
   std::vector<double> numbers;
   if (top->parts.empty()) {
-    for (const expression* value : values) numbers.push_back(value->evaluate(x));
+    for (const formula* value : values) append(*value, x, numbers);
     return fill(top->form, numbers, place, u);
   }
   std::vector<double> term(u.size());
   std::fill(u.begin(), u.end(), 0.0);
   for (const auto& part : top->parts) {
     numbers.clear();
-    for (const expression& value : part.values) numbers.push_back(value.evaluate(x));
+    for (const formula& value : part.values) append(value, x, numbers);
     fill(part.form, numbers, part.place, term);
     const double weight = part.weight.evaluate(x);
     for (std::size_t k = 0; k < u.size(); ++k) u[k] += weight * term[k];
   }
+}
+
+void prescribed_data::append(const formula& of, const position& x, std::vector<double>& numbers) const {
+  if (!of.of_velocity) return numbers.push_back(of.text.evaluate(x));
+  const auto space = static_cast<std::size_t>(dimensions_),
+             count = static_cast<std::size_t>(velocities_.size()),
+             width = space + static_cast<std::size_t>(velocities_.dimensions());
+  std::vector<double> arguments(count * width);
+  for (std::size_t j = 0; j < count; ++j) {
+    std::copy_n(x.begin(), space, arguments.begin() + static_cast<std::ptrdiff_t>(j * width));
+    for (std::size_t k = space; k < width; ++k)
+      arguments[j * width + k] = velocities_.speeds(static_cast<int>(k - space))[j];
+  }
+  const std::size_t first = numbers.size();
+  numbers.resize(first + count);
+  of.text.values(arguments, std::span(numbers).subspan(first));
+  for (std::size_t j = 0; j < count; ++j)
+    if (!std::isfinite(numbers[first + j])) of.text.evaluate(std::span(arguments).subspan(j * width, width));
 }
 
 bool prescribed_data::region::contains(const position& x) const {

@@ -3,6 +3,7 @@
 #include <apsis/config/case.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/phase/grid.hpp>
+#include <apsis/phase/velocity_set.hpp>
 
 #include <functional>
 #include <memory>
@@ -41,12 +42,16 @@ class prescribed_data {
 
  private:
   class compiler;
+  struct formula;
   struct state;
   struct region;
+  /// Appends the value at x, or the values at all velocities.
+  void append(const formula& of, const position& x, std::vector<double>& numbers) const;
   std::unique_ptr<state> base_;
   row_function below_;  ///< in place of `base_`, if it is set
   std::vector<region> regions_;
   int dimensions_ = 0;
+  velocity_set velocities_;
 };
 
 }  // namespace apsis

@@ -35,7 +35,9 @@ data_form form_of(const model& equation, const source_place& place) {
 std::vector<std::string> functions_of(const model& equation) {
   const auto* gas = dynamic_cast<const gas_model*>(&equation);
   if (gas == nullptr) return {};
-  return gas->molecules().reduced() ? std::vector<std::string>{"g", "h"} : std::vector<std::string>{"f"};
+  std::vector<std::string> names;
+  for (const auto& variable : gas->molecules().distribution_form().variables) names.push_back(variable.name);
+  return names;
 }
 
 bool by_functions(const case_config& config, const model& equation) {

@@ -17,7 +17,8 @@ struct data_variable {
   int size = 1;                      ///< number of components of a vector
   std::optional<double> value = {};  ///< default of every component; the variable is required without it
   dimension measure = {};            ///< its dimension in units of a gas (gas_scales.hpp)
-  bool of_velocity = false;          ///< a function of the velocity too
+  /// Whether it is a function of the velocity too, whose values at all velocities follow each other.
+  bool of_velocity = false;
 };
 
 /// Sources S(t, x, u) of a model in which a row follows from its variables.

@@ -299,4 +299,29 @@ data_form gas::maxwellian_form() const {
           [this](std::span<const double> given, std::span<double> row) { return row_of(given, row); }};
 }
 
+data_form gas::distribution_form() const {
+  const auto function = [](const char* name, const char* doc) {
+    return data_variable{.name = name, .doc = doc, .of_velocity = true};
+  };
+  data_form form;
+  form.description = "distribution";
+  if (reduced())
+    form.variables = {function("g",
+                               "integral of f over the velocities eta that the grid does not resolve, a "
+                               "formula in the position and v_x, v_y, v_z"),
+                      function("h", "integral of |eta|^2 f")};
+  else
+    form.variables = {function("f", "formula in the position and v_x, v_y, v_z (dimensionless)")};
+  form.row = [this](std::span<const double> given, std::span<double> row) {
+    std::copy(given.begin(), given.end(), row.begin());
+    double omega[most_moments];
+    moments(row.data(), 0, 1, omega);
+    const fluid_state s = state(omega);
+    if (s.admissible()) return std::string();
+    return s.rho > 0.0 ? fmt::format("temperature {:.6g} is not positive", s.T)
+                       : fmt::format("density {:.6g} is not positive", s.rho);
+  };
+  return form;
+}
+
 }  // namespace apsis

@@ -55,6 +55,8 @@ class gas {
   unsupported_initial_data check_supported(const double* row) const;
   /// Returns the equilibrium of (ρ, u, T) as data of a case. This object must outlive it.
   data_form maxwellian_form() const;
+  /// Returns f, or g and h of a reduced gas, as functions of the velocity. This object must outlive it.
+  data_form distribution_form() const;
 
  private:
   static constexpr int most_moments = 5;

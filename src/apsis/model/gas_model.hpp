@@ -75,7 +75,9 @@ class gas_model : public relaxation_model {
                             double* values) const override;
 
   const std::vector<initial_data>& initial() const override { return initial_; }
-  std::vector<data_form> data_forms() const override { return {gas_.maxwellian_form()}; }
+  std::vector<data_form> data_forms() const override {
+    return {gas_.maxwellian_form(), gas_.distribution_form()};
+  }
   unsupported_initial_data check_supported(const double* f) const override { return gas_.check_supported(f); }
 
  protected:

@@ -63,6 +63,7 @@ class reader {
     std::optional<data_form> best;
     std::vector<std::string> missing;
     for (const auto& form : equation_.data_forms()) {
+      if (form.variables.front().of_velocity) continue;
       bool complete = true;
       for (const auto& variable : form.variables)
         for (int k = 0; k < variable.size; ++k)

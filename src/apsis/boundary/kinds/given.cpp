@@ -86,13 +86,9 @@ const boundary_entry boundary_given = {
         [](const model& equation) {
           const gas_model* of = as_gas(equation);
           if (of == nullptr) return detailed_form(equation).variables;
-          const auto component = [](const char* name) {
-            return data_variable{.name = name,
-                                 .doc = "formula >= 0 in t, x and v_x, v_y, v_z (dimensionless)",
-                                 .of_velocity = true};
-          };
-          return of->molecules().reduced() ? std::vector{component("g"), component("h")}
-                                           : std::vector{component("f")};
+          auto functions = of->molecules().distribution_form().variables;
+          for (auto& one : functions) one.doc = "formula >= 0 in t, x and v_x, v_y, v_z (dimensionless)";
+          return functions;
         },
     .make = [](const boundary_source& from) -> std::unique_ptr<boundary> {
       if (as_gas(*from.equation) != nullptr) return std::make_unique<given_distribution>(from.values);

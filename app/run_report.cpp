@@ -5,6 +5,7 @@
 #include <apsis/model/velocity_support.hpp>
 #include <apsis/run/result_units.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -76,6 +77,12 @@ std::string summary_text(const simulation& run, run_end end) {
   if (!std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));
   if (std::isfinite(s.velocity_room)) line("velocities", velocities_text(s, c));
+  if (std::string moment = run.cut_moment(); !moment.empty()) {
+    std::replace(moment.begin(), moment.end(), '_', ' ');
+    line("cut of the target",
+         fmt::format("{:.2e} (largest relative change of the rate at which the {} relaxes)", s.largest_cut,
+                     moment));
+  }
   if (!has_space(*find_model(c.model.name))) {
     std::string values;
     for (const double x : run.state()) values += fmt::format("{}{:.17g}", values.empty() ? "" : "  ", x);

@@ -163,6 +163,10 @@ class SameResults(Folder):
     def test_a_line_whose_middle_process_has_no_wall(self):
         self.expect_same("gas/couette", "space.cells=12", "velocity.points=[12,8]", "time.end=0.05", 'output.surfaces="all"', counts=(3,))
 
+    def test_the_measured_cut_of_a_target(self):
+        self.expect_same("gas/shock", "model.name=shakhov", "model.tails=nonnegative", "space.cells=30", "time.end=1", counts=(3,))
+        self.assertGreater(json.loads((self.folder / "one/manifest.json").read_text(encoding="utf-8"))["result"]["largest_cut"], 1e-3)
+
     def test_steps_to_a_tolerance(self):
         self.expect_same("paper/bgk-mixed", "space.cells=24", "velocity.points=40", "time.end=0.05", "time.method=md-imex-8-3-mixed",
                          "time.tolerance=1e-4", "time.startup=graded", counts=(3,))

@@ -78,7 +78,8 @@ def test_maps_show_the_fields_with_x_across_and_y_up(plane):
     result = read_result(plane)
     drawn = maps(fields_figure(result))
     assert [title.partition(" (")[0] for title, _ in drawn] == ["density", "bulk velocity along x", "bulk velocity along y",
-                                                                "temperature", "speed"]
+                                                                "temperature", "stress xx", "stress xy", "stress yy",
+                                                                "heat flux along x", "heat flux along y", "speed"]
     for (_, axes), name in zip(drawn, ("rho", "u_x", "u_y", "T")):
         mesh = axes.collections[0]
         np.testing.assert_array_equal(mesh.get_array().filled(np.nan).reshape(8, 16), result.fields[name].T)
@@ -145,7 +146,7 @@ def test_a_comparison_of_planes_has_a_row_for_each_field_with_one_range_of_colou
     runs = [("few", read_result(plane)), ("many", read_result(tmp_path / "fine"))]
     drawn = maps(comparison_figure(runs))
     assert [title for title, _ in drawn[:2]] == ["density (dimensionless) few", "density (dimensionless) many"]
-    assert len(drawn) == 2 * 5  # rho, u_x, u_y, T, speed
+    assert len(drawn) == 2 * 10  # rho, u_x, u_y, T, three of the stress, two of the heat flux, speed
     for (_, left), (_, right), name in zip(drawn[::2], drawn[1::2], ("rho", "u_x", "u_y", "T")):
         assert left.collections[0].get_clim() == right.collections[0].get_clim()
         np.testing.assert_array_equal(right.collections[0].get_array().filled(np.nan).reshape(16, 32), runs[1][1].fields[name].T)

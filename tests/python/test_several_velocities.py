@@ -43,7 +43,9 @@ def test_moments_of_f_are_the_fields(computed):
     assert result.v.shape == (points, d) and result.v_weights.shape == (points,) and result.f.shape == (8, points)
     rho = result.f @ result.v_weights
     np.testing.assert_allclose(rho, result.fields["rho"][-1], rtol=1e-12)
-    assert list(result.fields) == ["rho", *names_of_velocity(d), "T"]
+    axes = "xyz"[:d]
+    stress = [f"stress_{a}{b}" for k, a in enumerate(axes) for b in axes[k:]]
+    assert list(result.fields) == ["rho", *names_of_velocity(d), "T", *stress, *(f"heat_flux_{a}" for a in axes)]
     for k, name in enumerate(names_of_velocity(d)):
         u = result.f @ (result.v_weights * result.v[:, k]) / rho
         np.testing.assert_allclose(u, result.fields[name][-1], atol=1e-13)
@@ -135,7 +137,7 @@ def test_every_axis_of_the_description_is_monotone(computed):
 def test_results_of_one_velocity_dimension_are_as_they_were(tmp_path):
     result = apsis.run("paper/bgk-mixed", "space.cells=8", "velocity.points=48", "time.end=0.01", out=tmp_path)
     assert result.v.shape == (48,) and result.v_weights.size == 0 and result.axes == result.marginals == {}
-    assert list(result.fields) == ["rho", "u", "T"]
+    assert list(result.fields) == ["rho", "u", "T", "stress", "heat_flux"]
     with h5py.File(Path(tmp_path) / "solution.h5") as h5:
         assert sorted(h5) == ["epsilon", "f", "fields", "v", "x"]
     figure = result.plot("distribution")

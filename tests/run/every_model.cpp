@@ -137,8 +137,10 @@ TEST(every_model, conserves_its_invariants_through_a_step) {
           case_of(*entry, random_method(*entry), step_key_for(*entry), random_overrides(*entry, positive));
       const one_step step = step_of(*entry, c, false);
       RC_ASSERT(step.after.conservation_defect.size() == make_model(c)->invariants().size());
-      // Twelve cells, six stages, sums over 36 velocities: a few dozen rounding errors of 1e-16.
-      for (const double defect : step.after.conservation_defect) RC_ASSERT(defect <= 2e-14);
+      // Twelve cells, six stages, sums over 36 velocities: a few dozen rounding errors of 1e-16. The terms of
+      // a sum over both signs are larger than the sum.
+      const double most = make_model(c)->why_signed().empty() ? 2e-14 : 2e-13;
+      for (const double defect : step.after.conservation_defect) RC_ASSERT(defect <= most);
     });
   }
   EXPECT_GE(asked, 3);

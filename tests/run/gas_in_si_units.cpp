@@ -189,7 +189,7 @@ TEST(gas_in_si_units, results_are_those_of_the_dimensionless_run_times_scales) {
   records.add_snapshot(si);
   const solution written = make_solution(si, records);
   EXPECT_EQ(written.fields.labels.front(), "density (kg/m^3)");
-  EXPECT_EQ(written.fields.units, (std::vector<std::string>{"kg/m^3", "K", "Pa", "W/m^2", "dimensionless"}));
+  EXPECT_EQ(written.fields.units, (std::vector<std::string>{"kg/m^3", "K", "W/m^2", "Pa", "dimensionless"}));
   EXPECT_NEAR(written.t, 1e-10, 1e-24);
   EXPECT_NEAR(written.fields.axes.at(0).centres.back(), 1e-5 * 23.0 / 24.0, 1e-19);
   // A checkpoint is dimensionless whatever the results are.

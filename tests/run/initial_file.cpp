@@ -226,7 +226,7 @@ TEST(initial_file, below_regions_is_replaced_where_they_are) {
   const std::string text = gas(from(file) + "[[initial.region]]\nwhere = \"x < 0.33\"\nrho = 2\nT = 0.5\n");
   const run_setup setup(parse_case(text, "c.toml"));
   const field u = setup.initial_state(), old = state_of(gas(from(file)));
-  double fields[3];
+  double fields[5];
   setup.equation->macroscopic(u.row(3), fields);
   EXPECT_NEAR(fields[0], 2.0, 1e-13);
   EXPECT_NEAR(fields[2], 0.5, 1e-13);
@@ -267,7 +267,7 @@ TEST(initial_file, in_si_units_is_read_in_those_of_the_case) {
   for (const char* file : {"/solution.h5", "/fields.csv"}) {
     const run_setup same(parse_case(of(argon, from(folder + file)), "c.toml")),
         other(parse_case(of(thinner, from(folder + file)), "c.toml"));
-    double a[3], b[3];
+    double a[5], b[5];
     same.equation->macroscopic(same.initial_state().row(7), a);
     other.equation->macroscopic(other.initial_state().row(7), b);
     EXPECT_NEAR(a[0], 1.0 + 0.1 * 7.5 / 20, 1e-13) << file;

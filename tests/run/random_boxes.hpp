@@ -26,6 +26,7 @@ class random_boxes {
     for (auto& n : cells_) n = d_ == 2 ? 6 + below(14) : 5 + below(3);
     for (auto& length : length_) length = number(0.5, 2.0);
     std::string text = fmt::format("[model]\nname = \"{}\"\ndegrees_of_freedom = {}\n", model, degrees_);
+    if (model != "bgk") text += "tails = \"nonnegative\"\n";
     text += "epsilon = " + epsilon();
     text += fmt::format("\ncollision_rate = \"viscosity\"\nviscosity_exponent = {:.2f}\n", number(0.5, 1.0));
     text += initial() + space();

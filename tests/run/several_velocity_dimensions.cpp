@@ -154,7 +154,7 @@ TEST(several_velocity_dimensions, store_every_component_of_the_bulk_velocity) {
         EXPECT_NEAR(momentum / mass, u[i], 1e-12) << names[k] << " " << i;
       }
     }
-    const std::string header = d == 2 ? "x,rho,u_x,u_y,T\n" : "x,rho,u_x,u_y,u_z,T\n";
+    const std::string header = d == 2 ? "x,rho,u_x,u_y,T,stress_xx," : "x,rho,u_x,u_y,u_z,T,stress_xx,";
     EXPECT_THAT(text_of(results + "/fields.csv"), testing::StartsWith(header));
   }
 }
@@ -235,7 +235,8 @@ TEST(several_velocity_dimensions, keep_the_layout_of_one_velocity_dimension) {
   const test_folder folder;
   const std::string results = results_of_moving_gas(folder, gas(1));
   const auto file = hdf5_file::open(results + "/solution.h5");
-  EXPECT_THAT(file.datasets(), ElementsAre("epsilon", "f", "fields/T", "fields/rho", "fields/u", "v", "x"));
+  EXPECT_THAT(file.datasets(), ElementsAre("epsilon", "f", "fields/T", "fields/heat_flux", "fields/rho",
+                                           "fields/stress", "fields/u", "v", "x"));
   EXPECT_EQ(file.extents("v"), shape{points});
   EXPECT_THAT(text_of(results + "/solution.xdmf"),
               testing::AllOf(Not(HasSubstr("<!--")), HasSubstr("Dimensions=\"1 6 24\">solution.h5:/f<"),

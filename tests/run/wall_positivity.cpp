@@ -30,6 +30,7 @@ class generator {
         "[model]\nname = \"{}\"\nvelocity_dimensions = {}\ndegrees_of_freedom = {}\nepsilon = {}\n"
         "collision_rate = \"viscosity\"\nviscosity_exponent = {:.2f}\n",
         model, d, degrees, epsilon(), number(0.5, 1.0));
+    if (model != "bgk") text += "tails = \"nonnegative\"\n";
     text += fmt::format(
         "[initial]\nrho = 1\nT = {:.3f}\nu = {}\n[[initial.region]]\nwhere = \"x > {:.3f}\"\nrho = {:.3g}\n"
         "T = {:.3f}\n",

@@ -26,6 +26,10 @@ PROMISES = {
 }
 
 
+# Relative change of a rate of relaxation beyond which a run warns.
+HARMLESS_CUT = 1e-3
+
+
 def caption(name: str, result: RunResult) -> tuple[str, str]:
     """Heading and caption of a picture."""
     drawn = "f(x, v)" if result.velocity_dimensions < 2 else distribution_name(result)
@@ -81,6 +85,10 @@ def promises(manifest: dict[str, Any]) -> str:
         else:
             kept = "one was broken, see above"
         rows.append([f"{name}: {what}", kept, "none offered" if value is None else f"{measured} {number(value) if key else ''}".strip()])
+    cut = manifest["result"].get("largest_cut")
+    if cut is not None:
+        rows.append(["target: the moments of the model relax at the published rate", verdict(cut <= HARMLESS_CUT, ("kept", "changed")),
+                     f"largest relative change of the rate {number(cut)}"])
     return table(["promise", "verdict", "measured"], rows)
 
 

@@ -345,9 +345,10 @@ std::vector<case_key> output_keys() {
            .doc = "Time between snapshots of the fields; 0 keeps the final state only."}),
       key("output.fields", [](auto& c) -> auto& { return c.output.fields; },
           {.doc =
-               "Names of the macroscopic fields to write; empty writes the usual ones of the model. Further "
-               "fields of a gas: p, mach, stress, heat_flux (with several velocity dimensions stress_xy, "
-               "heat_flux_x, ...), distance (to equilibrium), knudsen (local Knudsen number)."}),
+               "Names of the macroscopic fields to write; empty writes the usual ones of the model, of a gas "
+               "rho, u, T, stress, heat_flux (with several velocity dimensions u_x, stress_xy, heat_flux_x, "
+               "...). Further fields of a gas: p, mach, distance (to equilibrium), knudsen (local Knudsen "
+               "number)."}),
       key("output.units", [](auto& c) -> auto& { return c.output.units; },
           {.scope = key_scope::velocity,
            .doc = "Units of fields, history and report: dimensionless, or those of the SI, with a table "

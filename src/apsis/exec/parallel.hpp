@@ -55,6 +55,11 @@ class per_thread {
     if (slots_.size() < count) slots_.resize(count);
     for (std::size_t p = 0; p < count; ++p) make_ready(slots_[p].value);
   }
+  /// Calls visit(scratch) for each thread that was ever prepared.
+  template <class Function>
+  void visit_all(const Function& visit) {
+    for (slot& one : slots_) visit(one.value);
+  }
   /// Returns the scratch space of the calling thread.
   T& here() { return slots_[static_cast<std::size_t>(thread_number())].value; }
 

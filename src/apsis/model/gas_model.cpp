@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 namespace apsis {
 
 gas_model::gas_model(const model_config& config, double prandtl)
@@ -43,16 +45,40 @@ std::vector<model_text> gas_model::texts() {
                   "epsilon T^s with s = viscosity_exponent"}};
 }
 
-std::vector<model_text> gas_model::texts_with_tails() {
+std::vector<model_text> gas_model::texts_with_tails(const std::string& usual) {
   auto all = texts();
   all.push_back({.name = "tails",
-                 .value = "nonnegative",
-                 .choices = {"nonnegative", "signed"},
+                 .value = usual,
+                 .choices = {"signed", "nonnegative"},
                  .variable = "",
-                 .doc = "nonnegative: where the target would make the solution of a stage negative, far from "
-                        "the bulk velocity, it is cut off and its moments are restored, so that positivity "
-                        "is promised; signed: the target as published"});
+                 .doc =
+                     "signed: the target as published, which may be negative far from the bulk velocity, so "
+                     "that positivity is not promised; nonnegative: where the target would make the "
+                     "solution of a stage negative, it is cut off and its moments are restored, so that "
+                     "positivity is promised and the gas is another one (history: cut_heat_flux or "
+                     "cut_stress)"});
   return all;
+}
+
+std::string gas_model::why_signed() const {
+  if (!signed_tails_) return {};
+  return "positivity is not promised (the target of the model as published is negative far from the bulk "
+         "velocity); model.tails = \"nonnegative\" cuts it off there";
+}
+
+/// |𝒮e − 𝒮E'|/(λ_e |s|).
+double gas_model::relative_change(const double* omega, const double* s, double rate_of_s, const double* e,
+                                  const double* published) const {
+  const int count = relaxing_count();
+  std::vector<double> mine(static_cast<std::size_t>(count)), theirs(mine.size());
+  relaxing_moments(e, omega, mine.data());
+  relaxing_moments(published, omega, theirs.data());
+  double difference = 0.0, size = 0.0;
+  for (std::size_t k = 0; k + 1 < mine.size(); ++k) {  // the last number is the weight of the derivative
+    difference += (mine[k] - theirs[k]) * (mine[k] - theirs[k]);
+    size += s[k] * s[k];
+  }
+  return size > 0.0 ? std::sqrt(difference / size) / rate_of_s : 0.0;
 }
 
 velocity_lattice gas_model::lattice() const {
@@ -97,30 +123,43 @@ void gas_model::invariant_scales(std::span<const double> densities, double* scal
 }
 
 std::vector<field_name> gas_model::fields() const {
-  return fluid_fields(gas_.dimensions());
+  const int d = gas_.dimensions();
+  const std::string axes = "xyz";
+  std::vector<field_name> all = fluid_fields(d);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
+    for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l) {
+      const std::string pair = d == 1 ? "" : std::string({axes[k], axes[l]});
+      all.push_back({d == 1 ? "stress" : "stress_" + pair,
+                     fmt::format("stress{}{} (dimensionless)", d == 1 ? "" : " ", pair),
+                     dimensions::pressure});
+    }
+  for (int k = 0; k < d; ++k) {
+    const std::string along = d == 1 ? "" : std::string(" along ") + "xyz"[k];
+    all.push_back(
+        {component_name("heat_flux", k, d), "heat flux" + along + " (dimensionless)", dimensions::heat_flux});
+  }
+  return all;
 }
 
 void gas_model::macroscopic(const double* f, double* values) const {
   double omega[5];
   moments(f, omega);
-  fluid_field_values(gas_.state(omega), gas_.dimensions(), values);
+  const int d = gas_.dimensions();
+  const fluid_state s = gas_.state(omega);
+  fluid_field_values(s, d, values);
+  values += d + 2;
+  const central_moments m = find_central_moments(gas_, f, s);
+  const double p = s.rho * s.T;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
+    for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l)
+      *values++ = s.rho * m.stress[k][l] - (k == l ? p : 0.0);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) *values++ = m.heat[k];
 }
 
 std::vector<field_name> gas_model::further_fields() const {
-  const int d = gas_.dimensions();
-  const std::string axes = "xyz";
-  std::vector<field_name> all = {{"p", "pressure (dimensionless)", dimensions::pressure},
-                                 {"mach", "Mach number"}};
-  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
-    for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l) {
-      const std::string pair = d == 1 ? "" : std::string("_") + axes[k] + axes[l];
-      all.push_back({"stress" + pair, "stress" + (d == 1 ? "" : " " + pair.substr(1)) + " (dimensionless)",
-                     dimensions::pressure});
-    }
-  for (int k = 0; k < d; ++k)
-    all.push_back({component_name("heat_flux", k, d), "heat flux (dimensionless)", dimensions::heat_flux});
-  all.push_back({"distance", "distance to equilibrium, relative"});
-  return all;
+  return {{"p", "pressure (dimensionless)", dimensions::pressure},
+          {"mach", "Mach number"},
+          {"distance", "distance to equilibrium, relative"}};
 }
 
 void gas_model::further_macroscopic(const double* f, double* values) const {
@@ -133,11 +172,6 @@ void gas_model::further_macroscopic(const double* f, double* values) const {
   for (int k = 0; k < d; ++k) square += s.u[k] * s.u[k];
   *values++ = p;
   *values++ = std::sqrt(square / (gamma * s.T));
-  const central_moments m = find_central_moments(gas_, f, s);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
-    for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l)
-      *values++ = s.rho * m.stress[k][l] - (k == l ? p : 0.0);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) *values++ = m.heat[k];
   std::vector<double> e(static_cast<std::size_t>(components()));
   double difference = 0.0, all = 0.0;
   if (equilibrium(omega, e.data()))

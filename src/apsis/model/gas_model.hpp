@@ -4,6 +4,7 @@
 #include <apsis/model/model.hpp>
 #include <apsis/model/model_registry.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -25,8 +26,8 @@ class gas_model : public relaxation_model {
   /// leaves it to the user.
   static std::vector<model_parameter> parameters(double degrees_of_freedom);
   static std::vector<model_text> texts();  ///< the string options of all
-  /// Returns also that of models whose target may be negative in its tails.
-  static std::vector<model_text> texts_with_tails();
+  /// Returns also that of models whose target may be negative in its tails. `usual`: its default.
+  static std::vector<model_text> texts_with_tails(const std::string& usual);
 
   const gas& molecules() const { return gas_; }  ///< the rows of the gas
   int components() const override { return gas_.velocities().components(); }
@@ -38,6 +39,7 @@ class gas_model : public relaxation_model {
   double crossing_rate(std::span<const double> spacing) const override;
   bool positive() const override { return true; }
   bool collisions_keep_sign() const override { return !signed_tails_; }
+  std::string why_signed() const override;
 
   int moment_count() const override { return gas_.moment_count(); }
   void moments(const double* f, double* omega) const override { gas_.moments(f, 0, 1, omega); }
@@ -62,10 +64,11 @@ class gas_model : public relaxation_model {
   /// inequality.
   void invariant_scales(std::span<const double> densities, double* scales) const override;
 
+  /// ρ, u, T, stress p_kl = Σ c_k c_l g − p δ_kl for k ≤ l, heat flux ½ Σ c (|c|² g + h).
   std::vector<field_name> fields() const override;
   void macroscopic(const double* f, double* values) const override;
-  /// Pressure p = ρT, Mach number |u|/√(γT) with γ = (D + 2)/D, stress p_kl = Σ c_k c_l g − p δ_kl, heat flux
-  /// ½ Σ c (|c|² g + h), and the distance Σ|f − M|/Σ f to equilibrium, of g if there are two functions.
+  /// Pressure p = ρT, Mach number |u|/√(γT) with γ = (D + 2)/D, and the distance Σ|f − M|/Σ f to equilibrium,
+  /// of g if there are two functions.
   std::vector<field_name> further_fields() const override;
   void further_macroscopic(const double* f, double* values) const override;
   /// The local Knudsen number λ|∇ρ|/ρ with the mean free path by viscosity, λ = μ √(πT/2)/p, and the
@@ -81,12 +84,50 @@ class gas_model : public relaxation_model {
   unsupported_initial_data check_supported(const double* f) const override { return gas_.check_supported(f); }
 
  protected:
-  /// Returns `keep` of target(), or ∞ with signed tails.
-  double bound_of_tails(double keep) const {
-    return signed_tails_ ? std::numeric_limits<double>::infinity() : keep;
+  /// Returns the rate λ_e at which s relaxes in a stage, (λA + λ²B)/(A + B), from the weight λB/(A + B) of
+  /// the derivative.
+  static double rate_of_stage(double lambda, double derivative) {
+    return lambda + (lambda - 1.0) * derivative;
+  }
+
+  /// Implements target() for a target of the form find(part, keep, e, raised), which has `part` of s and
+  /// returns whether it has the moments ω (conservative_target()): e ← that of the largest part 1, ½, …, or
+  /// the equilibrium, with the bound of the tails. Where this is not the published target E', with the rate
+  /// λ_e of s, cut ← |𝒮e − 𝒮E'|/(λ_e |s|). Returns false if ω is not admissible.
+  template <class Find>
+  bool find_target(const double* omega, const double* s, double rate_of_s, double keep, double* e,
+                   double& cut, const Find& find) const {
+    constexpr double none = std::numeric_limits<double>::infinity();
+    bool raised = false;
+    const double part = largest_part(signed_tails_ ? none : keep, e, raised, find);
+    if (part == 0.0 && !equilibrium(omega, e)) return false;
+    if (part == 1.0 && !raised) return true;
+    if (signed_tails_) {
+      cut = lost_by_part(part, rate_of_s);
+      return true;
+    }
+    thread_local std::vector<double> published;
+    published.resize(static_cast<std::size_t>(components()));
+    const double best = largest_part(none, published.data(), raised, find);
+    if (best == 0.0) equilibrium(omega, published.data());
+    cut = lost_by_part(best, rate_of_s) + relative_change(omega, s, rate_of_s, e, published.data());
+    return true;
   }
 
  private:
+  /// Returns 0 if no part is found.
+  template <class Find>
+  static double largest_part(double keep, double* e, bool& raised, const Find& find) {
+    for (double part = 1.0; part > 0.01; part *= 0.5)
+      if (find(part, keep, e, raised)) return part;
+    return 0.0;
+  }
+  /// A part of 𝒮E' = (1 − λ_e)s is left.
+  static double lost_by_part(double part, double rate_of_s) {
+    return (1.0 - part) * std::abs(1.0 - rate_of_s) / rate_of_s;
+  }
+  double relative_change(const double* omega, const double* s, double rate_of_s, const double* e,
+                         const double* published) const;
   void two_beams(double a, double b, double rho, double T, std::span<double> f) const;
   void expansion(double rho, std::span<double> f) const;
   void make_initial_data();

@@ -50,22 +50,24 @@ target_rows::cubic along_last(const target_polynomial& p, const std::array<doubl
   return of_line;
 }
 
-/// e ← max(base · P, −keep f) for one set of components.
+/// e ← max(base · P, −keep f) for one set of components. Returns whether a value was raised to its bound.
 template <std::size_t d>
-void weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
+bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
                  const double* base, const double* f, double keep, double* e) {
   const int n = grid.last_line().points();
+  bool raised = false;
   for_lines(grid, state, [&](const line_batch& some) {
     std::array<target_rows::cubic, together> of_lines;  // NOLINT(cppcoreguidelines-pro-type-member-init)
     for (int i = 0; i < some.count; ++i)
       of_lines[static_cast<std::size_t>(i)] = along_last<d>(p, some.c[static_cast<std::size_t>(i)]);
     const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(some.first) * n;
-    target_rows::weigh(base + first, grid.last_line().v().data(), state.u[d - 1], of_lines.data(), some.count,
-                       f + first, keep, n, e + first);
+    raised |= target_rows::weigh(base + first, grid.last_line().v().data(), state.u[d - 1], of_lines.data(),
+                                 some.count, f + first, keep, n, e + first);
   });
+  return raised;
 }
 
-void weigh(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
+bool weigh(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
            const double* base, const double* f, double keep, double* e) {
   switch (grid.dimensions()) {
     case 1:
@@ -78,7 +80,7 @@ void weigh(const velocity_grid& grid, const fluid_state& state, const target_pol
 }
 
 /// Relative size of a defect that counts as rounding, and the largest bound on an energy that is a difference
-/// of large numbers. Where corrections no longer reduce a defect, target_accuracy is enough.
+/// of large numbers.
 constexpr double rounding = 4.5e-16, largest_bound = 1e-12;
 /// Smallest variance of a base in units of Δv²: below it, a Gaussian at points has other moments.
 constexpr double narrowest = 0.25;
@@ -100,9 +102,9 @@ struct defect {
   double mass = 0.0, energy = 0.0;
   std::array<double, 3> momentum{};
 
-  double size() const {
-    return std::max({std::abs(mass), std::abs(energy), std::abs(momentum[0]), std::abs(momentum[1]),
-                     std::abs(momentum[2])});
+  double size() const { return std::max({std::abs(mass), std::abs(energy), largest_momentum()}); }
+  double largest_momentum() const {
+    return std::max({std::abs(momentum[0]), std::abs(momentum[1]), std::abs(momentum[2])});
   }
 };
 
@@ -121,9 +123,17 @@ defect defect_of(const double* after, const double* omega, const fluid_state& st
   return found;
 }
 
-/// Returns the attainable defect: the energy is a difference to that of the bulk velocity.
-double attainable(const double* omega, int d, double variance) {
-  return std::min(rounding * std::max(1.0, omega[d + 1] / (omega[0] * variance)), largest_bound);
+/// Returns the energy over that of the base: the defect of the energy is a difference to that of the bulk
+/// velocity.
+double energy_ratio(const double* omega, int d, double variance) {
+  return std::max(1.0, omega[d + 1] / (omega[0] * variance));
+}
+
+/// Whether the moments have the accuracy of targets, relative to those at rest.
+bool is_accurate(const defect& found, double ratio) {
+  return std::abs(found.mass) <= target_accuracy &&
+         found.largest_momentum() <= std::min(target_accuracy * std::sqrt(ratio), largest_bound) &&
+         std::abs(found.energy) <= std::min(target_accuracy * ratio, largest_bound);
 }
 
 /// Subtracts the defect, with the moments of a Gaussian of this variance.
@@ -179,30 +189,37 @@ central_moments find_central_moments(const gas& of, const double* row, const flu
 }
 
 bool conservative_target(const gas& of, const double* omega, const double* base, const target_shape& given,
-                         const double* f, double keep, double* e) {
+                         const double* f, double keep, double* e, bool& raised) {
   const velocity_grid& grid = of.grid();
   const int d = grid.dimensions();
   const fluid_state state = of.state(omega);
   target_shape shape = given;
   if (!(shape.variance >= narrowest * widest_gap(grid, state))) return false;
-  const double enough = attainable(omega, d, shape.variance);
+  // Where corrections no longer reduce a defect, target_accuracy is enough.
+  const double ratio = energy_ratio(omega, d, shape.variance),
+               enough = std::min(rounding * ratio, largest_bound);
   double best = 1e300;
   constexpr int most_corrections = 12;
   for (int iteration = 0; iteration < most_corrections; ++iteration) {
-    weigh(grid, state, shape.of_g, base, f, keep, e);
+    raised |= weigh(grid, state, shape.of_g, base, f, keep, e);
     if (of.reduced() && iteration == 0)
-      weigh(grid, state, shape.of_h, base + grid.size(), f + grid.size(), keep, e + grid.size());
+      raised |= weigh(grid, state, shape.of_h, base + grid.size(), f + grid.size(), keep, e + grid.size());
     std::array<double, 5> after{};
     of.moments(e, 0, 1, after.data());
     const defect found = defect_of(after.data(), omega, state, d, shape.variance);
     const double size = found.size();
     if (size <= enough) return true;
-    // Corrections contract as long as little of the row is cut off.
-    if (!(size < 0.7 * best)) return size <= std::max(target_accuracy, enough);
+    // Corrections contract as long as little of the row is cut off. A defect that is rounding already varies
+    // from one correction to the next.
+    if (!(size < 0.7 * best)) {
+      if (is_accurate(found, ratio)) return true;
+      if (!(size <= largest_bound)) return false;
+    }
+    if (iteration + 1 == most_corrections) return is_accurate(found, ratio);
     best = size;
     correct(found, d, shape.variance, shape.of_g);
   }
-  return best <= std::max(target_accuracy, enough);
+  return false;
 }
 
 }  // namespace apsis

@@ -35,9 +35,9 @@ inline constexpr double target_accuracy = 1e-14;
 
 /// e ← max(base · P, −keep f) for a row f ≥ 0, where P is corrected by α + β·c + γ|c|² in g until e has the
 /// moments ω: a combination of f and e stays nonnegative and conservative, also where P is negative in the
-/// tails. Returns false if that is
-/// not found; e is then undefined.
+/// tails. Sets `raised` where a value was raised to its bound. Returns false if e is not found; it is then
+/// undefined.
 bool conservative_target(const gas& of, const double* omega, const double* base, const target_shape& shape,
-                         const double* f, double keep, double* e);
+                         const double* f, double keep, double* e, bool& raised);
 
 }  // namespace apsis

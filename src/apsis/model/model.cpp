@@ -106,7 +106,8 @@ void relaxation_model::relaxing_moments(const double*, const double*, double*) c
 
 void relaxation_model::relax(const stage_strength&, double*) const {}
 
-bool relaxation_model::target(const double* omega, const double*, const double*, double, double* e) const {
+bool relaxation_model::target(const double* omega, const double*, const double*, double, double* e,
+                              double&) const {
   return equilibrium(omega, e);
 }
 

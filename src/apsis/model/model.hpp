@@ -91,6 +91,12 @@ class model {
   virtual bool positive() const { return false; }
   /// Whether stage solves keep nonnegative rows nonnegative.
   virtual bool collisions_keep_sign() const { return positive(); }
+  /// Returns a message if stage solves make rows negative by choice of the user: "positivity is not promised
+  /// (…); …"; "" otherwise.
+  virtual std::string why_signed() const { return {}; }
+  /// Returns the name of the moments whose relaxation point_collision::take_cut() compares with that of the
+  /// published model: "heat_flux"; "", the default, of a model whose target is never changed.
+  virtual std::string cut_moment() const { return {}; }
   /// Whether entropy() is defined.
   virtual bool has_entropy() const { return false; }
   /// Whether no stage solve of a collision increases the entropy.
@@ -183,9 +189,11 @@ class relaxation_model : public model {
   virtual void relax(const stage_strength& strength, double* s) const;
   /// e ← E(ω, s) + λB/(A + B) E_s s, the target of a stage after relax(), or E(ω, s), for a row u ≥ 0. Where
   /// it is less than −keep·u, a model that keeps the sign changes it, so that the solution of the stage is
-  /// not negative; keep = 0 for an explicit Q(u), whose forward Euler step ends at the target. Returns false
-  /// if ω is not admissible.
-  virtual bool target(const double* omega, const double* s, const double* u, double keep, double* e) const;
+  /// not negative; keep = 0 for an explicit Q(u), whose forward Euler step ends at the target. `cut`: the
+  /// relative change of the rate at which s relaxes, where e is another target (cut_moment()); otherwise it
+  /// stays. Returns false if ω is not admissible.
+  virtual bool target(const double* omega, const double* s, const double* u, double keep, double* e,
+                      double& cut) const;
   /// Returns C(ω) > 0.
   virtual double rate(const double* omega) const = 0;
   std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const final;

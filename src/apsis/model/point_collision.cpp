@@ -29,6 +29,10 @@ void point_collision::solve_stage_changes(double a, double b, const point_batch&
   for (std::ptrdiff_t k = 0; k < numbers; ++k) change[k] -= u[k];
 }
 
+double point_collision::take_cut() {
+  return 0.0;
+}
+
 double point_collision::forward_euler_step(const double*, double) {
   return 0.0;
 }

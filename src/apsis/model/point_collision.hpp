@@ -53,6 +53,10 @@ class point_collision {
   /// q ← Q(u)/ε for every point, at the same pitch. Throws numerical_error where ε = 0 or Q does not exist.
   virtual void evaluate(const point_batch& at, const double* u, double* q) = 0;
 
+  /// Returns the largest relative change of the rate at which model::cut_moment() relaxes, of all stages and
+  /// rates since the last call; 0 by default.
+  virtual double take_cut();
+
   /// Returns the largest Δt for which u + Δt Q(u)/ε preserves what the collision preserves (for a relaxation
   /// ε/C); 0 if it is unknown.
   virtual double forward_euler_step(const double* u, double epsilon);

@@ -7,8 +7,10 @@
 #include <apsis/model/relaxation_rows.hpp>
 #include <apsis/model/velocity_support.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -81,10 +83,12 @@ class relaxation_collision final : public point_collision {
   }
 
   void evaluate(const point_batch& at, const double* u, double* q) override {
-    find_targets(0.0, 0.0, at, u);
+    find_targets(0.0, 0.0, at, u, true);
     for (int p = 0; p < at.count; ++p)
       relaxation::change(strength(p, at), equilibrium(p), u + p * at.pitch, width(at), q + p * at.pitch);
   }
+
+  double take_cut() override { return std::exchange(cut_, 0.0); }
 
   double forward_euler_step(const double* u, double epsilon) override { return epsilon / rate(u); }
 
@@ -103,13 +107,13 @@ class relaxation_collision final : public point_collision {
   static long cell(int p, const point_batch& at) { return at.first_cell + p / at.points_per_cell; }
 
   /// The target of every point: E(ℛu), or that of a stage with relaxing moments, which for a = b = 0 is the
-  /// one of Q(u).
-  void find_targets(double a, double b, const point_batch& at, const double* u) {
+  /// one of Q(u) if `explicit_rate`; a stage does not use it then.
+  void find_targets(double a, double b, const point_batch& at, const double* u, bool explicit_rate = false) {
     const profile::section timed(kernel::equilibria, numbers(at),
                                  {equation_.operations_of_equilibrium(), 0.0});
     equation_.moments_of_rows(u, at.pitch, at.count, omega(0));
     const int p = relaxing_.empty() ? equation_.equilibria(omega(0), at.count, equilibria_.data(), pitch_)
-                                    : relaxed_targets(a, b, at, u);
+                                    : relaxed_targets(a, b, at, u, explicit_rate);
     if (p == at.count) return;
     const std::string beyond = why_beyond_velocities(equation_, omega(p));
     throw numerical_error(
@@ -119,7 +123,7 @@ class relaxation_collision final : public point_collision {
   }
 
   /// Returns the number of points before the first without a target.
-  int relaxed_targets(double a, double b, const point_batch& at, const double* u) {
+  int relaxed_targets(double a, double b, const point_batch& at, const double* u, bool explicit_rate) {
     for (int p = 0; p < at.count; ++p) {
       const double* row = u + p * at.pitch;
       const double rate = equation_.rate(omega(p));
@@ -130,7 +134,10 @@ class relaxation_collision final : public point_collision {
       const double keep = weights.of_e > 0.0 ? (1.0 - margin) * (weights.of_u / weights.of_e) : 0.0;
       equation_.relaxing_moments(row, omega(p), relaxing_.data());
       equation_.relax(strength_of_stage(a, b, rate, at.epsilon[p]), relaxing_.data());
-      if (!equation_.target(omega(p), relaxing_.data(), row, keep, equilibria_.data() + p * pitch_)) return p;
+      double cut = 0.0;
+      if (!equation_.target(omega(p), relaxing_.data(), row, keep, equilibria_.data() + p * pitch_, cut))
+        return p;
+      if (explicit_rate || weights.of_e > 0.0) cut_ = std::max(cut_, cut);
     }
     return at.count;
   }
@@ -174,6 +181,8 @@ class relaxation_collision final : public point_collision {
   /// Moments of nonnegative rows have an equilibrium.
   const char* advice() const {
     if (!equation_.positive()) return "use a smaller step";
+    if (!equation_.why_signed().empty())
+      return "use model.tails = \"nonnegative\" with the positivity limiter, or a smaller step";
     return keeps_sign_
                ? "use steps within r dt_FE (time.safety = 1, and a method with r > 0), which keep all "
                  "values nonnegative"
@@ -186,6 +195,7 @@ class relaxation_collision final : public point_collision {
 
   const relaxation_model& equation_;
   bool keeps_sign_, exact_;
+  double cut_ = 0.0;  ///< of take_cut()
   std::ptrdiff_t moments_, pitch_;
   aligned_vector<double> omega_, equilibria_, rates_, weight_of_u_, weight_of_e_;
   std::vector<double> relaxing_;  ///< of one point

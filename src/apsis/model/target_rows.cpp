@@ -11,8 +11,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-void weigh(const double* m, const double* v, double u, const target_rows::cubic* of_lines, int lines,
+bool weigh(const double* m, const double* v, double u, const target_rows::cubic* of_lines, int lines,
            const double* f, double keep, int n, double* e) {
+  bool raised = false;
   const bool bounded = keep < std::numeric_limits<double>::infinity();  // ∞ · 0 is NaN
   for (int line = 0; line < lines; ++line, m += n, f += n, e += n) {
     const target_rows::cubic p = of_lines[line];
@@ -20,9 +21,16 @@ void weigh(const double* m, const double* v, double u, const target_rows::cubic*
       using N = pack<decltype(lanes)>;
       const N c = N::load(v + k) - N(u);
       const N value = N::load(m + k) * fma(fma(fma(N(p.k3), c, N(p.k2)), c, N(p.k1)), c, N(p.k0));
-      (bounded ? larger(value, negative_fma(N(keep), N::load(f + k), N(0.0))) : value).store(e + k);
+      if (!bounded) {
+        value.store(e + k);
+        return;
+      }
+      const N bound = negative_fma(N(keep), N::load(f + k), N(0.0));
+      raised = raised || N::any(value < bound);
+      larger(value, bound).store(e + k);
     });
   }
+  return raised;
 }
 
 void power_sums(const double* f, const double* v, double u, int lines, int n, target_rows::powers* of_lines) {
@@ -63,9 +71,9 @@ HWY_EXPORT(power_sums);
 
 namespace target_rows {
 
-void weigh(const double* m, const double* v, double u, const cubic* of_lines, int lines, const double* f,
+bool weigh(const double* m, const double* v, double u, const cubic* of_lines, int lines, const double* f,
            double keep, int n, double* e) {
-  HWY_DYNAMIC_DISPATCH(weigh)(m, v, u, of_lines, lines, f, keep, n, e);
+  return HWY_DYNAMIC_DISPATCH(weigh)(m, v, u, of_lines, lines, f, keep, n, e);
 }
 
 void power_sums(const double* f, const double* v, double u, int lines, int n, powers* of_lines) {

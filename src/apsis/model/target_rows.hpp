@@ -16,8 +16,9 @@ struct cubic {
       k3 = 0.0;     ///< coefficient of c³
 };
 
-/// e ← max(m p(c), −keep f) with one polynomial for each line, f ≥ 0; keep = ∞ leaves m p(c).
-void weigh(const double* m, const double* v, double u, const cubic* of_lines, int lines, const double* f,
+/// e ← max(m p(c), −keep f) with one polynomial for each line, f ≥ 0; keep = ∞ leaves m p(c). Returns whether
+/// a value was raised to its bound.
+bool weigh(const double* m, const double* v, double u, const cubic* of_lines, int lines, const double* f,
            double keep, int n, double* e);
 
 /// Σ f c^k, k = 0 … 3.

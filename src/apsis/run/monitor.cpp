@@ -138,6 +138,7 @@ step_record monitor::start(const field& u) {
   }
   keep_velocities(t);
   step_record record;
+  if (!equation_.cut_moment().empty()) record.cut = {0.0};
   record.received.assign(ends_.size() * invariants_.size(), 0.0);
   record.flux = record.received;
   record.min_value = t.lowest;
@@ -159,11 +160,12 @@ void monitor::watch_velocities(const field& u, const step_record& last, run_summ
   velocities_.update(extremes_, margins_, u, last, summary);
 }
 
-step_record monitor::check(const field& u, double dt, const step_record& previous) {
+step_record monitor::check(const field& u, double dt, const step_record& previous, double cut) {
   if (velocities_.active()) velocities_.set_mass(previous.total.front());
   const totals t = sum(u);
   keep_velocities(t);
   step_record record;
+  if (!previous.cut.empty()) record.cut = {0.0 - global_lowest(setup_.processes(), -cut)};
   record.min_value = t.lowest;
   record.negative_values = t.negative;
   record.entropy = t.entropy;

@@ -27,8 +27,9 @@ class monitor {
   step_record start(const field& u);
 
   /// Returns the record of the state after a step of length dt, whose gains through the faces are those of
-  /// the step; without step and t. Throws numerical_error at the first number that is not finite.
-  step_record check(const field& u, double dt, const step_record& previous);
+  /// the step; without step and t. `cut`: semidiscrete_problem::take_cut() of the step. Throws
+  /// numerical_error at the first number that is not finite.
+  step_record check(const field& u, double dt, const step_record& previous, double cut = 0.0);
 
   /// Enters what the last start() or check() found about the velocities of a gas into `summary`; see
   /// velocity_watch::update() for warnings and errors. `u`: the state that was checked.

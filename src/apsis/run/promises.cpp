@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -19,8 +20,10 @@ std::string run_promises::text() const {
   if (conservation) kept.emplace_back("conservation");
   if (entropy) kept.emplace_back("entropy decay");
   if (!condition.empty()) kept.push_back(condition);
-  return kept.empty() ? "nothing is promised for this configuration; everything is reported"
-                      : fmt::format("promised at every step: {}", fmt::join(kept, ", "));
+  const std::string promised = kept.empty()
+                                   ? "nothing is promised for this configuration; everything is reported"
+                                   : fmt::format("promised at every step: {}", fmt::join(kept, ", "));
+  return why_signed.empty() ? promised : fmt::format("{}; {}", promised, why_signed);
 }
 
 namespace {
@@ -61,6 +64,19 @@ bool conserves_to_rounding(const run_setup& setup, const field& initial, const r
       "by {:.2g}, so that conservation and entropy decay are not promised){}",
       defect, takes_formula(setup) ? "; use velocity.equilibrium = \"auto\"" : ""));
   return false;
+}
+
+void warn_of_cut(const run_setup& setup, double largest, double cut) {
+  if (largest > harmless_cut || !(cut > harmless_cut)) return;
+  std::string moment = setup.equation->cut_moment();
+  std::replace(moment.begin(), moment.end(), '_', ' ');
+  const bool published = !setup.equation->collisions_keep_sign();
+  log::warning(fmt::format(
+      "the rate at which the {} relaxes is changed by {:.2g} times its value in some cell ({}); {}", moment,
+      cut,
+      published ? "the velocities do not resolve its target there"
+                : "its target is cut off where the solution would be negative",
+      published ? "use more velocities" : "use model.tails = \"signed\" for the model as published"));
 }
 
 void check_promises(const run_promises& promises, const step_record& last, const run_setup& setup,

@@ -24,10 +24,11 @@ struct row_writer {
   }
 };
 
-/// Appends the names of the columns of a record; those of a vector are NAME_INVARIANT, or
-/// NAME_FACE_INVARIANT.
+/// Appends the names of the columns of a record; those of a vector are NAME_INVARIANT, NAME_FACE_INVARIANT,
+/// or cut_MOMENT.
 struct column_writer {
   const std::vector<std::string>&invariants, &faces;
+  const std::string cut_moment;
   std::vector<std::string>& columns;
 
   template <class Number>
@@ -36,6 +37,10 @@ struct column_writer {
   }
   void operator()(const char* name, const std::vector<double>&) const {
     const std::string head = name;
+    if (head == "cut") {
+      if (!cut_moment.empty()) columns.push_back("cut_" + cut_moment);
+      return;
+    }
     if (head == "conservation" || head == "total") return add(head);
     for (const auto& face : faces) add(fmt::format("{}_{}", head, face));
   }
@@ -119,7 +124,8 @@ struct number_reader {
 std::vector<std::string> history_columns(const simulation& run) {
   const std::vector<std::string> invariants = run.invariants(), faces = run.open_faces();
   std::vector<std::string> columns;
-  step_record::visit_members(run.initial_record(), column_writer{invariants, faces, columns});
+  step_record::visit_members(run.initial_record(),
+                             column_writer{invariants, faces, run.cut_moment(), columns});
   return columns;
 }
 

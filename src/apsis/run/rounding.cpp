@@ -43,7 +43,7 @@ rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equatio
     error[i] = carried + unit_roundoff * weights * (2.0 + std::sqrt(terms) + collisions * of_collision);
   }
   // Unknowns of both signs: the terms of a sum may be larger than what it is measured against.
-  const double cancellation = equation.positive() ? 1.0 : 1024.0;
+  const double cancellation = equation.positive() && equation.why_signed().empty() ? 1.0 : 1024.0;
   return {2.0 * cancellation * unit_roundoff * (2.0 + of_moments), error.empty() ? 0.0 : error.back()};
 }
 

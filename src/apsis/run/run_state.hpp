@@ -34,6 +34,9 @@ struct step_record {
   /// ‖u^{n+1} − u^n‖₂/(Δt ‖u^{n+1}‖₂), the relative change per unit of time; NaN at the start, and without
   /// time.steady.
   double change = std::numeric_limits<double>::quiet_NaN();
+  /// The largest relative change of the rate at which model::cut_moment() relaxes, over cells and stages of
+  /// the step; empty if the model has no such moment.
+  std::vector<double> cut;
   std::vector<double> total;  ///< I, the sum of the densities of each invariant over the domain
   /// Amounts of the invariants that the gas received through each face since the start, [face][invariant];
   /// on a line per area, in the plane per length.
@@ -56,6 +59,7 @@ struct step_record {
     visit("entropy", self.entropy);
     visit("entropy_change", self.entropy_change);
     visit("change", self.change);
+    visit("cut", self.cut);
     visit("total", self.total);
     visit("received", self.received);
     visit("flux", self.flux);
@@ -74,6 +78,7 @@ struct run_summary {
   long negative_values = 0;           ///< sum over all steps
   double conservation_defect = 0.0;   ///< largest of any invariant and step
   double max_entropy_increase = 0.0;  ///< largest entropy_change; 0 if none was positive
+  double largest_cut = 0.0;           ///< largest step_record::cut
   long phase_points = 0;              ///< cells × components
   double point_stages_per_s = 0.0;    ///< phase_points · stages per second of wall time, with rejected steps
   /// Of a gas: smallest distance from a bulk velocity to an end of the velocities, in thermal speeds √T, of
@@ -101,6 +106,7 @@ struct run_summary {
     visit("negative_values", self.negative_values);
     visit("conservation_defect", self.conservation_defect);
     visit("max_entropy_increase", self.max_entropy_increase);
+    visit("largest_cut", self.largest_cut);
     visit("phase_points", self.phase_points);
     visit("point_stages_per_s", self.point_stages_per_s);
     visit("velocity_room", self.velocity_room);

@@ -404,6 +404,7 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
   const bool collisions = equation->collisions_keep_sign() &&
                           !(explicit_collision && (relaxes || builder_.collides_at_centres()));
   promises.condition = equation->condition();
+  promises.why_signed = equation->why_signed();
   promises.positivity = equation->positive() && collisions && nonnegative && within && builder_.keeps_sign();
   // An equilibrium with other moments does not minimize the entropy among the states with those of the data.
   promises.entropy = equation->collisions_decrease_entropy() && nonnegative && within &&

@@ -82,6 +82,7 @@ struct simulation::impl {
                           conserves_to_rounding(setup, state, rounding));
     start_steps();
     start_watch();
+    problem->take_cut();  // of steps that were only tried
   }
 
   /// ‖u − v‖₂/‖u‖₂, after the errors that processes met while they computed u and v.
@@ -164,7 +165,7 @@ struct simulation::impl {
   void record_step(double dt) {
     march.advance(dt);
     const double change = last.change;
-    last = watch.check(state, dt, last);
+    last = watch.check(state, dt, last, problem->take_cut());
     gains = state.gains();
     // The change of a sliver that is left before time.end would be its rounding.
     constexpr double sliver = 1e-6;
@@ -182,6 +183,10 @@ struct simulation::impl {
       totals.conservation_defect = std::max(totals.conservation_defect, defect);
     if (!std::isnan(last.entropy_change))
       totals.max_entropy_increase = std::max(totals.max_entropy_increase, last.entropy_change);
+    for (const double cut : last.cut) {
+      warn_of_cut(setup, totals.largest_cut, cut);
+      totals.largest_cut = std::max(totals.largest_cut, cut);
+    }
   }
 
   case_config config;
@@ -249,6 +254,9 @@ std::vector<std::string> simulation::invariants() const {
 }
 std::vector<dimension> simulation::invariant_measures() const {
   return impl_->setup.equation->invariant_measures();
+}
+std::string simulation::cut_moment() const {
+  return impl_->setup.equation->cut_moment();
 }
 std::vector<std::string> simulation::open_faces() const {
   return impl_->setup.open_faces();

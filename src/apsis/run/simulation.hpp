@@ -23,6 +23,7 @@ struct run_promises {
   bool conservation = false;  ///< with what crosses the faces, and Q implicit or Δt ≤ r Δt_FE
   bool entropy = false;       ///< positivity with first-order upwind, and ends that are periodic or walls
   std::string condition;      ///< of the model on the state (model::condition()); "" if there is none
+  std::string why_signed;     ///< model::why_signed(); "" if the model keeps signs
   std::string text() const;   ///< returns one line for the log
 };
 
@@ -61,6 +62,7 @@ class simulation {
   std::vector<std::string> invariants() const;  ///< names in the order of conservation_defect
   /// Returns the dimensions of the densities of the invariants in units of a gas.
   std::vector<dimension> invariant_measures() const;
+  std::string cut_moment() const;  ///< model::cut_moment()
   /// Returns the names of the faces that are not periodic, "force" and "source" if there are any, in the
   /// order of step_record::received.
   std::vector<std::string> open_faces() const;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/sweep.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -30,7 +32,20 @@ class collision {
   /// Returns the thickness in time of the thinnest initial layer, the smallest ε/C > 0; +infinity if it is
   /// unknown or ε = 0 everywhere.
   virtual double relaxation_time(const field& u) const = 0;
+
+  /// Returns the largest point_collision::take_cut() of all cells of this process.
+  virtual double take_cut() = 0;
 };
+
+/// Returns the largest take_cut() of the solvers `local` of all threads.
+template <class Scratch>
+double take_largest_cut(per_thread<Scratch>& of_threads) {
+  double largest = 0.0;
+  of_threads.visit_all([&](Scratch& own) {
+    if (own.local) largest = std::max(largest, own.local->take_cut());
+  });
+  return largest;
+}
 
 /// A collision operator whose cells are independent of each other.
 class cellwise_collision : public collision {

@@ -71,6 +71,8 @@ class cell_average_collision final : public collision {
                          &point_collision::relaxation_time);
   }
 
+  double take_cut() override { return take_largest_cut(scratch_); }
+
  private:
   struct scratch {
     pencil_block block;

@@ -78,6 +78,8 @@ class cell_centre_collision final : public collision {
     return smallest_time(equation_, u, epsilon_, 1, limited_, &point_collision::relaxation_time);
   }
 
+  double take_cut() override { return take_largest_cut(scratch_); }
+
  private:
   struct scratch {
     std::vector<const double*> averages, changes;  ///< rows of a batch and of its neighbours

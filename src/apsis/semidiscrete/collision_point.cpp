@@ -75,6 +75,8 @@ class pointwise_collision final : public cellwise_collision {
     return smallest_time(equation_, u, epsilon_, 1, keeps_sign_, &point_collision::relaxation_time, cells_);
   }
 
+  double take_cut() override { return take_largest_cut(scratch_); }
+
  private:
   point_batch batch(const field& u, int begin, int end) const {
     return {

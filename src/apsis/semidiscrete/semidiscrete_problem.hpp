@@ -104,6 +104,9 @@ class semidiscrete_problem {
   double relaxation_time(double, const field& u) const {
     return lowest([&] { return collision_->relaxation_time(u); });
   }
+  /// Returns the largest relative change of the rate at which model::cut_moment() relaxes, of all stages in
+  /// cells of this process since the last call. Not collective.
+  double take_cut() { return collision_->take_cut(); }
 
  private:
   /// Runs a part of a step over u; on several processes its errors wait for settle().

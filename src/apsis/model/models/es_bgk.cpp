@@ -45,6 +45,8 @@ class es_bgk_model final : public gas_model {
   /// derivative.
   bool collisions_decrease_entropy() const override { return false; }
 
+  std::string cut_moment() const override { return "stress"; }
+
   int relaxing_count() const override { return pairs() + 1; }
 
   double moment_accuracy() const override { return target_accuracy; }
@@ -65,13 +67,14 @@ class es_bgk_model final : public gas_model {
     s[pairs()] = rate_of_stress_ * of.share;
   }
 
-  bool target(const double* omega, const double* s, const double* f, double keep, double* e) const override {
-    const gas& g = molecules();
-    const fluid_state state = g.state(omega);
-    if (state.admissible())
-      for (double part = 1.0; part > 0.01; part *= 0.5)
-        if (gaussian_target(omega, state, s, part, f, bound_of_tails(keep), e)) return true;
-    return g.equilibrium(omega, e);  // far from every equilibrium, or below the resolution of the grid: BGK
+  bool target(const double* omega, const double* s, const double* f, double keep, double* e,
+              double& cut) const override {
+    const fluid_state state = molecules().state(omega);
+    if (!state.admissible()) return molecules().equilibrium(omega, e);
+    const auto with_part = [&](double part, double bound, double* row, bool& raised) {
+      return gaussian_target(omega, state, s, part, f, bound, row, raised);
+    };
+    return find_target(omega, s, rate_of_stage(rate_of_stress_, s[pairs()]), keep, e, cut, with_part);
   }
 
  private:
@@ -80,7 +83,7 @@ class es_bgk_model final : public gas_model {
 
   /// The target with `part` of the deviation of the stress.
   bool gaussian_target(const double* omega, const fluid_state& state, const double* s, double part,
-                       const double* f, double keep, double* e) const {
+                       const double* f, double keep, double* e, bool& raised) const {
     const gas& g = molecules();
     const auto d = static_cast<Eigen::Index>(size());
     matrix change = matrix::Zero(d, d);  // (1 − 1/Pr) σ
@@ -111,7 +114,7 @@ class es_bgk_model final : public gas_model {
         target.of_g.a[k][l] = target.of_h.a[k][l] =
             quadratic(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
     target.of_h.k += derivative * change_of_others / shape.others;
-    return conservative_target(g, omega, base.data(), target, f, keep, e);
+    return conservative_target(g, omega, base.data(), target, f, keep, e, raised);
   }
 
   /// row ← G.
@@ -146,7 +149,7 @@ const model_entry model_es_bgk = {
                                 "monatomic gas"});
           return all;
         }(),
-    .texts = gas_model::texts_with_tails(),
+    .texts = gas_model::texts_with_tails("nonnegative"),
     .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<es_bgk_model>(config);
     }};

@@ -10,10 +10,10 @@ namespace {
 
 /// Shakhov's model (Fluid Dyn. 3, 1968) of a monatomic gas: Q = C (S − f) with
 ///   S = M [1 + (1 − Pr) q·c/(5pT) (|c|²/T − 5)],  c = v − u,
-/// whose heat flux relaxes with the rate Pr C and its stress with C, so that the Prandtl number is Pr. Where
-/// the bracket is so negative that the solution of a stage would be, in the tails, the target is cut off, and
-/// a polynomial of second degree restores its moments: the steps keep f ≥ 0. Reduced as in gas.hpp.
-/// Dimensionless.
+/// whose heat flux relaxes with the rate Pr C and its stress with C, so that the Prandtl number is Pr. The
+/// bracket is negative in the tails. With model.tails = "nonnegative" the target is cut off where the
+/// solution of a stage would be negative, and a polynomial of second degree restores its moments: the steps
+/// keep f ≥ 0, and q relaxes at another rate (cut_moment()). Reduced as in gas.hpp. Dimensionless.
 class shakhov_model final : public gas_model {
  public:
   explicit shakhov_model(const model_config& config)
@@ -25,6 +25,8 @@ class shakhov_model final : public gas_model {
 
   /// No H-theorem is known far from equilibrium.
   bool collisions_decrease_entropy() const override { return false; }
+
+  std::string cut_moment() const override { return "heat_flux"; }
 
   int relaxing_count() const override { return molecules().dimensions() + 1; }
 
@@ -47,17 +49,20 @@ class shakhov_model final : public gas_model {
     s[d] = prandtl_ * of.share;
   }
 
-  bool target(const double* omega, const double* s, const double* f, double keep, double* e) const override {
+  bool target(const double* omega, const double* s, const double* f, double keep, double* e,
+              double& cut) const override {
     const gas& g = molecules();
     const int d = g.dimensions();
     thread_local std::vector<double> base;
     base.resize(static_cast<std::size_t>(components()));
     if (!g.equilibrium(omega, base.data())) return false;
     const fluid_state state = g.state(omega);
-    std::copy(base.begin(), base.end(), e);
-    if (!state.admissible()) return true;
+    if (!state.admissible()) {
+      std::copy(base.begin(), base.end(), e);
+      return true;
+    }
     const double scale = (1.0 - prandtl_) * (1.0 + s[d]) / (5.0 * state.rho * state.T * state.T);
-    for (double part = 1.0; part > 0.01; part *= 0.5) {
+    const auto with_part = [&](double part, double bound, double* row, bool& raised) {
       target_shape shape;
       shape.variance = state.T;
       for (int k = 0; k < d; ++k) {
@@ -67,10 +72,9 @@ class shakhov_model final : public gas_model {
         shape.of_h.l[i] = -static_cast<double>(d) * along;
         shape.of_g.w[i] = shape.of_h.w[i] = along / state.T;
       }
-      if (conservative_target(g, omega, base.data(), shape, f, bound_of_tails(keep), e)) return true;
-    }
-    std::copy(base.begin(), base.end(), e);  // far from every equilibrium: BGK
-    return true;
+      return conservative_target(g, omega, base.data(), shape, f, bound, row, raised);
+    };
+    return find_target(omega, s, rate_of_stage(prandtl_, s[d]), keep, e, cut, with_part);
   }
 
  private:
@@ -95,7 +99,7 @@ const model_entry model_shakhov = {
                          .doc = "Prandtl number; 2/3 for a monatomic gas"});
           return all;
         }(),
-    .texts = gas_model::texts_with_tails(),
+    .texts = gas_model::texts_with_tails("signed"),
     .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<shakhov_model>(config);
     }};

@@ -6,6 +6,7 @@
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/intermediate_regime.hpp>
+#include <apsis/run/cfl_limit.hpp>
 
 #include <cmath>
 #include <utility>
@@ -139,6 +140,12 @@ std::string ssp_text(const certificate& c) {
 
 }  // namespace
 
+json cfl_json(const std::vector<std::pair<std::string, double>>& limits) {
+  json all = json::object();
+  for (const auto& [scheme, limit] : limits) all[scheme] = std::isfinite(limit) ? json(limit) : json(nullptr);
+  return all;
+}
+
 json check_json(const method& m) {
   const certificate c = certificate_of(m);
   const schedule steps(m.coefficients<double>());
@@ -170,6 +177,7 @@ json check_json(const method& m) {
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
   if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(c);
+  if (m.kind != method_kind::implicit_only) out["cfl_limits"] = cfl_json(cfl_limits(m));
   if (has_derivatives(m.kind))
     out["stability"] = {{"angle_degrees", c.stability.angle},
                         {"l_stable", c.stability.l_stable},
@@ -199,6 +207,7 @@ std::string check_text(const method& m) {
   if (m.kind == method_kind::imex || m.kind == method_kind::exponential)
     line("explicit part",
          fmt::format("SSP coefficient {:.15g} by itself", c.explicit_radius.convert_to<double>()));
+  if (m.kind != method_kind::implicit_only) line("linear stability", "CFL number " + cfl_text(cfl_limits(m)));
   line("type", fmt::format("{}{}", c.type, c.gsa ? ", globally stiffly accurate" : ""));
   line("asymptotic preserving", c.ap_data.empty() ? "none" : c.ap_data);
   if (m.kind == method_kind::imex) {

@@ -2,9 +2,16 @@
 
 #include <apsis/method/method.hpp>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <nlohmann/json_fwd.hpp>
 
 namespace apsis::app {
+
+/// The linear stability limits of cfl_limits() by reconstruction; null where any step is stable.
+nlohmann::ordered_json cfl_json(const std::vector<std::pair<std::string, double>>& limits);
 
 /// The certificate of a method as `apsis check --json` prints it.
 nlohmann::ordered_json check_json(const method& m);

@@ -1,6 +1,8 @@
+#include "method_report.hpp"
 #include "multistep_report.hpp"
 #include "two_step_report.hpp"
 
+#include <apsis/run/cfl_limit.hpp>
 #include <apsis/run/multistep_stepper.hpp>
 
 #include <fmt/format.h>
@@ -25,6 +27,7 @@ json imex_bdf_json(const multistep_method& m) {
           {"error_constant_of_collisions", found.implicit_constant.convert_to<double>()},
           {"error_constant_of_transport", found.explicit_constant.convert_to<double>()},
           {"ssp_coefficient", m.ssp_coefficient},
+          {"cfl_limits", cfl_json(cfl_limits(m))},
           {"error_amplification", error_amplification(m.weights)},
           {"explicit_evaluations", 1},
           {"implicit_solves", 1},
@@ -33,7 +36,8 @@ json imex_bdf_json(const multistep_method& m) {
           {"failures", failures}};
 }
 
-std::string imex_bdf_text(const json& found) {
+std::string imex_bdf_text(const multistep_method& m) {
+  const json found = imex_bdf_json(m);
   std::string out =
       fmt::format("{}: {}\n", found["name"].get<std::string>(), found["title"].get<std::string>());
   const auto line = [&out](const char* what, const std::string& value) {
@@ -48,6 +52,7 @@ std::string imex_bdf_text(const json& found) {
   line("SSP coefficient r", number("ssp_coefficient") > 0.0
                                 ? fmt::format("{:g}", number("ssp_coefficient"))
                                 : "none: some weights of earlier values are negative");
+  line("linear stability", "CFL number " + cfl_text(cfl_limits(m)));
   line("error amplification",
        fmt::format("errors of at most 1 in every step change u by at most {:.3g} in one",
                    number("error_amplification")));
@@ -63,7 +68,7 @@ json multistep_json(const multistep_method& m) {
 }
 
 std::string multistep_text(const multistep_method& m) {
-  return m.rows ? two_step_text(*m.rows) : imex_bdf_text(imex_bdf_json(m));
+  return m.rows ? two_step_text(*m.rows) : imex_bdf_text(m);
 }
 
 }  // namespace apsis::app

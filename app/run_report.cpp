@@ -35,7 +35,7 @@ std::string velocities_text(const run_summary& s, const case_config& c) {
 
 }  // namespace
 
-std::string summary_text(const simulation& run, run_end end) {
+std::string summary_text(const simulation& run, run_end end, const run_records& records) {
   const run_summary s = run.summary();
   const case_config& c = run.config();
   std::string out = fmt::format("{}\n", c.title.empty() ? c.source : c.title);
@@ -53,9 +53,9 @@ std::string summary_text(const simulation& run, run_end end) {
   if (c.time.tolerance)
     line("tolerance", fmt::format("{:g} ({} steps rejected)", *c.time.tolerance, s.rejected_steps));
   if (c.time.steady)
-    line("steady state", fmt::format("{} (the state changes by {:.2g} per unit of time; time.steady = {:g})",
+    line("steady state", fmt::format("time.steady = {:g} {} ({})", *c.time.steady / time,
                                      run.last().change <= *c.time.steady ? "reached" : "not reached",
-                                     run.last().change, *c.time.steady));
+                                     to_text(estimate_steady_state(records.history()), time, of_time)));
   line("largest step", fmt::format("{:.6g}{}", s.dt * time, of_time));
   line("smallest value", fmt::format("{:.6g} ({} negative)", s.min_value, s.negative_values));
   if (!run.invariants().empty())

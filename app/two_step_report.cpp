@@ -1,6 +1,8 @@
+#include "method_report.hpp"
 #include "two_step_report.hpp"
 
 #include <apsis/method/two_step.hpp>
+#include <apsis/run/cfl_limit.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,6 +30,7 @@ json two_step_json(const method& m) {
           {"order_residual", number(c.order_residual)},
           {"error_constant", number(c.error_constant)},
           {"ssp_coefficient", number(c.ssp_coefficient)},
+          {"cfl_limits", cfl_json(cfl_limits(m))},
           {"second_root", number(c.root)},
           {"type", c.type_a ? "A" : "none"},
           {"stages", m.stages() - 1},
@@ -52,6 +55,7 @@ std::string two_step_text(const method& m) {
   line("order", fmt::format("{} ({} conditions, residual {:.1e}), error constant {:.4g}", c.order,
                             c.conditions, number(c.order_residual), number(c.error_constant)));
   line("SSP coefficient r", fmt::format("{:.15g} of the form", number(c.ssp_coefficient)));
+  line("linear stability", "CFL number " + cfl_text(cfl_limits(m)));
   line("second root", fmt::format("{:.4g} (zero-stable if below 1 in modulus)", number(c.root)));
   line("type", c.type_a ? "A: asymptotic preserving" : "none");
   line("cost per step", fmt::format("{} transport evaluations, {} implicit solves", c.explicit_evaluations,

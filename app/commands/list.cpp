@@ -15,6 +15,7 @@
 #include <apsis/method/multistep.hpp>
 #include <apsis/model/gas_species.hpp>
 #include <apsis/model/model_registry.hpp>
+#include <apsis/run/cfl_limit.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <map>
@@ -57,6 +58,7 @@ json multistep() {
                    {"order", m.order},
                    {"steps", m.steps},
                    {"ssp_coefficient", m.ssp_coefficient},
+                   {"cfl_limits", cfl_json(cfl_limits(m))},
                    {"stages", m.stages},
                    {"starter", m.starter}});
   }

@@ -86,7 +86,7 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
     if (profile) out["profile"] = to_json(*profile);
     print(json_text(out) + "\n");
   } else {
-    const std::string summary = summary_text(computed, end);
+    const std::string summary = summary_text(computed, end, session.records());
     if (processes->is_root()) print(summary + (profile ? profile_text(*profile) : ""));
   }
   return code_of(end);

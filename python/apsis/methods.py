@@ -26,7 +26,8 @@ class Certificate:
     name of the method; kind "imex", "implicit", "explicit" or "exponential"; order of accuracy; conditions, the number of order conditions up to it, and
     order_residual, the largest of their residuals; error_constant, the 2-norm of the residuals of the next order;
     unconditional, SSP without a bound from Q; ssp_coefficient r, steps up to r Δt_FE keep what forward Euler keeps at any ε, None where any
-    step does; explicit_radius, that of the explicit part alone; limiting_entry, the coefficient that limits r; type "A", "ARS", "CK",
+    step does; cfl_limits, the CFL number up to which each reconstruction is linearly stable for any Δt/ε, None where any is, empty for
+    implicit methods; explicit_radius, that of the explicit part alone; limiting_entry, the coefficient that limits r; type "A", "ARS", "CK",
     "explicit" or "none"; gsa, globally stiffly accurate: the last stage is the result; ap, asymptotic preserving from any data, and ap_data,
     from which; explicit_evaluations of T and implicit_solves in a step; angle in degrees of A(α)-stability of the implicit part, and
     whether it is l_stable; keeps, the terms of size ε that are right for ε ≪ Δt: "none", "slow" or "all"; estimate of the error of a
@@ -42,6 +43,7 @@ class Certificate:
     unconditional: bool
     ssp_coefficient: float | None
     explicit_radius: float
+    cfl_limits: dict[str, float | None]
     limiting_entry: str
     type: str
     gsa: bool
@@ -58,7 +60,8 @@ class Certificate:
 
     def _summary(self) -> dict[str, str]:
         ssp = "any step" if self.ssp_coefficient is None else f"{self.ssp_coefficient:.6g}"
-        return {"method": self.name, "kind": self.kind, "order": str(self.order), "SSP coefficient": ssp,
+        limits = ", ".join(f"{'any' if limit is None else f'{limit:.4g}'} with {name}" for name, limit in self.cfl_limits.items())
+        return {"method": self.name, "kind": self.kind, "order": str(self.order), "SSP coefficient": ssp, "CFL limit": limits or "none",
                 "type": self.type, "limit ε → 0": f"from {self.ap_data}",
                 "work per step": f"{self.explicit_evaluations} evaluations of T, {self.implicit_solves} "
                                 f"{'exact collisions' if self.kind == 'exponential' else 'implicit solves'}",

@@ -13,6 +13,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/velocity_support.hpp>
+#include <apsis/run/cfl_limit.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
 
@@ -209,7 +210,10 @@ class kinetic_problem {
       builder_.with_unknowns(choice_called<formulation>("formulation", of.formulation));
       if (!of.collisions.empty())
         builder_.with_collisions_at(choice_called<collision_points>("collisions", of.collisions));
-      if (of.positivity) builder_.with_positivity_limiter();
+      if (of.positivity)
+        builder_.with_positivity_limiter();
+      else
+        unlimited_ = entry_called("reconstruction", of.reconstruction, reconstruction_entries()).make();
       builder_.with_reconstruction(
           entry_called("reconstruction", of.reconstruction, reconstruction_entries()).make());
     }
@@ -350,18 +354,26 @@ class kinetic_problem {
     return dt;
   }
 
+  /// Returns the stable part of r: without limiter r Δt_FE may exceed the linear stability limit.
+  double stable_fraction(const method& m) const {
+    if (!unlimited_) return 1.0;
+    return std::min(1.0, cfl_limit(m, *unlimited_) / m.coefficients<double>().r);
+  }
+
   py::tuple integrate(const array& u0, const std::vector<double>& t, const method& m,
                       const step_choice& choice, std::optional<int> threads) {
     field u = to_field(u0);
     const library_call own(threads.value_or(threads_for(u)));
     const auto problem = problems_for(m.kind).take();
+    step_choice stable = choice;
+    if (!choice.dt) stable.safety *= stable_fraction(m);
     std::vector<double> all;
     append(u, all);
     step_count count;
     {
       const py::gil_scoped_release others;
       count = march_through(
-          *problem, u, t, m, choice, true, largest_difference, [&all](const field& now) { append(now, all); },
+          *problem, u, t, m, stable, true, largest_difference, [&all](const field& now) { append(now, all); },
           raise_pending_signals);
     }
     return py::make_tuple(
@@ -467,6 +479,7 @@ class kinetic_problem {
 
   std::unique_ptr<model> equation_;
   problem_builder builder_;
+  std::unique_ptr<reconstruction> unlimited_;  ///< without limiter
   problem_pool implicit_{[this] { return builder_.build(); }},
       explicit_{[this] { return problem_builder(builder_).with_explicit_collision().build(); }},
       exact_{[this] { return problem_builder(builder_).with_exact_collision().build(); }};

@@ -8,7 +8,10 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method_choice.hpp>
 #include <apsis/method/order_conditions.hpp>
+#include <apsis/run/cfl_limit.hpp>
 
+#include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -94,6 +97,11 @@ py::dict certificate_of(const method& m) {
   all["unconditional"] = c.unconditional;
   all["ssp_coefficient"] = c.bounded ? std::optional(number(c.ssp_coefficient)) : std::nullopt;
   all["explicit_radius"] = number(c.explicit_radius);
+  std::map<std::string, std::optional<double>> limits;
+  if (m.kind != method_kind::implicit_only)
+    for (const auto& [scheme, limit] : cfl_limits(m))
+      limits[scheme] = std::isfinite(limit) ? std::optional(limit) : std::nullopt;
+  all["cfl_limits"] = limits;
   all["limiting_entry"] = c.limiting_entry;
   all["type"] = c.type;
   all["gsa"] = c.gsa;

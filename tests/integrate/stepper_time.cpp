@@ -115,21 +115,67 @@ TEST(time_marcher, a_dt_that_does_not_divide_the_interval_is_reduced) {
   EXPECT_TRUE(apsis::time_marcher<double>(0.0, 1.0, 0.1 * (1.0 + 5e-12)).adjusted());
 }
 
-TEST(time_marcher, without_dt_the_last_step_is_shortened_and_rounding_adds_no_step) {
+TEST(time_marcher, without_dt_few_steps_have_equal_length_and_rounding_adds_no_step) {
   apsis::time_marcher<double> march(0.0, 1.0);
   std::vector<double> steps;
   while (!march.done()) {
     steps.push_back(march.next(0.3));
     march.advance(steps.back());
   }
-  ASSERT_EQ(steps.size(), 4u);
-  EXPECT_NEAR(steps[3], 0.1, 1e-15);
+  EXPECT_EQ(steps, std::vector<double>(4, 0.25));
   EXPECT_EQ(march.t(), 1.0);
   // 36000 steps of a length that divides up to rounding: no 36001st.
   apsis::time_marcher<double> many(0.0, 0.5);
   const double dt = 0.5 / 36000;
   while (!many.done()) many.advance(many.next(dt));
   EXPECT_EQ(many.step(), 36000);
+}
+
+TEST(time_marcher, without_dt_no_sliver_is_left_and_only_the_last_64_steps_depend_on_the_end) {
+  for (int trial = 0; trial < 300; ++trial) {
+    const double dt = 1e-3 * (1.0 + 0.37 * trial), start = trial % 3 == 0 ? -2.0 : 0.0;
+    const double end = start + 1.0 + 0.618 * trial;
+    apsis::time_marcher<double> march(start, end);
+    double before = 0.0, last = 0.0;
+    while (!march.done()) {
+      const double left = end - march.t();
+      before = last;
+      last = march.next(dt);
+      EXPECT_LE(last, dt);
+      if (left >= 64.0 * dt) {
+        EXPECT_EQ(last, dt) << trial;
+      }
+      if (left >= 65.0 * dt) {
+        EXPECT_FALSE(march.shaped_by_end(dt)) << trial;
+      }
+      // A step of n that share a remainder is shortened by 1/n at most.
+      if (left < 64.0 * dt && march.step() >= 64) {
+        EXPECT_GE(last, dt * (1.0 - 1.0 / 63.0)) << trial;
+      }
+      march.advance(last);
+    }
+    EXPECT_EQ(march.t(), end);
+    if (march.step() > 1) {
+      EXPECT_EQ(last, before) << trial;
+    }
+  }
+}
+
+TEST(time_marcher, divides_the_time_between_stops_into_steps_of_one_length) {
+  for (const double every : {0.1, 0.3, 1.0 / 7.0, 1.7}) {
+    for (const double dt : {0.001, 0.0137, 0.03, 0.26, 5.0}) {
+      apsis::time_marcher<double> march(0.0, 9.0 * every);
+      march.stop_every(every);
+      const double first = march.next(dt);
+      EXPECT_NEAR(first, every / std::ceil(every / dt * (1.0 - 1e-14)), 1e-15);
+      while (!march.done()) {
+        // The same bits, so that methods of several steps need not begin again.
+        EXPECT_EQ(march.next(dt), first) << every << ", " << dt << " at " << march.t();
+        march.advance(march.next(dt));
+      }
+      EXPECT_EQ(march.t(), 9.0 * every);
+    }
+  }
 }
 
 TEST(time_marcher, rejects_invalid_intervals_and_steps) {

@@ -137,3 +137,25 @@ def test_exponential_methods_have_no_butcher_matrix_of_the_collision():
     for name in ("A", "A_dot"):
         with pytest.raises(apsis.InputError, match=rf"method 'exponential-2' has no {name} \(its collisions are solved exactly\); use D"):
             getattr(m, name)
+
+
+def test_the_certificate_has_linear_stability_limits():
+    limits = apsis.method("md-imex-5-2").certificate.cfl_limits
+    assert set(limits) == {"upwind1", "upwind5", "weno5-js", "weno5-z"}
+    assert limits["upwind1"] == pytest.approx(2, rel=2e-3)  # r; the allowed growth adds 1e-3
+    assert 0.5 < limits["weno5-z"] < 0.8
+    assert apsis.method("ssprk-3-3").certificate.cfl_limits["weno5-js"] == pytest.approx(1.43, abs=0.01)
+    assert apsis.method("imdrk-5-4").certificate.cfl_limits == {}
+
+
+@pytest.mark.parametrize("method", ["md-imex-5-2", "md-imex-3-2", "md-imex-8-3-mixed"])
+def test_steps_of_a_problem_without_limiter_are_linearly_stable(method):
+    problem = apsis.KineticProblem("bgk", cells=40, domain=(0, 1), velocities=(8, 24), epsilon=1e6, reconstruction="upwind5",
+                                   formulation="finite-difference")
+    x = (np.arange(40) + 0.5) / 40
+    v = problem.v.ravel()
+    maxwellian = np.exp(-v**2 / 2) / np.sqrt(2 * np.pi)
+    u0 = (1 + 0.1 * np.sin(2 * np.pi * x))[:, None] * maxwellian
+    u = apsis.integrate(problem, u0, (0.0, 5.0), method).u[-1]
+    # Free flight in a periodic domain keeps the 2-norm of the exact solution.
+    assert np.linalg.norm(u) <= np.linalg.norm(u0) * 1.001

@@ -363,3 +363,13 @@ def test_messages_do_not_obey_a_file(tmp_path, capsys):
     assert command.main([str(folder)]) == 4
     told = capsys.readouterr().err
     assert "\x1b" not in told and "\\u001b[31mred" in told
+
+
+def test_a_steady_run_reports_its_rate_and_its_distance(tmp_path):
+    apsis.run("gas/fourier", "space.cells=8", "velocity.points=8", "parameters.delta=5", "time.steady=1e-3", "time.end=50", out=tmp_path / "r")
+    steady = json.loads((tmp_path / "r/manifest.json").read_text())["result"]["steady"]
+    assert steady["reached"] and steady["change"] <= 1e-3
+    assert steady["distance"] == pytest.approx(steady["change"] * steady["decay_time"])
+    page = page_of(tmp_path / "r")
+    assert f"time.steady is reached: the state changes by {steady['change']:.4g} per unit of time" in page
+    assert f"the state is {steady['distance']:.4g} from its limit" in page

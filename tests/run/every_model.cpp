@@ -70,7 +70,7 @@ one_step step_of(const model_entry& entry, const case_config& c, bool with_zeros
   result.before = watch.start(u);
   double dt = 1.0 / 16.0;
   if (has_space(entry))
-    dt = c.time.safety ? *c.time.safety * setup.ssp_coefficient() * problem->forward_euler_step(0.0, u)
+    dt = c.time.safety ? *c.time.safety * setup.step_coefficient() * problem->forward_euler_step(0.0, u)
                        : *c.time.cfl * setup.cfl_length();
   integrator.step(0.0, dt, u);
   result.after = watch.check(u, dt, result.before);

@@ -45,6 +45,8 @@ def summary(result: RunResult) -> str:
     out = (f'<p>{verdict(good, (manifest["state"], manifest["state"]))} at t = {end_of(result):.10g} after {text(numbers["steps"])} steps of '
            f'<code>{text(manifest["method"])}</code> of length {number(numbers["dt"])} or less; '
            f'{numbers["wall_s"]:.2f} s of computing. {units}</p>\n')
+    if "steady" in numbers:
+        out += f"<p>{steady_state(numbers['steady'])}</p>\n"
     if manifest.get("message"):
         out += f'<p class="no">{text(manifest["message"])}</p>\n'
     if "state" in numbers:
@@ -67,6 +69,18 @@ def velocities(manifest: dict[str, Any]) -> str:
     if manifest["case"].get("force"):
         rows.append(["share of the mass that the force moved into the last velocities", number(numbers["velocity_held"])])
     return "<h2>Velocities</h2>\n" + table([], rows)
+
+
+def steady_state(found: dict[str, Any]) -> str:
+    """What time.steady says: a rate, and how far the steady state still is if the rate is known to decay."""
+    reached = "time.steady is reached" if found["reached"] else "time.steady is not reached"
+    change = "" if found["change"] is None else f": the state changes by {number(found['change'])} per unit of time, relative"
+    if found["distance"] is None:
+        return f"{reached}{change}. The distance from the steady state is unknown (the change does not decay)."
+    if found["decay_time"] is None:
+        return f"{reached}{change}."
+    return (f"{reached}{change}. If this decays on, by a factor e in {number(found['decay_time'])}, the state is "
+            f"{number(found['distance'])} from its limit, relative.")
 
 
 def promises(manifest: dict[str, Any]) -> str:

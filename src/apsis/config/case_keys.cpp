@@ -305,8 +305,9 @@ std::vector<case_key> time_keys() {
                .lowest = 0.0,
                .lowest_excluded = true,
                .doc = "Step size as dt = safety * r * dt_FE with the SSP coefficient r of the method and the "
-                      "forward Euler step dt_FE of the transport; positivity is guaranteed up to 1. Exactly "
-                      "one of dt, cfl and safety is given."}),
+                      "forward Euler step dt_FE of the transport; positivity is guaranteed up to 1. Without "
+                      "limiter r is at most the linear stability limit of the method with the reconstruction "
+                      "(apsis check). Exactly one of dt, cfl and safety is given."}),
           key("time.startup", [](auto& c) -> auto& { return c.time.startup; },
               {.doc = "graded: the first step is split into steps that double, starting with a quarter of "
                       "the smallest epsilon/C, so that the initial layer of data out of equilibrium is "
@@ -334,7 +335,8 @@ std::vector<case_key> time_keys() {
                .lowest = 0.0,
                .lowest_excluded = true,
                .doc = "The run ends as soon as the state is steady: its change per unit of time, relative to "
-                      "its 2-norm, is at most this; time.end is then the latest end."})};
+                      "its 2-norm, is at most this; time.end is then the latest end. The distance from the steady "
+                      "state is this rate times the time in which it decays, which the summary estimates."})};
 }
 
 std::vector<case_key> output_keys() {

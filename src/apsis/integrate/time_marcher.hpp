@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/graded_start.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -24,9 +25,10 @@ long multiples_until(Real t, Real every) {
 
 /// Divides the time from t0 to t1 into steps. With a given dt, times are t0 + n dt (no accumulation of
 /// rounding errors); a dt that does not divide t1 − t0 to within 1e-12 is reduced until it does, see
-/// adjusted(). Otherwise the last step is shortened to end at t1, and steps are shortened to end at the times
-/// of stop_every(). An interval of length zero has no steps. A graded start-up divides the first step and
-/// changes no later time, unless the rule shortens steps during it.
+/// adjusted(). Otherwise the rule limits the steps, and they divide the time to the next stop of stop_every()
+/// evenly, as do the last shared_steps to t1: no sliver is left, whose rates would not be those of the other
+/// steps. An interval of length zero has no steps. A graded start-up divides the first step and changes no
+/// later time, unless the rule shortens steps during it.
 template <class Real>
 class time_marcher {
  public:
@@ -54,6 +56,10 @@ class time_marcher {
       visit("startup_length", self.startup_length);
     }
   };
+
+  /// Number of steps before t1 that share its remainder. Each is shortened by 1/64 at most; earlier steps do
+  /// not depend on t1, so that a run can be continued to a later one.
+  static constexpr long shared_steps = 64;
 
   /// `growth` is the ratio of the times of a graded start-up. Throws input_error unless t0 ≤ t1 are finite,
   /// dt > 0 is finite, the interval has at most 1e15 steps, and growth is from 2 to largest_growth.
@@ -86,8 +92,8 @@ class time_marcher {
   }
 
   /// Makes a step end exactly at every time k · every in the interval (k = 1, 2, …); every = 0 removes the
-  /// stops. If the step before such a time would be a sliver, the last two steps have equal length. Throws
-  /// input_error if `every` is negative or NaN, or if a given dt does not divide it to within 1e-12.
+  /// stops. Steps of a rule with constant limit then have equal length. Throws input_error if `every` is
+  /// negative or NaN, or if a given dt does not divide it to within 1e-12.
   void stop_every(Real every) {
     using std::abs, std::round;
     if (!(every >= Real(0))) throw input_error("times to stop at are negative or NaN; give an interval ≥ 0");
@@ -140,18 +146,15 @@ class time_marcher {
       throw input_error(
           "nothing limits the time step (the transport sets no forward Euler step, or the method is "
           "unconditionally stable); give dt");
-    const Real stop = next_stop(), rest = t1_ - t_;
-    if (stop > Real(0) && stop - t_ < Real(2) * proposed) {
-      if (stop - t_ > proposed + rounding(stop)) return (stop - t_) / Real(2);
-      return stop - t_ < proposed ? stop - t_ : proposed;
-    }
-    if (rest < proposed) return rest;
     if (!(t_ + proposed > t_))
       throw numerical_error(
           "the time step does not advance time (it is not positive, or smaller than the rounding of t); "
           "check the forward Euler step and the tolerance",
           {n_ + 1, static_cast<double>(t_), -1, static_cast<double>(proposed)});
-    return proposed;
+    const Real stop = every_ > Real(0) ? next_multiple() : t1_;
+    if (every_ > Real(0) && stop <= t1_ + rounding(t1_)) return equal_part(std::min(stop, t1_), proposed);
+    if (t1_ - t_ < Real(shared_steps) * proposed) return equal_part(t1_, proposed);
+    return every_ > Real(0) ? equal_part(stop, proposed) : proposed;
   }
 
   /// Whether length or end of the next step depend on t1: a run that may be extended to a later t1 is
@@ -165,7 +168,7 @@ class time_marcher {
       longer.count_ = count_ + 1;
     }
     // Late enough not to affect the next step.
-    longer.t1_ = t1_ + Real(4) * (proposed + (t1_ - t_) + every_);
+    longer.t1_ = t1_ + Real(4) * (Real(shared_steps) * proposed + (t1_ - t_) + every_);
     const Real dt = next(proposed);
     if (longer.next(proposed) != dt) return true;
     longer.advance(dt);
@@ -224,6 +227,17 @@ class time_marcher {
     // A remainder of the size of rounding errors is not a step.
     if (t_ >= t1_ || t1_ - t_ <= rounding(t1_)) t_ = t1_;
   }
+  /// Returns the length of the fewest equal steps that reach `target` within the limit `proposed`: the last
+  /// length where it differs from that by rounding alone.
+  Real equal_part(Real target, Real proposed) const {
+    using std::abs, std::ceil;
+    const Real rest = target - t_, allowed = rounding(target);
+    const Real steps = std::max(Real(1), Real(ceil((rest - allowed) / proposed)));
+    const Real part = rest / steps;
+    if (anchor_dt_ > Real(0) && anchor_dt_ <= proposed && abs(part - anchor_dt_) * steps <= allowed)
+      return anchor_dt_;
+    return part < proposed ? part : proposed;
+  }
   /// Sets t to the stop that the step was to end at.
   void snap_to(Real stop) {
     using std::abs;
@@ -236,10 +250,12 @@ class time_marcher {
     using std::abs;
     return Real(8) * std::numeric_limits<Real>::epsilon() * (abs(t) + abs(t0_));
   }
+  /// Returns the first k · every after t.
+  Real next_multiple() const { return Real(multiples_until(t_, every_) + 1) * every_; }
   /// Returns the next stop before t1; 0 if there is none.
   Real next_stop() const {
     if (!(every_ > Real(0))) return Real(0);
-    const Real stop = Real(multiples_until(t_, every_) + 1) * every_;
+    const Real stop = next_multiple();
     return stop < t1_ - rounding(t1_) ? stop : Real(0);
   }
 

@@ -43,6 +43,17 @@ json numbers(const simulation& run) {
   return out;
 }
 
+/// Adds what is known of the steady state, in a case with time.steady.
+void add_steady(json& out, const simulation& run, const steady_estimate& estimate) {
+  if (!run.config().time.steady) return;
+  const double time = result_units(run.config()).factor(dimensions::time);
+  const auto number = [](double x) { return std::isfinite(x) ? json(x) : json(nullptr); };
+  out["steady"] = {{"reached", estimate.change <= *run.config().time.steady},
+                   {"change", number(estimate.change / time)},
+                   {"decay_time", number(estimate.decay_time * time)},
+                   {"distance", number(estimate.distance)}};
+}
+
 /// Adds the scales of a gas, and the units of history and fields if they have any.
 void add_units(json& out, const simulation& run) {
   const auto& scales = run.config().scales;
@@ -88,6 +99,7 @@ json to_json(const simulation& run, const run_records& records) {
   json out = {{"case", apsis::to_json(run.config())}, {"method", run.config().time.method}};
   add_choice(out, run.config());
   out.update(numbers(run));
+  add_steady(out, run, estimate_steady_state(records.history()));
   json fields = json::object();
   const field_series series = result_units(run.config()).convert(records.fields());
   for (const auto& axis : series.axes) fields[axis.name] = axis.centres;
@@ -115,6 +127,7 @@ json manifest(const simulation& run, const session_record& session) {
                      {"entropy", run.promises().entropy}};
   if (!run.promises().condition.empty()) out["promises"][run.promises().condition] = true;
   out["result"] = numbers(run);
+  add_steady(out["result"], run, session.steady);
   add_units(out, run);
   out["build"] = build_info();
   out["machine"] = machine_info();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/run/records.hpp>
+#include <apsis/run/steady_estimate.hpp>
 
 #include <optional>
 #include <string>
@@ -31,6 +32,7 @@ struct session_record {
   std::string started;                 ///< time_stamp() at the start
   std::vector<std::string> command;    ///< command line; empty if unknown
   std::optional<std::string> restart;  ///< checkpoint of a restart, as given
+  steady_estimate steady = {};         ///< with time.steady
 };
 
 /// Returns the content of manifest.json: resolved case, version, commit, command line, times, totals, scales

@@ -83,7 +83,8 @@ memory_need::memory_need(const case_config& config, const run_setup& setup, int 
 
 double memory_need::bytes(double cells, double components) const {
   const double padded = buffers_ * field::padded(static_cast<int>(std::min(components, 1e9)));
-  return sizeof(double) * cells * (padded + copies_ * components + snapshots_ * fields_);
+  constexpr double of_monitor = 2.0;  // step_differences
+  return sizeof(double) * cells * (padded + copies_ * components + snapshots_ * fields_ + of_monitor);
 }
 
 std::string memory_need::unknowns() const {

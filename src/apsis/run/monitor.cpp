@@ -15,7 +15,7 @@
 namespace apsis {
 
 struct monitor::partial {
-  std::vector<exact_sum> sums;  ///< invariants, their scales and the entropy
+  std::vector<exact_sum> sums;  ///< invariants, their scales, change and turn of the last, the entropy
   std::vector<double> densities, scales;
   double lowest = std::numeric_limits<double>::infinity();  ///< of solid cells
   long negative = 0;
@@ -33,6 +33,7 @@ monitor::monitor(const run_setup& setup)
       ends_(setup.open_ends()),
       entropy_bounds_(setup.entropy_bounds().value_or(std::vector<double>{})),
       parts_(std::make_unique<per_thread<partial>>()),
+      differences_(setup.mesh().size()),
       velocities_(setup) {}
 
 monitor::~monitor() = default;
@@ -59,6 +60,11 @@ void monitor::check_cells(const field& u, int begin, int end, partial& own) cons
       own.sums[k].add(own.densities[k]);
       own.sums[count + k].add(own.scales[k]);
     }
+    if (count > 0) {
+      const auto [change, turn] = differences_.record(cell, own.densities.back());
+      own.sums[2 * count].add(change);
+      own.sums[2 * count + 1].add(turn);
+    }
     if (conditional && !equation_.check_supported(row).problem.empty())
       own.violating = std::min(own.violating, cell);
     if (equation_.has_entropy() && below == 0) own.sums.back().add(equation_.entropy(row));
@@ -69,7 +75,7 @@ void monitor::check_cells(const field& u, int begin, int end, partial& own) cons
 monitor::partial monitor::check_block(const field& u) const {
   const std::size_t count = equation_.invariants().size();
   partial empty;
-  empty.sums.resize(2 * count + 1);
+  empty.sums.resize(2 * count + 3);
   empty.densities.resize(count);
   empty.scales.resize(count);
   std::vector<partial*> parts;
@@ -123,6 +129,10 @@ monitor::totals monitor::sum(const field& u) const {
     t.invariants.push_back(volume_ * sums[k]);
     t.scales.push_back(volume_ * sums[count + k]);
   }
+  if (count > 0 && sums[2 * count - 1] > 0.0) {
+    t.change = sums[2 * count] / sums[2 * count - 1];
+    t.turn = sums[2 * count + 1] / sums[2 * count - 1];
+  }
   t.entropy = !equation_.has_entropy() || t.negative > 0 ? std::numeric_limits<double>::quiet_NaN()
                                                          : volume_ * sums.back();
   return t;
@@ -134,6 +144,7 @@ step_record monitor::start(const field& u) {
   scales_ = t.scales;
   if (velocities_.active()) {
     velocities_.set_mass(invariants_.front());
+    differences_.restart();
     t = sum(u);  // without cells of little mass
   }
   keep_velocities(t);
@@ -171,6 +182,8 @@ step_record monitor::check(const field& u, double dt, const step_record& previou
   record.entropy = t.entropy;
   record.entropy_change = t.entropy - previous.entropy;
   record.violation = violation_in(u, t);
+  record.density_change = t.change;
+  record.density_turn = t.turn;
   std::vector<double> gained = gained_through_faces(u.gains());
   held_ = gained.back();
   gained.pop_back();

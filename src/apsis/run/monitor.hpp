@@ -4,6 +4,7 @@
 #include <apsis/phase/field.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
+#include <apsis/run/step_differences.hpp>
 #include <apsis/run/velocity_watch.hpp>
 
 #include <cstddef>
@@ -35,10 +36,14 @@ class monitor {
   /// velocity_watch::update() for warnings and errors. `u`: the state that was checked.
   void watch_velocities(const field& u, const step_record& last, run_summary& summary);
 
+  /// Forgets earlier steps, which are not those before a restart.
+  void forget_steps() { differences_.restart(); }
+
  private:
   struct totals {
     std::vector<double> invariants, scales;
     double entropy = 0.0, lowest = 0.0;
+    double change = 0.0, turn = 0.0;  ///< step_record::density_change, density_turn
     long negative = 0;
     bool violated = false;  ///< the condition of the model, in some cell
     int violating = -1;     ///< the first such cell of this process
@@ -61,6 +66,7 @@ class monitor {
   std::vector<std::size_t> ends_;       ///< number at each face
   std::vector<double> entropy_bounds_;  ///< of what is received, [face][invariant]
   std::unique_ptr<per_thread<partial>> parts_;
+  mutable step_differences differences_;     ///< of the last invariant
   std::vector<double> invariants_, scales_;  ///< of the initial state
   velocity_watch velocities_;
   velocity_extremes extremes_;  ///< of the last state

@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/run/stability_watch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,8 @@ std::string reason_of_defect(const step_record& last, const run_setup& setup, do
   if (takes_formula(setup))
     return "(the velocity grid became too coarse for the Maxwellian by formula); use "
            "velocity.equilibrium = \"auto\"";
+  if (setup.has_space() && last.dt > setup.stability_limit() * setup.cfl_length())
+    return "because the steps are unstable " + remedy_of_instability(setup, last.dt);
   if (setup.equation->positive() && last.negative_values > 0)
     return fmt::format(
         "(large values of both signs cancel: {} are negative, as happens beyond the step that strong "

@@ -247,6 +247,15 @@ run_end run_session::run() {
 
 void run_session::finish_records() {
   shown_ = std::make_unique<run_records>(*records_);
+  const auto steady = simulation_.config().time.steady;
+  if (steady && simulation_.last().change <= *steady) {
+    const result_units units(simulation_.config());
+    const double time = units.factor(dimensions::time);
+    log::info(
+        fmt::format("time.steady = {:g} is reached at t = {:g}{}: {}", *steady / time, simulation_.t() * time,
+                    units.suffix(dimensions::time),
+                    to_text(estimate_steady_state(shown_->history()), time, units.suffix(dimensions::time))));
+  }
   const auto& taken = shown_->fields().snapshots;
   if (taken.empty() || taken.back().t != simulation_.t()) shown_->add_snapshot(simulation_);
 }
@@ -346,7 +355,9 @@ void run_session::publish_checkpoint() {
 /// `folder`: on the root alone.
 void run_session::write_results(result_folder* folder, run_end end, const std::string& message) {
   std::string about =
-      json_text(manifest(simulation_, {end, message, started_, options_.command, options_.restart})) + "\n";
+      json_text(manifest(simulation_, {end, message, started_, options_.command, options_.restart,
+                                       estimate_steady_state(shown_->history())})) +
+      "\n";
   broadcast_text(processes(), about);
   solution final_state = make_solution(simulation_, *shown_);
   final_state.manifest = about;

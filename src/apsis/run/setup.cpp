@@ -15,6 +15,7 @@
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/convexity.hpp>
 #include <apsis/model/expression.hpp>
+#include <apsis/run/cfl_limit.hpp>
 #include <apsis/run/initial_file.hpp>
 #include <apsis/run/velocity_watch.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
@@ -86,6 +87,7 @@ run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> pr
   const std::string& name = config_.time.method;
   if (is_multistep_method(name)) multistep_ = find_multistep_method(name);
   method_ = &find_method(multistep_ ? multistep_->starter : name);
+  set_stability_limit();
   check_method();
   if (has_space())
     build_space(std::move(processes));
@@ -144,13 +146,27 @@ void run_setup::check_method() {
   const auto form = method_->coefficients<double>();
   ssp_coefficient_ = is_convex(form, method_->kind, form.stages()) ? form.r : 0.0;
   if (multistep_) ssp_coefficient_ = multistep_->ssp_coefficient;
-  if (config_.time.safety && ssp_coefficient_ == 0.0)
+  if (config_.time.safety && step_coefficient() == 0.0)
     refuse(config_, "time.safety",
            fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give time.dt "
                        "or time.cfl",
                        integrator_name()));
   check_startup();
   check_tolerance();
+}
+
+void run_setup::set_stability_limit() {
+  const reconstruction_entry* scheme = find_reconstruction(config_.space.reconstruction);
+  if (!has_space() || scheme == nullptr) return;  // an unknown one is refused later
+  const auto reconstruct = scheme->make();
+  stability_limit_ = multistep_ ? cfl_limit(*multistep_, *reconstruct) : cfl_limit(*method_, *reconstruct);
+}
+
+double run_setup::step_coefficient() const {
+  if (!has_space() || config_.space.limiter == limiter_choice::positivity) return ssp_coefficient_;
+  const bool known = std::isfinite(stability_limit_);
+  if (ssp_coefficient_ == 0.0) return known ? stability_limit_ : 0.0;
+  return std::min(ssp_coefficient_, stability_limit_);
 }
 
 void run_setup::check_startup() const {

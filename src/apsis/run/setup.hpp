@@ -8,6 +8,7 @@
 #include <apsis/run/simulation.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -40,6 +41,13 @@ class run_setup {
   std::size_t stages_of_step() const;
   /// Returns the SSP coefficient r; 0 if the method has none.
   double ssp_coefficient() const { return ssp_coefficient_; }
+  /// Returns the linear stability limit of time.method with space.reconstruction, in a CFL number; infinite
+  /// without space.
+  double stability_limit() const { return stability_limit_; }
+  /// Returns the longest step in units of Δt_FE, to which time.safety is relative: r with the positivity
+  /// limiter, which bounds what linear stability does not; without it the smaller of r and
+  /// stability_limit(), or the latter alone if the method has no r.
+  double step_coefficient() const;
 
   /// Returns the semi-discrete problem of the case. This setup, whose model it refers to, must outlive it.
   std::unique_ptr<semidiscrete_problem> make_problem() const;
@@ -110,6 +118,7 @@ class run_setup {
   void set_epsilon();
   void set_prescribed_data();
   void check_method();
+  void set_stability_limit();
   void check_startup() const;
   void check_tolerance() const;
 
@@ -118,7 +127,7 @@ class run_setup {
   initial_data prescribed_;  ///< of the table [initial]
   const method* method_ = nullptr;
   std::optional<multistep_method> multistep_;
-  double ssp_coefficient_ = 0.0;
+  double ssp_coefficient_ = 0.0, stability_limit_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace apsis

@@ -17,6 +17,7 @@
 #include <apsis/run/promises.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/setup.hpp>
+#include <apsis/run/stability_watch.hpp>
 #include <apsis/run/state_distance.hpp>
 #include <apsis/run/step_plan.hpp>
 #include <apsis/run/whole_gains.hpp>
@@ -61,6 +62,7 @@ struct simulation::impl {
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
         watch(setup),
+        stability(setup),
         rounding(rounding_of(setup)),
         state(start ? start(setup) : setup.initial_state()),
         march(times_of(setup)),
@@ -77,6 +79,7 @@ struct simulation::impl {
     warn_of_dense_stages(setup);
     warn_of_stiff_collision(setup, problem->relaxation_time(march.t(), state), next_dt());
     warn_of_fast_source(problem->growth_of_source(march.t(), state), next_dt());
+    warn_of_unstable_steps(setup, next_dt());
     // The first step may be shorter than those that follow.
     setup.decide_promises(promises, limit(), forward_euler_limit(), first.negative_values == 0,
                           conserves_to_rounding(setup, state, rounding));
@@ -127,7 +130,8 @@ struct simulation::impl {
   /// Returns the step limit of the case.
   double limit() {
     if (config.time.cfl) return *config.time.cfl * setup.cfl_length();
-    if (config.time.safety) return *config.time.safety * forward_euler_limit();
+    if (config.time.safety)
+      return *config.time.safety * (setup.step_coefficient() * problem->forward_euler_step(march.t(), state));
     return march.fixed_dt().value_or(*config.time.dt);
   }
 
@@ -196,6 +200,7 @@ struct simulation::impl {
   stepper<semidiscrete_problem> integrator;
   std::unique_ptr<multistep_stepper> multistep;  ///< instead of the integrator, its starter
   monitor watch;
+  stability_watch stability;
   rounding_bound rounding;
   field state, before;        ///< before a step; empty without time.steady
   std::vector<double> gains;  ///< of the last step
@@ -282,7 +287,8 @@ long simulation::snapshot_times_passed() const {
 }
 bool simulation::next_step_depends_on_end() const {
   // Far from the end the answer is no without evaluating Δt_FE: no rule makes steps 32 times longer.
-  const bool far = step() > 0 && !impl_->march.starting() && config().time.end - t() > 64.0 * last().dt;
+  constexpr double longest = 32.0 * time_marcher<double>::shared_steps;
+  const bool far = step() > 0 && !impl_->march.starting() && config().time.end - t() > longest * last().dt;
   if (far || finished()) return false;
   return impl_->march.shaped_by_end(impl_->proposed());
 }
@@ -307,6 +313,12 @@ const step_record& simulation::advance() {
   }
   run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.totals.cpu_s += thread_seconds() - cpu;
+  // An instability is the cause of the promises that it breaks.
+  try {
+    run.stability.add(run.last);
+  } catch (const numerical_error& failure) {
+    throw failure.at(run.last.step, run.last.t);
+  }
   check_promises(run.promises, run.last, run.setup, run.rounding);
   run.watch.watch_velocities(run.state, run.last, run.totals);
   return run.last;
@@ -416,6 +428,7 @@ void simulation::restore(const run_state& saved) {
   check_sizes(impl_->setup, {saved.unknowns, saved.gains}, state);
   for (const kept_value& kept : saved.kept) check_sizes(impl_->setup, kept, state);
   copy_rows(saved.unknowns, state);
+  impl_->watch.forget_steps();
   // Before the first step the marcher is that of the case.
   if (saved.march.step > 0) impl_->march.resume(saved.march);
   if (impl_->control && saved.control) impl_->control->resume(*saved.control);

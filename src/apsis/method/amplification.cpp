@@ -1,0 +1,111 @@
+#include <apsis/method/amplification.hpp>
+
+#include <apsis/method/internal/complex_product.hpp>
+
+#include <cmath>
+
+namespace apsis {
+
+amplification::amplification(const method& m) : kind_(m.kind), steps_(m.steps) {
+  set_rows(m);
+}
+
+amplification::amplification(const multistep_method& m)
+    : kind_(m.rows ? m.rows->kind : method_kind::imex), steps_(m.steps) {
+  if (m.rows)
+    set_rows(*m.rows);
+  else
+    bdf_ = imex_bdf_coefficients<double>(m.steps);
+}
+
+void amplification::set_rows(const method& m) {
+  const auto form = m.coefficients<double>();
+  const auto initial = initial_weights(form);
+  for (std::size_t i = 0; i < form.stages(); ++i) {
+    row r{initial[i], form.D(i, i), form.ddot[i], {}};
+    for (std::size_t j = 0; j < i; ++j) {
+      const double value = form.P(i, j) + form.W(i, j), transport = form.W(i, j) / form.r;
+      if (value != 0.0 || transport != 0.0 || form.D(i, j) != 0.0)
+        r.entries.push_back({j, value, transport, form.D(i, j)});
+    }
+    rows_.push_back(std::move(r));
+  }
+}
+
+std::vector<double> amplification::fingerprint() const {
+  std::vector<double> all = {static_cast<double>(kind_), static_cast<double>(steps_)};
+  for (const row& r : rows_) {
+    all.insert(all.end(), {r.initial, r.d, r.ddot, static_cast<double>(r.entries.size())});
+    for (const entry& e : r.entries)
+      all.insert(all.end(), {static_cast<double>(e.column), e.value, e.transport, e.collision});
+  }
+  all.push_back(bdf_.b);
+  all.insert(all.end(), bdf_.a.begin(), bdf_.a.end());
+  all.insert(all.end(), bdf_.c.begin(), bdf_.c.end());
+  return all;
+}
+
+amplification::complex amplification::relaxed(const row& r, complex stage, double w) const {
+  if (kind_ == method_kind::exponential) return std::exp(r.d * w) * stage;
+  return stage / (1.0 - r.d * w - r.ddot * w * w);
+}
+
+/// Computes u_s = stages_.back() u^n + before_.back() u^{n−1}; the first row of a two-step method is u^{n−1}.
+void amplification::find_two_steps(complex z, double w) const {
+  if (kind_ == method_kind::explicit_only) {
+    z += w;
+    w = 0.0;
+  }
+  stages_.clear();
+  before_.clear();
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (i == 0 && steps_ == 2) {
+      stages_.emplace_back(0.0);
+      before_.emplace_back(1.0);
+      continue;
+    }
+    const row& r = rows_[i];
+    complex now = r.initial, earlier = 0.0;
+    for (const entry& e : r.entries) {
+      const complex factor = e.value + e.transport * z + e.collision * w;
+      now += times(factor, stages_[e.column]);
+      if (steps_ == 2) earlier += times(factor, before_[e.column]);
+    }
+    stages_.push_back(relaxed(r, now, w));
+    before_.push_back(relaxed(r, earlier, w));
+  }
+}
+
+bool amplification::is_within(double bound, complex z, double w) const {
+  if (!rows_.empty()) {
+    find_two_steps(z, w);
+    if (steps_ == 1) return std::norm(stages_.back()) < bound * bound;
+    return has_roots_within({-before_.back(), -stages_.back(), 1.0}, bound);
+  }
+  polynomial_.assign(bdf_.a.size() + 1, 0.0);
+  polynomial_.back() = 1.0 - bdf_.b * w;
+  for (std::size_t i = 0; i < bdf_.a.size(); ++i)
+    polynomial_[bdf_.a.size() - 1 - i] = -(bdf_.a[i] + bdf_.c[i] * z);
+  return has_roots_within(polynomial_, bound);
+}
+
+bool has_roots_within(std::vector<std::complex<double>> c, double radius) {
+  double power = 1.0;
+  for (auto& one : c) {
+    one *= power;
+    power *= radius;
+  }
+  while (c.size() > 1) {
+    const auto first = c.front(), last = c.back();
+    if (!(std::abs(first) < std::abs(last))) return false;
+    // (conj(c_n) p(ζ) − c_0 ζ^n conj(p(1/conj ζ)))/ζ has as many roots in the disc, one less.
+    const std::size_t n = c.size() - 1;
+    std::vector<std::complex<double>> reduced(n);
+    for (std::size_t k = 1; k <= n; ++k)
+      reduced[k - 1] = (std::conj(last) * c[k] - first * std::conj(c[n - k])) / std::norm(last);
+    c = std::move(reduced);
+  }
+  return true;
+}
+
+}  // namespace apsis

@@ -1,0 +1,117 @@
+// Amplification factors of u' = λ_T u + λ_Q u for methods of all kinds.
+#include <apsis/method/amplification.hpp>
+
+#include <apsis/method/family_registry.hpp>
+#include <apsis/method/stability.hpp>
+
+#include <cmath>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace amplification_test {
+
+using namespace apsis;
+using complex = std::complex<double>;
+
+namespace {
+
+/// The modulus of the largest factor, by bisection of is_within().
+double largest_factor(const amplification& R, complex z, double w) {
+  double low = 0.0, high = 1e3;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = (low + high) / 2.0;
+    (R.is_within(middle, z, w) ? high : low) = middle;
+  }
+  return high;
+}
+
+complex random_in_disc() {
+  const double modulus = *rc::gen::inRange(1, 1000) * 1e-3, angle = *rc::gen::inRange(0, 628) * 1e-2;
+  return std::polar(modulus, angle);
+}
+
+}  // namespace
+
+// Bisection resolves 1e3/2⁶⁰, rounding of the stages is a few 1e-16.
+constexpr double rounding = 1e-12;
+
+TEST(amplification, of_explicit_methods_is_their_taylor_polynomial) {
+  const amplification heun(find_method("ssprk-2-2")), third(find_method("ssprk-3-3")),
+      classic(find_method("kutta-4"));
+  for (const complex z : {complex(-0.3, 0.4), complex(-2.0, 0.0), complex(0.0, 1.7), complex(-1.0, -1.0)}) {
+    const complex two = 1.0 + z + z * z / 2.0, three = two + z * z * z / 6.0,
+                  four = three + z * z * z * z / 24.0;
+    EXPECT_NEAR(largest_factor(heun, z, 0.0), std::abs(two), rounding);
+    EXPECT_NEAR(largest_factor(third, z, 0.0), std::abs(three), rounding);
+    EXPECT_NEAR(largest_factor(classic, z, 0.0), std::abs(four), rounding);
+    // They treat the collision like the transport.
+    EXPECT_NEAR(largest_factor(classic, z + 0.5, -0.5), std::abs(four), rounding);
+  }
+}
+
+TEST(amplification, without_transport_is_the_stability_function_of_the_implicit_part) {
+  for (const char* name :
+       {"md-imex-5-2", "md-imex-8-3-mixed", "md-imex-16-4-efficient", "ark-548", "ars-443"}) {
+    const method& m = find_method(name);
+    const auto b = to_butcher(m.coefficients<long double>());
+    for (const double w : {-1e-2, -1.0, -30.0, -1e4})
+      // Methods of type A divide by up to w⁴, whose rounding is relative.
+      EXPECT_NEAR(largest_factor(amplification(m), 0.0, w),
+                  static_cast<double>(std::abs(stability_function(b, static_cast<long double>(w)))), 1e-9)
+          << name << ", " << w;
+  }
+}
+
+TEST(amplification, of_exponential_methods_is_exact_without_transport) {
+  const amplification R(find_method("exponential-2"));
+  for (const double w : {-1e-3, -0.7, -12.0}) EXPECT_NEAR(largest_factor(R, 0.0, w), std::exp(w), rounding);
+}
+
+TEST(amplification, of_bdf_2_is_the_root_of_its_characteristic_polynomial) {
+  const amplification R(find_multistep_method("imex-bdf-2"));
+  for (const complex z : {complex(-0.2, 0.3), complex(0.0, 0.5)})
+    for (const double w : {0.0, -2.0}) {
+      // (3/2 − w) ζ² − (2 + 2z) ζ + (1/2 + z) = 0
+      const complex a = 1.5 - w, b = -(2.0 + 2.0 * z), c = 0.5 + z, root = std::sqrt(b * b - 4.0 * a * c);
+      EXPECT_NEAR(largest_factor(R, z, w),
+                  std::max(std::abs((-b + root) / (2.0 * a)), std::abs((-b - root) / (2.0 * a))), rounding);
+    }
+}
+
+TEST(amplification, of_two_step_methods_has_the_roots_1_and_minus_b_without_both) {
+  for (const auto& name : multistep_method_names()) {
+    const multistep_method m = find_multistep_method(name);
+    if (!m.rows) continue;
+    const amplification R(m);
+    EXPECT_TRUE(R.is_within(1.0 + 1e-9, 0.0, 0.0)) << name;
+    EXPECT_FALSE(R.is_within(1.0 - 1e-9, 0.0, 0.0)) << name;
+    // Consistency of order p: the larger root is exp(z) up to the error of a step.
+    const complex z(-0.01, 0.02);
+    EXPECT_NEAR(largest_factor(R, z, 0.0), std::exp(-0.01), 1e-6) << name;
+  }
+}
+
+RC_GTEST_PROP(amplification, counts_the_roots_of_random_polynomials, ()) {
+  const int degree = *rc::gen::inRange(1, 7);
+  std::vector<complex> c = {*rc::gen::arbitrary<bool>() ? complex(1.0) : complex(-0.3, 2.0)};
+  double largest = 0.0;
+  for (int k = 0; k < degree; ++k) {
+    const complex root = random_in_disc();
+    largest = std::max(largest, std::abs(root));
+    std::vector<complex> next(c.size() + 1);
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      next[i + 1] += c[i];
+      next[i] -= root * c[i];
+    }
+    c = next;
+  }
+  // Clusters of six equal roots move by the sixth root of the rounding, 2e-3.
+  RC_ASSERT(has_roots_within(c, largest + 0.02));
+  RC_ASSERT(largest <= 0.02 || !has_roots_within(c, largest - 0.02));
+}
+
+}  // namespace amplification_test

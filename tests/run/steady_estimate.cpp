@@ -1,0 +1,79 @@
+// What time.steady estimates: the rate of change, and from its decay the distance from the steady state.
+#include <apsis/run/steady_estimate.hpp>
+
+#include "gas_between_walls.hpp"
+
+#include <apsis/output/table.hpp>
+#include <apsis/run/session.hpp>
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace steady_estimate_test {
+
+using namespace apsis;
+using testing::HasSubstr;
+
+namespace {
+
+template <class Change>
+numeric_table history_of(const Change& change, double end, int steps) {
+  numeric_table rows;
+  rows.columns = {"step", "t", "change"};
+  rows.rows.push_back({0.0, 0.0, std::nan("")});
+  for (int k = 1; k <= steps; ++k) rows.rows.push_back({1.0 * k, end * k / steps, change(end * k / steps)});
+  return rows;
+}
+
+}  // namespace
+
+TEST(a_steady_estimate, of_an_exponential_decay_is_exact) {
+  const auto found =
+      estimate_steady_state(history_of([](double t) { return 3.0 * std::exp(-t / 7.0); }, 20.0, 500));
+  EXPECT_NEAR(found.decay_time, 7.0, 1e-9);
+  EXPECT_NEAR(found.distance, 7.0 * found.change, 1e-9);
+}
+
+TEST(a_steady_estimate, follows_the_slowest_part_of_the_last_halving) {
+  const auto found = estimate_steady_state(
+      history_of([](double t) { return std::exp(-t) + 1e-3 * std::exp(-t / 50.0); }, 60.0, 3000));
+  EXPECT_NEAR(found.decay_time, 50.0, 0.5);
+}
+
+TEST(a_steady_estimate, of_a_change_that_does_not_decay_is_unknown) {
+  for (const auto& change : {+[](double) { return 1e-6; }, +[](double t) { return 1e-6 * (1.0 + 0.1 * t); },
+                             +[](double t) { return 1e-6 * (1.0 + 0.2 * std::sin(9.0 * t)); }}) {
+    const auto found = estimate_steady_state(history_of(change, 10.0, 300));
+    EXPECT_FALSE(found.has_distance());
+    EXPECT_THAT(to_text(found), HasSubstr("unknown: the change does not decay"));
+  }
+  EXPECT_FALSE(estimate_steady_state(numeric_table{}).has_distance());
+}
+
+TEST(a_steady_estimate, of_a_gas_between_plates_is_the_distance_of_a_longer_run) {
+  // Δt/ε = 1: the diffusion of heat across the gap takes 20 units of time.
+  const auto with = [](const char* steady) {
+    return between_walls::case_of({"md-imex-8-3-mixed",
+                                   fmt::format("cfl = 0.8\nend = 2000\nsteady = {}", steady), "",
+                                   "formulation = \"finite-difference\"", "0.01"});
+  };
+  run_session early(with("1e-4"), {}), late(with("1e-9"), {});
+  early.run();
+  late.run();
+  const auto found = estimate_steady_state(early.records().history());
+  const auto here = early.computed().state(), there = late.computed().state();
+  const double distance = between_walls::distance(here, there) /
+                          between_walls::distance(here, std::vector<double>(here.size(), 0.0));
+  ASSERT_TRUE(found.has_distance());
+  // The distance is several hundred times what time.steady suggests; one more slow mode is 30 % of it.
+  EXPECT_GT(distance, 1e-4);
+  EXPECT_NEAR(found.distance / distance, 1.0, 0.3);
+  const auto json = to_json(early.computed(), early.records());
+  EXPECT_TRUE(json["steady"]["reached"].get<bool>());
+  EXPECT_EQ(json["steady"]["distance"].get<double>(), found.distance);
+}
+
+}  // namespace steady_estimate_test

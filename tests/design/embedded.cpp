@@ -89,7 +89,7 @@ TEST(embedded_solution, of_the_catalogue_is_reproduced) {
     expect_reproduced(name);
 }
 
-TEST(embedded_solution, of_fourth_order_methods_is_reproduced_slow) {
+TEST(SLOW_embedded_solution, of_fourth_order_methods_is_reproduced) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded && m.claims.order >= 4; }))
     expect_reproduced(name);
 }

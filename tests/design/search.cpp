@@ -78,7 +78,7 @@ TEST(design_search, finds_the_best_second_order_methods) {
   }
 }
 
-TEST(design_search_slow, finds_the_best_number_of_evaluations) {
+TEST(SLOW_design_search, finds_the_best_number_of_evaluations) {
   const auto task = imex_task(2, 6, 2.0);
   const auto found = search_in_team(task, 200);
   ASSERT_TRUE(found.best);
@@ -125,7 +125,7 @@ TEST(design_search, finds_an_implicit_method_of_order_five_with_nine_stages) {
 
 // About one start in 160 satisfies the 72 conditions (r = 1.463 at start 554); the others end at
 // residuals of 1e-3.
-TEST(design_search_slow, finds_imex_methods_of_order_four) {
+TEST(SLOW_design_search, finds_imex_methods_of_order_four) {
   auto task = imex_task(4, 16, 2.0);
   task.demands.least_r = 0.3;
   const auto found = search_in_team(task, 600);

@@ -142,13 +142,13 @@ TEST(tolerances, are_met_within_30_with_at_most_3_times_the_best_equal_steps) {
     for (const double epsilon : {1.0, 1e-10}) check_against_fixed_steps(name, epsilon, 3000);
 }
 
-TEST(tolerances, are_met_within_30_with_at_most_3_times_the_best_equal_steps_for_all_epsilon_slow) {
+TEST(SLOW_tolerances, are_met_within_30_with_at_most_3_times_the_best_equal_steps_for_all_epsilon) {
   for (const char* name : {"md-imex-3-2", "md-imex-6-2-mixed", "md-imex-8-3-mixed", "md-imex-8-3-accurate"})
     for (const double epsilon : {1.0, 1e-2, 1e-4, 1e-6, 1e-10})
       check_against_fixed_steps(name, epsilon, 20000);
 }
 
-TEST(tolerances, are_met_within_30_by_all_methods_but_one_slow) {
+TEST(SLOW_tolerances, are_met_within_30_by_all_methods_but_one) {
   const auto names = imex_methods_with_embedded_row();
   ASSERT_GE(names.size(), 16u);
   for (const auto& name : names)

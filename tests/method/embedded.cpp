@@ -263,7 +263,7 @@ TEST(embedded_row, with_a_changed_coefficient_is_detected) {
     expect_changes_are_detected(find_method(name));
 }
 
-TEST(embedded_row, with_a_changed_coefficient_is_detected_for_many_stages_slow) {
+TEST(SLOW_embedded_row, with_a_changed_coefficient_is_detected_for_many_stages) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded && m.stages() >= 9; }))
     expect_changes_are_detected(find_method(name));
 }

@@ -61,7 +61,7 @@ TEST(families, have_order_2_and_the_documented_r) {
   for (const std::size_t s : {5U, 6U, 7U, 16U}) expect_plateau_free(s);
 }
 
-TEST(families, slow_every_member_has_order_2_and_the_documented_r) {
+TEST(SLOW_families, every_member_has_order_2_and_the_documented_r) {
   for (std::size_t s = 3; s <= 64; ++s) expect_chain(s);
   for (std::size_t s = 5; s <= 64; ++s) expect_plateau_free(s);
 }

@@ -185,7 +185,7 @@ std::vector<std::string> methods_with(bool many_stages) {
 }
 
 INSTANTIATE_TEST_SUITE_P(catalogue, every_method, ::testing::ValuesIn(methods_with(false)), name_of);
-INSTANTIATE_TEST_SUITE_P(slow_catalogue, every_method, ::testing::ValuesIn(methods_with(true)), name_of);
+INSTANTIATE_TEST_SUITE_P(SLOW_catalogue, every_method, ::testing::ValuesIn(methods_with(true)), name_of);
 
 /// A temporary file, removed by the destructor.
 class temporary_file {

@@ -42,15 +42,15 @@ TEST_P(claims, holds) {
 }
 INSTANTIATE_TEST_SUITE_P(paper, claims, testing::ValuesIn(ids(false)), [](const auto& p) { return p.param; });
 
-class slow_claims : public testing::TestWithParam<std::string> {};
-TEST_P(slow_claims, holds) {
+class SLOW_claims : public testing::TestWithParam<std::string> {};
+TEST_P(SLOW_claims, holds) {
   set_threads(0);
   expect_to_hold(GetParam());
   set_threads(1);
 }
-INSTANTIATE_TEST_SUITE_P(paper, slow_claims, testing::ValuesIn(ids(true)),
+INSTANTIATE_TEST_SUITE_P(paper, SLOW_claims, testing::ValuesIn(ids(true)),
                          [](const auto& p) { return p.param; });
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(slow_claims);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SLOW_claims);
 
 TEST(paper_tables, a_wrong_term_is_detected) {
   const auto wrong = [](const butcher_form<double>& t) {

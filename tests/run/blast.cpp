@@ -142,7 +142,7 @@ TEST(blast, in_space_becomes_a_function_of_the_radius) {
   expect_order(1.5, 6, 3, "0", small);
 }
 
-TEST(blast, slow_in_space_becomes_a_function_of_the_radius_with_the_order_of_the_scheme) {
+TEST(SLOW_blast, in_space_becomes_a_function_of_the_radius_with_the_order_of_the_scheme) {
   for (const char* epsilon : {"1e12", "0.01", "0"}) expect_order(4.5, 12, 3, epsilon, eighth_of_space);
 }
 

@@ -123,7 +123,7 @@ TEST(conservation, does_not_drift_by_the_rounding_of_weights) {
   }
 }
 
-TEST(conservation, slow_holds_on_grids_where_a_fixed_bound_fails) {
+TEST(SLOW_conservation, holds_on_grids_where_a_fixed_bound_fails) {
   struct run_of {
     int dimensions, points;
     double v_max;

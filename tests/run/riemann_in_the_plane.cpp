@@ -83,7 +83,7 @@ TEST(riemann_in_the_plane, has_the_exact_shock_tubes_along_its_sides) {
   expect_shock_tubes(16);
 }
 
-TEST(riemann_in_the_plane, slow_has_the_exact_shock_tubes_along_its_sides) {
+TEST(SLOW_riemann_in_the_plane, has_the_exact_shock_tubes_along_its_sides) {
   expect_shock_tubes(40);
 }
 

@@ -84,7 +84,7 @@ TEST(solid_positivity, quick_in_space) {
   expect_nonnegative({"bgk", "shakhov", "es-bgk"}, 3, 4, 2e7, 1);
 }
 
-TEST(solid_positivity, slow_1e9_point_stages_in_the_plane_and_in_space) {
+TEST(SLOW_solid_positivity, holds_for_1e9_point_stages_in_the_plane_and_in_space) {
   expect_nonnegative({"bgk", "bgk", "shakhov", "es-bgk"}, 2, 25, 6e8, 2);
   expect_nonnegative({"bgk", "bgk", "shakhov", "es-bgk"}, 3, 10, 6e8, 3);
 }

@@ -298,7 +298,7 @@ TEST(tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_a
   check_mixed_bgk("md-imex-3-2", {1e-3, 1e-4, 1e-5, 1e-6, 1e-7});
 }
 
-TEST(tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_about_with_all_methods_slow) {
+TEST(SLOW_tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_about_with_all_methods) {
   for (const auto& method :
        methods_where([](const apsis::method& m) { return m.embedded && m.kind == apsis::method_kind::imex; }))
     check_mixed_bgk(method, {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9});

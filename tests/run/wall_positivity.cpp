@@ -137,11 +137,11 @@ TEST(wall_positivity, quick_of_every_model) {
   for (const char* model : {"bgk", "shakhov", "es-bgk"}) expect_nonnegative(model, 3e7, 1);
 }
 
-TEST(wall_positivity, slow_1e9_point_stages_of_bgk) {
+TEST(SLOW_wall_positivity, holds_for_1e9_point_stages_of_bgk) {
   expect_nonnegative("bgk", 1e9, 2);
 }
 
-TEST(wall_positivity, slow_1e8_point_stages_of_shakhov_and_es_bgk) {
+TEST(SLOW_wall_positivity, holds_for_1e8_point_stages_of_shakhov_and_es_bgk) {
   for (const char* model : {"shakhov", "es-bgk"}) expect_nonnegative(model, 1e8, 3);
 }
 

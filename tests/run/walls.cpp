@@ -106,7 +106,7 @@ TEST(walls, mass_does_not_drift) {
   EXPECT_LT(run.last().conservation_defect[0], 1e-14);
 }
 
-TEST(walls, slow_mass_is_conserved_over_1e5_steps) {
+TEST(SLOW_walls, mass_is_conserved_over_1e5_steps) {
   simulation run = run_of({"time.end=1000", "space.cells=10", "velocity.points=12", "velocity.max=6.5"});
   for (int step = 0; step < 100'000; ++step) run.advance();
   EXPECT_LT(run.last().conservation_defect[0], 1e-12);

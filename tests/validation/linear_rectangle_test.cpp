@@ -189,12 +189,12 @@ TEST(linear_duct, is_the_source_of_values_of_duct) {
   }
 }
 
-TEST(slow_linear_duct, is_the_source_of_all_values) {
+TEST(SLOW_linear_duct, is_the_source_of_all_values) {
   for (const auto& reference : find_quantity("duct").published)
     EXPECT_NEAR(linear_value("duct", reference, 16, 20), reference.value, 2e-6);
 }
 
-TEST(slow_linear_square, is_the_source_of_all_values) {
+TEST(SLOW_linear_square, is_the_source_of_all_values) {
   // The order is between 4 and 5, which leaves 1e-5 at delta = 10, and 0.0001 stands for free molecules, 3e-5
   // off.
   for (const std::string quantity : {"cavity", "enclosure"})

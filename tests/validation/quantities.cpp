@@ -55,14 +55,14 @@ std::string name_of(const testing::TestParamInfo<one_value>& info) {
   return name;
 }
 
-class slow_published : public testing::TestWithParam<one_value> {};
-TEST_P(slow_published, is_met) {
+class SLOW_published : public testing::TestWithParam<one_value> {};
+TEST_P(SLOW_published, is_met) {
   const compared_value one = compare_published(*GetParam().quantity, *GetParam().published);
   EXPECT_TRUE(one.holds()) << one.value << " for " << one.published->value;
 }
-INSTANTIATE_TEST_SUITE_P(all, slow_published, testing::ValuesIn(published()), name_of);
+INSTANTIATE_TEST_SUITE_P(all, SLOW_published, testing::ValuesIn(published()), name_of);
 
-TEST(slow_fine_decks, meet_values_to_1e_4) {
+TEST(SLOW_fine_decks, meet_values_to_1e_4) {
   // 2.768644 is printed with seven digits; 0.1473123 is that of the linear solver, the table has 0.1473.
   for (const auto& [name, exact] :
        {std::pair<std::string, double>{"poiseuille", 2.768644}, {"couette", 0.1473123}})

@@ -44,7 +44,7 @@ void check_mixed(const std::string& data, const std::string& method, formulation
 
 }  // namespace
 
-TEST(claims, C24_slow_data_S_second_and_third_order_against_the_explicit_reference) {
+TEST(SLOW_claims, C24_data_S_second_and_third_order_against_the_explicit_reference) {
   for (const auto how : {formulation::finite_volume, formulation::finite_difference})
     for (const char* method : {"md-imex-3-2", "md-imex-6-3"}) check_mixed("mixed-s", method, how);
 }

@@ -71,7 +71,7 @@ TEST(profile_errors, depend_on_the_collision_rate_of_the_solution) {
       2 * next_order);  // C changes by a fifth during the run
 }
 
-TEST(profile_errors, slow_are_those_of_runs_with_a_narrow_band) {
+TEST(SLOW_profile_errors, are_those_of_runs_with_a_narrow_band) {
   expect_prediction(mixed("md-imex-8-3-mixed", 1.0 / 8000, {"time.startup=graded"}), next_order);
   expect_prediction(mixed("md-imex-8-3-mixed", 1.0 / 8000), 2 * next_order);  // errors are smaller by ten
 }

@@ -61,7 +61,7 @@ std::vector<std::string> methods_with(bool many_stages) {
 INSTANTIATE_TEST_SUITE_P(catalogue, every_method, testing::ValuesIn(methods_with(false)), test_name);
 INSTANTIATE_TEST_SUITE_P(families, every_method,
                          testing::Values("md-imex-chain-5-2", "md-imex-plateau-free-6-2"), test_name);
-INSTANTIATE_TEST_SUITE_P(slow_catalogue, every_method, testing::ValuesIn(methods_with(true)), test_name);
+INSTANTIATE_TEST_SUITE_P(SLOW_catalogue, every_method, testing::ValuesIn(methods_with(true)), test_name);
 
 TEST(strong_stability, third_order_imex_loses_positivity_of_the_broadwell_model_just_above_r) {
   const method& m = find_method("md-imex-6-3");

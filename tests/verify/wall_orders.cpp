@@ -39,7 +39,7 @@ TEST(walls, have_third_order_where_plates_start_to_move_and_to_heat) {
   expect_third_order("finite-difference");
 }
 
-TEST(walls, slow_have_third_order_where_plates_start_to_move_and_to_heat) {
+TEST(SLOW_walls, have_third_order_where_plates_start_to_move_and_to_heat) {
   expect_third_order("finite-volume");
 }
 
@@ -58,7 +58,7 @@ TEST(walls, have_second_order_in_the_cells_next_to_them_at_small_epsilon) {
         << model;
 }
 
-TEST(walls, slow_have_third_order_in_cell_averages_next_to_them_at_small_epsilon) {
+TEST(SLOW_walls, have_third_order_in_cell_averages_next_to_them_at_small_epsilon) {
   // The flux v f at the wall is exact.
   EXPECT_GT(slope("benchmarks/carried-gas", "20,40", error_norm::linf, {"space.formulation=finite-volume"}),
             inside);

@@ -112,9 +112,9 @@ double checkpoint::number(const std::string& name) const {
   return found->second;
 }
 
-void write_checkpoint(const std::string& path, const checkpoint& c,
-                      const std::shared_ptr<communicator>& processes) {
-  hdf5_file file = hdf5_file::create(path, seal_length, processes);
+namespace {
+
+void write_contents(hdf5_file& file, const checkpoint& c) {
   for (const auto& [name, value] : c.numbers) file.write_attribute(name, value);
   file.write("case", c.case_text);
   file.write("commit", c.commit);
@@ -135,7 +135,13 @@ void write_checkpoint(const std::string& path, const checkpoint& c,
   }
   if (!snapshots.empty())
     write_rows(file, "fields/snapshots", snapshots, 1 + c.fields.names.size() * c.cells);
-  file.close();
+}
+
+}  // namespace
+
+void write_checkpoint(const std::string& path, const checkpoint& c,
+                      const std::shared_ptr<communicator>& processes) {
+  write_hdf5(path, seal_length, processes, [&c](hdf5_file& file) { write_contents(file, c); });
   if (!processes) return seal(path, kind);
   together(*processes, [&] {
     if (processes->is_root()) seal(path, kind);

@@ -6,7 +6,7 @@
 #include <apsis/exec/memory.hpp>
 #include <apsis/output/hdf5_storage.hpp>
 #include <apsis/output/lzf_filter.hpp>
-#include <apsis/output/parallel_access.hpp>
+#include <apsis/output/provenance.hpp>
 #include <apsis/output/recording_driver.hpp>
 
 #include <algorithm>
@@ -69,23 +69,16 @@ bool write_text_attribute(hid_t object, const std::string& name, const std::stri
   return attribute.good() && H5Awrite(attribute, type, value.c_str()) >= 0;
 }
 
-// Properties of a new object: no time stamps.
+// Properties of a new object: no time stamps. Numbers have their place in the file from the beginning, so
+// that other processes can write them.
 handle creation_properties(hid_t what) {
   const hid_t list = H5Pcreate(what);
   H5Pset_obj_track_times(list, false);
+  if (what == H5P_DATASET_CREATE) {
+    H5Pset_alloc_time(list, H5D_ALLOC_TIME_EARLY);
+    H5Pset_fill_time(list, H5D_FILL_TIME_NEVER);
+  }
   return {list, H5Pclose};
-}
-
-/// Creates the file that all processes open after that, so that none writes through a link.
-void create_on_root(const std::string& path, communicator& processes) {
-  together(processes, [&] {
-    if (!processes.is_root()) return;
-    const int file = create_new_file(path);
-    if (file < 0)
-      throw io_error(fmt::format("'{}': cannot be created ({}); choose another folder", path,
-                                 why_not_written(path, errno)));
-    ::close(file);
-  });
 }
 
 /// Selects a part of a dataset, or nothing if the part has no numbers.
@@ -101,13 +94,11 @@ hsize_t size_of(const dataset_part& part) {
   return std::accumulate(part.count.begin(), part.count.end(), hsize_t{1}, std::multiplies<>());
 }
 
-/// Writes a part of a dataset; `together`: all processes do so.
-bool write_selected(hid_t data, hid_t space, const dataset_part& part, const double* values, bool together) {
+bool write_selected(hid_t data, hid_t space, const dataset_part& part, const double* values) {
   const hsize_t numbers = size_of(part);
   const handle memory(H5Screate_simple(1, &numbers, nullptr), H5Sclose);
   if (numbers == 0) H5Sselect_none(memory);
-  const handle transfer(together ? make_collective_transfer() : H5Pcreate(H5P_DATASET_XFER), H5Pclose);
-  return select(space, part) && H5Dwrite(data, H5T_NATIVE_DOUBLE, memory, space, transfer, values) >= 0;
+  return select(space, part) && H5Dwrite(data, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) >= 0;
 }
 
 /// Returns the text of an attribute, of fixed length or, as other programs write it, of any length.
@@ -143,7 +134,8 @@ bool make_groups(hid_t file, const std::string& name) {
 
 }  // namespace
 
-hdf5_file::hdf5_file(std::string path) : access_(access_to_hdf5()), path_(std::move(path)) {
+hdf5_file::hdf5_file(std::string path, content written)
+    : access_(access_to_hdf5()), path_(std::move(path)), content_(written) {
   silence();
 }
 
@@ -152,8 +144,8 @@ hdf5_file::hdf5_file(hdf5_file&& other) noexcept
       path_(std::move(other.path_)),
       id_(std::exchange(other.id_, -1)),
       error_(std::move(other.error_)),
-      processes_(std::move(other.processes_)),
-      failure_(std::move(other.failure_)) {}
+      content_(other.content_),
+      process_(std::move(other.process_)) {}
 
 hdf5_file::~hdf5_file() {
   if (id_ >= 0) H5Fclose(id_);
@@ -163,38 +155,38 @@ void hdf5_file::fail(const std::string& what) const {
   throw io_error(fmt::format("'{}': {}", path_, what));
 }
 
-void hdf5_file::fail_to_write(const std::string& what) {
-  const std::string message =
-      fmt::format("{} ({}); free some space or choose another folder", what,
-                  *error_ != 0 ? why_not_written(path_, *error_) : "no reason given by HDF5");
-  if (!is_shared()) fail(message);
-  // The other processes wait in the next call.
-  if (failure_.empty()) failure_ = message;
+void hdf5_file::fail_to_write(const std::string& what) const {
+  fail(fmt::format("{} ({}{}{}); free some space or choose another folder", what, process_,
+                   process_.empty() ? "" : ": ",
+                   *error_ != 0 ? why_not_written(path_, *error_) : "no reason given by HDF5"));
 }
 
 hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes) {
-  return create(path, free_bytes, nullptr);
+  return create(path, free_bytes, content::all);
 }
 
-hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes,
-                            const std::shared_ptr<communicator>& processes) {
-  hdf5_file file(path);
+hdf5_file hdf5_file::create_frame(const std::string& path, std::uint64_t free_bytes) {
+  return create(path, free_bytes, content::frame);
+}
+
+hdf5_file hdf5_file::create(const std::string& path, std::uint64_t free_bytes, content written) {
+  hdf5_file file(path, written);
   const handle creation = creation_properties(H5P_FILE_CREATE);
   H5Pset_userblock(creation, free_bytes);
+  const handle access(make_recording_access(file.error_.get()), H5Pclose);
   // Version 1.8 and later can have attributes of more than 64 KiB, such as a long case.
-  file.processes_ = processes;
-  if (file.is_shared()) create_on_root(path, *processes);
-  const handle access(
-      file.is_shared() ? make_parallel_access(*processes) : make_recording_access(file.error_.get()),
-      H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
   file.id_ = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access);
-  if (file.is_shared())
-    together(*processes, [&] {
-      if (file.id_ < 0) file.fail("cannot be created (no reason given by HDF5); choose another folder");
-    });
-  else if (file.id_ < 0)
-    file.fail_to_write("cannot be created");
+  if (file.id_ < 0) file.fail_to_write("cannot be created");
+  return file;
+}
+
+hdf5_file hdf5_file::open_parts(const std::string& path, const std::string& process) {
+  hdf5_file file(path, content::parts);
+  file.process_ = process;
+  const handle access(make_recording_access(file.error_.get(), true), H5Pclose);
+  file.id_ = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
+  if (file.id_ < 0) file.fail_to_write("cannot be opened for writing");
   return file;
 }
 
@@ -211,10 +203,6 @@ void hdf5_file::close() {
   const hid_t id = std::exchange(id_, -1);
   const bool flushed = H5Fflush(id, H5F_SCOPE_GLOBAL) >= 0;
   if (H5Fclose(id) < 0 || !flushed || *error_ != 0) fail_to_write("cannot be written completely");
-  if (is_shared())
-    together(*processes_, [this] {
-      if (!failure_.empty()) fail(failure_);
-    });
 }
 
 void hdf5_file::write(const std::string& name, const std::vector<double>& values, const shape& extents,
@@ -231,6 +219,7 @@ void hdf5_file::write_part(const std::string& name, const std::vector<double>& v
 void hdf5_file::write_numbers(const std::string& name, const double* values, const shape& extents,
                               const dataset_part* part, const std::string& long_name, precision stored,
                               const std::string& units) {
+  if (!writes_frame()) return write_reserved(name, values, part);
   const std::vector<hsize_t> dims(extents.begin(), extents.end());
   const handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
   const handle properties = creation_properties(H5P_DATASET_CREATE);
@@ -239,28 +228,38 @@ void hdf5_file::write_numbers(const std::string& name, const double* values, con
   const handle data(H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
                     H5Dclose);
   bool written = with_groups && data.good();
-  if (part != nullptr)
-    written = write_selected(data, space, *part, values, is_shared()) && written;
-  else if (writes())
+  if (part == nullptr)
     written = H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0 && written;
+  else if (content_ == content::all)
+    written = write_selected(data, space, *part, values) && written;
   written = write_text_attribute(data, "units", units) && written;
   written = (long_name.empty() || write_text_attribute(data, "long_name", long_name)) && written;
   if (!written || *error_ != 0) fail_to_write(fmt::format("'{}' cannot be written", name));
 }
 
+void hdf5_file::write_reserved(const std::string& name, const double* values, const dataset_part* part) {
+  if (part == nullptr) return;
+  const handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  const handle space(H5Dget_space(data), H5Sclose);
+  if (!data.good() || !write_selected(data, space, *part, values) || *error_ != 0)
+    fail_to_write(fmt::format("'{}' cannot be written", name));
+}
+
 void hdf5_file::write(const std::string& name, const std::string& text) {
+  if (!writes_frame()) return;
   const bool with_groups = make_groups(id_, name);
   const handle type = text_type(text.size());
   const handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const handle properties = creation_properties(H5P_DATASET_CREATE);
   const handle data(H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
                     H5Dclose);
-  if (!with_groups || !data.good() ||
-      (writes() && H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0) || *error_ != 0)
+  if (!with_groups || !data.good() || H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0 ||
+      *error_ != 0)
     fail_to_write(fmt::format("'{}' cannot be written", name));
 }
 
 void hdf5_file::write_attribute(const std::string& name, double value) {
+  if (!writes_frame()) return;
   const handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const handle attribute(H5Acreate2(id_, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose);
@@ -269,8 +268,24 @@ void hdf5_file::write_attribute(const std::string& name, double value) {
 }
 
 void hdf5_file::write_attribute(const std::string& name, const std::string& value) {
-  if (!write_text_attribute(id_, name, value))
+  if (writes_frame() && !write_text_attribute(id_, name, value))
     fail_to_write(fmt::format("attribute '{}' cannot be written", name));
+}
+
+void write_hdf5(const std::string& path, std::uint64_t free_bytes,
+                const std::shared_ptr<communicator>& processes,
+                const std::function<void(hdf5_file&)>& contents) {
+  const auto write = [&](hdf5_file file) {
+    contents(file);
+    file.close();
+  };
+  if (!processes || processes->is_single()) return write(hdf5_file::create(path, free_bytes));
+  together(*processes, [&] {
+    if (processes->is_root()) write(hdf5_file::create_frame(path, free_bytes));
+  });
+  together(*processes, [&] {
+    write(hdf5_file::open_parts(path, fmt::format("process {} on {}", processes->rank(), host_name())));
+  });
 }
 
 bool hdf5_file::has(const std::string& name) const {

@@ -3,6 +3,7 @@
 #include <apsis/exec/communicator.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -32,11 +33,12 @@ class hdf5_file {
   /// Creates a file. The user block of `free_bytes` at its beginning is left to the caller; 0, or a power of
   /// two of at least 512.
   static hdf5_file create(const std::string& path, std::uint64_t free_bytes = 0);
-  /// Creates a file that several processes write together. All call the same members in the same order, up to
-  /// close(); the root gives the numbers and texts, the others only extents, except in write_part(). Errors
-  /// are thrown by close(), on all processes.
-  static hdf5_file create(const std::string& path, std::uint64_t free_bytes,
-                          const std::shared_ptr<communicator>& processes);
+  /// Creates a file in which write_part() only reserves space.
+  static hdf5_file create_frame(const std::string& path, std::uint64_t free_bytes);
+  /// Opens such a file after it was closed: write_part() writes its numbers, other members write nothing.
+  /// Several processes may do so simultaneously; `process` describes this one in messages ("process 1 on
+  /// node7").
+  static hdf5_file open_parts(const std::string& path, const std::string& process);
   /// Opens an existing file for reading.
   static hdf5_file open(const std::string& path);
   ~hdf5_file();
@@ -59,8 +61,8 @@ class hdf5_file {
   void write_attribute(const std::string& name, double value);
   /// Writes text as an attribute of the file.
   void write_attribute(const std::string& name, const std::string& value);
-  /// Whether this process writes what is not a part: the root of several processes.
-  bool writes() const { return !is_shared() || processes_->is_root(); }
+  /// Whether members other than write_part() write.
+  bool writes_frame() const { return content_ != content::parts; }
   /// Flushes the file to disk and closes it, so that a full disk is reported here and not in a destructor.
   void close();
 
@@ -95,22 +97,31 @@ class hdf5_file {
   std::vector<std::pair<std::string, double>> attributes() const;
 
  private:
-  explicit hdf5_file(std::string path);
+  enum class content { all, frame, parts };
+  explicit hdf5_file(std::string path, content written = content::all);
+  static hdf5_file create(const std::string& path, std::uint64_t free_bytes, content written);
   void write_numbers(const std::string& name, const double* values, const shape& extents,
                      const dataset_part* part, const std::string& long_name, precision stored,
                      const std::string& units);
-  /// Whether several processes write the file.
-  bool is_shared() const { return processes_ && !processes_->is_single(); }
+  void write_reserved(const std::string& name, const double* values, const dataset_part* part);
   void check_numbers(const std::string& name, std::int64_t data, std::uint64_t count) const;
   [[noreturn]] void fail(const std::string& what) const;
-  void fail_to_write(const std::string& what);
+  [[noreturn]] void fail_to_write(const std::string& what) const;
 
   std::unique_lock<std::recursive_mutex> access_;  ///< released last
   std::string path_;
   std::int64_t id_ = -1;
   std::unique_ptr<int> error_ = std::make_unique<int>(0);  ///< errno of the first write that failed
-  std::shared_ptr<communicator> processes_;
-  std::string failure_;  ///< of a file that several processes write, until close()
+  content content_;                                        ///< what is written
+  std::string process_;                                    ///< that writes parts
 };
+
+/// Writes a file by all processes: the root the frame, then each one its parts. `contents` calls the members
+/// that write, and runs on every process; twice on the root. Neither HDF5 nor `contents` communicates, so
+/// that no process waits for one that cannot write. Throws on all what one of them throws. Collective; a
+/// single process may be nullptr.
+void write_hdf5(const std::string& path, std::uint64_t free_bytes,
+                const std::shared_ptr<communicator>& processes,
+                const std::function<void(hdf5_file&)>& contents);
 
 }  // namespace apsis

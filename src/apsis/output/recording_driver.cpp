@@ -22,6 +22,7 @@ namespace {
 /// Driver data of a property list.
 struct access_info {
   int* error;
+  bool only_numbers;  ///< of an existing file
 };
 
 /// An open file; HDF5 accesses its first member.
@@ -32,6 +33,7 @@ struct recorded_file {
   haddr_t allocated, end;
   dev_t device;
   ino_t inode;
+  bool only_numbers;
 };
 
 recorded_file& of(H5FD_t* file) {
@@ -48,14 +50,17 @@ void record(recorded_file& file, int why) {
 H5FD_t* open_file(const char* name, unsigned /*flags*/, hid_t access, haddr_t /*largest*/) {
   const auto* info = static_cast<const access_info*>(H5Pget_driver_info(access));
   if (info == nullptr) return nullptr;
-  const int id = create_new_file(name);
+  // Nothing is written through a link.
+  const int id = info->only_numbers ? open(name, O_RDWR | O_CLOEXEC | O_NOFOLLOW) : create_new_file(name);
   struct stat status = {};
   if (id < 0 || fstat(id, &status) != 0) {
     *info->error = errno;
     if (id >= 0) close(id);
     return nullptr;
   }
-  auto* file = new (std::nothrow) recorded_file{{}, id, info->error, 0, 0, status.st_dev, status.st_ino};
+  const auto end = info->only_numbers ? static_cast<haddr_t>(status.st_size) : 0;
+  auto* file = new (std::nothrow)
+      recorded_file{{}, id, info->error, 0, end, status.st_dev, status.st_ino, info->only_numbers};
   if (file == nullptr) {
     close(id);
     return nullptr;
@@ -65,6 +70,8 @@ H5FD_t* open_file(const char* name, unsigned /*flags*/, hid_t access, haddr_t /*
 
 herr_t close_file(H5FD_t* file) {
   recorded_file& mine = of(file);
+  // A network file system may report a full disk only now.
+  if (mine.only_numbers && fsync(mine.id) != 0) record(mine, errno);
   if (close(mine.id) != 0) record(mine, errno);
   delete &mine;
   return 0;
@@ -77,10 +84,12 @@ int compare(const H5FD_t* a, const H5FD_t* b) {
   return 0;
 }
 
-/// Same as HDF5's default driver, so that files have the same layout.
-herr_t query(const H5FD_t* /*file*/, unsigned long* flags) {
-  *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
-           H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+/// Same as HDF5's default driver, so that files have the same layout. A sieve would also write numbers
+/// between those of this process, which belong to others.
+herr_t query(const H5FD_t* file, unsigned long* flags) {
+  *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_AGGREGATE_SMALLDATA |
+           H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+  if (file == nullptr || !of(file).only_numbers) *flags |= H5FD_FEAT_DATA_SIEVE;
   return 0;
 }
 
@@ -111,9 +120,10 @@ herr_t read_bytes(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*list*/, haddr_t add
   return 0;
 }
 
-herr_t write_bytes(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*list*/, haddr_t address, std::size_t size,
+herr_t write_bytes(H5FD_t* file, H5FD_mem_t type, hid_t /*list*/, haddr_t address, std::size_t size,
                    const void* buffer) {
   recorded_file& mine = of(file);
+  if (mine.only_numbers && type != H5FD_MEM_DRAW) return 0;
   const auto* bytes = static_cast<const char*>(buffer);
   mine.end = std::max(mine.end, address + size);
   while (size > 0 && *mine.error == 0) {
@@ -132,7 +142,7 @@ herr_t write_bytes(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*list*/, haddr_t ad
 
 herr_t truncate_file(H5FD_t* file, hid_t /*list*/, hbool_t /*closing*/) {
   recorded_file& mine = of(file);
-  if (mine.end == mine.allocated) return 0;
+  if (mine.end == mine.allocated || mine.only_numbers) return 0;
   if (*mine.error == 0 && ftruncate(mine.id, static_cast<off_t>(mine.allocated)) != 0) record(mine, errno);
   mine.end = mine.allocated;
   return 0;
@@ -169,9 +179,9 @@ hid_t driver() {
 
 }  // namespace
 
-std::int64_t make_recording_access(int* error) {
+std::int64_t make_recording_access(int* error, bool only_numbers) {
   const hid_t list = H5Pcreate(H5P_FILE_ACCESS);
-  const access_info info{error};
+  const access_info info{error, only_numbers};
   if (list >= 0 && H5Pset_driver(list, driver(), &info) >= 0) return list;
   if (list >= 0) H5Pclose(list);
   return -1;

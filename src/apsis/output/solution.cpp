@@ -79,7 +79,7 @@ void write_points(hdf5_file& file, const distribution_at_points& points, std::ui
 void write_geometry(hdf5_file& file, const field_series& fields) {
   if (fields.axes.size() < 2) return;
   std::vector<double> points;
-  for (std::size_t cell = 0; cell < mesh_size(fields.axes) && file.writes(); ++cell)
+  for (std::size_t cell = 0; cell < mesh_size(fields.axes) && file.writes_frame(); ++cell)
     for (std::size_t k = 0; k < 3; ++k)
       points.push_back(k < fields.axes.size() ? centre_of_cell(fields.axes, cell, k) : 0.0);
   file.write("geometry/centres", points, with(mesh_shape(fields.axes), 3), "cell centre", precision::float64,
@@ -110,11 +110,7 @@ void write_series(hdf5_file& file, const field_series& fields) {
   }
 }
 
-}  // namespace
-
-void write_solution(const std::string& path, const solution& s,
-                    const std::shared_ptr<communicator>& processes) {
-  hdf5_file file = hdf5_file::create(path, 0, processes);
+void write_contents(hdf5_file& file, const solution& s) {
   file.write_attribute("title", s.title);
   file.write_attribute("case", s.case_text);
   file.write_attribute("manifest", s.manifest);
@@ -126,11 +122,27 @@ void write_solution(const std::string& path, const solution& s,
   write_velocities(file, s.velocities);
   write_marginals(file, s.f, axes, s.part, s.velocities, precision::float64);
   write_coordinates(file, "", axes, s.fields.unit_of_x);
-  if (!s.epsilon.empty() || !file.writes())
-    file.write("epsilon", s.epsilon, mesh_shape(axes), "Knudsen number");
+  if (!s.epsilon.empty()) file.write("epsilon", s.epsilon, mesh_shape(axes), "Knudsen number");
   write_geometry(file, s.fields);
   write_series(file, s.fields);
-  file.close();
+}
+
+void write_contents(hdf5_file& file, const distribution_snapshot& s, precision stored) {
+  file.write_attribute("t", s.t);
+  file.write_attribute("step", static_cast<double>(s.step));
+  write_f(file, s.f, s.axes, s.part, s.components, stored);
+  write_points(file, s.points, s.components, stored, "dimensionless");
+  write_velocities(file, s.velocities);
+  if (s.f.empty() && !s.part) return;
+  write_marginals(file, s.f, s.axes, s.part, s.velocities, stored);
+  write_coordinates(file, "", s.axes, "dimensionless");
+}
+
+}  // namespace
+
+void write_solution(const std::string& path, const solution& s,
+                    const std::shared_ptr<communicator>& processes) {
+  write_hdf5(path, 0, processes, [&s](hdf5_file& file) { write_contents(file, s); });
 }
 
 void write_fields(const std::string& path, const std::string& title, const field_series& fields) {
@@ -144,17 +156,7 @@ void write_fields(const std::string& path, const std::string& title, const field
 
 void write_distribution(const std::string& path, const distribution_snapshot& s, precision stored,
                         const std::shared_ptr<communicator>& processes) {
-  hdf5_file file = hdf5_file::create(path, 0, processes);
-  file.write_attribute("t", s.t);
-  file.write_attribute("step", static_cast<double>(s.step));
-  write_f(file, s.f, s.axes, s.part, s.components, stored);
-  write_points(file, s.points, s.components, stored, "dimensionless");
-  write_velocities(file, s.velocities);
-  if (!s.f.empty() || s.part) {
-    write_marginals(file, s.f, s.axes, s.part, s.velocities, stored);
-    write_coordinates(file, "", s.axes, "dimensionless");
-  }
-  file.close();
+  write_hdf5(path, 0, processes, [&](hdf5_file& file) { write_contents(file, s, stored); });
 }
 
 }  // namespace apsis

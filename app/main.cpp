@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <new>
 #include <string>
 #include <vector>
@@ -104,7 +105,12 @@ int fail(exit_code code, const std::string& message) {
 
 int run_and_report_errors(int argc, char** argv) {
   try {
-    return run_program(argc, argv);
+    try {
+      return run_program(argc, argv);
+    } catch (const error&) {
+      share_early_error(std::current_exception());
+      throw;
+    }
   } catch (const interruption&) {
     return static_cast<int>(exit_code::interrupted);
   } catch (const error& problem) {

@@ -9,6 +9,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <limits>
 #include <new>
 #include <string>
 
@@ -17,27 +18,55 @@
 namespace apsis::app {
 namespace {
 
-exit_code code_of(const std::exception& failure) {
-  if (const auto* known = dynamic_cast<const error*>(&failure)) return known->code();
-  return dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ? exit_code::numerical
-                                                                  : exit_code::internal;
+bool joined = false;  // the other processes, which need not be told an error again
+
+/// Reports an error that other processes do not learn, and ends all with its exit code.
+void abort_all(const communicator& processes, const std::exception_ptr& mine) {
+  exit_code code = exit_code::internal;
+  std::string message = "an exception without a message";
+  try {
+    std::rethrow_exception(mine);
+  } catch (const error& failure) {
+    code = failure.code();
+    message = failure.what();
+  } catch (const std::bad_alloc&) {
+    code = exit_code::numerical;
+    message = "not enough memory";
+  } catch (const std::exception& failure) {
+    message = failure.what();
+  } catch (...) {
+  }
+  std::fputs(fmt::format("error: process {}: {}\n", processes.rank(), printable(message)).c_str(), stderr);
+  processes.abort(static_cast<int>(code));
 }
 
 }  // namespace
 
 int on_all_processes(const std::function<int(const std::shared_ptr<communicator>&)>& body, double patience) {
+  joined = true;
   const std::shared_ptr<communicator> processes = launched_processes();
   if (!processes->is_root()) log::set_level(log::level::quiet);
+  std::exception_ptr failure;
+  int code = 0;
   try {
-    return body(processes);
-  } catch (const std::exception& failure) {
-    // Where all fail, the root reports the error.
-    if (processes->is_single() || processes->all_arrive(patience)) throw;
-    std::fputs(fmt::format("error: process {}: {}\n", processes->rank(), printable(failure.what())).c_str(),
-               stderr);
-    processes->abort(static_cast<int>(code_of(failure)));
-    throw;
+    code = body(processes);
+  } catch (...) {
+    failure = std::current_exception();
   }
+  const bool all =
+      processes->end_together(failure, failure ? patience : std::numeric_limits<double>::infinity());
+  if (!all && !failure)
+    failure = std::make_exception_ptr(
+        error(exit_code::interrupted, "interrupted (another process does not end); look for its results"));
+  if (!all) abort_all(*processes, failure);
+  // The root reports the error.
+  if (failure) std::rethrow_exception(failure);
+  return code;
+}
+
+void share_early_error(const std::exception_ptr& mine) {
+  if (joined || launched_count() == 1 || !has_mpi()) return;
+  on_all_processes([&](const std::shared_ptr<communicator>&) -> int { std::rethrow_exception(mine); });
 }
 
 void refuse_several_processes(const char* command) {

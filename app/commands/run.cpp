@@ -50,7 +50,11 @@ int code_of(run_end end) {
   return static_cast<int>(end == run_end::complete ? exit_code::success : exit_code::interrupted);
 }
 
+/// A process that waits for another one this many seconds after a signal gives up; writing takes shorter.
+constexpr double longest_wait = 60.0;
+
 int run_on(const std::shared_ptr<communicator>& processes, run_options options) {
+  processes->limit_waiting(interrupted, longest_wait);
   case_config config;
   together(*processes, [&] { config = load_case(options.case_name, options.overrides); });
   set_threads(options.threads.value_or(threads_for(config, *processes)));

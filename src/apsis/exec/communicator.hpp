@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -55,12 +58,29 @@ class communicator {
   /// Returns the Fortran handle of the MPI communicator, for libraries that communicate themselves; −1 for a
   /// single process.
   virtual std::int64_t handle() const { return -1; }
-  /// Whether all processes call this within some seconds: those that fail together. Not to be called twice.
+  /// Returns true once all processes have called this, and false after some seconds; a barrier that sleeps.
   virtual bool all_arrive(double seconds) = 0;
-  /// Ends all processes with an exit code; for the error of one while others wait for it.
+  /// The last call of every process. `mine` is the error with which it ends, or nullptr. Those that wait for
+  /// a process that fails, in any member, throw its error with its rank in the message; so does this member
+  /// without an error of its own. Returns true once all have called it, and false after some seconds: then a
+  /// process neither ends nor communicates. Afterwards only abort() and the destructor may be called.
+  virtual bool end_together(const std::exception_ptr& mine, double seconds) = 0;
+  /// Ends waiting for other processes with error(exit_code::interrupted), `seconds` after `asked` has become
+  /// true.
+  void limit_waiting(std::function<bool()> asked, double seconds) {
+    asked_ = std::move(asked);
+    patience_ = seconds;
+  }
+  /// Ends all processes with an exit code, for a process that does not respond. A launcher may hang
+  /// afterwards.
   [[noreturn]] virtual void abort(int code) const = 0;
   /// Returns what this process has sent since it was started.
   const communication_count& count() const { return count_; }
+
+ protected:
+  /// Whether a request to end is known; see limit_waiting().
+  bool asked_to_end() const { return asked_ && asked_(); }
+  double patience() const { return patience_; }  ///< seconds after such a request
 
  private:
   virtual void do_sum(std::span<std::int64_t> values) = 0;
@@ -72,6 +92,8 @@ class communicator {
   virtual void do_finish_exchange() = 0;
 
   communication_count count_;
+  std::function<bool()> asked_;
+  double patience_ = 0.0;
 };
 
 /// Returns the communicator of a single process.

@@ -1,0 +1,17 @@
+"""Busy loops, as other work on the machine."""
+import contextlib
+import subprocess
+import sys
+
+
+@contextlib.contextmanager
+def busy_loops(count):
+    # They end with this process, however it ends.
+    text = "import os\nparent = os.getppid()\nwhile os.getppid() == parent: pass"
+    loops = [subprocess.Popen([sys.executable, "-c", text]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for loop in loops:
+            loop.kill()
+            loop.wait()

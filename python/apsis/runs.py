@@ -140,7 +140,23 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     first process; the others get None.
 
     `threads`: 0 for all processors; default: OMP_NUM_THREADS, else all for a large case and 1 for a small one.
-    Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt."""
+    Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt; of several processes on all of them."""
+    handle = _handle(comm)
+    try:
+        arguments = _arguments(case, overrides, out, restart, wall, threads, progress, initial, jumps)
+    except Exception as problem:
+        if handle is not None:
+            _core.refuse_on_all(handle, str(problem))
+        raise
+    got = _core.run(*arguments, handle)
+    if got is None:
+        return None
+    return Result(summary=json.loads(got.pop("json")), **got)
+
+
+def _arguments(case: Case, overrides: Sequence[str], out: str | Path | None, restart: str | Path | None, wall: float | None,
+               threads: int | None, progress: Progress | None, initial: Initial | None, jumps: Sequence[float]) -> tuple[Any, ...]:
+    """Returns the arguments of the compiled part but the communicator. Raises InputError."""
     if not isinstance(case, (str, Path, Mapping)):
         raise InputError(f"case is a {type(case).__name__} (it must be a name, a file or a mapping); see apsis.cases()")
     for one in overrides:
@@ -150,14 +166,10 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
         raise InputError(f"progress is a {type(progress).__name__} (it must be callable); give a function")
     text = to_toml(case) if isinstance(case, Mapping) else None
     everything = list(overrides) + ([] if initial is None else ["initial.from=python"])
-    got = _core.run(text, "case" if text is not None else str(case), everything, _path(out), _path(restart),
-                    None if wall is None else number("wall", wall, positive=True),
-                    None if threads is None else whole_number("threads", threads), progress,
-                    dict(initial) if isinstance(initial, Mapping) else initial, sorted(number("jumps", x) for x in jumps),
-                    _handle(comm))
-    if got is None:
-        return None
-    return Result(summary=json.loads(got.pop("json")), **got)
+    return (text, "case" if text is not None else str(case), everything, _path(out), _path(restart),
+            None if wall is None else number("wall", wall, positive=True),
+            None if threads is None else whole_number("threads", threads), progress,
+            dict(initial) if isinstance(initial, Mapping) else initial, sorted(number("jumps", x) for x in jumps))
 
 
 def _handle(comm: Any) -> int | None:

@@ -20,6 +20,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <exception>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -197,13 +200,14 @@ py::dict result_of(const run_session& session, run_end end) {
   return out;
 }
 
-py::object run_case(const std::optional<std::string>& text, const std::string& name,
-                    const std::vector<std::string>& overrides, const std::optional<std::string>& out,
-                    const std::optional<std::string>& restart, std::optional<double> wall,
-                    std::optional<int> threads, const progress_function& progress, const py::object& initial,
-                    const std::vector<double>& jumps, std::optional<int> communicator_handle) {
-  const turn_of_processes turn(communicator_handle.has_value());
-  const auto processes = communicator_handle ? processes_of(*communicator_handle) : single_process();
+/// Processes that do not respond for so many seconds get no error; they do not call apsis.run.
+constexpr double patience = 60.0;
+
+py::object run_on(const std::shared_ptr<communicator>& processes, const std::optional<std::string>& text,
+                  const std::string& name, const std::vector<std::string>& overrides,
+                  const std::optional<std::string>& out, const std::optional<std::string>& restart,
+                  std::optional<double> wall, std::optional<int> threads, const progress_function& progress,
+                  const py::object& initial, const std::vector<double>& jumps) {
   const silence_of_others quiet(*processes);
   case_config config;
   together(*processes,
@@ -242,15 +246,40 @@ py::object run_case(const std::optional<std::string>& text, const std::string& n
     }
     end = session->run();
   }
-  failure.rethrow();
+  agree_on_errors(*processes, failure.take());
   py::dict result = result_of(*session, end);
   return processes->is_root() ? py::object(std::move(result)) : py::object(py::none());
+}
+
+py::object run_case(const std::optional<std::string>& text, const std::string& name,
+                    const std::vector<std::string>& overrides, const std::optional<std::string>& out,
+                    const std::optional<std::string>& restart, std::optional<double> wall,
+                    std::optional<int> threads, const progress_function& progress, const py::object& initial,
+                    const std::vector<double>& jumps, std::optional<int> communicator_handle) {
+  const turn_of_processes turn(communicator_handle.has_value());
+  const auto processes = communicator_handle ? processes_of(*communicator_handle) : single_process();
+  std::exception_ptr failure;
+  py::object result;
+  try {
+    result = run_on(processes, text, name, overrides, out, restart, wall, threads, progress, initial, jumps);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  processes->end_together(failure, failure ? patience : std::numeric_limits<double>::infinity());
+  if (failure) std::rethrow_exception(failure);
+  return result;
+}
+
+/// Throws on the other processes of a communicator, which are in run_case(), that this one refuses to run.
+void refuse_on_all(int communicator_handle, const std::string& message) {
+  processes_of(communicator_handle)->end_together(std::make_exception_ptr(input_error(message)), patience);
 }
 
 }  // namespace
 
 void bind_runs(py::module_& m) {
   m.def("run", &run_case);
+  m.def("refuse_on_all", &refuse_on_all);
   m.def("case_names", &case_names);
   m.def("read_case", &read_case);
   m.def("model_names", [] {

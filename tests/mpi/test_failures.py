@@ -8,7 +8,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from processes import ENVIRONMENT, LIMIT, PROGRAM, Folder, command, main, slow
+from processes import ENVIRONMENT, LIMIT, PROGRAM, WITH_CODE, Folder, Started, command, descendants, launched, main, run, slow
 
 GAS = ("paper/bgk-mixed-fd", "space.cells=24", "velocity.points=40")
 
@@ -87,6 +87,20 @@ class Failures(Folder):
         (self.folder / "file").write_text("")
         self.expect_the_error_of_one_process(4, "run", *GAS, "time.end=0.01", "--out", "file/out", counts=(2,))
 
+    def test_of_different_cases(self):
+        for options, difference in ((("velocity.points=42",), "('points = 42' instead of 'points = 40')"),
+                                    (("--restart", "none.h5"), "('restart = \"none.h5\"' instead of 'restart = \"\"')")):
+            refused = run([*launched(1, PROGRAM, "run", *GAS), ":", *launched(1, PROGRAM, "run", *GAS, *options)[1:]], cwd=self.folder)
+            self.assertEqual(refused.returncode, 2, refused.stderr)
+            self.assertEqual(errors(refused.stderr), [f"error: process 1 was given another case than process 0 {difference}; "
+                                                      "give all processes the same"])
+
+    def test_of_a_command_line_of_one_process(self):
+        refused = run([*launched(1, PROGRAM, "run", *GAS), ":", *launched(1, PROGRAM, "run", *GAS, "--wal", "3")[1:]], cwd=self.folder)
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertEqual(len(errors(refused.stderr)), 1, refused.stderr)
+        self.assertTrue(errors(refused.stderr)[0].startswith("error: process 1: command line: "), refused.stderr)
+
     def test_of_too_many_processes(self):
         refused = self.run_on(5, "run", *GAS, "space.cells=3", "space.reconstruction=upwind1")
         self.assertEqual(refused.returncode, 2, refused.stderr)
@@ -101,11 +115,9 @@ class Failures(Folder):
         self.assertIn("2 processes were started", refused.stderr)
 
     def exit_codes(self, count, *arguments):
-        """The exit code of every process by its rank."""
-        script = self.write("each.sh", '"$@"\necho $? > code-$OMPI_COMM_WORLD_RANK\n')
-        subprocess.run(["mpirun", "-n", str(count), "sh", script, str(PROGRAM), *arguments], cwd=self.folder, env=ENVIRONMENT,
-                       capture_output=True, timeout=LIMIT, check=True)
-        return [int((self.folder / f"code-{rank}").read_text()) for rank in range(count)]
+        """The exit code of every process by its rank; the launcher sees 0 of all."""
+        shell = WITH_CODE.replace("exit $code", "exit 0")
+        return list(run(launched(count, PROGRAM, *arguments, shell=shell), cwd=self.folder).codes.values())
 
     def test_only_the_process_that_reports_an_error_returns_its_code(self):
         # mpirun kills all processes once one has returned another code than 0, perhaps before the error is reported.
@@ -127,13 +139,11 @@ class Failures(Folder):
 
 class Signals(Folder):
     def start(self, count, *arguments):
-        return subprocess.Popen(command(count, arguments), cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                text=True, start_new_session=True)
+        return Started(command(count, arguments), cwd=self.folder)
 
     def processes_of(self, run):
         """The processes of the program that mpirun started."""
-        found = subprocess.run(["pgrep", "-P", str(run.pid)], capture_output=True, text=True, check=False).stdout.split()
-        return [int(pid) for pid in found if os.path.basename(os.path.realpath(f"/proc/{pid}/exe")) == "apsis"]
+        return sorted(pid for pid, name in descendants(run.pid).items() if name == "apsis")
 
     def await_checkpoint(self, run, before):
         path = self.folder / "out" / "checkpoint.h5"
@@ -155,13 +165,13 @@ class Signals(Folder):
             if run.poll() is None and victims:
                 os.kill(chance.choice(victims), signal.SIGKILL)
                 begun = time.monotonic()
-                _, messages = run.communicate(timeout=120)
-                self.assertNotEqual(run.returncode, 0, messages)
+                done = run.end()
+                self.assertNotEqual(done.returncode, 0, done.stderr)
                 # mpirun names the process and its signal.
-                self.assertRegex(messages, "(?i)signal 9|killed")
+                self.assertRegex(done.stderr, "(?i)signal 9|killed")
                 self.assertLess(time.monotonic() - begun, 60.0)
             else:
-                run.communicate(timeout=120)
+                run.end()
             if (self.folder / "out" / "manifest.json").exists():
                 break
         restart = ("--restart", "out/checkpoint.h5")
@@ -208,10 +218,10 @@ class Signals(Folder):
         self.await_checkpoint(run, 0)
         # The root writes small files for all.
         resource.prlimit(min(self.processes_of(run)), resource.RLIMIT_FSIZE, (4096, 4096))
-        _, messages = run.communicate(timeout=LIMIT)
-        self.assertEqual(run.returncode, 4, messages)
-        self.assertEqual(len(errors(messages)), 1, messages)
-        self.assertIn("checkpoint.h5", errors(messages)[0])
+        done = run.end()
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertEqual(len(errors(done.stderr)), 1, done.stderr)
+        self.assertIn("checkpoint.h5", errors(done.stderr)[0])
         self.completed(1, "run", *GAS, "time.end=0.1", "--restart", "out/checkpoint.h5")
 
     def test_a_signal_to_one_process_stops_all_at_the_same_step(self):
@@ -220,8 +230,8 @@ class Signals(Folder):
         victims = self.processes_of(run)
         self.assertEqual(len(victims), 3)
         os.kill(victims[1], signal.SIGTERM)
-        _, messages = run.communicate(timeout=120)
-        self.assertEqual(run.returncode, 130, messages)
+        done = run.end()
+        self.assertEqual(done.returncode, 130, done.stderr)
         self.assertIn('"interrupted"', (self.folder / "out" / "manifest.json").read_text())
 
 

@@ -1,8 +1,7 @@
 """Runs of Python on several processes (docs/processes.md)."""
-import subprocess
 import sys
 
-from processes import BUILD, ENVIRONMENT, Folder, main
+from processes import BUILD, ENVIRONMENT, Folder, launched, main, run
 
 SAME = """
 import os
@@ -45,11 +44,49 @@ except apsis.InputError as problem:
 """
 
 
+# The difference of one process: an override, options, and a part of the error on the first process.
+DIFFERENT = {
+    "time.end": ('"time.end=0.01" if first else "time.end=0.02"', "{}",
+                 "process 1 was given another case than process 0 ('end = 0.02' instead of 'end = 0.01'); give all processes the same"),
+    "restart": ('"time.end=0.01"', '{} if first else {"restart": "none.h5"}', "process 1 was given another case than process 0"),
+    "no folder": ('"time.end=0.01"', '{"out": "out"} if first else {}', "process 1 was given another case than process 0"),
+    "argument": ('"time.end=0.01" if first else 3', "{}", "process 1: override 3 is a int"),
+    "case": ('"time.end=0.01" if first else "time.ent=1"', "{}", "unknown key 'time.ent'"),
+}
+
+ONE_DIFFERS = """
+import os
+from mpi4py import MPI
+import apsis
+
+comm = MPI.COMM_WORLD
+first = comm.rank == 0
+try:
+    apsis.run("paper/bgk-mixed-fd", "space.cells=12", "velocity.points=20", OVERRIDE, comm=comm, **OPTIONS)
+except apsis.InputError as problem:
+    os.write(1, f"{comm.rank} refused {problem}\\n".encode())
+"""
+
+LIMITED = """
+import os
+import resource
+from mpi4py import MPI
+import apsis
+
+comm = MPI.COMM_WORLD
+if comm.rank == 1:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (16384, 16384))
+try:
+    apsis.run("paper/bgk-mixed-fd", "space.cells=60", "velocity.points=80", "time.end=0.001", "output.distribution=end", out="out", comm=comm)
+except apsis.FileError as problem:
+    os.write(1, f"refused {problem}\\n".encode())
+"""
+
+
 class Python(Folder):
     def run_python(self, text, count):
         self.write("run.py", text)
-        return subprocess.run(["mpirun", "-n", str(count), sys.executable, "run.py"], cwd=self.folder, capture_output=True, text=True,
-                              env={**ENVIRONMENT, "PYTHONPATH": str(BUILD / "python")}, timeout=600, check=False)
+        return run(launched(count, sys.executable, "run.py"), cwd=self.folder, env={**ENVIRONMENT, "PYTHONPATH": str(BUILD / "python")})
 
     def test_a_communicator_shares_a_run_with_the_same_bits(self):
         done = self.run_python(SAME, 3)
@@ -61,6 +98,21 @@ class Python(Folder):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.count("refused"), 2, done.stdout + done.stderr)
         self.assertEqual(done.stdout.count("wrong comm is a int (it must be a communicator of mpi4py)"), 2, done.stdout)
+
+    def test_different_cases_and_arguments_are_refused_on_all(self):
+        for name, (override, options, message) in DIFFERENT.items():
+            with self.subTest(name):
+                done = self.run_python(ONE_DIFFERS.replace("OVERRIDE", override).replace("OPTIONS", f"({options})"), 2)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(done.stdout.count("refused"), 2, done.stdout + done.stderr)
+                self.assertIn(message, next(line for line in done.stdout.splitlines() if line.startswith("0 refused")))
+
+    def test_a_file_that_one_process_cannot_write_is_reported_on_all(self):
+        done = self.run_python(LIMITED, 2)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.count("refused"), 2, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"solution.h5.partial'.*\(process 1 on \S+: File too large\)")
+        self.assertEqual([path.name for path in self.folder.iterdir() if path.name != "run.py"], [])
 
 
 if __name__ == "__main__":

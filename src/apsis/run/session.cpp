@@ -91,6 +91,43 @@ case_config with_room_for_results(const case_config& configured, const session_o
   return config;
 }
 
+/// Returns the first line of each text that differs from that of the other; equal ones if there is none.
+std::pair<std::string, std::string> first_difference(const std::string& a, const std::string& b) {
+  std::istringstream of_a(a), of_b(b);
+  for (;;) {
+    std::pair<std::string, std::string> lines;
+    const bool more = static_cast<bool>(std::getline(of_a, lines.first));
+    if (!std::getline(of_b, lines.second) && !more) return lines;
+    if (lines.first != lines.second) return lines;
+  }
+}
+
+/// Everything on which the collective operations of a run depend.
+std::string description_of(const case_config& config, const session_options& options) {
+  return fmt::format("{}results = {}\nrestart = \"{}\"\ninitial data = {}\n", to_toml(config),
+                     options.out ? "given" : "not given", options.restart.value_or(""),
+                     options.initial ? "given" : "not given");
+}
+
+/// Refuses different cases: they would be mixed, or wait for each other for ever.
+const case_config& same_on_all(const case_config& mine, const session_options& options) {
+  communicator& processes = *options.processes;
+  if (processes.is_single()) return mine;
+  std::string first;
+  together(processes, [&] { first = description_of(mine, options); });
+  const std::string own = first;
+  broadcast_text(processes, first);
+  together(processes, [&] {
+    const auto [there, here] = first_difference(first, own);
+    if (first != own)
+      throw input_error(
+          fmt::format("process {} was given another case than process 0 ('{}' instead of '{}'); give all "
+                      "processes the same",
+                      processes.rank(), here, there));
+  });
+  return mine;
+}
+
 /// Reads a checkpoint: the root verifies it before the others read their parts.
 checkpoint read_by_all(const std::string& path, communicator& processes,
                        const std::optional<dataset_part>& part) {
@@ -153,17 +190,12 @@ std::string essential_text(case_config config) {
 }
 
 void check_same_case(const case_config& mine, const std::string& saved_text, const std::string& path) {
-  std::istringstream here(essential_text(mine));
-  std::istringstream there(essential_text(parse_case(saved_text, path)));
-  for (std::string a, b; std::getline(here, a) || std::getline(there, b);) {
-    if (b.empty()) std::getline(there, b);
-    if (a != b)
-      throw input_error(fmt::format(
-          "'{}' belongs to another case ('{}' there, '{}' here); restart with the case it was written for",
-          path, b, a));
-    a.clear();
-    b.clear();
-  }
+  const auto [here, there] =
+      first_difference(essential_text(mine), essential_text(parse_case(saved_text, path)));
+  if (here != there)
+    throw input_error(fmt::format(
+        "'{}' belongs to another case ('{}' there, '{}' here); restart with the case it was written for",
+        path, there, here));
 }
 
 }  // namespace
@@ -178,8 +210,8 @@ int threads_for(const case_config& config, const communicator& processes) {
 
 run_session::run_session(const case_config& configured, session_options options)
     : options_(std::move(options)),
-      simulation_(with_room_for_results(configured, options_), start_of(configured, options_),
-                  options_.processes) {
+      simulation_(with_room_for_results(same_on_all(configured, options_), options_),
+                  start_of(configured, options_), options_.processes) {
   // Locked first: a checkpoint in a folder that another run writes into must not be read.
   together(processes(), [this] {
     if (options_.out && processes().is_root()) folder_ = std::make_unique<result_folder>(*options_.out);

@@ -154,7 +154,7 @@ TEST(boundary, every_name_is_found_and_an_unknown_one_gets_a_suggestion) {
   EXPECT_EQ(message_of([] { apsis::make_boundary("outfow"); }),
             "unknown boundary 'outfow' (there is no such kind); did you mean 'outflow'? valid: diffuse, "
             "far-field, given, "
-            "inflow, outflow, periodic, pressure, symmetry");
+            "inflow, outflow, periodic, pressure, symmetry, vacuum");
 }
 
 TEST(boundary, the_entropy_of_a_domain_is_bounded_where_that_of_all_its_faces_is) {

@@ -25,6 +25,8 @@ boundary = "diffuse"
 kind = "diffuse"
 velocity = ["0.2*sin(40*t)", 0]
 T = "1.1 + 0.1*x"
+[boundary.left]
+kind = "vacuum"
 [boundary.right]
 kind = "outflow"
 [boundary.bottom]

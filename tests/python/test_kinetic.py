@@ -66,6 +66,16 @@ def test_boundaries_are_chosen_for_each_face():
     assert closed.transport(u)[0, 0] == pytest.approx((2.0 - 1.0) / 0.1)  # the neighbour is the other end
 
 
+def test_nothing_enters_from_a_vacuum():
+    problem = apsis.KineticProblem("broadwell", cells=20, domain=(-1, 1), boundary={"left": "vacuum", "right": "symmetry"}, reconstruction="upwind1")
+    u = problem.sample(lambda x: [1.0, 1.0, 1.0])
+    change = problem.transport(u)
+    assert change[0, 0] == pytest.approx(-10.0) and change[0, 2] == pytest.approx(0.0)  # the neighbour is empty; Δx = .1
+    assert np.abs(change[1:]).max() < 1e-12
+    with pytest.raises(apsis.InputError, match="not densities of particles"):
+        apsis.KineticProblem("relaxation", cells=20, domain=(-1, 1), boundary="vacuum")
+
+
 def test_results_do_not_depend_on_the_number_of_threads():
     problem = bgk()
     u = problem.sample("mixed-v")

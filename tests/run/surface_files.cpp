@@ -132,7 +132,10 @@ TEST(files_of_surfaces, are_in_the_units_of_the_results_as_the_history_is) {
                                                      {"energy", dimensions::heat_flux},
                                                      {"pressure", dimensions::pressure},
                                                      {"shear_stress", dimensions::pressure},
-                                                     {"heat_flux", dimensions::heat_flux}};
+                                                     {"heat_flux", dimensions::heat_flux},
+                                                     {"rho", dimensions::density},
+                                                     {"u_x", dimensions::velocity},
+                                                     {"T", dimensions::temperature}};
   for (const auto& [name, measure] : measures)
     for (std::size_t k = 0; k < 5; ++k) {
       const double expected = own.columns.at(name)[k] * scales.unit(measure);
@@ -199,6 +202,7 @@ TEST(files_of_surfaces, of_a_run_without_a_step_have_places_and_no_values) {
   EXPECT_NEAR(left.columns.at("y").at(4), 0.9, 1e-15);
   for (const char* name : {"mass", "energy", "pressure", "shear_stress", "heat_flux"})
     EXPECT_TRUE(std::isnan(left.columns.at(name).at(0))) << name;
+  EXPECT_GT(left.columns.at("T").at(0), 1.0);  // the state is known: half of it comes from the hot wall
 }
 
 TEST(surfaces_of_a_case, are_read_back_from_its_text) {

@@ -159,6 +159,9 @@ TEST(surfaces, of_a_gas_at_rest_feel_its_pressure_and_nothing_else) {
     // Sums over 64 velocities of terms of the size of the pressure.
     for (const char* nothing : {"mass", "energy", "shear_stress", "heat_flux"})
       EXPECT_LT(largest(column(one, nothing)), 1e-14) << one.name << nothing;
+    for (const char* one_of_rest : {"rho", "T"})
+      for (const double value : column(one, one_of_rest)) EXPECT_NEAR(value, 1.0, 1e-13) << one.name;
+    for (const char* nothing : {"u_x", "u_y"}) EXPECT_LT(largest(column(one, nothing)), 1e-14) << one.name;
   }
 }
 
@@ -166,8 +169,9 @@ TEST(surfaces, have_a_row_for_every_cell_face_with_its_place) {
   simulation run = run_of(cavity);
   run.advance();
   const surface_table box = surface_of(run, "box"), top = surface_of(run, "top");
-  EXPECT_THAT(box.numbers.columns, ElementsAre("s", "x", "y", "area", "mass", "momentum_x", "momentum_y",
-                                               "energy", "pressure", "shear_stress", "heat_flux"));
+  EXPECT_THAT(box.numbers.columns,
+              ElementsAre("s", "x", "y", "area", "mass", "momentum_x", "momentum_y", "energy", "pressure",
+                          "shear_stress", "heat_flux", "rho", "u_x", "u_y", "T"));
   // Cells of 0.2 x 0.4; the box is two cells wide and one high. Counter-clockwise from (0.4, -0.2).
   EXPECT_THAT(box.faces, ElementsAre("bottom", "bottom", "right", "top", "top", "left"));
   const auto near = [](std::vector<double> expected) {
@@ -328,7 +332,63 @@ velocity = [0.3, 0]
     EXPECT_NEAR(column(bottom, "heat_flux")[k], heat_below, 1e-4 * heat_below);
     EXPECT_NEAR(column(top, "heat_flux")[k], heat_above, 1e-4 * std::abs(heat_above));
     EXPECT_NEAR(column(top, "energy")[k], -heat_below, 1e-4 * heat_below);
+    // The gas is the same everywhere: ρ₁ : ρ₂ = √T₂ : √T₁, u = U ρ₁/2, and with the energy of both halves the
+    // temperature √(T₁T₂) + U² ρ₁ρ₂/12 for three degrees of freedom. It slips along, and is colder than, the
+    // upper wall.
+    const double rho1 = 2.0 * std::sqrt(T2) / (std::sqrt(T1) + std::sqrt(T2)), rho2 = 2.0 - rho1;
+    for (const surface_table* wall : {&top, &bottom}) {
+      EXPECT_NEAR(column(*wall, "rho")[k], 1.0, 1e-4);
+      EXPECT_NEAR(column(*wall, "u_x")[k], 0.5 * U * rho1, 1e-4 * U);
+      EXPECT_NEAR(column(*wall, "u_y")[k], 0.0, 1e-12);
+      EXPECT_NEAR(column(*wall, "T")[k], std::sqrt(T1 * T2) + U * U * rho1 * rho2 / 12.0, 1e-4);
+    }
   }
+}
+
+TEST(surfaces, have_the_state_of_the_gas_from_the_distribution_at_the_face) {
+  // Beside a vacuum only the half that leaves is there: of a Maxwellian at rest, half of its density, the
+  // velocity √(2/π) and the temperature (3 − 2/π)/3. Before the first step, and without one.
+  for (const char* face : {"left", "right"})
+    for (const char* points : {"24", "25"}) {
+      std::string text = gas_between("cells = 6\n", fmt::format("[boundary.{}]\nkind = \"vacuum\"\n", face));
+      text.replace(text.find("max = 6.5\npoints = 8\n"), 21, fmt::format("max = 7\npoints = {}\n", points));
+      const bool odd = std::string(points) == "25";  // with a velocity along the face, which counts whole
+      if (!odd) text.replace(text.find("max = 7\n"), 8, "set = \"half-range-gauss-hermite\"\n");
+      const simulation run = run_of(text);
+      const surface_table end = surface_of(run, face);
+      const double sign = std::string(face) == "right" ? 1.0 : -1.0, pi = std::numbers::pi;
+      // The midpoint rule of a half Maxwellian has an error of Δv²/12 times its slope.
+      const double near = odd ? 0.05 : 1e-6;
+      EXPECT_NEAR(column(end, "rho")[0], odd ? 0.5 + 0.5 * 14.0 / 25.0 / std::sqrt(2.0 * pi) : 0.5,
+                  odd ? 1e-6 : 1e-6);
+      EXPECT_NEAR(column(end, "u")[0], sign * std::sqrt(2.0 / pi) * 0.5 / column(end, "rho")[0], near);
+      if (!odd) {
+        EXPECT_NEAR(column(end, "T")[0], 1.0 - 2.0 / (3.0 * pi), near);
+      }
+      EXPECT_TRUE(std::isnan(column(end, "pressure")[0]));
+    }
+}
+
+TEST(surfaces, of_kramers_problem_have_the_velocity_of_the_gas_at_the_wall) {
+  // In units of k times the gradient of u beyond the Knudsen layer, k = ε √2, the velocity of the gas at a
+  // wall is σ_P − Y(0) with the slip coefficient σ_P = 1.0158 and Y(0) = .30908 (Loyalka, Petrellis,
+  // Storvick, Phys. Fluids 18, 1975). The plates are 10 k apart, and the layers have decayed in the middle.
+  std::string text = gas_between("cells = 40\n", "[boundary.right]\nvelocity = [0, 0.1]\n");
+  text.replace(text.find("max = 6.5\npoints = 8\n"), 21,
+               "set = \"half-range-gauss-hermite\"\npoints = [16, 4]\n");
+  simulation run =
+      run_of(text, {"model.velocity_dimensions=2", "model.epsilon=\"0.1/sqrt(2)\"", "time.steady=1e-5",
+                    "space.reconstruction=upwind5", "time.method=md-imex-6-3", "space.domain=[0, 1]"});
+  finish(run);
+  const auto fields = run.fields();
+  const auto at = std::find(fields.names.begin(), fields.names.end(), "u_y") - fields.names.begin();
+  const auto& u = fields.values.at(static_cast<std::size_t>(at));
+  const double gradient = (u[21] - u[18]) / (3.0 / 40.0);
+  const double slip = column(surface_of(run, "left"), "u_y")[0] / (0.1 * gradient);
+  std::cout << "slip " << slip << " gradient " << gradient << " t " << run.t() << " steps " << run.step()
+            << "\n";
+  EXPECT_NEAR(slip, 1.0158 - 0.30908, 0.02);
+  EXPECT_NEAR(column(surface_of(run, "right"), "u_y")[0], 0.1 - slip * 0.1 * gradient, 1e-4);
 }
 
 }  // namespace surfaces_test

@@ -121,6 +121,72 @@ TEST(allocations, the_first_step_takes_the_buffers_of_its_schedule_and_later_ste
   apsis::set_threads(1);
 }
 
+namespace {
+
+/// A boundary of a kind, with values that are functions of time, or numbers; ρ, T, p and f need them.
+std::shared_ptr<const apsis::boundary> end_of(const apsis::boundary_entry& kind, const apsis::model& gas,
+                                              bool constant) {
+  apsis::face_quantities values;
+  for (const auto& variable :
+       kind.variables != nullptr ? kind.variables(gas) : std::vector<apsis::data_variable>()) {
+    const double number = variable.value ? *variable.value : variable.of_velocity ? 0.1 : 1.0;
+    const apsis::face_quantity::function of_time = [number](double t, const apsis::position&) {
+      return number * (1.0 - 0.01 * t);
+    };
+    values[variable.name].assign(static_cast<std::size_t>(variable.size),
+                                 constant ? apsis::face_quantity(number) : apsis::face_quantity(of_time));
+  }
+  return apsis::make_boundary(kind.name, gas, values);
+}
+
+/// Allocations of five steps with this end at all faces, on a line or in the plane around a solid box.
+long allocations_beside(const apsis::boundary_entry& kind, bool in_plane, bool constant, unknowns what) {
+  const auto gas = small_bgk(in_plane ? 14 : 40, in_plane ? 7.0 : 8.0, in_plane ? 2 : 1);
+  const auto side = end_of(kind, *gas, constant);
+  apsis::grid mesh = apsis::grid::line(40, 0.0, 2.0);
+  std::vector<std::shared_ptr<const apsis::boundary>> solids;
+  if (in_plane) {
+    apsis::cell_box box;
+    box.first = {6, 5, 0};
+    box.cells = {2, 2, 1};
+    mesh = apsis::grid(2, {12, 11, 1}, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}).with_solids({box});
+    solids.push_back(apsis::make_boundary("symmetry", *gas));
+  }
+  const std::vector<apsis::domain::faces> sides(in_plane ? 2 : 1, {side, side});
+  const auto space =
+      std::make_shared<apsis::domain>(apsis::phase_space{mesh, gas->velocities()}, sides, solids);
+  const auto cells = static_cast<std::size_t>(mesh.size());
+  const bool points = what == unknowns::points;
+  const auto how = scheme("weno5-z", points ? apsis::limiter_kind::fluxes : apsis::limiter_kind::edges);
+  apsis::semidiscrete_problem problem(
+      *gas, space, how,
+      points ? apsis::make_pointwise_collision(*gas, std::vector<double>(cells, 1e-3))
+             : apsis::make_cell_average_collision(*gas, space, how, std::vector<double>(3 * cells, 1e-3)));
+  apsis::stepper stepper(apsis::find_method("md-imex-6-3"), problem);
+  apsis::field u(mesh.size(), gas->components());
+  std::vector<double> rest(static_cast<std::size_t>(gas->components()));
+  std::vector<double> state(static_cast<std::size_t>(in_plane ? 4 : 3), 0.0);
+  state.front() = state.back() = 1.0;
+  gas->data_forms().front().row(state, rest);
+  for (int cell = 0; cell < mesh.size(); ++cell) std::copy(rest.begin(), rest.end(), u.row(cell));
+  const double dt = stepper.r() * problem.forward_euler_step(0.0, u);
+  for (int step = 0; step < 3; ++step) stepper.step(step * dt, dt, u);
+  const long before = allocations;
+  for (int step = 3; step < 8; ++step) stepper.step(step * dt, dt, u);
+  return allocations - before;
+}
+
+}  // namespace
+
+TEST(allocations, are_none_after_the_first_steps_at_ends_of_every_kind) {
+  for (const apsis::boundary_entry* kind : apsis::boundary_entries())
+    for (const bool constant : {true, false}) {
+      for (const auto what : {unknowns::points, unknowns::averages})
+        EXPECT_EQ(allocations_beside(*kind, false, constant, what), 0) << kind->name << constant;
+      EXPECT_EQ(allocations_beside(*kind, true, constant, unknowns::points), 0) << kind->name << constant;
+    }
+}
+
 TEST(allocations, steps_to_a_tolerance_allocate_nothing_after_the_first_ones) {
   constexpr int cells = 40;
   const auto m = small_bgk();

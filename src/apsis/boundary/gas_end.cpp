@@ -42,7 +42,7 @@ double gas_end::sound(double T) const {
 /// The ghost averages a₁, a₂, a₃ of a quadratic have the value (11 a₁ − 7 a₂ + 2 a₃)/6 at the face. Where
 /// that is no state of a gas, as next to a vacuum, the nonnegative part of the first ghost cell represents
 /// it.
-fluid_state gas_end::state_at_face(std::span<const double* const> ghosts) const {
+fluid_state gas_end::state_at_face(std::span<const double* const> ghosts, double* row) const {
   std::array<double, most> omega{};
   const auto moments_of = [&](std::size_t ghost) {
     std::array<double, most> of{};
@@ -54,16 +54,14 @@ fluid_state gas_end::state_at_face(std::span<const double* const> ghosts) const 
     for (std::size_t k = 0; k < omega.size(); ++k) omega[k] = (11.0 * a[k] - 7.0 * b[k] + 2.0 * c[k]) / 6.0;
     if (const fluid_state state = molecules_.state(omega.data()); state.admissible()) return state;
   }
-  const auto n = static_cast<std::size_t>(molecules_.velocities().components());
-  std::vector<double> row(ghosts[0], ghosts[0] + n);
-  for (double& f : row) f = std::max(f, 0.0);
-  molecules_.moments(row.data(), 0, 1, omega.data());
+  for (int k = 0; k < molecules_.velocities().components(); ++k) row[k] = std::max(ghosts[0][k], 0.0);
+  molecules_.moments(row, 0, 1, omega.data());
   return molecules_.state(omega.data());
 }
 
 void gas_end::incoming_beside(const face& where, double t, const position& at, const double*,
                               std::span<const double* const> ghosts, double* values) const {
-  const fluid_state inside = state_at_face(ghosts);
+  const fluid_state inside = state_at_face(ghosts, values);
   const fluid_state state = outside(inside, where, t, at);
   std::array<double, most> omega{};
   const int d = molecules_.dimensions();

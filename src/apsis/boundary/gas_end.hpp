@@ -31,7 +31,8 @@ class gas_end : public incoming_boundary {
   double sound(double T) const;            ///< speed of sound √(γT)
 
  private:
-  fluid_state state_at_face(std::span<const double* const> ghosts) const;
+  /// `row`: scratch of one row.
+  fluid_state state_at_face(std::span<const double* const> ghosts, double* row) const;
 
   const gas& molecules_;
   std::string name_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <boost/container/small_vector.hpp>
 #include <fmt/format.h>
 
 namespace apsis {
@@ -31,11 +32,17 @@ prescribed_state::prescribed_state(data_form form, std::vector<face_quantity> va
 }
 
 void prescribed_state::compute(double t, const position& x, std::span<double> row) const {
-  std::vector<double> numbers;
+  constexpr std::size_t usual = 8;  // not on the heap
+  boost::container::small_vector<double, usual> numbers;
   for (const auto& value : values_) numbers.push_back(value.at(t, x));
-  if (const std::string problem = form_.row(numbers, row); !problem.empty())
+  if (const std::string problem = form_.row({numbers.data(), numbers.size()}, row); !problem.empty())
     throw input_error(fmt::format("the boundary has no {} at t = {:.10g} ({}); change its values",
                                   form_.description, t, problem));
+}
+
+void prescribed_state::write(double t, const position& x, double* row) const {
+  const double* values = at(t, x, {row, static_cast<std::size_t>(components_)});
+  if (values != row) std::copy_n(values, components_, row);
 }
 
 const double* prescribed_state::at(double t, const position& x, std::span<double> buffer) const {

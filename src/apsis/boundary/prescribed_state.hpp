@@ -23,8 +23,8 @@ class prescribed_state {
   /// Returns the row at time t at a point of the face, in `buffer` of components() numbers unless it is
   /// constant. Throws input_error if no row has the values.
   const double* at(double t, const position& x, std::span<double> buffer) const;
-  /// Numbers of a row.
-  int components() const { return components_; }
+  /// row ← the row at time t at a point of the face. Throws as at() does.
+  void write(double t, const position& x, double* row) const;
 
  private:
   void compute(double t, const position& x, std::span<double> row) const;

@@ -14,8 +14,8 @@ namespace apsis {
 
 /// The rows on both sides of a face along one pencil.
 struct pencil_end {
-  /// Rows of the cells of the pencil, counted inwards from the face. fill() may read as many of them as there
-  /// are ghost rows, and at least three, if the pencil has so many; on several processes no others are here.
+  /// Rows of the cells of the pencil, counted inwards from the face: as many as there are ghost rows, and at
+  /// least three, if the pencil has so many.
   std::span<const double* const> inside;
   std::span<double* const> ghosts;  ///< rows to fill, counted outwards from the face
   const velocity_set& velocities;   ///< velocities of the components
@@ -44,8 +44,9 @@ class boundary {
   /// them in the fluxes in place of the edge values of ghost cells.
   virtual bool prescribes_incoming() const { return false; }
   /// For every component k that enters, incoming[k] ← its value at the face at time t. outgoing[k] is the
-  /// value of a component that leaves, as it enters the flux v_k outgoing[k] of the step; 0 for others.
-  /// Called concurrently for different pencils.
+  /// value of a component that leaves, as it enters the flux v_k outgoing[k] of the step; 0 for others. The
+  /// other components of incoming[], which does not overlap outgoing[], are free for scratch. Called
+  /// concurrently for different pencils.
   virtual void incoming(const face& where, double t, const position& at, const double* outgoing,
                         double* incoming) const;
   /// The same for conditions that depend on the whole state inside: `ghosts` are the rows of fill(), counted
@@ -71,10 +72,11 @@ class repeating_boundary : public boundary {
 };
 
 /// A boundary condition that prescribes the incoming components. Ghost rows continue all components by the
-/// quadratic through three cells inside; where it is steeper than three times the smaller of two neighbouring
-/// differences, it is scaled towards the cell at the face. The value at the face enters only the flux: near a
-/// wall f has a layer of some mean free paths, and a continuation through the face would carry it, where
-/// cells do not resolve it, as a kink into the reconstruction of the smooth solution inside.
+/// quadratic through three cells inside. A smooth factor scales the continuation towards the cell at the face
+/// where differences are larger than the value there and unequal, as next to a shock or a vacuum. The value
+/// at the face enters only the flux: near a wall f has a layer of some mean free paths, and a continuation
+/// through the face would carry it, where cells do not resolve it, as a kink into the reconstruction of the
+/// smooth solution inside.
 class incoming_boundary : public boundary {
  public:
   bool prescribes_incoming() const final { return true; }

@@ -55,7 +55,7 @@ void domain::set_sides(const std::vector<faces>& sides,
     throw input_error(fmt::format("{} boundaries of solid boxes (the mesh has {}); give one for each",
                                   solids.size(), mesh().solids().size()));
   sides_.resize(surfaces().size());
-  ghosts_.resize(surfaces().size());
+  end_rows_.resize(surfaces().size());
   for (std::size_t number = 0; number < sides_.size(); ++number) {
     const auto& [where, solid, ends, own] = surfaces()[number];
     if (solid < 0 && periodic(where.direction)) continue;
@@ -108,11 +108,14 @@ void domain::reserve(int components, int width) {
     halo_ = std::make_unique<halo_exchange>(*distribution_, periodic_, width_);
   }
   for (std::size_t number = 0; number < sides_.size(); ++number) {
-    field& rows = ghosts_[number];
-    const int needed = static_cast<int>(surfaces()[number].segments.size()) * width_;
-    if (repeats(static_cast<int>(number)) || (rows.components() == components && rows.cells() == needed))
+    auto& [ghosts, beyond, inside] = end_rows_[number];
+    const int ends = static_cast<int>(surfaces()[number].segments.size()), needed = ends * width_;
+    if (repeats(static_cast<int>(number)) || (ghosts.components() == components && ghosts.cells() == needed))
       continue;
-    rows = field(needed, components);
+    ghosts = field(needed, components);
+    beyond.clear();
+    for (int row = 0; row < needed; ++row) beyond.push_back(ghosts.row(row));
+    inside.assign(at(ends) * at(rows_inside()), nullptr);
   }
 }
 
@@ -174,25 +177,21 @@ bool domain::needs_others(int direction, const segment& one, bool upper) const {
 
 void domain::fill_surface(int surface, double t, const field& u, end_kind which) {
   const auto& [where, solid, ends, own] = surfaces()[at(surface)];
-  field& rows = ghosts_[at(surface)];
+  end_rows& rows = end_rows_[at(surface)];
   constexpr int ends_at_once = 16;
   const boundary& here = *sides_[at(surface)];
   const face& of_end = where;
   const std::vector<int>& segments = ends;
   parallel_blocks(static_cast<int>(segments.size()), ends_at_once, [&](int begin, int end) {
-    std::vector<const double*> inside;
-    std::vector<double*> beyond(at(width_));
     for (int place = begin; place < end; ++place) {
       const segment& one = segment_at(of_end.direction, segments[at(place)]);
       if (which != end_kind::all &&
           needs_others(of_end.direction, one, of_end.upper) != (which == end_kind::of_others))
         continue;
-      // In a mesh of several processes no boundary may depend on how far this one sees.
-      const int seen = visible(of_end.direction, one, of_end.upper);
-      inside.resize(at(halo_ ? std::min(seen, rows_inside()) : seen));
-      for (int k = 0; k < static_cast<int>(inside.size()); ++k)
-        inside[at(k)] = inside_row(u, of_end.direction, one, of_end.upper, k);
-      for (int g = 0; g < width_; ++g) beyond[at(g)] = rows.row(place * width_ + g);
+      const int seen = std::min(visible(of_end.direction, one, of_end.upper), rows_inside());
+      const std::span inside(rows.inside.data() + at(place) * at(rows_inside()), at(seen));
+      const std::span beyond(rows.beyond.data() + at(place) * at(width_), at(width_));
+      for (int k = 0; k < seen; ++k) inside[at(k)] = inside_row(u, of_end.direction, one, of_end.upper, k);
       here.fill(of_end, t,
                 {inside, beyond, space_.velocities, u.components(), meeting_point(surface, place)});
     }
@@ -245,7 +244,7 @@ const double* domain::ghost_row(const field& u, int direction, int number, bool 
     if (surface >= 0) {
       const auto repeated = sides_[at(surface)]->repeated_cell(ghost, visible(direction, one, upper));
       return repeated ? inside_row(u, direction, one, upper, *repeated)
-                      : ghosts_[at(surface)].row(place * width_ + ghost);
+                      : ghost_rows(surface, place)[at(ghost)];
     }
     const segment& next = segment_at(direction, place);
     if (ghost < next.cells)
@@ -262,9 +261,12 @@ const double* domain::row_across(const field& u, int direction, int number, bool
              : ghost_row(u, direction, number, upper, 0);
 }
 
-void domain::ghost_rows(int surface, int place, std::vector<const double*>& rows) const {
-  rows.resize(at(width_));
-  for (int g = 0; g < width_; ++g) rows[at(g)] = ghosts_[at(surface)].row(place * width_ + g);
+std::span<const double* const> domain::ghost_rows(int surface, int place) const {
+  return {end_rows_[at(surface)].beyond.data() + at(place) * at(width_), at(width_)};
+}
+
+const double* domain::row_at(int surface, int place) const {
+  return end_rows_[at(surface)].inside[at(place) * at(rows_inside())];
 }
 
 void domain::segment_rows(const field& u, int direction, int number, int begin, int end,

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace apsis {
@@ -102,9 +103,11 @@ class domain {
   /// after exchange(); nullptr if the gas ends there.
   const double* row_across(const field& u, int direction, int segment, bool upper) const;
 
-  /// rows ← the ghost rows beyond an end at a surface, counted outwards, of the last fill_ghosts(). The
+  /// Returns the ghost rows beyond an end at a surface, counted outwards, of the last fill_ghosts(). The
   /// boundary of the surface must fill them.
-  void ghost_rows(int surface, int place, std::vector<const double*>& rows) const;
+  std::span<const double* const> ghost_rows(int surface, int place) const;
+  /// Returns the row of the cell at such an end, as of the last fill_ghosts().
+  const double* row_at(int surface, int place) const;
 
   /// rows[i − begin] ← pointer to the row of cell i of a segment, i = begin … end−1. Cells outside 0 … n−1
   /// are ghost cells within the reserved width, with the values of the last fill_ghosts().
@@ -129,6 +132,14 @@ class domain {
   void fill_surfaces(double t, const field& u, end_kind which);
   void fill_surface(int surface, double t, const field& u, end_kind which);
 
+  /// The rows on both sides of the ends at a surface. The pointers are stored as well, so that filling
+  /// allocates nothing.
+  struct end_rows {
+    field ghosts;                       ///< [place][ghost]
+    std::vector<double*> beyond;        ///< [place][ghost], its rows
+    std::vector<const double*> inside;  ///< [place][cell], rows of the state of the last fill_ghosts()
+  };
+
   phase_space space_;
   std::shared_ptr<communicator> processes_ = single_process();
   std::optional<distribution> distribution_;  ///< of a mesh that several processes share
@@ -137,7 +148,7 @@ class domain {
   segment_table segments_;
   std::vector<std::shared_ptr<const boundary>> sides_;  ///< [surface]
   std::vector<opening> openings_;
-  std::vector<field> ghosts_;  ///< [surface], rows [place][ghost]
+  std::vector<end_rows> end_rows_;  ///< [surface]
   int width_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include <apsis/run/find_surfaces.hpp>
 
 #include <apsis/core/index.hpp>
+#include <apsis/model/gas_model.hpp>
 #include <apsis/phase/component_name.hpp>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -67,6 +69,42 @@ struct derived_columns {
   }
 };
 
+/// The columns of the state of a gas; none for other models.
+class gas_columns {
+ public:
+  explicit gas_columns(const model& equation) : gas_(dynamic_cast<const gas_model*>(&equation)) {}
+
+  void add_names(surface_table& table) const {
+    const auto add = [&](const std::string& name, const dimension& measure) {
+      table.numbers.columns.push_back(name);
+      table.measures.push_back(measure);
+    };
+    if (gas_ == nullptr) return;
+    add("rho", dimensions::density);
+    for (int k = 0; k < directions(); ++k) add(component_name("u", k, directions()), dimensions::velocity);
+    add("T", dimensions::temperature);
+  }
+
+  /// Appends the values for the densities of the invariants, which are the moments of a gas.
+  void add_values(std::vector<double>& row, std::span<const double> moments) const {
+    if (gas_ == nullptr) return;
+    fluid_state state;
+    if (!moments.empty()) state = gas_->molecules().state(moments.data());
+    if (!state.admissible()) {
+      row.insert(row.end(), at(directions()) + 2, std::numeric_limits<double>::quiet_NaN());
+      return;
+    }
+    row.push_back(state.rho);
+    row.insert(row.end(), state.u, state.u + directions());
+    row.push_back(state.T);
+  }
+
+ private:
+  int directions() const { return gas_->molecules().dimensions(); }
+
+  const gas_model* gas_;
+};
+
 /// The face of the domain at which a surface is, or the face of a box: it is the upper one where segments
 /// begin.
 face face_beside(const surface& one) {
@@ -98,8 +136,12 @@ double arc_length(const grid& mesh, const surface& one, const position& x) {
 /// The table of one opening, whose gains begin at `first`.
 class surface_writer {
  public:
-  surface_writer(const run_setup& setup, const domain& space, const step_gains& last)
-      : space_(space), last_(last), invariants_(setup.equation->invariants()), derived_(*setup.equation) {
+  surface_writer(const run_setup& setup, const domain& space, const surface_values& last)
+      : space_(space),
+        last_(last),
+        invariants_(setup.equation->invariants()),
+        derived_(*setup.equation),
+        gas_(*setup.equation) {
     for (const dimension& density : setup.equation->invariant_measures())
       fluxes_.push_back(density * dimensions::length / dimensions::time);
   }
@@ -133,6 +175,7 @@ class surface_writer {
     add("area", area);
     for (std::size_t k = 0; k < invariants_.size(); ++k) add(invariants_[k], fluxes_[k]);
     derived_.add_names(table, fluxes_);
+    gas_.add_names(table);
     return table;
   }
 
@@ -151,6 +194,9 @@ class surface_writer {
     row.insert(row.end(), given.begin(), given.end());
     const double middle = last_.t - 0.5 * last_.dt;
     derived_.add_values(row, given, one.where, space_.side(number)->wall_velocity(middle, x));
+    gas_.add_values(row, last_.densities.empty()
+                             ? std::span<const double>()
+                             : std::span(last_.densities).subspan(first, invariants_.size()));
     return row;
   }
 
@@ -170,15 +216,16 @@ class surface_writer {
   }
 
   const domain& space_;
-  const step_gains& last_;
+  const surface_values& last_;
   std::vector<std::string> invariants_;
   std::vector<dimension> fluxes_;  ///< dimensions of the fluxes of the invariants
   derived_columns derived_;
+  gas_columns gas_;
 };
 
 }  // namespace
 
-std::vector<surface_table> find_surfaces(const run_setup& setup, const step_gains& last) {
+std::vector<surface_table> find_surfaces(const run_setup& setup, const surface_values& last) {
   std::vector<surface_table> tables;
   const auto& wanted = setup.config().output.surfaces;
   if (wanted.empty()) return tables;

@@ -7,11 +7,12 @@
 
 namespace apsis {
 
-/// The amounts of the invariants that the gas received in the last step.
-struct step_gains {
-  double t = 0.0,                ///< time at its end
-      dt = 0.0;                  ///< its length
-  std::vector<double> received;  ///< field::gains(); empty before the first step
+/// The amounts of the invariants that the gas received in the last step, and its state after it.
+struct surface_values {
+  double t = 0.0,                 ///< time at its end
+      dt = 0.0;                   ///< its length
+  std::vector<double> received;   ///< field::gains(); empty before the first step
+  std::vector<double> densities;  ///< of the invariants at every end; empty if they are unknown
 };
 
 /// Returns the tables of the surfaces of output.surfaces, a row for each cell face, with the columns
@@ -26,7 +27,10 @@ struct step_gains {
 ///   shear_stress   the component of m along the surface and an axis, or with three velocity dimensions the
 ///                  norm of the part of m along the surface; none with one dimension
 ///   heat_flux      energy − u_w·m with the velocity u_w of the wall in the middle of the step
-/// NaN before the first step. Rows of a box in the plane are in the order of s, others in that of the ends.
-std::vector<surface_table> find_surfaces(const run_setup& setup, const step_gains& last);
+/// NaN before the first step; and, of a gas, the moments of the distribution at the face, of the molecules
+/// that arrive as of those that leave, after the step:
+///   rho, u_x … or u, T   density, bulk velocity and temperature, NaN where they are unknown
+/// Rows of a box in the plane are in the order of s, others in that of the ends.
+std::vector<surface_table> find_surfaces(const run_setup& setup, const surface_values& last);
 
 }  // namespace apsis

@@ -193,6 +193,19 @@ struct simulation::impl {
     }
   }
 
+  /// The densities of the invariants at the ends of the whole mesh; nothing where a step failed, or a
+  /// boundary has no condition for the state.
+  std::vector<double> densities_at_surfaces() {
+    if (inside_step) return {};
+    std::vector<double> own;
+    try {
+      own = problem->densities_at_surfaces(march.t(), state);
+    } catch (const error&) {
+      return {};
+    }
+    return whole_ends(setup, own);
+  }
+
   case_config config;
   std::unique_ptr<run_setup> made;
   run_setup& setup;
@@ -212,6 +225,7 @@ struct simulation::impl {
   run_promises promises;
   step_record first, last;
   run_summary totals;
+  bool inside_step = false;  ///< also after a step that failed
 };
 
 namespace {
@@ -306,8 +320,10 @@ const step_record& simulation::advance() {
   const auto start = std::chrono::steady_clock::now();
   const double cpu = thread_seconds();
   impl& run = *impl_;
+  run.inside_step = true;
   try {
     run.record_step(run.step());
+    run.inside_step = false;
   } catch (const numerical_error& failure) {
     throw failure.site().step >= 0 ? failure : failure.at(run.march.step() + 1, run.march.t());
   }
@@ -349,9 +365,11 @@ field_table simulation::fields() const {
 }
 
 std::vector<surface_table> simulation::surfaces() const {
-  const std::vector<double> gains = whole_gains(impl_->setup, impl_->gains);
+  if (config().output.surfaces.empty()) return {};
+  const std::vector<double> gains = whole_gains(impl_->setup, impl_->gains),
+                            densities = impl_->densities_at_surfaces();
   if (!processes().is_root()) return {};
-  return find_surfaces(impl_->setup, {t(), last().dt, gains});
+  return find_surfaces(impl_->setup, {t(), last().dt, gains, densities});
 }
 
 bool simulation::has_space() const {

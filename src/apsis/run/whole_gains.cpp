@@ -51,27 +51,35 @@ std::size_t size_of_whole_gains(const run_setup& setup) {
          size_of_totals(setup);
 }
 
-std::vector<double> whole_gains(const run_setup& setup, const std::vector<double>& own) {
+std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>& own) {
   if (setup.processes().is_single()) return own;
-  // A process without ends has nothing, also where others have something.
-  if (global_count(setup.processes(), own.empty() ? 0 : 1) == 0) return {};
   const std::size_t count = setup.equation->invariants().size();
   const std::vector<std::size_t> mine = places_of(setup);
-  std::vector<double> packed;  // place and gains
+  std::vector<double> packed;  // place and values
   for (std::size_t k = 0; k < mine.size(); ++k) {
     packed.push_back(static_cast<double>(mine[k]));
     packed.insert(packed.end(), own.begin() + static_cast<std::ptrdiff_t>(k * count),
                   own.begin() + static_cast<std::ptrdiff_t>((k + 1) * count));
   }
-  std::vector<double> whole(size_of_whole_gains(setup));
+  std::vector<double> whole(size_of_whole_gains(setup) - size_of_totals(setup));
   const std::vector<double> all = gather_numbers(setup.processes(), packed);
   for (std::size_t from = 0; from < all.size(); from += 1 + count)
     std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(from) + 1, count,
                 whole.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(all[from]) * count));
-  // Totals are those of the root.
-  std::copy(own.begin() + static_cast<std::ptrdiff_t>(mine.size() * count), own.end(),
-            whole.end() - static_cast<std::ptrdiff_t>(size_of_totals(setup)));
   setup.processes().broadcast(std::as_writable_bytes(std::span(whole)));
+  return whole;
+}
+
+std::vector<double> whole_gains(const run_setup& setup, const std::vector<double>& own) {
+  if (setup.processes().is_single()) return own;
+  // A process without ends has nothing, also where others have something.
+  if (global_count(setup.processes(), own.empty() ? 0 : 1) == 0) return {};
+  std::vector<double> whole = whole_ends(setup, own);
+  // Totals are those of the root.
+  std::vector<double> totals(size_of_totals(setup));
+  if (!own.empty()) std::copy_n(own.rbegin(), totals.size(), totals.rbegin());
+  setup.processes().broadcast(std::as_writable_bytes(std::span(totals)));
+  whole.insert(whole.end(), totals.begin(), totals.end());
   return whole;
 }
 

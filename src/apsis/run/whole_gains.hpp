@@ -10,6 +10,10 @@ namespace apsis {
 /// them, from those of all processes; on all of them. Collective. Nothing where nothing was gained.
 std::vector<double> whole_gains(const run_setup& setup, const std::vector<double>& own);
 
+/// Returns values of the invariants at the ends of the whole mesh, in the order of the gains, from those of
+/// all processes; on all of them. Collective.
+std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>& own);
+
 /// Returns the gains of this process among those of the whole mesh.
 std::vector<double> own_gains(const run_setup& setup, const std::vector<double>& whole);
 

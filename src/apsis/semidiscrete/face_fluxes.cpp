@@ -29,6 +29,7 @@ face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
       ends_ += ends;
     }
   rates_.resize(ends_ * invariants_);
+  densities_.resize(ends_ * invariants_);
 }
 
 double* face_fluxes::recorded(int surface, int place) {
@@ -44,13 +45,8 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
     for (std::size_t k = 0; k < here.inward.size(); ++k)
       if (!(here.inward[k] < 0.0)) values[k] = 0.0;
     double* incoming = here.incoming.row(place);
-    // Taken, not shared: a function of the user in the boundary may call another problem on this thread.
-    thread_local std::vector<const double*> spare;
-    std::vector<const double*> ghosts = std::exchange(spare, {});
-    space_->ghost_rows(surface, place, ghosts);
-    space_->side(surface)->incoming_beside(where, t, space_->meeting_point(surface, place), values, ghosts,
-                                           incoming);
-    spare = std::move(ghosts);
+    space_->side(surface)->incoming_beside(where, t, space_->meeting_point(surface, place), values,
+                                           space_->ghost_rows(surface, place), incoming);
     const int cell = space_->cell_at(surface, place);
     for (std::size_t k = 0; k < here.inward.size(); ++k)
       if (here.inward[k] > 0.0) values[k] = incoming[k];
@@ -61,12 +57,26 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
           acc[k] += (to.beta * (here.inward[k] / mesh.spacing(where.direction))) * values[k];
     }
   }
+  if (observed_) find_densities(surface, place);
   // The row becomes that of the fluxes; invariants are linear functions of a row.
   for (std::size_t k = 0; k < here.inward.size(); ++k) values[k] *= here.inward[k];
   double* received = rates_.data() + (here.first + index(place)) * invariants_;
   equation_.invariant_densities(values, received);
   const double area = mesh.cell_volume() / mesh.spacing(where.direction);
   for (std::size_t k = 0; k < invariants_; ++k) received[k] *= area;
+}
+
+/// Components along a face have no flux through it: beyond a face that prescribes the others they are
+/// continued, and the mean of both sides is the value at the face.
+void face_fluxes::find_densities(int surface, int place) {
+  side& here = at(surface);
+  double* values = here.values.row(place);
+  if (prescribes(surface)) {
+    const double *cell = space_->row_at(surface, place), *ghost = space_->ghost_rows(surface, place)[0];
+    for (std::size_t k = 0; k < here.inward.size(); ++k)
+      if (here.inward[k] == 0.0) values[k] = 0.5 * (cell[k] + ghost[k]);
+  }
+  equation_.invariant_densities(values, densities_.data() + (here.first + index(place)) * invariants_);
 }
 
 void face_fluxes::add_gains(const field& u, std::span<const target<field, double>> targets,

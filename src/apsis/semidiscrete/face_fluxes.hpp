@@ -31,6 +31,12 @@ class face_fluxes {
   /// targets. Concurrent calls must differ in the cell at the end.
   void complete(int surface, int place, double t, std::span<const target<field, double>> targets);
 
+  /// Whether complete() also computes the densities of the invariants at the surfaces.
+  void observe_densities(bool observe) { observed_ = observe; }
+  /// Returns the densities of the last complete() of every end, in the order of field::gains(): those of the
+  /// distribution at the face, of the components that leave as of those that enter.
+  const std::vector<double>& densities() const { return densities_; }
+
   /// acc ← (fresh ? 0 : acc) + α u + β (flux) for the gains of every target, with the fluxes of complete().
   /// `inside` is what a force and a source give, after all openings.
   void add_gains(const field& u, std::span<const target<field, double>> targets,
@@ -44,6 +50,7 @@ class face_fluxes {
     std::size_t first = 0;       ///< of its ends among those of all openings
   };
   side& at(int surface) { return sides_[static_cast<std::size_t>(surface)]; }
+  void find_densities(int surface, int place);
 
   const model& equation_;
   std::shared_ptr<domain> space_;
@@ -51,6 +58,8 @@ class face_fluxes {
   std::size_t invariants_ = 0;
   std::size_t ends_ = 0;       ///< of all openings
   std::vector<double> rates_;  ///< what is received per unit of time, in the order of field::gains()
+  bool observed_ = false;
+  std::vector<double> densities_;  ///< in this order too
 };
 
 /// acc ← (fresh ? 0 : acc) + α u + β rates for the gains of every target; without rates for operations that

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace apsis {
 
@@ -80,6 +81,14 @@ class semidiscrete_problem {
   /// whole mesh.
   void settle() {
     if (space_->shared()) agree_on_errors(space_->processes(), failure_.take());
+  }
+  /// Returns the densities of the invariants of the gas at the ends of this process, in the order of
+  /// field::gains(); settles. Throws what boundaries throw.
+  std::vector<double> densities_at_surfaces(double t, const field& u) {
+    std::vector<double> found;
+    guarded(u, [&] { found = transport_.densities_at_surfaces(t, u); });
+    settle();
+    return found;
   }
   /// Returns the largest |∂S/∂u| of a source, per unit of time; 0 without one that depends on u.
   double growth_of_source(double t, const field& u) const {

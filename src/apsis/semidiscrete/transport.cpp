@@ -144,6 +144,17 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   return done;
 }
 
+std::vector<double> transport::densities_at_surfaces(double t, const field& u) const {
+  if (equation_.space_dimensions() == 0) return {};
+  struct observation {
+    face_fluxes& of;
+    explicit observation(face_fluxes& faces) : of(faces) { of.observe_densities(true); }
+    ~observation() { of.observe_densities(false); }
+  } const watched(*faces_);
+  sweep(t, u, {}, {});
+  return faces_->densities();
+}
+
 void transport::add_source(const field& u, targets_view targets) const {
   std::vector<double> t(static_cast<std::size_t>(u.stride()), 0.0);
   for (int cell = 0; cell < u.cells(); ++cell) {

@@ -36,6 +36,10 @@ class transport {
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const;
 
+  /// Returns the densities of the invariants at every surface (face_fluxes::densities()) of the state u at
+  /// time t; nothing without space.
+  std::vector<double> densities_at_surfaces(double t, const field& u) const;
+
   /// Adds a force. Throws input_error as force does.
   void set_force(acceleration of);
   /// Adds a source.

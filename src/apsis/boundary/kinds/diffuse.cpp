@@ -62,8 +62,7 @@ class diffuse_wall final : public incoming_boundary {
           fmt::format("the accommodation of a diffuse wall is {:g} at t = {:.10g} (a number "
                       "from 0 to 1 is needed); change it",
                       alpha, t));
-    std::vector<double> buffer(mirrored_.size());
-    const double* emitted = emitted_.at(t, at, buffer);
+    const double* emitted = emitted_.at(t, at, {values, mirrored_.size()});
     double arriving = 0.0, leaving = 0.0;
     for (std::size_t j = 0; j < mass_flux_.size(); ++j) {
       if (mass_flux_[j] < 0.0) arriving -= mass_flux_[j] * outgoing[j];

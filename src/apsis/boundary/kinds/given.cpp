@@ -3,7 +3,6 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/model/gas_model.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -55,8 +54,7 @@ class given_components final : public incoming_boundary {
   explicit given_components(prescribed_state state) : state_(std::move(state)) {}
 
   void incoming(const face&, double t, const position& at, const double*, double* values) const override {
-    std::vector<double> buffer(static_cast<std::size_t>(state_.components()));
-    std::copy_n(state_.at(t, at, buffer), state_.components(), values);
+    state_.write(t, at, values);
   }
 
  private:

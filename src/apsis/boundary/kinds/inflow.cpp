@@ -2,7 +2,6 @@
 #include <apsis/boundary/prescribed_state.hpp>
 #include <apsis/core/errors.hpp>
 
-#include <algorithm>
 #include <utility>
 
 namespace apsis {
@@ -25,8 +24,7 @@ class inflow_boundary final : public incoming_boundary {
   explicit inflow_boundary(prescribed_state state) : state_(std::move(state)) {}
 
   void incoming(const face&, double t, const position& at, const double*, double* values) const override {
-    std::vector<double> buffer(static_cast<std::size_t>(state_.components()));
-    std::copy_n(state_.at(t, at, buffer), state_.components(), values);
+    state_.write(t, at, values);
   }
 
  private:

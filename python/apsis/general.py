@@ -95,7 +95,12 @@ class Derivatives:
 
     def _is_analytic(self, u: Array) -> bool:
         """Whether complex steps work, and agree with differences in two directions that excite every unknown."""
-        self._collision(_fixed(u))  # its own exceptions come from real numbers
+        found = self._collision(_fixed(u))  # its own exceptions come from real numbers
+        try:
+            if found is None or np.shape(found) != u.shape:
+                return False  # refused at its first use
+        except ValueError:
+            return False
         scales = np.where(u != 0, np.abs(u), _size(u) or 1.0)
         angles = np.arange(1, u.size + 1).reshape(u.shape)
         for x in (scales * np.sin(angles), scales * np.cos(3 * angles)):

@@ -191,12 +191,28 @@ TEST(embedded_row, is_rejected_with_position_and_reason) {
   EXPECT_THAT(complaint(implicit), HasSubstr("unknown key 'W' in [embedded]"));
 }
 
-TEST(embedded_row, requires_the_shu_osher_form) {
-  const std::string text =
+TEST(embedded_row, of_a_tableau_is_given_by_its_weights) {
+  // Heun's method of order 3, whose radius of monotonicity is 0.
+  const std::string heun =
+      "name = \"x\"\ntitle = \"t\"\ncitation = \"c\"\nkind = \"explicit\"\n[claims]\norder = 3\n"
+      "[butcher]\nA_hat = [[], [\"1/3\"], [\"0\", \"2/3\"]]\nb_hat = [\"1/4\", \"0\", "
+      "\"3/4\"]\n[embedded]\norder = 2\n";
+  const method m = parse_method(heun + "b_hat = [\"0\", \"1/2\", \"1/2\"]\n", "m.toml");
+  const auto c = certify(m);
+  EXPECT_THAT(c.failures, ::testing::IsEmpty());
+  EXPECT_EQ(c.embedded->order, 2);
+  EXPECT_EQ(c.embedded->explicit_evaluations, 0);
+  EXPECT_EQ(m.embedded->W, (std::vector<std::string>{"0", "1/2", "1/2", "0"}));
+  EXPECT_EQ(m.embedded->P, (std::vector<std::string>{"0", "-1/2", "-1/2", "0"}));
+  EXPECT_THAT(failures(heun + "b_hat = [\"1/2\", \"1/2\"]\n"), ::testing::Not(::testing::IsEmpty()));
+  EXPECT_THAT(complaint(heun + "b_hat = [\"1\", \"0\", \"0\", \"0\", \"0\"]\n"),
+              HasSubstr("give at most that many"));
+  EXPECT_THAT(complaint(heun + "P = [\"0\", \"1\"]\n"), HasSubstr("unknown key 'P' in [embedded]"));
+  const std::string convex =
       "name = \"x\"\ntitle = \"t\"\ncitation = \"c\"\nkind = \"explicit\"\n[claims]\norder = 2\n"
-      "[butcher]\nA_hat = [[], [\"1\"]]\nb_hat = [\"1/2\", \"1/2\"]\n"
-      "[embedded]\norder = 1\nP = [\"0\", \"1\"]\n";
-  EXPECT_THAT(complaint(text), HasSubstr("[embedded] is a row of the Shu-Osher form"));
+      "[butcher]\nA_hat = [[], [\"1/2\"], [\"1/2\", \"1/2\"]]\nb_hat = [\"1/3\", \"1/3\", \"1/3\"]\n"
+      "[embedded]\norder = 1\nb_hat = [\"1\", \"0\"]\n";
+  EXPECT_THAT(complaint(convex), HasSubstr("the method has an SSP coefficient"));
 }
 
 TEST(embedded_row, of_wrong_order_or_sign_fails_certification) {
@@ -251,7 +267,8 @@ void expect_changes_are_detected(const method& m) {
   };
   auto& e = *damaged.embedded;
   for (std::size_t j = 0; j < m.stages(); ++j) {
-    if (e.order > 1) expect_noticed(e.P[j], "P" + std::to_string(j + 1));
+    // u_1 = u^n in a tableau, whose weight is what the others leave.
+    if (e.order > 1 && (e.convex || j > 0)) expect_noticed(e.P[j], "P" + std::to_string(j + 1));
     expect_noticed(e.W[j], "W" + std::to_string(j + 1));
   }
   expect_noticed(e.d, "d");

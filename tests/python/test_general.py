@@ -25,7 +25,7 @@ def scaled(f):
 
 @pytest.mark.parametrize("jacobian, derivatives", [(None, "complex steps"),
                                                    (lambda y: robertson_jacobian(y * SCALES) * SCALES / SCALES[:, None], "jacobian")])
-@pytest.mark.parametrize("method, tolerance", [("imdrk-9-5", 1e-8), ("md-imex-8-3-mixed", 1e-6)])
+@pytest.mark.parametrize("method, tolerance", [("imdrk-9-5", 1e-6), ("md-imex-8-3-mixed", 1e-6)])
 def test_robertson_is_right_at_late_times(jacobian, derivatives, method, tolerance):
     problem = apsis.GeneralProblem(scaled(robertson), jacobian=jacobian)
     times = [0, 40, 4e5, 4e7, 4e10]
@@ -67,7 +67,7 @@ def test_orders_with_transport(method, order):
         return np.array([u[1], 0.0]) * implicit + np.array([0.0, -np.sin(u[0]) - u[1] ** 3])
 
     problem = apsis.GeneralProblem(collision, None if implicit else transport)
-    exact = apsis.integrate(problem, [1.0, 0.5], (0, 1), "imdrk-9-5" if implicit else "md-imex-16-4-accurate", dt=1 / 256).u[-1]
+    exact = apsis.integrate(problem, [1.0, 0.5], (0, 1), "imdrk-9-5" if implicit else "dop853", dt=1 / 64).u[-1]
     errors = [np.abs(apsis.integrate(problem, [1.0, 0.5], (0, 1), method, dt=dt).u[-1] - exact).max() for dt in (1 / 32, 1 / 64)]
     assert np.log2(errors[0] / errors[1]) > order - 0.4
 

@@ -96,8 +96,8 @@ TEST(tolerance, restarts_bit_for_bit) {
     expect_same(ode("md-imex-8-3", "tolerance = 1e-5\nstartup = \"graded\"\n"), steps);
 }
 
-TEST(tolerance, is_kept_by_methods_without_an_embedded_solution) {
-  // One step against two halves: explicit, additive and exponential methods, and those of type A.
+TEST(tolerance, is_kept_by_explicit_additive_and_exponential_methods) {
+  // By weights of their own, or one step against two halves.
   for (const char* name :
        {"kutta-4", "ssprk-10-4", "dop853", "ars-443", "ssp3-433", "ark-548", "bhr-553", "exponential-2"}) {
     const auto of = [&](const char* tolerance) {
@@ -106,7 +106,8 @@ TEST(tolerance, is_kept_by_methods_without_an_embedded_solution) {
     const double coarse = error_at_one(of("1e-4")), fine = error_at_one(of("1e-7"));
     EXPECT_LT(coarse, 1e-2) << name;  // 100 tolerances
     EXPECT_LT(fine, 1e-5) << name;
-    EXPECT_LT(fine, coarse / 20) << name;
+    // Steps of explicit methods end at the limit of stability, with errors far below the tolerance.
+    EXPECT_LT(fine, std::max(coarse / 20, 1e-7)) << name;
   }
   const auto done = finished(apsis::load_case(
       "paper/ode", {"time.method=kutta-4", "time.dt=0.5", "time.tolerance=1e-6", "model.epsilon=1e-3"}));

@@ -143,12 +143,12 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt; of several processes on all of them."""
     handle = _handle(comm)
     try:
-        arguments = _arguments(case, overrides, out, restart, wall, threads, progress, initial, jumps)
+        arguments = (*_arguments(case, overrides, out, restart, wall, threads, progress, initial, jumps), handle)
     except Exception as problem:
         if handle is not None:
             _core.refuse_on_all(handle, str(problem))
         raise
-    got = _core.run(*arguments, handle)
+    got = _core.run(*arguments)
     if got is None:
         return None
     return Result(summary=json.loads(got.pop("json")), **got)

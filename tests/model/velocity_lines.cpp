@@ -225,7 +225,7 @@ TEST(velocity_set_of_a_gas, says_before_the_run_whether_it_holds_the_data) {
   EXPECT_THAT(problem("graded", 24, 6.0),
               HasSubstr("velocity.max is too small for the data (the 24 velocities"));
   EXPECT_EQ(problem("gauss-hermite", 12, 1.0), "");
-  EXPECT_THAT(problem("gauss-hermite", 12, 0.18),
+  EXPECT_THAT(problem("gauss-hermite", 12, 0.2),
               HasSubstr("velocity.points is too small for the data (the 12 velocities"));
   EXPECT_EQ(problem("half-range-gauss-hermite", 16, 1.0), "");
 }

@@ -87,13 +87,17 @@ TEST(vacuum, rows_of_zeros_of_subnormal_numbers_and_of_one_velocity_are_integrat
       value(10, k) = k == 7 || k == 8 ? 0.5 : 0.0;
       value(11, k) = k == 0 || k == width - 1 ? 0.5 : 0.0;
     }
-    // The mass differs from that of the case: ten steps, without promises relative to the start.
+    // The mass differs from that of the case: ten steps, without promises relative to the start. Half the
+    // molecules at either end of the velocities are a gas that these cannot represent.
     run.restore(saved);
     for (int step = 0; step < 10; ++step) {
       try {
         run.advance();
       } catch (const apsis::numerical_error& failure) {
-        ASSERT_NE(failure.problem().find("is not conserved"), std::string::npos) << failure.what();
+        const std::string& problem = failure.problem();
+        ASSERT_TRUE(problem.find("is not conserved") != std::string::npos ||
+                    problem.find("velocity.max = 8 is too small for the gas") != std::string::npos)
+            << failure.what();
       }
       ASSERT_EQ(run.last().negative_values, 0) << step;
       ASSERT_EQ(run.step(), step + 1);

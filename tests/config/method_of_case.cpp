@@ -69,13 +69,13 @@ TEST(automatic_method, of_a_system_follows_the_steps_relative_to_the_relaxation)
 }
 
 TEST(automatic_method, measures_the_ratio_over_the_domain) {
-  // Δt = 0.5·0.05/10 and C = ρ = 2: CΔt/ε = 5e-3/ε.
+  // Δt = 0.5·0.05/10, C = 1.
   const auto request = apsis::request_of(gas({"time.cfl=0.5"}, "1e-3 + x"));
   ASSERT_TRUE(request.lowest_ratio && request.highest_ratio);
-  EXPECT_NEAR(*request.lowest_ratio, 2.5e-3, 1e-4);
-  EXPECT_NEAR(*request.highest_ratio, 5e-3 / (1e-3 + 1.0 / 64.0), 1e-3);
+  EXPECT_NEAR(*request.lowest_ratio, 1.25e-3, 2e-5);
+  EXPECT_NEAR(*request.highest_ratio, 2.5e-3 / (1e-3 + 1.0 / 64.0), 1e-3);
   EXPECT_THAT(gas({"time.cfl=0.5"}, "1e-3 + x").time.method_reason,
-              HasSubstr("C dt/epsilon = 0.0025 to 0.3"));
+              HasSubstr("C dt/epsilon = 0.0013 to 0.15"));
   EXPECT_EQ(apsis::request_of(gas({"time.cfl=0.5"}, "max(x - 1, 0)")).highest_ratio,
             std::numeric_limits<double>::infinity());
 }
@@ -116,7 +116,7 @@ TEST(explanation, marks_what_is_given_what_is_a_default_and_what_is_derived) {
   EXPECT_EQ(value_of(c, "time.cfl").origin, origin::given);
   EXPECT_EQ(value_of(c, "time.method").origin, origin::derived);
   EXPECT_THAT(value_of(c, "time.method").reason, StartsWith("\"auto\": equal steps on a mesh"));
-  EXPECT_EQ(value_of(c, "model.velocity_dimensions").origin, origin::default_value);
+  EXPECT_EQ(value_of(c, "model.velocity_dimensions").origin, origin::derived);  // of space.cells
   EXPECT_EQ(value_of(c, "initial.rho").origin, origin::given);
   const std::string text = apsis::explanation_text(c);
   EXPECT_THAT(text, HasSubstr("space.reconstruction = \"weno5-z\""));

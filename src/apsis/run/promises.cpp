@@ -43,7 +43,7 @@ std::string reason_of_defect(const step_record& last, const run_setup& setup, do
   if (takes_formula(setup))
     return "(the velocity grid became too coarse for the Maxwellian by formula); use "
            "velocity.equilibrium = \"auto\"";
-  if (setup.has_space() && last.dt > setup.stability_limit() * setup.cfl_length())
+  if (setup.has_space() && cfl_number(setup, last.dt) > setup.stability_limit())
     return "because the steps are unstable " + remedy_of_instability(setup, last.dt);
   if (setup.equation->positive() && last.negative_values > 0)
     return fmt::format(

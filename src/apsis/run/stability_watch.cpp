@@ -23,13 +23,26 @@ std::string rounded_down(double limit) {
 
 }  // namespace
 
+double cfl_number(const run_setup& setup, double dt) {
+  const velocity_set& velocities = setup.equation->velocities();
+  double fastest = 0.0;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(velocities.components()); ++j) {
+    double rate = 0.0;
+    for (int k = 0; k < setup.mesh().dimensions(); ++k)
+      rate += std::abs(velocities.speeds(k)[j]) / setup.mesh().spacing(k);
+    fastest = std::max(fastest, rate);
+  }
+  return dt * fastest;
+}
+
 std::string remedy_of_instability(const run_setup& setup, double dt) {
-  const double number = dt / setup.cfl_length(), limit = setup.stability_limit();
+  const double number = cfl_number(setup, dt), limit = setup.stability_limit();
   if (number > limit)
     return fmt::format(
         "(CFL number {:.3g}; the linear stability limit of '{}' with '{}' is {:.3g}); use "
         "time.cfl = {} or less",
-        number, setup.integrator_name(), setup.config().space.reconstruction, limit, rounded_down(limit));
+        number, setup.integrator_name(), setup.config().space.reconstruction, limit,
+        rounded_down(limit / number * dt / setup.cfl_length()));
   return fmt::format(
       "(CFL number {:.3g}, within the linear stability limit {:.3g}); halve the step, and use "
       "space.reconstruction = \"upwind1\" if this does not help",
@@ -51,7 +64,7 @@ void warn_of_unstable_steps(const run_setup& setup, double dt) {
     else
       log::info(text);
   }
-  if (setup.has_tolerance() || !(dt > limit * setup.cfl_length() * (1.0 + 1e-9))) return;
+  if (setup.has_tolerance() || !(cfl_number(setup, dt) > limit * (1.0 + 1e-9))) return;
   log::warning(fmt::format("waves of some cells grow {}{}", remedy_of_instability(setup, dt),
                            limited(setup) ? "; the limiter keeps them nonnegative, but not small" : ""));
 }
@@ -78,7 +91,7 @@ void stability_watch::judge() {
   const bool alternates = turn_ > change_ && turn_ > rounding;
   in_a_row_ = alternates ? in_a_row_ + 1 : 0;
   const bool grew = calmest_ >= 0.0 && turn_ > grown * calmest_;
-  const bool lasts = in_a_row_ >= lasting && dt_ > setup_.stability_limit() * setup_.cfl_length();
+  const bool lasts = in_a_row_ >= lasting && cfl_number(setup_, dt_) > setup_.stability_limit();
   calmest_ = calmest_ < 0.0 ? turn_ : std::min(calmest_, turn_);
   if (!unstable_ && alternates && (grew || lasts)) {
     unstable_ = true;

@@ -7,6 +7,10 @@
 
 namespace apsis {
 
+/// Returns the CFL number of a step, Δt max_j Σ_k |v_jk|/Δx_k; 0 without velocities. time.cfl takes the
+/// largest speed of each direction instead, which no single velocity may have.
+double cfl_number(const run_setup& setup, double dt);
+
 /// Reports the CFL number to which time.safety is relative where that is below r, and warns if steps of
 /// length dt exceed the linear stability limit of the method with the reconstruction.
 void warn_of_unstable_steps(const run_setup& setup, double dt);

@@ -84,7 +84,10 @@ const std::vector<end> ends = {
     {"given distribution",
      {"boundary.left.kind=given", "boundary.left.g=\"0.15*exp(-(v_x^2+v_y^2)/2)*(1+0.2*sin(15*t))\"",
       "boundary.left.h=\"0.15*exp(-(v_x^2+v_y^2)/2)\""}},
-    {"far field", {"boundary.left.kind=far-field", "boundary.left.rho=1.1", "boundary.left.T=1"}},
+    // Gas enters in every step: where the flow turns, the state outside jumps from one gas to the other.
+    {"far field",
+     {"boundary.left.kind=far-field", "boundary.left.rho=1.1", "boundary.left.u=[0.3, 0]",
+      "boundary.left.T=1"}},
     {"pressure", {"boundary.left.kind=pressure", "boundary.left.p=1.3"}},
     {"vacuum", {"boundary.left.kind=vacuum"}},
     {"symmetry", {"boundary.left.kind=symmetry"}},

@@ -16,13 +16,13 @@ using json = nlohmann::ordered_json;
 
 /// Returns the value of a parameter in a comparison, its default if it is not set there.
 std::string value_of(const compared_value& one, const quantity_parameter& parameter) {
-  const auto found = one.published->at.find(parameter.name);
-  return found == one.published->at.end() ? parameter.value : found->second;
+  const auto found = one.reference->at.find(parameter.name);
+  return found == one.reference->at.end() ? parameter.value : found->second;
 }
 
 /// The settings other than the first parameter, as a label.
 std::string others(const compared_value& one) {
-  quantity_values rest = one.published->at;
+  quantity_values rest = one.reference->at;
   rest.erase(one.quantity->parameters.front().name);
   return fmt::format("{}", fmt::join(settings_of(rest), " "));
 }
@@ -38,12 +38,23 @@ panel log_panel(const std::string& title, const std::string& x, const std::strin
 
 }  // namespace
 
+std::string to_string(origin from) {
+  switch (from) {
+    case origin::published:
+      return "published";
+    case origin::theory:
+      return "theory";
+    default:
+      return "computed";
+  }
+}
+
 double compared_value::difference() const {
-  return value / published->value - 1.0;
+  return value / reference->value - 1.0;
 }
 
 bool compared_value::holds() const {
-  return std::abs(difference()) <= published->tolerance;
+  return std::abs(difference()) <= reference->tolerance;
 }
 
 std::vector<std::string> settings_of(const quantity_values& values) {
@@ -52,11 +63,11 @@ std::vector<std::string> settings_of(const quantity_values& values) {
   return settings;
 }
 
-compared_value compare_published(const quantity_entry& quantity, const published_value& published,
-                                 const std::function<bool(double)>& progress) {
+compared_value compare_with_reference(const quantity_entry& quantity, const reference_value& reference,
+                                      const std::function<bool(double)>& progress) {
   const auto start = std::chrono::steady_clock::now();
-  compared_value one{&quantity, &published};
-  one.value = compute_quantity(quantity, settings_of(published.at), progress);
+  compared_value one{&quantity, &reference};
+  one.value = compute_quantity(quantity, settings_of(reference.at), progress);
   one.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return one;
 }
@@ -64,9 +75,9 @@ compared_value compare_published(const quantity_entry& quantity, const published
 picture quantity_picture(const quantity_entry& quantity, const std::vector<compared_value>& values) {
   const quantity_parameter& first = quantity.parameters.front();
   panel shown = log_panel("value", first.name, quantity.name);
-  panel differences = log_panel("relative difference", first.name, "|computed/published - 1|");
+  panel differences = log_panel("relative difference", first.name, "|computed/reference - 1|");
   struct group {
-    std::vector<double> x, computed, published, difference, tolerance;
+    std::vector<double> x, computed, reference, difference, tolerance;
   };
   std::map<std::string, group> groups;
   std::set<double> abscissae;
@@ -76,27 +87,29 @@ picture quantity_picture(const quantity_entry& quantity, const std::vector<compa
     group& to = groups[others(one)];
     to.x.push_back(x);
     to.computed.push_back(one.value);
-    to.published.push_back(one.published->value);
+    to.reference.push_back(one.reference->value);
     to.difference.push_back(std::abs(one.difference()));
-    to.tolerance.push_back(one.published->tolerance);
+    to.tolerance.push_back(one.reference->tolerance);
   }
-  picture out{
-      quantity.name, quantity.name, quantity.description + ". Published: " + quantity.source + ".", {}};
+  picture out{quantity.name,
+              quantity.name,
+              quantity.description + ". Source of the references: " + quantity.source + ".",
+              {}};
   if (abscissae.size() < 3) return out;
   shown.log_x = differences.log_x = *abscissae.begin() > 0.0;
-  // Several groups have names of their own; lines are computed values then, open markers published ones.
+  // Several groups have names of their own; lines are computed values then, open markers references.
   const bool alone = groups.size() == 1;
   int colour = 0;
   for (const auto& [label, of] : groups) {
     const std::string name = label.empty() ? "default" : label;
     shown.curves.push_back({alone ? "computed" : name, of.x, of.computed, curve_style::line, colour});
-    shown.curves.push_back({alone ? "published" : "", of.x, of.published, curve_style::markers, colour});
+    shown.curves.push_back({alone ? "reference" : "", of.x, of.reference, curve_style::markers, colour});
     differences.curves.push_back(
         {alone ? "difference" : name, of.x, of.difference, curve_style::line_and_markers, colour});
     differences.curves.push_back({alone ? "tolerance" : "", of.x, of.tolerance, curve_style::dashed, colour});
     ++colour;
   }
-  if (!alone) out.caption += " Lines: computed; open markers: published; dashed: tolerance.";
+  if (!alone) out.caption += " Lines: computed; open markers: references; dashed: tolerance.";
   out.panels = {shown, differences};
   return out;
 }
@@ -104,11 +117,12 @@ picture quantity_picture(const quantity_entry& quantity, const std::vector<compa
 json to_json(const quantity_entry& quantity, const std::vector<compared_value>& values) {
   json compared = json::array();
   for (const auto& one : values)
-    compared.push_back({{"settings", settings_of(one.published->at)},
+    compared.push_back({{"settings", settings_of(one.reference->at)},
                         {"value", one.value},
-                        {"published", one.published->value},
+                        {"reference", one.reference->value},
+                        {"origin", to_string(one.reference->from)},
                         {"difference", one.difference()},
-                        {"tolerance", one.published->tolerance},
+                        {"tolerance", one.reference->tolerance},
                         {"holds", one.holds()},
                         {"wall_s", one.wall_s}});
   json pictures = json::array();

@@ -10,13 +10,13 @@
 
 namespace apsis {
 
-/// A published value and the one that was computed for it.
+/// A reference value and the one that was computed for it.
 struct compared_value {
   const quantity_entry* quantity = nullptr;
-  const published_value* published = nullptr;
+  const reference_value* reference = nullptr;
   double value = 0.0, wall_s = 0.0;
 
-  /// Returns value/published − 1.
+  /// Returns value/reference − 1.
   double difference() const;
   /// Whether |difference| ≤ tolerance; a NaN does not hold.
   bool holds() const;
@@ -25,9 +25,9 @@ struct compared_value {
 /// Returns "name=value" for every parameter.
 std::vector<std::string> settings_of(const quantity_values& values);
 
-/// Computes the value that a published one is compared with. Throws the errors of compute_quantity().
-compared_value compare_published(const quantity_entry& quantity, const published_value& published,
-                                 const std::function<bool(double)>& progress = {});
+/// Computes the value that a reference is compared with. Throws the errors of compute_quantity().
+compared_value compare_with_reference(const quantity_entry& quantity, const reference_value& reference,
+                                      const std::function<bool(double)>& progress = {});
 
 /// Returns the values of one quantity over its first parameter, a curve for each set of the others, and the
 /// differences with their tolerances; without panels if the first parameter has fewer than three values.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -19,12 +20,35 @@ struct quantity_parameter {
 /// Values of parameters by name.
 using quantity_values = std::map<std::string, std::string>;
 
-/// A published value.
-struct published_value {
+/// Where a reference value comes from.
+enum class origin {
+  published,  ///< printed in a paper
+  theory,     ///< a formula, or the exact solution of a limit
+  computed    ///< by an independent solver of the tests
+};
+/// Returns "published", "theory" or "computed".
+std::string to_string(origin from);
+
+/// A value with which the solver is compared.
+struct reference_value {
   quantity_values at;       ///< parameters that differ from their defaults
   double value = 0.0;       ///< as printed
   double tolerance = 1e-3;  ///< relative, including the digits that were printed
+  origin from = origin::published;
 };
+
+/// Returns a value of the literature.
+inline reference_value published(quantity_values at, double value, double tolerance = 1e-3) {
+  return {std::move(at), value, tolerance, origin::published};
+}
+/// Returns a value from a formula or an exact solution.
+inline reference_value theory(quantity_values at, double value, double tolerance = 1e-3) {
+  return {std::move(at), value, tolerance, origin::theory};
+}
+/// Returns a value of an independent solver.
+inline reference_value computed(quantity_values at, double value, double tolerance = 1e-3) {
+  return {std::move(at), value, tolerance, origin::computed};
+}
 
 /// Makes and finishes the run of a case with overrides.
 using quantity_run = std::function<simulation(const std::string& name, std::vector<std::string> overrides)>;
@@ -34,9 +58,9 @@ using quantity_run = std::function<simulation(const std::string& name, std::vect
 struct quantity_entry {
   std::string name;                            ///< "couette"
   std::string description;                     ///< one line: the value and its unit
-  std::string source;                          ///< of the published values
+  std::string source;                          ///< of the reference values
   std::vector<quantity_parameter> parameters;  ///< all of them, first the number over which values are drawn
-  std::vector<published_value> published;      ///< may be empty
+  std::vector<reference_value> references;     ///< may be empty
   /// Returns the value for given parameters, each with a value.
   double (*compute)(const quantity_values& parameters, const quantity_run& run) = nullptr;
 };

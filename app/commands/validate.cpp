@@ -57,29 +57,29 @@ int compute_one(const options& given, const quantity_entry& quantity,
 }
 
 std::string line(const compared_value& one) {
-  return fmt::format(
-      "{:<6} {:<12} {:<24} {:>10.6g}  published {:>9.6g}  difference {:+.1e} (tolerance {:.0e})\n",
-      one.holds() ? "holds" : "FAILS", one.quantity->name,
-      fmt::format("{}", fmt::join(settings_of(one.published->at), " ")), one.value, one.published->value,
-      one.difference(), one.published->tolerance);
+  return fmt::format("{:<6} {:<12} {:<24} {:>10.6g}  {:<9} {:>9.6g}  difference {:+.1e} (tolerance {:.0e})\n",
+                     one.holds() ? "holds" : "FAILS", one.quantity->name,
+                     fmt::format("{}", fmt::join(settings_of(one.reference->at), " ")), one.value,
+                     to_string(one.reference->from), one.reference->value, one.difference(),
+                     one.reference->tolerance);
 }
 
-/// A comparison with all published values of some quantities, which are written to disk as they are computed.
+/// A comparison with all reference values of some quantities, which are written to disk as they are computed.
 class comparison {
  public:
   comparison(const options& given, std::vector<const quantity_entry*> chosen)
       : given_(given), chosen_(std::move(chosen)), folder_(given.out) {
-    for (const quantity_entry* quantity : chosen_) expected_ += quantity->published.size();
+    for (const quantity_entry* quantity : chosen_) expected_ += quantity->references.size();
   }
 
   /// Returns false if it was interrupted.
   bool run() {
     progress_bar bar;
     for (const quantity_entry* quantity : chosen_)
-      for (const auto& published : quantity->published) {
+      for (const auto& reference : quantity->references) {
         const std::string label = fmt::format("{} ({} of {})", quantity->name, done_.size() + 1, expected_);
         try {
-          done_.push_back(compare_published(*quantity, published, [&](double part) {
+          done_.push_back(compare_with_reference(*quantity, reference, [&](double part) {
             bar.update(
                 (static_cast<double>(done_.size()) + std::min(part, 1.0)) / static_cast<double>(expected_),
                 label);
@@ -113,7 +113,7 @@ class comparison {
             {"quantities", quantities}};
   }
 
-  /// Returns how many published values are computed, and how many of them are not met.
+  /// Returns how many reference values are computed, and how many of them are not met.
   std::pair<std::size_t, std::size_t> counts() const {
     const auto failed =
         std::count_if(done_.begin(), done_.end(), [](const auto& one) { return !one.holds(); });
@@ -149,12 +149,12 @@ int compare(const options& given, const std::vector<const quantity_entry*>& chos
     return static_cast<int>(exit_code::interrupted);
   }
   if (!given.json)
-    print(fmt::format("{} of {} published values are met; see {}/{}\n", computed - failed, computed,
+    print(fmt::format("{} of {} reference values are met; see {}/{}\n", computed - failed, computed,
                       given.out, drawing_problem.empty() ? "report.html" : document_name));
   if (failed > 0) {
     if (!drawing_problem.empty()) log::warning(drawing_problem);
     throw claim_error(
-        fmt::format("{} published value(s) are not met (differences exceed their tolerances); see "
+        fmt::format("{} reference value(s) are not met (differences exceed their tolerances); see "
                     "the values in '{}'",
                     failed, given.out));
   }
@@ -206,7 +206,7 @@ action define(CLI::App& command) {
 extern const command_entry command_validate;
 const command_entry command_validate = {
     .name = "validate",
-    .summary = "Compare the solver with published values of gas flows, or compute one for other parameters",
+    .summary = "Compare the solver with reference values of gas flows, or compute one for other parameters",
     .place = 65,
     .completion = completed_from_list("quantities"),
     .define = validate_command::define};

@@ -143,7 +143,7 @@ def test_the_table_for_documentation_has_a_row_for_each_claim():
 
 
 def page_of_validation(folder, **changes):
-    value = {"settings": ["delta=1"], "value": 0.6009, "published": 0.6007, "difference": 3.3e-4, "tolerance": 1e-3, "holds": True,
+    value = {"settings": ["delta=1"], "value": 0.6009, "reference": 0.6007, "origin": "published", "difference": 3.3e-4, "tolerance": 1e-3, "holds": True,
              "wall_s": 0.5} | changes
     quantity = {"name": "couette", "description": "stress < 1", "source": "Willis & others", "values": [value],
                 "pictures": [picture(panel(curves=[curve("a", [1, 2], [1, 4])]))]}
@@ -154,10 +154,10 @@ def page_of_validation(folder, **changes):
 
 def test_a_validation_shows_every_value_with_its_verdict(tmp_path):
     good = page_of_validation(tmp_path)
-    assert "1 of 1 published values are met." in good and "stress &lt; 1" in good and "Willis &amp; others" in good
+    assert "1 of 1 reference values are met." in good and "stress &lt; 1" in good and "Willis &amp; others" in good
     assert "+3.3e-04" in good and 'class="yes"' in good and 'class="no"' not in good
     bad = page_of_validation(tmp_path, value=None, difference=None, holds=False)
-    assert "0 of 1 published values are met; those that are not are marked" in bad and "not a number" in bad and 'class="no"' in bad
+    assert "0 of 1 reference values are met; those that are not are marked" in bad and "not a number" in bad and 'class="no"' in bad
 
 
 # --- every page ------------------------------------------------------------------------------------------------------------------

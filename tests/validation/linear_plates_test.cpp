@@ -60,7 +60,7 @@ double layer(double distance) {
 
 TEST(linear_plates, has_the_published_stress) {
   const quantity_entry& couette = find_quantity("couette");
-  for (const auto& printed : couette.published) {
+  for (const auto& printed : couette.references) {
     const double delta = std::stod(printed.at.at("delta"));
     if (delta > 20.0) continue;  // needs more cells
     // Half a unit of the fourth digit.
@@ -85,12 +85,12 @@ TEST(linear_plates, converges_with_second_order) {
 }
 
 TEST(linear_plates, is_the_source_of_the_values_of_heat) {
-  for (const auto& reference : find_quantity("heat").published)
+  for (const auto& reference : find_quantity("heat").references)
     EXPECT_NEAR(heat_flux(std::stod(reference.at.at("delta"))), reference.value, 1e-6);  // printed with six
 }
 
 TEST(linear_plates, has_the_slip_and_the_layer_of_kramers) {
-  for (const auto& reference : find_quantity("kramers").published) {
+  for (const auto& reference : find_quantity("kramers").references) {
     const auto at = reference.at.find("distance");
     const double value = at == reference.at.end()
                              ? extrapolated(200, [](int cells) { return kramers_problem(cells).slip; })

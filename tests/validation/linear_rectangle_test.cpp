@@ -19,7 +19,7 @@ namespace linear_rectangle_test {
 namespace {
 
 using apsis::find_quantity;
-using apsis::published_value;
+using apsis::reference_value;
 using validation_test::linear_duct;
 using validation_test::linear_square;
 using validation_test::side;
@@ -98,13 +98,13 @@ double free_molecular_drag(int n) {
   return 1.0 - sum / root;
 }
 
-std::string setting(const published_value& value, const std::string& name, const std::string& otherwise) {
+std::string setting(const reference_value& value, const std::string& name, const std::string& otherwise) {
   const auto found = value.at.find(name);
   return found == value.at.end() ? otherwise : found->second;
 }
 
 /// The value of a quantity by the linear solvers, extrapolated from two numbers of polynomials.
-double linear_value(const std::string& quantity, const published_value& of, int coarse, int fine) {
+double linear_value(const std::string& quantity, const reference_value& of, int coarse, int fine) {
   const double delta = std::stod(setting(of, "delta", "1"));
   const double aspect = std::stod(setting(of, "aspect", "1"));
   const bool flow = setting(of, "value", "flow") == "flow";
@@ -176,13 +176,13 @@ TEST(linear_square, converges_with_fourth_order) {
 }
 
 TEST(linear_square, is_the_source_of_a_value_of_the_cavity) {
-  const published_value& one = find_quantity("cavity").published.at(1);
+  const reference_value& one = find_quantity("cavity").references.at(1);
   // Half of the last digit, and 4e-6 of the extrapolation.
   EXPECT_NEAR(linear_value("cavity", one, 6, 10), one.value, 9e-6);
 }
 
 TEST(linear_duct, is_the_source_of_values_of_duct) {
-  for (const auto& reference : find_quantity("duct").published) {
+  for (const auto& reference : find_quantity("duct").references) {
     if (setting(reference, "delta", "1") != "1") continue;
     // Half of the last digit, and 2e-6 of the extrapolation.
     EXPECT_NEAR(linear_value("duct", reference, 8, 12), reference.value, 2.5e-6);
@@ -190,7 +190,7 @@ TEST(linear_duct, is_the_source_of_values_of_duct) {
 }
 
 TEST(SLOW_linear_duct, is_the_source_of_all_values) {
-  for (const auto& reference : find_quantity("duct").published)
+  for (const auto& reference : find_quantity("duct").references)
     EXPECT_NEAR(linear_value("duct", reference, 16, 20), reference.value, 2e-6);
 }
 
@@ -198,7 +198,7 @@ TEST(SLOW_linear_square, is_the_source_of_all_values) {
   // The order is between 4 and 5, which leaves 1e-5 at delta = 10, and 0.0001 stands for free molecules, 3e-5
   // off.
   for (const std::string quantity : {"cavity", "enclosure"})
-    for (const auto& reference : find_quantity(quantity).published)
+    for (const auto& reference : find_quantity(quantity).references)
       EXPECT_NEAR(linear_value(quantity, reference, 12, 16), reference.value, 4e-5) << quantity;
 }
 

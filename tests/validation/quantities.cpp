@@ -20,47 +20,47 @@ namespace quantities_test {
 
 namespace {
 
-using apsis::compare_published;
+using apsis::compare_with_reference;
 using apsis::compared_value;
 using apsis::compute_quantity;
 using apsis::find_quantity;
-using apsis::published_value;
 using apsis::quantity_entry;
+using apsis::reference_value;
 using testing::AllOf;
 using testing::HasSubstr;
 
 struct one_value {
   const quantity_entry* quantity;
-  const published_value* published;
+  const reference_value* reference;
 };
 
-std::vector<one_value> published() {
+std::vector<one_value> all_references() {
   std::vector<one_value> all;
   for (const quantity_entry* quantity : apsis::quantity_entries())
-    for (const auto& value : quantity->published) all.push_back({quantity, &value});
+    for (const auto& value : quantity->references) all.push_back({quantity, &value});
   return all;
 }
 
 /// Lists of tests show it.
 void PrintTo(const one_value& one, std::ostream* out) {
   *out << one.quantity->name;
-  for (const auto& [parameter, value] : one.published->at) *out << ", " << parameter << " = " << value;
+  for (const auto& [parameter, value] : one.reference->at) *out << ", " << parameter << " = " << value;
 }
 
 std::string name_of(const testing::TestParamInfo<one_value>& info) {
   std::string name = info.param.quantity->name;
-  for (const auto& [parameter, value] : info.param.published->at) name += "_" + parameter + "_" + value;
+  for (const auto& [parameter, value] : info.param.reference->at) name += "_" + parameter + "_" + value;
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   return name;
 }
 
-class SLOW_published : public testing::TestWithParam<one_value> {};
-TEST_P(SLOW_published, is_met) {
-  const compared_value one = compare_published(*GetParam().quantity, *GetParam().published);
-  EXPECT_TRUE(one.holds()) << one.value << " for " << one.published->value;
+class SLOW_reference : public testing::TestWithParam<one_value> {};
+TEST_P(SLOW_reference, is_met) {
+  const compared_value one = compare_with_reference(*GetParam().quantity, *GetParam().reference);
+  EXPECT_TRUE(one.holds()) << one.value << " for " << one.reference->value;
 }
-INSTANTIATE_TEST_SUITE_P(all, SLOW_published, testing::ValuesIn(published()), name_of);
+INSTANTIATE_TEST_SUITE_P(all, SLOW_reference, testing::ValuesIn(all_references()), name_of);
 
 TEST(SLOW_fine_decks, meet_values_to_1e_4) {
   // 2.768644 is printed with seven digits; 0.1473123 is that of the linear solver, the table has 0.1473.
@@ -81,18 +81,18 @@ std::string refusal(const std::string& quantity, const std::vector<std::string>&
 
 }  // namespace
 
-TEST(quantities, meet_some_published_values) {
+TEST(quantities, meet_some_reference_values) {
   for (const auto& [name, at] : {std::pair<std::string, std::size_t>{"couette", 4}, {"prandtl", 1}}) {
     const quantity_entry& quantity = find_quantity(name);
-    const compared_value one = compare_published(quantity, quantity.published.at(at));
-    EXPECT_TRUE(one.holds()) << name << ": " << one.value << " for " << one.published->value;
+    const compared_value one = compare_with_reference(quantity, quantity.references.at(at));
+    EXPECT_TRUE(one.holds()) << name << ": " << one.value << " for " << one.reference->value;
   }
 }
 
 TEST(quantities, are_not_met_with_a_velocity_grid_that_is_too_coarse) {
   const quantity_entry& couette = find_quantity("couette");
   const double coarse = compute_quantity(couette, {"delta=5", "velocity.points=12"});
-  const published_value printed{{{"delta", "5"}}, 0.2522};
+  const reference_value printed{{{"delta", "5"}}, 0.2522};
   EXPECT_FALSE((compared_value{&couette, &printed, coarse, 0.0}.holds())) << coarse;
   EXPECT_NEAR(coarse, 0.2522, 0.02);  // the same quantity nevertheless
 }
@@ -153,7 +153,7 @@ TEST(quantities, average_cells_with_fourth_order) {
 }
 
 TEST(quantities, have_the_states_of_the_exact_riemann_problem) {
-  for (const auto& printed : find_quantity("riemann").published) {
+  for (const auto& printed : find_quantity("riemann").references) {
     const double D = std::stod(printed.at.at("degrees_of_freedom"));
     const test_support::shock_tube tube((D + 2.0) / D, 1.0, 1.0, 0.125, 0.1);
     const std::string& value = printed.at.at("value");
@@ -241,11 +241,11 @@ TEST(quantities, stop_when_asked) {
                apsis::quantity_interrupted);
 }
 
-TEST(quantities, have_distinct_published_values_of_known_parameters) {
+TEST(quantities, have_distinct_reference_values_of_known_parameters) {
   for (const quantity_entry* quantity : apsis::quantity_entries()) {
     ASSERT_FALSE(quantity->parameters.empty()) << quantity->name;
     std::set<apsis::quantity_values> seen;
-    for (const auto& value : quantity->published) {
+    for (const auto& value : quantity->references) {
       EXPECT_TRUE(seen.insert(value.at).second) << quantity->name;
       for (const auto& [name, text] : value.at)
         EXPECT_TRUE(std::any_of(quantity->parameters.begin(), quantity->parameters.end(),
@@ -256,7 +256,7 @@ TEST(quantities, have_distinct_published_values_of_known_parameters) {
 }
 
 TEST(compared_value, holds_within_its_tolerance_only) {
-  const published_value printed{{}, 2.0, 1e-3};
+  const reference_value printed{{}, 2.0, 1e-3};
   const auto holds = [&](double value) {
     return compared_value{&find_quantity("couette"), &printed, value, 0.0}.holds();
   };
@@ -271,10 +271,10 @@ TEST(compared_value, holds_within_its_tolerance_only) {
 TEST(compared_value, is_drawn_over_the_first_parameter_where_there_are_several) {
   const quantity_entry& couette = find_quantity("couette");
   std::vector<compared_value> values;
-  for (const auto& one : couette.published) values.push_back({&couette, &one, one.value * 1.0005, 1.0});
+  for (const auto& one : couette.references) values.push_back({&couette, &one, one.value * 1.0005, 1.0});
   const auto picture = apsis::quantity_picture(couette, values);
   ASSERT_EQ(picture.panels.size(), 2U);
-  EXPECT_EQ(picture.panels[0].curves[0].x.size(), couette.published.size());
+  EXPECT_EQ(picture.panels[0].curves[0].x.size(), couette.references.size());
   EXPECT_NEAR(picture.panels[1].curves[0].y[0], 5e-4, 1e-12);
   const auto document = to_json(couette, values);
   EXPECT_EQ(document["values"].size(), values.size());
@@ -287,7 +287,7 @@ TEST(compared_value, is_drawn_over_the_first_parameter_where_there_are_several) 
 TEST(compared_value, is_drawn_at_distance_0_too) {
   const quantity_entry& kramers = find_quantity("kramers");
   std::vector<compared_value> values;
-  for (const auto& one : kramers.published) values.push_back({&kramers, &one, one.value, 1.0});
+  for (const auto& one : kramers.references) values.push_back({&kramers, &one, one.value, 1.0});
   const auto picture = apsis::quantity_picture(kramers, values);
   ASSERT_EQ(picture.panels.size(), 2U);
   EXPECT_FALSE(picture.panels[0].log_x);  // where 0 would be omitted

@@ -35,14 +35,10 @@ const quantity_entry quantity_couette = {
     .parameters = {{"delta", "1", "rarefaction p L/(mu v0), v0 = sqrt(2 R T)"},
                    {"model", "bgk", "bgk, shakhov or es-bgk"},
                    {"deck", "default", "default or fine (docs/validation.md)"}},
-    .published = {{{{"delta", "0.01"}}, 0.9914},
-                  {{{"delta", "0.1"}}, 0.9258},
-                  {{{"delta", "1"}}, 0.6007},
-                  {{{"delta", "2"}}, 0.4436},
-                  {{{"delta", "5"}}, 0.2522},
-                  {{{"delta", "10"}}, 0.1473},
-                  {{{"delta", "20"}}, 0.08045},
-                  {{{"delta", "100"}}, 0.01737}},
+    .references = {published({{"delta", "0.01"}}, 0.9914), published({{"delta", "0.1"}}, 0.9258),
+                   published({{"delta", "1"}}, 0.6007), published({{"delta", "2"}}, 0.4436),
+                   published({{"delta", "5"}}, 0.2522), published({{"delta", "10"}}, 0.1473),
+                   published({{"delta", "20"}}, 0.08045), published({{"delta", "100"}}, 0.01737)},
     .compute = couette_quantity::compute};
 
 }  // namespace apsis

@@ -66,11 +66,11 @@ const quantity_entry quantity_kramers = {
     .parameters = {{"distance", "1", "from the wall, in units of mu v0/p, at most 5"},
                    {"value", "slip", "slip or layer"},
                    {"model", "bgk", "bgk, shakhov or es-bgk"}},
-    .published = {{{{"value", "slip"}}, 1.01619},
-                  {{{"value", "layer"}, {"distance", "0"}}, 0.30908},
-                  {{{"value", "layer"}, {"distance", "0.3"}}, 0.16114},
-                  {{{"value", "layer"}, {"distance", "1"}}, 0.07175},
-                  {{{"value", "layer"}, {"distance", "3"}}, 0.014967}},
+    .references = {published({{"value", "slip"}}, 1.01619),
+                   published({{"value", "layer"}, {"distance", "0"}}, 0.30908),
+                   computed({{"value", "layer"}, {"distance", "0.3"}}, 0.16114),
+                   published({{"value", "layer"}, {"distance", "1"}}, 0.07175),
+                   computed({{"value", "layer"}, {"distance", "3"}}, 0.014967)},
     .compute = kramers_quantity::compute};
 
 }  // namespace apsis

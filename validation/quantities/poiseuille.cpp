@@ -60,11 +60,9 @@ const quantity_entry quantity_poiseuille = {
     .parameters = {{"delta", "1", "rarefaction p L/(mu v0), v0 = sqrt(2 R T)"},
                    {"model", "bgk", "bgk, shakhov or es-bgk"},
                    {"deck", "default", "default or fine (docs/validation.md)"}},
-    .published = {{{{"delta", "0.01"}}, 3.049650},
-                  {{{"delta", "0.1"}}, 2.032714},
-                  {{{"delta", "1"}}, 1.538678},
-                  {{{"delta", "10"}}, 2.768644},
-                  {{{"delta", "100"}}, 17.691059}},
+    .references = {published({{"delta", "0.01"}}, 3.049650), published({{"delta", "0.1"}}, 2.032714),
+                   published({{"delta", "1"}}, 1.538678), published({{"delta", "10"}}, 2.768644),
+                   published({{"delta", "100"}}, 17.691059)},
     .compute = poiseuille_quantity::compute};
 
 }  // namespace apsis

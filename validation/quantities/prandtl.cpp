@@ -45,9 +45,8 @@ const quantity_entry quantity_prandtl = {
     .source = "the Chapman-Enskog limit of each model",
     .parameters = {{"delta", "50", "rarefaction p L/(mu v0), v0 = sqrt(2 R T)"},
                    {"model", "shakhov", "bgk, shakhov or es-bgk"}},
-    .published = {{{{"model", "bgk"}}, 1.0},
-                  {{{"model", "shakhov"}}, 2.0 / 3.0},
-                  {{{"model", "es-bgk"}}, 2.0 / 3.0}},
+    .references = {theory({{"model", "bgk"}}, 1.0), theory({{"model", "shakhov"}}, 2.0 / 3.0),
+                   theory({{"model", "es-bgk"}}, 2.0 / 3.0)},
     .compute = prandtl_quantity::compute};
 
 }  // namespace apsis

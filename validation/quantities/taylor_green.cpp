@@ -53,9 +53,8 @@ const quantity_entry quantity_taylor_green = {
         "root s of the dispersion relation of shear waves of the linearized BGK equation with the wave "
         "number K = sqrt(2) k: the integral of M(v)/(1 - s epsilon + i K epsilon v) over v is 1",
     .parameters = {{"epsilon", "0.01", "Knudsen number, 0.002 to 0.03; the viscosity is epsilon"}},
-    .published = {{{{"epsilon", "0.003"}}, 0.99929140},
-                  {{{"epsilon", "0.01"}}, 0.99234128},
-                  {{{"epsilon", "0.03"}}, 0.94306517}},
+    .references = {theory({{"epsilon", "0.003"}}, 0.99929140), theory({{"epsilon", "0.01"}}, 0.99234128),
+                   theory({{"epsilon", "0.03"}}, 0.94306517)},
     .compute = taylor_green_quantity::compute};
 
 }  // namespace apsis

@@ -1,4 +1,4 @@
-"""The page of `apsis validate`: published values of gas flows."""
+"""The page of `apsis validate`: reference values of gas flows."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -17,11 +17,11 @@ def difference(value: float | None) -> str:
 
 
 def section(quantity: Quantity, folder: Path) -> str:
-    rows = [[" ".join(v["settings"]) or "as is", number(v["value"]), number(v["published"]), difference(v["difference"]),
+    rows = [[" ".join(v["settings"]) or "as is", number(v["value"]), f"{number(v['reference'])} ({text(v['origin'])})", difference(v["difference"]),
              f"{v['tolerance']:.0e}", verdict(v["holds"]), f"{v['wall_s']:.1f}"] for v in quantity["values"]]
-    out = [f'<h2 id="{text(quantity["name"])}">{text(quantity["name"])}</h2>\n<p>{text(quantity["description"])}. Published: '
+    out = [f'<h2 id="{text(quantity["name"])}">{text(quantity["name"])}</h2>\n<p>{text(quantity["description"])}. Source of the references: '
            f'{text(quantity["source"])}.</p>\n',
-           table(["parameters", "computed", "published", "relative difference", "tolerance", "", "seconds"], rows)]
+           table(["parameters", "computed", "reference", "relative difference", "tolerance", "", "seconds"], rows)]
     out += [page.embedded(draw(p), p["name"], p["title"], p["caption"], folder) for p in quantity["pictures"]]
     return "".join(out)
 
@@ -30,9 +30,9 @@ def report(document: dict[str, Any], folder: Path) -> str:
     """Returns the page; pictures are also written to <folder>/pictures."""
     values = [v for q in document["quantities"] for v in q["values"]]
     good = sum(v["holds"] for v in values)
-    intro = (f"<p>{good} of {len(values)} published values are met"
+    intro = (f"<p>{good} of {len(values)} reference values are met"
              + ("." if good == len(values) else "; those that are not are marked below.")
              + " Each was computed by one run of a case of the program. All quantities are dimensionless.</p>"
              + f'<p class="small">{page.provenance(document, document["version"])}; {document["wall_s"]:.0f} s.</p>')
-    return page.page("Published values of gas flows",
+    return page.page("Reference values of gas flows",
                      intro + "".join(section(q, pictures_in(folder)) for q in document["quantities"]))

@@ -98,7 +98,7 @@ rho = 1
 u = "x > 0.5 ? -3 : 3"
 T = 0.1
 [space]
-cells = 23
+cells = 24
 boundary = "outflow"
 limiter = "positivity"
 [velocity]

@@ -226,7 +226,9 @@ std::unique_ptr<collision> problem_builder::make_collision(const std::shared_ptr
   if (pointwise())
     return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign(), mesh_.fluid(), stages_);
   if (collides_at_centres())
-    return make_cell_centre_collision(*equation_, space, keeps_sign() && !smooth_collisions_,
+    // Where solutions may be negative, limited averages would lose what they cut off.
+    return make_cell_centre_collision(*equation_, space,
+                                      keeps_sign() && !smooth_collisions_ && equation_->why_signed().empty(),
                                       epsilon_at_centres(), stages_);
   return make_cell_average_collision(*equation_, space, complete_discretization(), epsilon_at(gauss3::xi),
                                      stages_);

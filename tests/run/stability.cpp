@@ -212,9 +212,10 @@ TEST(cfl_limits, keep_a_relaxing_gas_of_two_velocities_stable) {
 TEST(safety_without_limiter, comes_to_rest_between_plates_with_every_reconstruction) {
   for (const char* method : {"md-imex-5-2", "md-imex-3-2", "md-imex-6-2-mixed", "md-imex-9-3-large-r"})
     for (const char* scheme : {"weno5-z", "weno5-js", "upwind5"})
-      // The slow approach to the steady state changes the flux by 1e-5 in a step, evenly. Beyond the limit it
+      // The slow approach to the steady state changes the flux by 1e-5 in a step, and once when steps are
+      // shortened to meet the end. Beyond the limit it
       // alternates by 3e-4 to 400.
-      EXPECT_LT(alternation_of(fluxes_of(plates(method, scheme, "safety = 1"))), 1e-5)
+      EXPECT_LT(alternation_of(fluxes_of(plates(method, scheme, "safety = 1"))), 3e-5)
           << method << ", " << scheme;
 }
 
@@ -247,7 +248,7 @@ TEST(safety_without_limiter, is_r_where_r_is_stable_and_with_the_limiter) {
 }
 
 TEST(a_step_beyond_the_limit, is_reported_before_the_run) {
-  const auto log = log_of(plates("md-imex-8-3-mixed", "upwind5", "cfl = 2.5", 10.0, 0.05));
+  const auto log = log_of(plates("md-imex-8-3-mixed", "upwind5", "cfl = 2.5", 10.0, 1.0));
   EXPECT_THAT(log, HasSubstr("waves of some cells grow (CFL number 2.5; the linear stability limit of "
                              "'md-imex-8-3-mixed' with 'upwind5' is 1.86); use time.cfl = 1.8 or less"));
   EXPECT_THAT(log_of(plates("md-imex-8-3-mixed", "upwind5", "cfl = 1.8", 10.0, 0.05)),

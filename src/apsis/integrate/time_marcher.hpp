@@ -112,6 +112,10 @@ class time_marcher {
   void start_up(Real proposed, Real relaxation_time) {
     if (n_ > 0 || done()) return;
     startup_length_ = next(proposed);
+    // Not shortened to meet the end, unless it is the only step: a run to a later end has the same start-up.
+    if (!fixed_)
+      startup_length_ =
+          std::min(every_ > Real(0) ? equal_part(next_multiple(), proposed) : proposed, t1_ - t_);
     startup_steps_ =
         graded_levels(startup_length_, longest_first_step(relaxation_time, growth_), growth_) + 1;
   }
@@ -161,6 +165,7 @@ class time_marcher {
   /// saved before it.
   bool shaped_by_end(Real proposed) const {
     if (done()) return false;
+    if (!fixed_ && starting() && !(startup_length_ < t1_ - t0_)) return true;  // the only step
     time_marcher longer = *this, here = *this;
     if (fixed_) {
       // The last time is t1, which may differ from t0 + n dt by rounding.

@@ -168,13 +168,10 @@ struct simulation::impl {
 
   void record_step(double dt) {
     march.advance(dt);
-    const double change = last.change;
     last = watch.check(state, dt, last, problem->take_cut());
     gains = state.gains();
-    // The change of a sliver that is left before time.end would be its rounding.
-    constexpr double sliver = 1e-6;
     if (!march.starting()) losses.after_step(march.step(), march.t(), dt, state);
-    if (config.time.steady) last.change = dt < sliver * totals.dt ? change : distance()(state, before) / dt;
+    if (config.time.steady) last.change = distance()(state, before) / dt;
     last.step = march.step();
     last.t = march.t();
     last.dt = dt;
@@ -325,7 +322,10 @@ const step_record& simulation::advance() {
     run.record_step(run.step());
     run.inside_step = false;
   } catch (const numerical_error& failure) {
-    throw failure.site().step >= 0 ? failure : failure.at(run.march.step() + 1, run.march.t());
+    const numerical_error here =
+        failure.site().step >= 0 ? failure : failure.at(run.march.step() + 1, run.march.t());
+    if (run.control) throw here;
+    throw naming_instability(here, run.setup, run.next_dt());
   }
   run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.totals.cpu_s += thread_seconds() - cpu;

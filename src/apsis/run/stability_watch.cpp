@@ -49,6 +49,13 @@ std::string remedy_of_instability(const run_setup& setup, double dt) {
       number, limit);
 }
 
+numerical_error naming_instability(const numerical_error& failure, const run_setup& setup, double dt) {
+  if (!setup.has_space() || !(cfl_number(setup, dt) > setup.stability_limit())) return failure;
+  return numerical_error(fmt::format("the solution is lost to an instability {}: {}",
+                                     remedy_of_instability(setup, dt), failure.problem()),
+                         failure.site());
+}
+
 void warn_of_unstable_steps(const run_setup& setup, double dt) {
   const double limit = setup.stability_limit(), r = setup.ssp_coefficient();
   if (!setup.has_space() || !std::isfinite(limit)) return;

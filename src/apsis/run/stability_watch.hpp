@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/core/errors.hpp>
 #include <apsis/run/run_state.hpp>
 #include <apsis/run/setup.hpp>
 
@@ -18,6 +19,10 @@ void warn_of_unstable_steps(const run_setup& setup, double dt);
 /// Returns the end of a message on an unstable run, "(CFL number …); use …": a step within the limit, or, if
 /// steps of length dt are within it, a smaller step and a more robust reconstruction. Requires space.
 std::string remedy_of_instability(const run_setup& setup, double dt);
+
+/// Returns the failure of a step dt; if that exceeds the linear stability limit, the message names this
+/// cause.
+numerical_error naming_instability(const numerical_error& failure, const run_setup& setup, double dt);
 
 /// Notices an instability while a case runs, from the changes of a density in the last three steps,
 /// step_record::density_change and density_turn. Resolved waves turn slowly: the second difference is a

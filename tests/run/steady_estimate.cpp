@@ -1,4 +1,4 @@
-// What time.steady estimates: the rate of change, and from its decay the distance from the steady state.
+// Estimates of time.steady: the rate of change, and from its decay the distance from the steady state.
 #include <apsis/run/steady_estimate.hpp>
 
 #include "gas_between_walls.hpp"

@@ -72,7 +72,7 @@ def velocities(manifest: dict[str, Any]) -> str:
 
 
 def steady_state(found: dict[str, Any]) -> str:
-    """What time.steady says: a rate, and how far the steady state still is if the rate is known to decay."""
+    """Rate of change that time.steady bounds, and the distance from the steady state if the rate decays."""
     reached = "time.steady is reached" if found["reached"] else "time.steady is not reached"
     change = "" if found["change"] is None else f": the state changes by {number(found['change'])} per unit of time, relative"
     if found["distance"] is None:

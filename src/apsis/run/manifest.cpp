@@ -43,7 +43,7 @@ json numbers(const simulation& run) {
   return out;
 }
 
-/// Adds what is known of the steady state, in a case with time.steady.
+/// Adds the estimate of the distance from the steady state, in a case with time.steady.
 void add_steady(json& out, const simulation& run, const steady_estimate& estimate) {
   if (!run.config().time.steady) return;
   const double time = result_units(run.config()).factor(dimensions::time);

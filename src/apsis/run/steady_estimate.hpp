@@ -7,7 +7,7 @@
 
 namespace apsis {
 
-/// What time.steady says about a state: its rate of change, and how far the steady state may still be.
+/// Rate of change of a state, which time.steady bounds, and its estimated distance from the steady state.
 /// A small rate alone does not mean a small distance: they differ by the time in which the change decays.
 struct steady_estimate {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

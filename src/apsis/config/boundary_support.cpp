@@ -186,7 +186,7 @@ class emitter_check {
     worst_maxwellian worst(support_);
     for (const double t : times_of(config_, rate->steady, intervals))
       for (int cell = 0; cell < mesh.size(); cell += stride) try {
-          rate->value(t, mesh.centre(cell), row);
+          rate->value(t, mesh.centre(cell), {}, row);
           support_.molecules().moments(row.data(), 0, 1, omega.data());
           worst.see_moments(omega.data(), t);
         } catch (const numerical_error&) {

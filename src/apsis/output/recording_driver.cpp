@@ -8,6 +8,7 @@
 #include <iterator>
 #include <new>
 
+#include <fcntl.h>
 #include <hdf5.h>
 #include <sys/stat.h>
 #include <unistd.h>

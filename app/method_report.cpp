@@ -43,16 +43,23 @@ json embedded_json(const method& m, const certificate& c) {
           {"buffers", steps.buffers()}};
 }
 
-json estimate_json(const method& m) {
-  const step_estimate how = estimate_of(m);
+/// Of a file as well, whose weight is that of the certificate.
+step_estimate estimate_of(const method& m, const certificate& c) {
+  step_estimate how = apsis::estimate_of(m);
+  if (!how.doubles && c.embedded) how.weight = c.embedded->weight;
+  return how;
+}
+
+json estimate_json(const method& m, const certificate& c) {
+  const step_estimate how = estimate_of(m, c);
   return {{"by", how.doubles ? "step doubling" : "embedded solution"},
           {"order", how.order},
           {"weight", how.weight}};
 }
 
 /// How the error of a step is estimated, with what it costs.
-std::string estimate_text(const method& m) {
-  const step_estimate how = estimate_of(m);
+std::string estimate_text(const method& m, const certificate& c) {
+  const step_estimate how = estimate_of(m, c);
   if (!how.doubles)
     return fmt::format("embedded solution: weight {:.3g} times the difference of order {}", how.weight,
                        how.order + 1);
@@ -173,7 +180,7 @@ json check_json(const method& m) {
       {"r_per_evaluation", figure_of_merit(c)},
       {"buffers", steps.buffers()},
       {"embedded", embedded_json(m, c)},
-      {"estimate", estimate_json(m)},
+      {"estimate", estimate_json(m, c)},
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
   if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(c);
@@ -229,7 +236,7 @@ std::string check_text(const method& m) {
     line("", embedded_cost_text(e));
     if (!e["last"].is_null()) line("", embedded_term_text(e));
   }
-  line("estimated error", estimate_text(m));
+  line("estimated error", estimate_text(m, c));
   if (has_derivatives(m.kind))
     line("implicit part", fmt::format("{}, |R| on the negative axis at most {:.6g}, |R(-infinity)| = {:.3g}",
                                       c.stability.l_stable ? "L-stable" : angle_text(c.stability.angle),

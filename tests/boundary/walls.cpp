@@ -230,11 +230,12 @@ std::vector<std::array<double, 2>> ghosts_of(const std::vector<std::array<double
 }  // namespace
 
 TEST(incoming_boundary, continues_quadratics_exactly) {
-  // Averages of f = 1 + 0.3 x + 0.2 x² over cells of width 1, x counted inwards from the face.
+  // Averages of f = 1 + 0.03 x + 0.02 x² over cells of width 0.1, x counted inwards from the face, in units
+  // of that width. A share 1 − x² of the continuation is kept, where x² is of size Δx⁸ here, below rounding.
   const auto average = [](double left) {
     const double right = left + 1.0;
-    return 1.0 + 0.15 * (right * right - left * left) +
-           0.2 / 3.0 * (right * right * right - left * left * left);
+    return 1.0 + 0.0015 * (right * right - left * left) +
+           0.0002 / 3.0 * (right * right * right - left * left * left);
   };
   std::vector<std::array<double, 2>> cells;
   for (int i = 0; i < 5; ++i) cells.push_back({average(i), 2.0 * average(i)});

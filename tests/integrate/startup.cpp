@@ -44,8 +44,10 @@ visited march_through(apsis::time_marcher<double> march, double proposed, double
 apsis::time_marcher<double> random_march(double& proposed, int growth = apsis::default_growth) {
   const double t0 = random_input::one_in(2) ? 0.0 : random_input::uniform(-3.0, 3.0);
   const double length = random_input::magnitude(-3, 2);
-  proposed = length / random_input::uniform(0.3, 40.0);
-  const bool given = proposed <= length && random_input::one_in(2);
+  const bool given = random_input::one_in(2);
+  // The first step of a rule is graded as proposed, and does not share the remainder before t1 as the last
+  // time_marcher::shared_steps do.
+  proposed = length / (given ? random_input::uniform(1.0, 40.0) : random_input::uniform(66.0, 120.0));
   return {t0, t0 + length, given ? std::optional<double>(proposed) : std::nullopt, growth};
 }
 

@@ -288,7 +288,7 @@ TEST(discrete_velocity, tables_without_sense_are_refused) {
               HasSubstr("velocities of 2 components (space has 3 dimensions); give 3"));
 }
 
-TEST(discrete_velocity, slow_collisions_beside_fast_ones_are_not_lost) {
+TEST(discrete_velocity, weak_collisions_beside_strong_ones_are_not_lost) {
   // Two squares that do not meet, with rates 1 and `slow`: each must relax as if it were alone. With squares
   // of Δt/ε the matrix of a stage has entries of size 1 and 1/slow².
   const texts squares = {"1, 0", "-1, 0", "0, 1", "0, -1", "2, 0", "-2, 0", "0, 2", "0, -2"};

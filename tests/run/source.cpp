@@ -307,7 +307,7 @@ TEST(source, of_a_law_that_has_no_value_ends_the_run_with_its_state) {
                 }
                 return std::string();
               })(),
-              HasSubstr("law.toml:20:5: expression '-w*q'"));
+              HasSubstr("law.toml:19:7: expression '-w*q'"));
 }
 
 TEST(source, of_a_conservation_law_is_that_of_its_variables) {

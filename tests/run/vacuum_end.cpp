@@ -54,7 +54,8 @@ void finish(simulation& run) {
 /// Mean of |f − f₀(x − vt)|/f₀ᵐᵃˣ with f₀ = 0 outside of [0, 1]: no molecule enters or collides.
 double error_of_free_flight(const lines& overrides) {
   simulation run = run_of(overrides);
-  const auto before = run.row(run.mesh().size() / 2);
+  const auto middle = run.row(run.mesh().size() / 2);
+  const std::vector<double> before(middle.begin(), middle.end());
   const double density =
       std::pow(std::sin(std::numbers::pi * run.mesh().centre(run.mesh().size() / 2, 0)), 4);
   finish(run);
@@ -155,6 +156,8 @@ RC_GTEST_PROP(vacuum_end, keeps_the_promises_of_every_model_and_method, ()) {
       "time.method=" + *rc::gen::element<std::string>("md-imex-3-2", "md-imex-6-3"),
       "initial.rho=\"x < 0.4 ? 1 : " + *rc::gen::element<std::string>("1e-12", "0.1") + "\"",
       "initial.u=" + *rc::gen::element<std::string>("0", "1", "-1")};
+  // The target of Shakhov's model as published makes densities beside a vacuum negative.
+  if (model == "shakhov") overrides.push_back("model.tails=nonnegative");
   simulation run = run_of(overrides);
   RC_ASSERT(run.promises().conservation);
   const bool positive = run.promises().positivity;
@@ -215,7 +218,7 @@ surfaces = "all"
 
 TEST(vacuum_end, is_one_of_discrete_velocities_and_not_of_laws) {
   const std::string text =
-      "[model]\nname = \"{}\"\n[space]\ncells = 10\nboundary = \"vacuum\"\n"
+      "[model]\nname = \"{}\"\n[space]\ncells = 10\nboundary = \"vacuum\"\nreconstruction = \"upwind1\"\n"
       "[time]\nmethod = \"md-imex-3-2\"\nend = 0.1\nsafety = 1\n";
   simulation run(apsis::parse_case(fmt::format(fmt::runtime(text), "broadwell"), "broadwell.toml"));
   ASSERT_TRUE(run.promises().positivity);

@@ -26,7 +26,8 @@ bool supports_colour() {
 /// Writes a line with one fwrite call, so that lines of several threads do not interleave.
 void write(std::string_view name, std::string_view colour, const std::string& message) {
   std::string line(name);
-  if (supports_colour()) line = std::string(colour) + line + "\033[m";
+  // The line may hold a progress bar.
+  if (supports_colour()) line = "\r\033[K" + std::string(colour) + line + "\033[m";
   line += ": " + printable(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }

@@ -36,7 +36,7 @@ bool has_memory_for(const run_setup& setup) {
 loss_watch::loss_watch(const run_setup& setup, semidiscrete_problem& problem)
     : setup_(setup), problem_(problem) {
   if (!setup.equation->has_relaxation_time()) return;
-  response_ = find_rate_response(setup.integrator_name());
+  response_ = find_rate_response(setup.config().time.method);
   if (response_ && problem_.collides_exactly()) implicit_ = setup.make_implicit_problem();
 }
 

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
+#include <utility>
 
 namespace apsis {
 namespace {
@@ -59,16 +62,31 @@ double derivative_defect(const relaxation_model& m, const row& u, const row& q, 
   return worst;
 }
 
+made_model make_with(const model_entry& entry, const std::map<std::string, std::string>& texts) {
+  model_config config = default_config(entry);
+  config.velocity = {8.0, 40, equilibrium_choice::automatic};
+  for (const auto& [name, value] : texts) config.texts.at(name) = value;
+  auto made = entry.make(config);
+  const auto* relaxation = dynamic_cast<const relaxation_model*>(made.get());
+  return {&entry, std::move(made), relaxation};
+}
+
 }  // namespace
 
 std::vector<made_model> all_models() {
   std::vector<made_model> all;
+  for (const auto* entry : model_entries()) all.push_back(make_with(*entry, {}));
+  return all;
+}
+
+std::vector<made_model> nonnegative_models() {
+  std::vector<made_model> all;
   for (const auto* entry : model_entries()) {
-    model_config config = default_config(*entry);
-    config.velocity = {8.0, 40, equilibrium_choice::automatic};
-    auto made = entry->make(config);
-    const auto* relaxation = dynamic_cast<const relaxation_model*>(made.get());
-    all.push_back({entry, std::move(made), relaxation});
+    made_model made = make_with(*entry, {});
+    if (!made.equation->positive()) continue;
+    if (!made.equation->collisions_keep_sign() && default_config(*entry).texts.contains("tails"))
+      made = make_with(*entry, {{"tails", "nonnegative"}});
+    all.push_back(std::move(made));
   }
   return all;
 }

@@ -17,6 +17,9 @@ struct made_model {
 
 /// Every model of the registry.
 std::vector<made_model> all_models();
+/// Every model of the registry with nonnegative unknowns, whose collisions keep them nonnegative: by
+/// tails = "nonnegative" where the default does not.
+std::vector<made_model> nonnegative_models();
 
 /// Defects of a state in Properties 3–5 of the paper; zero up to rounding.
 struct relaxation_defects {

@@ -154,7 +154,7 @@ def test_a_view_of_u_may_be_the_moments():
     # The moments outlive the call, and u changes.
     u0 = np.ones((2, 50)) + np.arange(50)
     problem = apsis.RelaxationProblem(lambda t, u: np.zeros((2, 50)), lambda u: u[0], lambda w: np.stack([w, 2 * w]), lambda w: 1.0, 0.0)
-    end = apsis.integrate(problem, u0, (0, 1), dt=0.5).u[-1]
+    end = apsis.integrate(problem, u0, (0, 1), "md-imex-6-3", dt=0.5).u[-1]
     # A stage is a convex combination of equal numbers: one rounding error.
     np.testing.assert_allclose(end, [u0[0], 2 * u0[0]], rtol=4e-16)
 
@@ -266,7 +266,7 @@ def test_a_solution_equals_its_copy_and_has_a_short_representation():
     one = apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 0.5, 1), dt=0.25)
     again = pickle.loads(pickle.dumps(one))
     assert again == one and again is not one
-    assert repr(one) == "<apsis.Solution: 3 states of shape (2,) from t = 0 to 1, 4 steps, 0 rejected>"
+    assert repr(one) == "<apsis.Solution: 3 states of shape (2,) from t = 0 to 1, 4 steps of extrapolated-euler-8, 0 rejected>"
     assert "<td>4</td>" in one._repr_html_()
 
 

@@ -125,7 +125,7 @@ def test_failures_report_their_cell():
 
 def test_what_the_velocities_miss_is_measured_and_warned_of(capfd):
     problem = bgk(velocities=(4.5, 40), formulation="finite-difference")
-    good, poor = problem.state({"rho": 1, "T": 1}), problem.state({"rho": 1, "T": lambda x: 1.0 if x < 1 else 2.0})
+    good, poor = problem.state(rho=1, T=1), problem.state(rho=1, T=lambda x: 1.0 if x < 1 else 2.0)
     assert "velocity.max = 4.5 is too small for the data" in capfd.readouterr().err  # of the second alone: one warning
     # The energy of a Maxwellian beyond 4.5 √T/σ, by the normal distribution, and the midpoint rule at its ends.
     kappa = 4.5 / np.sqrt(np.where(problem.x < 1, 1.0, 2.0))
@@ -133,5 +133,5 @@ def test_what_the_velocities_miss_is_measured_and_warned_of(capfd):
     np.testing.assert_allclose(problem.velocity_missed(poor), beyond, rtol=0.1)
     np.testing.assert_allclose(problem.velocity_missed(good), beyond[0], rtol=0.1)
     with pytest.raises(apsis.InputError, match="velocity.max = 4.5 is too small for the data"):
-        problem.state({"rho": 1, "T": 4})
+        problem.state(rho=1, T=4)
     assert np.isnan(apsis.KineticProblem("broadwell", cells=5, domain=(0, 1)).velocity_missed(np.ones((5, 3)))).all()

@@ -302,7 +302,7 @@ def test_no_value_of_a_reproduction_is_markup(tmp_path, monkeypatch):
 
 
 def test_no_value_of_a_validation_is_markup(tmp_path, monkeypatch):
-    value = {"settings": ["a=1"], "value": 1.0, "published": 1.1, "difference": 0.1, "tolerance": 0.2, "holds": True, "wall_s": 1.0}
+    value = {"settings": ["a=1"], "value": 1.0, "reference": 1.1, "origin": "theory", "difference": 0.1, "tolerance": 0.2, "holds": True, "wall_s": 1.0}
     given = {**document(), "quantities": [{"name": "q", "description": "d", "source": "s", "values": [value], "pictures": []}]}
     check_pages(tmp_path, "validate.json", given, monkeypatch)
 

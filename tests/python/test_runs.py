@@ -64,7 +64,7 @@ def test_progress_is_told_and_can_end_the_run(tmp_path):
         return np.bool_(len(calls) < 3)
     r = apsis.run("paper/bgk-mixed", "time.end=50.0", out=tmp_path / "o", progress=watch)
     assert r.state == "interrupted" and len(calls) == 3 and calls[-1][0] > 0
-    # The last 64 steps share what is left of the time, and earlier ones do not depend on it.
+    # The last 64 steps share the remaining time, and earlier ones do not depend on it.
     end = float(r.t[-1]) + 80 * float(r.history["dt"][-1])
     again = apsis.run("paper/bgk-mixed", f"time.end={end!r}", restart=tmp_path / "o" / "checkpoint.h5")
     whole = apsis.run("paper/bgk-mixed", f"time.end={end!r}")
@@ -112,7 +112,7 @@ def test_the_readme_runs(capsys):
     (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     exec(block, {})
     said = capsys.readouterr().out
-    # u2 relaxes to 0 within ε, and u1 = 2 + ε/2, of which eight digits are printed.
+    # u2 relaxes to 0 within ε, and u1 = 2 + ε/2; eight digits are printed.
     assert "0.904402" in said and "\n[2. 0.]" in said, said
 
 

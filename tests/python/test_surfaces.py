@@ -42,7 +42,7 @@ def test_surfaces_are_those_of_the_case_and_add_up_to_the_history(computed):
             given = (columns["area"] * columns[invariant]).sum()
             # Roundings of a sum of some ten terms of the size of the pressure.
             assert abs(given + result.history[f"flux_{name}_{invariant}"][-1]) < 1e-14
-        # The gas at the wall, of which a half comes from it.
+        # Half of the gas at the wall comes from it.
         assert np.all(np.abs(columns["T"] - 1) < 0.5) and np.all(np.abs(columns["rho"] - 1) < 0.5) and "u_y" in columns
 
 

@@ -102,7 +102,7 @@ TEST_P(restart, continues_bit_for_bit_with_every_method_from_any_step) {
     } catch (const numerical_error& failure) {
       // Explicit methods are unstable beyond Δt = O(ε); no other method may fail.
       EXPECT_EQ(find_method(name).kind, method_kind::explicit_only) << name << ": " << failure.what();
-      // What becomes of an unstable state: NaN, or a gas beyond the velocities.
+      // An unstable state becomes NaN, or a gas beyond the velocities.
       EXPECT_THAT(failure.problem(), testing::AnyOf(testing::HasSubstr("a smaller step"),
                                                     testing::HasSubstr("a larger velocity.max")));
       continue;

@@ -148,6 +148,7 @@ class given_derivatives {
   std::vector<Real> rate_, bent_;
 };
 
+/// @cond
 namespace detail {
 template <class Real, class G>
 struct field_of {
@@ -162,5 +163,6 @@ struct field_of<Real, G> {
 /// given_derivatives for a G with derivatives written by hand, else vector_field.
 template <class Real, class G>
 using field_of = typename detail::field_of<Real, G>::type;
+/// @endcond
 
 }  // namespace apsis

@@ -12,7 +12,7 @@
 
 namespace apsis {
 
-/// What a method loses of the terms of size ε in steps Δt (docs/plateaus.md), relative to the state. All
+/// Loss of a method in the terms of size ε in steps Δt (docs/plateaus.md), relative to the state. All
 /// values are estimates of first order in the deviation D from equilibrium.
 template <class Real>
 struct rate_loss {
@@ -24,6 +24,7 @@ struct rate_loss {
   Real layer{};     ///< error of the moments by the initial layer; 0 where it was not requested
 };
 
+/// @cond
 namespace rate_loss_parts {
 
 /// Estimates the loss at one state. Every state-sized buffer is released with it.
@@ -135,6 +136,7 @@ class probe {
 };
 
 }  // namespace rate_loss_parts
+/// @endcond
 
 /// Estimates at state u what a method with this response loses in steps dt, with two to four evaluations of T
 /// and repeated implicit Euler solves: M + Δt T(M), with the equilibrium M of u, deviates from equilibrium by
@@ -152,7 +154,7 @@ std::optional<rate_loss<typename P::real>> find_rate_loss(P& p, typename P::real
   }
 }
 
-/// What a loss means for a run.
+/// Consequence of a loss for a run.
 struct loss_verdict {
   double expected = 0.0,  ///< estimated relative error
       rate = 0.0;         ///< rate_loss::rate where it counts

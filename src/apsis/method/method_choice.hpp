@@ -10,14 +10,14 @@ namespace apsis {
 /// The value of time.method for which the program chooses the method.
 inline constexpr std::string_view automatic_method = "auto";
 
-/// What the choice of a method depends on.
+/// The properties of a problem on which the choice of a method depends.
 struct method_request {
-  bool space = false;                    ///< the problem is discretized in space
-  bool signs = false;                    ///< bounds of the solution, such as f ≥ 0, must be preserved
-  bool graded_start = false;             ///< the first steps resolve the initial layer
-  std::optional<double> tolerance = {};  ///< of a step; without it steps are equal
-  /// Smallest and largest CΔt/ε over the domain; nothing if unknown.
-  std::optional<double> lowest_ratio = {}, highest_ratio = {};
+  bool space = false;                        ///< the problem is discretized in space
+  bool signs = false;                        ///< bounds of the solution, such as f ≥ 0, must be preserved
+  bool graded_start = false;                 ///< the first steps resolve the initial layer
+  std::optional<double> tolerance = {};      ///< of a step; without it steps are equal
+  std::optional<double> lowest_ratio = {};   ///< smallest CΔt/ε over the domain; nothing if unknown
+  std::optional<double> highest_ratio = {};  ///< the largest
 };
 
 /// A row of the table of choices. The first row that applies decides.

@@ -31,7 +31,9 @@ rate_errors rate_errors_at(const multistep_method& m, double z);
 ///   flux(z) − 1 ≈ (1 − s) Σ_k flux_k s^k,    last likewise,    layer ≈ Σ_k layer_k s^k.
 struct rate_response {
   static constexpr std::size_t terms = 7;  ///< number of coefficients
-  std::array<double, terms> flux{}, last{}, layer{};
+  std::array<double, terms> flux{};        ///< flux_k
+  std::array<double, terms> last{};        ///< last_k
+  std::array<double, terms> layer{};       ///< layer_k
   /// lim (last(z) − 1)/z, of methods whose result is not relaxed; not contained in `last`.
   double last_growth = 0.0;
 
@@ -39,7 +41,7 @@ struct rate_response {
   static double largest(const std::array<double, terms>& c);
 };
 
-/// Interpolates errors at Chebyshev nodes of s, of which s = 0 is one, so that plateaus are exact. Returns
+/// Interpolates errors at Chebyshev nodes of s, one of them s = 0, so that plateaus are exact. Returns
 /// nothing if an error is infinite or NaN, as those of explicit methods are.
 std::optional<rate_response> fit_rate_response(const std::function<rate_errors(double z)>& errors);
 

@@ -41,8 +41,8 @@ struct velocity_lattice {
 
 /// Data that a model cannot hold.
 struct unsupported_initial_data {
-  std::string key,  ///< of the case, that must change; "" if all is well
-      problem;      ///< message; "" if all is well
+  std::string key,           ///< of the case, that must change; "" if all is well
+      problem;               ///< message; "" if all is well
   std::string reached = "";  ///< message where a run, not its data, reaches the state; "": the same
 };
 

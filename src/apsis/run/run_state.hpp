@@ -46,9 +46,10 @@ struct step_record {
   /// kept.
   std::vector<double> defect_of_step = {};
   std::optional<condition_violation> violation = {};  ///< as well not among the members that are kept
-  /// Σ_cells |ρ^n − ρ^{n−1}| and Σ_cells |ρ^n − 2ρ^{n−1} + ρ^{n−2}| of the last invariant, relative to its
-  /// scale; not kept.
-  double density_change = 0.0, density_turn = 0.0;
+  /// Σ_cells |ρ^n − ρ^{n−1}| of the last invariant, relative to its scale; not kept.
+  double density_change = 0.0;
+  /// Σ_cells |ρ^n − 2ρ^{n−1} + ρ^{n−2}|, likewise.
+  double density_turn = 0.0;
 
   /// Calls visit(name, member) for every member of `self`, in the order of the columns of the history.
   template <class Self, class Visitor>

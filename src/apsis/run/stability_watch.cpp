@@ -39,19 +39,19 @@ std::string remedy_of_instability(const run_setup& setup, double dt) {
   const double number = cfl_number(setup, dt), limit = setup.stability_limit();
   if (number > limit)
     return fmt::format(
-        "(CFL number {:.3g}; the linear stability limit of '{}' with '{}' is {:.3g}); use "
+        "CFL number {:.3g}; the linear stability limit of '{}' with '{}' is {:.3g}); use "
         "time.cfl = {} or less",
         number, setup.integrator_name(), setup.config().space.reconstruction, limit,
         rounded_down(limit / number * dt / setup.cfl_length()));
   return fmt::format(
-      "(CFL number {:.3g}, within the linear stability limit {:.3g}); halve the step, and use "
+      "CFL number {:.3g}, within the linear stability limit {:.3g}); halve the step, and use "
       "space.reconstruction = \"upwind1\" if this does not help",
       number, limit);
 }
 
 numerical_error naming_instability(const numerical_error& failure, const run_setup& setup, double dt) {
   if (!setup.has_space() || !(cfl_number(setup, dt) > setup.stability_limit())) return failure;
-  return numerical_error(fmt::format("the solution is lost to an instability {}: {}",
+  return numerical_error(fmt::format("the solution is lost to an instability ({}: {}",
                                      remedy_of_instability(setup, dt), failure.problem()),
                          failure.site());
 }
@@ -72,7 +72,7 @@ void warn_of_unstable_steps(const run_setup& setup, double dt) {
       log::info(text);
   }
   if (setup.has_tolerance() || !(cfl_number(setup, dt) > limit * (1.0 + 1e-9))) return;
-  log::warning(fmt::format("waves of some cells grow {}{}", remedy_of_instability(setup, dt),
+  log::warning(fmt::format("waves of some cells grow ({}{}", remedy_of_instability(setup, dt),
                            limited(setup) ? "; the limiter keeps them nonnegative, but not small" : ""));
 }
 
@@ -102,7 +102,7 @@ void stability_watch::judge() {
   calmest_ = calmest_ < 0.0 ? turn_ : std::min(calmest_, turn_);
   if (!unstable_ && alternates && (grew || lasts)) {
     unstable_ = true;
-    log::warning(fmt::format("the solution is unstable: it alternates from step to step, {} {}",
+    log::warning(fmt::format("the solution is unstable (it alternates from step to step, {}; {}",
                              grew ? "by 100 times more than before" : "and this does not decay",
                              remedy_of_instability(setup_, dt_)));
   }

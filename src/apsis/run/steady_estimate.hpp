@@ -10,6 +10,7 @@ namespace apsis {
 /// Rate of change of a state, which time.steady bounds, and its estimated distance from the steady state.
 /// A small rate alone does not mean a small distance: they differ by the time in which the change decays.
 struct steady_estimate {
+  /// NaN, for a number that cannot be estimated.
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double change = unknown,   ///< ‖u^{n+1} − u^n‖₂/(Δt ‖u^{n+1}‖₂) of the last step
       decay_time = unknown,  ///< τ of change ∝ exp(−t/τ); NaN if the change has not halved, or grows

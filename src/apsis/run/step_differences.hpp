@@ -17,6 +17,7 @@ class step_differences {
         turn = 0.0;       ///< |ρ^n − 2ρ^{n−1} + ρ^{n−2}|
   };
 
+  /// No step of so many cells is known.
   explicit step_differences(int cells) : last_(static_cast<std::size_t>(cells), unknown), before_(last_) {}
 
   /// Records the density of a cell after a step, once for each step. Different cells may be recorded

@@ -56,7 +56,8 @@ void warn_of_fast_source(double growth, double dt) {
   if (!(growth * dt > 1.0)) return;
   log::warning(fmt::format(
       "the source is too fast for the step (it is explicit, and dt times its derivative in the variables is "
-      "{:.2g}, where explicit steps are stable up to about 1); give a time.dt or time.cfl that is {:.2g} times "
+      "{:.2g}, where explicit steps are stable up to about 1); give a time.dt or time.cfl that is {:.2g} "
+      "times "
       "as long, or time.safety, which includes the source",
       growth * dt, 1.0 / (growth * dt)));
 }

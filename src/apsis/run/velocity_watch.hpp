@@ -13,11 +13,14 @@ namespace apsis {
 
 /// The cells of this process whose Maxwellians fit the velocities worst.
 struct velocity_extremes {
-  static constexpr int none = std::numeric_limits<int>::max();
+  static constexpr int none =  ///< number of no cell
+      std::numeric_limits<int>::max();
 
+  /// The smallest margins.
   velocity_margins margins = {std::numeric_limits<double>::infinity(),
                               std::numeric_limits<double>::infinity()};
-  int room_cell = none, resolution_cell = none;
+  int room_cell = none;        ///< where the room is smallest
+  int resolution_cell = none;  ///< where the resolution is lowest
 
   /// Adds those of other cells. Of equal cells the first counts, in whatever order they are added.
   void add(const velocity_extremes& other);

@@ -95,8 +95,8 @@ class semidiscrete_problem {
     if (!transport_.source_depends_on_state()) return 0.0;
     return -lowest([&] { return -transport_.growth_of_source(t, u); });
   }
-  /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it. A source
-  /// that depends on u limits it by 1/|∂S/∂u|.
+  /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it. A
+  /// source that depends on u limits it by 1/|∂S/∂u|.
   double forward_euler_step(double t, const field& u) const {
     double of_transport = transport_.forward_euler_step();
     if (const double growth = growth_of_source(t, u); growth > 0.0)

@@ -272,6 +272,13 @@ void hdf5_file::write_attribute(const std::string& name, const std::string& valu
     fail_to_write(fmt::format("attribute '{}' cannot be written", name));
 }
 
+std::string hdf5_version() {
+  const std::lock_guard lock(access_to_hdf5());
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return fmt::format("{}.{}.{}", major, minor, release);
+}
+
 void write_hdf5(const std::string& path, std::uint64_t free_bytes,
                 const std::shared_ptr<communicator>& processes,
                 const std::function<void(hdf5_file&)>& contents) {

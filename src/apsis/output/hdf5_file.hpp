@@ -116,6 +116,9 @@ class hdf5_file {
   std::string process_;                                    ///< that writes parts
 };
 
+/// Returns the version of the HDF5 library, "1.10.8". Waits while another thread uses the library.
+std::string hdf5_version();
+
 /// Writes a file by all processes: the root the frame, then each one its parts. `contents` calls the members
 /// that write, and runs on every process; twice on the root. Neither HDF5 nor `contents` communicates, so
 /// that no process waits for one that cannot write. Throws on all what one of them throws. Collective; a

@@ -4,6 +4,7 @@
 #include <apsis/exec/instruction_set.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/processes.hpp>
+#include <apsis/output/hdf5_file.hpp>
 
 #include <array>
 #include <chrono>
@@ -14,7 +15,6 @@
 #include <boost/version.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <hdf5.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
@@ -42,15 +42,13 @@ std::string processor() {
 }  // namespace
 
 nlohmann::ordered_json build_info() {
-  unsigned major = 0, minor = 0, release = 0;
-  H5get_libversion(&major, &minor, &release);
   return {
       {"compiler", compiler()},
       {"build_type", build_type()},
       {"instruction_set", kernel_instruction_set()},
       {"mpi", has_mpi()},
       {"libraries",
-       {{"hdf5", fmt::format("{}.{}.{}", major, minor, release)},
+       {{"hdf5", hdf5_version()},
         {"boost", fmt::format("{}.{}", BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000)},
         {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)}}}};
 }

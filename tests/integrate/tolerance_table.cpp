@@ -86,8 +86,13 @@ void check_against_fixed_steps(const std::string& name, double epsilon, long mos
     const auto trace = ::testing::Message() << name << ", epsilon " << epsilon << ", tolerance " << tolerance
                                             << ": " << now.steps << " steps, error " << now.error;
     EXPECT_LE(now.error, 30 * tolerance) << trace;
+    // The error of one number of steps may be near a zero: that of equal steps, of which neighbouring numbers
+    // count, is not.
+    double typical = now.error;
+    for (const auto& [steps, error] : fixed)
+      if (5 * steps >= 4 * now.steps && 4 * steps <= 5 * now.steps) typical = std::max(typical, error);
     if (now.steps > 3) {
-      EXPECT_GE(now.error, tolerance / 30) << trace;
+      EXPECT_GE(typical, tolerance / 30) << trace;
     }
     long best = most;
     for (const auto& [steps, error] : fixed)

@@ -181,18 +181,19 @@ TEST(cfl_limits, keep_a_relaxing_gas_of_two_velocities_stable) {
             std::vector<matrix2> stages;
             for (std::size_t i = 0; i < form.stages(); ++i) {
               matrix2 u{};
-              for (int row = 0; row < 2; ++row)
-                for (int column = 0; column < 2; ++column) {
+              for (std::size_t row = 0; row < 2; ++row)
+                for (std::size_t column = 0; column < 2; ++column) {
                   complex sum = row == column ? initial[i] : 0.0;
                   for (std::size_t j = 0; j < i; ++j)
                     sum += (form.P(i, j) + form.W(i, j) * (1.0 + z[row] / form.r)) * stages[j][row][column];
                   u[row][column] = sum;
                 }
               const double kept = 1.0 / (1.0 + form.D(i, i) * s - form.ddot[i] * s * s);
-              for (int column = 0; column < 2; ++column) {
+              for (std::size_t column = 0; column < 2; ++column) {
                 const complex rho = u[0][column] + u[1][column];
                 const std::array<complex, 2> e = {rho * (1.0 + a) / 2.0, rho * (1.0 - a) / 2.0};
-                for (int row = 0; row < 2; ++row) u[row][column] = e[row] + kept * (u[row][column] - e[row]);
+                for (std::size_t row = 0; row < 2; ++row)
+                  u[row][column] = e[row] + kept * (u[row][column] - e[row]);
               }
               stages.push_back(u);
             }

@@ -6,6 +6,8 @@
 #include <apsis/run/simulation.hpp>
 
 #include <cmath>
+#include <exception>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -83,22 +85,53 @@ class generator {
   std::mt19937 random_;
 };
 
+bool says_velocities_end(const std::exception& problem) {
+  return std::string(problem.what()).find("velocity.max is too small") != std::string::npos;
+}
+
+/// Returns the run of a case; nothing if its walls emit a gas beyond the velocities.
+std::unique_ptr<apsis::simulation> started(const std::string& text) {
+  try {
+    return std::make_unique<apsis::simulation>(apsis::parse_case(text, "random.toml"));
+  } catch (const apsis::input_error& problem) {
+    if (!says_velocities_end(problem)) throw;
+    return nullptr;
+  }
+}
+
+/// Takes steps, which throw where a promise is broken. Returns false if the gas leaves its velocities, which
+/// ends a run.
+bool takes_steps(apsis::simulation& run, int steps) {
+  try {
+    for (int step = 0; step < steps; ++step) run.advance();
+    return true;
+  } catch (const apsis::numerical_error& problem) {
+    if (!says_velocities_end(problem)) throw;
+    return false;
+  }
+}
+
 /// Runs cases with all convex methods in turn until they have this many point·stages.
 void expect_nonnegative(const std::string& model, double point_stages, unsigned seed) {
   generator cases(seed);
   const auto methods = methods_where(is_convex_at_every_epsilon);
   ASSERT_GE(methods.size(), 15U);
   double done = 0.0;
+  int runs = 0, left = 0;
   for (std::size_t k = 0; done < point_stages; ++k) {
     const std::string &method = methods[k % methods.size()], text = cases.next(model, method);
-    apsis::simulation run(apsis::parse_case(text, "random.toml"));
-    ASSERT_TRUE(run.promises().positivity) << text;
-    for (int step = 0; step < 150; ++step) run.advance();  // throws where a promise is broken
-    ASSERT_EQ(run.summary().negative_values, 0) << text;
-    done += 150.0 * static_cast<double>(run.state().size()) *
+    const auto run = started(text);
+    if (!run) continue;
+    ASSERT_TRUE(run->promises().positivity) << text;
+    if (!takes_steps(*run, 150)) ++left;
+    ASSERT_EQ(run->summary().negative_values, 0) << text;
+    done += static_cast<double>(run->step()) * static_cast<double>(run->state().size()) *
             static_cast<double>(apsis::find_method(method).stages());
+    ++runs;
   }
-  std::printf("%s: %.3g point stages, 0 negative values\n", model.c_str(), done);
+  EXPECT_LE(5 * left, runs);
+  std::printf("%s: %.3g point stages, 0 negative values; the gas left the velocities in %d of %d runs\n",
+              model.c_str(), done, left, runs);
 }
 
 /// Outcomes of runs with the published targets, whose tails are negative.

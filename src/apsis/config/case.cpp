@@ -147,6 +147,10 @@ case_config load_case(const std::string& name_or_path, const std::vector<std::st
   return parse_case(read_case(name_or_path), name_or_path, overrides);
 }
 
+velocity_config velocities_of(const case_config& config) {
+  return {config.velocity.max, config.velocity.points, config.velocity.equilibrium, config.velocity.set};
+}
+
 std::unique_ptr<model> make_model(const case_config& config) {
   const model_entry* entry = find_model(config.model.name);
   if (entry == nullptr) {
@@ -161,8 +165,7 @@ std::unique_ptr<model> make_model(const case_config& config) {
   for (const auto& [name, value] : config.model.lists) parts.lists[name] = value;
   parts.constants = config.constants;
   parts.space_dimensions = static_cast<int>(config.space.cells.size());
-  parts.velocity = {config.velocity.max, config.velocity.points, config.velocity.equilibrium,
-                    config.velocity.set};
+  parts.velocity = velocities_of(config);
   return entry->make(parts);
 }
 

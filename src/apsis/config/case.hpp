@@ -129,6 +129,9 @@ std::string read_case(const std::string& name_or_path);
 /// A case file by path, or a built-in case by name ("paper/bgk-mixed").
 case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides = {});
 
+/// The velocities of the case, as its model takes them.
+velocity_config velocities_of(const case_config& config);
+
 /// The model of the case with its parameters. Throws input_error if there is no such model.
 std::unique_ptr<model> make_model(const case_config& config);
 

@@ -139,8 +139,8 @@ bool system_flux::differentiate(const double* u, int variable, double size, doub
       const double noise = rounding * (std::abs(f[2]) + std::abs(f[3])) / h;
       const double error = std::abs(once - twice);
       if (shrinking == 0) at_start[j] = std::isfinite(error) ? error : 0.0;
-      const double allowed = accurate * std::abs(slopes[j]) + accurate * at_start[j] + noise;
-      enough = enough && error <= allowed;  // false for NaN
+      const double slope = std::abs(slopes[j]), vanishing = slope <= error ? at_start[j] : 0.0;
+      enough = enough && error <= accurate * (slope + vanishing) + noise;  // false for NaN
     }
     if (enough) return true;
   }

@@ -129,16 +129,17 @@ void add_velocities(const simulation& run, const std::vector<mesh_axis>& mesh, c
 class silence_of_others {
  public:
   explicit silence_of_others(const communicator& processes) : silenced_(!processes.is_root()) {
-    if (silenced_) log::set_level(log::level::quiet);
+    if (silenced_) before_ = log::set_level(log::level::quiet);
   }
   ~silence_of_others() {
-    if (silenced_) log::set_level(log::level::info);
+    if (silenced_) log::set_level(before_);
   }
   silence_of_others(const silence_of_others&) = delete;
   silence_of_others& operator=(const silence_of_others&) = delete;
 
  private:
   bool silenced_;
+  log::level before_ = log::level::warning;
 };
 
 /// The right to call processes together, of one thread at a time: two that do so in another order on each

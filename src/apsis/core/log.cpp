@@ -34,8 +34,8 @@ void write(std::string_view name, std::string_view colour, const std::string& me
 
 }  // namespace
 
-void set_level(level lowest) {
-  lowest_shown = lowest;
+level set_level(level lowest) {
+  return lowest_shown.exchange(lowest);
 }
 
 void info(const std::string& message) {

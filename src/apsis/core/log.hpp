@@ -12,8 +12,8 @@ enum class level {
   info      ///< all messages
 };
 
-/// Sets the verbosity of the process; initially level::info.
-void set_level(level lowest);
+/// Sets the verbosity of the process, initially level::info, and returns that before.
+level set_level(level lowest);
 /// Reports what the program does or has written.
 void info(const std::string& message);
 /// Reports a likely mistake; the program continues.

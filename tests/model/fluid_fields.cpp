@@ -51,7 +51,7 @@ std::vector<double> fields_of(const apsis::model& m, const std::vector<double>& 
 }  // namespace
 
 TEST(fluid_fields, have_one_bulk_velocity_per_dimension) {
-  EXPECT_THAT(names_of_fields(*gas(1)), ElementsAre("rho", "u", "T", "stress", "heat_flux"));
+  EXPECT_THAT(names_of_fields(*gas(1)), ElementsAre("rho", "u", "T", "heat_flux"));
   EXPECT_THAT(names_of_fields(*gas(2)), ElementsAre("rho", "u_x", "u_y", "T", "stress_xx", "stress_xy",
                                                     "stress_yy", "heat_flux_x", "heat_flux_y"));
   EXPECT_THAT(names_of_fields(*gas(3)),
@@ -94,7 +94,7 @@ TEST(fluid_fields, of_two_beams_have_their_stress_and_heat_flux) {
     const auto values = fields_of(*m, f);
     const double p = 1.2 * values[n + 1];
     std::size_t at = n + 2;
-    for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t a = 0; a < n && n > 1; ++a)  // a single degree of freedom has none
       for (std::size_t b = a; b < n; ++b) {
         double stress = a == b ? -p : 0.0;
         for (std::size_t k = 0; k < 2; ++k)

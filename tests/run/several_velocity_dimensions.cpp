@@ -236,7 +236,7 @@ TEST(several_velocity_dimensions, keep_the_layout_of_one_velocity_dimension) {
   const std::string results = results_of_moving_gas(folder, gas(1));
   const auto file = hdf5_file::open(results + "/solution.h5");
   EXPECT_THAT(file.datasets(), ElementsAre("epsilon", "f", "fields/T", "fields/heat_flux", "fields/rho",
-                                           "fields/stress", "fields/u", "v", "x"));
+                                           "fields/u", "v", "x"));
   EXPECT_EQ(file.extents("v"), shape{points});
   EXPECT_THAT(text_of(results + "/solution.xdmf"),
               testing::AllOf(Not(HasSubstr("<!--")), HasSubstr("Dimensions=\"1 6 24\">solution.h5:/f<"),

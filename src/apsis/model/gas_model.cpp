@@ -122,11 +122,16 @@ void gas_model::invariant_scales(std::span<const double> densities, double* scal
   for (int k = 1; k <= d; ++k) scales[k] = std::max(scales[k], bound);
 }
 
+/// The energy of a single degree of freedom is its pressure, and leaves no stress but rounding.
+bool gas_model::has_stress() const {
+  return gas_.degrees_of_freedom() > 1;
+}
+
 std::vector<field_name> gas_model::fields() const {
   const int d = gas_.dimensions();
   const std::string axes = "xyz";
   std::vector<field_name> all = fluid_fields(d);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
+  for (std::size_t k = 0; has_stress() && k < static_cast<std::size_t>(d); ++k)
     for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l) {
       const std::string pair = d == 1 ? "" : std::string({axes[k], axes[l]});
       all.push_back({d == 1 ? "stress" : "stress_" + pair,
@@ -150,7 +155,7 @@ void gas_model::macroscopic(const double* f, double* values) const {
   values += d + 2;
   const central_moments m = find_central_moments(gas_, f, s);
   const double p = s.rho * s.T;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
+  for (std::size_t k = 0; has_stress() && k < static_cast<std::size_t>(d); ++k)
     for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l)
       *values++ = s.rho * m.stress[k][l] - (k == l ? p : 0.0);
   for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) *values++ = m.heat[k];

@@ -64,7 +64,7 @@ class gas_model : public relaxation_model {
   /// inequality.
   void invariant_scales(std::span<const double> densities, double* scales) const override;
 
-  /// ρ, u, T, stress p_kl = Σ c_k c_l g − p δ_kl for k ≤ l, heat flux ½ Σ c (|c|² g + h).
+  /// ρ, u, T, stress p_kl = Σ c_k c_l g − p δ_kl for k ≤ l (none if D = 1), heat flux ½ Σ c (|c|² g + h).
   std::vector<field_name> fields() const override;
   void macroscopic(const double* f, double* values) const override;
   /// Pressure p = ρT, Mach number |u|/√(γT) with γ = (D + 2)/D, and the distance Σ|f − M|/Σ f to equilibrium,
@@ -115,6 +115,7 @@ class gas_model : public relaxation_model {
   }
 
  private:
+  bool has_stress() const;
   /// Returns 0 if no part is found.
   template <class Find>
   static double largest_part(double keep, double* e, bool& raised, const Find& find) {

@@ -86,8 +86,8 @@ void check_against_fixed_steps(const std::string& name, double epsilon, long mos
     const auto trace = ::testing::Message() << name << ", epsilon " << epsilon << ", tolerance " << tolerance
                                             << ": " << now.steps << " steps, error " << now.error;
     EXPECT_LE(now.error, 30 * tolerance) << trace;
-    // The error of one number of steps may be near a zero: that of equal steps, of which neighbouring numbers
-    // count, is not.
+    // The error of one number of steps may be near a zero. Equal steps count with neighbouring numbers of
+    // steps.
     double typical = now.error;
     for (const auto& [steps, error] : fixed)
       if (5 * steps >= 4 * now.steps && 4 * steps <= 5 * now.steps) typical = std::max(typical, error);

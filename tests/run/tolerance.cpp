@@ -243,6 +243,8 @@ apsis::case_config mixed_bgk(const std::string& method, double tolerance) {
   c.time.cfl = 4.0;  // only the tolerance limits the step
   c.time.end = 0.01;
   c.time.tolerance = tolerance;
+  // Those that are asymptotic preserving for consistent data only, which they are warned about.
+  if (apsis::find_method(method).is_tableau()) c.time.startup = apsis::startup_choice::graded;
   return c;
 }
 
@@ -297,6 +299,29 @@ void check_mixed_bgk(const std::string& method, const std::vector<double>& toler
 TEST(tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_about) {
   check_mixed_bgk("md-imex-8-3-mixed", {1e-3, 1e-4, 1e-5, 1e-6, 1e-7});
   check_mixed_bgk("md-imex-3-2", {1e-3, 1e-4, 1e-5, 1e-6, 1e-7});
+}
+
+TEST(tolerance_of_mixed_bgk, is_not_forecast_for_explicit_methods) {
+  // They resolve the relaxation or are unstable, and no term of size epsilon is left.
+  testing::internal::CaptureStderr();
+  const apsis::simulation run(mixed_bgk("dop853", 1e-7));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("terms of size epsilon")));
+}
+
+TEST(tolerance_of_mixed_bgk, is_warned_about_if_the_first_step_skips_the_initial_layer) {
+  // One step of ark-436 is 3e-3 off and its embedded solution agrees with it to 1e-4.
+  const auto words_of = [](apsis::case_config c) {
+    testing::internal::CaptureStderr();
+    const apsis::simulation run(c);
+    return testing::internal::GetCapturedStderr();
+  };
+  auto c = mixed_bgk("ark-436", 1e-4);
+  EXPECT_THAT(words_of(c), testing::Not(HasSubstr("initial layer")));
+  c.time.startup = apsis::startup_choice::none;
+  EXPECT_THAT(words_of(c), HasSubstr("give time.startup = \"graded\""));
+  c.time.method = "ars-443";  // by step doubling
+  EXPECT_THAT(words_of(c), HasSubstr("initial layer"));
+  EXPECT_THAT(words_of(mixed_bgk("md-imex-8-3-mixed", 1e-4)), testing::Not(HasSubstr("initial layer")));
 }
 
 TEST(SLOW_tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_about_with_all_methods) {

@@ -15,6 +15,7 @@
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/multistep_stepper.hpp>
 #include <apsis/run/promises.hpp>
+#include <apsis/run/ray_warning.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/stability_watch.hpp>
@@ -80,6 +81,7 @@ struct simulation::impl {
     warn_of_stiff_collision(setup, problem->relaxation_time(march.t(), state), next_dt());
     warn_of_fast_source(problem->growth_of_source(march.t(), state), next_dt());
     warn_of_unstable_steps(setup, next_dt());
+    warn_of_rays();
     // The first step may be shorter than those that follow.
     setup.decide_promises(promises, limit(), forward_euler_limit(), first.negative_values == 0,
                           conserves_to_rounding(setup, state, rounding));
@@ -103,16 +105,40 @@ struct simulation::impl {
       const auto rule = step_rule<double>::unlimited().with(
           setup.has_graded_start() ? startup::graded : startup::none, config.time.startup_growth);
       start_control(*problem, march.t(), state, longest, rule, *control, distance());
+      warn_of_layer(control->proposed());
     } else if (setup.has_graded_start()) {
       march.start_up(limit(), problem->relaxation_time(march.t(), state));
     }
   }
 
   void warn_of_tolerance(double longest) {
+    if (setup.integrator().kind == method_kind::explicit_only) return;  // resolves the relaxation, or fails
     const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().coefficients<double>()));
     expected = forecast_tolerance(integrator, march.t(), state, config.time.end, longest, control->target(),
                                   bounds, distance());
     warn_of_plateau(setup, *expected, problem->relaxation_time(march.t(), state));
+  }
+
+  void warn_of_rays() {
+    const std::string warning = warning_of_rays(setup, problem->relaxation_time(march.t(), state));
+    if (!warning.empty()) log::warning(warning);
+  }
+
+  /// Methods of types ARS and CK begin with T(u) of data off equilibrium. They keep an error of
+  /// Δt (T(u) − T(E(ℛu))) from an initial layer that the first step dt skips, and so do their estimates.
+  void warn_of_layer(double dt) {
+    const auto form = setup.integrator().coefficients<double>();
+    const bool solves_first = form.D(0, 0) != 0.0 || form.ddot[0] != 0.0;
+    if (solves_first || setup.integrator().kind != method_kind::imex || setup.has_graded_start()) return;
+    const double relaxation = problem->relaxation_time(march.t(), state);
+    if (!(dt > relaxation)) return;
+    field equilibrium = state, left = state;
+    problem->solve_collision(march.t(), 1e100, 0.0, equilibrium);
+    const target<field, double> to_left{&left, 0.0, dt, false}, from_left{&left, 0.0, -dt, false};
+    problem->add_transport(march.t(), state, {&to_left, 1});
+    problem->add_transport(march.t(), equilibrium, {&from_left, 1});
+    const double error = distance()(state, left);
+    if (error > *config.time.tolerance) log::warning(text_of_layer(setup, dt, error));
   }
 
   /// Estimates what the method loses in the usual steps. A forecast above the tolerance has been reported.

@@ -75,6 +75,16 @@ void warn_of_dense_stages(const run_setup& setup) {
                   n, std::pow(static_cast<double>(n), 3)));
 }
 
+std::string text_of_layer(const run_setup& setup, double dt, double error) {
+  return fmt::format(
+      "method '{}' does not resolve the initial layer of data off equilibrium in a first step of {:.1g} (it "
+      "is "
+      "asymptotic preserving for consistent data only; the layer leaves a relative error of up to about "
+      "{:.1g}, "
+      "which time.tolerance does not see); give time.startup = \"graded\"",
+      setup.integrator().name, dt, error);
+}
+
 void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation) {
   const double tolerance = *setup.config().time.tolerance;
   if (!(expected.error > tolerance)) return;

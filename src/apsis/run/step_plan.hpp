@@ -22,6 +22,10 @@ void warn_of_fast_source(double growth, double dt);
 /// Warns of implicit stages whose dense Newton systems have more than 200 unknowns.
 void warn_of_dense_stages(const run_setup& setup);
 
+/// Returns the warning of a first step dt that does not resolve the initial layer, with the relative error
+/// that it leaves.
+std::string text_of_layer(const run_setup& setup, double dt, double error);
+
 /// Warns if the forecast error exceeds time.tolerance, and suggests remedies.
 void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation);
 

@@ -121,14 +121,14 @@ TEST(cases, cells_and_domain_of_several_dimensions_make_a_mesh) {
   EXPECT_EQ(mesh.dimensions(), 3);
   EXPECT_EQ(mesh.size(), 120);
   EXPECT_EQ(mesh.centre(0), (apsis::position{0.5, -0.8, 0.25}));
-  EXPECT_EQ(make_boundaries(c, *make_model(c)).size(), 3U);
+  EXPECT_EQ(make_boundaries(c, make_model(c)).size(), 3U);
   EXPECT_THAT(to_toml(c), HasSubstr("cells = [4, 5, 6]\ndomain = [[0.0, 4.0], [-1.0, 1.0], [0.0, 3.0]]\n"));
 }
 
 TEST(cases, each_end_may_have_its_own_boundary) {
   const std::string text = to_toml(load_case("paper/bgk-mixed"));
   const auto kinds = [](const case_config& c) {
-    const auto faces = make_boundaries(c, *make_model(c)).front();
+    const auto faces = make_boundaries(c, make_model(c)).front();
     return std::pair{faces[0]->periodic(), faces[1]->periodic()};
   };
   EXPECT_EQ(kinds(parse_case(text, "c.toml")), std::pair(true, true));

@@ -2,6 +2,7 @@
 // are refused.
 #include <apsis/core/errors.hpp>
 #include <apsis/core/random_source.hpp>
+#include <apsis/model/internal/binary_collisions.hpp>
 #include <apsis/model/model_registry.hpp>
 
 #include <array>
@@ -254,6 +255,35 @@ TEST(discrete_velocity, data_by_density_velocity_and_temperature_have_them) {
   EXPECT_EQ(flat->data_forms().front().row(std::vector{1.0, 0.2, 0.0, 0.0}, row), "");
   EXPECT_THAT(flat->data_forms().front().row(std::vector{1.0, 0.0, 0.0, 0.1}, row),
               HasSubstr("no equilibrium"));
+}
+
+TEST(discrete_velocity, all_elastic_collisions_are_found) {
+  // Those of four nested loops, in their order; a lattice that is turned and shifted has its collisions but
+  // for rounding.
+  std::vector<std::vector<double>> lattice, turned;
+  for (int i = -2; i <= 2; ++i)
+    for (int j = -2; j <= 1; ++j) {
+      lattice.push_back({1.0 * i, 1.0 * j});
+      turned.push_back({0.6 * i - 0.8 * j + 0.31, 0.8 * i + 0.6 * j - 7.3});
+    }
+  std::vector<std::array<int, 4>> expected;
+  const int n = static_cast<int>(lattice.size());
+  const auto sum = [&](int i, int j) {
+    const auto &v = lattice[static_cast<std::size_t>(i)], &w = lattice[static_cast<std::size_t>(j)];
+    return std::array{v[0] + w[0], v[1] + w[1], v[0] * v[0] + v[1] * v[1] + w[0] * w[0] + w[1] * w[1]};
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = i + 1; j < n; ++j)
+      for (int k = i + 1; k < n; ++k)
+        for (int l = k + 1; l < n; ++l)
+          if (k != j && l != j && sum(i, j) == sum(k, l)) expected.push_back({i, j, k, l});
+  ASSERT_GT(expected.size(), 50U);
+  for (const auto& velocities : {lattice, turned}) {
+    std::vector<std::array<int, 4>> found;
+    const apsis::binary_collisions all(velocities);
+    for (const auto& one : all.collisions()) found.push_back({one.i, one.j, one.k, one.l});
+    EXPECT_EQ(found, expected);
+  }
 }
 
 TEST(discrete_velocity, tables_without_sense_are_refused) {

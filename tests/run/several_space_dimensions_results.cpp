@@ -137,10 +137,10 @@ TEST(f_of_every_second_cell, is_a_mesh_with_half_the_cells_in_each_direction) {
 TEST(memory_need, of_a_run_that_does_not_fit_is_refused_with_the_sizes_that_would) {
   const auto bytes = [](const std::vector<std::string>& overrides) {
     const case_config c = parse_case(in_plane, "case.toml", overrides);
-    return memory_need(c, run_setup(c), 2).bytes();
+    return memory_need(run_setup(c), 2).bytes();
   };
   const case_config c = parse_case(in_plane, "case.toml", {"space.cells=[70, 60]"});
-  const memory_need need(c, run_setup(c), 2);
+  const memory_need need(run_setup(c), 2);
   EXPECT_EQ(need.bytes(), bytes({"space.cells=[70, 60]"}));
   EXPECT_EQ(need.bytes(), 100.0 * bytes({}));
   EXPECT_THAT(need.text(), HasSubstr("70 x 60 cells x 144 unknowns"));
@@ -166,7 +166,7 @@ TEST(memory_need, of_a_run_that_does_not_fit_is_refused_with_the_sizes_that_woul
   try {
     const case_config large =
         parse_case(in_plane, "case.toml", {"space.cells=[3000, 3000]", "velocity.points=200"});
-    check_memory(large, run_setup(large), 0);
+    check_memory(run_setup(large), 0);
     FAIL() << "accepted";
   } catch (const input_error& refused) {
     EXPECT_THAT(refused.what(), testing::AllOf(HasSubstr("space.cells = ["), HasSubstr("would fit")));

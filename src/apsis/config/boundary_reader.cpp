@@ -96,14 +96,19 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
   }
 }
 
-std::vector<domain::faces> make_boundaries(const case_config& config, const model& equation) {
-  std::vector<domain::faces> sides;
+std::vector<domain::faces> make_boundaries(const case_config& config,
+                                           const std::shared_ptr<const model>& equation) {
   const auto made = [&](std::size_t k) {
     const face_table& table = config.faces[k];
-    return make_wall(config, equation, "boundary." + face_names[k], kind_of(config, table), table.values);
+    return make_wall(config, *equation, "boundary." + face_names[k], kind_of(config, table), table.values);
   };
-  for (std::size_t k = 0; k < 2 * config.space.cells.size(); k += 2) sides.push_back({made(k), made(k + 1)});
-  return sides;
+  const auto make = [&] {
+    std::vector<domain::faces> sides;
+    for (std::size_t k = 0; k < 2 * config.space.cells.size(); k += 2)
+      sides.push_back({made(k), made(k + 1)});
+    return sides;
+  };
+  return config.parts->sides.get({equation, config.space.boundary, config.faces, config.constants}, make);
 }
 
 }  // namespace apsis

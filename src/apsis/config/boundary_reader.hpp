@@ -25,8 +25,9 @@ std::shared_ptr<const boundary> make_wall(const case_config& config, const model
                                           const std::string& path, const std::string& kind,
                                           const state_formulas& values);
 
-/// Returns the boundaries at both ends of every direction. Throws input_error at the place of the table or
-/// the formula that is wrong.
-std::vector<domain::faces> make_boundaries(const case_config& config, const model& equation);
+/// Returns the boundaries at both ends of every direction, made once for a case and its copies. Throws
+/// input_error at the place of the table or the formula that is wrong.
+std::vector<domain::faces> make_boundaries(const case_config& config,
+                                           const std::shared_ptr<const model>& equation);
 
 }  // namespace apsis

@@ -151,7 +151,7 @@ velocity_config velocities_of(const case_config& config) {
   return {config.velocity.max, config.velocity.points, config.velocity.equilibrium, config.velocity.set};
 }
 
-std::unique_ptr<model> make_model(const case_config& config) {
+std::shared_ptr<const model> make_model(const case_config& config) {
   const model_entry* entry = find_model(config.model.name);
   if (entry == nullptr) {
     std::vector<std::string> names;
@@ -166,7 +166,8 @@ std::unique_ptr<model> make_model(const case_config& config) {
   parts.constants = config.constants;
   parts.space_dimensions = static_cast<int>(config.space.cells.size());
   parts.velocity = velocities_of(config);
-  return entry->make(parts);
+  const auto make = [&]() -> std::shared_ptr<const model> { return entry->make(parts); };
+  return config.parts->equation.get({entry, parts}, make);
 }
 
 source_place place_of(const case_config& config, const std::string& path) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <apsis/config/case_parts.hpp>
 #include <apsis/config/choices.hpp>
 #include <apsis/config/initial_table.hpp>
 #include <apsis/config/output_tables.hpp>
+#include <apsis/config/surface_tables.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/graded_start.hpp>
 #include <apsis/model/expression.hpp>
@@ -20,21 +22,6 @@
 #include <vector>
 
 namespace apsis {
-
-/// A table [boundary.left], [boundary.right], …: the boundary condition of a face.
-struct face_table {
-  std::optional<std::string> kind;  ///< space.boundary where it is not set
-  state_formulas values;            ///< of the variables of the kind, formulas in t and the position
-};
-
-/// A table [[space.solid]]: a solid box and its wall.
-struct solid_table {
-  std::string name;              ///< in the history of what its walls receive
-  std::vector<double> from;      ///< lower corner, on edges of cells
-  std::vector<double> to;        ///< upper corner, on edges of cells
-  std::string kind = "diffuse";  ///< boundary condition at its faces
-  state_formulas values;         ///< of the variables of the kind, formulas in t and the position
-};
 
 /// A resolved case: every key has a value, every name exists. Keys are documented in case_keys.cpp (`apsis
 /// show case`).
@@ -116,6 +103,7 @@ struct case_config {
     std::vector<plane_slice> slices;                                  ///< tables [[output.slice]]
     std::vector<std::string> surfaces;  ///< names of faces and solid boxes, or all_surfaces
   } output;
+  std::shared_ptr<case_parts> parts = std::make_shared<case_parts>();  ///< objects made from the keys
 };
 
 /// Parses the text of a case file and applies overrides "dotted.key=value". Strict: unknown or missing keys,
@@ -132,8 +120,9 @@ case_config load_case(const std::string& name_or_path, const std::vector<std::st
 /// The velocities of the case, as its model takes them.
 velocity_config velocities_of(const case_config& config);
 
-/// The model of the case with its parameters. Throws input_error if there is no such model.
-std::unique_ptr<model> make_model(const case_config& config);
+/// The model of the case with its parameters, made once for a case and its copies. Throws input_error if
+/// there is no such model.
+std::shared_ptr<const model> make_model(const case_config& config);
 
 /// Returns the place of a key, or of the innermost known table around it; nowhere if there is none.
 source_place place_of(const case_config& config, const std::string& path);

@@ -98,7 +98,7 @@ class resolver {
     }
   }
 
-  std::unique_ptr<model> checked_model() const {
+  std::shared_ptr<const model> checked_model() const {
     return with_place_of_key([this] { return make_model(config_); });
   }
 
@@ -403,7 +403,7 @@ class resolver {
 
   void check_solids() const {
     make_mesh(config_);
-    const auto walls = make_solid_walls(config_, *checked_model());
+    const auto walls = make_solid_walls(config_, checked_model());
     for (std::size_t k = 0; k < walls.size(); ++k)
       if (walls[k]->periodic())
         throw input_error(place_of(config_, fmt::format("space.solid.{}.kind", k + 1)),
@@ -416,8 +416,7 @@ class resolver {
   }
 
   void check_faces() const {
-    const auto equation = make_model(config_);
-    const auto sides = make_boundaries(config_, *equation);
+    const auto sides = make_boundaries(config_, make_model(config_));
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const auto& [lower, upper] = sides[k];
       if (lower->periodic() == upper->periodic()) continue;

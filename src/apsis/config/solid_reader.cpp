@@ -169,11 +169,15 @@ std::vector<cell_box> solid_boxes(const case_config& config, const grid& mesh) {
 }
 
 std::vector<std::shared_ptr<const boundary>> make_solid_walls(const case_config& config,
-                                                              const model& equation) {
-  std::vector<std::shared_ptr<const boundary>> walls;
-  for (std::size_t k = 0; k < config.solids.size(); ++k)
-    walls.push_back(make_wall(config, equation, path_of(k), config.solids[k].kind, config.solids[k].values));
-  return walls;
+                                                              const std::shared_ptr<const model>& equation) {
+  const auto make = [&] {
+    std::vector<std::shared_ptr<const boundary>> walls;
+    for (std::size_t k = 0; k < config.solids.size(); ++k)
+      walls.push_back(
+          make_wall(config, *equation, path_of(k), config.solids[k].kind, config.solids[k].values));
+    return walls;
+  };
+  return config.parts->walls.get({equation, "", config.solids, config.constants}, make);
 }
 
 }  // namespace apsis

@@ -16,9 +16,9 @@ void read_solids(const case_text& text, const model& equation, case_config& conf
 /// Returns the solid boxes of a case as cells of its mesh. Throws input_error where they do not fit.
 std::vector<cell_box> solid_boxes(const case_config& config, const grid& mesh);
 
-/// Returns the wall of each solid box. Throws input_error at the place of the table or the formula that is
-/// wrong.
+/// Returns the wall of each solid box, made once for a case and its copies. Throws input_error at the place
+/// of the table or the formula that is wrong.
 std::vector<std::shared_ptr<const boundary>> make_solid_walls(const case_config& config,
-                                                              const model& equation);
+                                                              const std::shared_ptr<const model>& equation);
 
 }  // namespace apsis

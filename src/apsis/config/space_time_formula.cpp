@@ -1,7 +1,5 @@
 #include <apsis/config/space_time_formula.hpp>
 
-#include <apsis/core/errors.hpp>
-
 #include <algorithm>
 #include <array>
 
@@ -19,17 +17,6 @@ formula_kind kind_of(const formula_constants& constants, int space, int velocity
   return kind;
 }
 
-/// A formula without t is one where that is an unknown name.
-bool has_no_time(const std::string& text, formula_kind kind) {
-  kind.variables.erase(kind.variables.begin());
-  try {
-    expression(text, {}, kind);
-  } catch (const input_error&) {
-    return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 space_time_formula::space_time_formula(const std::string& text, const source_place& place,
@@ -39,7 +26,7 @@ space_time_formula::space_time_formula(const std::string& text, const source_pla
   formula_ = std::make_shared<const expression>(text, place, kind);
   further_ = static_cast<std::size_t>(velocity) + state.size();
   space_ = kind.variables.size() - 1 - further_;
-  steady_ = has_no_time(text, kind);
+  steady_ = !formula_->uses("t");
 }
 
 space_time_formula::values space_time_formula::arguments(double t, const position& x,

@@ -130,14 +130,37 @@ void binary_collisions::check_collision(const binary_collision& c) const {
                   square(at(c.k)) + square(at(c.l))));
 }
 
+/// Pairs of velocities that may become each other have equal values of E + a·P, E and P being sums of |v|²
+/// and of v: neighbours after a sort. With numbers a that no lattice has, few others do.
 void binary_collisions::add_elastic_collisions() {
-  const int n = size();
-  for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j)
-      for (int k = i + 1; k < n; ++k)
-        for (int l = k + 1; l < n; ++l)
-          if (const binary_collision one{i, j, k, l}; k != j && l != j && elastic(one))
-            collisions_.push_back(one);
+  struct pair {
+    double value;
+    int first, second;
+  };
+  static constexpr std::array<double, 3> a = {0.7320508075688772, 0.4142135623730951, 0.2360679774997897};
+  double largest = 0.0;
+  for (const auto& v : velocities_) largest = std::max(largest, 2.0 * square(v));
+  const double speed = std::sqrt(largest),
+               window = 3.0 * same * largest;  // elastic() has differences below it
+  std::vector<pair> pairs;
+  for (int i = 0; i < size(); ++i)
+    for (int j = i + 1; j < size(); ++j) {
+      const auto &v = velocities_[static_cast<std::size_t>(i)], &w = velocities_[static_cast<std::size_t>(j)];
+      pair one{square(v) + square(w), i, j};
+      for (std::size_t d = 0; d < v.size(); ++d) one.value += a[d] * speed * (v[d] + w[d]);
+      pairs.push_back(one);
+    }
+  std::sort(pairs.begin(), pairs.end(), [](const pair& p, const pair& q) { return p.value < q.value; });
+  for (auto p = pairs.begin(); p != pairs.end(); ++p)
+    for (auto q = p + 1; q != pairs.end() && q->value - p->value <= window; ++q) {
+      const pair &one = p->first < q->first ? *p : *q, &other = p->first < q->first ? *q : *p;
+      const binary_collision found{one.first, one.second, other.first, other.second};
+      const bool shared = found.i == found.k || found.j == found.k || found.j == found.l;
+      if (!shared && elastic(found)) collisions_.push_back(found);
+    }
+  std::sort(collisions_.begin(), collisions_.end(), [](const binary_collision& x, const binary_collision& y) {
+    return std::array{x.i, x.j, x.k, x.l} < std::array{y.i, y.j, y.k, y.l};
+  });
   if (collisions_.empty())
     throw input_error(
         "model.velocities admits no collision (no two pairs of the velocities have the same momentum and "

@@ -1,5 +1,6 @@
 #include <apsis/model/expression.hpp>
 
+#include <apsis/core/construction_count.hpp>
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
@@ -7,7 +8,13 @@
 #include <atomic>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <numbers>
+#include <set>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -268,38 +275,58 @@ std::string why_not_variables(const std::vector<std::string>& names, const formu
   return "";
 }
 
-struct expression::impl {
-  impl(const std::string& words, source_place where, formula_kind what)
-      : text(words), place(std::move(where)), kind(std::move(what)), parsers(text, kind) {}
+/// A compiled text, which all expressions of this text share.
+struct expression::compiled : construction_count<expression> {
+  compiled(const std::string& words, const source_place& place, const formula_kind& kind)
+      : text(words), parsers(text, kind) {
+    try {
+      parsers.first().evaluate(std::vector<double>(kind.variables.size()));
+    } catch (const mu::ParserError& e) {
+      const bool unknown = e.GetCode() == mu::ecUNASSIGNABLE_TOKEN;
+      // muParser reports the end of some tokens and the start of others, so that an unknown name is searched
+      // for.
+      std::size_t at = e.GetPos() >= 0 ? static_cast<std::size_t>(e.GetPos()) : 0;
+      if (unknown && text.rfind(e.GetToken(), at) != std::string::npos) at = text.rfind(e.GetToken(), at);
+      at = std::min(at, text.size() - 1);
+      fail(text, place, at, explain(e),
+           unknown ? suggest(e.GetToken(), known_names(kind)) : "check the formula");
+    }
+    if (parsers.first().parser().GetNumResults() != 1)
+      fail(text, place, text.find(','), "a comma outside a function", "write one formula");
+    for (const auto& [name, address] : parsers.first().parser().GetUsedVar()) used.insert(name);
+  }
+
+  /// Returns the compiled text for the variables and constants of a kind. The last ones are kept, since the
+  /// parts of a program that read, check and run a case ask for the same texts one after the other.
+  static std::shared_ptr<const compiled> of(const std::string& text, const source_place& place,
+                                            const formula_kind& kind) {
+    using key = std::tuple<std::string, std::vector<std::string>, formula_constants>;
+    constexpr std::size_t most_kept = 256;
+    static std::mutex mutex;
+    static std::map<key, std::shared_ptr<const compiled>> kept;
+    const std::lock_guard lock(mutex);
+    key wanted(text, kind.variables, kind.constants);
+    if (const auto found = kept.find(wanted); found != kept.end()) return found->second;
+    auto made = std::make_shared<const compiled>(text, place, kind);
+    if (kept.size() >= most_kept) kept.clear();
+    kept.emplace(std::move(wanted), made);
+    return made;
+  }
 
   std::string text;
-  source_place place;
-  formula_kind kind;
-  parser_pool parsers;
+  std::set<std::string> used;   ///< names of its variables
+  mutable parser_pool parsers;  ///< thread-safe
 };
 
-expression::expression(const std::string& text, const source_place& place, const formula_kind& kind) {
+expression::expression(const std::string& text, const source_place& place, const formula_kind& kind)
+    : place_(place), variables_(kind.variables), nonnegative_(kind.nonnegative) {
   check_characters(text, place, kind);
-  try {
-    impl_ = std::make_unique<impl>(text, place, kind);
-    impl_->parsers.first().evaluate(std::vector<double>(kind.variables.size()));
-  } catch (const mu::ParserError& e) {
-    const bool unknown = e.GetCode() == mu::ecUNASSIGNABLE_TOKEN;
-    // muParser reports the end of some tokens and the start of others, so that an unknown name is searched
-    // for.
-    std::size_t at = e.GetPos() >= 0 ? static_cast<std::size_t>(e.GetPos()) : 0;
-    if (unknown && text.rfind(e.GetToken(), at) != std::string::npos) at = text.rfind(e.GetToken(), at);
-    at = std::min(at, text.size() - 1);
-    fail(text, place, at, explain(e),
-         unknown ? suggest(e.GetToken(), known_names(kind)) : "check the formula");
-  }
-  if (impl_->parsers.first().parser().GetNumResults() != 1)
-    fail(text, place, text.find(','), "a comma outside a function", "write one formula");
+  compiled_ = compiled::of(text, place, kind);
 }
 
-expression::~expression() = default;
-expression::expression(expression&&) noexcept = default;
-expression& expression::operator=(expression&&) noexcept = default;
+long expression::compiled_so_far() {
+  return compiled::so_far();
+}
 
 double expression::value(std::span<const double> variables) const {
   double result = 0.0;
@@ -309,30 +336,34 @@ double expression::value(std::span<const double> variables) const {
 
 void expression::values(std::span<const double> variables, std::span<double> results) const {
   try {
-    impl_->parsers.evaluate(variables, results);
+    compiled_->parsers.evaluate(variables, results);
   } catch (const mu::ParserError& e) {
-    fail(impl_->text, impl_->place, 0, e.GetMsg(), "check the formula");
+    fail(text(), place_, 0, e.GetMsg(), "check the formula");
   }
 }
 
 double expression::evaluate(std::span<const double> variables) const {
   double result = value(variables);
   if (std::isnan(result)) result = std::abs(result);  // NaN is printed without a sign
-  if (!std::isfinite(result) || (impl_->kind.nonnegative && result < 0.0))
+  if (!std::isfinite(result) || (nonnegative_ && result < 0.0))
     throw input_error(
-        impl_->place,
+        place_,
         fmt::format("expression '{}' is {} at {} (it must be finite{}); change the formula or the domain",
-                    excerpt(impl_->text, 0), result, values_text(impl_->kind.variables, variables),
-                    impl_->kind.nonnegative ? " and not negative" : ""));
+                    excerpt(text(), 0), result, values_text(variables_, variables),
+                    nonnegative_ ? " and not negative" : ""));
   return result;
 }
 
 const std::string& expression::text() const {
-  return impl_->text;
+  return compiled_->text;
 }
 
 bool expression::is_constant() const {
-  return impl_->parsers.first().parser().GetUsedVar().empty();
+  return compiled_->used.empty();
+}
+
+bool expression::uses(const std::string& variable) const {
+  return compiled_->used.contains(variable);
 }
 
 }  // namespace apsis

@@ -40,14 +40,15 @@ std::string why_not_variables(const std::vector<std::string>& names, const formu
 /// (natural) log10 sqrt abs min max; constants pi and e. No assignment.
 class expression {
  public:
+  /// Returns the number of texts compiled by this process so far.
+  static long compiled_so_far();
+
   static constexpr std::size_t longest = 1000;  ///< characters
 
   /// `place` is the place of the first character; errors point into the text from there.
   /// Throws input_error: syntax, unknown name, too long, empty.
+  /// Expressions of one text with the same variables and constants are compiled once.
   explicit expression(const std::string& text, const source_place& place = {}, const formula_kind& kind = {});
-  ~expression();
-  expression(expression&&) noexcept;             ///< the source can then only be assigned to or destroyed
-  expression& operator=(expression&&) noexcept;  ///< the source can then only be assigned to or destroyed
 
   /// Returns the value for the given values of the variables, in the order of formula_kind; further numbers
   /// are ignored. NaN outside the domain of a function. Thread-safe.
@@ -65,10 +66,15 @@ class expression {
 
   const std::string& text() const;  ///< text as given
   bool is_constant() const;         ///< contains no variable
+  /// Whether the formula contains a variable of its kind.
+  bool uses(const std::string& variable) const;
 
  private:
-  struct impl;
-  std::unique_ptr<impl> impl_;
+  struct compiled;
+  std::shared_ptr<const compiled> compiled_;
+  source_place place_;
+  std::vector<std::string> variables_;
+  bool nonnegative_ = true;
 };
 
 }  // namespace apsis

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/core/construction_count.hpp>
 #include <apsis/model/data_form.hpp>
 #include <apsis/model/dimension.hpp>
 #include <apsis/model/point_collision.hpp>
@@ -48,7 +49,7 @@ struct unsupported_initial_data {
 
 /// An equation u_t + Σ_k ∂_xk(v_k u) = S(u) + Q(u)/ε at one point of space, independent of mesh and time. A
 /// row u has components() values; all quantities are dimensionless.
-class model {
+class model : public construction_count<model> {
  public:
   virtual ~model() = default;
 

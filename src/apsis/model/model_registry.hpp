@@ -78,6 +78,7 @@ struct velocity_config {
   std::vector<std::string> set = {};
   /// Lines of velocities of all directions, or of each, in place of the members above.
   std::vector<velocity_line> lines = {};
+  bool operator==(const velocity_config&) const = default;  ///< equal values
 };
 
 /// Configuration of a model.
@@ -88,6 +89,7 @@ struct model_config {
   formula_constants constants = {};                            ///< constants of formulas
   std::map<std::string, std::vector<std::string>> lists = {};  ///< complete; valid names or formulas
   int space_dimensions = 1;  ///< D, of models that are possible in several dimensions
+  bool operator==(const model_config&) const = default;  ///< equal values
 };
 
 /// One equation of the registry: a file of model/models/ defines `extern const model_entry model_<file>`.

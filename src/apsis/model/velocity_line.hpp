@@ -36,6 +36,7 @@ class velocity_line {
   void set_unit(double unit);
   /// Returns the largest distance of neighbours between two velocities.
   double widest_gap(double from, double to) const;
+  bool operator==(const velocity_line&) const = default;  ///< equal points and weights
 
  private:
   void complete();

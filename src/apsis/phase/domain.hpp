@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/core/construction_count.hpp>
 #include <apsis/phase/boundary.hpp>
 #include <apsis/phase/distribution.hpp>
 #include <apsis/phase/field.hpp>
@@ -27,7 +28,7 @@ struct opening {
 /// A phase space with the boundary conditions of its faces and of its solid boxes. The domain owns the ghost
 /// rows beyond the ends of segments, which the boundary of each surface fills; a ghost row that repeats an
 /// interior row refers to that row without a copy.
-class domain {
+class domain : public construction_count<domain> {
  public:
   /// Boundaries at the lower and the upper face of a direction.
   using faces = std::array<std::shared_ptr<const boundary>, 2>;

@@ -55,7 +55,8 @@ void add_squares(const domain& space, int direction, const field& phi, std::vect
 std::vector<double> size_of_gradient(const run_setup& setup, const std::vector<double>& phi) {
   std::vector<double> sum(phi.size(), 0.0);
   if (setup.has_space()) {
-    domain space = setup.builder().space();
+    const auto made = setup.builder().make_space();
+    domain& space = *made;
     space.reserve(1, 1);
     field values(static_cast<int>(phi.size()), 1);
     for (int cell = 0; cell < values.cells(); ++cell) *values.row(cell) = phi[static_cast<std::size_t>(cell)];

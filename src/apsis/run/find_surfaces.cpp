@@ -229,7 +229,7 @@ std::vector<surface_table> find_surfaces(const run_setup& setup, const surface_v
   std::vector<surface_table> tables;
   const auto& wanted = setup.config().output.surfaces;
   if (wanted.empty()) return tables;
-  const domain space = setup.builder().whole_space();
+  const domain& space = setup.builder().whole_space();
   const surface_writer writer(setup, space, last);
   const auto names = setup.open_faces();
   const auto is_wanted = [&](const std::string& name) {

@@ -26,7 +26,7 @@ bool is_exact(const rate_response& of) {
 }
 
 bool has_memory_for(const run_setup& setup) {
-  const double wanted = memory_need(setup.config(), setup, buffers_of_estimate).bytes();
+  const double wanted = memory_need(setup, buffers_of_estimate).bytes();
   const double limit = available_memory().bytes;
   return global_lowest(setup.processes(), wanted < limit ? 1.0 : 0.0) > 0.0;
 }

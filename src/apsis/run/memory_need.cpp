@@ -66,15 +66,17 @@ std::string advice(const memory_need& need, double limit) {
 
 }  // namespace
 
-memory_need::memory_need(const case_config& config, const run_setup& setup, int copies)
+memory_need::memory_need(const run_setup& setup, int copies)
     : components_(setup.equation->components()),
       velocity_dimensions_(setup.equation->velocities().dimensions()),
       buffers_(buffers_of(setup)),
       copies_(copies * (setup.multistep() ? setup.multistep()->steps : 1)),  // with earlier values
-      snapshots_(1.0 + (config.output.every > 0.0 ? config.time.end / config.output.every : 0.0)),
-      fields_(static_cast<double>(config.output.fields.empty() ? setup.equation->fields().size()
-                                                               : config.output.fields.size())),
       method_(setup.integrator_name()) {
+  const case_config& config = setup.config();
+  const auto& output = config.output;
+  snapshots_ = 1.0 + (output.every > 0.0 ? config.time.end / output.every : 0.0);
+  fields_ =
+      static_cast<double>(output.fields.empty() ? setup.equation->fields().size() : output.fields.size());
   if (setup.has_space()) shape_ = config.space.cells;
   cells_ = product(shape_);
   const auto& points = config.velocity.points;
@@ -119,8 +121,8 @@ std::vector<int> memory_need::points_that_fit(double limit) const {
   return {};
 }
 
-void check_memory(const case_config& config, const run_setup& setup, int copies) {
-  const memory_need need(config, setup, copies);
+void check_memory(const run_setup& setup, int copies) {
+  const memory_need need(setup, copies);
   memory_limit limit = available_memory();
   // Of all machines, if they are like this one.
   const communicator& processes = setup.processes();
@@ -128,8 +130,9 @@ void check_memory(const case_config& config, const run_setup& setup, int copies)
   if (need.bytes() <= limit.bytes) return;
   const std::string message = fmt::format("the run needs at least {}, and {} are left ({}); {}", need.text(),
                                           in_units(limit.bytes), limit.source, advice(need, limit.bytes));
-  const auto place = config.places.find("space.cells");
-  if (place == config.places.end()) throw input_error(message);
+  const auto& places = setup.config().places;
+  const auto place = places.find("space.cells");
+  if (place == places.end()) throw input_error(message);
   throw input_error(place->second, message);
 }
 

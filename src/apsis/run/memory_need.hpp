@@ -11,8 +11,8 @@ namespace apsis {
 /// fields. Smaller ones are not counted, so that a case that fits is never refused.
 class memory_need {
  public:
-  /// Counts those of a case with `copies` copies of the state.
-  memory_need(const case_config& config, const run_setup& setup, int copies);
+  /// Counts those of a run with `copies` copies of the state.
+  memory_need(const run_setup& setup, int copies);
 
   /// Returns the number of bytes.
   double bytes() const { return bytes(cells_, components_); }
@@ -40,6 +40,6 @@ class memory_need {
 /// Throws input_error at the place of space.cells, with the numbers of cells and of velocities that would
 /// fit, before anything large is allocated, if a run needs more than the available memory
 /// (available_memory).
-void check_memory(const case_config& config, const run_setup& setup, int copies);
+void check_memory(const run_setup& setup, int copies);
 
 }  // namespace apsis

@@ -75,20 +75,22 @@ case_config with_method_of_restart(case_config config, const session_options& op
   return config;
 }
 
-/// Returns the case if the state and, for results, its checkpoint and solution.h5 fit into memory together;
-/// reports what it needs.
-case_config with_room_for_results(const case_config& configured, const session_options& options) {
-  case_config config = with_method_of_restart(with_chosen_method(configured), options);
+/// Returns the setup of a case if the state and, for results, its checkpoint and solution.h5 fit into memory
+/// together; reports what it needs.
+std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& configured,
+                                                       const session_options& options) {
+  const case_config config = with_method_of_restart(with_chosen_method(configured), options);
   if (!config.time.method_reason.empty())
     log::info(fmt::format("{}: time.method = \"{}\" is {} ({})", config.source, automatic_method,
                           config.time.method, config.time.method_reason));
+  std::unique_ptr<run_setup> setup;
   together(*options.processes, [&] {
-    const run_setup setup(config, options.processes);
+    setup = std::make_unique<run_setup>(config, options.processes);
     const int copies = options.out ? 2 : 0;
-    check_memory(config, setup, copies);
-    log::info(fmt::format("{}: needs {}", config.source, memory_need(config, setup, copies).text()));
+    check_memory(*setup, copies);
+    log::info(fmt::format("{}: needs {}", config.source, memory_need(*setup, copies).text()));
   });
-  return config;
+  return setup;
 }
 
 /// Returns the first line of each text that differs from that of the other; equal ones if there is none.
@@ -210,8 +212,8 @@ int threads_for(const case_config& config, const communicator& processes) {
 
 run_session::run_session(const case_config& configured, session_options options)
     : options_(std::move(options)),
-      simulation_(with_room_for_results(same_on_all(configured, options_), options_),
-                  start_of(configured, options_), options_.processes) {
+      simulation_(setup_with_room_for_results(same_on_all(configured, options_), options_),
+                  start_of(configured, options_)) {
   // Locked first: a checkpoint in a folder that another run writes into must not be read.
   together(processes(), [this] {
     if (options_.out && processes().is_root()) folder_ = std::make_unique<result_folder>(*options_.out);

@@ -108,11 +108,11 @@ void run_setup::build_space(std::shared_ptr<communicator> processes) {
   if (space.collisions) builder_.with_collisions_at(*space.collisions);
   at_key(config_, space.blocks ? "space.blocks" : "space.cells",
          [&] { builder_.shared_by(std::move(processes), given_blocks(space.blocks)); });
-  const auto sides = make_boundaries(config_, *equation);
+  const auto sides = make_boundaries(config_, equation);
   for (int direction = 0; direction < static_cast<int>(sides.size()); ++direction)
     for (const bool upper : {false, true})
       builder_.with_boundary({direction, upper}, sides[static_cast<std::size_t>(direction)][upper ? 1 : 0]);
-  const auto walls = make_solid_walls(config_, *equation);
+  const auto walls = make_solid_walls(config_, equation);
   for (std::size_t k = 0; k < walls.size(); ++k) builder_.with_solid(static_cast<int>(k), walls[k]);
   if (auto of = make_acceleration(config_, *equation)) builder_.with_force(std::move(*of));
   if (auto rate = make_source(config_, *equation)) builder_.with_source(std::move(*rate));
@@ -211,7 +211,7 @@ void run_setup::check_tolerance() const {
 std::vector<std::string> run_setup::open_faces() const {
   std::vector<std::string> open;
   if (!has_space()) return open;
-  const domain space = builder_.space();
+  const domain& space = builder_.space();
   for (const opening& one : space.openings())
     open.push_back(one.solid < 0 ? face_names[one.where.index()]
                                  : config_.solids[static_cast<std::size_t>(one.solid)].name);
@@ -223,7 +223,7 @@ std::vector<std::string> run_setup::open_faces() const {
 std::vector<std::size_t> run_setup::open_ends() const {
   std::vector<std::size_t> ends;
   if (!has_space()) return ends;
-  const domain space = builder_.space();
+  const domain& space = builder_.space();
   for (const opening& one : space.openings()) ends.push_back(space.ends_at(one));
   ends.resize(open_faces().size(), 1);
   return ends;

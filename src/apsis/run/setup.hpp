@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/core/construction_count.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/multistep.hpp>
 #include <apsis/model/model_registry.hpp>
@@ -17,14 +18,14 @@ namespace apsis {
 
 /// The objects of a case, built and checked before the first step: translates the names and numbers of the
 /// case into calls of a problem_builder.
-class run_setup {
+class run_setup : public construction_count<run_setup> {
  public:
   /// Throws input_error if the mesh is smaller than the stencil, the method cannot integrate the model, or
   /// epsilon(x) is not a finite number ≥ 0 on the mesh.
   /// `processes` share the mesh; states and fields are those of the block of this process.
   explicit run_setup(const case_config& config, std::shared_ptr<communicator> processes = single_process());
 
-  std::unique_ptr<model> equation;  ///< model.name with its parameters and velocity grid
+  std::shared_ptr<const model> equation;  ///< model.name with its parameters and velocity grid
 
   /// Returns the case.
   const case_config& config() const { return config_; }

@@ -41,7 +41,7 @@ std::unique_ptr<run_setup> setup_that_fits(const case_config& config,
   std::unique_ptr<run_setup> setup;
   together(*processes, [&] {
     setup = std::make_unique<run_setup>(config, processes);
-    check_memory(config, *setup, 0);
+    check_memory(*setup, 0);
   });
   return setup;
 }
@@ -55,10 +55,10 @@ std::unique_ptr<semidiscrete_problem> problem_of(const run_setup& setup) {
 }  // namespace
 
 struct simulation::impl {
-  impl(case_config configured, const state_source& start, const std::shared_ptr<communicator>& processes)
-      : config(with_chosen_method(std::move(configured))),
-        made(setup_that_fits(config, processes)),
+  impl(std::unique_ptr<run_setup> prepared, const state_source& start)
+      : made(std::move(prepared)),
         setup(*made),
+        config(setup.config()),
         problem(problem_of(setup)),
         integrator(setup.integrator(), *problem,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
@@ -229,9 +229,9 @@ struct simulation::impl {
     return whole_ends(setup, own);
   }
 
-  case_config config;
   std::unique_ptr<run_setup> made;
-  run_setup& setup;
+  const run_setup& setup;
+  const case_config& config;
   std::unique_ptr<semidiscrete_problem> problem;
   stepper<semidiscrete_problem> integrator;
   std::unique_ptr<multistep_stepper> multistep;  ///< instead of the integrator, its starter
@@ -278,9 +278,11 @@ void check_sizes(const run_setup& setup, const kept_value& saved, const field& u
 }
 }  // namespace
 
-simulation::simulation(case_config config, const state_source& start,
+simulation::simulation(const case_config& config, const state_source& start,
                        const std::shared_ptr<communicator>& processes)
-    : impl_(std::make_unique<impl>(std::move(config), start, processes)) {}
+    : simulation(setup_that_fits(config, processes), start) {}
+simulation::simulation(std::unique_ptr<run_setup> setup, const state_source& start)
+    : impl_(std::make_unique<impl>(std::move(setup), start)) {}
 simulation::~simulation() = default;
 simulation::simulation(simulation&&) noexcept = default;
 simulation& simulation::operator=(simulation&&) noexcept = default;

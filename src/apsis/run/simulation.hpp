@@ -51,8 +51,10 @@ class simulation {
   /// `start`: the initial state, if it is not that of the case.
   /// `processes` share the mesh: every member function that computes or returns values of cells is then
   /// collective, and fields and exact states of all cells are on the root only.
-  explicit simulation(case_config config, const state_source& start = {},
+  explicit simulation(const case_config& config, const state_source& start = {},
                       const std::shared_ptr<communicator>& processes = single_process());
+  /// Runs a case that has been set up, and whose memory has been checked.
+  explicit simulation(std::unique_ptr<run_setup> setup, const state_source& start = {});
   ~simulation();
   simulation(simulation&&) noexcept;             ///< leaves the source empty
   simulation& operator=(simulation&&) noexcept;  ///< leaves the source empty

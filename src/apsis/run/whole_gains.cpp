@@ -46,7 +46,7 @@ std::size_t size_of_totals(const run_setup& setup) {
 
 std::size_t size_of_whole_gains(const run_setup& setup) {
   if (!setup.has_space()) return 0;
-  const domain whole = setup.builder().whole_space();
+  const domain& whole = setup.builder().whole_space();
   return ends_of(whole, setup.whole_mesh()).size() * setup.equation->invariants().size() +
          size_of_totals(setup);
 }

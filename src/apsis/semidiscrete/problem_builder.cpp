@@ -47,6 +47,7 @@ problem_builder& problem_builder::on(const grid& mesh) {
                                   equation_->space_dimensions()));
   mesh_ = mesh;
   distribution_.reset();
+  forget_spaces();
   const auto periodic = make_boundary("periodic");
   sides_.assign(static_cast<std::size_t>(mesh.dimensions()), {periodic, periodic});
   solids_.assign(mesh.solids().size(), nullptr);
@@ -70,6 +71,7 @@ problem_builder& problem_builder::shared_by(std::shared_ptr<communicator> proces
   if (processes_->is_single()) return *this;
   distribution_ = distribution{processes_, cut, whole};
   mesh_ = distribution_->block();
+  forget_spaces();
   return *this;
 }
 
@@ -78,6 +80,7 @@ problem_builder& problem_builder::with_boundary(const face& where, std::shared_p
     throw input_error(fmt::format("no face in direction {} (the mesh has {} dimensions); call on() first",
                                   where.direction + 1, sides_.size()));
   sides_[static_cast<std::size_t>(where.direction)][where.upper ? 1 : 0] = std::move(side);
+  forget_spaces();
   return *this;
 }
 
@@ -86,6 +89,7 @@ problem_builder& problem_builder::with_solid(int number, std::shared_ptr<const b
     throw input_error(
         fmt::format("no solid box {} (the mesh has {}); call on() first", number, solids_.size()));
   solids_[static_cast<std::size_t>(number)] = std::move(wall);
+  forget_spaces();
   return *this;
 }
 
@@ -190,15 +194,25 @@ void problem_builder::check_cells() const {
                     whole_mesh().cells(0), centre_rows::reach, centre_rows::reach + 1));
 }
 
-domain problem_builder::space() const {
+std::shared_ptr<domain> problem_builder::make_space() const {
   check_solids();
-  return distribution_ ? domain({mesh_, equation_->velocities()}, sides_, solids_, *distribution_)
-                       : whole_space();
+  if (!has_space()) return std::make_shared<domain>(domain::point());
+  const phase_space space{mesh_, equation_->velocities()};
+  return distribution_ ? std::make_shared<domain>(space, sides_, solids_, *distribution_)
+                       : std::make_shared<domain>(space, sides_, solids_);
 }
 
-domain problem_builder::whole_space() const {
+const domain& problem_builder::space() const {
+  if (!space_) space_ = make_space();
+  return *space_;
+}
+
+const domain& problem_builder::whole_space() const {
+  if (!distribution_) return space();
   check_solids();
-  return has_space() ? domain({whole_mesh(), equation_->velocities()}, sides_, solids_) : domain::point();
+  if (!whole_)
+    whole_ = std::make_shared<domain>(phase_space{whole_mesh(), equation_->velocities()}, sides_, solids_);
+  return *whole_;
 }
 
 /// In every cell at the points `offsets` · Δx from its centre, along the first direction.
@@ -251,7 +265,9 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
     throw input_error(
         "solid boxes with cell averages (they are collided on whole lines); use the finite difference "
         "formulation");
-  const auto space = std::make_shared<domain>(this->space());
+  this->space();
+  // Ghost rows belong to one problem.
+  const auto space = space_.use_count() > 1 ? make_space() : space_;
   auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, complete_discretization(),
                                                         make_collision(space), stages_);
   if (force_) problem->set_force(*force_);

@@ -91,10 +91,13 @@ class problem_builder {
   communicator& processes() const { return *processes_; }
   /// Returns the blocks of a mesh that several processes share; nothing for a single one.
   const std::optional<distribution>& blocks() const { return distribution_; }
-  /// Returns the domain. Throws input_error if only one face of a direction is periodic.
-  domain space() const;
+  /// Returns the domain, without ghost rows; the first problem that is built uses it. Throws input_error if
+  /// only one face of a direction is periodic.
+  const domain& space() const;
   /// Returns the domain of the whole mesh, also on one of several processes.
-  domain whole_space() const;
+  const domain& whole_space() const;
+  /// Returns a new domain, for ghost rows of its own.
+  std::shared_ptr<domain> make_space() const;
   /// Whether the reconstruction is first-order upwind.
   bool first_order() const { return discretization_.scheme && discretization_.scheme->order() == 1; }
   /// Whether steps within r Δt_FE keep nonnegative data nonnegative.
@@ -107,6 +110,7 @@ class problem_builder {
  private:
   formulation unknowns() const;
   bool pointwise() const;
+  void forget_spaces() { space_ = whole_ = nullptr; }
   void check_solids() const;
   void check_cells() const;
   spatial_discretization complete_discretization() const;
@@ -127,6 +131,7 @@ class problem_builder {
   scale epsilon_;
   std::optional<acceleration> force_;
   std::optional<source_rate> source_;
+  mutable std::shared_ptr<domain> space_, whole_;  ///< made when first asked for; none after a change
 };
 
 }  // namespace apsis

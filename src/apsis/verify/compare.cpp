@@ -162,7 +162,7 @@ std::vector<double> on_mesh_of(const outcome& run, const outcome& finer) {
   if (run.cells == finer.cells) return finer.state;
   if (run.config.space.formulation == formulation::finite_volume)
     return averages{static_cast<std::size_t>(finer.cells / run.cells), components}(finer.state);
-  const bool periodic = make_boundaries(run.config, *make_model(run.config)).front()[0]->periodic();
+  const bool periodic = make_boundaries(run.config, make_model(run.config)).front()[0]->periodic();
   return interpolation(finer.cells, run.cells, periodic)(finer.state, components);
 }
 

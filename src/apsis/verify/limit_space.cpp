@@ -22,7 +22,7 @@ domain space_of(const case_config& config, const relaxation_model& equation) {
   if (equation.space_dimensions() == 0) return domain::point();
   if (!config.solids.empty())
     throw input_error("the case has no limit scheme (it has solid boxes); remove them");
-  domain made({make_mesh(config), equation.velocities()}, make_boundaries(config, equation));
+  domain made({make_mesh(config), equation.velocities()}, make_boundaries(config, make_model(config)));
   for (const opening& one : made.openings())
     if (!made.side(one.surfaces.front())->repeated_cell(0, 1))
       throw input_error(

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <apsis/config/surface_tables.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/phase/domain.hpp>
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+
+/// A value that is made once for a key, and again only for another one. Thread-safe.
+template <class Key, class Value>
+class made_once {
+ public:
+  /// Returns the value for the key, or that of make(), which may throw.
+  template <class Make>
+  Value get(Key key, const Make& make) {
+    const std::lock_guard lock(mutex_);
+    if (!key_ || !(*key_ == key)) {
+      key_.reset();
+      value_ = make();
+      key_ = std::move(key);
+    }
+    return value_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<Key> key_;
+  Value value_{};
+};
+
+/// The objects of a case that reading, checking and running it share. Copies of a case share them too, and a
+/// case whose keys were changed gets new ones.
+struct case_parts {
+  /// The entry of a model, and the values that it is made from.
+  using model_key = std::pair<const model_entry*, model_config>;
+  made_once<model_key, std::shared_ptr<const model>> equation;  ///< make_model()
+
+  /// The model, the kind of sides without one, the tables of sides or boxes, and the constants of their
+  /// formulas.
+  template <class Tables>
+  using surface_key = std::tuple<std::shared_ptr<const model>, std::string, Tables, formula_constants>;
+  made_once<surface_key<std::array<face_table, 6>>, std::vector<domain::faces>> sides;  ///< make_boundaries()
+  made_once<surface_key<std::vector<solid_table>>, std::vector<std::shared_ptr<const boundary>>>
+      walls;  ///< make_solid_walls()
+};
+
+}  // namespace apsis

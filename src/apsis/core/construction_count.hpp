@@ -1,0 +1,27 @@
+#pragma once
+
+#include <atomic>
+
+namespace apsis {
+
+/// Base of classes whose objects are expensive and should be made once: counts how many were made, copies
+/// included. Tests compare the count before and after.
+template <class T>
+class construction_count {
+ public:
+  /// Returns the number of objects made by this process so far.
+  static long so_far() { return made_; }
+
+ protected:
+  construction_count() { ++made_; }
+  construction_count(const construction_count&) { ++made_; }
+  construction_count(construction_count&&) noexcept {}
+  construction_count& operator=(const construction_count&) = default;
+  construction_count& operator=(construction_count&&) noexcept = default;
+  ~construction_count() = default;
+
+ private:
+  inline static std::atomic<long> made_{0};
+};
+
+}  // namespace apsis

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """check_layers.py [ROOT]: includes of a room above the including one.
 
-The rooms, and what each may include, are those of the apsis_room() calls in src/apsis/CMakeLists.txt. Above the library
+The rooms, and what each may include, are those of the apsis_room() calls in src/apsis/CMakeLists.txt: an explicit list, which
+grants nothing that a listed room may include. Above the library
 lie paper/, app/, python/bindings/, tests/, bench/ and examples/, which it may not include. The README of a room names the
 rooms that its files include. Prints one line for each violation; exit code 1 if there are any.
 """
@@ -13,17 +14,16 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.MULTILINE)
 
 
 def read_rooms(cmake: str) -> dict[str, set[str]]:
-    """For each room the rooms that it may include, in any depth."""
+    """For each room the rooms that it may include: those of its DEPENDS, and none that these may include."""
     rooms: dict[str, set[str]] = {}
     for name, arguments in re.findall(r"apsis_room\((\w+)([^)]*)\)", cmake):
         words = arguments.split()
-        direct = []
+        rooms[name] = set()
         if "DEPENDS" in words:
             for word in words[words.index("DEPENDS") + 1:]:
                 if word.isupper():
                     break
-                direct.append(word)
-        rooms[name] = set(direct).union(*(rooms[room] for room in direct)) if direct else set()
+                rooms[name].add(word)
     return rooms
 
 
@@ -37,7 +37,10 @@ def violations(root: Path) -> list[str]:
     rooms = read_rooms((library / "CMakeLists.txt").read_text(encoding="utf-8"))
     found = [f"src/apsis/{folder.name}: is no room of src/apsis/CMakeLists.txt"
              for folder in sorted(library.iterdir()) if folder.is_dir() and folder.name not in rooms]
+    order = list(rooms)
     for room, allowed in rooms.items():
+        if late := sorted(allowed - set(order[:order.index(room)])):
+            found.append(f"src/apsis/CMakeLists.txt: {room} may include {late} (not declared before it)")
         readme = library / room / "README.md"
         named = set(re.findall(r"`(\w+)`", " ".join(readme.read_text(encoding="utf-8").split()).rpartition("Includes")[2].partition(".")[0]))
         included = set()
@@ -51,6 +54,8 @@ def violations(root: Path) -> list[str]:
                     found.append(f"{file.relative_to(root)}:{line}: {room} includes {other} ({match[1]})")
                 elif (root / match[1]).exists() and not (file.parent / match[1]).exists():
                     found.append(f"{file.relative_to(root)}:{line}: {room} includes {match[1]} (above the library)")
+        if not allowed <= included | {room}:
+            found.append(f"src/apsis/CMakeLists.txt: {room} may include {sorted(allowed - included)} (its files do not)")
         if named != included:
             found.append(f"src/apsis/{room}/README.md: states that it includes {sorted(named)} (its files include {sorted(included)})")
     return found

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/model/model.hpp>
-#include <apsis/phase/field.hpp>
+#include <apsis/mesh/field.hpp>
 
 #include <memory>
 #include <vector>

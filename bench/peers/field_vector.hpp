@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/phase/field.hpp>
+#include <apsis/mesh/field.hpp>
 
 #include <memory>
 

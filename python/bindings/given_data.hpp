@@ -1,7 +1,7 @@
 #pragma once
 
+#include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/field.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
 
 #include <string>

@@ -2,7 +2,7 @@
 
 #include "callback.hpp"
 
-#include <apsis/phase/position.hpp>
+#include <apsis/velocity/position.hpp>
 
 #include <functional>
 #include <memory>

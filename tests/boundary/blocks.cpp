@@ -1,9 +1,9 @@
 // Rows beyond the ends of segments in the blocks of a mesh that several processes share are those of the
 // whole mesh.
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/boundary/domain.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/random_source.hpp>
-#include <apsis/phase/domain.hpp>
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 // Rows that sweeps see beyond the ends of segments.
 #include <apsis/boundary/boundary_registry.hpp>
-#include <apsis/phase/domain.hpp>
+#include <apsis/boundary/domain.hpp>
 
 #include <vector>
 

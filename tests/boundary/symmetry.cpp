@@ -1,8 +1,8 @@
 // Mirror images at a plane of symmetry.
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/boundary/domain.hpp>
 #include <apsis/boundary/mirrored_components.hpp>
 #include <apsis/core/errors.hpp>
-#include <apsis/phase/domain.hpp>
 
 #include <vector>
 

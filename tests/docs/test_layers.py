@@ -18,7 +18,7 @@ class Layers(unittest.TestCase):
         rooms = check_layers.read_rooms((SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8"))
         self.assertEqual(rooms["core"], set())
         self.assertEqual(rooms["integrate"], {"core", "method"})
-        for room in ("method", "integrate", "model", "phase", "scheme"):
+        for room in ("method", "integrate", "velocity", "mesh", "model", "scheme"):
             self.assertFalse(rooms[room] & {"semidiscrete", "config", "output", "run", "verify"}, room)
         self.assertIn("semidiscrete", rooms["run"])
 
@@ -36,10 +36,26 @@ class Layers(unittest.TestCase):
     def test_a_planted_violation_is_found_with_its_place(self):
         self.assertEqual(self.planted("src/apsis/method/planted.hpp", "#pragma once\n#include <apsis/run/setup.hpp>\n"),
                          ["src/apsis/method/planted.hpp:2: method includes run (apsis/run/setup.hpp)"])
-        self.assertEqual(self.planted("src/apsis/phase/planted.cpp", '#include "apsis/model/model.hpp"\n'),
-                         ["src/apsis/phase/planted.cpp:1: phase includes model (apsis/model/model.hpp)"])
+        self.assertEqual(self.planted("src/apsis/mesh/planted.cpp", '#include "apsis/model/model.hpp"\n'),
+                         ["src/apsis/mesh/planted.cpp:1: mesh includes model (apsis/model/model.hpp)"])
         self.assertEqual(self.planted("src/apsis/verify/planted.cpp", "#include <paper/claim.hpp>\n"),
                          ["src/apsis/verify/planted.cpp:1: verify includes paper/claim.hpp (above the library)"])
+
+    def test_a_room_may_not_include_what_the_rooms_that_it_includes_may(self):
+        rooms = check_layers.read_rooms("apsis_room(a)\napsis_room(b DEPENDS a PUBLIC x)\napsis_room(c DEPENDS b)\n")
+        self.assertEqual(rooms, {"a": set(), "b": {"a"}, "c": {"b"}})
+        self.assertEqual(self.planted("src/apsis/scheme/planted.hpp", "#include <apsis/core/errors.hpp>\n"),
+                         ["src/apsis/scheme/planted.hpp:1: scheme includes core (apsis/core/errors.hpp)"])
+
+    def test_a_grant_of_a_room_that_comes_later_is_found(self):
+        cmake = (SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8")
+        found = self.planted("src/apsis/CMakeLists.txt", cmake.replace("apsis_room(scheme KERNELS DEPENDS exec", "apsis_room(scheme KERNELS DEPENDS exec run"))
+        self.assertIn("src/apsis/CMakeLists.txt: scheme may include ['run'] (not declared before it)", found)
+
+    def test_a_grant_that_no_file_uses_is_found(self):
+        cmake = (SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8")
+        found = self.planted("src/apsis/CMakeLists.txt", cmake.replace("apsis_room(scheme KERNELS DEPENDS exec", "apsis_room(scheme KERNELS DEPENDS core exec"))
+        self.assertEqual(found, ["src/apsis/CMakeLists.txt: scheme may include ['core'] (its files do not)"])
 
     def test_a_room_that_cmake_does_not_know_is_found(self):
         self.assertEqual(self.planted("src/apsis/attic/planted.hpp", "#pragma once\n"),

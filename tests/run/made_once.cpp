@@ -1,7 +1,7 @@
 // A run makes its expensive objects once: reading, checking, running and reporting ask for those that exist.
+#include <apsis/boundary/domain.hpp>
 #include <apsis/config/case.hpp>
 #include <apsis/model/expression.hpp>
-#include <apsis/phase/domain.hpp>
 #include <apsis/run/session.hpp>
 #include <apsis/run/setup.hpp>
 

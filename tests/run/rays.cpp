@@ -2,9 +2,9 @@
 // rest. Walls of densities proportional to 1/sqrt(T) emit the same flux in every direction, so that the
 // momentum of the exact solution vanishes everywhere.
 #include <apsis/config/case.hpp>
-#include <apsis/model/velocity_line_registry.hpp>
 #include <apsis/model/velocity_rays.hpp>
 #include <apsis/run/simulation.hpp>
+#include <apsis/velocity/velocity_line_registry.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/mesh/field.hpp>
+#include <apsis/mesh/grid.hpp>
 #include <apsis/model/maxwellian.hpp>
-#include <apsis/phase/field.hpp>
-#include <apsis/phase/grid.hpp>
 
 #include <new>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <apsis/mesh/field.hpp>
 #include <apsis/method/certificate.hpp>
-#include <apsis/phase/field.hpp>
 #include <apsis/verify/model_cases.hpp>
 
 #include <string>

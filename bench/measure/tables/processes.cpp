@@ -4,7 +4,7 @@
 
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
-#include <apsis/phase/domain.hpp>
+#include <apsis/boundary/domain.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 

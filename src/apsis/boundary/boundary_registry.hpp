@@ -1,8 +1,8 @@
 #pragma once
 
+#include <apsis/boundary/boundary.hpp>
+#include <apsis/boundary/domain.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/boundary.hpp>
-#include <apsis/phase/domain.hpp>
 
 #include <functional>
 #include <map>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <apsis/boundary/boundary.hpp>
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/model/gas_model.hpp>
-#include <apsis/phase/boundary.hpp>
 
 #include <span>
 #include <string>

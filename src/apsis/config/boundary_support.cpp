@@ -3,7 +3,7 @@
 #include <apsis/config/emitted_values.hpp>
 #include <apsis/config/source_reader.hpp>
 #include <apsis/core/errors.hpp>
-#include <apsis/model/velocity_line_registry.hpp>
+#include <apsis/velocity/velocity_line_registry.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/config/case_parts.hpp>
 #include <apsis/config/choices.hpp>
 #include <apsis/config/initial_table.hpp>
@@ -11,7 +12,6 @@
 #include <apsis/model/gas_scales.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/model/model_registry.hpp>
-#include <apsis/phase/domain.hpp>
 
 #include <array>
 #include <map>

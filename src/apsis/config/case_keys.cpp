@@ -7,8 +7,8 @@
 #include <apsis/method/multistep.hpp>
 #include <apsis/model/gas_species.hpp>
 #include <apsis/model/mean_free_path.hpp>
-#include <apsis/model/velocity_line_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
+#include <apsis/velocity/velocity_line_registry.hpp>
 
 #include <algorithm>
 #include <utility>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/config/surface_tables.hpp>
 #include <apsis/model/model_registry.hpp>
-#include <apsis/phase/domain.hpp>
 
 #include <array>
 #include <memory>

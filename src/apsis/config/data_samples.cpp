@@ -1,7 +1,7 @@
 #include <apsis/config/data_samples.hpp>
 
 #include <apsis/config/prescribed_data.hpp>
-#include <apsis/phase/grid.hpp>
+#include <apsis/mesh/grid.hpp>
 
 #include <algorithm>
 #include <cstddef>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/model/acceleration.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/acceleration.hpp>
 
 #include <optional>
 

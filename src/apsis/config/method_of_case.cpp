@@ -2,8 +2,8 @@
 
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/mesh/grid.hpp>
 #include <apsis/model/expression.hpp>
-#include <apsis/phase/grid.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <algorithm>

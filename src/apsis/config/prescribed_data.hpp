@@ -1,9 +1,9 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/mesh/grid.hpp>
 #include <apsis/model/expression.hpp>
-#include <apsis/phase/grid.hpp>
-#include <apsis/phase/velocity_set.hpp>
+#include <apsis/velocity/velocity_set.hpp>
 
 #include <functional>
 #include <memory>

@@ -3,7 +3,7 @@
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_text.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/source_rate.hpp>
+#include <apsis/model/source_rate.hpp>
 
 #include <optional>
 

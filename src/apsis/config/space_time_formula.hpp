@@ -2,7 +2,7 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/model/expression.hpp>
-#include <apsis/phase/position.hpp>
+#include <apsis/velocity/position.hpp>
 
 #include <array>
 #include <cstddef>

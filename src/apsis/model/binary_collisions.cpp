@@ -1,7 +1,7 @@
 #include <apsis/model/internal/binary_collisions.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/phase/component_name.hpp>
+#include <apsis/velocity/component_name.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <apsis/model/fluid_fields.hpp>
 
-#include <apsis/phase/component_name.hpp>
+#include <apsis/velocity/component_name.hpp>
 
 namespace apsis {
 

@@ -1,9 +1,9 @@
 #include <apsis/model/gas.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/model/velocity_line_registry.hpp>
 #include <apsis/model/velocity_rows.hpp>
 #include <apsis/model/velocity_support.hpp>
+#include <apsis/velocity/velocity_line_registry.hpp>
 
 #include <algorithm>
 #include <array>

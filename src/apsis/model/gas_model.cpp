@@ -2,7 +2,7 @@
 
 #include <apsis/model/fluid_fields.hpp>
 #include <apsis/model/gas_target.hpp>
-#include <apsis/phase/component_name.hpp>
+#include <apsis/velocity/component_name.hpp>
 
 #include <algorithm>
 #include <cmath>

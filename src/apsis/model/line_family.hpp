@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/exec/aligned.hpp>
-#include <apsis/model/velocity_line.hpp>
+#include <apsis/velocity/velocity_line.hpp>
 
 #include <cmath>
 #include <limits>

@@ -4,8 +4,8 @@
 #include <apsis/model/data_form.hpp>
 #include <apsis/model/dimension.hpp>
 #include <apsis/model/point_collision.hpp>
-#include <apsis/phase/position.hpp>
-#include <apsis/phase/velocity_set.hpp>
+#include <apsis/velocity/position.hpp>
+#include <apsis/velocity/velocity_set.hpp>
 
 #include <cstddef>
 #include <functional>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/model/velocity_line.hpp>
+#include <apsis/velocity/velocity_line.hpp>
 
 namespace apsis {
 

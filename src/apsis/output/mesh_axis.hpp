@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/phase/grid.hpp>
+#include <apsis/mesh/grid.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include <apsis/output/probe.hpp>
 
-#include <apsis/phase/position.hpp>
+#include <apsis/velocity/position.hpp>
 
 #include <algorithm>
 #include <cmath>

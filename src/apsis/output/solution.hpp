@@ -2,7 +2,7 @@
 
 #include <apsis/output/field_series.hpp>
 #include <apsis/output/hdf5_file.hpp>
-#include <apsis/phase/velocity_set.hpp>
+#include <apsis/velocity/velocity_set.hpp>
 
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,6 @@
 #include <apsis/output/velocity_axes.hpp>
 
-#include <apsis/phase/component_name.hpp>
+#include <apsis/velocity/component_name.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/phase/velocity_set.hpp>
+#include <apsis/velocity/velocity_set.hpp>
 
 #include <cstdint>
 #include <string>

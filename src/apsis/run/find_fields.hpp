@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/phase/field.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 

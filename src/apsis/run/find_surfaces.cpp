@@ -2,7 +2,7 @@
 
 #include <apsis/core/index.hpp>
 #include <apsis/model/gas_model.hpp>
-#include <apsis/phase/component_name.hpp>
+#include <apsis/velocity/component_name.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/field.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
 
 namespace apsis {

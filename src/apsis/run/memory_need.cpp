@@ -3,7 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/memory.hpp>
 #include <apsis/integrate/schedule.hpp>
-#include <apsis/phase/field.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/run/multistep_stepper.hpp>
 
 #include <algorithm>

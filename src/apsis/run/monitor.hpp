@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/exec/parallel.hpp>
-#include <apsis/phase/field.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 #include <apsis/run/step_differences.hpp>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <apsis/integrate/time_marcher.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/method/multistep.hpp>
-#include <apsis/phase/field.hpp>
 #include <apsis/run/run_state.hpp>
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
 

@@ -1,9 +1,9 @@
 #include <apsis/run/ray_warning.hpp>
 
 #include <apsis/config/emitted_values.hpp>
-#include <apsis/model/velocity_line_registry.hpp>
 #include <apsis/model/velocity_rays.hpp>
 #include <apsis/model/velocity_support.hpp>
+#include <apsis/velocity/velocity_line_registry.hpp>
 
 #include <algorithm>
 #include <array>

@@ -2,11 +2,11 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/exec/communicator.hpp>
-#include <apsis/phase/field.hpp>
-#include <apsis/phase/grid.hpp>
-#include <apsis/phase/velocity_set.hpp>
+#include <apsis/mesh/field.hpp>
+#include <apsis/mesh/grid.hpp>
 #include <apsis/run/run_state.hpp>
 #include <apsis/run/surface_table.hpp>
+#include <apsis/velocity/velocity_set.hpp>
 
 #include <functional>
 #include <limits>

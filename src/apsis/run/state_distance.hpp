@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/exec/communicator.hpp>
-#include <apsis/phase/field.hpp>
+#include <apsis/mesh/field.hpp>
 
 namespace apsis {
 

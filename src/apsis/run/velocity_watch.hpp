@@ -1,7 +1,7 @@
 #pragma once
 
+#include <apsis/mesh/field.hpp>
 #include <apsis/model/velocity_support.hpp>
-#include <apsis/phase/field.hpp>
 #include <apsis/run/run_state.hpp>
 #include <apsis/run/setup.hpp>
 

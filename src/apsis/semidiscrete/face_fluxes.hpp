@@ -1,9 +1,9 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/integrate/problem.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/domain.hpp>
-#include <apsis/phase/field.hpp>
 
 #include <memory>
 #include <span>

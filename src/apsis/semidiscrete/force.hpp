@@ -1,11 +1,11 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/problem.hpp>
+#include <apsis/mesh/field.hpp>
+#include <apsis/model/acceleration.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/acceleration.hpp>
-#include <apsis/phase/domain.hpp>
-#include <apsis/phase/field.hpp>
 #include <apsis/semidiscrete/sweep.hpp>
 
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/phase/domain.hpp>
+#include <apsis/boundary/domain.hpp>
 
 #include <cstddef>
 #include <span>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <apsis/mesh/field.hpp>
+#include <apsis/mesh/grid.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/field.hpp>
-#include <apsis/phase/grid.hpp>
 
 #include <span>
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/domain.hpp>
 #include <apsis/scheme/formulation.hpp>
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
 

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/integrate/problem.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/domain.hpp>
-#include <apsis/phase/field.hpp>
-#include <apsis/phase/source_rate.hpp>
+#include <apsis/model/source_rate.hpp>
 #include <apsis/scheme/formulation.hpp>
 
 #include <memory>

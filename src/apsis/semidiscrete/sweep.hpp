@@ -1,8 +1,8 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/exec/aligned.hpp>
-#include <apsis/phase/domain.hpp>
-#include <apsis/phase/field.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/scheme/reconstruction.hpp>
 
 #include <memory>

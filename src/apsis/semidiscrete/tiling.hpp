@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/exec/parallel.hpp>
-#include <apsis/phase/grid.hpp>
+#include <apsis/mesh/grid.hpp>
 
 #include <array>
 #include <vector>

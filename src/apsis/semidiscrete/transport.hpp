@@ -1,8 +1,8 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/domain.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/force.hpp>

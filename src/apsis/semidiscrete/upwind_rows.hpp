@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/integrate/problem.hpp>
-#include <apsis/phase/field.hpp>
+#include <apsis/mesh/field.hpp>
 
 #include <cstddef>
 #include <span>

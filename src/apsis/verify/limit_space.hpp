@@ -1,9 +1,9 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/config/case.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/phase/domain.hpp>
-#include <apsis/phase/field.hpp>
 #include <apsis/scheme/reconstruction.hpp>
 
 #include <memory>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/method/method.hpp>
-#include <apsis/phase/field.hpp>
 #include <apsis/verify/study_control.hpp>
 
 #include <memory>

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <apsis/mesh/face.hpp>
+#include <apsis/velocity/position.hpp>
+#include <apsis/velocity/velocity_set.hpp>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// The rows on both sides of a face along one pencil.
+struct pencil_end {
+  /// Rows of the cells of the pencil, counted inwards from the face: as many as there are ghost rows, and at
+  /// least three, if the pencil has so many.
+  std::span<const double* const> inside;
+  std::span<double* const> ghosts;  ///< rows to fill, counted outwards from the face
+  const velocity_set& velocities;   ///< velocities of the components
+  int components;                   ///< numbers of a row
+  position at;                      ///< intersection of the pencil with the face
+};
+
+/// A boundary condition at a face of the domain: ghost rows for reconstruction and collision and, where it
+/// prescribes them, the values of the incoming components at the face itself.
+class boundary {
+ public:
+  virtual ~boundary() = default;
+
+  /// Returns this boundary with tables for one face and the velocities of the domain, which the domain then
+  /// uses in its place; nullptr, the default, if it needs none. Throws input_error if the boundary condition
+  /// is not possible with these velocities.
+  virtual std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const;
+  /// Returns the cell, counted inwards from the face, whose row is used as ghost row `ghost` = 0, 1, …
+  /// (counted outwards) of a pencil of `cells` cells; empty if fill() computes the row. Repeated rows are not
+  /// copied.
+  virtual std::optional<int> repeated_cell(int ghost, int cells) const;
+  /// Fills the ghost rows of a pencil at time t. Called before every evaluation of T, and of Q if it depends
+  /// on neighbouring cells, concurrently for different pencils.
+  virtual void fill(const face& where, double t, const pencil_end& rows) const = 0;
+  /// Whether incoming() gives the values of the components that enter through the face. Transport then uses
+  /// them in the fluxes in place of the edge values of ghost cells.
+  virtual bool prescribes_incoming() const { return false; }
+  /// For every component k that enters, incoming[k] ← its value at the face at time t. outgoing[k] is the
+  /// value of a component that leaves, as it enters the flux v_k outgoing[k] of the step; 0 for others. The
+  /// other components of incoming[], which does not overlap outgoing[], are free for scratch. Called
+  /// concurrently for different pencils.
+  virtual void incoming(const face& where, double t, const position& at, const double* outgoing,
+                        double* incoming) const;
+  /// The same for conditions that depend on the whole state inside: `ghosts` are the rows of fill(), counted
+  /// outwards. Calls incoming() unless it is overridden.
+  virtual void incoming_beside(const face& where, double t, const position& at, const double* outgoing,
+                               std::span<const double* const> ghosts, double* incoming) const;
+  /// Returns the velocity of the wall, which does the work u_w · (force) on it; 0, the default, of a wall at
+  /// rest and of an open end.
+  virtual std::array<double, 3> wall_velocity(double /*t*/, const position& /*at*/) const { return {}; }
+  /// Whether the domain continues at the opposite face; both faces of a direction must agree.
+  virtual bool periodic() const { return false; }
+  /// Returns c such that the entropy that enters through the face in a sweep of first order is at most Σ_k
+  /// c_k F_k with the amounts F_k of the invariants that enter; {} means c = 0. Returns nothing, the default,
+  /// if no such bound is known.
+  virtual std::optional<std::vector<double>> entropy_bound() const { return std::nullopt; }
+};
+
+/// A boundary condition whose ghost rows are rows of interior cells.
+class repeating_boundary : public boundary {
+ public:
+  /// Copies the repeated rows, for callers that need them in ghost rows.
+  void fill(const face& where, double t, const pencil_end& rows) const final;
+};
+
+/// A boundary condition that prescribes the incoming components. Ghost rows continue all components by the
+/// quadratic through three cells inside. A smooth factor scales the continuation towards the cell at the face
+/// where differences are larger than the value there and unequal, as next to a shock or a vacuum. The value
+/// at the face enters only the flux: near a wall f has a layer of some mean free paths, and a continuation
+/// through the face would carry it, where cells do not resolve it, as a kink into the reconstruction of the
+/// smooth solution inside.
+class incoming_boundary : public boundary {
+ public:
+  bool prescribes_incoming() const final { return true; }
+  void fill(const face& where, double t, const pencil_end& rows) const final;
+};
+
+/// Returns 1 for components that enter the domain through a face, 0 for others.
+std::vector<double> entering_components(const face& where, const velocity_set& velocities);
+
+}  // namespace apsis

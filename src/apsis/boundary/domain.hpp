@@ -1,0 +1,156 @@
+#pragma once
+
+#include <apsis/boundary/boundary.hpp>
+#include <apsis/core/construction_count.hpp>
+#include <apsis/mesh/distribution.hpp>
+#include <apsis/mesh/field.hpp>
+#include <apsis/mesh/halo_exchange.hpp>
+#include <apsis/mesh/phase_space.hpp>
+#include <apsis/mesh/segments.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// A part of the border of the gas whose balance is kept: a face of the domain, or all faces of a solid box.
+struct opening {
+  std::vector<int> surfaces;  ///< numbers of its surfaces
+  face where;                 ///< the face of the domain
+  int solid = -1;             ///< or the number of the solid box
+};
+
+/// A phase space with the boundary conditions of its faces and of its solid boxes. The domain owns the ghost
+/// rows beyond the ends of segments, which the boundary of each surface fills; a ghost row that repeats an
+/// interior row refers to that row without a copy.
+class domain : public construction_count<domain> {
+ public:
+  /// Boundaries at the lower and the upper face of a direction.
+  using faces = std::array<std::shared_ptr<const boundary>, 2>;
+
+  /// One pair of boundaries for each direction of the mesh, and one boundary for each of its solid boxes.
+  /// Throws input_error where only one of the two faces of a direction is periodic, or a box is.
+  domain(phase_space space, const std::vector<faces>& sides,
+         const std::vector<std::shared_ptr<const boundary>>& solids = {});
+  /// The block of this process of a mesh that several processes share; `space` has this block as its mesh.
+  domain(phase_space space, const std::vector<faces>& sides,
+         const std::vector<std::shared_ptr<const boundary>>& solids, const distribution& shared);
+  /// Returns a single cell without faces, for equations without space.
+  static domain point();
+
+  /// Returns the interior cells and the velocities.
+  const phase_space& space() const { return space_; }
+  /// Returns the interior cells.
+  const grid& mesh() const { return space_.mesh; }
+  /// Whether the direction is periodic.
+  bool periodic(int direction) const { return periodic_[static_cast<std::size_t>(direction)]; }
+
+  /// Returns the segments of all pencils.
+  const segment_table& segments() const { return segments_; }
+  /// Returns a segment of a direction.
+  const segment& segment_at(int direction, int number) const {
+    return segments_.along(direction)[static_cast<std::size_t>(number)];
+  }
+  /// Returns the surfaces (segment_table::surfaces()).
+  const std::vector<surface>& surfaces() const { return segments_.surfaces(); }
+  /// Returns the boundary at a surface, as prepared for it; null at a periodic face.
+  const boundary* side(int surface) const { return sides_[static_cast<std::size_t>(surface)].get(); }
+  /// Returns the point at which a segment meets a surface.
+  position meeting_point(int surface, int place) const;
+  /// Returns the cell in front of a surface, which may belong to another process only where the end does not
+  /// lie here (segment::ends_here()).
+  int cell_at(int surface, int place) const;
+  /// Returns the faces that are not periodic and the solid boxes, in this order.
+  const std::vector<opening>& openings() const { return openings_; }
+  /// Returns the number of ends of segments at an opening, those of its surfaces in their order.
+  std::size_t ends_at(const opening& one) const;
+  /// Returns boundary::entropy_bound() of every opening; nothing if one of them has none.
+  std::optional<std::vector<std::vector<double>>> entropy_bounds() const;
+
+  /// Returns the processes that share the mesh.
+  communicator& processes() const { return *processes_; }
+  /// Returns the number in the whole mesh of a cell of this process; −1 for −1.
+  long number_in_whole_mesh(long cell) const;
+  /// Whether other processes hold cells of the mesh.
+  bool shared() const { return distribution_.has_value(); }
+  /// Whether other processes continue the pencils along a direction.
+  bool splits(int direction) const { return halo_ && halo_->splits(direction); }
+
+  /// Allocates `width` ghost rows of `components` numbers at every end of a segment. To be called before the
+  /// places of ends are used, on all processes.
+  void reserve(int components, int width);
+  /// Fills the ghost rows of u at time t, and receives the rows of other processes.
+  void fill_ghosts(double t, const field& u);
+  /// The same in two parts: in between, rows may be read that depend on no other process (is_inner()).
+  void begin_ghosts(double t, const field& u);
+  /// Lets the rows of other processes arrive between begin_ghosts() and finish_ghosts(); for the thread that
+  /// communicates.
+  void advance_ghosts() const {
+    if (halo_) halo_->advance();
+  }
+  /// Completes begin_ghosts().
+  void finish_ghosts(double t, const field& u);
+  /// Whether the cells of a box and their neighbours within the ghost width depend on no other process.
+  bool is_inner(const cell_box& box) const;
+  /// Receives the rows of other processes, without ghost rows.
+  void exchange(const field& u);
+
+  /// Returns the row of the cell across an end of a segment, of another process or a periodic neighbour,
+  /// after exchange(); nullptr if the gas ends there.
+  const double* row_across(const field& u, int direction, int segment, bool upper) const;
+
+  /// Returns the ghost rows beyond an end at a surface, counted outwards, of the last fill_ghosts(). The
+  /// boundary of the surface must fill them.
+  std::span<const double* const> ghost_rows(int surface, int place) const;
+  /// Returns the row of the cell at such an end, as of the last fill_ghosts().
+  const double* row_at(int surface, int place) const;
+
+  /// rows[i − begin] ← pointer to the row of cell i of a segment, i = begin … end−1. Cells outside 0 … n−1
+  /// are ghost cells within the reserved width, with the values of the last fill_ghosts().
+  void segment_rows(const field& u, int direction, int segment, int begin, int end,
+                    std::vector<const double*>& rows) const;
+
+ private:
+  domain();
+
+  /// Ends of segments by what their ghost rows are computed from.
+  enum class end_kind { all, of_own_cells, of_others };
+
+  void set_sides(const std::vector<faces>& sides, const std::vector<std::shared_ptr<const boundary>>& solids);
+  bool repeats(int surface) const;
+  /// Number of rows inside that a boundary may read.
+  int rows_inside() const { return std::max(width_, 3); }
+  int pencil_of(int direction, const segment& one) const;
+  int visible(int direction, const segment& one, bool upper) const;
+  const double* inside_row(const field& u, int direction, const segment& one, bool upper, int cell) const;
+  const double* ghost_row(const field& u, int direction, int segment, bool upper, int ghost) const;
+  bool needs_others(int direction, const segment& one, bool upper) const;
+  void fill_surfaces(double t, const field& u, end_kind which);
+  void fill_surface(int surface, double t, const field& u, end_kind which);
+
+  /// The rows on both sides of the ends at a surface. The pointers are stored as well, so that filling
+  /// allocates nothing.
+  struct end_rows {
+    field ghosts;                       ///< [place][ghost]
+    std::vector<double*> beyond;        ///< [place][ghost], its rows
+    std::vector<const double*> inside;  ///< [place][cell], rows of the state of the last fill_ghosts()
+  };
+
+  phase_space space_;
+  std::shared_ptr<communicator> processes_ = single_process();
+  std::optional<distribution> distribution_;  ///< of a mesh that several processes share
+  std::unique_ptr<halo_exchange> halo_;
+  std::array<bool, 3> periodic_{};
+  segment_table segments_;
+  std::vector<std::shared_ptr<const boundary>> sides_;  ///< [surface]
+  std::vector<opening> openings_;
+  std::vector<end_rows> end_rows_;  ///< [surface]
+  int width_ = 0;
+};
+
+}  // namespace apsis

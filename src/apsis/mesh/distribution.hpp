@@ -1,0 +1,24 @@
+#pragma once
+
+#include <apsis/exec/communicator.hpp>
+#include <apsis/mesh/block_partition.hpp>
+#include <apsis/mesh/grid.hpp>
+
+#include <memory>
+
+namespace apsis {
+
+/// A mesh that several processes share: each holds a block of its cells.
+struct distribution {
+  std::shared_ptr<communicator> processes;  ///< who shares the mesh
+  block_partition blocks;                   ///< the block of each process
+  grid whole;                               ///< the mesh
+
+  /// Returns the block of this process.
+  grid block() const {
+    const cell_box box = blocks.box(processes->rank());
+    return whole.block(box.first, box.cells);
+  }
+};
+
+}  // namespace apsis

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/index.hpp>
+#include <apsis/velocity/position.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace apsis {
+
+/// Cells first … first + cells − 1 of each direction.
+struct cell_box {
+  std::array<int, 3> first = {0, 0, 0},  ///< first cell of each direction
+      cells = {1, 1, 1};                 ///< numbers of cells
+};
+
+/// Cells begin … end−1.
+struct cell_range {
+  int begin;  ///< first cell
+  int end;    ///< one past the last cell
+};
+
+/// body(first, last) for the parts of increasing `ranges` among the cells begin … end−1.
+template <class Body>
+void for_cells_in(const std::vector<cell_range>& ranges, int begin, int end, const Body& body) {
+  auto one = std::upper_bound(ranges.begin(), ranges.end(), begin,
+                              [](int cell, const cell_range& range) { return cell < range.end; });
+  for (; one != ranges.end() && one->begin < end; ++one)
+    body(std::max(begin, one->begin), std::min(end, one->end));
+}
+
+/// Uniform cells on a box in D = 1, 2 or 3 dimensions, the last direction fastest. Unused directions have one
+/// cell. Boxes of cells may be solid: they have numbers, but no gas. A grid may be a block of a larger one,
+/// whose cells it shares bit for bit: cell numbers are local, coordinates are those of the global grid.
+/// Dimensionless lengths.
+class grid {
+ public:
+  /// Largest number of cells; cell numbers, including ghost cells, then fit into int.
+  static constexpr int most_cells = 1 << 30;
+
+  /// Throws input_error unless 1 ≤ D ≤ 3, every direction has at least one cell and a positive, finite
+  /// length, and the number of cells is at most most_cells.
+  grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower, std::array<double, 3> upper);
+  /// Returns a grid on the interval [a, b].
+  static grid line(int cells, double a, double b) { return grid(1, {cells, 1, 1}, {a, 0, 0}, {b, 1, 1}); }
+
+  /// The block of `cells` cells that begins at cell `first` of this grid, in each direction. Throws
+  /// input_error unless it has cells and lies inside.
+  grid block(std::array<int, 3> first, std::array<int, 3> cells) const;
+
+  /// This grid with solid boxes, which may overlap. Throws input_error unless every box has cells and lies
+  /// inside, and some cell is not solid.
+  grid with_solids(std::vector<cell_box> boxes) const;
+
+  int dimensions() const { return dimensions_; }  ///< D
+  int cells(int direction) const {
+    return cells_[at(direction)];
+  }  ///< number of cells along a direction 0, 1 or 2
+  int size() const { return cells_[0] * cells_[1] * cells_[2]; }            ///< total number of cells
+  int global_cells(int direction) const { return global_[at(direction)]; }  ///< of the grid it is a block of
+  int first(int direction) const { return first_[at(direction)]; }          ///< global number of local cell 0
+  double spacing(int direction) const { return spacing_[at(direction)]; }   ///< Δx along a direction
+  double cell_volume() const;                                               ///< Π Δx over the D directions
+  /// Returns the coordinate of the lower edge of a cell 0 … n along a direction, counted along it.
+  double edge(int direction, int cell) const {
+    return lower_[at(direction)] + spacing(direction) * (first(direction) + cell);
+  }
+  /// Returns the coordinate of the centre of a cell along a direction.
+  double centre(int cell, int direction) const;
+  /// Returns the centre of a cell.
+  position centre(int cell) const;
+  /// Returns the distance in cell numbers between neighbours along a direction.
+  int stride(int direction) const;
+
+  /// Returns the number in this grid of a cell of one of its blocks.
+  int cell_of(const grid& block, int cell) const;
+
+  /// Returns the number of pencils along a direction: lines of cells(direction) cells, stride(direction)
+  /// apart.
+  int pencils(int direction) const { return size() / cells(direction); }
+  /// Returns the first cell of pencil 0 … pencils(direction) − 1.
+  int first_cell(int direction, int pencil) const;
+
+  const std::vector<cell_box>& solids() const { return solids_; }  ///< the solid boxes
+  /// Returns the number of the last of the solid boxes that contain a cell; −1 if none does.
+  int solid(int cell) const { return solid_ ? (*solid_)[at(cell)] : -1; }
+  /// Returns all cells that are not solid, in increasing order; a single empty range for a block without any.
+  const std::vector<cell_range>& fluid() const { return fluid_; }
+
+ private:
+  void check_size() const;
+  void set_solids(std::vector<cell_box> boxes);
+  void find_fluid();
+
+  int dimensions_;
+  std::array<int, 3> cells_, global_, first_;
+  std::array<double, 3> lower_, spacing_;
+  std::vector<cell_box> solids_;
+  std::shared_ptr<std::vector<int>> solid_;  ///< of every cell; null without solid boxes
+  std::vector<cell_range> fluid_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <apsis/velocity/position.hpp>
+
+#include <array>
+#include <functional>
+
+namespace apsis {
+
+/// An acceleration a(t, x) of all molecules, and a bound of it. Dimensionless.
+struct acceleration {
+  /// Returns a at a time and a point of space; components beyond the directions of the velocities are not
+  /// used.
+  std::function<std::array<double, 3>(double t, const position& x)> value;
+  /// |a_k| is at most largest[k] at all times and points.
+  std::array<double, 3> largest{};
+};
+
+}  // namespace apsis

@@ -1,0 +1,88 @@
+#include <apsis/velocity/velocity_grid.hpp>
+
+#include <apsis/core/errors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis {
+
+void velocity_grid::check_size(std::span<const int> points) {
+  double velocities = 1.0;
+  for (const int n : points) velocities *= n;
+  const auto d = points.size();
+  if (velocities > most_velocities)
+    throw input_error(fmt::format(
+        "velocity.points = {} are {:.4g} velocities in {} dimension{} (more than {} cannot be numbered); "
+        "give at most {}",
+        points.front(), velocities, d, d == 1 ? "" : "s", most_velocities,
+        static_cast<int>(
+            std::floor(std::pow(most_velocities, 1.0 / static_cast<double>(d)) * (1.0 + 1e-12)))));
+}
+
+velocity_grid::velocity_grid(int dimensions, int points, double max)
+    : velocity_grid([&] {
+        if (dimensions < 1 || dimensions > 3)
+          throw input_error(
+              fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", dimensions));
+        const std::vector<int> each(static_cast<std::size_t>(dimensions), points);
+        check_size(each);
+        return std::vector<velocity_line>(each.size(), velocity_line(points, max));
+      }()) {}
+
+velocity_grid::velocity_grid(std::vector<velocity_line> lines) : lines_(std::move(lines)) {
+  const int d = dimensions();
+  if (d < 1 || d > 3)
+    throw input_error(fmt::format("{} velocity dimensions (not 1, 2 or 3); give 1, 2 or 3", d));
+  std::vector<int> points;
+  for (const auto& line : lines_) points.push_back(line.points());
+  check_size(points);
+  for (const auto& line : lines_) {
+    size_ *= line.points();
+    uniform_ = uniform_ && line.uniform();
+    weight_ *= line.spacing();
+  }
+  if (!uniform_) weight_ = 1.0;
+  unit_ = lines_.front().spacing();
+  for (const auto& line : lines_) unit_ = std::min(unit_, line.spacing());
+  for (auto& line : lines_) line.set_unit(unit_);
+  const auto total = static_cast<std::size_t>(size_);
+  std::vector<aligned_vector<double>> components(lines_.size(), aligned_vector<double>(total));
+  std::vector<double> weights(total, weight_);
+  half_square_.assign(total, 0.0);
+  for (std::size_t j = 0; j < total; ++j) {
+    std::size_t rest = j;
+    for (std::size_t k = lines_.size(); k-- > 0;) {
+      const auto n = static_cast<std::size_t>(lines_[k].points());
+      const double v = lines_[k].v()[rest % n];
+      components[k][j] = v;
+      half_square_[j] += 0.5 * v * v;
+      if (!uniform_) weights[j] *= lines_[k].weights()[rest % n];
+      rest /= n;
+    }
+  }
+  of_lines_.resize(lines_.size() - 1);
+  for (std::size_t k = 0; k + 1 < lines_.size(); ++k)
+    for (std::size_t j = 0; j < total; j += static_cast<std::size_t>(last_line().points()))
+      of_lines_[k].push_back(components[k][j]);
+  set_ = velocity_set(std::move(components), std::move(weights));
+}
+
+double velocity_grid::max() const {
+  double largest = 0.0;
+  for (const auto& line : lines_) largest = std::max(largest, line.max());
+  return largest;
+}
+
+const double* velocity_grid::weighted(const double* f, aligned_vector<double>& row) const {
+  if (uniform_) return f;
+  row.resize(static_cast<std::size_t>(size_));
+  const auto w = set_.weights();
+  for (std::size_t j = 0; j < row.size(); ++j) row[j] = w[j] * f[j];
+  return row.data();
+}
+
+}  // namespace apsis

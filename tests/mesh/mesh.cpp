@@ -1,0 +1,91 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/mesh/field.hpp>
+#include <apsis/mesh/grid.hpp>
+#include <apsis/scheme/quartic.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <support/property.hpp>
+
+namespace mesh_test {
+
+TEST(grid, pencils_of_every_direction_visit_every_cell_once) {
+  const apsis::grid mesh(3, {3, 4, 5}, {0, 0, 0}, {1, 2, 3});
+  for (int direction = 0; direction < 3; ++direction) {
+    std::set<int> seen;
+    for (int p = 0; p < mesh.pencils(direction); ++p)
+      for (int i = 0; i < mesh.cells(direction); ++i) {
+        const int cell = mesh.first_cell(direction, p) + i * mesh.stride(direction);
+        EXPECT_TRUE(seen.insert(cell).second);
+        // The coordinate along the direction is that of the i-th cell.
+        EXPECT_DOUBLE_EQ(mesh.centre(cell, direction), mesh.spacing(direction) * (i + 0.5));
+      }
+    EXPECT_EQ(static_cast<int>(seen.size()), mesh.size());
+  }
+}
+
+TEST(grid, refuses_what_is_no_mesh) {
+  EXPECT_THROW(apsis::grid::line(0, 0.0, 1.0), apsis::input_error);
+  EXPECT_THROW(apsis::grid::line(4, 1.0, 1.0), apsis::input_error);
+  EXPECT_THROW(apsis::grid::line(4, 0.0, std::numeric_limits<double>::infinity()), apsis::input_error);
+}
+
+TEST(field, rows_of_a_kinetic_field_start_on_cache_lines) {
+  apsis::field u(7, 150);
+  for (int cell = 0; cell < 7; ++cell) EXPECT_EQ(reinterpret_cast<std::uintptr_t>(u.row(cell)) % 64, 0u);
+}
+
+TEST(quartic, meets_its_five_conditions_and_gauss_integrates_it) {
+  check_property("conditions", [] {
+    const auto number = [] { return *rc::gen::inRange(-1000, 1000) * 1e-3; };
+    const double m = number(), c = number(), p = number(), l = number(), r = number();
+    const apsis::quartic q(m, c, p, l, r);
+    // Averages over [a, a+1] by the antiderivative.
+    const auto average = [&q](double a) {
+      const auto primitive = [&q](double x) {
+        return x * (q.c + q.d0 + x * (q.d1 / 2 + x * (q.d2 / 3 + x * (q.d3 / 4 + x * q.d4 / 5))));
+      };
+      return primitive(a + 1.0) - primitive(a);
+    };
+    const double rounding = 1e-13;  // about 20 operations with coefficients up to 10
+    RC_ASSERT(std::abs(q(-0.5) - l) < rounding);
+    RC_ASSERT(std::abs(q(0.5) - r) < rounding);
+    RC_ASSERT(std::abs(average(-1.5) - m) < rounding);
+    RC_ASSERT(std::abs(average(-0.5) - c) < rounding);
+    RC_ASSERT(std::abs(average(0.5) - p) < rounding);
+    double gauss = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) gauss += apsis::gauss3::weight[k] * q(apsis::gauss3::xi[k]);
+    RC_ASSERT(std::abs(gauss - c) < rounding);
+  });
+}
+
+TEST(grid, a_block_has_the_coordinates_of_the_whole_to_the_last_bit) {
+  const apsis::grid whole(3, {7, 5, 6}, {-1.0, 0.3, 0.0}, {1.0, 1.7, 1e3});
+  const auto part = whole.block({2, 1, 3}, {4, 3, 2}).block({1, 0, 1}, {2, 3, 1});
+  EXPECT_EQ(part.size(), 2 * 3 * 1);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(part.global_cells(k), whole.cells(k));
+    EXPECT_EQ(part.spacing(k), whole.spacing(k));
+  }
+  EXPECT_EQ(part.first(0), 3);
+  EXPECT_EQ(part.first(2), 4);
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int of_whole = ((i + 3) * 5 + j + 1) * 6 + 4;
+      EXPECT_EQ(part.centre(i * 3 + j), whole.centre(of_whole));
+    }
+}
+
+TEST(grid, a_block_lies_inside) {
+  const auto line = apsis::grid::line(8, 0.0, 1.0);
+  for (const auto& [first, cells] :
+       {std::pair{-1, 2}, {0, 0}, {7, 2}, {0, 9}, {1, std::numeric_limits<int>::max()}})
+    EXPECT_THROW(static_cast<void>(line.block({first, 0, 0}, {cells, 1, 1})), apsis::input_error) << first;
+  EXPECT_EQ(line.block({7, 0, 0}, {1, 1, 1}).centre(0, 0), line.centre(7, 0));
+}
+
+}  // namespace mesh_test

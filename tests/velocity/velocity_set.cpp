@@ -1,0 +1,75 @@
+// Sets of velocities: what a row of components is transported with, and what is refused.
+#include <apsis/core/errors.hpp>
+#include <apsis/mesh/phase_space.hpp>
+
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace velocity_set_test {
+
+namespace {
+
+using apsis::velocity_set;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string refusal_of(std::vector<apsis::aligned_vector<double>> coordinates, std::vector<double> weights,
+                       int sets = 1) {
+  try {
+    const velocity_set made(std::move(coordinates), std::move(weights), sets);
+  } catch (const apsis::input_error& failure) {
+    return failure.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST(velocity_set, every_set_of_components_moves_with_the_velocities) {
+  const velocity_set plane({{1.0, -2.0}, {0.0, 0.5}}, {0.25, 0.75}, 3);
+  EXPECT_EQ(plane.dimensions(), 2);
+  EXPECT_EQ(plane.size(), 2);
+  EXPECT_EQ(plane.components(), 6);
+  EXPECT_THAT(plane.speeds(0), ElementsAre(1.0, -2.0, 1.0, -2.0, 1.0, -2.0));
+  EXPECT_THAT(plane.speeds(1), ElementsAre(0.0, 0.5, 0.0, 0.5, 0.0, 0.5));
+  EXPECT_TRUE(plane.speeds(2).empty());
+  EXPECT_THAT(plane.weights(), ElementsAre(0.25, 0.75));
+  EXPECT_EQ(plane.largest_speed(0), 2.0);
+  EXPECT_EQ(plane.largest_speed(2), 0.0);
+}
+
+TEST(velocity_set, none_without_space_and_copies_share_their_numbers) {
+  const velocity_set none;
+  EXPECT_EQ(none.components(), 0);
+  EXPECT_EQ(none.dimensions(), 0);
+  EXPECT_TRUE(none.speeds(0).empty());
+  const velocity_set line({{1.0}}, {1.0});
+  const velocity_set copy = line;  // NOLINT(performance-unnecessary-copy-initialization)
+  EXPECT_EQ(copy.speeds(0).data(), line.speeds(0).data());
+}
+
+TEST(velocity_set, refuses_what_is_no_set_of_velocities) {
+  const double infinite = std::numeric_limits<double>::infinity(),
+               nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(refusal_of({}, {}), HasSubstr("0 velocity dimensions"));
+  EXPECT_THAT(refusal_of({{1.0}, {1.0}, {1.0}, {1.0}}, {1.0}), HasSubstr("4 velocity dimensions"));
+  EXPECT_THAT(refusal_of({{1.0, 2.0}}, {1.0}), HasSubstr("2 coordinates for 1 weights"));
+  EXPECT_THAT(refusal_of({{infinite}}, {1.0}), HasSubstr("a velocity is not finite"));
+  EXPECT_THAT(refusal_of({{1.0}}, {nan}), HasSubstr("not a finite number >= 0"));
+  EXPECT_THAT(refusal_of({{1.0}}, {-0.5}), HasSubstr("not a finite number >= 0"));
+  EXPECT_THAT(refusal_of({{1.0}}, {1.0}, 0), HasSubstr("0 sets of components"));
+  EXPECT_EQ(refusal_of({{1.0}}, {0.0}), "accepted");
+}
+
+TEST(phase_space, has_as_many_unknowns_as_cells_times_components) {
+  const apsis::phase_space space(apsis::grid(2, {3, 4, 1}, {0, 0, 0}, {1, 1, 1}),
+                                 {{{1.0, -1.0}}, {1.0, 1.0}, 2});
+  EXPECT_EQ(space.points(), 3 * 4 * 4);
+  EXPECT_EQ(apsis::phase_space(apsis::grid::line(5, 0.0, 1.0)).points(), 0);
+}
+
+}  // namespace velocity_set_test

@@ -58,10 +58,16 @@ void boundary::incoming_beside(const face& where, double t, const position& at, 
   incoming(where, t, at, outgoing, values);
 }
 
+std::vector<double> inward_speeds(const face& where, const velocity_set& velocities) {
+  std::vector<double> speeds;
+  const double sign = where.inward_normal()[static_cast<std::size_t>(where.direction)];
+  for (const double v : velocities.speeds(where.direction)) speeds.push_back(sign * v);
+  return speeds;
+}
+
 std::vector<double> entering_components(const face& where, const velocity_set& velocities) {
   std::vector<double> enters;
-  for (const double v : velocities.speeds(where.direction))
-    enters.push_back((where.upper ? v < 0.0 : v > 0.0) ? 1.0 : 0.0);
+  for (const double v : inward_speeds(where, velocities)) enters.push_back(v > 0.0 ? 1.0 : 0.0);
   return enters;
 }
 

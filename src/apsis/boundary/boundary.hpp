@@ -83,6 +83,9 @@ class incoming_boundary : public boundary {
   void fill(const face& where, double t, const pencil_end& rows) const final;
 };
 
+/// Returns v·n of every component, n being the normal of a face into the domain: positive for those that
+/// enter.
+std::vector<double> inward_speeds(const face& where, const velocity_set& velocities);
 /// Returns 1 for components that enter the domain through a face, 0 for others.
 std::vector<double> entering_components(const face& where, const velocity_set& velocities);
 

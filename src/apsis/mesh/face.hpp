@@ -13,6 +13,12 @@ struct face {
 
   /// Returns the number of the face, 0 … 5, the lower one of a direction first.
   std::size_t index() const { return 2 * static_cast<std::size_t>(direction) + (upper ? 1 : 0); }
+  /// Returns the unit vector normal to the face that points into the box.
+  std::array<double, 3> inward_normal() const {
+    std::array<double, 3> n{};
+    n[static_cast<std::size_t>(direction)] = upper ? -1.0 : 1.0;
+    return n;
+  }
 };
 
 /// Names of the faces in the order of face::index().

@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
+#include <apsis/mesh/face.hpp>
 #include <apsis/velocity/position.hpp>
 
 #include <algorithm>
@@ -65,6 +66,8 @@ class grid {
   int first(int direction) const { return first_[at(direction)]; }          ///< global number of local cell 0
   double spacing(int direction) const { return spacing_[at(direction)]; }   ///< Δx along a direction
   double cell_volume() const;                                               ///< Π Δx over the D directions
+  /// Returns the area of a face of a cell: 1 in one dimension.
+  double face_area(const face& where) const { return cell_volume() / spacing(where.direction); }
   /// Returns the coordinate of the lower edge of a cell 0 … n along a direction, counted along it.
   double edge(int direction, int cell) const {
     return lower_[at(direction)] + spacing(direction) * (first(direction) + cell);

@@ -183,7 +183,7 @@ class surface_writer {
     const grid& mesh = space_.mesh();
     const surface& one = space_.surfaces()[at(number)];
     const position x = space_.meeting_point(number, place);
-    const double area = mesh.cell_volume() / mesh.spacing(one.where.direction);
+    const double area = mesh.face_area(one.where);
     std::vector<double> row, given;
     if (in_plane()) row.push_back(arc_length(mesh, one, x));
     row.insert(row.end(), x.begin(), x.begin() + mesh.dimensions());

@@ -31,11 +31,9 @@ class diffuse_wall final : public incoming_boundary {
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override {
     auto own = std::make_shared<diffuse_wall>(*this);
     own->mirrored_ = mirrored_components(velocities, where.direction);
+    const std::vector<double> inward = inward_speeds(where, velocities);
     own->mass_flux_.assign(velocities.weights().begin(), velocities.weights().end());
-    for (std::size_t j = 0; j < own->mass_flux_.size(); ++j) {
-      const double v = velocities.speeds(where.direction)[j];
-      own->mass_flux_[j] *= where.upper ? -v : v;  // > 0: enters
-    }
+    for (std::size_t j = 0; j < own->mass_flux_.size(); ++j) own->mass_flux_[j] *= inward[j];  // > 0: enters
     own->entropy_bound_ = bound_of_entropy(velocities);
     return own;
   }

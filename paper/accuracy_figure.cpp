@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 std::string error_text(double x) {
@@ -74,4 +74,4 @@ finding no_failures(const convergence_table& table) {
   return exactly("runs that failed", table.failures(), 0);
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

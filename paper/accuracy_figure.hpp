@@ -7,7 +7,7 @@
 
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// Results of a study that varies time.method, model.epsilon and then the mesh or the step, as in the figures
 /// of the paper: one panel per method, one curve per epsilon, error against Δt.
@@ -29,4 +29,4 @@ finding slopes_near(const std::string& what, const std::vector<convergence_row>&
 /// The number of numerical failures in a study, as a finding that requires zero.
 finding no_failures(const convergence_table& table);
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 /// The two characteristic families, as signs in their formulas.
@@ -99,4 +99,4 @@ broadwell_riemann::state broadwell_riemann::at(double speed) const {
   return whole(right_);
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

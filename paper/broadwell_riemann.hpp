@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// Exact solution of the Riemann problem of the Broadwell limit system (paper, eq. broadlimit)
 ///     ρ_t + m_x = 0,   m_t + ((ρ² + m²)/(2ρ))_x = 0,   (ρ, m) = left for x < 0, right for x > 0.
@@ -36,4 +36,4 @@ class broadwell_riemann {
   side left_, right_, middle_;
 };
 
-}  // namespace apsis
+}  // namespace apsis::paper

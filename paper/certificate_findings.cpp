@@ -2,7 +2,7 @@
 
 #include <paper/paper_tables.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 std::vector<finding> certificate_findings(const std::string& method, int order) {
   const certificate& c = find_certificate(method);
@@ -29,4 +29,4 @@ finding agrees_with_print(const std::string& method) {
   return at_most("largest difference from the printed Butcher form", distance_to_print(method), 1e-14);
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -7,7 +7,7 @@
 
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// Findings for every method of the paper: its order from the generated conditions, with small residuals.
 std::vector<finding> certificate_findings(const std::string& method, int order);
@@ -22,4 +22,4 @@ std::vector<finding> coefficient_findings(const std::string& method, int order, 
 /// Agreement with the Butcher form that the paper prints; for the methods of printed_butcher_form.
 finding agrees_with_print(const std::string& method);
 
-}  // namespace apsis
+}  // namespace apsis::paper

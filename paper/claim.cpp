@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <paper/claim_registry.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 finding at_most(std::string what, double value, double bound) {
   return {std::move(what), value, fmt::format("at most {:.4g}", bound), value <= bound};
@@ -53,4 +53,4 @@ std::vector<const claim_entry*> find_claims(const std::vector<std::string>& ids)
   return chosen;
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

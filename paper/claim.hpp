@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// One measured figure and its required value.
 struct finding {
@@ -48,4 +48,4 @@ struct claim_entry {
   bool slow = false;                            ///< more than about 20 s on two cores
 };
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -5,7 +5,7 @@
 
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// Every claim, sorted by file name (generated).
 std::vector<const claim_entry*> claim_entries();
@@ -14,4 +14,4 @@ std::vector<const claim_entry*> claim_entries();
 /// case are equivalent. Throws input_error with the nearest id.
 std::vector<const claim_entry*> find_claims(const std::vector<std::string>& ids);
 
-}  // namespace apsis
+}  // namespace apsis::paper

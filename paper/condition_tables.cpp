@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis {
+namespace apsis::paper {
 
 std::pair<double, double> compare_with_print(const std::vector<rooted_tree>& trees, printed_table printed) {
   double left = 0.0, right = 0.0;
@@ -50,4 +50,4 @@ std::vector<finding> condition_findings(tree_colours colours, printed_table prin
   return findings;
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

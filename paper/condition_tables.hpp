@@ -8,7 +8,7 @@
 #include <paper/claim.hpp>
 #include <paper/paper_tables.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// A printed table of order conditions, evaluated on a tableau.
 using printed_table = std::vector<printed_condition> (*)(const butcher_form<double>&);
@@ -28,4 +28,4 @@ struct condition_count {
 std::vector<finding> condition_findings(tree_colours colours, printed_table printed, condition_count up_to,
                                         const std::vector<condition_count>& beyond);
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace apsis {
+namespace apsis::paper {
 
 using std::numbers::pi;
 
@@ -97,4 +97,4 @@ double fourier_solution::resolution() const {
   return highest / largest;
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

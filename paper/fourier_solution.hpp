@@ -6,7 +6,7 @@
 
 #include <paper/limit_equations.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// Solution of a limit system for smooth data on a periodic interval, to double precision as long as it is
 /// smooth: Fourier collocation in space (whose error decreases faster than any power of 1/points), the
@@ -40,4 +40,4 @@ class fourier_solution {
   std::vector<double> cosine_, sine_;  ///< [mode][unknown]
 };
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <paper/limit_solution.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 struct smooth_problem {
@@ -179,4 +179,4 @@ void add_riemann_problems(const std::string& id, const study_control& control, c
   result.pictures.push_back(std::move(drawing));
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

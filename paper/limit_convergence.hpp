@@ -4,7 +4,7 @@
 
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// Runs with ε = 0 converge to smooth solutions of the limit systems as written in the paper, with the order
 /// of the explicit method while the spatial error is smaller: findings, a table and a
@@ -15,4 +15,4 @@ void add_limit_convergence(const std::string& id, const study_control& control, 
 /// and a picture "<id>-riemann".
 void add_riemann_problems(const std::string& id, const study_control& control, claim_result& result);
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 limit_equations ode() {
@@ -76,4 +76,4 @@ std::optional<limit_equations> written_limit(const case_config& config) {
   return std::nullopt;
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// A limit system written out by hand, ω_t + F(ω)_x = S(ω), as in the paper's summary of the models:
 /// independent of moments, equilibrium and transport of the model.
@@ -27,4 +27,4 @@ struct limit_equations {
 ///    𝓔 = ½ρu² + (d/2)ρT for d velocity dimensions, momenta across x carried along
 std::optional<limit_equations> written_limit(const case_config& config);
 
-}  // namespace apsis
+}  // namespace apsis::paper

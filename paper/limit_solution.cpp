@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 const relaxation_model& relaxation_of(const run_setup& setup) {
@@ -115,4 +115,4 @@ riemann_comparison compare_with_riemann_solution(const case_config& config, cons
   return result;
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

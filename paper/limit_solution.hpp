@@ -6,7 +6,7 @@
 #include <paper/claim.hpp>
 #include <paper/fourier_solution.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// The solution of the written-out limit system (limit_equations) for the initial data of a case, at its end;
 /// the data must be smooth, and stay so until then. Throws input_error for a model whose limit is
@@ -33,4 +33,4 @@ struct riemann_comparison {
 riemann_comparison compare_with_riemann_solution(const case_config& config,
                                                  const study_control& control = {});
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -1,6 +1,6 @@
 #include <paper/ode_study.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 ode_state<long double> ode_reference(double epsilon, ode_data data, extrapolation_options<long double> how) {
   auto problem = ode_problem(static_cast<long double>(epsilon));
@@ -21,4 +21,4 @@ double halving_slope(const std::vector<double>& values) {
   return product / square;
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

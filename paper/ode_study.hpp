@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// The ODE model of the paper in any precision (eq. vdp, numerical section): u1' = u2,
 /// u2' = (1 + u1²)(sin u1 − u2)/ε, from t = 0 to 1. Dimensionless.
@@ -60,4 +60,4 @@ ode_state<long double> ode_reference(double epsilon, ode_data data = ode_data::i
 /// Slope of log2 of values at steps Δt, Δt/2, Δt/4, … over log2 Δt, by least squares.
 double halving_slope(const std::vector<double>& values);
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis {
+namespace apsis::paper {
 
 void add_order_maps(const std::string& id, const study_control& control, claim_result& result) {
   const std::string papers[] = {"md-imex-3-2", "md-imex-6-3"};
@@ -56,4 +56,4 @@ void add_order_maps(const std::string& id, const study_control& control, claim_r
   result.tables.push_back(std::move(table));
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

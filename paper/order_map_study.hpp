@@ -4,9 +4,9 @@
 
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// The maps of all relaxation models: one picture each, and findings about the paper's methods.
 void add_order_maps(const std::string& id, const study_control& control, claim_result& result);
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 using numbers = std::vector<double>;
@@ -198,4 +198,4 @@ butcher_form<double> random_tableau(std::size_t stages, std::uint64_t seed) {
   return b;
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

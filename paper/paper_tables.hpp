@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// A condition as the paper prints it, evaluated on a tableau, with its tree in our notation.
 struct printed_condition {
@@ -46,4 +46,4 @@ double distance_to_print(const std::string& method);
 /// A strictly lower triangular tableau with random entries in (−1, 1); the same on every machine.
 butcher_form<double> random_tableau(std::size_t stages, std::uint64_t seed);
 
-}  // namespace apsis
+}  // namespace apsis::paper

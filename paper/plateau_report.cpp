@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <paper/plateau_study.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 struct model_case {
@@ -182,4 +182,4 @@ void add_plateau_study(const std::string& id, const study_control& control, clai
       "constants, the tables compare them with runs, and md-imex-5-2 and md-imex-8-3 have no plateaus.");
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

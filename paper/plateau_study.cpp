@@ -10,7 +10,7 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <fmt/format.h>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 using numbers = std::vector<double>;
@@ -84,4 +84,4 @@ std::array<double, 2> measured_ode_plateau(const method& m, ode_data data) {
   return {2 * fine[0] - coarse[0], 2 * fine[1] - coarse[1]};
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -9,7 +9,7 @@
 #include <paper/claim.hpp>
 #include <paper/ode_study.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// The terms of size ε of a method on a case (docs/plateaus.md), each relative to that of the exact solution,
 /// with ε = 1e-6: two runs with steps Δt and Δt/2 are extrapolated to Δt → 0.
@@ -39,4 +39,4 @@ std::array<double, 2> measured_ode_plateau(const method& m, ode_data data);
 /// Findings, tables and pictures on the causes of the plateaus and their prediction by the coefficients.
 void add_plateau_study(const std::string& id, const study_control& control, claim_result& result);
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 using json = nlohmann::ordered_json;
@@ -55,4 +55,4 @@ json check_claim(const claim_entry& claim, const study_control& control) {
           {"wall_s", wall}};
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 constexpr auto square = [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; };
@@ -71,4 +71,4 @@ double square_decay_error(const std::string& method, long steps) {
   return static_cast<double>(std::abs(u[0] - 1 / 20.1L));
 }
 
-}  // namespace apsis
+}  // namespace apsis::paper

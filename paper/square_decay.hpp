@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace apsis {
+namespace apsis::paper {
 
 /// Names of the methods of the catalogue whose certificate satisfies a condition.
 std::vector<std::string> methods_where(const std::function<bool(const certificate&)>& condition);
@@ -36,4 +36,4 @@ double square_decay_exact(double t);
 /// |u(2) − 1/20.1| after `steps` equal steps in long double, which orders above three require.
 double square_decay_error(const std::string& method, long steps);
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace {
 
 using json = nlohmann::ordered_json;
@@ -135,4 +135,4 @@ json to_json(const quantity_entry& quantity, const std::vector<compared_value>& 
           {"pictures", pictures}};
 }
 
-}  // namespace apsis
+}  // namespace apsis::validation

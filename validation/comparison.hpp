@@ -8,7 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 
 /// A reference value and the one that was computed for it.
 struct compared_value {
@@ -36,4 +36,4 @@ picture quantity_picture(const quantity_entry& quantity, const std::vector<compa
 /// Returns name, description, source, values and pictures of one quantity.
 nlohmann::ordered_json to_json(const quantity_entry& quantity, const std::vector<compared_value>& values);
 
-}  // namespace apsis
+}  // namespace apsis::validation

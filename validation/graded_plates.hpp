@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace apsis {
+namespace apsis::validation {
 
 /// Cells between plates at x = 0 and 1 that are thinner at the plates. A steady flow depends on x through s,
 /// ds/dx ∝ 1/ε(x), only, so that uniform cells in x with ε that grows towards the plates are graded cells in
@@ -27,4 +27,4 @@ class graded_plates {
   double b_;
 };
 
-}  // namespace apsis
+}  // namespace apsis::validation

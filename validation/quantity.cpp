@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace apsis {
+namespace apsis::validation {
 namespace {
 
 std::vector<std::string> names_of(const quantity_entry& quantity) {
@@ -155,4 +155,4 @@ double last_flux(const simulation& run, const std::string& face, const std::stri
   return run.last().flux.at(at);
 }
 
-}  // namespace apsis
+}  // namespace apsis::validation

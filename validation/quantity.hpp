@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace apsis {
+namespace apsis::validation {
 
 /// A parameter of a quantity, as "name=value" on the command line.
 struct quantity_parameter {
@@ -113,4 +113,4 @@ std::vector<double> field_values(const simulation& run, const std::string& name)
 /// std::out_of_range for unknown names.
 double last_flux(const simulation& run, const std::string& face, const std::string& invariant);
 
-}  // namespace apsis
+}  // namespace apsis::validation

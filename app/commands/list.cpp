@@ -140,14 +140,14 @@ json boundaries() {
 
 json claims() {
   json all = json::array();
-  for (const claim_entry* c : find_claims({}))
+  for (const paper::claim_entry* c : find_claims({}))
     all.push_back({{"name", c->id}, {"description", c->statement}, {"section", c->section}, {"how", c->how}});
   return all;
 }
 
 json quantities() {
   json all = json::array();
-  for (const quantity_entry* q : quantity_entries()) {
+  for (const validation::quantity_entry* q : validation::quantity_entries()) {
     json one = {{"name", q->name}, {"description", q->description}, {"source", q->source}};
     for (const auto& p : q->parameters)
       one["variables"].push_back(fmt::format("{}: {} [{}]", p.name, p.doc, p.value));

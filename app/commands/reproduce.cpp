@@ -28,6 +28,8 @@ namespace apsis::app {
 namespace reproduce_command {
 namespace {
 
+using namespace apsis::paper;
+
 using json = nlohmann::ordered_json;
 
 constexpr const char* document_name = "reproduce.json";

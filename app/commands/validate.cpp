@@ -27,6 +27,8 @@ namespace apsis::app {
 namespace validate_command {
 namespace {
 
+using namespace apsis::validation;
+
 using json = nlohmann::ordered_json;
 
 constexpr const char* document_name = "validate.json";

@@ -1,7 +1,7 @@
 #include <paper/claim.hpp>
 #include <paper/condition_tables.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C01_claim {
 namespace {
 
@@ -23,4 +23,4 @@ const claim_entry claim_C01 = {
     .how = "generated from rooted trees and compared with the printed table term by term",
     .check = C01_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -1,7 +1,7 @@
 #include <paper/claim.hpp>
 #include <paper/condition_tables.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C02_claim {
 namespace {
 
@@ -23,4 +23,4 @@ const claim_entry claim_C02 = {
     .how = "generated from two-coloured rooted trees and compared with the printed table term by term",
     .check = C02_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

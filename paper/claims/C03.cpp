@@ -1,7 +1,7 @@
 #include <paper/certificate_findings.hpp>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C03_claim {
 namespace {
 
@@ -26,4 +26,4 @@ const claim_entry claim_C03 = {
     .how = "certificate from the coefficients alone",
     .check = C03_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -1,7 +1,7 @@
 #include <paper/certificate_findings.hpp>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C04_claim {
 namespace {
 
@@ -23,4 +23,4 @@ const claim_entry claim_C04 = {
     .how = "certificate; conversion of the Shu-Osher form compared with the printed matrices",
     .check = C04_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

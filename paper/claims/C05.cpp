@@ -1,7 +1,7 @@
 #include <paper/certificate_findings.hpp>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C05_claim {
 namespace {
 
@@ -26,4 +26,4 @@ const claim_entry claim_C05 = {
     .how = "certificate; conversion of the Shu-Osher form compared with the printed matrices",
     .check = C05_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -1,7 +1,7 @@
 #include <paper/certificate_findings.hpp>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C06_claim {
 namespace {
 
@@ -23,4 +23,4 @@ const claim_entry claim_C06 = {
     .how = "certificate; r derived from the Butcher form alone",
     .check = C06_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -4,7 +4,7 @@
 #include <paper/certificate_findings.hpp>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C07_claim {
 namespace {
 
@@ -36,4 +36,4 @@ const claim_entry claim_C07 = {.id = "C7",
                                .how = "certificate; r derived from the Butcher form alone",
                                .check = C07_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C08_claim {
 namespace {
 
@@ -36,4 +36,4 @@ const claim_entry claim_C08 = {
     .how = "certificate",
     .check = C08_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -2,7 +2,7 @@
 
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C09_claim {
 namespace {
 
@@ -38,4 +38,4 @@ const claim_entry claim_C09 = {
     .how = "their scheme is in the catalogue; both coefficients derived from the Butcher forms alone",
     .check = C09_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -15,7 +15,7 @@
 #include <paper/claim.hpp>
 #include <paper/square_decay.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C10_claim {
 namespace {
 
@@ -171,4 +171,4 @@ const claim_entry claim_C10 = {
         "functionals, for every unconditionally SSP implicit method of the catalogue",
     .check = C10_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

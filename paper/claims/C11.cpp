@@ -1,7 +1,7 @@
 #include <paper/claim.hpp>
 #include <paper/square_decay.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C11_claim {
 namespace {
 
@@ -40,4 +40,4 @@ const claim_entry claim_C11 = {
     .how = "bisection of the step for which every stage of twenty steps from u(0) = 10 is positive",
     .check = C11_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

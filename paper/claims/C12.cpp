@@ -7,7 +7,7 @@
 #include <paper/claim.hpp>
 #include <paper/square_decay.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C12_claim {
 namespace {
 
@@ -88,4 +88,4 @@ const claim_entry claim_C12 = {
     .how = "both panels of the figure; positivity of every stage and decay in every step",
     .check = C12_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -6,7 +6,7 @@
 #include <paper/claim.hpp>
 #include <paper/square_decay.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C13_claim {
 namespace {
 
@@ -65,4 +65,4 @@ const claim_entry claim_C13 = {
     .how = "error against the exact solution at t = 2 through the production stepper, in long double",
     .check = C13_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C14_claim {
 namespace {
 
@@ -65,4 +65,4 @@ const claim_entry claim_C14 = {
     .how = "random states of every relaxation model; the derivative by differences",
     .check = C14_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

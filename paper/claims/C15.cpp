@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C15_claim {
 namespace {
 
@@ -77,4 +77,4 @@ const claim_entry claim_C15 = {
         "floating point, exact zeros in the input",
     .check = C15_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

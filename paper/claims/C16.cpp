@@ -15,7 +15,7 @@
 #include <paper/claim.hpp>
 #include <paper/limit_equations.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C16_claim {
 namespace {
 
@@ -176,4 +176,4 @@ const claim_entry claim_C16 = {
     .how = "identities on random states through the production operators, and the fluxes of the limit system",
     .check = C16_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -12,7 +12,7 @@
 #include <paper/claim.hpp>
 #include <paper/limit_convergence.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C17_claim {
 namespace {
 
@@ -273,4 +273,4 @@ const claim_entry claim_C17 = {
         "run, and of the limit scheme with the limit systems written out by hand",
     .check = C17_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

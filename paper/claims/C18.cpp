@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C18_claim {
 namespace {
 
@@ -189,4 +189,4 @@ const claim_entry claim_C18 = {
         "coefficient; and a method without one that violates it",
     .check = C18_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -10,7 +10,7 @@
 #include <paper/order_map_study.hpp>
 #include <paper/plateau_study.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C19_claim {
 namespace {
 
@@ -139,4 +139,4 @@ const claim_entry claim_C19 = {
         "plateaus; observed order over ε and Δt for all models",
     .check = C19_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -5,7 +5,7 @@
 #include <paper/claim.hpp>
 #include <paper/ode_study.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C20_claim {
 namespace {
 
@@ -79,4 +79,4 @@ const claim_entry claim_C20 = {
     .how = "self-convergence at eps = 1e-6 where the error against the reference is flat",
     .check = C20_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

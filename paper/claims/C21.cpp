@@ -5,7 +5,7 @@
 #include <paper/claim.hpp>
 #include <paper/ode_study.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C21_claim {
 namespace {
 
@@ -123,4 +123,4 @@ const claim_entry claim_C21 = {
         "double",
     .check = C21_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

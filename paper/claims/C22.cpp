@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <paper/accuracy_figure.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C22_claim {
 namespace {
 
@@ -90,4 +90,4 @@ const claim_entry claim_C22 = {
     .check = C22_claim::check,
     .slow = true};
 
-}  // namespace apsis
+}  // namespace apsis::paper

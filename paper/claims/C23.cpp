@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <paper/accuracy_figure.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C23_claim {
 namespace {
 
@@ -78,4 +78,4 @@ const claim_entry claim_C23 = {
     .check = C23_claim::check,
     .slow = true};
 
-}  // namespace apsis
+}  // namespace apsis::paper

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C24_claim {
 namespace {
 
@@ -100,4 +100,4 @@ const claim_entry claim_C24 = {
     .check = C24_claim::check,
     .slow = true};
 
-}  // namespace apsis
+}  // namespace apsis::paper

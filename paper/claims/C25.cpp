@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C25_claim {
 namespace {
 
@@ -205,4 +205,4 @@ const claim_entry claim_C25 = {
         "random nonnegative tableaux; random searches for the largest difference and the smallest residual",
     .check = C25_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

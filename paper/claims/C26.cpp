@@ -11,7 +11,7 @@
 #include <paper/claim.hpp>
 #include <paper/square_decay.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace C26_claim {
 namespace {
 
@@ -98,4 +98,4 @@ const claim_entry claim_C26 = {
     .how = "certificate of imdrk-9-5, observed order through the production stepper in long double",
     .check = C26_claim::check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

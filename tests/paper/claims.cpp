@@ -10,6 +10,7 @@
 namespace claims_test {
 
 using namespace apsis;
+using namespace apsis::paper;
 
 TEST(findings, hold_only_within_their_bounds) {
   EXPECT_TRUE(at_most("x", 1.0, 1.0).holds);

@@ -16,6 +16,7 @@
 namespace limit_references_test {
 
 using namespace apsis;
+using namespace apsis::paper;
 using std::numbers::pi;
 
 namespace {

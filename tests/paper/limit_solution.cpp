@@ -15,6 +15,7 @@
 namespace limit_solution_test {
 
 using namespace apsis;
+using namespace apsis::paper;
 
 namespace {
 

@@ -14,6 +14,8 @@
 namespace apsis::paper_test {
 namespace {
 
+using namespace apsis::paper;
+
 std::vector<std::string> ids(bool slow) {
   std::vector<std::string> chosen;
   for (const auto* entry : claim_entries())

@@ -12,6 +12,8 @@
 namespace apsis::time_study_test {
 namespace {
 
+using namespace apsis::paper;
+
 TEST(time_study, reference_is_what_fine_steps_of_every_method_converge_to) {
   for (const auto& model : relaxation_model_names()) {
     // First-order upwinding is linear; WENO weights that switch where data are flat would reduce the order

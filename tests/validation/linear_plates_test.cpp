@@ -13,8 +13,8 @@ namespace linear_plates_test {
 
 namespace {
 
-using apsis::find_quantity;
-using apsis::quantity_entry;
+using apsis::validation::find_quantity;
+using apsis::validation::quantity_entry;
 using validation_test::extrapolated;
 using validation_test::linear_plates;
 

@@ -18,8 +18,8 @@ namespace linear_rectangle_test {
 
 namespace {
 
-using apsis::find_quantity;
-using apsis::reference_value;
+using apsis::validation::find_quantity;
+using apsis::validation::reference_value;
 using validation_test::linear_duct;
 using validation_test::linear_square;
 using validation_test::side;

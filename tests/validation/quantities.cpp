@@ -20,12 +20,12 @@ namespace quantities_test {
 
 namespace {
 
-using apsis::compare_with_reference;
-using apsis::compared_value;
-using apsis::compute_quantity;
-using apsis::find_quantity;
-using apsis::quantity_entry;
-using apsis::reference_value;
+using apsis::validation::compare_with_reference;
+using apsis::validation::compared_value;
+using apsis::validation::compute_quantity;
+using apsis::validation::find_quantity;
+using apsis::validation::quantity_entry;
+using apsis::validation::reference_value;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -36,7 +36,7 @@ struct one_value {
 
 std::vector<one_value> all_references() {
   std::vector<one_value> all;
-  for (const quantity_entry* quantity : apsis::quantity_entries())
+  for (const quantity_entry* quantity : apsis::validation::quantity_entries())
     for (const auto& value : quantity->references) all.push_back({quantity, &value});
   return all;
 }
@@ -149,7 +149,7 @@ TEST(quantities, average_cells_with_fourth_order) {
   std::vector<double> values;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 5; ++j) values.push_back(std::pow((i + 0.5) / 4.0, 2) * std::pow((j + 0.5) / 5.0, 2));
-  EXPECT_NEAR(apsis::mean_of_cells(values, {4, 5}), 1.0 / 9.0, 1e-15);
+  EXPECT_NEAR(apsis::validation::mean_of_cells(values, {4, 5}), 1.0 / 9.0, 1e-15);
 }
 
 TEST(quantities, have_the_states_of_the_exact_riemann_problem) {
@@ -238,11 +238,11 @@ TEST(quantities, refuse_what_they_do_not_know) {
 
 TEST(quantities, stop_when_asked) {
   EXPECT_THROW(static_cast<void>(compute_quantity(find_quantity("couette"), {}, [](double) { return true; })),
-               apsis::quantity_interrupted);
+               apsis::validation::quantity_interrupted);
 }
 
 TEST(quantities, have_distinct_reference_values_of_known_parameters) {
-  for (const quantity_entry* quantity : apsis::quantity_entries()) {
+  for (const quantity_entry* quantity : apsis::validation::quantity_entries()) {
     ASSERT_FALSE(quantity->parameters.empty()) << quantity->name;
     std::set<apsis::quantity_values> seen;
     for (const auto& value : quantity->references) {

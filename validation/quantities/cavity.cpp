@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace cavity_quantity {
 namespace {
 
@@ -43,4 +43,4 @@ const quantity_entry quantity_cavity = {
                    computed({{"delta", "2"}}, 1.05601, 3e-3), computed({{"delta", "10"}}, 0.74234, 1e-2)},
     .compute = cavity_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace couette_quantity {
 namespace {
 
@@ -41,4 +41,4 @@ const quantity_entry quantity_couette = {
                    published({{"delta", "20"}}, 0.08045), published({{"delta", "100"}}, 0.01737)},
     .compute = couette_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

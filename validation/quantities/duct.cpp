@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace duct_quantity {
 namespace {
 
@@ -70,4 +70,4 @@ const quantity_entry quantity_duct = {
                    computed({{"delta", "1"}, {"aspect", "2"}}, 1.042655, 3e-3)},
     .compute = duct_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

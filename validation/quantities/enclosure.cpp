@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace enclosure_quantity {
 namespace {
 
@@ -54,4 +54,4 @@ const quantity_entry quantity_enclosure = {
                    computed({{"delta", "10"}, {"wall", "left"}}, 0.188031, 1e-2)},
     .compute = enclosure_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace heat_quantity {
 namespace {
 
@@ -36,4 +36,4 @@ const quantity_entry quantity_heat = {
                    computed({{"delta", "1"}}, 0.640853), computed({{"delta", "10"}}, 0.175788)},
     .compute = heat_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

@@ -5,7 +5,7 @@
 #include <validation/graded_plates.hpp>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace kramers_quantity {
 namespace {
 
@@ -73,4 +73,4 @@ const quantity_entry quantity_kramers = {
                    computed({{"value", "layer"}, {"distance", "3"}}, 0.014967)},
     .compute = kramers_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

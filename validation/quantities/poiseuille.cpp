@@ -4,7 +4,7 @@
 #include <validation/graded_plates.hpp>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace poiseuille_quantity {
 namespace {
 
@@ -65,4 +65,4 @@ const quantity_entry quantity_poiseuille = {
                    published({{"delta", "100"}}, 17.691059)},
     .compute = poiseuille_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

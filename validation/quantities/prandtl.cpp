@@ -4,7 +4,7 @@
 
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace prandtl_quantity {
 namespace {
 
@@ -49,4 +49,4 @@ const quantity_entry quantity_prandtl = {
                    theory({{"model", "es-bgk"}}, 2.0 / 3.0)},
     .compute = prandtl_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

@@ -4,7 +4,7 @@
 
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace riemann_quantity {
 namespace {
 
@@ -91,4 +91,4 @@ const quantity_entry quantity_riemann = {
                    theory({{"degrees_of_freedom", "5"}, {"value", "density-right"}}, 0.26557)},
     .compute = riemann_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace shock_quantity {
 namespace {
 
@@ -120,4 +120,4 @@ const quantity_entry quantity_shock = {
                    theory({{"mach", "8"}, {"value", "energy"}, {"model", "es-bgk"}}, 1.0)},
     .compute = shock_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

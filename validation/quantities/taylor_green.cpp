@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 namespace taylor_green_quantity {
 namespace {
 
@@ -57,4 +57,4 @@ const quantity_entry quantity_taylor_green = {
                    theory({{"epsilon", "0.03"}}, 0.94306517)},
     .compute = taylor_green_quantity::compute};
 
-}  // namespace apsis
+}  // namespace apsis::validation

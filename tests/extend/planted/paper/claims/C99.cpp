@@ -1,6 +1,6 @@
 #include <paper/claim.hpp>
 
-namespace apsis {
+namespace apsis::paper {
 namespace {
 
 claim_result check(const study_control&) {
@@ -18,4 +18,4 @@ const claim_entry claim_C99 = {.id = "C99",
                                .how = "by planting one",
                                .check = check};
 
-}  // namespace apsis
+}  // namespace apsis::paper

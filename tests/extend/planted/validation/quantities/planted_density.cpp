@@ -1,6 +1,6 @@
 #include <validation/quantity.hpp>
 
-namespace apsis {
+namespace apsis::validation {
 
 extern const quantity_entry quantity_planted_density;
 const quantity_entry quantity_planted_density = {
@@ -13,4 +13,4 @@ const quantity_entry quantity_planted_density = {
       return mean_of_field(run("planted/exchange", {"model.epsilon=" + parameters.at("epsilon")}), "rho");
     }};
 
-}  // namespace apsis
+}  // namespace apsis::validation

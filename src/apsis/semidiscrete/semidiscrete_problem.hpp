@@ -8,6 +8,7 @@
 #include <apsis/semidiscrete/transport.hpp>
 
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -77,13 +78,17 @@ class semidiscrete_problem {
   void add_collision(double t, const field& u, std::span<const target<field, double>> targets) {
     guarded(u, [&] { collision_->add_collision(t, u, targets); });
   }
+  /// Returns the rates of a boundary_budget in the last evaluation of T, by add_transport() or
+  /// add_transport_and_solve(). On several processes each has those of its own ends, and one those of force
+  /// and source.
+  std::span<const double> budget_rates() const { return transport_.budget_rates(); }
   /// Throws on all processes what one of them met since the last call, with the number of the cell in the
   /// whole mesh.
   void settle() {
     if (space_->shared()) agree_on_errors(space_->processes(), failure_.take());
   }
   /// Returns the densities of the invariants of the gas at the ends of this process, in the order of
-  /// field::gains(); settles. Throws what boundaries throw.
+  /// a boundary_budget; settles. Throws what boundaries throw.
   std::vector<double> densities_at_surfaces(double t, const field& u) {
     std::vector<double> found;
     guarded(u, [&] { found = transport_.densities_at_surfaces(t, u); });

@@ -136,7 +136,7 @@ struct simulation::impl {
     const double relaxation = problem->relaxation_time(march.t(), state);
     if (!(dt > relaxation)) return;
     field equilibrium = state, left = state;
-    problem->solve_collision(march.t(), 1e100, 0.0, equilibrium);
+    problem->project_to_equilibrium(march.t(), equilibrium);
     const target<field, double> to_left{&left, 0.0, dt, false}, from_left{&left, 0.0, -dt, false};
     problem->add_transport(march.t(), state, {&to_left, 1});
     problem->add_transport(march.t(), equilibrium, {&from_left, 1});

@@ -4,6 +4,7 @@
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,16 @@ class budgeted_problem {
   void solve_collision(double t, double a, double b, state& u) {
     equations_.solve_collision(t, a, b, u.unknowns);
   }
+  /// sum ← Σ_k α_k u_k for unknowns and budgets.
+  void combine(std::span<const linear_term<state, double>> terms, state& sum) {
+    terms_.clear();
+    for (const auto& [alpha, u] : terms) terms_.push_back({alpha, &u->unknowns});
+    equations_.combine(terms_, sum.unknowns);
+    for (std::size_t k = 0; k < terms.size(); ++k)
+      sum.budget.combine(terms[k].alpha, terms[k].u->budget, 0.0, {}, k == 0);
+  }
+  /// Projects the unknowns: see semidiscrete_problem.
+  void project_to_equilibrium(double t, state& u) { equations_.project_to_equilibrium(t, u.unknowns); }
   /// Equivalent to add_transport() followed by solve_collision(due).
   void add_transport_and_solve(double t, const state& u, std::span<const target<state, double>> targets,
                                due_collision<state, double> due) {
@@ -66,9 +77,7 @@ class budgeted_problem {
   /// Whether the model has space or a source.
   bool has_transport(double t, const state& u) const { return equations_.has_transport(t, u.unknowns); }
   /// Smallest ε/C > 0: see semidiscrete_problem.
-  double relaxation_time(double t, const state& u) const {
-    return equations_.relaxation_time(t, u.unknowns);
-  }
+  double relaxation_time(double t, const state& u) const { return equations_.relaxation_time(t, u.unknowns); }
 
  private:
   using targets_view = std::span<const target<state, double>>;
@@ -96,7 +105,8 @@ class budgeted_problem {
   }
 
   semidiscrete_problem& equations_;
-  std::vector<target<field, double>> targets_;  ///< scratch memory
+  std::vector<target<field, double>> targets_;     ///< scratch memory
+  std::vector<linear_term<field, double>> terms_;  ///< scratch memory
 };
 
 }  // namespace apsis

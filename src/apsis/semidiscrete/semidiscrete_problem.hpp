@@ -4,6 +4,7 @@
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/integrate/verbs.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/transport.hpp>
 
@@ -56,6 +57,14 @@ class semidiscrete_problem {
   /// Throws numerical_error where there is no equilibrium, or Newton's method finds no solution.
   void solve_collision(double t, double a, double b, field& u) {
     guarded(u, [&] { collision_->solve(t, a, b, u); });
+  }
+  /// sum ← Σ_k α_k u_k, with padding, as required by `problem_with_combination`.
+  void combine(std::span<const linear_term<field, double>> terms, field& sum) {
+    guarded(sum, [&] { transport_.combine(terms, sum); });
+  }
+  /// u ← E(ℛu) up to rounding, whatever ε; of averages, what their stage solves lead to.
+  void project_to_equilibrium(double t, field& u) {
+    solve_collision(t, time_to_equilibrium<double>(), 0.0, u);
   }
   /// Equivalent to add_transport() followed by solve_collision(due); where possible, cells are solved while
   /// they are in cache.

@@ -143,6 +143,15 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   return done;
 }
 
+void transport::combine(std::span<const linear_term<field, double>> terms, field& sum) const {
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto& [alpha, u] = terms[k];
+    if (k == 0 && u == &sum && alpha == 1.0) continue;
+    const target<field, double> to{&sum, alpha, 0.0, k == 0};
+    add_weighted(*u, {&to, 1}, {});
+  }
+}
+
 std::vector<double> transport::densities_at_surfaces(double t, const field& u) const {
   if (equation_.space_dimensions() == 0) return {};
   struct observation {

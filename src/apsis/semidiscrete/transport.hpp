@@ -36,6 +36,9 @@ class transport {
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const;
 
+  /// sum ← Σ_k α_k u_k, one term at least, added in their order; `sum` may be the state of the first term.
+  void combine(std::span<const linear_term<field, double>> terms, field& sum) const;
+
   /// Returns what u has received per unit of time in the last evaluation of T: the rates of a
   /// boundary_budget. Empty without space.
   std::span<const double> budget_rates() const { return faces_->rates(); }

@@ -145,6 +145,12 @@ class KineticProblem:
         Raises InputError for other a and b, for which a stage may have no solution, and unless a, b and t are finite."""
         return self._core.solve_collision(real_array("u", u), finite("a", a, lowest=0.0), finite("b", b, highest=0.0), finite("t", t))
 
+    def project_to_equilibrium(self, u: ArrayLike, t: float = 0.0) -> Array:
+        """Returns E(ω), the equilibrium with the moments ω of u, where collisions lead after a long time, in the shape of u.
+
+        Raises NumericalError where there is no equilibrium, and InputError unless t is finite."""
+        return self._core.project_to_equilibrium(real_array("u", u), finite("t", t))
+
     def forward_euler_step(self, u: ArrayLike) -> float:
         """Returns Δt_FE of the transport; infinite without space."""
         return self._core.forward_euler_step(real_array("u", u))

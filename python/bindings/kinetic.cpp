@@ -347,6 +347,12 @@ class kinetic_problem {
     return from_field(state);
   }
 
+  py::array_t<double> project_to_equilibrium(const array& u, double t) {
+    field state = to_field(u);
+    call(state, [&](semidiscrete_problem& of) { of.project_to_equilibrium(t, state); });
+    return from_field(state);
+  }
+
   double forward_euler_step(const array& u) {
     const field state = to_field(u);
     double dt = 0.0;
@@ -520,6 +526,7 @@ void bind_kinetic(py::module_& m) {
       .def("transport", &kinetic_problem::transport)
       .def("collision", &kinetic_problem::collision)
       .def("solve_collision", &kinetic_problem::solve_collision)
+      .def("project_to_equilibrium", &kinetic_problem::project_to_equilibrium)
       .def("forward_euler_step", &kinetic_problem::forward_euler_step)
       .def("integrate",
            [](kinetic_problem& problem, const array& u0, const std::vector<double>& t,

@@ -40,6 +40,27 @@ def test_functions_of_position_are_data_and_epsilon():
     np.testing.assert_allclose(problem.solve_collision(u, 0.1, -0.01), u, rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("more", [{}, dict(formulation="finite-difference"), dict(collisions="centres"), dict(epsilon=lambda x: 1e-3 + x)])
+def test_a_state_is_projected_to_its_equilibrium(more):
+    problem = bgk(**more)
+    u = problem.sample("mixed-v")
+    equilibrium = problem.project_to_equilibrium(u)
+    for name in ("rho", "u", "T"):
+        np.testing.assert_allclose(problem.fields(equilibrium)[name], problem.fields(u)[name], rtol=1e-12, atol=1e-13)
+    if more.get("formulation") == "finite-difference":  # of averages, Q is an average over a cell
+        scale = np.abs(problem.collision(u)).max()
+        assert np.abs(problem.collision(equilibrium)).max() < 1e-10 * scale
+    with pytest.raises(apsis.InputError, match="t = nan is not finite"):
+        problem.project_to_equilibrium(u, t=np.nan)
+
+
+def test_an_ordinary_differential_equation_is_projected_whatever_epsilon_is():
+    for epsilon in (0, 1e-8, 1, 1e6):
+        problem = apsis.KineticProblem("ode", epsilon=epsilon)
+        np.testing.assert_array_equal(problem.project_to_equilibrium([[2.0, 0.3]]), problem.project_to_equilibrium([[2.0, -5.0]]))
+        assert problem.project_to_equilibrium([[2.0, 0.3]])[0, 1] == pytest.approx(np.sin(2.0), rel=1e-15)
+
+
 def test_averages_of_data_with_jumps_are_exact():
     problem = apsis.KineticProblem("relaxation", cells=5, domain=(0, 1))
     u = problem.sample(lambda x: [x * x if x < 0.5 else 2.0, 1.0], jumps=[0.5])

@@ -52,6 +52,7 @@ CALLS = {
     "transport": "problem.transport(u)",
     "collision": "problem.collision(u)",
     "solve_collision": "problem.solve_collision(u, 0.1, -0.01)",
+    "project_to_equilibrium": "problem.project_to_equilibrium(u)",
     "forward_euler_step": "problem.forward_euler_step(u)",
     "fields": "problem.fields(u)['T']",
     "sample": "problem.sample('mixed-v')",

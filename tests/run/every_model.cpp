@@ -60,11 +60,13 @@ struct one_step {
 /// One step from a random state, of length r Δt_FE if the model is positive, else Δx/(2v) or 1/16.
 one_step step_of(const model_entry& entry, const case_config& c, bool with_zeros, bool uniform = false) {
   const run_setup setup(c);
-  field u = setup.initial_state();
+  budgeted_state now{setup.initial_state(), {}};
+  field& u = now.unknowns;
   disturb(u, setup.equation->positive(), with_zeros);
   for (int i = 1; uniform && i < u.cells(); ++i) std::copy_n(u.row(0), u.components(), u.row(i));
   const auto problem = setup.make_problem();
-  stepper<semidiscrete_problem> integrator(setup.integrator(), *problem);
+  budgeted_problem budgeted(*problem);
+  stepper<budgeted_problem> integrator(setup.integrator(), budgeted);
   monitor watch(setup);
   one_step result;
   result.before = watch.start(u);
@@ -72,8 +74,8 @@ one_step step_of(const model_entry& entry, const case_config& c, bool with_zeros
   if (has_space(entry))
     dt = c.time.safety ? *c.time.safety * setup.step_coefficient() * problem->forward_euler_step(0.0, u)
                        : *c.time.cfl * setup.cfl_length();
-  integrator.step(0.0, dt, u);
-  result.after = watch.check(u, dt, result.before);
+  integrator.step(0.0, dt, now);
+  result.after = watch.check(now, dt, result.before);
   return result;
 }
 

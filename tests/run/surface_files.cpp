@@ -180,16 +180,16 @@ TEST(files_of_surfaces, of_a_continuation_without_a_step_are_those_of_the_last_s
   EXPECT_THAT(first, testing::Not(HasSubstr("nan")));
   // A checkpoint without them, or that of another case, is not one of their run.
   checkpoint other = read_checkpoint(folder / "first/checkpoint.h5");
-  EXPECT_EQ(other.gains.size(), (2 * 5 + 5 + 6 + 5) * 4U);
-  other.gains.pop_back();
+  EXPECT_EQ(other.budget.size(), (2 * 5 + 5 + 6 + 5) * 4U);
+  other.budget.pop_back();
   write_checkpoint(folder / "other.h5", other);
   try {
     continue_into(folder / "third", gas, folder / "other.h5", steady);
     FAIL() << "accepted";
   } catch (const input_error& refused) {
-    EXPECT_THAT(refused.what(), HasSubstr("the saved gains have another size"));
+    EXPECT_THAT(refused.what(), HasSubstr("the saved boundary budget has another size"));
   }
-  other.gains.clear();
+  other.budget.clear();
   write_checkpoint(folder / "without.h5", other);
   continue_into(folder / "third", gas, folder / "without.h5", steady);
   EXPECT_THAT(text_of(folder / "third/surfaces/left.csv"), HasSubstr("nan"));

@@ -4,7 +4,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/stepper.hpp>
-#include <apsis/semidiscrete/face_fluxes.hpp>
+#include <apsis/semidiscrete/budgeted_problem.hpp>
 
 #include <atomic>
 #include <cstdlib>
@@ -162,17 +162,23 @@ long allocations_beside(const apsis::boundary_entry& kind, bool in_plane, bool c
       *gas, space, how,
       points ? apsis::make_pointwise_collision(*gas, std::vector<double>(cells, 1e-3))
              : apsis::make_cell_average_collision(*gas, space, how, std::vector<double>(3 * cells, 1e-3)));
-  apsis::stepper stepper(apsis::find_method("md-imex-6-3"), problem);
-  apsis::field u(mesh.size(), gas->components());
+  apsis::budgeted_problem budgeted(problem);
+  apsis::stepper stepper(apsis::find_method("md-imex-6-3"), budgeted);
+  apsis::budgeted_state now{apsis::field(mesh.size(), gas->components()), {}};
+  apsis::field& u = now.unknowns;
   std::vector<double> rest(static_cast<std::size_t>(gas->components()));
   std::vector<double> state(static_cast<std::size_t>(in_plane ? 4 : 3), 0.0);
   state.front() = state.back() = 1.0;
   gas->data_forms().front().row(state, rest);
   for (int cell = 0; cell < mesh.size(); ++cell) std::copy(rest.begin(), rest.end(), u.row(cell));
   const double dt = stepper.r() * problem.forward_euler_step(0.0, u);
-  for (int step = 0; step < 3; ++step) stepper.step(step * dt, dt, u);
+  const auto take_step = [&](int step) {
+    now.budget.clear();
+    stepper.step(step * dt, dt, now);
+  };
+  for (int step = 0; step < 3; ++step) take_step(step);
   const long before = allocations;
-  for (int step = 3; step < 8; ++step) stepper.step(step * dt, dt, u);
+  for (int step = 3; step < 8; ++step) take_step(step);
   return allocations - before;
 }
 
@@ -217,18 +223,16 @@ TEST(allocations, steps_to_a_tolerance_allocate_nothing_after_the_first_ones) {
   }
 }
 
-TEST(allocations, gains_of_many_ends_are_combined_without_any_after_the_first_step) {
-  apsis::field u(1, 1), stage(1, 1);
+TEST(allocations, budgets_of_many_ends_are_combined_without_any_after_the_first_step) {
+  apsis::boundary_budget u, stage;
   const std::vector<double> rates(1000, 1.0);
-  const std::vector<apsis::target<apsis::field, double>> to_stage = {{&stage, 1.0, 0.5, true}},
-                                                         to_u = {{&u, 0.5, 0.5, false}};
   long before = 0;
   for (int step = 0; step < 3; ++step) {
     if (step == 1) before = allocations;
-    u.gains().clear();
-    apsis::combine_gains(u, to_stage, rates);
-    apsis::combine_gains(stage, to_u, rates);
+    u.clear();
+    stage.combine(1.0, u, 0.5, rates, true);
+    u.combine(0.5, stage, 0.5, rates, false);
   }
   EXPECT_EQ(allocations - before, 0);
-  EXPECT_EQ(u.gains().at(999), 0.75);
+  EXPECT_EQ(u.amounts().at(999), 0.75);
 }

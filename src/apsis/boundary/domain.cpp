@@ -64,9 +64,9 @@ void domain::set_sides(const std::vector<faces>& sides,
     if (here->periodic())
       throw input_error("a solid box is periodic (nothing lies behind its faces); give it a wall");
     if (auto tables = here->prepared(where, space_.velocities)) here = std::move(tables);
-    if (solid < 0 || openings_.empty() || openings_.back().solid != solid)
-      openings_.push_back({{}, where, solid});
-    openings_.back().surfaces.push_back(static_cast<int>(number));
+    if (solid < 0 || budget_surfaces_.empty() || budget_surfaces_.back().solid != solid)
+      budget_surfaces_.push_back({{}, where, solid});
+    budget_surfaces_.back().surfaces.push_back(static_cast<int>(number));
   }
 }
 
@@ -78,7 +78,7 @@ domain domain::point() {
 
 std::optional<std::vector<std::vector<double>>> domain::entropy_bounds() const {
   std::vector<std::vector<double>> all;
-  for (const opening& one : openings_) {
+  for (const budget_surface& one : budget_surfaces_) {
     auto bound = side(one.surfaces.front())->entropy_bound();
     if (!bound) return std::nullopt;
     all.push_back(std::move(*bound));
@@ -90,7 +90,7 @@ long domain::number_in_whole_mesh(long cell) const {
   return cell < 0 || !distribution_ ? cell : distribution_->whole.cell_of(mesh(), static_cast<int>(cell));
 }
 
-std::size_t domain::ends_at(const opening& one) const {
+std::size_t domain::ends_at(const budget_surface& one) const {
   std::size_t ends = 0;
   for (const int surface : one.surfaces) ends += at(surfaces()[at(surface)].own);
   return ends;

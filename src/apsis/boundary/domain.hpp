@@ -18,8 +18,9 @@
 
 namespace apsis {
 
-/// A part of the border of the gas whose balance is kept: a face of the domain, or all faces of a solid box.
-struct opening {
+/// A part of the border of the gas with a budget of its own: a face of the domain, or all faces of a solid
+/// box.
+struct budget_surface {
   std::vector<int> surfaces;  ///< numbers of its surfaces
   face where;                 ///< the face of the domain
   int solid = -1;             ///< or the number of the solid box
@@ -66,10 +67,10 @@ class domain : public construction_count<domain> {
   /// lie here (segment::ends_here()).
   int cell_at(int surface, int place) const;
   /// Returns the faces that are not periodic and the solid boxes, in this order.
-  const std::vector<opening>& openings() const { return openings_; }
-  /// Returns the number of ends of segments at an opening, those of its surfaces in their order.
-  std::size_t ends_at(const opening& one) const;
-  /// Returns boundary::entropy_bound() of every opening; nothing if one of them has none.
+  const std::vector<budget_surface>& budget_surfaces() const { return budget_surfaces_; }
+  /// Returns the number of ends of segments at a budget surface, those of its surfaces in their order.
+  std::size_t ends_at(const budget_surface& one) const;
+  /// Returns boundary::entropy_bound() of every budget surface; nothing if one of them has none.
   std::optional<std::vector<std::vector<double>>> entropy_bounds() const;
 
   /// Returns the processes that share the mesh.
@@ -148,7 +149,7 @@ class domain : public construction_count<domain> {
   std::array<bool, 3> periodic_{};
   segment_table segments_;
   std::vector<std::shared_ptr<const boundary>> sides_;  ///< [surface]
-  std::vector<opening> openings_;
+  std::vector<budget_surface> budget_surfaces_;
   std::vector<end_rows> end_rows_;  ///< [surface]
   int width_ = 0;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/integrate/stepper.hpp>
+#include <apsis/integrate/verbs.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -58,29 +59,22 @@ class error_estimate {
                          const Distance& distance) {
     while (buffers_.size() < 3) buffers_.push_back(start);
     state &sum = buffers_[0], &of_result = buffers_[1], &of_other = buffers_[2];
-    const auto solve_both = [&](const state& other, real a) {
-      of_result = tried.result;
-      of_other = other;
-      p.solve_collision(t + dt, a, real(0), of_result);
-      p.solve_collision(t + dt, a, real(0), of_other);
-    };
-    solve_both(start, real(1e100));  // a C/ε ≫ 1: P(x) up to rounding
+    of_result = tried.result;
+    of_other = start;
+    project_to_equilibrium(p, t + dt, of_result);
+    project_to_equilibrium(p, t + dt, of_other);
     const real change = distance(tried.result, start), ratio = distance(of_result, of_other) / change;
     if (!(change > real(0))) return weight_ * distance(tried.result, tried.embedded);
     const real rho = std::clamp(ratio, real(0.01), real(1)), w = rho / (real(10) * weight_);
-    solve_both(tried.embedded, dt / (rho * rho));
+    of_result = tried.result;
+    of_other = tried.embedded;
+    for (state* v : {&of_result, &of_other}) p.solve_collision(t + dt, dt / (rho * rho), real(0), *v);
     // u^{n+1} minus the weighted error.
     const real share = real(1) / (real(1) + w);
-    add(p, t, tried.result, share, sum, true);
-    add(p, t, tried.embedded, w * share, sum, false);
-    add(p, t, of_result, -share, sum, false);
-    add(p, t, of_other, share, sum, false);
+    combine(p,
+            {{share, &tried.result}, {w * share, &tried.embedded}, {-share, &of_result}, {share, &of_other}},
+            sum);
     return weight_ * distance(tried.result, sum);
-  }
-
-  static void add(P& p, real t, const state& u, real alpha, state& sum, bool fresh) {
-    const target<state, real> to{&sum, alpha, real(0), fresh};
-    p.add_transport(t, u, {&to, 1});
   }
 
   real weight_;
@@ -100,36 +94,35 @@ typename P::real first_step_length(P& p, typename P::real t, const typename P::s
   using real = typename P::real;
   using state = typename P::state;
   using std::pow;
-  const auto add = [&](const state& from, real alpha, real beta, state& sum) {
-    const target<state, real> to{&sum, alpha, beta, true};
+  const auto move = [&](const state& from, real tau, state& sum) {  // sum ← from + τ T(from)
+    const target<state, real> to{&sum, real(1), tau, true};
     p.add_transport(t, from, {&to, 1});
   };
   real layer = std::numeric_limits<real>::infinity();
   if constexpr (problem_with_relaxation_time<P>) layer = p.relaxation_time(t, u);
   const bool relaxes = layer < std::numeric_limits<real>::infinity();
-  const real projection = real(1e100);  // a C/ε ≫ 1: v = E(ℛu) up to rounding
   // Short enough for T to be linear, long enough for rounding errors to be negligible.
   const real tau = longest * real(1e-5);
   state before = u, after = u;
   try {
-    add(u, real(0), real(0), after);
+    combine(p, {{real(0), &u}}, after);
     const real size = distance(u, after),
                part = pow(wanted.tolerance / size, real(1) / real(wanted.order + 1));
-    if (relaxes) p.solve_collision(t, projection, real(0), before);
+    if (relaxes) project_to_equilibrium(p, t, before);
     const auto moved_from = [&](const state& from) {
       state moved = u;
-      add(from, real(1), layer, moved);
-      p.solve_collision(t, projection, real(0), moved);
+      move(from, layer, moved);
+      project_to_equilibrium(p, t, moved);
       return moved;
     };
     const bool layer_matters = relaxes && distance(moved_from(u), moved_from(before)) > wanted.tolerance;
     const real of_layer = layer_matters ? distance(u, before) / size / layer : real(0);
-    add(before, real(1), tau, after);
+    move(before, tau, after);
     if constexpr (problem_with_explicit_collision<P> && !problem_with_relaxation_time<P>) {
       const target<state, real> by_collision{&after, real(0), tau, false};
       p.add_collision(t, before, {&by_collision, 1});
     }
-    if (relaxes) p.solve_collision(t + tau, projection, real(0), after);
+    if (relaxes) project_to_equilibrium(p, t + tau, after);
     const real rate = std::max(of_layer, distance(before, after) / size / tau) / part;
     return rate * longest > real(1) ? real(1) / rate : longest;
   } catch (const numerical_error&) {

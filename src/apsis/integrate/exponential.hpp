@@ -31,6 +31,18 @@ class exact_collisions {
   }
   /// Sets u ← exp(aQ) u; b must be 0.
   void solve_collision(real t, real a, real, state& u) { problem_.advance_collision(t, a, u); }
+  /// Required by `problem_with_combination`.
+  void combine(std::span<const linear_term<state, real>> terms, state& sum)
+    requires problem_with_combination<P>
+  {
+    problem_.combine(terms, sum);
+  }
+  /// Required by `problem_with_projection`.
+  void project_to_equilibrium(real t, state& u)
+    requires problem_with_projection<P>
+  {
+    problem_.project_to_equilibrium(t, u);
+  }
   /// Required by `problem`.
   real forward_euler_step(real t, const state& u) const { return problem_.forward_euler_step(t, u); }
   /// Required by `problem_with_relaxation_time`.

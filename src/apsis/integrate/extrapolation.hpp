@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/problem.hpp>
+#include <apsis/integrate/verbs.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,6 @@ long extrapolate(P& p, typename P::state& u, typename P::real t0, typename P::re
                  extrapolation_options<typename P::real> options, const Distance& distance) {
   using real = typename P::real;
   using state = typename P::state;
-  using goal = target<state, real>;
   const auto weights = [](int first, int last) {
     std::vector<real> w;
     for (int n = first; n <= last; ++n) {
@@ -47,9 +46,11 @@ long extrapolate(P& p, typename P::state& u, typename P::real t0, typename P::re
     return w;
   };
   const auto high = weights(1, options.order), low = weights(1, options.order - 1);
-  const auto add = [&](real t, const state& from, std::initializer_list<goal> to) {
-    const std::vector<goal> targets(to);
-    p.add_transport(t, from, std::span<const goal>(targets));
+  const auto add = [&](real alpha, const state& from, state& sum, bool fresh) {
+    if (fresh)
+      combine(p, {{alpha, &from}}, sum);
+    else
+      combine(p, {{real(1), &sum}, {alpha, &from}}, sum);
   };
 
   // Combine the increments v − u, not the values: they are small, and so are their rounding errors.
@@ -60,18 +61,18 @@ long extrapolate(P& p, typename P::state& u, typename P::real t0, typename P::re
       v = u;
       for (int k = 0; k < n; ++k) {
         const real now = t + real(k) * h;
-        add(now, v, {{&next, real(1), h, true}});
+        const target<state, real> moved{&next, real(1), h, true};
+        p.add_transport(now, v, {&moved, 1});
         p.solve_collision(now + h, h, real(0), next);
         std::swap(v, next);
       }
-      add(t, u, {{&v, real(-1), real(0), false}});
+      combine(p, {{real(1), &v}, {real(-1), &u}}, v);
       const std::size_t i = static_cast<std::size_t>(n) - 1;
-      if (n < options.order)
-        add(t, v, {{&result, high[i], real(0), n == 1}, {&lower, low[i], real(0), n == 1}});
-      else
-        add(t, v, {{&result, high[i], real(0), false}});
+      add(high[i], v, result, n == 1);
+      if (n < options.order) add(low[i], v, lower, n == 1);
     }
-    add(t, u, {{&result, real(1), real(0), false}, {&lower, real(1), real(0), false}});
+    add(real(1), u, result, false);
+    add(real(1), u, lower, false);
     return distance(result, lower);
   };
 

@@ -21,8 +21,17 @@ struct target {
   }
 };
 
+/// A term α u of a linear combination of states.
+template <class State, class Real>
+struct linear_term {
+  Real alpha;      ///< coefficient
+  const State* u;  ///< a state
+};
+
 /// Interface of a problem u' = T(t, u) + Q(u) to the integrator. Two functions suffice for a time step; they
-/// hide ε, the mesh and the model. `state` must be copyable and swappable; it needs no arithmetic.
+/// hide ε, the mesh and the model. `state` must be copyable and swappable; it needs no arithmetic. Estimates
+/// of errors also form linear combinations of states and project to equilibrium, by the functions combine()
+/// and project_to_equilibrium() of verbs.hpp, which have defaults.
 ///
 ///   add_transport(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u); T is
 ///                                  evaluated once, and not at all if every β is 0
@@ -38,6 +47,23 @@ concept problem = requires(P p, const typename P::state& u, typename P::state& v
   p.solve_collision(x, x, x, v);
   { p.forward_euler_step(x, u) } -> std::convertible_to<typename P::real>;
 };
+
+/// A problem with linear combinations of its own, faster than the default of verbs.hpp:
+///   combine(terms, sum)   sum ← Σ_k α_k u_k, one term at least, added in their order; `sum` may be the state
+///                         of the first term, and of no other
+template <class P>
+concept problem_with_combination =
+    problem<P> && requires(P p, typename P::state& sum,
+                           std::span<const linear_term<typename P::state, typename P::real>> terms) {
+      p.combine(terms, sum);
+    };
+
+/// A problem with a projection of its own, faster or more accurate than the default of verbs.hpp:
+///   project_to_equilibrium(t, u)   in place: u ← E(ℛu), the equilibrium with the moments of u, where
+///                                  collisions lead after a long time; u where nothing relaxes
+template <class P>
+concept problem_with_projection =
+    problem<P> && requires(P p, typename P::state& u, typename P::real x) { p.project_to_equilibrium(x, u); };
 
 /// A problem that also evaluates Q, for methods in which Q enters a stage explicitly:
 ///   add_collision(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β Q(u)

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/problem.hpp>
+#include <apsis/integrate/verbs.hpp>
 #include <apsis/method/rate_errors.hpp>
 
 #include <algorithm>
@@ -37,26 +37,26 @@ class probe {
 
   probe(P& p, real t, const state& u, real dt, const Distance& distance)
       : p_(p), t_(t), dt_(dt), u_(u), distance_(distance), equilibrium_(u), spare_(u), from_(u) {
-    p_.solve_collision(t_, at_equilibrium, real(0), equilibrium_);
+    project_to_equilibrium(p_, t_, equilibrium_);
   }
 
   rate_loss<real> operator()(const rate_response& response, bool with_layer) {
     rate_loss<real> loss;
     state base = transported(equilibrium_), moved = base;
-    p_.solve_collision(t_ + dt_, at_equilibrium, real(0), moved);
+    project_to_equilibrium(p_, t_ + dt_, moved);
     coefficients whole;
     whole.fill(1.0);  // Σ_k (1 − s) s^k D = (1 − s^terms) D
     state part = deviations(base, moved, whole, true);
     if (!find_size(part)) return loss;
     loss.deviation = size(part);
     loss.diffusion = effect(part, moved) / dt_;
-    add(equilibrium_, real(-1), real(0), spare_, false);  // of the moments after a step with D
+    add(real(-1), equilibrium_, spare_);  // of the moments after a step with D
     loss.change = size(spare_) / dt_;
     part = deviations(base, moved, response.flux, true);
     loss.rate = effect(part, moved) / dt_;
     part = deviations(base, moved, response.last, true);
-    add(moved, real(response.last_growth), real(0), part, false);  // zD, before any solve
-    add(base, real(-response.last_growth), real(0), part, false);
+    add(real(response.last_growth), moved, part);  // zD, before any solve
+    add(real(-response.last_growth), base, part);
     loss.result = size(part);
     if (with_layer) {
       part = deviations(u_, equilibrium_, response.layer, false);
@@ -66,18 +66,14 @@ class probe {
   }
 
  private:
-  static constexpr real at_equilibrium = real(1e100);  ///< Δt that leaves no deviation
-
-  void add(const state& from, real alpha, real beta, state& to, bool fresh) {
-    const target<state, real> sum{&to, alpha, beta, fresh};
-    p_.add_transport(t_, from, {&sum, 1});
-  }
+  /// sum ← sum + α u
+  void add(real alpha, const state& u, state& sum) { combine(p_, {{real(1), &sum}, {alpha, &u}}, sum); }
 
   /// Returns M + Δt T(v) with the equilibrium M of u.
   state transported(const state& v) {
-    state sum = u_;
-    add(equilibrium_, real(1), real(0), sum, true);
-    add(v, real(0), dt_, sum, false);
+    state sum = equilibrium_;
+    const target<state, real> moved{&sum, real(0), dt_, false};
+    p_.add_transport(t_, v, {&moved, 1});
     return sum;
   }
 
@@ -87,20 +83,22 @@ class probe {
     real all(0);
     for (std::size_t k = 0; k < c.size(); ++k) {
       if (k > 0 || solved_first) p_.solve_collision(t_ + dt_, dt_, real(0), now);
-      add(now, real(-c[k]), real(0), sum, k == 0);
+      if (k == 0)
+        combine(p_, {{real(-c[k]), &now}}, sum);
+      else
+        add(real(-c[k]), now, sum);
       all += real(c[k]);
     }
-    add(end, all, real(0), sum, false);
+    add(all, end, sum);
     return sum;
   }
 
   /// Stores the size of u, or that of the slow solution M − D where it is larger, as u may vanish at the
   /// start. Returns false if both vanish.
   bool find_size(const state& deviation) {
-    state zero = u_, slow = u_;
-    add(u_, real(0), real(0), zero, true);
-    add(equilibrium_, real(1), real(0), slow, true);
-    add(deviation, real(-1), real(0), slow, false);
+    state zero = u_, slow = equilibrium_;
+    combine(p_, {{real(0), &u_}}, zero);
+    add(real(-1), deviation, slow);
     const real of_u = distance_(u_, zero);
     size_ = std::max(of_u, distance_(slow, zero));
     if (!(of_u > real(0))) from_ = slow;
@@ -110,21 +108,19 @@ class probe {
   /// Returns ‖change‖/‖u‖, for distances that are relative to their first argument.
   real size(const state& change) {
     state shifted = from_;
-    add(change, real(1), real(0), shifted, false);
+    add(real(1), change, shifted);
     return distance_(from_, shifted) / size_;
   }
 
   /// Returns the size of the change of the equilibrium after Δt by a deviation x, and leaves the equilibrium
   /// after Δt with it in spare_.
   real effect(const state& x, const state& moved) {
-    state deviating = u_;
-    add(equilibrium_, real(1), real(0), deviating, true);
-    add(x, real(-1), real(0), deviating, false);
+    state deviating = equilibrium_;
+    add(real(-1), x, deviating);
     spare_ = transported(deviating);
-    p_.solve_collision(t_ + dt_, at_equilibrium, real(0), spare_);
-    state difference = u_;
-    add(moved, real(1), real(0), difference, true);
-    add(spare_, real(-1), real(0), difference, false);
+    project_to_equilibrium(p_, t_ + dt_, spare_);
+    state difference = moved;
+    add(real(-1), spare_, difference);
     return size(difference);
   }
 

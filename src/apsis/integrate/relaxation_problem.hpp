@@ -85,6 +85,15 @@ class relaxation_problem {
     require_valid(u);
   }
 
+  /// Required by `problem_with_projection`. Throws like solve_collision().
+  void project_to_equilibrium(real, State& u) {
+    if (relaxation(u) > real(0)) {
+      using size_type = decltype(u.size());
+      for (size_type i = 0; i < u.size(); ++i) u[i] = work_[i];
+    }
+    require_valid(u);
+  }
+
   /// Required by `problem_with_known_collision`: u ← e^{−z}u + (1 − e^{−z})E, z = sC/ε. Throws like
   /// solve_collision().
   void advance_collision(real, real s, State& u) {

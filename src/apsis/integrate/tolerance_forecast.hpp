@@ -61,24 +61,26 @@ deviations<typename P::real> find_deviations(P& p, typename P::real t, const typ
                                              typename P::real dt, const Distance& distance) {
   using real = typename P::real;
   using state = typename P::state;
-  const auto add = [&](const state& from, real alpha, real beta, state& to, bool fresh) {
-    const target<state, real> sum{&to, alpha, beta, fresh};
-    p.add_transport(t, from, {&sum, 1});
-  };
   state now = u, plateau = u, band = u, zero = u;
-  add(u, real(1), dt, now, true);
-  add(u, real(0), real(0), zero, true);
+  const target<state, real> moved{&now, real(1), dt, true};
+  p.add_transport(t, u, {&moved, 1});
+  combine(p, {{real(0), &u}}, zero);
   const real of_plateau[] = {1, -2, 1, 0}, of_band[] = {0, 1, -2, 1};
   for (int k = 0; k < 4; ++k) {
     p.solve_collision(t + dt, dt, real(0), now);
-    add(now, of_plateau[k], real(0), plateau, k == 0);
-    add(now, of_band[k], real(0), band, k == 0);
+    if (k == 0) {
+      combine(p, {{of_plateau[k], &now}}, plateau);
+      combine(p, {{of_band[k], &now}}, band);
+    } else {
+      combine(p, {{real(1), &plateau}, {of_plateau[k], &now}}, plateau);
+      combine(p, {{real(1), &band}, {of_band[k], &now}}, band);
+    }
   }
   // Form distance(u, u − x) for norms that are relative to their first argument.
   const real size = distance(u, zero);
   const real change = distance(now, u) / distance(now, zero);
-  add(u, real(1), real(0), plateau, false);
-  add(u, real(1), real(0), band, false);
+  combine(p, {{real(1), &plateau}, {real(1), &u}}, plateau);
+  combine(p, {{real(1), &band}, {real(1), &u}}, band);
   return {distance(u, plateau), distance(u, band), size > real(0) ? change : real(0)};
 }
 
@@ -103,7 +105,7 @@ tolerance_forecast<typename P::real> forecast_tolerance(stepper<P>& method_stepp
   if constexpr (problem_with_relaxation_time<P>) relaxation = p.relaxation_time(t, u);
   const bool relaxes = relaxation < std::numeric_limits<real>::infinity();
   try {
-    if (relaxes) p.solve_collision(t, real(1e100), real(0), from);
+    if (relaxes) project_to_equilibrium(p, t, from);
     const auto equilibrium = from;
     if (relaxes) {  // a tiny step moves it to the slow manifold
       const auto& tried = method_stepper.attempt(t, longest * real(1e-5), from);

@@ -7,9 +7,9 @@
 
 namespace apsis {
 
-/// The state of a semi-discrete problem: one row of `components` numbers per cell, stored in the order of the
-/// grid. Rows of eight or more numbers are padded with zeros to whole cache lines, so that every row is
-/// aligned and vector loops have no remainder.
+/// One row of `components` numbers per cell, stored in the order of the grid: the unknowns of a semi-discrete
+/// problem, and storage for nothing else. Rows of eight or more numbers are padded with zeros to whole cache
+/// lines, so that every row is aligned and vector loops have no remainder.
 class field {
  public:
   field() = default;
@@ -23,7 +23,6 @@ class field {
       : cells_(other.cells_),
         components_(other.components_),
         stride_(other.stride_),
-        gains_(other.gains_),
         data_(other.data_.size()) {
     fill_rows(other.data_.data());
   }
@@ -33,7 +32,6 @@ class field {
     cells_ = other.cells_;
     components_ = other.components_;
     stride_ = other.stride_;
-    gains_ = other.gains_;
     fill_rows(other.data_.data());
     return *this;
   }
@@ -49,14 +47,6 @@ class field {
 
   /// Returns the stride of rows with the given number of components.
   static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
-
-  /// Amounts of the invariants that this state has received through every end of a segment at a surface, in
-  /// the order of domain::openings(), [opening][end][invariant], then the totals of a force and of a source;
-  /// copied with the rows, and formed by the same linear combinations (semidiscrete/face_fluxes.hpp). Empty
-  /// where nothing has crossed a surface.
-  std::vector<double>& gains() { return gains_; }
-  /// The gains of a constant field.
-  const std::vector<double>& gains() const { return gains_; }
 
   /// Returns the row of a cell, 0 … cells() − 1 (not checked).
   double* row(int cell) {
@@ -75,7 +65,6 @@ class field {
   void fill_rows(const double* values);
 
   int cells_ = 0, components_ = 0, stride_ = 0;
-  std::vector<double> gains_;
   std::vector<double, untouched_allocator<double>> data_;
 };
 

@@ -89,7 +89,7 @@ void write_earlier(hdf5_file& file, const checkpoint& c) {
   for (std::size_t k = 0; k < c.earlier.size(); ++k) {
     const earlier_value& value = c.earlier[k];
     write_state(file, c, name_of_earlier(k, "state"), value.state);
-    if (!value.gains.empty()) file.write(name_of_earlier(k, "gains"), value.gains, {value.gains.size()});
+    if (!value.budget.empty()) file.write(name_of_earlier(k, "gains"), value.budget, {value.budget.size()});
   }
 }
 
@@ -97,7 +97,7 @@ void read_earlier(const hdf5_file& file, const std::string& path, const std::opt
                   checkpoint& c) {
   for (std::size_t k = 0; file.has(name_of_earlier(k, "state")); ++k) {
     earlier_value value{read_state(file, path, part, name_of_earlier(k, "state"), c), {}};
-    if (file.has(name_of_earlier(k, "gains"))) value.gains = file.read(name_of_earlier(k, "gains"));
+    if (file.has(name_of_earlier(k, "gains"))) value.budget = file.read(name_of_earlier(k, "gains"));
     c.earlier.push_back(std::move(value));
   }
 }
@@ -119,7 +119,7 @@ void write_contents(hdf5_file& file, const checkpoint& c) {
   file.write("case", c.case_text);
   file.write("commit", c.commit);
   write_state(file, c, "state", c.state);
-  if (!c.gains.empty()) file.write("gains", c.gains, {c.gains.size()});
+  if (!c.budget.empty()) file.write("gains", c.budget, {c.budget.size()});
   write_earlier(file, c);
   file.write("history/columns", joined(c.history.columns));
   write_rows(file, "history/rows", c.history.rows, c.history.columns.size());
@@ -157,7 +157,7 @@ checkpoint read_checkpoint(const std::string& path, const std::optional<dataset_
   c.commit = file.read_text("commit");
   read_earlier(file, path, part, c);
   c.state = read_state(file, path, part, "state", c);
-  if (file.has("gains")) c.gains = file.read("gains");
+  if (file.has("gains")) c.budget = file.read("gains");
   c.history.columns = split(file.read_text("history/columns"));
   c.history.rows = read_rows(file, path, "history/rows", c.history.columns.size());
   if (c.history.rows.empty()) damaged(path, "its history is empty");

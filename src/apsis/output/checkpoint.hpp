@@ -16,7 +16,7 @@ namespace apsis {
 /// A value of an earlier time, like the state.
 struct earlier_value {
   std::vector<double> state,  ///< [cells][components], or those of the part of this process
-      gains;                  ///< at every surface; may be empty
+      budget;                 ///< at every surface; may be empty
 };
 
 /// Everything from which a run continues bit for bit as if it had not stopped, including its results so far.
@@ -26,7 +26,7 @@ struct checkpoint {
   std::uint64_t cells = 0,                ///< rows of the state
       components = 0;                     ///< unknowns of a cell
   std::vector<double> state;              ///< [cells][components], or those of the part of this process
-  std::vector<double> gains;              ///< of the last step at every surface; empty before the first
+  std::vector<double> budget;             ///< of the last step at every surface; empty before the first
   std::vector<earlier_value> earlier;     ///< that a multistep method needs
   std::map<std::string, double> numbers;  ///< time, counters and totals, by name
   numeric_table history;                  ///< from the initial state to the last step

@@ -133,7 +133,7 @@ double arc_length(const grid& mesh, const surface& one, const position& x) {
   }
 }
 
-/// The table of one opening, whose gains begin at `first`.
+/// The table of one budget surface, whose amounts begin at `first`.
 class surface_writer {
  public:
   surface_writer(const run_setup& setup, const domain& space, const surface_values& last)
@@ -146,7 +146,7 @@ class surface_writer {
       fluxes_.push_back(density * dimensions::length / dimensions::time);
   }
 
-  surface_table table(const std::string& name, const opening& one, std::size_t first) const {
+  surface_table table(const std::string& name, const budget_surface& one, std::size_t first) const {
     surface_table table = with_columns(name);
     for (const int number : one.surfaces)
       for (std::size_t place = 0; place < space_.surfaces()[at(number)].segments.size(); ++place) {
@@ -236,8 +236,8 @@ std::vector<surface_table> find_surfaces(const run_setup& setup, const surface_v
     return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
   };
   std::size_t first = 0;
-  for (std::size_t k = 0; k < space.openings().size(); ++k) {
-    const opening& one = space.openings()[k];
+  for (std::size_t k = 0; k < space.budget_surfaces().size(); ++k) {
+    const budget_surface& one = space.budget_surfaces()[k];
     if (is_wanted(all_surfaces) || is_wanted(names[k])) tables.push_back(writer.table(names[k], one, first));
     first += space.ends_at(one) * setup.equation->invariants().size();
   }

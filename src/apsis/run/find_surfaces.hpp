@@ -11,7 +11,7 @@ namespace apsis {
 struct surface_values {
   double t = 0.0,                 ///< time at its end
       dt = 0.0;                   ///< its length
-  std::vector<double> received;   ///< field::gains(); empty before the first step
+  std::vector<double> received;   ///< a boundary_budget; empty before the first step
   std::vector<double> densities;  ///< of the invariants at every end; empty if they are unknown
 };
 

@@ -171,7 +171,8 @@ void monitor::watch_velocities(const field& u, const step_record& last, run_summ
   velocities_.update(extremes_, margins_, u, last, summary);
 }
 
-step_record monitor::check(const field& u, double dt, const step_record& previous, double cut) {
+step_record monitor::check(const budgeted_state& after, double dt, const step_record& previous, double cut) {
+  const field& u = after.unknowns;
   if (velocities_.active()) velocities_.set_mass(previous.total.front());
   const totals t = sum(u);
   keep_velocities(t);
@@ -184,32 +185,32 @@ step_record monitor::check(const field& u, double dt, const step_record& previou
   record.violation = violation_in(u, t);
   record.density_change = t.change;
   record.density_turn = t.turn;
-  std::vector<double> gained = gained_through_faces(u.gains());
-  held_ = gained.back();
-  gained.pop_back();
+  std::vector<double> received = received_through_faces(after.budget.amounts());
+  held_ = received.back();
+  received.pop_back();
   for (std::size_t k = 0; k < entropy_bounds_.size(); ++k)
-    record.entropy_change -= entropy_bounds_[k] * gained[k];
+    record.entropy_change -= entropy_bounds_[k] * received[k];
   record.received = previous.received;
-  for (std::size_t k = 0; k < gained.size(); ++k) {
-    record.received[k] += gained[k];
-    record.flux.push_back(gained[k] / dt);
+  for (std::size_t k = 0; k < received.size(); ++k) {
+    record.received[k] += received[k];
+    record.flux.push_back(received[k] / dt);
   }
-  compare(t, previous.total, gained, record);
+  compare(t, previous.total, received, record);
   return record;
 }
 
-/// The sums of the gains of all ends at each face, [face][invariant], and what a force holds at the ends of
-/// the velocities, which is the last gain.
-std::vector<double> monitor::gained_through_faces(const std::vector<double>& gains) const {
+/// The sums of the amounts of all ends at each face, [face][invariant], and what a force holds at the ends of
+/// the velocities, which is the last amount.
+std::vector<double> monitor::received_through_faces(const std::vector<double>& amounts) const {
   const std::size_t count = invariants_.size();
   std::vector<exact_sum> sums(ends_.size() * count + 1);
   std::size_t first = 0;
   for (std::size_t face = 0; face < ends_.size(); ++face) {
-    for (std::size_t k = first; k < std::min(first + ends_[face] * count, gains.size()); ++k)
-      sums[face * count + (k - first) % count].add(gains[k]);
+    for (std::size_t k = first; k < std::min(first + ends_[face] * count, amounts.size()); ++k)
+      sums[face * count + (k - first) % count].add(amounts[k]);
     first += ends_[face] * count;
   }
-  if (first < gains.size()) sums.back().add(gains[first]);
+  if (first < amounts.size()) sums.back().add(amounts[first]);
   return global_values(setup_.processes(), sums);
 }
 
@@ -231,19 +232,19 @@ std::optional<condition_violation> monitor::violation_in(const field& u, const t
   return std::nullopt;
 }
 
-void monitor::compare(const totals& t, const std::vector<double>& before, const std::vector<double>& gained,
+void monitor::compare(const totals& t, const std::vector<double>& before, const std::vector<double>& received,
                       step_record& record) const {
   record.total = t.invariants;
   const std::size_t count = invariants_.size();
   for (std::size_t k = 0; k < count; ++k) {
-    double received = 0.0, passed = 0.0, in_step = 0.0;
+    double since_start = 0.0, passed = 0.0, in_step = 0.0;
     for (std::size_t f = 0; f < ends_.size(); ++f) {
-      received += record.received[f * count + k];
+      since_start += record.received[f * count + k];
       passed += std::abs(record.received[f * count + k]);
-      in_step += gained[f * count + k];
+      in_step += received[f * count + k];
     }
     const double content = std::max(scales_[k], t.scales[k]), all = std::max(content, passed);
-    const double defect = std::abs(t.invariants[k] - invariants_[k] - received),
+    const double defect = std::abs(t.invariants[k] - invariants_[k] - since_start),
                  of_step = std::abs(t.invariants[k] - before[k] - in_step);
     record.conservation_defect.push_back(all > 0.0 ? defect / all : defect);
     record.defect_of_step.push_back(content > 0.0 ? of_step / content : of_step);

@@ -6,6 +6,7 @@
 #include <apsis/run/simulation.hpp>
 #include <apsis/run/step_differences.hpp>
 #include <apsis/run/velocity_watch.hpp>
+#include <apsis/semidiscrete/budgeted_problem.hpp>
 
 #include <cstddef>
 #include <memory>
@@ -27,10 +28,10 @@ class monitor {
   /// · model::invariant_scales().
   step_record start(const field& u);
 
-  /// Returns the record of the state after a step of length dt, whose gains through the faces are those of
-  /// the step; without step and t. `cut`: semidiscrete_problem::take_cut() of the step. Throws
-  /// numerical_error at the first number that is not finite.
-  step_record check(const field& u, double dt, const step_record& previous, double cut = 0.0);
+  /// Returns the record of the state after a step of length dt, whose budget is that of the step; without
+  /// step and t. `cut`: semidiscrete_problem::take_cut() of the step. Throws numerical_error at the first
+  /// number that is not finite.
+  step_record check(const budgeted_state& after, double dt, const step_record& previous, double cut = 0.0);
 
   /// Enters what the last start() or check() found about the velocities of a gas into `summary`; see
   /// velocity_watch::update() for warnings and errors. `u`: the state that was checked.
@@ -55,9 +56,9 @@ class monitor {
   partial check_block(const field& u) const;
   totals sum(const field& u) const;
   std::optional<condition_violation> violation_in(const field& u, const totals& t) const;
-  std::vector<double> gained_through_faces(const std::vector<double>& gains) const;
+  std::vector<double> received_through_faces(const std::vector<double>& amounts) const;
   void keep_velocities(const totals& t);
-  void compare(const totals& t, const std::vector<double>& before, const std::vector<double>& gained,
+  void compare(const totals& t, const std::vector<double>& before, const std::vector<double>& received,
                step_record& record) const;
 
   const run_setup& setup_;

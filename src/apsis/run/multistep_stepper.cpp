@@ -16,7 +16,7 @@ class steps_of final : public multistep_stepper {
  public:
   steps_of(multistep_method m, Formula formula) : method_(std::move(m)), formula_(std::move(formula)) {}
 
-  void step(const time_marcher<double>& march, double dt, field& u) override {
+  void step(const time_marcher<double>& march, double dt, budgeted_state& u) override {
     warn_of_change();
     if (dt != dt_) {
       if (formula_.known() > 0 && !march.starting()) changed_at_ = march.t();
@@ -31,15 +31,17 @@ class steps_of final : public multistep_stepper {
     }
   }
 
-  void visit_kept(const std::function<void(field&, double)>& visit) override { formula_.visit_kept(visit); }
+  void visit_kept(const std::function<void(budgeted_state&, double)>& visit) override {
+    formula_.visit_kept(visit);
+  }
   multistep_progress save() const override { return {dt_, formula_.known()}; }
-  void resume(const multistep_progress& saved, const field& like) override {
+  void resume(const multistep_progress& saved, const budgeted_state& like) override {
     dt_ = saved.dt;
     formula_.resume(saved.known, like);
   }
 
  private:
-  void take(const time_marcher<double>& march, double dt, field& u) {
+  void take(const time_marcher<double>& march, double dt, budgeted_state& u) {
     // The initial data, which may be far from equilibrium, are not in the history.
     const bool first = march.starting() || march.step() == 0;
     if (!first && formula_.known() + 1 >= formula_.first_steps()) return formula_.step(march.t(), dt, u);
@@ -67,7 +69,7 @@ class steps_of final : public multistep_stepper {
 }  // namespace
 
 std::unique_ptr<multistep_stepper> make_multistep_stepper(const multistep_method& m,
-                                                          semidiscrete_problem& problem) {
+                                                          budgeted_problem& problem) {
   return with_multistep_formula(m, problem, [&m](auto formula) -> std::unique_ptr<multistep_stepper> {
     return std::make_unique<steps_of<decltype(formula)>>(m, std::move(formula));
   });

@@ -4,7 +4,7 @@
 #include <apsis/mesh/field.hpp>
 #include <apsis/method/multistep.hpp>
 #include <apsis/run/run_state.hpp>
-#include <apsis/semidiscrete/semidiscrete_problem.hpp>
+#include <apsis/semidiscrete/budgeted_problem.hpp>
 
 #include <functional>
 #include <memory>
@@ -19,21 +19,21 @@ class multistep_stepper {
 
   /// Advances u by the step dt that `march` gave. If a stage throws, u is the old value, and the next steps
   /// are those of the starter.
-  virtual void step(const time_marcher<double>& march, double dt, field& u) = 0;
+  virtual void step(const time_marcher<double>& march, double dt, budgeted_state& u) = 0;
 
   /// Calls visit(v, w) for every v that later steps need in addition to u: the sum of earlier u, with weights
   /// that add up to w, and of their transport.
-  virtual void visit_kept(const std::function<void(field&, double)>& visit) = 0;
+  virtual void visit_kept(const std::function<void(budgeted_state&, double)>& visit) = 0;
 
   /// Returns the state for a checkpoint.
   virtual multistep_progress save() const = 0;
-  /// Continues from `saved`; visit_kept() then gives the places of the kept values, fields like `like`.
-  virtual void resume(const multistep_progress& saved, const field& like) = 0;
+  /// Continues from `saved`; visit_kept() then gives the places of the kept values, states like `like`.
+  virtual void resume(const multistep_progress& saved, const budgeted_state& like) = 0;
 };
 
 /// Returns the stepper of a multistep method. `problem` must outlive it.
 std::unique_ptr<multistep_stepper> make_multistep_stepper(const multistep_method& m,
-                                                          semidiscrete_problem& problem);
+                                                          budgeted_problem& problem);
 
 /// Returns the number of fields that a step needs, u included: those of the method and of its starter.
 int buffers_of(const multistep_method& m);

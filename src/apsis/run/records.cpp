@@ -196,9 +196,9 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records) {
   c.components = static_cast<std::uint64_t>(run.components());
   c.state = std::move(saved.unknowns);
   c.part = part_of(run);
-  c.gains = std::move(saved.gains);
+  c.budget = std::move(saved.budget);
   for (kept_value& value : saved.kept)
-    c.earlier.push_back({std::move(value.unknowns), std::move(value.gains)});
+    c.earlier.push_back({std::move(value.unknowns), std::move(value.budget)});
   run_state::visit_records(saved, [&c](const char* group, const auto& record) {
     record.visit_members(record, number_writer{group, c});
   });
@@ -211,8 +211,8 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records) {
 run_state to_run_state(const checkpoint& c) {
   run_state saved;
   saved.unknowns = c.state;
-  saved.gains = c.gains;
-  for (const earlier_value& value : c.earlier) saved.kept.push_back({value.state, value.gains});
+  saved.budget = c.budget;
+  for (const earlier_value& value : c.earlier) saved.kept.push_back({value.state, value.budget});
   if (c.numbers.contains("control.proposed")) saved.control.emplace();  // of a run with a tolerance
   if (c.numbers.contains("multistep.known")) saved.multistep.emplace();
   run_state::visit_records(saved, [&c](const char* group, auto& record) {

@@ -138,7 +138,7 @@ struct multistep_progress {
 /// A value that a multistep method needs in addition to u.
 struct kept_value {
   std::vector<double> unknowns,  ///< [cells][components]
-      gains;                     ///< of the ends of the whole mesh
+      budget;                    ///< of the whole mesh: boundary_budget
 };
 
 /// A run between two steps: what a checkpoint saves and a restart continues from. A number that is added to
@@ -152,7 +152,7 @@ struct run_state {
   run_summary totals;                                        ///< of all steps so far
   step_record initial,                                       ///< record of the initial state
       last;                                                  ///< record of the last step
-  std::vector<double> gains = {};     ///< field::gains() of the last step; empty before the first one
+  std::vector<double> budget = {};    ///< boundary_budget of the last step; empty before the first one
   std::vector<kept_value> kept = {};  ///< of a multistep method
 
   /// Calls visit(group, record) for every record of numbers that a checkpoint keeps: those of steps are rows

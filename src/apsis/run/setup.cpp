@@ -212,7 +212,7 @@ std::vector<std::string> run_setup::open_faces() const {
   std::vector<std::string> open;
   if (!has_space()) return open;
   const domain& space = builder_.space();
-  for (const opening& one : space.openings())
+  for (const budget_surface& one : space.budget_surfaces())
     open.push_back(one.solid < 0 ? face_names[one.where.index()]
                                  : config_.solids[static_cast<std::size_t>(one.solid)].name);
   if (config_.force.acceleration) open.emplace_back("force");
@@ -224,7 +224,7 @@ std::vector<std::size_t> run_setup::open_ends() const {
   std::vector<std::size_t> ends;
   if (!has_space()) return ends;
   const domain& space = builder_.space();
-  for (const opening& one : space.openings()) ends.push_back(space.ends_at(one));
+  for (const budget_surface& one : space.budget_surfaces()) ends.push_back(space.ends_at(one));
   ends.resize(open_faces().size(), 1);
   return ends;
 }

@@ -86,7 +86,7 @@ class run_setup : public construction_count<run_setup> {
   /// if there are any.
   std::vector<std::string> open_faces() const;
   /// Returns the number of ends of segments at each of the open faces, 1 for the force and the source: the
-  /// layout of field::gains().
+  /// layout of a boundary_budget.
   std::vector<std::size_t> open_ends() const;
   /// Returns boundary::entropy_bound() of the open faces, [face][invariant]; nothing if the entropy that one
   /// of them, the force or the source gives is not bounded.

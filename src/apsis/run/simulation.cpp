@@ -21,7 +21,7 @@
 #include <apsis/run/stability_watch.hpp>
 #include <apsis/run/state_distance.hpp>
 #include <apsis/run/step_plan.hpp>
-#include <apsis/run/whole_gains.hpp>
+#include <apsis/run/whole_budget.hpp>
 
 #include <algorithm>
 #include <array>
@@ -60,16 +60,17 @@ struct simulation::impl {
         setup(*made),
         config(setup.config()),
         problem(problem_of(setup)),
-        integrator(setup.integrator(), *problem,
+        budgeted(*problem),
+        integrator(setup.integrator(), budgeted,
                    setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
         watch(setup),
         stability(setup),
         rounding(rounding_of(setup)),
-        state(start ? start(setup) : setup.initial_state()),
+        now{start ? start(setup) : setup.initial_state(), {}},
         march(times_of(setup)),
         estimate(integrator.weight_of_estimate(), integrator.resolves_collisions()),
         losses(setup, *problem) {
-    if (setup.multistep()) multistep = make_multistep_stepper(*setup.multistep(), *problem);
+    if (setup.multistep()) multistep = make_multistep_stepper(*setup.multistep(), budgeted);
     if (setup.has_tolerance()) control.emplace(*config.time.tolerance, estimate_of(setup.integrator()).order);
     first = last = watch.start(state);
     totals.min_value = first.min_value;
@@ -92,11 +93,13 @@ struct simulation::impl {
 
   /// ‖u − v‖₂/‖u‖₂, after the errors that processes met while they computed u and v.
   auto distance() {
-    return [this](const field& u, const field& v) {
+    return [this](const auto& u, const auto& v) {
       problem->settle();
-      return relative_distance(u, v, setup.processes());
+      return relative_distance(unknowns_of(u), unknowns_of(v), setup.processes());
     };
   }
+  static const field& unknowns_of(const field& u) { return u; }
+  static const field& unknowns_of(const budgeted_state& u) { return u.unknowns; }
 
   void start_steps() {
     if (control) {
@@ -114,7 +117,7 @@ struct simulation::impl {
   void warn_of_tolerance(double longest) {
     if (setup.integrator().kind == method_kind::explicit_only) return;  // resolves the relaxation, or fails
     const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().coefficients<double>()));
-    expected = forecast_tolerance(integrator, march.t(), state, config.time.end, longest, control->target(),
+    expected = forecast_tolerance(integrator, march.t(), now, config.time.end, longest, control->target(),
                                   bounds, distance());
     warn_of_plateau(setup, *expected, problem->relaxation_time(march.t(), state));
   }
@@ -133,7 +136,7 @@ struct simulation::impl {
     const double relaxation = problem->relaxation_time(march.t(), state);
     if (!(dt > relaxation)) return;
     field equilibrium = state, left = state;
-    problem->solve_collision(march.t(), 1e100, 0.0, equilibrium);
+    problem->project_to_equilibrium(march.t(), equilibrium);
     const target<field, double> to_left{&left, 0.0, dt, false}, from_left{&left, 0.0, -dt, false};
     problem->add_transport(march.t(), state, {&to_left, 1});
     problem->add_transport(march.t(), equilibrium, {&from_left, 1});
@@ -169,33 +172,31 @@ struct simulation::impl {
 
   /// u ← u^{n+1}; returns Δt.
   double step() {
-    count_gains_from_here();
+    begin_budget();
     if (config.time.steady) before = state;
     if (control)
-      return step_within_tolerance(integrator, march, *control, estimate, limit(), state, distance());
+      return step_within_tolerance(integrator, march, *control, estimate, limit(), now, distance());
     const double dt = next_dt();
     if (multistep)
-      multistep->step(march, dt, state);
+      multistep->step(march, dt, now);
     else
-      integrator.step(march.t(), dt, state);
+      integrator.step(march.t(), dt, now);
     return dt;
   }
 
-  /// Gains count from the beginning of a step. Those of kept values, which are sums of earlier u, are shifted
-  /// by what u gained in the last step.
-  void count_gains_from_here() {
+  /// A budget counts from the beginning of a step. Those of kept values, which are sums of earlier u, are
+  /// shifted by what u received in the last step.
+  void begin_budget() {
     if (multistep)
-      multistep->visit_kept([this](field& kept, double weight) {
-        kept.gains().resize(state.gains().size());
-        for (std::size_t k = 0; k < state.gains().size(); ++k) kept.gains()[k] -= weight * state.gains()[k];
-      });
-    state.gains().clear();
+      multistep->visit_kept(
+          [this](budgeted_state& kept, double weight) { kept.budget.add(-weight, now.budget.amounts()); });
+    now.budget.clear();
   }
 
   void record_step(double dt) {
     march.advance(dt);
-    last = watch.check(state, dt, last, problem->take_cut());
-    gains = state.gains();
+    last = watch.check(now, dt, last, problem->take_cut());
+    budget = now.budget.amounts();
     if (!march.starting()) losses.after_step(march.step(), march.t(), dt, state);
     if (config.time.steady) last.change = distance()(state, before) / dt;
     last.step = march.step();
@@ -233,16 +234,19 @@ struct simulation::impl {
   const run_setup& setup;
   const case_config& config;
   std::unique_ptr<semidiscrete_problem> problem;
-  stepper<semidiscrete_problem> integrator;
+  budgeted_problem budgeted;  ///< the problem with the budget of its surfaces
+  stepper<budgeted_problem> integrator;
   std::unique_ptr<multistep_stepper> multistep;  ///< instead of the integrator, its starter
   monitor watch;
   stability_watch stability;
   rounding_bound rounding;
-  field state, before;        ///< before a step; empty without time.steady
-  std::vector<double> gains;  ///< of the last step
+  budgeted_state now;
+  field& state = now.unknowns;
+  field before;                ///< before a step; empty without time.steady
+  std::vector<double> budget;  ///< of the last step
   time_marcher<double> march;
   std::optional<step_controller<double>> control;
-  error_estimate<semidiscrete_problem> estimate;
+  error_estimate<budgeted_problem> estimate;
   std::optional<tolerance_forecast<double>> expected;
   loss_watch losses;
   run_promises promises;
@@ -271,10 +275,10 @@ void check_sizes(const run_setup& setup, const kept_value& saved, const field& u
     throw input_error(
         "the saved state has another size than the case (it belongs to another case); restart with the case "
         "it was written for");
-  if (!saved.gains.empty() && saved.gains.size() != size_of_whole_gains(setup))
+  if (!saved.budget.empty() && saved.budget.size() != size_of_whole_budget(setup))
     throw input_error(
-        "the saved gains have another size than those of the case (they belong to another case); restart "
-        "with the case they were written for");
+        "the saved boundary budget has another size than that of the case (it belongs to another case); "
+        "restart with the case it was written for");
 }
 }  // namespace
 
@@ -394,10 +398,10 @@ field_table simulation::fields() const {
 
 std::vector<surface_table> simulation::surfaces() const {
   if (config().output.surfaces.empty()) return {};
-  const std::vector<double> gains = whole_gains(impl_->setup, impl_->gains),
+  const std::vector<double> budget = whole_budget(impl_->setup, impl_->budget),
                             densities = impl_->densities_at_surfaces();
   if (!processes().is_root()) return {};
-  return find_surfaces(impl_->setup, {t(), last().dt, gains, densities});
+  return find_surfaces(impl_->setup, {t(), last().dt, budget, densities});
 }
 
 bool simulation::has_space() const {
@@ -453,8 +457,9 @@ run_state simulation::save() const {
   if (impl_->control) saved.control = impl_->control->save();
   if (impl_->multistep) {
     saved.multistep = impl_->multistep->save();
-    impl_->multistep->visit_kept([&](const field& kept, double) {
-      saved.kept.push_back({without_padding(kept), whole_gains(impl_->setup, kept.gains())});
+    impl_->multistep->visit_kept([&](const budgeted_state& kept, double) {
+      saved.kept.push_back(
+          {without_padding(kept.unknowns), whole_budget(impl_->setup, kept.budget.amounts())});
     });
   }
   saved.totals = summary();
@@ -465,13 +470,13 @@ run_state simulation::save() const {
   saved.totals.cpu_s = seconds[1];
   saved.initial = impl_->first;
   saved.last = impl_->last;
-  saved.gains = whole_gains(impl_->setup, impl_->gains);
+  saved.budget = whole_budget(impl_->setup, impl_->budget);
   return saved;
 }
 
 void simulation::restore(const run_state& saved) {
   field& state = impl_->state;
-  check_sizes(impl_->setup, {saved.unknowns, saved.gains}, state);
+  check_sizes(impl_->setup, {saved.unknowns, saved.budget}, state);
   for (const kept_value& kept : saved.kept) check_sizes(impl_->setup, kept, state);
   copy_rows(saved.unknowns, state);
   impl_->watch.forget_steps();
@@ -479,22 +484,22 @@ void simulation::restore(const run_state& saved) {
   if (saved.march.step > 0) impl_->march.resume(saved.march);
   if (impl_->control && saved.control) impl_->control->resume(*saved.control);
   if (impl_->multistep && saved.multistep) {
-    impl_->multistep->resume(*saved.multistep, state);
+    impl_->multistep->resume(*saved.multistep, impl_->now);
     std::size_t k = 0;
-    impl_->multistep->visit_kept([&](field& kept, double) {
+    impl_->multistep->visit_kept([&](budgeted_state& kept, double) {
       if (k == saved.kept.size())
         throw io_error(
             "the checkpoint lacks values of earlier steps (damaged file); give another checkpoint");
       const kept_value& value = saved.kept[k++];
-      copy_rows(value.unknowns, kept);
-      kept.gains() = own_gains(impl_->setup, value.gains);
+      copy_rows(value.unknowns, kept.unknowns);
+      kept.budget = boundary_budget(own_budget(impl_->setup, value.budget));
     });
   }
   impl_->totals = saved.totals;
   impl_->first = saved.initial;
   impl_->last = saved.last;
-  impl_->gains = own_gains(impl_->setup, saved.gains);
-  state.gains() = impl_->gains;  // the next step shifts those of kept values by them
+  impl_->budget = own_budget(impl_->setup, saved.budget);
+  impl_->now.budget = boundary_budget(impl_->budget);  // the next step shifts those of kept values by it
 }
 
 }  // namespace apsis

@@ -117,7 +117,7 @@ class simulation {
   /// Returns the state for a restart that is bitwise identical.
   run_state save() const;
   /// Continues from where `saved` was taken; the case must be the same. Throws input_error if the sizes
-  /// differ. Surfaces are NaN until the next step where `saved` has no gains.
+  /// differ. Surfaces are NaN until the next step where `saved` has no budget.
   void restore(const run_state& saved);
   const step_record& initial_record() const;  ///< record of the initial state
 

@@ -4,7 +4,6 @@
 #include <apsis/scheme/quartic.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
-#include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/point_times.hpp>
 
 #include <algorithm>
@@ -35,13 +34,10 @@ class cell_average_collision final : public collision {
     for_batches(t, u, [&](const point_batch& at, scratch& own) {
       own.local->solve_stage_means(a, b, at, own.points.data(), gauss3::weight, result_.row(at.first_cell));
     });
-    result_.gains() = u.gains();
-    std::swap(u,
-              result_);  // neighbours need the old averages, so that the new ones have a field of their own
+    std::swap(u, result_);  // neighbours need the old averages, so new ones are in another field
   }
 
   void add_collision(double t, const field& u, std::span<const target<field, double>> targets) override {
-    combine_gains(u, targets);
     const std::size_t length = static_cast<std::size_t>(cells_per_batch(u)) * gauss3::points;
     scratch_.prepare([&](auto& own) {
       own.rates.resize(length * static_cast<std::size_t>(u.stride()));

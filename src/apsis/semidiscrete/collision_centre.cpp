@@ -5,7 +5,6 @@
 #include <apsis/semidiscrete/centre_rows.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
-#include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/point_times.hpp>
 
 #include <algorithm>
@@ -48,12 +47,10 @@ class cell_centre_collision final : public collision {
                 [&](int begin, int count, const double* const* averages, const double* const* d, scratch&) {
                   centre_rows::add_averages(averages, d, count, limited_, u.stride(), result_.row(begin));
                 });
-    result_.gains() = u.gains();
     std::swap(u, result_);
   }
 
   void add_collision(double, const field& u, std::span<const target<field, double>> targets) override {
-    combine_gains(u, targets);
     find_changes(u, false, [&](const point_batch& at, scratch& own) {
       own.local->evaluate(at, own.points.data(), changes_.row(at.first_cell));
     });

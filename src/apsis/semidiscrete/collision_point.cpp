@@ -1,7 +1,6 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
-#include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/point_times.hpp>
 
 #include <algorithm>
@@ -47,7 +46,6 @@ class pointwise_collision final : public cellwise_collision {
   }
 
   void add_collision(double, const field& u, std::span<const target<field, double>> targets) override {
-    combine_gains(u, targets);
     prepare(u);
     const int length = points_per_batch(u.stride());
     scratch_.prepare([&](auto& own) {

@@ -16,7 +16,7 @@ std::size_t index(int k) {
 face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
     : equation_(equation), space_(std::move(space)), invariants_(equation.invariants().size()) {
   sides_.resize(space_->surfaces().size());
-  for (const opening& one : space_->openings())
+  for (const budget_surface& one : space_->budget_surfaces())
     for (const int surface : one.surfaces) {
       const auto& of = space_->surfaces()[index(surface)];
       side& made = at(surface);
@@ -79,40 +79,9 @@ void face_fluxes::find_densities(int surface, int place) {
   equation_.invariant_densities(values, densities_.data() + (here.first + index(place)) * invariants_);
 }
 
-void face_fluxes::add_gains(const field& u, std::span<const target<field, double>> targets,
-                            std::span<const double> inside) {
+void face_fluxes::set_inside(std::span<const double> inside) {
   rates_.resize(ends_ * invariants_ + inside.size());
   std::copy(inside.begin(), inside.end(), rates_.end() - static_cast<std::ptrdiff_t>(inside.size()));
-  combine_gains(u, targets, rates_);
-}
-
-namespace {
-
-/// sum ← sum + factor · values
-void add_multiple(std::vector<double>& sum, double factor, std::span<const double> values) {
-  for (std::size_t k = 0; k < values.size(); ++k) sum[k] += factor * values[k];
-}
-
-void combine(const field& u, const target<field, double>& to, std::span<const double> rates) {
-  std::vector<double>& gains = to.acc->gains();
-  if (to.fresh && to.acc == &u) {  // β = 0
-    for (double& gain : gains) gain *= to.alpha;
-    return;
-  }
-  if (to.fresh) gains.clear();
-  gains.resize(std::max({gains.size(), u.gains().size(), rates.size()}));
-  add_multiple(gains, to.alpha, u.gains());
-  add_multiple(gains, to.beta, rates);
-}
-
-}  // namespace
-
-void combine_gains(const field& u, std::span<const target<field, double>> targets,
-                   std::span<const double> rates) {
-  for (const auto& to : targets)
-    if (to.acc != &u) combine(u, to, rates);
-  for (const auto& to : targets)
-    if (to.acc == &u) combine(u, to, rates);  // after those that need its old value
 }
 
 }  // namespace apsis

@@ -15,7 +15,7 @@ namespace apsis {
 /// of the transport record the upwind values at a surface; where its boundary prescribes the incoming
 /// components, it computes them here from the outgoing ones, after the sweep: beyond such a surface a sweep
 /// sees vacuum, so that what enters is added to a state that is nonnegative without it. The invariants that
-/// pass at every end are collected in field::gains().
+/// pass at every end are the rates of a boundary_budget.
 class face_fluxes {
  public:
   /// `equation` must outlive the object.
@@ -33,21 +33,22 @@ class face_fluxes {
 
   /// Whether complete() also computes the densities of the invariants at the surfaces.
   void observe_densities(bool observe) { observed_ = observe; }
-  /// Returns the densities of the last complete() of every end, in the order of field::gains(): those of the
-  /// distribution at the face, of the components that leave as of those that enter.
+  /// Returns the densities of the last complete() of every end, in the order of a boundary_budget: those of
+  /// the distribution at the face, of the components that leave as of those that enter.
   const std::vector<double>& densities() const { return densities_; }
 
-  /// acc ← (fresh ? 0 : acc) + α u + β (flux) for the gains of every target, with the fluxes of complete().
-  /// `inside` is what a force and a source give, after all openings.
-  void add_gains(const field& u, std::span<const target<field, double>> targets,
-                 std::span<const double> inside);
+  /// Stores what a force and a source give per unit of time, after the rates of all ends.
+  void set_inside(std::span<const double> inside);
+  /// Returns what is received per unit of time, in the layout of a boundary_budget: by the last complete() of
+  /// every end, and by the last set_inside().
+  std::span<const double> rates() const { return rates_; }
 
  private:
   struct side {
     std::vector<double> inward;  ///< velocity towards the inside of every component
     field values;                ///< [place], recorded upwind values
     field incoming;              ///< [place], what the boundary prescribes
-    std::size_t first = 0;       ///< of its ends among those of all openings
+    std::size_t first = 0;       ///< of its ends among those of all budget surfaces
   };
   side& at(int surface) { return sides_[static_cast<std::size_t>(surface)]; }
   void find_densities(int surface, int place);
@@ -56,15 +57,10 @@ class face_fluxes {
   std::shared_ptr<domain> space_;
   std::vector<side> sides_;  ///< [surface]
   std::size_t invariants_ = 0;
-  std::size_t ends_ = 0;       ///< of all openings
-  std::vector<double> rates_;  ///< what is received per unit of time, in the order of field::gains()
+  std::size_t ends_ = 0;       ///< of all budget surfaces
+  std::vector<double> rates_;  ///< what is received per unit of time, in the layout of a boundary_budget
   bool observed_ = false;
   std::vector<double> densities_;  ///< in this order too
 };
-
-/// acc ← (fresh ? 0 : acc) + α u + β rates for the gains of every target; without rates for operations that
-/// conserve the invariants.
-void combine_gains(const field& u, std::span<const target<field, double>> targets,
-                   std::span<const double> rates = {});
 
 }  // namespace apsis

@@ -4,10 +4,12 @@
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/integrate/verbs.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/transport.hpp>
 
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -56,6 +58,14 @@ class semidiscrete_problem {
   void solve_collision(double t, double a, double b, field& u) {
     guarded(u, [&] { collision_->solve(t, a, b, u); });
   }
+  /// sum ← Σ_k α_k u_k, with padding, as required by `problem_with_combination`.
+  void combine(std::span<const linear_term<field, double>> terms, field& sum) {
+    guarded(sum, [&] { transport_.combine(terms, sum); });
+  }
+  /// u ← E(ℛu) up to rounding, whatever ε; of averages, what their stage solves lead to.
+  void project_to_equilibrium(double t, field& u) {
+    solve_collision(t, time_to_equilibrium<double>(), 0.0, u);
+  }
   /// Equivalent to add_transport() followed by solve_collision(due); where possible, cells are solved while
   /// they are in cache.
   void add_transport_and_solve(double t, const field& u, std::span<const target<field, double>> targets,
@@ -77,13 +87,17 @@ class semidiscrete_problem {
   void add_collision(double t, const field& u, std::span<const target<field, double>> targets) {
     guarded(u, [&] { collision_->add_collision(t, u, targets); });
   }
+  /// Returns the rates of a boundary_budget in the last evaluation of T, by add_transport() or
+  /// add_transport_and_solve(). On several processes each has those of its own ends, and one those of force
+  /// and source.
+  std::span<const double> budget_rates() const { return transport_.budget_rates(); }
   /// Throws on all processes what one of them met since the last call, with the number of the cell in the
   /// whole mesh.
   void settle() {
     if (space_->shared()) agree_on_errors(space_->processes(), failure_.take());
   }
   /// Returns the densities of the invariants of the gas at the ends of this process, in the order of
-  /// field::gains(); settles. Throws what boundaries throw.
+  /// a boundary_budget; settles. Throws what boundaries throw.
   std::vector<double> densities_at_surfaces(double t, const field& u) {
     std::vector<double> found;
     guarded(u, [&] { found = transport_.densities_at_surfaces(t, u); });

@@ -112,7 +112,6 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   const bool moves =
       std::any_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta != 0.0; });
   if (!moves) {
-    combine_gains(u, targets);
     add_weighted(u, targets, then);
     return static_cast<bool>(then);
   }
@@ -140,8 +139,17 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   failure.rethrow();
   // One process keeps what all have received together.
   if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);
-  faces_->add_gains(u, targets, given);
+  faces_->set_inside(given);
   return done;
+}
+
+void transport::combine(std::span<const linear_term<field, double>> terms, field& sum) const {
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto& [alpha, u] = terms[k];
+    if (k == 0 && u == &sum && alpha == 1.0) continue;
+    const target<field, double> to{&sum, alpha, 0.0, k == 0};
+    add_weighted(*u, {&to, 1}, {});
+  }
 }
 
 std::vector<double> transport::densities_at_surfaces(double t, const field& u) const {
@@ -220,7 +228,7 @@ void transport::sweep_box(const field& u, targets_view targets, const cell_box& 
 
 /// Adds what enters through surfaces at the cells of a box.
 void transport::complete_box(double t, targets_view targets, const cell_box& box) const {
-  if (space_->openings().empty()) return;
+  if (space_->budget_surfaces().empty()) return;
   for (int direction = 0; direction < mesh().dimensions(); ++direction)
     for_segments(direction, box, [&](int number, int begin, int end) {
       const segment& one = space_->segment_at(direction, number);

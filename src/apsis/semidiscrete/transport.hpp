@@ -29,12 +29,19 @@ class transport {
   transport(transport&&) noexcept;  ///< leaves the source empty
 
   /// For each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u), with one evaluation of T, or none if every β
-  /// is 0; likewise the gains through faces. With the positivity limiter and β max_j Σ_k |v_jk|/Δx_k ≤
-  /// α/12 no result is negative, also in floating point. `then` is called with completed cells of all targets
-  /// while they are in cache, and true is returned; where fusion does not pay (mesh, number of threads) it is
-  /// not called, and false is returned.
+  /// is 0. With the positivity limiter and β max_j Σ_k |v_jk|/Δx_k ≤ α/12 no result is negative, also in
+  /// floating point. `then` is called with completed cells of all targets while they are in cache, and true
+  /// is returned; where fusion does not pay (mesh, number of threads) it is not called, and false is
+  /// returned.
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const;
+
+  /// sum ← Σ_k α_k u_k, one term at least, added in their order; `sum` may be the state of the first term.
+  void combine(std::span<const linear_term<field, double>> terms, field& sum) const;
+
+  /// Returns what u has received per unit of time in the last evaluation of T: the rates of a
+  /// boundary_budget. Empty without space.
+  std::span<const double> budget_rates() const { return faces_->rates(); }
 
   /// Returns the densities of the invariants at every surface (face_fluxes::densities()) of the state u at
   /// time t; nothing without space.

@@ -1,4 +1,4 @@
-#include <apsis/run/whole_gains.hpp>
+#include <apsis/run/whole_budget.hpp>
 
 #include <apsis/exec/global_sum.hpp>
 
@@ -14,10 +14,10 @@ namespace {
 /// An end of a segment: its surface, and the cell in front of it in the whole mesh.
 using end_key = std::pair<int, int>;
 
-/// The ends of a domain in the order of the gains.
+/// The ends of a domain in the order of the budget.
 std::vector<end_key> ends_of(const domain& space, const grid& whole) {
   std::vector<end_key> ends;
-  for (const opening& one : space.openings())
+  for (const budget_surface& one : space.budget_surfaces())
     for (const int surface : one.surfaces)
       for (int place = 0; place < space.surfaces()[static_cast<std::size_t>(surface)].own; ++place)
         ends.emplace_back(surface, whole.cell_of(space.mesh(), space.cell_at(surface, place)));
@@ -37,14 +37,14 @@ std::vector<std::size_t> places_of(const run_setup& setup) {
 /// Force and source have one set of totals each, after those of the ends, and a force what it holds at the
 /// ends of the velocities.
 std::size_t size_of_totals(const run_setup& setup) {
-  return (setup.open_faces().size() - setup.builder().space().openings().size()) *
+  return (setup.open_faces().size() - setup.builder().space().budget_surfaces().size()) *
              setup.equation->invariants().size() +
          (setup.config().force.acceleration ? 1 : 0);
 }
 
 }  // namespace
 
-std::size_t size_of_whole_gains(const run_setup& setup) {
+std::size_t size_of_whole_budget(const run_setup& setup) {
   if (!setup.has_space()) return 0;
   const domain& whole = setup.builder().whole_space();
   return ends_of(whole, setup.whole_mesh()).size() * setup.equation->invariants().size() +
@@ -61,7 +61,7 @@ std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>
     packed.insert(packed.end(), own.begin() + static_cast<std::ptrdiff_t>(k * count),
                   own.begin() + static_cast<std::ptrdiff_t>((k + 1) * count));
   }
-  std::vector<double> whole(size_of_whole_gains(setup) - size_of_totals(setup));
+  std::vector<double> whole(size_of_whole_budget(setup) - size_of_totals(setup));
   const std::vector<double> all = gather_numbers(setup.processes(), packed);
   for (std::size_t from = 0; from < all.size(); from += 1 + count)
     std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(from) + 1, count,
@@ -70,7 +70,7 @@ std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>
   return whole;
 }
 
-std::vector<double> whole_gains(const run_setup& setup, const std::vector<double>& own) {
+std::vector<double> whole_budget(const run_setup& setup, const std::vector<double>& own) {
   if (setup.processes().is_single()) return own;
   // A process without ends has nothing, also where others have something.
   if (global_count(setup.processes(), own.empty() ? 0 : 1) == 0) return {};
@@ -83,7 +83,7 @@ std::vector<double> whole_gains(const run_setup& setup, const std::vector<double
   return whole;
 }
 
-std::vector<double> own_gains(const run_setup& setup, const std::vector<double>& whole) {
+std::vector<double> own_budget(const run_setup& setup, const std::vector<double>& whole) {
   if (setup.processes().is_single() || whole.empty()) return whole;
   const std::size_t count = setup.equation->invariants().size();
   std::vector<double> own;

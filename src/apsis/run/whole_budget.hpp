@@ -1,0 +1,23 @@
+#pragma once
+
+#include <apsis/run/setup.hpp>
+
+#include <vector>
+
+namespace apsis {
+
+/// Returns the amounts of a boundary_budget of the whole mesh, in the order in which one process has them,
+/// from those of all processes; on all of them. Collective. Nothing where nothing was received.
+std::vector<double> whole_budget(const run_setup& setup, const std::vector<double>& own);
+
+/// Returns values of the invariants at the ends of the whole mesh, in the order of the budget, from those of
+/// all processes; on all of them. Collective.
+std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>& own);
+
+/// Returns the amounts of this process among those of the whole mesh.
+std::vector<double> own_budget(const run_setup& setup, const std::vector<double>& whole);
+
+/// Returns the number of amounts of the whole mesh.
+std::size_t size_of_whole_budget(const run_setup& setup);
+
+}  // namespace apsis

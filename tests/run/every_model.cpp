@@ -64,7 +64,7 @@ one_step step_of(const model_entry& entry, const case_config& c, bool with_zeros
   disturb(u, setup.equation->positive(), with_zeros);
   for (int i = 1; uniform && i < u.cells(); ++i) std::copy_n(u.row(0), u.components(), u.row(i));
   const auto problem = setup.make_problem();
-  stepper<semidiscrete_problem> integrator(setup.integrator(), *problem);
+  stepper<semidiscrete_problem> integrator(setup.integrator().starter(), *problem);
   monitor watch(setup);
   one_step result;
   result.before = watch.start(u);

@@ -5,6 +5,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/thread_clock.hpp>
+#include <apsis/integrate/any_stepper.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/tolerance_forecast.hpp>
 #include <apsis/run/find_fields.hpp>
@@ -13,7 +14,6 @@
 #include <apsis/run/loss_watch.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/monitor.hpp>
-#include <apsis/run/multistep_stepper.hpp>
 #include <apsis/run/promises.hpp>
 #include <apsis/run/ray_warning.hpp>
 #include <apsis/run/rounding.hpp>
@@ -60,17 +60,19 @@ struct simulation::impl {
         made(setup_that_fits(config, processes)),
         setup(*made),
         problem(problem_of(setup)),
-        integrator(setup.integrator(), *problem,
-                   setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
+        integrator(make_stepper(setup.integrator(), *problem,
+                                setup.has_tolerance() ? solutions::result_and_embedded : solutions::result)),
         watch(setup),
         stability(setup),
         rounding(rounding_of(setup)),
         state(start ? start(setup) : setup.initial_state()),
         march(times_of(setup)),
-        estimate(integrator.weight_of_estimate(), integrator.resolves_collisions()),
         losses(setup, *problem) {
-    if (setup.multistep()) multistep = make_multistep_stepper(*setup.multistep(), *problem);
-    if (setup.has_tolerance()) control.emplace(*config.time.tolerance, estimate_of(setup.integrator()).order);
+    if (setup.has_tolerance()) {
+      const auto& of_one_step = *integrator->one_step();  // others were refused by the setup
+      control.emplace(*config.time.tolerance, estimate_of(setup.integrator().starter()).order);
+      estimate.emplace(of_one_step.weight_of_estimate(), of_one_step.resolves_collisions());
+    }
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
@@ -112,10 +114,10 @@ struct simulation::impl {
   }
 
   void warn_of_tolerance(double longest) {
-    if (setup.integrator().kind == method_kind::explicit_only) return;  // resolves the relaxation, or fails
-    const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().coefficients<double>()));
-    expected = forecast_tolerance(integrator, march.t(), state, config.time.end, longest, control->target(),
-                                  bounds, distance());
+    if (setup.integrator().starter().kind == method_kind::explicit_only) return;  // resolves the relaxation
+    const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().form));
+    expected = forecast_tolerance(*integrator->one_step(), march.t(), state, config.time.end, longest,
+                                  control->target(), bounds, distance());
     warn_of_plateau(setup, *expected, problem->relaxation_time(march.t(), state));
   }
 
@@ -127,9 +129,10 @@ struct simulation::impl {
   /// Methods of types ARS and CK begin with T(u) of data off equilibrium. They keep an error of
   /// Δt (T(u) − T(E(ℛu))) from an initial layer that the first step dt skips, and so do their estimates.
   void warn_of_layer(double dt) {
-    const auto form = setup.integrator().coefficients<double>();
+    const auto& form = setup.integrator().form;
     const bool solves_first = form.D(0, 0) != 0.0 || form.ddot[0] != 0.0;
-    if (solves_first || setup.integrator().kind != method_kind::imex || setup.has_graded_start()) return;
+    const bool is_imex = setup.integrator().starter().kind == method_kind::imex;
+    if (solves_first || !is_imex || setup.has_graded_start()) return;
     const double relaxation = problem->relaxation_time(march.t(), state);
     if (!(dt > relaxation)) return;
     field equilibrium = state, left = state;
@@ -172,23 +175,20 @@ struct simulation::impl {
     count_gains_from_here();
     if (config.time.steady) before = state;
     if (control)
-      return step_within_tolerance(integrator, march, *control, estimate, limit(), state, distance());
+      return step_within_tolerance(*integrator->one_step(), march, *control, *estimate, limit(), state,
+                                   distance());
     const double dt = next_dt();
-    if (multistep)
-      multistep->step(march, dt, state);
-    else
-      integrator.step(march.t(), dt, state);
+    integrator->step(march, dt, state);
     return dt;
   }
 
   /// Gains count from the beginning of a step. Those of kept values, which are sums of earlier u, are shifted
   /// by what u gained in the last step.
   void count_gains_from_here() {
-    if (multistep)
-      multistep->visit_kept([this](field& kept, double weight) {
-        kept.gains().resize(state.gains().size());
-        for (std::size_t k = 0; k < state.gains().size(); ++k) kept.gains()[k] -= weight * state.gains()[k];
-      });
+    integrator->visit_kept([this](field& kept, double weight) {
+      kept.gains().resize(state.gains().size());
+      for (std::size_t k = 0; k < state.gains().size(); ++k) kept.gains()[k] -= weight * state.gains()[k];
+    });
     state.gains().clear();
   }
 
@@ -233,8 +233,7 @@ struct simulation::impl {
   std::unique_ptr<run_setup> made;
   run_setup& setup;
   std::unique_ptr<semidiscrete_problem> problem;
-  stepper<semidiscrete_problem> integrator;
-  std::unique_ptr<multistep_stepper> multistep;  ///< instead of the integrator, its starter
+  std::unique_ptr<any_stepper<semidiscrete_problem>> integrator;
   monitor watch;
   stability_watch stability;
   rounding_bound rounding;
@@ -242,7 +241,7 @@ struct simulation::impl {
   std::vector<double> gains;  ///< of the last step
   time_marcher<double> march;
   std::optional<step_controller<double>> control;
-  error_estimate<semidiscrete_problem> estimate;
+  std::optional<error_estimate<semidiscrete_problem>> estimate;  ///< with a tolerance
   std::optional<tolerance_forecast<double>> expected;
   loss_watch losses;
   run_promises promises;
@@ -449,12 +448,10 @@ run_state simulation::save() const {
   saved.unknowns = state();
   saved.march = impl_->march.save();
   if (impl_->control) saved.control = impl_->control->save();
-  if (impl_->multistep) {
-    saved.multistep = impl_->multistep->save();
-    impl_->multistep->visit_kept([&](const field& kept, double) {
-      saved.kept.push_back({without_padding(kept), whole_gains(impl_->setup, kept.gains())});
-    });
-  }
+  saved.history = impl_->integrator->save();
+  impl_->integrator->visit_kept([&](const field& kept, double) {
+    saved.kept.push_back({without_padding(kept), whole_gains(impl_->setup, kept.gains())});
+  });
   saved.totals = summary();
   // Times that every process measures are those of the root.
   std::array<double, 2> seconds = {saved.totals.wall_s, saved.totals.cpu_s};
@@ -476,10 +473,10 @@ void simulation::restore(const run_state& saved) {
   // Before the first step the marcher is that of the case.
   if (saved.march.step > 0) impl_->march.resume(saved.march);
   if (impl_->control && saved.control) impl_->control->resume(*saved.control);
-  if (impl_->multistep && saved.multistep) {
-    impl_->multistep->resume(*saved.multistep, state);
+  if (saved.history) {
+    impl_->integrator->restore(*saved.history, state);
     std::size_t k = 0;
-    impl_->multistep->visit_kept([&](field& kept, double) {
+    impl_->integrator->visit_kept([&](field& kept, double) {
       if (k == saved.kept.size())
         throw io_error(
             "the checkpoint lacks values of earlier steps (damaged file); give another checkpoint");

@@ -4,7 +4,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/design/more_stages.hpp>
 #include <apsis/integrate/schedule.hpp>
-#include <apsis/method/two_step.hpp>
+#include <apsis/method/time_integrator.hpp>
 
 #include <cmath>
 #include <map>
@@ -41,14 +41,16 @@ int needed(const std::optional<int>& value, const std::string& option) {
 
 shu_osher_form<double> initial_form(const design_task& task, const std::string& name) {
   if (task.steps == 2) {
-    if (is_two_step_method(name)) return find_two_step_method(name).coefficients<double>();
-    return with_previous_value(find_method(name).coefficients<double>());
+    const time_integrator& m = find_integrator(name);
+    return m.steps == 2 && m.file() != nullptr
+               ? m.form
+               : with_previous_value(find_method(name).coefficients<double>());
   }
   return find_method(name).coefficients<double>();
 }
 
 void set_initial_method(design_task& task, const design_options& given) {
-  const bool of_two_steps = task.steps == 2 && is_two_step_method(given.from);
+  const bool of_two_steps = task.steps == 2 && find_integrator(given.from).steps == 2;
   if (!of_two_steps) {
     const method& m = find_method(given.from);
     if (m.kind != task.kind || m.is_tableau() || m.ends_with_update())

@@ -65,7 +65,7 @@ json document_json(const method& m) {
   exact["ddot"] = m.exact.ddot;
   exact["r"] = m.exact.r;
   out["A_hat"] = rows(butcher.A_hat);
-  if (m.kind != method_kind::exponential) {
+  if (!solves_exactly(m.kind)) {
     out["A"] = rows(butcher.A);
     out["A_dot"] = rows(butcher.A_dot);
   }
@@ -102,8 +102,7 @@ std::string document_text(const method& m) {
   out += fmt::format("Shu-Osher form, r = {:.15g}\n", form.r);
   out += matrix_text("P", form.P) + matrix_text("W", form.W) + matrix_text("D", form.D) + "ddot\n   ";
   for (const double x : form.ddot) out += fmt::format(" {:>20.15g}", x);
-  if (m.kind == method_kind::exponential)
-    return out + "\nButcher form of T\n" + matrix_text("A_hat", butcher.A_hat);
+  if (solves_exactly(m.kind)) return out + "\nButcher form of T\n" + matrix_text("A_hat", butcher.A_hat);
   out += "\nButcher form\n" + matrix_text("A_hat", butcher.A_hat) + matrix_text("A", butcher.A);
   return out + matrix_text("A_dot", butcher.A_dot);
 }

@@ -184,7 +184,7 @@ json check_json(const method& m) {
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
   if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(c);
-  if (m.kind != method_kind::implicit_only) out["cfl_limits"] = cfl_json(cfl_limits(m));
+  if (m.kind != method_kind::implicit_only) out["cfl_limits"] = cfl_json(cfl_limits(amplification(m)));
   if (has_derivatives(m.kind))
     out["stability"] = {{"angle_degrees", c.stability.angle},
                         {"l_stable", c.stability.l_stable},
@@ -211,10 +211,11 @@ std::string check_text(const method& m) {
            : fmt::format("{:.4g} (2-norm of the residuals of order {})", constant, c.order + 1));
   line("SSP coefficient", ssp_text(c));
   if (!c.limiting_entry.empty()) line("limited by", c.limiting_entry);
-  if (m.kind == method_kind::imex || m.kind == method_kind::exponential)
+  if (m.kind == method_kind::imex || solves_exactly(m.kind))
     line("explicit part",
          fmt::format("SSP coefficient {:.15g} by itself", c.explicit_radius.convert_to<double>()));
-  if (m.kind != method_kind::implicit_only) line("linear stability", "CFL number " + cfl_text(cfl_limits(m)));
+  if (m.kind != method_kind::implicit_only)
+    line("linear stability", "CFL number " + cfl_text(cfl_limits(amplification(m))));
   line("type", fmt::format("{}{}", c.type, c.gsa ? ", globally stiffly accurate" : ""));
   line("asymptotic preserving", c.ap_data.empty() ? "none" : c.ap_data);
   if (m.kind == method_kind::imex) {
@@ -224,12 +225,11 @@ std::string check_text(const method& m) {
          fmt::format("error of the viscous flux up to {:.2g} dt, largest at epsilon/C = dt/{:.2g}",
                      c.band.error, c.band.at));
   }
-  if (m.kind == method_kind::exponential && c.ap)
+  if (solves_exactly(m.kind) && c.ap)
     line("where epsilon << dt", "terms of size epsilon vanish: exact collisions end in equilibrium");
   line("cost of a step",
        fmt::format("{} transport evaluations, {} {}, {} buffers", c.explicit_evaluations, c.implicit_solves,
-                   m.kind == method_kind::exponential ? "exact collisions" : "implicit solves",
-                   steps.buffers()));
+                   solves_exactly(m.kind) ? "exact collisions" : "implicit solves", steps.buffers()));
   if (c.embedded) {
     const json e = embedded_json(m, c);
     line("embedded solution", embedded_text(e));

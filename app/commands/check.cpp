@@ -1,21 +1,20 @@
 #include "command_registry.hpp"
+#include "integrator_report.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
-#include "multistep_report.hpp"
 #include "print.hpp"
-#include "two_step_report.hpp"
 
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/method/integrator_kind_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
-#include <apsis/method/multistep.hpp>
-#include <apsis/method/two_step.hpp>
 #include <apsis/verify/observed_limits.hpp>
 #include <apsis/verify/profile_errors.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -140,18 +139,15 @@ int report(const method& m, const options& given) {
   return 0;
 }
 
-void refuse_runs(const std::string& name, const options& given) {
+/// Reports an integrator that is not a method of one step.
+int report_several_steps(const time_integrator& m, const options& given) {
   if (given.observe || given.profile)
     throw input_error(fmt::format(
         "command line: --observe and --epsilon-profile need a method of one step ('{}' takes several); "
         "leave them out",
-        name));
-}
-
-int report_two_steps(const method& m, const options& given) {
-  refuse_runs(m.name, given);
-  const auto result = two_step_json(m);
-  print(given.json ? result.dump(2) + "\n" : two_step_text(m));
+        m.name));
+  const auto result = integrator_json(m);
+  print(given.json ? result.dump(2) + "\n" : integrator_text(m));
   if (!result["claims_hold"].get<bool>())
     throw claim_error(
         fmt::format("the claims of '{}' do not hold ({}); correct the coefficients or the claims", m.name,
@@ -163,22 +159,19 @@ int check(const options& given) {
   end_on_interrupts();
   const std::string& what = given.what;
   if (is_method_name(what)) return report(find_method(what), given);
-  if (!is_method_file(what) && is_multistep_method(what)) {
-    refuse_runs(what, given);
-    const auto m = find_multistep_method(what);
-    print(given.json ? multistep_json(m).dump(2) + "\n" : multistep_text(m));
-    return 0;
-  }
+  const auto several = names_of_several_steps();
+  if (std::find(several.begin(), several.end(), what) != several.end())
+    return report_several_steps(find_integrator(what), given);
   std::error_code ignored;
   if (!std::filesystem::exists(what, ignored))
     throw input_error(fmt::format("no method '{}' (neither in the catalogue nor a file); {}",
-                                  what.substr(0, 60), suggest(what, all_method_names())));
+                                  what.substr(0, 60), suggest(what, integrator_names())));
   // Parses without certifying: a method whose claims fail is reported, not rejected. A modified copy of a
   // catalogue file may retain its name here; a run rejects it.
   const std::string text = read_method_text(what);
   refuse_case(text, what);
   const method m = parse_any_method(text, what);
-  if (m.steps == 2) return report_two_steps(m, given);
+  if (m.steps > 1) return report_several_steps(*integrator_of_file(m), given);
   if (const auto problem = taken_name(m); !problem.empty()) log::warning(what + ": " + problem);
   return report(m, given);
 }

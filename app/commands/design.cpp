@@ -1,13 +1,13 @@
 #include "command_registry.hpp"
 #include "design_embedded.hpp"
 #include "design_options.hpp"
+#include "integrator_report.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
 #include "method_writer.hpp"
 #include "print.hpp"
 #include "progress_bar.hpp"
 #include "threads_option.hpp"
-#include "two_step_report.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
@@ -17,6 +17,7 @@
 #include <apsis/design/search.hpp>
 #include <apsis/design/sparsify.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/method/integrator_kind_registry.hpp>
 
 #include <chrono>
 #include <cmath>
@@ -129,19 +130,19 @@ int design(const design_options& given) {
   }
   auto best = *found.best;
   if (given.sparsify > 0.0) best = sparsify(task, best, given.sparsify, interrupted);
-  const bool two_steps = task.steps == 2;
-  const method polished = two_steps ? to_polished_two_step_method(task, best, file.name())
-                                    : to_polished_method(task, best, file.name());
+  const method polished = task.steps == 2 ? to_polished_two_step_method(task, best, file.name())
+                                          : to_polished_method(task, best, file.name());
+  const auto certified = integrator_of_file(polished);
   file.write(polished);
   result["start"] = best.start;
   result["error_constant"] = best.error;
   result["file"] = file.path();
-  result["method"] = two_steps ? two_step_json(polished) : check_json(polished);
+  result["method"] = integrator_json(*certified);
   if (given.json) {
     print(result.dump(2) + "\n");
   } else {
     print(fmt::format("{}; best of start {}; written to '{}'\n\n{}", state_of(found), best.start, file.path(),
-                      two_steps ? two_step_text(polished) : check_text(polished)));
+                      integrator_text(*certified)));
   }
   if (!result["method"]["claims_hold"].get<bool>())
     throw claim_error(fmt::format("the method in '{}' does not meet the demands ({}); try another seed",

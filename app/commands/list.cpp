@@ -12,7 +12,7 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_choice.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/time_integrator.hpp>
 #include <apsis/model/gas_species.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/run/cfl_limit.hpp>
@@ -51,16 +51,16 @@ json families() {
 
 json multistep() {
   json all = json::array();
-  for (const auto& name : multistep_method_names()) {
-    const multistep_method m = find_multistep_method(name);
+  for (const auto& name : names_of_several_steps()) {
+    const time_integrator& m = find_integrator(name);
     all.push_back({{"name", m.name},
                    {"description", m.title},
                    {"order", m.order},
                    {"steps", m.steps},
                    {"ssp_coefficient", m.ssp_coefficient},
-                   {"cfl_limits", cfl_json(cfl_limits(m))},
+                   {"cfl_limits", cfl_json(cfl_limits(m.growth()))},
                    {"stages", m.stages},
-                   {"starter", m.starter}});
+                   {"starter", m.starter().name}});
   }
   return all;
 }

@@ -9,8 +9,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
-#include <apsis/method/multistep.hpp>
-#include <apsis/method/two_step.hpp>
+#include <apsis/method/time_integrator.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -36,8 +35,24 @@ void only_text(const options& given) {
                                   given.format, given.what));
 }
 
+/// Prints the file of a method of several steps, whose tables have another form than those of one step.
+void show_several_steps(const options& given) {
+  const time_integrator& m = find_integrator(given.what);
+  if (m.file() == nullptr)
+    throw input_error(
+        fmt::format("method '{}' has no file (its coefficients are those of a formula); see: "
+                    "apsis check {}",
+                    given.what, given.what));
+  if (!given.format.empty() && given.format != "toml")
+    throw input_error(fmt::format(
+        "command line: --format {} is for methods of one step ('{}' takes two); use --format toml",
+        given.format, given.what));
+  for (const auto& file : embedded::methods())
+    if (file.name == given.what) print(std::string(file.text));
+}
+
 int show(const options& given) {
-  const std::vector<std::string> methods = method_names(), cases = case_names();
+  const std::vector<std::string> cases = case_names();
   if (given.what == "case") {
     only_text(given);
     print(schema_text());
@@ -47,23 +62,13 @@ int show(const options& given) {
       if (built_in.name == given.what) print(std::string(built_in.text));
   } else if (is_method_name(given.what)) {
     print(method_document(find_method(given.what), given.format.empty() ? "text" : given.format));
-  } else if (!is_method_file(given.what) && is_two_step_method(given.what)) {
-    if (!given.format.empty() && given.format != "toml")
-      throw input_error(fmt::format(
-          "command line: --format {} is for methods of one step ('{}' takes two); use --format toml",
-          given.format, given.what));
-    for (const auto& file : embedded::two_step_methods())
-      if (file.name == given.what) print(std::string(file.text));
-  } else if (!is_method_file(given.what) && is_multistep_method(given.what)) {
-    throw input_error(
-        fmt::format("method '{}' has no file (its coefficients are those of a formula); see: "
-                    "apsis check {}",
-                    given.what, given.what));
+  } else if (contains(names_of_several_steps(), given.what)) {
+    show_several_steps(given);
   } else if (std::filesystem::is_regular_file(given.what)) {
     print(method_document(load_method_file(given.what), given.format.empty() ? "text" : given.format));
   } else {
-    std::vector<std::string> all = methods;
-    for (auto& name : two_step_method_names()) all.push_back(std::move(name));
+    std::vector<std::string> all;
+    for (const auto& file : embedded::methods()) all.emplace_back(file.name);
     all.insert(all.end(), cases.begin(), cases.end());
     all.emplace_back("case");
     throw input_error(fmt::format("nothing is called '{}' (no method, built-in case or method file); {}",

@@ -25,7 +25,7 @@ mixed_step::mixed_step(const std::string& formulation, const std::string& method
 mixed_step::mixed_step(const case_config& config)
     : setup_(config),
       problem_(setup_.make_problem()),
-      stepper_(setup_.integrator(), *problem_),
+      stepper_(setup_.integrator().starter(), *problem_),
       u_(setup_.initial_state()),
       fuses_solves_(config.space.formulation == formulation::finite_difference),
       dt_(0.9 * stepper_.r() * problem_->forward_euler_step(0.0, u_)) {
@@ -64,7 +64,7 @@ sweep_work mixed_step::count_sweeps() {
 
 double mixed_step::point_stages() const {
   return static_cast<double>(u_.cells()) * u_.components() *
-         static_cast<double>(setup_.integrator().stages());
+         static_cast<double>(setup_.integrator().starter().stages());
 }
 
 double mixed_step::subnormal_share() const {

@@ -56,10 +56,10 @@ std::vector<std::string> explicit_contestants() {
 }
 
 league league_of(const std::string& method) {
-  if (is_multistep_method(method))
-    return find_multistep_method(method).ssp_coefficient > 0 ? league::ssp : league::baseline;
+  const time_integrator& m = find_integrator(method);
+  if (m.one_step() == nullptr) return m.ssp_coefficient > 0 ? league::ssp : league::baseline;
   const certificate& c = find_certificate(method);
-  if (c.kind == method_kind::exponential) return league::baseline;
+  if (m.needs.exact_collision) return league::baseline;
   if (!(c.ssp_coefficient > 0)) return league::any_sign;
   return c.kind == method_kind::explicit_only ? league::other : league::ssp;
 }

@@ -30,13 +30,18 @@ std::vector<std::string> explicit_contestants();
 /// Returns tolerances from `loosest` to `tightest`, two in each decade.
 std::vector<double> two_per_decade(double loosest, double tightest);
 
+/// The integrators of other_integrators() in words, for the notes of tables.
+inline constexpr const char* words_of_others =
+    "two-step methods, IMEX-BDF of orders 2 to 5 and the exponential method, with equal steps";
+
 /// Class of contestants. A best row of the table is that of one or several classes.
 enum class league {
   ssp,       ///< methods of Apsis with an SSP coefficient, also of two steps, equal steps; count only without
              ///< negative unknowns
   any_sign,  ///< methods of the catalogue of Apsis without one, explicit ones too, equal steps
   adaptive,  ///< methods of Apsis, steps chosen by a tolerance
-  baseline,  ///< multistep and exponential methods of the literature, in the library too, equal steps
+  baseline,  ///< IMEX-BDF and methods with exact collisions, of the literature, in the library too, equal
+             ///< steps
   other      ///< other programs, and explicit SSP methods, the usual choice without stiffness
 };
 

@@ -4,8 +4,6 @@
 
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/extrapolation.hpp>
-#include <apsis/integrate/schedule.hpp>
-#include <apsis/method/convexity.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/scheme/quartic.hpp>
 
@@ -85,22 +83,14 @@ std::unique_ptr<collision_inverse> kinetic_task::inverse() const {
 
 /// Only collisions at centres distinguish the first two (problem_builder::with_smooth_collisions()).
 semidiscrete_problem& kinetic_task::problem_of(const std::string& integrator) const {
-  if (is_two_step_method(integrator)) return *problem_;
-  if (!is_method_name(integrator)) return *smooth_;
-  const method& m = find_method(integrator);
-  if (m.kind == method_kind::exponential) return *exact_;
-  const auto form = m.coefficients<double>();
-  const bool keeps_signs =
-      is_convex(form, m.kind, form.stages()) && form.r > 0.0 && schedule(form).collision_evaluations() == 0;
-  return keeps_signs ? *problem_ : *smooth_;
+  const time_integrator& m = find_integrator(integrator);
+  if (m.needs.exact_collision) return *exact_;
+  return m.ssp_coefficient > 0.0 && !m.needs.explicit_collision ? *problem_ : *smooth_;
 }
 
 long kinetic_task::positive_steps(const std::string& name) const {
-  double r = 1.0;
-  if (is_two_step_method(name))
-    r = find_two_step_method(name).coefficients<double>().r;
-  else if (is_method_name(name))
-    r = find_method(name).coefficients<double>().r;
+  const time_integrator& m = find_integrator(name);
+  const double r = m.file() != nullptr ? m.form.r : 1.0;
   return static_cast<long>(std::ceil(end_ / (r * problem_->forward_euler_step(0.0, initial_))));
 }
 

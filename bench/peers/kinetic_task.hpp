@@ -69,7 +69,7 @@ class kinetic_task {
   run_setup setup_;
   std::unique_ptr<semidiscrete_problem> problem_,
       smooth_,  ///< for methods that keep no signs, with the same T and Q
-      exact_;   ///< for exponential methods
+      exact_;   ///< for methods with exact collisions
   field initial_, reference_;
   std::vector<double> rates_;  ///< 1/ε of every cell: at its centre, or the mean over its Gauss points
 };

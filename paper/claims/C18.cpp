@@ -56,7 +56,7 @@ double increase_in_run(const combination& c, const study_control& control) {
 /// The same from extreme states, which do not occur in runs.
 double increase_from_hostile_data(const combination& c) {
   case_problem problem(upwind_case(c, 12));
-  stepper march(problem.setup.integrator(), *problem.equations);
+  stepper march(problem.setup.integrator().starter(), *problem.equations);
   double worst = -std::numeric_limits<double>::infinity();
   for (field u : adversarial_states(problem, 10, 1e-8, false)) {
     const double dt = march.r() * problem.equations->forward_euler_step(0.0, u);
@@ -138,9 +138,10 @@ claim_result check(const study_control& control) {
     hostile[k] = increase_from_hostile_data(all[k]);
     case_problem problem(upwind_case(all[k], 12));
     const auto data = adversarial_states(problem, 6, 1e-8, false);
-    limit[k] = largest_step(problem.setup.integrator(), *problem.equations, std::span<const field>(data),
-                            entropy_decay(problem.setup), {.steps = 3, .rung = 1.25, .accuracy = 1e-3})
-                   .kept;
+    limit[k] =
+        largest_step(problem.setup.integrator().starter(), *problem.equations, std::span<const field>(data),
+                     entropy_decay(problem.setup), {.steps = 3, .rung = 1.25, .accuracy = 1e-3})
+            .kept;
   });
   claim_result result;
   report_table table{

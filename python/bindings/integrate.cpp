@@ -3,7 +3,7 @@
 #include "march.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/exponential.hpp>
+#include <apsis/integrate/exact_collisions.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
 
 #include <algorithm>
@@ -82,7 +82,7 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
         });
   };
   exact_collisions exact(problem);
-  const auto count = m.kind == method_kind::exponential ? march(exact) : march(problem);
+  const auto count = solves_exactly(m.kind) ? march(exact) : march(problem);
   std::vector<py::ssize_t> shape_of_all = {static_cast<py::ssize_t>(t.size())};
   shape_of_all.insert(shape_of_all.end(), shape.begin(), shape.end());
   return {to_array(std::vector<double>(t)), to_array(std::move(all), shape_of_all), count.steps,

@@ -363,7 +363,7 @@ class kinetic_problem {
   /// Returns the stable part of r: without limiter r Δt_FE may exceed the linear stability limit.
   double stable_fraction(const method& m) const {
     if (!unlimited_) return 1.0;
-    return std::min(1.0, cfl_limit(m, *unlimited_) / m.coefficients<double>().r);
+    return std::min(1.0, cfl_limit(amplification(m), *unlimited_) / m.coefficients<double>().r);
   }
 
   py::tuple integrate(const array& u0, const std::vector<double>& t, const method& m,
@@ -392,7 +392,7 @@ class kinetic_problem {
   /// The problems with the collisions that methods of a kind need.
   problem_pool& problems_for(method_kind kind) {
     if (kind == method_kind::explicit_only) return explicit_;
-    return kind == method_kind::exponential ? exact_ : implicit_;
+    return solves_exactly(kind) ? exact_ : implicit_;
   }
 
   /// Runs body(problem) with a problem of its own. Its threads call functions of the user, which need the

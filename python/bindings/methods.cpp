@@ -99,7 +99,7 @@ py::dict certificate_of(const method& m) {
   all["explicit_radius"] = number(c.explicit_radius);
   std::map<std::string, std::optional<double>> limits;
   if (m.kind != method_kind::implicit_only)
-    for (const auto& [scheme, limit] : cfl_limits(m))
+    for (const auto& [scheme, limit] : cfl_limits(amplification(m)))
       limits[scheme] = std::isfinite(limit) ? std::optional(limit) : std::nullopt;
   all["cfl_limits"] = limits;
   all["limiting_entry"] = c.limiting_entry;

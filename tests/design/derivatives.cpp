@@ -3,9 +3,9 @@
 #include <apsis/core/random_source.hpp>
 #include <apsis/design/design_problem.hpp>
 #include <apsis/method/intermediate_regime.hpp>
+#include <apsis/method/kinds/two_step.hpp>
 #include <apsis/method/order_conditions.hpp>
 #include <apsis/method/stability.hpp>
-#include <apsis/method/two_step.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-"""A boundary, model, reconstruction, command, claim, quantity, case and method are one file each.
+"""A boundary, model, reconstruction, command, claim, quantity, case and method are one file each, a kind of integrator three.
 
-The files of planted/ are laid over a copy of the sources, without a change to any other file; the program that is built
-from them lists and uses them all.
+The files of planted/ are laid over a copy of the sources; a kind of integrator needs an entry of integrate/any_stepper.hpp,
+no other file changes. The program that is built from them lists and uses them all.
 """
 import json
 import os
@@ -16,6 +16,15 @@ HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
 PARTS = ("CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "app", "cases", "cmake", "methods", "paper", "python",
          "scripts", "src", "validation")
+
+# The entry of a kind of integrator: a line of the header, and what is put in its place.
+ENTRY = ("src/apsis/integrate/any_stepper.hpp",
+         (("#include <apsis/integrate/kinds/runge_kutta.hpp>\n",
+           "#include <apsis/integrate/kinds/planted_halves.hpp>\n#include <apsis/integrate/kinds/runge_kutta.hpp>\n"),
+          ("using stepper_kinds = std::tuple<", "using stepper_kinds = std::tuple<planted_halves_steps, ")))
+# A method file for each kind that has files: one of the catalogue under another name.
+COPIES = {"planted-explicit": "ssprk-3-3", "planted-implicit": "dirk-2-2", "planted-exponential": "exponential-2",
+          "planted-two-step": "two-step-8-3-narrow"}
 
 
 def output_of(*command: str, folder: str | None = None) -> str:
@@ -39,6 +48,15 @@ class OneFile(unittest.TestCase):
             assert not target.exists(), f"{target} exists: a planted file must be new"
             target.parent.mkdir(exist_ok=True)
             shutil.copy(file, target)
+        for name, source in COPIES.items():
+            text = (SOURCE / "methods" / f"{source}.toml").read_text(encoding="utf-8")
+            (root / "methods" / f"{name}.toml").write_text(text.replace(f'name = "{source}"', f'name = "{name}"'), encoding="utf-8")
+        cls.files_of_kind = [file for file in planted if "planted_halves" in file.name] + [root / ENTRY[0]]
+        text = (root / ENTRY[0]).read_text(encoding="utf-8")
+        for old, new in ENTRY[1]:
+            assert text.count(old) == 1, f"{ENTRY[0]}: {old}"
+            text = text.replace(old, new)
+        (root / ENTRY[0]).write_text(text, encoding="utf-8")
         build = root / "build"
         output_of("cmake", "-S", str(root), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DAPSIS_TESTS=OFF",
                   "-DAPSIS_BENCH=OFF", "-DAPSIS_PYTHON_PACKAGE=OFF", f"-DCMAKE_CXX_COMPILER={os.environ['APSIS_CXX']}")
@@ -60,6 +78,28 @@ class OneFile(unittest.TestCase):
         keys = {item["name"]: item for item in json.loads(output_of(self.program, "list", "keys", "--json"))}
         self.assertIn("planted-wall", keys["space.boundary"]["choices"])
         self.assertIn("planted-upwind", keys["space.reconstruction"]["choices"])
+
+    def test_a_method_of_each_kind_is_a_file_of_one_folder(self):
+        one_step, several = self.names("methods"), self.names("multistep")
+        for name, source in COPIES.items():
+            self.assertIn(name, several if source.startswith("two-step") else one_step)
+            checked = json.loads(output_of(self.program, "check", name, "--json"))
+            self.assertEqual(checked | {"name": source}, json.loads(output_of(self.program, "check", source, "--json")))
+        for name in ("planted-exponential", "planted-two-step"):
+            run = [json.loads(output_of(self.program, "run", "paper/ode", f"time.method={one}", "time.dt=0.01", "--json"))
+                   for one in (name, COPIES[name])]
+            self.assertEqual(run[0]["fields"], run[1]["fields"])
+
+    def test_a_kind_of_integrator_is_listed_checked_and_run_with_three_files(self):
+        self.assertLessEqual(len(self.files_of_kind), 3)
+        self.assertIn("planted-halves", self.names("multistep"))
+        self.assertIn("planted-halves", output_of(self.program, "list", "methods"))
+        self.assertEqual(json.loads(output_of(self.program, "check", "planted-halves", "--json"))["order"], 1)
+        self.assertIn("all claims hold", output_of(self.program, "check", "planted-halves"))
+        found, steps = [json.loads(output_of(self.program, "run", "paper/ode", f"time.method={method}", f"time.dt={dt}", "--json"))
+                        for method, dt in (("planted-halves", "0.0625"), ("forward-backward-euler", "0.03125"))]
+        self.assertEqual(found["fields"], steps["fields"])
+        self.assertEqual(2 * found["steps"], steps["steps"])
 
     def test_the_tables_of_methods_in_the_docs_need_no_row(self):
         done = subprocess.run([sys.executable, "-m", "unittest", "test_tables.Methods"], cwd=SOURCE / "tests/docs", text=True,

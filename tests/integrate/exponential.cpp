@@ -1,7 +1,6 @@
 // Exponential methods through the stepper: exact relaxation, observed order, the limit ε → 0 and
 // positivity at the step bound.
-#include <apsis/integrate/exponential.hpp>
-
+#include <apsis/integrate/exact_collisions.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
 #include <apsis/integrate/stepper.hpp>

@@ -1,5 +1,5 @@
 // IMEX-BDF through integrate(): coefficients, observed orders, the limit ε → 0 and refusals.
-#include <apsis/integrate/imex_bdf.hpp>
+#include <apsis/integrate/kinds/imex_bdf.hpp>
 
 #include <apsis/integrate/relaxation_problem.hpp>
 

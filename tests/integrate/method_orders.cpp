@@ -3,7 +3,7 @@
 // methods are tested automatically.
 #include "support/catalogue.hpp"
 
-#include <apsis/integrate/exponential.hpp>
+#include <apsis/integrate/exact_collisions.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/method/certificate.hpp>
 

@@ -2,7 +2,7 @@
 #include "support/catalogue.hpp"
 
 #include <apsis/integrate/error_control.hpp>
-#include <apsis/integrate/exponential.hpp>
+#include <apsis/integrate/exact_collisions.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
 

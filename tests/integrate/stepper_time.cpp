@@ -1,5 +1,5 @@
 // Time dependence in the stepper, and the time loop.
-#include <apsis/integrate/exponential.hpp>
+#include <apsis/integrate/exact_collisions.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/method/certificate.hpp>

@@ -1,10 +1,11 @@
 // Two-step methods through integrate(): observed orders, the limit ε → 0, the error of the O(ε) terms where
 // ε ~ Δt, positivity, certificates and refusals.
-#include <apsis/integrate/two_step.hpp>
+#include <apsis/integrate/kinds/two_step.hpp>
 
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
 #include <apsis/method/export.hpp>
+#include <apsis/method/time_integrator.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +33,11 @@ const apsis::method& starter() {
   return apsis::find_method("md-imex-10-3-mixed");
 }
 
+/// Returns the rows of a two-step method, as in its file.
+const apsis::method& rows_of(const std::string& name) {
+  return *apsis::find_integrator(name).file();
+}
+
 /// Kaps' problem with ε = 1, whose solution from (1, 1) is u1 = e^{−t}, u2 = u1².
 real error_of(const apsis::method& m, long steps) {
   auto problem = apsis::make_relaxation_problem<state>(
@@ -45,9 +51,9 @@ real error_of(const apsis::method& m, long steps) {
 }
 
 TEST(two_step, observed_order_is_the_claimed_one) {
-  ASSERT_FALSE(apsis::two_step_method_names().empty());
-  for (const auto& name : apsis::two_step_method_names()) {
-    const auto m = apsis::find_two_step_method(name);
+  ASSERT_FALSE(apsis::integrator_names("two-step").empty());
+  for (const auto& name : apsis::integrator_names("two-step")) {
+    const auto m = rows_of(name);
     // The second error term is a tenth of the first at these steps.
     EXPECT_NEAR(static_cast<double>(std::log2(error_of(m, 256) / error_of(m, 512))), m.claims.order, 0.15)
         << name;
@@ -58,8 +64,8 @@ TEST(two_step, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
   const auto exact = reference::limit(1);
   // A list: clang-19 -O1 converts 256L << i to a long double that is NaN.
   constexpr long steps[] = {256, 512};
-  for (const auto& name : apsis::two_step_method_names()) {
-    const auto m = apsis::find_two_step_method(name);
+  for (const auto& name : apsis::integrator_names("two-step")) {
+    const auto m = rows_of(name);
     real moment[2], rest[2];
     for (int i = 0; i < 2; ++i) {
       auto problem = ode_model::as_relaxation<state>(1e-17L);
@@ -77,8 +83,8 @@ TEST(two_step, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
 
 // T depends on t: every row evaluates it at its own time.
 TEST(two_step, integrates_polynomials_below_its_order_exactly) {
-  for (const auto& name : apsis::two_step_method_names()) {
-    const auto m = apsis::find_two_step_method(name);
+  for (const auto& name : apsis::integrator_names("two-step")) {
+    const auto m = rows_of(name);
     const auto degree = static_cast<real>(m.claims.order);
     auto problem = apsis::make_relaxation_problem<state>(
         [degree](real t, const state&, state& out) { out = {degree * std::pow(t, degree - 1), real(0)}; },
@@ -111,8 +117,8 @@ real observed_flux(const apsis::method& m, real z) {
 }
 
 TEST(two_step, flux_of_a_run_is_the_certified_one_at_every_z) {
-  for (const auto& name : apsis::two_step_method_names()) {
-    const auto m = apsis::find_two_step_method(name);
+  for (const auto& name : apsis::integrator_names("two-step")) {
+    const auto m = rows_of(name);
     const auto form = m.coefficients<real>();
     for (const real z : {0.1L, 1.0L, 3.0L, 10.0L, 100.0L}) {
       const real flux = apsis::two_step_at_finite_rate(form, z).flux;
@@ -159,8 +165,8 @@ real smallest_value(const apsis::method& m, real step) {
 }
 
 TEST(two_step, is_positive_up_to_r_and_not_far_above) {
-  for (const auto& name : apsis::two_step_method_names()) {
-    const auto m = apsis::find_two_step_method(name);
+  for (const auto& name : apsis::integrator_names("two-step")) {
+    const auto m = rows_of(name);
     const real r = m.coefficients<real>().r;
     EXPECT_GE(smallest_value(m, r), 0) << name;
     // The r of the form is a lower bound of the largest step.
@@ -169,7 +175,7 @@ TEST(two_step, is_positive_up_to_r_and_not_far_above) {
 }
 
 TEST(two_step, failed_step_changes_nothing) {
-  const auto m = apsis::find_two_step_method(apsis::two_step_method_names().front());
+  const auto m = rows_of(apsis::integrator_names("two-step").front());
   int calls = 0, fails_at = -1;
   auto problem = apsis::make_relaxation_problem<state>(
       [&](real, const state& u, state& out) {
@@ -197,8 +203,8 @@ TEST(two_step, failed_step_changes_nothing) {
 }
 
 TEST(two_step, step_evaluates_the_transport_as_often_as_certified) {
-  for (const auto& name : apsis::two_step_method_names()) {
-    const auto m = apsis::find_two_step_method(name);
+  for (const auto& name : apsis::integrator_names("two-step")) {
+    const auto m = rows_of(name);
     int evaluations = 0;
     auto problem = apsis::make_relaxation_problem<state>(
         [&](real, const state& u, state& out) {
@@ -219,13 +225,12 @@ auto complains(const std::string& part) {
   return testing::ThrowsMessage<apsis::input_error>(HasSubstr(part));
 }
 
-TEST(two_step, is_refused_where_methods_of_one_step_are_wanted_and_the_reverse) {
-  const auto m = apsis::find_two_step_method(apsis::two_step_method_names().front());
+TEST(two_step, is_refused_where_methods_of_one_step_are_wanted) {
+  const auto m = rows_of(apsis::integrator_names("two-step").front());
   EXPECT_THAT([&] { apsis::parse_method(apsis::to_toml(m), "m.toml"); },
               complains("takes two steps (steps = 2)"));
-  EXPECT_THAT([&] { apsis::parse_two_step_method(apsis::to_toml(starter()), "m.toml"); },
-              complains("takes one step"));
-  EXPECT_THAT([] { apsis::find_two_step_method("md-imex-two-step"); }, complains("unknown two-step method"));
+  EXPECT_THAT([] { static_cast<void>(apsis::find_method("two-step-8-3-narrow")); },
+              complains("'two-step-8-3-narrow' is a multistep method (a method of one step is needed here)"));
   auto problem = ode_model::as_relaxation<state>(1e-2L);
   apsis::two_step march(m, starter(), problem);
   state u{2, 0};
@@ -234,9 +239,9 @@ TEST(two_step, is_refused_where_methods_of_one_step_are_wanted_and_the_reverse) 
 }
 
 TEST(two_step, certificate_names_a_claim_that_does_not_hold) {
-  auto m = apsis::find_two_step_method(apsis::two_step_method_names().front());
+  auto m = rows_of(apsis::integrator_names("two-step").front());
   EXPECT_TRUE(apsis::certify_two_step(m).claims_hold());
-  EXPECT_EQ(apsis::to_toml(apsis::parse_two_step_method(apsis::to_toml(m), "m.toml")), apsis::to_toml(m));
+  EXPECT_EQ(apsis::to_toml(apsis::parse_any_method(apsis::to_toml(m), "m.toml")), apsis::to_toml(m));
   auto wrong = m;
   ++wrong.claims.order;
   EXPECT_THAT(apsis::certify_two_step(wrong).failures, testing::ElementsAre(HasSubstr("the order is 3")));
@@ -245,7 +250,7 @@ TEST(two_step, certificate_names_a_claim_that_does_not_hold) {
   EXPECT_THAT(apsis::certify_two_step(wrong).failures.front(), HasSubstr("d_2 = -0.1 is negative"));
   wrong = m;
   wrong.exact.ddot[0] = "-0.1";
-  EXPECT_THAT([&] { apsis::parse_two_step_method(apsis::to_toml(wrong), "m.toml"); },
+  EXPECT_THAT([&] { apsis::parse_any_method(apsis::to_toml(wrong), "m.toml"); },
               complains("the first row of a two-step method stands for u^{n-1}"));
 }
 

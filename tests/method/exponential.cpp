@@ -1,13 +1,12 @@
 // Exponential methods as data: conditions of second order against a formula, refusals, and the step of a
 // form.
-#include <apsis/method/exponential.hpp>
-
 #include <apsis/core/errors.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/export.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/order_conditions.hpp>
 #include <apsis/method/polish.hpp>
+#include <apsis/method/resolved_flows.hpp>
 
 #include <string>
 

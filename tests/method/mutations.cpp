@@ -5,8 +5,8 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/method/coefficient.hpp>
-#include <apsis/method/exponential.hpp>
 #include <apsis/method/export.hpp>
+#include <apsis/method/resolved_flows.hpp>
 
 #include <algorithm>
 #include <cstdio>

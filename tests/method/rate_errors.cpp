@@ -3,6 +3,8 @@
 
 #include "support/catalogue.hpp"
 
+#include <apsis/method/time_integrator.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -69,11 +71,11 @@ TEST(errors_of_other_integrators, are_those_of_their_equations) {
   // The backward differentiation formula of a constant deviation is exact.
   for (const char* name : {"imex-bdf-2", "imex-bdf-5"})
     for (const double z : {0.1, 10.0, 1e6}) {
-      const auto at = apsis::rate_errors_at(apsis::find_multistep_method(name), z);
+      const auto at = apsis::find_integrator(name).errors_at(z);
       EXPECT_EQ(at.flux, 0.0) << name;
       EXPECT_EQ(at.last, 0.0) << name;
     }
-  const auto two_step = apsis::rate_errors_at(apsis::find_multistep_method("two-step-10-3-mixed"), 1e6);
+  const auto two_step = apsis::find_integrator("two-step-10-3-mixed").errors_at(1e6);
   EXPECT_NEAR(two_step.flux, 0.0, 1e-4);
   // Explicit methods have a response within their stability limit, 2 for the method of second order.
   EXPECT_TRUE(std::isfinite(apsis::rate_errors_at(apsis::find_method("ssprk-2-2"), 1.9).flux));

@@ -66,7 +66,7 @@ one_step step_of(const model_entry& entry, const case_config& c, bool with_zeros
   for (int i = 1; uniform && i < u.cells(); ++i) std::copy_n(u.row(0), u.components(), u.row(i));
   const auto problem = setup.make_problem();
   budgeted_problem budgeted(*problem);
-  stepper<budgeted_problem> integrator(setup.integrator(), budgeted);
+  stepper<budgeted_problem> integrator(setup.integrator().starter(), budgeted);
   monitor watch(setup);
   one_step result;
   result.before = watch.start(u);

@@ -79,7 +79,7 @@ void expect_the_formula(const std::string& method, bool periodic) {
         after.messages - before.messages, after.bytes - before.bytes, after.reductions - before.reductions};
   });
   const apsis::run_setup alone(gas(method, boundary));
-  const int evaluations = evaluations_of_transport(alone.integrator()),
+  const int evaluations = evaluations_of_transport(alone.integrator().starter()),
             stride = alone.initial_state().stride();
   for (int rank = 0; rank < 6; ++rank) {
     const halo each = halo_of(rank, periodic);

@@ -6,7 +6,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/version.hpp>
 #include <apsis/method/method.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/time_integrator.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/checkpoint.hpp>
 #include <apsis/output/sealed_file.hpp>
@@ -89,7 +89,7 @@ TEST_P(restart, continues_bit_for_bit_with_every_method_from_any_step) {
   const test_folder folder;
   std::mt19937 random(7);
   int asked = 0;
-  for (const auto& name : all_method_names()) {
+  for (const auto& name : integrator_names()) {
     std::optional<case_config> c;
     std::optional<outcome> whole;
     try {

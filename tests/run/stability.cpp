@@ -4,6 +4,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/method/amplification.hpp>
 #include <apsis/method/certificate.hpp>
+#include <apsis/method/time_integrator.hpp>
 #include <apsis/run/cfl_limit.hpp>
 #include <apsis/run/session.hpp>
 #include <apsis/run/setup.hpp>
@@ -31,8 +32,7 @@ namespace {
 
 double limit_of(const std::string& method, const std::string& scheme) {
   const auto reconstruct = find_reconstruction(scheme)->make();
-  return is_multistep_method(method) ? cfl_limit(find_multistep_method(method), *reconstruct)
-                                     : cfl_limit(find_method(method), *reconstruct);
+  return cfl_limit(find_integrator(method).growth(), *reconstruct);
 }
 
 /// Heat between plates whose temperatures differ by 2 %, 12 half-range velocities.
@@ -157,8 +157,8 @@ TEST(cfl_limits, with_first_order_upwind_are_at_least_the_ssp_coefficient) {
     if (!c.bounded) continue;
     EXPECT_GE(limit_of(name, "upwind1"), c.ssp_coefficient.convert_to<double>()) << name;
   }
-  for (const auto& name : multistep_method_names())
-    EXPECT_GE(limit_of(name, "upwind1"), find_multistep_method(name).ssp_coefficient) << name;
+  for (const auto& name : names_of_several_steps())
+    EXPECT_GE(limit_of(name, "upwind1"), find_integrator(name).ssp_coefficient) << name;
 }
 
 // The definition checked against a matrix: the two-velocity gas f±_t ± f±_x = (ρ(1 ± a)/2 − f±)/ε with every

@@ -37,7 +37,7 @@ double smallest_of_embedded(const std::string& method, const std::string& epsilo
                           "space.reconstruction=" + scheme, "space.limiter=positivity", "time.safety=1"});
   const apsis::run_setup setup(c);
   const auto problem = setup.make_problem();
-  apsis::stepper march(setup.integrator(), *problem, apsis::solutions::result_and_embedded);
+  apsis::stepper march(setup.integrator().starter(), *problem, apsis::solutions::result_and_embedded);
   apsis::field u = setup.initial_state();
   double smallest = std::numeric_limits<double>::infinity(), t = 0.0;
   for (int n = 0; n < 3; ++n) {

@@ -10,13 +10,15 @@
 
 #include <gtest/gtest.h>
 
-/// Returns the methods of the catalogue whose files satisfy a condition. Does not certify them, because every
-/// process that runs a single test builds these lists.
+/// Returns the methods of one step of the catalogue whose files satisfy a condition. Does not certify them,
+/// because every process that runs a single test builds these lists.
 template <class Condition>
 std::vector<std::string> methods_where(const Condition& condition) {
   std::vector<std::string> names;
-  for (const auto& file : apsis::embedded::methods())
-    if (condition(apsis::parse_method(file.text, std::string(file.name)))) names.emplace_back(file.name);
+  for (const auto& file : apsis::embedded::methods()) {
+    const apsis::method m = apsis::parse_any_method(file.text, std::string(file.name));
+    if (m.steps == 1 && condition(m)) names.emplace_back(file.name);
+  }
   return names;
 }
 

@@ -81,7 +81,7 @@ TEST(limit_distance, is_rounding_for_one_step_at_epsilon_zero_from_rough_data) {
         u.row(i)[k] = from[k] * std::uniform_real_distribution<>(0.7, 1.3)(random);
     }
     const auto problem = setup.make_problem();
-    stepper<semidiscrete_problem> production(setup.integrator(), *problem);
+    stepper<semidiscrete_problem> production(setup.integrator().starter(), *problem);
     limit_scheme scheme(small_case(model, method, formulation, overrides));
     scheme.start(values(u));
     production.step(0.0, 0.005, u);

@@ -4,7 +4,7 @@
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_choice.hpp>
 #include <apsis/method/method_file.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/time_integrator.hpp>
 #include <apsis/model/gas_species.hpp>
 #include <apsis/model/mean_free_path.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
@@ -30,7 +30,7 @@ auto names_in(Entries (*entries)()) {
 
 /// "auto" and the names of all methods.
 std::vector<std::string> method_choices(const case_config&) {
-  std::vector<std::string> names = all_method_names();
+  std::vector<std::string> names = integrator_names();
   names.emplace_back(automatic_method);
   return names;
 }
@@ -43,7 +43,7 @@ std::vector<std::string> initial_choices(const case_config& c) {
 /// A member of a family, or a method file; an invalid file throws with its own place.
 std::optional<std::string> check_method_outside_catalogue(const std::string& name) {
   if (is_method_file(name)) {
-    static_cast<void>(order_of_method(name));
+    static_cast<void>(find_integrator(name));
     return "";
   }
   const family_entry* family = find_family(name);

@@ -12,9 +12,8 @@ struct embedded_text {
 };
 
 namespace embedded {
-std::vector<embedded_text> methods();           ///< returns every file of methods/
-std::vector<embedded_text> two_step_methods();  ///< returns every file of two-step-methods/
-std::vector<embedded_text> cases();             ///< returns every file of cases/
+std::vector<embedded_text> methods();  ///< returns every file of methods/
+std::vector<embedded_text> cases();    ///< returns every file of cases/
 }  // namespace embedded
 
 }  // namespace apsis

@@ -13,8 +13,8 @@ namespace apsis {
 shu_osher_form<double> with_more_stages(shu_osher_form<double> m, std::size_t stages, random_source& random,
                                         std::size_t given = 1);
 
-/// Returns the two-step form (method/two_step.hpp) of a method of one step: a first row for u^{n−1}, which
-/// has no weight.
+/// Returns the two-step form (method/kinds/two_step.hpp) of a method of one step: a first row for u^{n−1},
+/// which has no weight.
 shu_osher_form<double> with_previous_value(const shu_osher_form<double>& m);
 
 }  // namespace apsis

@@ -6,8 +6,8 @@
 #include <apsis/design/sparsify.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/schedule.hpp>
+#include <apsis/method/kinds/two_step.hpp>
 #include <apsis/method/stability.hpp>
-#include <apsis/method/two_step.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -9,6 +9,20 @@
 
 namespace apsis {
 
+/// Position of a formula in the history that it keeps between steps.
+template <class Real>
+struct history_position {
+  Real dt{};       ///< length of its steps
+  long known = 0;  ///< number of values in it
+
+  /// Calls visit(name, member) for every member of `self`.
+  template <class Self, class Visitor>
+  static void visit_members(Self& self, Visitor&& visit) {
+    visit("dt", self.dt);
+    visit("known", self.known);
+  }
+};
+
 /// A formula of several equal steps. add(t, Δt, u) records a value of the start-up, Δt after the last one;
 /// step(t, Δt, u) requires first_steps() − 1 of them before u, known() counts them, and restart() discards
 /// them.

@@ -86,7 +86,8 @@ concept problem_with_joint_evaluation =
       p.add_transport_and_collision(x, u, targets);
     };
 
-/// A problem that reports whether it solves collisions exactly, as exponential methods need:
+/// A problem that reports whether it solves collisions exactly, as methods with exact
+/// collisions need:
 ///   collides_exactly()   whether solve_collision(t, s, 0, u) is u ← exp(sQ) u, the solution after a time s
 ///   of
 ///                        v' = Q(v), v(0) = u, instead of an implicit stage

@@ -1,6 +1,7 @@
 #include <apsis/integrate/schedule.hpp>
 
 #include <apsis/method/precision.hpp>
+#include <apsis/method/time_integrator.hpp>
 
 #include <algorithm>
 
@@ -197,6 +198,10 @@ schedule::schedule(const shu_osher_form<Real>& m, bool embedded) {
     p.is_initial[k + 1] = static_cast<char>(!stages_enter && p.solve[k + 1] == 0);
   }
   builder(p, *this).run();
+}
+
+int buffers_of(const time_integrator& m) {
+  return schedule(m.starter().coefficients<double>()).buffers() + m.kept_states;
 }
 
 template schedule::schedule(const shu_osher_form<double>&, bool);

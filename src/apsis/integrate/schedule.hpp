@@ -7,6 +7,8 @@
 
 namespace apsis {
 
+class time_integrator;
+
 /// Execution order of a step, derived once from the zero pattern of the Shu–Osher form, such that no T(u_j)
 /// is ever stored and as few state-sized buffers as possible are in use.
 ///
@@ -70,5 +72,9 @@ class schedule {
   std::vector<instruction> instructions_;
   int buffers_ = 1, result_ = 0, embedded_ = -1, transports_ = 0, collisions_ = 0, solves_ = 0;
 };
+
+/// Returns the number of states that a step of an integrator needs, u included: those of its starter and
+/// those that it keeps between steps.
+int buffers_of(const time_integrator& m);
 
 }  // namespace apsis

@@ -33,9 +33,9 @@ class stepper {
   using real = typename P::real;    ///< type of time and coefficients
 
   /// Copies the method and stores a reference to the problem, which must outlive the stepper. Throws
-  /// input_error if the method evaluates Q explicitly and the problem cannot, if the method is exponential
-  /// and the problem does not solve its collisions exactly, or the reverse. A step of an implicit-only method
-  /// throws input_error if the problem has transport (problem_with_transport_check). With
+  /// input_error if the method evaluates Q explicitly and the problem cannot, if the method needs exact
+  /// collisions and the problem does not solve them exactly, or the reverse. A step of an implicit-only
+  /// method throws input_error if the problem has transport (problem_with_transport_check). With
   /// result_and_embedded, a method without an embedded solution doubles steps: see step_estimate.
   stepper(const method& m, P& p, solutions which = solutions::result)
       : stepper(which == solutions::result_and_embedded && m.embedded
@@ -151,15 +151,16 @@ class stepper {
   /// Coefficients of implicit stages are no times of exact collisions, and the reverse.
   void require_suitable_collisions() const {
     const bool exact = collides_exactly(problem_);
-    if (exact == (kind_ == method_kind::exponential)) return;
+    if (exact == solves_exactly(kind_)) return;
+    const std::string suitable = to_string(exact_collision_kind);
     throw input_error(
-        exact
-            ? "method '" + name_ +
-                  "' cannot integrate this problem (its collisions are solved exactly, and the method is not "
-                  "exponential); choose an exponential method"
-            : "method '" + name_ +
-                  "' cannot integrate this problem (it is exponential, and the collisions of the problem are "
-                  "not solved exactly); wrap the problem in exact_collisions, or choose an IMEX method");
+        exact ? "method '" + name_ +
+                    "' cannot integrate this problem (its collisions are solved exactly, and the method is "
+                    "not " +
+                    suitable + "); choose an " + suitable + " method"
+              : "method '" + name_ + "' cannot integrate this problem (it is " + suitable +
+                    ", and the collisions of the problem are not solved exactly); wrap the problem in "
+                    "exact_collisions, or choose an IMEX method");
   }
 
   /// Implicit-only methods ignore T.

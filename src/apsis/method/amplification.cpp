@@ -3,6 +3,7 @@
 #include <apsis/method/internal/complex_product.hpp>
 
 #include <cmath>
+#include <utility>
 
 namespace apsis {
 
@@ -10,13 +11,8 @@ amplification::amplification(const method& m) : kind_(m.kind), steps_(m.steps) {
   set_rows(m);
 }
 
-amplification::amplification(const multistep_method& m)
-    : kind_(m.rows ? m.rows->kind : method_kind::imex), steps_(m.steps) {
-  if (m.rows)
-    set_rows(*m.rows);
-  else
-    bdf_ = imex_bdf_coefficients<double>(m.steps);
-}
+amplification::amplification(linear_formula<double> m)
+    : kind_(method_kind::imex), steps_(m.steps()), formula_(std::move(m)) {}
 
 void amplification::set_rows(const method& m) {
   const auto form = m.coefficients<double>();
@@ -39,14 +35,14 @@ std::vector<double> amplification::fingerprint() const {
     for (const entry& e : r.entries)
       all.insert(all.end(), {static_cast<double>(e.column), e.value, e.transport, e.collision});
   }
-  all.push_back(bdf_.b);
-  all.insert(all.end(), bdf_.a.begin(), bdf_.a.end());
-  all.insert(all.end(), bdf_.c.begin(), bdf_.c.end());
+  all.push_back(formula_.b);
+  all.insert(all.end(), formula_.a.begin(), formula_.a.end());
+  all.insert(all.end(), formula_.c.begin(), formula_.c.end());
   return all;
 }
 
 amplification::complex amplification::relaxed(const row& r, complex stage, double w) const {
-  if (kind_ == method_kind::exponential) return std::exp(r.d * w) * stage;
+  if (solves_exactly(kind_)) return std::exp(r.d * w) * stage;
   return stage / (1.0 - r.d * w - r.ddot * w * w);
 }
 
@@ -82,10 +78,10 @@ bool amplification::is_within(double bound, complex z, double w) const {
     if (steps_ == 1) return std::norm(stages_.back()) < bound * bound;
     return has_roots_within({-before_.back(), -stages_.back(), 1.0}, bound);
   }
-  polynomial_.assign(bdf_.a.size() + 1, 0.0);
-  polynomial_.back() = 1.0 - bdf_.b * w;
-  for (std::size_t i = 0; i < bdf_.a.size(); ++i)
-    polynomial_[bdf_.a.size() - 1 - i] = -(bdf_.a[i] + bdf_.c[i] * z);
+  polynomial_.assign(formula_.a.size() + 1, 0.0);
+  polynomial_.back() = 1.0 - formula_.b * w;
+  for (std::size_t i = 0; i < formula_.a.size(); ++i)
+    polynomial_[formula_.a.size() - 1 - i] = -(formula_.a[i] + formula_.c[i] * z);
   return has_roots_within(polynomial_, bound);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <apsis/method/linear_formula.hpp>
 #include <apsis/method/method.hpp>
-#include <apsis/method/multistep.hpp>
 
 #include <complex>
 #include <cstddef>
@@ -16,8 +16,8 @@ class amplification {
  public:
   /// A method of one step, or the rows of a two-step method (method::steps).
   explicit amplification(const method& m);
-  /// A method of several steps.
-  explicit amplification(const multistep_method& m);
+  /// A formula of several steps.
+  explicit amplification(linear_formula<double> m);
 
   /// Whether all |ζ| are below `bound` > 0. Explicit methods treat Q like T: they use z + w.
   bool is_within(double bound, std::complex<double> z, double w) const;
@@ -47,7 +47,7 @@ class amplification {
   method_kind kind_;
   int steps_;
   std::vector<row> rows_;                ///< of methods of one and two steps
-  multistep_coefficients<double> bdf_;   ///< of IMEX-BDF, if rows_ is empty
+  linear_formula<double> formula_;       ///< if rows_ is empty
   mutable std::vector<complex> stages_;  ///< multiples of u^n
   mutable std::vector<complex> before_;  ///< multiples of u^{n−1}
   mutable std::vector<complex> polynomial_;

@@ -3,18 +3,21 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/family_registry.hpp>
+#include <apsis/method/integrator_kind_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/time_integrator.hpp>
 
 #include <algorithm>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace apsis {
 namespace {
@@ -38,9 +41,31 @@ bool is_same(const method& a, const method& b) {
          x.r == y.r;
 }
 
-method parse_catalogue_method(std::string_view name) {
+/// Whether the text of a file of the catalogue has the line steps = 2. A complete parse of all files would
+/// take longer than a short run.
+bool takes_two_steps(std::string_view text) {
+  return text.find("\nsteps = 2\n") != std::string_view::npos;
+}
+
+/// Returns the text of a method of the catalogue; nothing for other names.
+std::optional<std::string_view> text_of(std::string_view name) {
   for (const auto& file : embedded::methods())
-    if (file.name == name) return parse_method(file.text, "methods/" + std::string(file.name) + ".toml");
+    if (file.name == name) return file.text;
+  return std::nullopt;
+}
+
+/// Returns the text of a method of one step of the catalogue; nothing for other names.
+std::optional<std::string_view> text_of_one_step(std::string_view name) {
+  const auto text = text_of(name);
+  return text && !takes_two_steps(*text) ? text : std::nullopt;
+}
+
+std::string place_of(std::string_view name) {
+  return fmt::format("methods/{}.toml", name);
+}
+
+method parse_catalogue_method(std::string_view name) {
+  if (const auto text = text_of_one_step(name)) return parse_method(*text, place_of(name));
   return make_member(*find_family(name), name);
 }
 
@@ -59,14 +84,13 @@ certificate certify_and_complete(method& m) {
 
 /// Makes a method of the catalogue or a member of a family. Throws input_error if there is none of this name.
 method make_named_method(std::string_view name) {
-  for (const auto& file : embedded::methods())
-    if (file.name == name) return parse_method(file.text, "methods/" + std::string(file.name) + ".toml");
+  if (const auto file = text_of_one_step(name)) return parse_method(*file, place_of(name));
   if (const family_entry* family = find_family(name)) return make_member(*family, name);
   std::vector<std::string> known = method_names();
   for (const family_entry* family : family_entries()) known.push_back(family->pattern);
   const std::string text(name.substr(0, 60));
-  const auto multistep = multistep_method_names();
-  if (std::find(multistep.begin(), multistep.end(), text) != multistep.end())
+  const auto of_several_steps = names_of_several_steps();
+  if (std::find(of_several_steps.begin(), of_several_steps.end(), text) != of_several_steps.end())
     throw input_error(
         "'" + text +
         "' is a multistep method (a method of one step is needed here); see: apsis list methods");
@@ -105,14 +129,77 @@ const certificate& find_certificate(const std::string& name) {
 
 std::vector<std::string> method_names() {
   std::vector<std::string> names;
-  for (const auto& file : embedded::methods()) names.emplace_back(file.name);
+  for (const auto& file : embedded::methods())
+    if (!takes_two_steps(file.text)) names.emplace_back(file.name);
   return names;
 }
 
 bool is_method_name(std::string_view name) {
+  return text_of_one_step(name) || find_family(name) != nullptr;
+}
+
+std::vector<std::string> names_of_several_steps() {
+  std::vector<std::string> names;
+  for (const integrator_kind_entry* kind : integrator_kind_entries())
+    if (kind->formulas != nullptr)
+      for (auto& name : kind->formulas()) names.push_back(std::move(name));
   for (const auto& file : embedded::methods())
-    if (file.name == name) return true;
-  return find_family(name) != nullptr;
+    if (takes_two_steps(file.text)) names.emplace_back(file.name);
+  return names;
+}
+
+std::vector<std::string> integrator_names() {
+  auto names = method_names();
+  for (auto& name : names_of_several_steps()) names.push_back(std::move(name));
+  return names;
+}
+
+std::vector<std::string> integrator_names(const std::string& kind) {
+  auto names = integrator_names();
+  std::erase_if(names, [&kind](const auto& name) { return find_integrator(name).kind != kind; });
+  return names;
+}
+
+std::unique_ptr<time_integrator> integrator_of_file(method file) {
+  for (const integrator_kind_entry* kind : integrator_kind_entries())
+    if (kind->reads != nullptr && kind->reads(file)) return kind->of_file(std::move(file));
+  throw input_error(fmt::format("'{}' is of no kind of integrator; change 'kind' or 'steps'", file.name));
+}
+
+namespace {
+
+/// Makes and certifies an integrator; `text` is that of a method file, if `name` is its path.
+std::unique_ptr<time_integrator> make_integrator(const std::string& name, const std::string& text) {
+  for (const integrator_kind_entry* kind : integrator_kind_entries()) {
+    const auto formulas = kind->formulas != nullptr ? kind->formulas() : std::vector<std::string>();
+    if (std::find(formulas.begin(), formulas.end(), name) != formulas.end()) return kind->of_formula(name);
+  }
+  const bool is_file = is_method_file(name);
+  const auto of_catalogue = text_of(name);
+  std::optional<method> parsed;
+  if (is_file) parsed = parse_any_method(text, name);
+  if (of_catalogue && takes_two_steps(*of_catalogue))
+    parsed = parse_any_method(*of_catalogue, place_of(name));
+  if (!parsed || parsed->steps == 1) return integrator_of_file(find_method(name));
+  auto made = integrator_of_file(std::move(*parsed));
+  const integrator_certificate c = made->certify();
+  if (!c.claims_hold())
+    throw claim_error(fmt::format("{} method '{}' does not meet its claims: {}", made->kind, made->name,
+                                  fmt::join(c.failures, "; ")));
+  return made;
+}
+
+}  // namespace
+
+const time_integrator& find_integrator(const std::string& name) {
+  static std::mutex guard;
+  static std::map<std::pair<std::string, std::string>, std::unique_ptr<time_integrator>> known;
+  std::pair key(name, is_method_file(name) ? read_method_text(name) : std::string());
+  const std::lock_guard lock(guard);
+  const auto found = known.find(key);
+  if (found != known.end()) return *found->second;
+  auto made = make_integrator(name, key.second);
+  return *known.emplace(std::move(key), std::move(made)).first->second;
 }
 
 std::string taken_name(const method& m) {

@@ -4,9 +4,9 @@
 #include <apsis/method/claim_checks.hpp>
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/convexity.hpp>
-#include <apsis/method/exponential.hpp>
 #include <apsis/method/monotonicity.hpp>
 #include <apsis/method/order_conditions.hpp>
+#include <apsis/method/resolved_flows.hpp>
 #include <apsis/method/stability.hpp>
 
 #include <algorithm>
@@ -20,13 +20,13 @@ namespace {
 
 /// Returns the coefficients that satisfy the order conditions of a method.
 butcher_form<mp_real> conditioned_form(const shu_osher_form<mp_real>& form, method_kind kind) {
-  return to_butcher(kind == method_kind::exponential ? with_resolved_flows(form) : form);
+  return to_butcher(solves_exactly(kind) ? with_resolved_flows(form) : form);
 }
 
 /// Returns the largest order whose conditions are evaluated. Order 9 has 286 trees of one colour, but 89 894
 /// of two.
 int last_order(method_kind kind) {
-  if (kind == method_kind::exponential) return order_of_resolved_flows;
+  if (solves_exactly(kind)) return order_of_resolved_flows;
   return certificate::highest_order + (kind == method_kind::imex ? 0 : 1);
 }
 
@@ -62,8 +62,8 @@ void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certif
 }
 
 /// Exact collisions set no limit.
-void find_ssp_of_exponential(const shu_osher_form<mp_real>& form, const butcher_form<mp_real>& b,
-                             const mp_real& zero, certificate& c) {
+void find_ssp_of_exact_collisions(const shu_osher_form<mp_real>& form, const butcher_form<mp_real>& b,
+                                  const mp_real& zero, certificate& c) {
   c.unconditional = is_convex(form, c.kind, form.stages());
   const mp_real largest = largest_step_of_form(form);
   c.bounded = !c.unconditional || largest > 0;
@@ -231,8 +231,8 @@ certificate certify(const method& m) {
   const auto b = to_butcher(form);
   const mp_real tolerance = residual_tolerance(m.precision());
   find_order(conditioned_form(form, m.kind), tolerance, c);
-  if (m.kind == method_kind::exponential) {
-    find_ssp_of_exponential(form, b, tolerance, c);
+  if (solves_exactly(m.kind)) {
+    find_ssp_of_exact_collisions(form, b, tolerance, c);
   } else {
     find_ssp(b, tolerance, c);
   }

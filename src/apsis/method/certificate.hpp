@@ -48,8 +48,8 @@ struct embedded_certificate {
 
 /// Certificate of a method: its properties, derived from the coefficients alone.
 struct certificate {
-  static constexpr int highest_order = 8;  ///< conditions of higher order are not evaluated; order 4 of
-                                           ///< exponential methods
+  static constexpr int highest_order = 8;  ///< conditions of higher order are not evaluated; with exact
+                                           ///< collisions, of order above 4
 
   std::string name;                      ///< name of the method
   method_kind kind = method_kind::imex;  ///< determines which order conditions apply
@@ -62,7 +62,7 @@ struct certificate {
 
   bool unconditional = false;           ///< SSP without a step bound from Q
   bool bounded = true;                  ///< the explicit part sets a bound Δt ≤ r Δt_FE
-  mp_real ssp_coefficient = 0;          ///< r, from the Butcher form alone, of exponential methods from the
+  mp_real ssp_coefficient = 0;          ///< r, from the Butcher form alone, with exact collisions from the
                                         ///< Shu–Osher form; undefined if !bounded
   mp_real radius_of_implicit_part = 0;  ///< radius of absolute monotonicity of A: relevant where Q satisfies
                                         ///< a forward Euler condition
@@ -78,7 +78,7 @@ struct certificate {
                                  ///< because then u^{n+1} itself is not projected to equilibrium
   int explicit_evaluations = 0;  ///< of T per step, n_F
   int implicit_solves = 0;       ///< stages with d_i ≠ 0 or ḋ_i ≠ 0
-  implicit_stability stability;  ///< default values for explicit and exponential methods
+  implicit_stability stability;  ///< default values for methods without stage solves
 
   // O(ε) terms for ε ≪ Δt (docs/plateaus.md); IMEX methods only.
   intermediate_regime<mp_real> regime;  ///< coefficients of these terms; undefined if !regime.applies

@@ -21,6 +21,10 @@ std::string to_string(method_kind kind) {
   return "";
 }
 
+bool solves_exactly(method_kind kind) {
+  return kind == exact_collision_kind;
+}
+
 bool has_derivatives(method_kind kind) {
   return kind == method_kind::imex || kind == method_kind::implicit_only;
 }

@@ -16,15 +16,21 @@ enum class method_kind {
   implicit_only,  ///< u' = Q(u): no transport (trees of one colour)
   imex,           ///< u' = T(u) + Q(u): T explicit, Q implicit (trees of two colours)
   explicit_only,  ///< u' = T(u) + Q(u), both explicit with the same coefficients, A = Â
-  exponential     ///< u' = T(u) + Q(u): T explicit, Q by exact solutions (exponential.hpp)
+  exponential     ///< u' = T(u) + Q(u): T explicit, Q by exact solutions (resolved_flows.hpp)
 };
 
 /// All kinds, in the order of tables.
 inline constexpr std::array all_method_kinds = {method_kind::imex, method_kind::implicit_only,
                                                 method_kind::explicit_only, method_kind::exponential};
 
+/// The kind whose stages are exact solutions of the collision.
+inline constexpr method_kind exact_collision_kind = method_kind::exponential;
+
 /// Returns "implicit", "imex", "explicit" or "exponential".
 std::string to_string(method_kind kind);
+
+/// Whether a method of this kind solves collisions exactly, instead of stages.
+bool solves_exactly(method_kind kind);
 
 /// Whether stages of a method of this kind may contain Q̇.
 bool has_derivatives(method_kind kind);
@@ -72,9 +78,9 @@ class method {
   std::string origin;                    ///< how its coefficients were found; "" if the citation says so
   std::string purpose;                   ///< what it is recommended for, in a few words; "" if nothing
   method_kind kind = method_kind::imex;  ///< class of equations
-  int steps = 1;                         ///< 2: the first row of `exact` stands for u^{n−1} (two_step.hpp)
-  method_claims claims;                  ///< verified by certify()
-  shu_osher_form<std::string> exact;     ///< as in the file, omitted entries "0"
+  int steps = 1;                      ///< 2: the first row of `exact` stands for u^{n−1} (kinds/two_step.hpp)
+  method_claims claims;               ///< verified by certify()
+  shu_osher_form<std::string> exact;  ///< as in the file, omitted entries "0"
   std::optional<embedded_row> embedded;  ///< the embedded solution, if there is one
 
   /// Number of rows of the form; the last row is u^{n+1}.
@@ -103,22 +109,25 @@ class method {
   shu_osher_form<Real> coefficients() const;
 };
 
-/// Returns the certified method called `name`: one of the catalogue (methods/*.toml), a member of a family
-/// (family_registry.hpp), or a method file given by its path, FILE.toml. A file is read at every call and
-/// certified again when its contents have changed; references returned earlier stay valid. Throws input_error
-/// with the closest name if there is no such method, or with the range of S if a family has no such member;
-/// claim_error if a claim fails; io_error if a file cannot be read.
+/// Returns the certified method of one step called `name`: of the catalogue (methods/*.toml), a member of a
+/// family (family_registry.hpp), or a method file given by its path, FILE.toml. A file is read at every call
+/// and certified again when its contents have changed; references returned earlier stay valid. Throws
+/// input_error with the closest name if there is no such method, or with the range of S if a family has no
+/// such member; claim_error if a claim fails; io_error if a file cannot be read.
 const method& find_method(std::string_view name);
 
-/// Returns the names of the catalogue, sorted; members of families are not listed.
+/// Returns the names of the methods of one step of the catalogue, sorted; members of families are not listed.
 std::vector<std::string> method_names();
 
-/// Whether `name` is in the catalogue or matches the pattern of a family.
+/// Whether `name` is one of these, or matches the pattern of a family.
 bool is_method_name(std::string_view name);
 
 /// Parses the text of a method file without certifying the method; `file` appears in messages. Throws
 /// input_error with line and column, also for a method of two steps.
 method parse_method(std::string_view text, const std::string& file);
+
+/// Parses the text of a method file of one or two steps. Throws input_error with line and column.
+method parse_any_method(std::string_view text, const std::string& file);
 
 /// Reads, parses and certifies a method file. Throws input_error, io_error or claim_error.
 method load_method_file(const std::string& path);

@@ -7,7 +7,6 @@
 #include <apsis/method/internal/toml_section.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_text.hpp>
-#include <apsis/method/two_step.hpp>
 
 #include <algorithm>
 #include <array>
@@ -101,7 +100,7 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   const auto d = per_stage("d");
   if (has_derivatives(m.kind)) e.ddot = per_stage("ddot");
   for (std::size_t i = 0; i < s; ++i) {
-    if (m.kind == method_kind::exponential && coefficient_value(d[i]) < 0)
+    if (solves_exactly(m.kind) && coefficient_value(d[i]) < 0)
       form.fail("d", fmt::format("'shu_osher.d' has the entry {} (collisions cannot be solved backwards in "
                                  "time); give times >= 0",
                                  d[i]));
@@ -236,14 +235,17 @@ void require_given_row(const toml::table& root, const std::string& file, const m
         "the first row of a two-step method stands for u^{n-1}, which is given; set its d and ddot to 0");
 }
 
-void check_exponential(const toml_section& top) {
+void check_exact_collisions(const toml_section& top, method_kind kind) {
   if (top.has("butcher"))
-    top.fail("butcher",
-             "an exponential method has no [butcher] (its stages are exact solutions of the collision); give "
-             "[shu_osher]");
+    top.fail(
+        "butcher",
+        fmt::format("an {} method has no [butcher] (its stages are exact solutions of the collision); give "
+                    "[shu_osher]",
+                    to_string(kind)));
   if (top.has("embedded"))
     top.fail("embedded",
-             "an exponential method has no [embedded] (its error is not estimated); leave it out");
+             fmt::format("an {} method has no [embedded] (its error is not estimated); leave it out",
+                         to_string(kind)));
 }
 
 }  // namespace
@@ -269,7 +271,7 @@ method parse_any_method(std::string_view text, const std::string& file) {
   m.kind = read_kind(top);
   if (top.has("steps")) m.steps = top.integer("steps", 1, 2);
   m.claims = read_claims(root, file);
-  if (m.kind == method_kind::exponential) check_exponential(top);
+  if (solves_exactly(m.kind)) check_exact_collisions(top, m.kind);
   if (top.has("shu_osher") == top.has("butcher"))
     throw input_error(source_place{file, 1, 1},
                       "the coefficients are missing or given twice (a method has either [shu_osher] or "
@@ -297,16 +299,6 @@ method parse_method(std::string_view text, const std::string& file) {
         fmt::format("'{}' takes two steps (steps = 2), which needs equal steps and the integrator "
                     "apsis::two_step; choose a method of one step",
                     m.name));
-  return m;
-}
-
-method parse_two_step_method(std::string_view text, const std::string& file) {
-  method m = parse_any_method(text, file);
-  if (m.steps != 2)
-    throw input_error(source_place{file, 1, 1},
-                      fmt::format("'{}' takes one step (there is no steps = 2); choose a two-step method, or "
-                                  "integrate with apsis::stepper",
-                                  m.name));
   return m;
 }
 

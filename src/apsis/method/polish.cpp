@@ -206,11 +206,11 @@ mp_vector even_scales(const std::vector<mp_vector>& J, const mp_vector& right, m
 }  // namespace
 
 polish_result polish(const method& m, int digits, const polish_conditions& conditions) {
-  if (m.kind == method_kind::exponential)
+  if (solves_exactly(m.kind))
     throw input_error(
-        fmt::format("'{}' cannot be polished (it is exponential, and the conditions are those of "
+        fmt::format("'{}' cannot be polished (it is {}, and the conditions are those of "
                     "stages that are solved implicitly); choose an implicit or IMEX method",
-                    m.name));
+                    m.name, to_string(m.kind)));
   polish_result result{m, 0, 0, 0};
   coefficient_system equations(result.polished, conditions);
   const std::size_t n = equations.unknowns();

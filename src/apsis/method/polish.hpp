@@ -25,7 +25,7 @@ using polish_conditions = std::function<std::vector<mp_real>(const shu_osher_for
 /// without weight on u^n. Third-order IMEX conditions are singular at a solution, because together they imply
 /// Σ b̂_i (c_i − ĉ_i)² = 0 with b̂ ≥ 0; therefore c = ĉ is imposed at every stage whose T contributes, and
 /// dependent equations are dropped. Throws numerical_error if the iteration does not converge, input_error
-/// for exponential methods.
+/// for methods with exact collisions.
 polish_result polish(const method& m, int digits = 45, const polish_conditions& conditions = {});
 
 }  // namespace apsis

@@ -1,6 +1,6 @@
 #include <apsis/method/rate_errors.hpp>
 
-#include <apsis/method/two_step.hpp>
+#include <apsis/method/time_integrator.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +23,9 @@ double layer_error(double layer, double decay, double z) {
   return z < resolved ? 0.0 : layer / (1.0 - decay) - 1.0 / z;
 }
 
-/// Computes the errors of an exponential method: stage i multiplies the deviation of its explicit part by
-/// e^{−d_i z}, and that part deviates by Σ_j (p_ij + w_ij) κ_j + z Σ_j w_ij/r + r_i κ_s.
-rate_errors errors_of_exponential(const shu_osher_form<double>& m, double z) {
+/// Computes the errors of a method with exact collisions: stage i multiplies the deviation of its explicit
+/// part by e^{−d_i z}, and that part deviates by Σ_j (p_ij + w_ij) κ_j + z Σ_j w_ij/r + r_i κ_s.
+rate_errors errors_of_exact_collisions(const shu_osher_form<double>& m, double z) {
   const std::size_t s = m.stages();
   const auto initial = initial_weights(m);
   const auto A_hat = to_butcher(m).A_hat;
@@ -69,23 +69,12 @@ coefficients_of_s interpolate(const coefficients_of_s& nodes, coefficients_of_s 
 
 rate_errors rate_errors_at(const method& m, double z) {
   const auto form = m.coefficients<double>();
-  if (m.kind == method_kind::exponential) return errors_of_exponential(form, z);
+  if (solves_exactly(m.kind)) return errors_of_exact_collisions(form, z);
   const auto at = at_finite_rate(to_butcher(form), z);
   constexpr double infinite = std::numeric_limits<double>::infinity();
   if (m.kind == method_kind::explicit_only && !(std::abs(at.decay) < 1.0))
     return {infinite, infinite, infinite};
   return {at.flux - 1.0, at.last - 1.0, layer_error(at.layer, at.decay, z)};
-}
-
-rate_errors rate_errors_at(const multistep_method& m, double z) {
-  rate_errors errors = rate_errors_at(find_method(m.starter), z);
-  errors.flux = errors.last = 0.0;
-  if (m.rows) {
-    const auto at = two_step_at_finite_rate(m.rows->coefficients<double>(), z);
-    errors.flux = at.flux - 1.0;
-    errors.last = at.last - 1.0;
-  }
-  return errors;
 }
 
 double rate_response::largest(const std::array<double, terms>& c) {
@@ -123,9 +112,9 @@ std::optional<rate_response> find_rate_response(const method& m) {
 }
 
 std::optional<rate_response> find_rate_response(const std::string& name) {
-  if (!is_multistep_method(name)) return find_rate_response(find_method(name));
-  const multistep_method m = find_multistep_method(name);
-  return fit_rate_response([&m](double z) { return rate_errors_at(m, z); });
+  const time_integrator& m = find_integrator(name);
+  if (m.one_step() != nullptr) return find_rate_response(*m.one_step());
+  return fit_rate_response([&m](double z) { return m.errors_at(z); });
 }
 
 }  // namespace apsis

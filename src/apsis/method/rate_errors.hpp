@@ -1,12 +1,13 @@
 #pragma once
 
 #include <apsis/method/intermediate_regime.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/method.hpp>
 
 #include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace apsis {
 
@@ -17,13 +18,9 @@ struct rate_errors {
       layer = 0.0;    ///< λ(z)/(1 − R(−z)) − 1/z: of the time integral of the initial layer over D₀ Δt
 };
 
-/// Computes the errors of a method of one step at z > 0. Stages of exponential methods relax by e^{−d_i z}.
+/// Computes the errors of a method of one step at z > 0. Stages with exact collisions relax by e^{−d_i z}.
 /// Errors of explicit methods are infinite where z exceeds their stability limit.
 rate_errors rate_errors_at(const method& m, double z);
-
-/// Computes the errors of a multistep method at z > 0. Those of IMEX-BDF are 0 except in the layer, which its
-/// starter passes.
-rate_errors rate_errors_at(const multistep_method& m, double z);
 
 /// Errors of the O(ε) terms for every z, as polynomials of s = 1/(1 + z). Repeated implicit Euler solves
 /// multiply a deviation by s, so a combination of them applies such a polynomial at every point of space with
@@ -48,8 +45,8 @@ std::optional<rate_response> fit_rate_response(const std::function<rate_errors(d
 /// Returns the response of a method of one step; nothing for explicit and implicit-only methods.
 std::optional<rate_response> find_rate_response(const method& m);
 
-/// Returns the response of the method called `name`, of one or several steps; nothing for explicit and
-/// implicit-only methods. Throws like find_method().
+/// Returns the response of the integrator called `name`; nothing for explicit and implicit-only methods.
+/// Throws like find_integrator().
 std::optional<rate_response> find_rate_response(const std::string& name);
 
 }  // namespace apsis

@@ -19,7 +19,7 @@ struct point_batch {
 /// Result of point_collision::solve_stage().
 enum class stage_solution {
   implicit,  ///< v = u + a Q(v)/ε + b Q̇(v)/ε²
-  exact      ///< v(a) of v' = Q(v)/ε, v(0) = u, for exponential methods
+  exact      ///< v(a) of v' = Q(v)/ε, v(0) = u, for methods with exact collisions
 };
 
 /// Largest batch of a point_collision, and its error messages.

@@ -27,7 +27,7 @@ struct checkpoint {
       components = 0;                     ///< unknowns of a cell
   std::vector<double> state;              ///< [cells][components], or those of the part of this process
   std::vector<double> budget;             ///< of the last step at every surface; empty before the first
-  std::vector<earlier_value> earlier;     ///< that a multistep method needs
+  std::vector<earlier_value> earlier;     ///< that later steps need
   std::map<std::string, double> numbers;  ///< time, counters and totals, by name
   numeric_table history;                  ///< from the initial state to the last step
   field_series fields;                    ///< snapshots so far

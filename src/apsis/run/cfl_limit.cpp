@@ -1,6 +1,5 @@
 #include <apsis/run/cfl_limit.hpp>
 
-#include <apsis/method/amplification.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <algorithm>
@@ -133,20 +132,12 @@ std::vector<std::pair<std::string, double>> find_limits(const amplification& R) 
 
 }  // namespace
 
-double cfl_limit(const method& m, const reconstruction& scheme) {
-  return known_limit(amplification(m), linear_edge(scheme));
+double cfl_limit(const amplification& growth, const reconstruction& scheme) {
+  return known_limit(growth, linear_edge(scheme));
 }
 
-double cfl_limit(const multistep_method& m, const reconstruction& scheme) {
-  return known_limit(amplification(m), linear_edge(scheme));
-}
-
-std::vector<std::pair<std::string, double>> cfl_limits(const method& m) {
-  return find_limits(amplification(m));
-}
-
-std::vector<std::pair<std::string, double>> cfl_limits(const multistep_method& m) {
-  return find_limits(amplification(m));
+std::vector<std::pair<std::string, double>> cfl_limits(const amplification& growth) {
+  return find_limits(growth);
 }
 
 std::string cfl_text(const std::vector<std::pair<std::string, double>>& limits) {

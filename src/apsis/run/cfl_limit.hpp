@@ -1,7 +1,6 @@
 #pragma once
 
-#include <apsis/method/method.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/amplification.hpp>
 #include <apsis/scheme/reconstruction.hpp>
 
 #include <complex>
@@ -23,19 +22,15 @@ std::vector<double> linear_edge(const reconstruction& scheme);
 /// Δx λ(θ)/v of the upwind difference −v (û_{i+1/2} − û_{i−1/2})/Δx, v > 0, on waves exp(iθx/Δx).
 std::complex<double> transport_symbol(const std::vector<double>& edge, double theta);
 
-/// Returns the linear stability limit of a method with a reconstruction, in a CFL number: the largest ν up to
-/// which no periodic wave of u_t + v u_x = −u/ε, Δt = νΔx/|v|, grows by more than growth_per_cell, for every
-/// wavenumber and every Δt/ε in [0, ∞]; with Δt/ε = 0 alone for explicit methods. In several directions ν is
-/// Σ_k |v_k| Δt/Δx_k: transport_symbol() encloses a convex region, and the maximum of |R(z, w)| over it lies
-/// on its boundary. Infinite without transport, and above 100.
-double cfl_limit(const method& m, const reconstruction& scheme);
-/// The same of a method of several steps.
-double cfl_limit(const multistep_method& m, const reconstruction& scheme);
+/// Returns the linear stability limit of an integrator with a reconstruction, in a CFL number: the largest ν
+/// up to which no periodic wave of u_t + v u_x = −u/ε, Δt = νΔx/|v|, grows by more than growth_per_cell, for
+/// every wavenumber and every Δt/ε in [0, ∞]; with Δt/ε = 0 alone for explicit methods. In several directions
+/// ν is Σ_k |v_k| Δt/Δx_k: transport_symbol() encloses a convex region, and the maximum of |R(z, w)| over it
+/// lies on its boundary. Infinite without transport, and above 100.
+double cfl_limit(const amplification& growth, const reconstruction& scheme);
 
 /// Returns the limits with all reconstructions, by name.
-std::vector<std::pair<std::string, double>> cfl_limits(const method& m);
-/// The same of a method of several steps.
-std::vector<std::pair<std::string, double>> cfl_limits(const multistep_method& m);
+std::vector<std::pair<std::string, double>> cfl_limits(const amplification& growth);
 
 /// Returns "name limit" of cfl_limits(), reconstructions with equal limits joined: "1 with upwind1, …".
 std::string cfl_text(const std::vector<std::pair<std::string, double>>& limits);

@@ -4,7 +4,6 @@
 #include <apsis/exec/memory.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/mesh/field.hpp>
-#include <apsis/run/multistep_stepper.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,13 +17,12 @@ namespace {
 constexpr int fewest_points = 4;  ///< of velocity.points
 
 int buffers_of(const run_setup& setup) {
-  const method& m = setup.integrator();
+  const method& m = setup.integrator().starter();
   const bool compares = setup.has_tolerance() && m.embedded.has_value();
   // A doubled step keeps the results of the single step and of the first half.
   const int of_doubling = setup.has_tolerance() && !compares ? 2 : 0;
-  const int of_step = setup.multistep() ? buffers_of(*setup.multistep())
-                      : compares ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
-                                 : schedule(m.coefficients<double>()).buffers() + of_doubling;
+  const int of_step = compares ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
+                               : apsis::buffers_of(setup.integrator()) + of_doubling;
   const int compared = setup.config().time.steady ? 1 : 0;
   const int changes = setup.builder().collides_at_centres() ? 1 : 0;
   return compared + changes + of_step;
@@ -70,7 +68,7 @@ memory_need::memory_need(const run_setup& setup, int copies)
     : components_(setup.equation->components()),
       velocity_dimensions_(setup.equation->velocities().dimensions()),
       buffers_(buffers_of(setup)),
-      copies_(copies * (setup.multistep() ? setup.multistep()->steps : 1)),  // with earlier values
+      copies_(copies * setup.integrator().steps),  // with earlier values
       method_(setup.integrator_name()) {
   const case_config& config = setup.config();
   const auto& output = config.output;

@@ -214,7 +214,7 @@ run_state to_run_state(const checkpoint& c) {
   saved.budget = c.budget;
   for (const earlier_value& value : c.earlier) saved.kept.push_back({value.state, value.budget});
   if (c.numbers.contains("control.proposed")) saved.control.emplace();  // of a run with a tolerance
-  if (c.numbers.contains("multistep.known")) saved.multistep.emplace();
+  if (c.numbers.contains(std::string(history_group) + ".known")) saved.history.emplace();
   run_state::visit_records(saved, [&c](const char* group, auto& record) {
     record.visit_members(record, number_reader{group, c});
   });

@@ -1,5 +1,6 @@
 #include <apsis/run/rounding.hpp>
 
+#include <apsis/method/linear_formula.hpp>
 #include <apsis/run/setup.hpp>
 
 #include <algorithm>
@@ -48,13 +49,10 @@ rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equatio
 }
 
 rounding_bound rounding_of(const run_setup& setup) {
-  const rounding_bound of_first_steps =
-      rounding_of(setup.integrator().coefficients<double>(), *setup.equation);
-  const auto& multistep = setup.multistep();
-  if (!multistep) return of_first_steps;
-  const rounding_bound later = rounding_of(multistep->form, *setup.equation);
-  return {later.of_sums,
-          error_amplification(multistep->weights) * std::max(of_first_steps.of_step, later.of_step)};
+  const time_integrator& m = setup.integrator();
+  const rounding_bound of_first_steps = rounding_of(m.starter().coefficients<double>(), *setup.equation),
+                       later = rounding_of(m.form, *setup.equation);
+  return {later.of_sums, error_amplification(m.weights) * std::max(of_first_steps.of_step, later.of_step)};
 }
 
 }  // namespace apsis

@@ -22,8 +22,8 @@ rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equatio
 
 class run_setup;
 
-/// Returns the bound for a step of the method of a run. In a multistep method, errors of earlier steps enter
-/// later changes: of_step is multiplied by error_amplification().
+/// Returns the bound for a step of the integrator of a run. Errors of earlier steps may enter later
+/// changes: of_step is multiplied by error_amplification().
 rounding_bound rounding_of(const run_setup& setup);
 
 }  // namespace apsis

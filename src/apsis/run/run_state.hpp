@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/integrate/equal_steps.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/integrate.hpp>
 
@@ -122,24 +123,14 @@ struct run_summary {
   }
 };
 
-/// Position in the history of a multistep method (multistep_stepper).
-struct multistep_progress {
-  double dt = 0.0;  ///< length of its steps
-  long known = 0;   ///< number of values in it
-
-  /// Calls visit(name, member) for every member of `self`.
-  template <class Self, class Visitor>
-  static void visit_members(Self& self, Visitor&& visit) {
-    visit("dt", self.dt);
-    visit("known", self.known);
-  }
-};
-
-/// A value that a multistep method needs in addition to u.
+/// A value that an integrator needs in addition to u.
 struct kept_value {
   std::vector<double> unknowns,  ///< [cells][components]
       budget;                    ///< of the whole mesh: boundary_budget
 };
+
+/// Group of the position in the history in a checkpoint.
+inline constexpr const char* history_group = "multistep";
 
 /// A run between two steps: what a checkpoint saves and a restart continues from. A number that is added to
 /// one of the records, and to its visit_members(), is saved, restored, reported in the manifest and, of
@@ -148,12 +139,12 @@ struct run_state {
   std::vector<double> unknowns;                              ///< [cells][components]
   time_marcher<double>::progress march;                      ///< position in time
   std::optional<step_controller<double>::progress> control;  ///< step control; nothing without tolerance
-  std::optional<multistep_progress> multistep;               ///< nothing for methods of one step
+  std::optional<history_position<double>> history;           ///< nothing if steps need u alone
   run_summary totals;                                        ///< of all steps so far
   step_record initial,                                       ///< record of the initial state
       last;                                                  ///< record of the last step
   std::vector<double> budget = {};    ///< boundary_budget of the last step; empty before the first one
-  std::vector<kept_value> kept = {};  ///< of a multistep method
+  std::vector<kept_value> kept = {};  ///< of earlier steps
 
   /// Calls visit(group, record) for every record of numbers that a checkpoint keeps: those of steps are rows
   /// of the history.
@@ -161,7 +152,7 @@ struct run_state {
   static void visit_records(Self& self, Visitor&& visit) {
     visit("march", self.march);
     if (self.control) visit("control", *self.control);
-    if (self.multistep) visit("multistep", *self.multistep);
+    if (self.history) visit(history_group, *self.history);
     visit("totals", self.totals);
   }
 };

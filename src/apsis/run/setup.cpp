@@ -12,8 +12,6 @@
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/interruption.hpp>
-#include <apsis/integrate/schedule.hpp>
-#include <apsis/method/convexity.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/run/cfl_limit.hpp>
 #include <apsis/run/initial_file.hpp>
@@ -75,18 +73,11 @@ void at_key(const case_config& config, const std::string& key, const Body& body)
   }
 }
 
-/// Whether a method evaluates Q(u)/epsilon at stages.
-bool evaluates_collisions(const method& m) {
-  return schedule(m.coefficients<double>()).collision_evaluations() > 0;
-}
-
 }  // namespace
 
 run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> processes)
     : equation(make_model(config)), config_(with_chosen_method(config)), builder_(*equation) {
-  const std::string& name = config_.time.method;
-  if (is_multistep_method(name)) multistep_ = find_multistep_method(name);
-  method_ = &find_method(multistep_ ? multistep_->starter : name);
+  integrator_ = &find_integrator(config_.time.method);
   set_stability_limit();
   check_method();
   if (has_space())
@@ -95,9 +86,9 @@ run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> pr
     builder_.shared_by(std::move(processes));
   set_epsilon();
   set_prescribed_data();
-  if (ssp_coefficient_ == 0.0 || evaluates_collisions(*method_)) builder_.with_smooth_collisions();
-  if (method_->kind == method_kind::explicit_only) builder_.with_explicit_collision();
-  if (method_->kind == method_kind::exponential) builder_.with_exact_collision();
+  if (ssp_coefficient() == 0.0 || integrator_->needs.explicit_collision) builder_.with_smooth_collisions();
+  if (integrator_->starter().kind == method_kind::explicit_only) builder_.with_explicit_collision();
+  if (integrator_->needs.exact_collision) builder_.with_exact_collision();
 }
 
 void run_setup::build_space(std::shared_ptr<communicator> processes) {
@@ -132,20 +123,17 @@ void run_setup::set_epsilon() {
 
 void run_setup::check_method() {
   const bool transports = has_space() || equation->has_source();
-  if (method_->kind == method_kind::implicit_only && transports)
+  const method& first = integrator_->starter();
+  if (first.kind == method_kind::implicit_only && transports)
     refuse(config_, "time.method",
            fmt::format("method '{}' cannot integrate model '{}' (it is implicit only and the model has "
                        "transport); choose an IMEX or explicit method",
-                       method_->name, config_.model.name));
-  if (method_->kind == method_kind::exponential && !equation->knows_collision())
-    refuse(
-        config_, "time.method",
-        fmt::format("method '{}' cannot integrate model '{}' (it is exponential, and collisions of the model "
-                    "have no solution in closed form); choose an IMEX method",
-                    method_->name, config_.model.name));
-  const auto form = method_->coefficients<double>();
-  ssp_coefficient_ = is_convex(form, method_->kind, form.stages()) ? form.r : 0.0;
-  if (multistep_) ssp_coefficient_ = multistep_->ssp_coefficient;
+                       first.name, config_.model.name));
+  if (integrator_->needs.exact_collision && !equation->knows_collision())
+    refuse(config_, "time.method",
+           fmt::format("method '{}' cannot integrate model '{}' (it is {}, and collisions of the model "
+                       "have no solution in closed form); choose an IMEX method",
+                       first.name, config_.model.name, to_string(first.kind)));
   if (config_.time.safety && step_coefficient() == 0.0)
     refuse(config_, "time.safety",
            fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give time.dt "
@@ -159,14 +147,14 @@ void run_setup::set_stability_limit() {
   const reconstruction_entry* scheme = find_reconstruction(config_.space.reconstruction);
   if (!has_space() || scheme == nullptr) return;  // an unknown one is refused later
   const auto reconstruct = scheme->make();
-  stability_limit_ = multistep_ ? cfl_limit(*multistep_, *reconstruct) : cfl_limit(*method_, *reconstruct);
+  stability_limit_ = cfl_limit(integrator_->growth(), *reconstruct);
 }
 
 double run_setup::step_coefficient() const {
-  if (!has_space() || config_.space.limiter == limiter_choice::positivity) return ssp_coefficient_;
+  if (!has_space() || config_.space.limiter == limiter_choice::positivity) return ssp_coefficient();
   const bool known = std::isfinite(stability_limit_);
-  if (ssp_coefficient_ == 0.0) return known ? stability_limit_ : 0.0;
-  return std::min(ssp_coefficient_, stability_limit_);
+  if (ssp_coefficient() == 0.0) return known ? stability_limit_ : 0.0;
+  return std::min(ssp_coefficient(), stability_limit_);
 }
 
 void run_setup::check_startup() const {
@@ -177,12 +165,13 @@ void run_setup::check_startup() const {
              "or remove it");
     return;
   }
-  if (method_->kind == method_kind::explicit_only)
+  const method& first = integrator_->starter();
+  if (first.kind == method_kind::explicit_only)
     refuse(
         config_, "time.startup",
         fmt::format("time.startup = \"graded\" has no meaning for method '{}' (it is explicit: steps that do "
                     "not resolve the layer are unstable later too); remove it or choose an IMEX method",
-                    method_->name));
+                    first.name));
   if (!equation->has_relaxation_time())
     refuse(config_, "time.startup",
            fmt::format("time.startup = \"graded\" has no meaning for model '{}' (its relaxation time is not "
@@ -192,12 +181,12 @@ void run_setup::check_startup() const {
 
 void run_setup::check_tolerance() const {
   if (!has_tolerance()) return;
-  if (multistep_)
+  if (integrator_->needs.equal_steps)
     refuse(
         config_, "time.tolerance",
         fmt::format("time.tolerance cannot be kept: method '{}' needs equal steps (its coefficients depend "
                     "on earlier steps); give time.dt or time.cfl, or choose a method of one step",
-                    multistep_->name));
+                    integrator_name()));
   // The estimate is a difference of two numbers of double precision, relative to them.
   constexpr double finest = 64.0 * std::numeric_limits<double>::epsilon();
   if (*config_.time.tolerance < finest)
@@ -243,13 +232,9 @@ std::optional<std::vector<double>> run_setup::entropy_bounds() const {
   return all;
 }
 
-std::size_t run_setup::stages() const {
-  return multistep_ ? multistep_->stages : method_->stages();
-}
-
 std::size_t run_setup::stages_of_step() const {
   if (!has_tolerance()) return stages();
-  return method_->embedded ? stages() + 1 : 3 * stages();
+  return integrator_->starter().embedded ? stages() + 1 : 3 * stages();
 }
 
 std::unique_ptr<semidiscrete_problem> run_setup::make_problem() const {
@@ -408,9 +393,9 @@ double run_setup::equilibrium_defect(const field& u) const {
 
 void run_setup::decide_promises(run_promises& promises, double dt, double limit, bool nonnegative,
                                 bool exact_equilibrium) const {
-  const bool within = ssp_coefficient_ > 0.0 && dt <= limit;
+  const bool within = ssp_coefficient() > 0.0 && dt <= limit;
   // An explicit Q/epsilon beyond its step limit amplifies its rounding in the invariants by dt/epsilon.
-  const bool explicit_collision = evaluates_collisions(*method_);
+  const bool explicit_collision = integrator_->needs.explicit_collision;
   promises.conservation =
       exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
   // Stage solves keep the sign of every row; an explicit Q only where the target is an equilibrium, E ≥ 0,

@@ -2,8 +2,7 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/core/construction_count.hpp>
-#include <apsis/method/method.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/time_integrator.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/velocity_support.hpp>
 #include <apsis/run/simulation.hpp>
@@ -29,19 +28,16 @@ class run_setup : public construction_count<run_setup> {
 
   /// Returns the case.
   const case_config& config() const { return config_; }
-  /// Returns the method time.method, of the catalogue or from a file; the starter if that is a multistep
-  /// method.
-  const method& integrator() const { return *method_; }
-  /// Returns time.method if it is a multistep method.
-  const std::optional<multistep_method>& multistep() const { return multistep_; }
-  /// Returns the name of time.method.
-  const std::string& integrator_name() const { return multistep_ ? multistep_->name : method_->name; }
+  /// Returns time.method.
+  const time_integrator& integrator() const { return *integrator_; }
+  /// Returns its name.
+  const std::string& integrator_name() const { return integrator_->name; }
   /// Returns the number of stages of a step.
-  std::size_t stages() const;
+  std::size_t stages() const { return integrator_->stages; }
   /// Returns the number of stages that a step computes, those of its estimated error included.
   std::size_t stages_of_step() const;
   /// Returns the SSP coefficient r; 0 if the method has none.
-  double ssp_coefficient() const { return ssp_coefficient_; }
+  double ssp_coefficient() const { return integrator_->ssp_coefficient; }
   /// Returns the linear stability limit of time.method with space.reconstruction, in a CFL number; infinite
   /// without space.
   double stability_limit() const { return stability_limit_; }
@@ -126,9 +122,8 @@ class run_setup : public construction_count<run_setup> {
   case_config config_;
   problem_builder builder_;
   initial_data prescribed_;  ///< of the table [initial]
-  const method* method_ = nullptr;
-  std::optional<multistep_method> multistep_;
-  double ssp_coefficient_ = 0.0, stability_limit_ = std::numeric_limits<double>::infinity();
+  const time_integrator* integrator_ = nullptr;
+  double stability_limit_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace apsis

@@ -5,6 +5,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/thread_clock.hpp>
+#include <apsis/integrate/any_stepper.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/tolerance_forecast.hpp>
 #include <apsis/run/find_fields.hpp>
@@ -13,7 +14,6 @@
 #include <apsis/run/loss_watch.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/monitor.hpp>
-#include <apsis/run/multistep_stepper.hpp>
 #include <apsis/run/promises.hpp>
 #include <apsis/run/ray_warning.hpp>
 #include <apsis/run/rounding.hpp>
@@ -61,17 +61,19 @@ struct simulation::impl {
         config(setup.config()),
         problem(problem_of(setup)),
         budgeted(*problem),
-        integrator(setup.integrator(), budgeted,
-                   setup.has_tolerance() ? solutions::result_and_embedded : solutions::result),
+        integrator(make_stepper(setup.integrator(), budgeted,
+                                setup.has_tolerance() ? solutions::result_and_embedded : solutions::result)),
         watch(setup),
         stability(setup),
         rounding(rounding_of(setup)),
         now{start ? start(setup) : setup.initial_state(), {}},
         march(times_of(setup)),
-        estimate(integrator.weight_of_estimate(), integrator.resolves_collisions()),
         losses(setup, *problem) {
-    if (setup.multistep()) multistep = make_multistep_stepper(*setup.multistep(), budgeted);
-    if (setup.has_tolerance()) control.emplace(*config.time.tolerance, estimate_of(setup.integrator()).order);
+    if (setup.has_tolerance()) {
+      const auto& of_one_step = *integrator->one_step();  // others were refused by the setup
+      control.emplace(*config.time.tolerance, estimate_of(setup.integrator().starter()).order);
+      estimate.emplace(of_one_step.weight_of_estimate(), of_one_step.resolves_collisions());
+    }
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
@@ -115,10 +117,10 @@ struct simulation::impl {
   }
 
   void warn_of_tolerance(double longest) {
-    if (setup.integrator().kind == method_kind::explicit_only) return;  // resolves the relaxation, or fails
-    const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().coefficients<double>()));
-    expected = forecast_tolerance(integrator, march.t(), now, config.time.end, longest, control->target(),
-                                  bounds, distance());
+    if (setup.integrator().starter().kind == method_kind::explicit_only) return;  // resolves the relaxation
+    const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().form));
+    expected = forecast_tolerance(*integrator->one_step(), march.t(), now, config.time.end, longest,
+                                  control->target(), bounds, distance());
     warn_of_plateau(setup, *expected, problem->relaxation_time(march.t(), state));
   }
 
@@ -130,9 +132,10 @@ struct simulation::impl {
   /// Methods of types ARS and CK begin with T(u) of data off equilibrium. They keep an error of
   /// Δt (T(u) − T(E(ℛu))) from an initial layer that the first step dt skips, and so do their estimates.
   void warn_of_layer(double dt) {
-    const auto form = setup.integrator().coefficients<double>();
+    const auto& form = setup.integrator().form;
     const bool solves_first = form.D(0, 0) != 0.0 || form.ddot[0] != 0.0;
-    if (solves_first || setup.integrator().kind != method_kind::imex || setup.has_graded_start()) return;
+    const bool is_imex = setup.integrator().starter().kind == method_kind::imex;
+    if (solves_first || !is_imex || setup.has_graded_start()) return;
     const double relaxation = problem->relaxation_time(march.t(), state);
     if (!(dt > relaxation)) return;
     field equilibrium = state, left = state;
@@ -175,21 +178,18 @@ struct simulation::impl {
     begin_budget();
     if (config.time.steady) before = state;
     if (control)
-      return step_within_tolerance(integrator, march, *control, estimate, limit(), now, distance());
+      return step_within_tolerance(*integrator->one_step(), march, *control, *estimate, limit(), now,
+                                   distance());
     const double dt = next_dt();
-    if (multistep)
-      multistep->step(march, dt, now);
-    else
-      integrator.step(march.t(), dt, now);
+    integrator->step(march, dt, now);
     return dt;
   }
 
   /// A budget counts from the beginning of a step. Those of kept values, which are sums of earlier u, are
   /// shifted by what u received in the last step.
   void begin_budget() {
-    if (multistep)
-      multistep->visit_kept(
-          [this](budgeted_state& kept, double weight) { kept.budget.add(-weight, now.budget.amounts()); });
+    integrator->visit_kept(
+        [this](budgeted_state& kept, double weight) { kept.budget.add(-weight, now.budget.amounts()); });
     now.budget.clear();
   }
 
@@ -235,8 +235,7 @@ struct simulation::impl {
   const case_config& config;
   std::unique_ptr<semidiscrete_problem> problem;
   budgeted_problem budgeted;  ///< the problem with the budget of its surfaces
-  stepper<budgeted_problem> integrator;
-  std::unique_ptr<multistep_stepper> multistep;  ///< instead of the integrator, its starter
+  std::unique_ptr<any_stepper<budgeted_problem>> integrator;
   monitor watch;
   stability_watch stability;
   rounding_bound rounding;
@@ -246,7 +245,7 @@ struct simulation::impl {
   std::vector<double> budget;  ///< of the last step
   time_marcher<double> march;
   std::optional<step_controller<double>> control;
-  error_estimate<budgeted_problem> estimate;
+  std::optional<error_estimate<budgeted_problem>> estimate;  ///< with a tolerance
   std::optional<tolerance_forecast<double>> expected;
   loss_watch losses;
   run_promises promises;
@@ -455,13 +454,10 @@ run_state simulation::save() const {
   saved.unknowns = state();
   saved.march = impl_->march.save();
   if (impl_->control) saved.control = impl_->control->save();
-  if (impl_->multistep) {
-    saved.multistep = impl_->multistep->save();
-    impl_->multistep->visit_kept([&](const budgeted_state& kept, double) {
-      saved.kept.push_back(
-          {without_padding(kept.unknowns), whole_budget(impl_->setup, kept.budget.amounts())});
-    });
-  }
+  saved.history = impl_->integrator->save();
+  impl_->integrator->visit_kept([&](const budgeted_state& kept, double) {
+    saved.kept.push_back({without_padding(kept.unknowns), whole_budget(impl_->setup, kept.budget.amounts())});
+  });
   saved.totals = summary();
   // Times that every process measures are those of the root.
   std::array<double, 2> seconds = {saved.totals.wall_s, saved.totals.cpu_s};
@@ -483,10 +479,10 @@ void simulation::restore(const run_state& saved) {
   // Before the first step the marcher is that of the case.
   if (saved.march.step > 0) impl_->march.resume(saved.march);
   if (impl_->control && saved.control) impl_->control->resume(*saved.control);
-  if (impl_->multistep && saved.multistep) {
-    impl_->multistep->resume(*saved.multistep, impl_->now);
+  if (saved.history) {
+    impl_->integrator->restore(*saved.history, impl_->now);
     std::size_t k = 0;
-    impl_->multistep->visit_kept([&](budgeted_state& kept, double) {
+    impl_->integrator->visit_kept([&](budgeted_state& kept, double) {
       if (k == saved.kept.size())
         throw io_error(
             "the checkpoint lacks values of earlier steps (damaged file); give another checkpoint");

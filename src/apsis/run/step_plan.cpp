@@ -37,14 +37,14 @@ time_marcher<double> times_of(const run_setup& setup) {
 }
 
 void warn_of_stiff_collision(const run_setup& setup, double relaxation, double dt) {
-  if (setup.integrator().kind != method_kind::explicit_only) return;
+  if (setup.integrator().starter().kind != method_kind::explicit_only) return;
   const double end = setup.config().time.end, steps = end / std::min(relaxation, dt);
   if (steps > 1e8)
     log::warning(fmt::format(
         "method '{}' is explicit and stable in steps of about epsilon/C = {:.1g} only, about {:.1g} of them "
         "to time.end = {:g} (the collision is stiff); choose an IMEX method such as md-imex-8-3-mixed",
         setup.integrator().name, relaxation, steps, end));
-  else if (!setup.has_tolerance() && !std::isfinite(rate_errors_at(setup.integrator(), dt / relaxation).flux))
+  else if (!setup.has_tolerance() && !std::isfinite(setup.integrator().errors_at(dt / relaxation).flux))
     log::warning(fmt::format(
         "method '{}' is explicit and unstable in steps of {:.2g} (they are {:.2g} times as long as the "
         "relaxation time epsilon/C); choose an IMEX method such as md-imex-8-3-mixed, or give time.dt below "
@@ -64,7 +64,8 @@ void warn_of_fast_source(double growth, double dt) {
 
 void warn_of_dense_stages(const run_setup& setup) {
   const int n = setup.equation->newton_unknowns();
-  if (n <= static_cast<int>(most_unknowns_of_newton) || setup.integrator().kind == method_kind::explicit_only)
+  if (n <= static_cast<int>(most_unknowns_of_newton) ||
+      setup.integrator().starter().kind == method_kind::explicit_only)
     return;
   log::warning(
       fmt::format("a collision has {} unknowns, and each Newton step of a stage takes about n^3 = {:.0e} "
@@ -88,7 +89,7 @@ std::string text_of_layer(const run_setup& setup, double dt, double error) {
 void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation) {
   const double tolerance = *setup.config().time.tolerance;
   if (!(expected.error > tolerance)) return;
-  const bool right_terms = setup.integrator().claims.intermediate == "all";
+  const bool right_terms = setup.integrator().starter().claims.intermediate == "all";
   log::warning(fmt::format(
       "time.tolerance = {:g} is below what method '{}' keeps in steps of about {:.1g} (its terms of size "
       "epsilon leave a relative error of up to about {:.1g}); {}give time.dt below {:.1g} to resolve the "

@@ -67,8 +67,8 @@ class problem_builder {
   problem_builder& with_smooth_collisions();
   /// For methods that treat T and Q explicitly: forward_euler_step() is then that of T + Q/ε.
   problem_builder& with_explicit_collision();
-  /// For exponential methods: stage solves of the problem are exact solutions of the collision. Throws
-  /// input_error if the model does not know them.
+  /// For methods with exact collisions: stage solves of the problem are exact solutions of the collision.
+  /// Throws input_error if the model does not know them.
   problem_builder& with_exact_collision();
   /// Undoes with_exact_collision().
   problem_builder& with_implicit_collision();

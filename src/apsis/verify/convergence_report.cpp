@@ -1,7 +1,6 @@
 #include <apsis/verify/convergence_report.hpp>
 
-#include <apsis/method/method.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/time_integrator.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/verify/settings.hpp>
 
@@ -119,7 +118,7 @@ panel panel_of(const convergence_table& table, int key, const std::string& value
     for (const auto& row : block.rows) {
       c.x.push_back(row.h);
       c.y.push_back(row.error);
-      orders.insert(order_of_method(row.config.time.method));
+      orders.insert(find_integrator(row.config.time.method).order);
     }
     axes.curves.push_back(std::move(c));
   }

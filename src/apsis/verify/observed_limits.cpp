@@ -2,6 +2,7 @@
 
 #include <apsis/core/extremes.hpp>
 #include <apsis/integrate/newton_problem.hpp>
+#include <apsis/method/time_integrator.hpp>
 #include <apsis/verify/adversaries.hpp>
 #include <apsis/verify/case_problem.hpp>
 #include <apsis/verify/model_properties.hpp>
@@ -87,8 +88,8 @@ experiment permutations(const method& m, const std::vector<double>& epsilons) {
 }
 
 /// A small case uses a method of the catalogue; any other one of the same kind sets up the same operators.
-const char* stand_in(method_kind kind) {
-  if (kind == method_kind::exponential) return "exponential-2";
+std::string stand_in(method_kind kind) {
+  if (solves_exactly(kind)) return integrator_names(to_string(kind)).front();
   return kind == method_kind::explicit_only ? "ssprk-2-2" : "forward-backward-euler";
 }
 
@@ -143,7 +144,7 @@ std::vector<experiment> experiments_for(const method& m) {
       permutations(m, staged)};
   for (const auto& model : all_models()) {
     if (!has_space(*model.entry)) continue;
-    if (m.kind == method_kind::exponential && !model.equation->knows_collision()) continue;
+    if (solves_exactly(m.kind) && !model.equation->knows_collision()) continue;
     if (model.equation->collisions_decrease_entropy()) all.push_back(entropy(m, model.entry->name, stiff));
     if (model.equation->collisions_keep_sign())
       for (const char* form : {"finite-volume", "finite-difference"})

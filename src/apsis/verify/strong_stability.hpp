@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/exponential.hpp>
+#include <apsis/integrate/exact_collisions.hpp>
 #include <apsis/integrate/stepper.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/verify/step_search.hpp>
@@ -52,7 +52,7 @@ kept_property<State> stays_inside(std::string name, std::function<double(const S
 /// otherwise the classical radius in forward Euler steps of Q.
 double promised_coefficient(const certificate& c);
 
-/// A problem with observed stages: `look(u)` is called with every stage value. For exponential methods,
+/// A problem with observed stages: `look(u)` is called with every stage value. With exact collisions,
 /// collisions are exact if they are known.
 template <problem P>
 class watched_problem {
@@ -65,7 +65,7 @@ class watched_problem {
   /// `inner` must outlive this; `kind` is that of the method.
   watched_problem(P& inner, method_kind kind, std::function<void(const state&)> look)
       : inner_(inner),
-        exact_(problem_with_known_collision<P> && kind == method_kind::exponential),
+        exact_(problem_with_known_collision<P> && solves_exactly(kind)),
         look_(std::move(look)) {}
 
   /// Forwards to the problem; observes u if T(u) is evaluated.

@@ -3,8 +3,7 @@
 #include <apsis/config/case_text.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
-#include <apsis/method/method.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/time_integrator.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -133,7 +132,7 @@ convergence_reference parse_reference(const std::string& text) {
     if (text == word) return {how, {}};
   const auto at = text.find('@'), equals = text.find('=');
   if (at != std::string::npos && equals == std::string::npos) {
-    static_cast<void>(order_of_method(text.substr(0, at)));
+    static_cast<void>(find_integrator(text.substr(0, at)));
     return {kind::given, {"time.method=" + text.substr(0, at), "time.dt=" + text.substr(at + 1)}};
   }
   if (equals != std::string::npos) return {kind::given, split(text)};

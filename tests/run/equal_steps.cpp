@@ -5,9 +5,8 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
-#include <apsis/integrate/multistep_formula.hpp>
-#include <apsis/method/multistep.hpp>
-#include <apsis/method/two_step.hpp>
+#include <apsis/integrate/any_stepper.hpp>
+#include <apsis/method/time_integrator.hpp>
 #include <apsis/run/session.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
@@ -22,7 +21,7 @@
 #include <gtest/gtest.h>
 #include <support/folder.hpp>
 
-namespace multistep_run_test {
+namespace equal_steps_test {
 
 namespace {
 
@@ -42,8 +41,8 @@ case_config decay(const std::string& method, long steps) {
 
 }  // namespace
 
-TEST(multistep_run, has_the_bits_of_integrate) {
-  for (const auto& name : multistep_method_names()) {
+TEST(equal_steps, has_the_bits_of_integrate) {
+  for (const auto& name : names_of_several_steps()) {
     for (const std::string start : {"", "startup = \"graded\"\n"}) {
       const case_config c = gas(name, "dt = 0.002\nend = 0.04\n" + start);
       const run_setup setup(c);
@@ -51,8 +50,8 @@ TEST(multistep_run, has_the_bits_of_integrate) {
       field u = setup.initial_state();
       auto rule = step_rule<double>::fixed(0.002);
       if (!start.empty()) rule.start = startup::graded;
-      with_multistep_formula(find_multistep_method(name), *problem,
-                             [&](auto march) { integrate(march, u, 0.0, 0.04, rule); });
+      with_stepper(find_integrator(name), *problem,
+                   [&](auto march) { integrate(march, u, 0.0, 0.04, rule); });
       const std::vector<double> found = end_of(c);
       std::size_t different = 0;
       auto next = found.begin();
@@ -63,10 +62,10 @@ TEST(multistep_run, has_the_bits_of_integrate) {
   }
 }
 
-TEST(multistep_run, observed_order_is_the_claimed_one) {
+TEST(equal_steps, observed_order_is_the_claimed_one) {
   const auto exact = end_of(decay("extrapolated-euler-8", 512));
-  for (const auto& name : multistep_method_names()) {
-    const int order = find_multistep_method(name).order;
+  for (const auto& name : names_of_several_steps()) {
+    const int order = find_integrator(name).order;
     // Coarse enough that errors stay above the rounding, fine enough for the first term to lead.
     const long steps = order <= 3 ? 640 : 160;
     const double coarse = distance(end_of(decay(name, steps)), exact),
@@ -75,7 +74,7 @@ TEST(multistep_run, observed_order_is_the_claimed_one) {
   }
 }
 
-TEST(multistep_run, continues_bit_for_bit_from_every_step) {
+TEST(equal_steps, continues_bit_for_bit_from_every_step) {
   const test_folder folder;
   for (const std::string name : {"imex-bdf-1", "imex-bdf-3", "imex-bdf-4", "two-step-10-3-mixed"}) {
     const case_config c =
@@ -101,7 +100,7 @@ TEST(multistep_run, continues_bit_for_bit_from_every_step) {
   }
 }
 
-TEST(multistep_run, a_checkpoint_without_the_earlier_values_is_refused) {
+TEST(equal_steps, a_checkpoint_without_the_earlier_values_is_refused) {
   simulation run(gas("imex-bdf-3", "dt = 0.002\nend = 0.02\n"));
   for (int n = 0; n < 6; ++n) run.advance();
   run_state saved = run.save();
@@ -116,8 +115,8 @@ TEST(multistep_run, a_checkpoint_without_the_earlier_values_is_refused) {
               testing::ThrowsMessage<io_error>(HasSubstr("lacks values of earlier steps")));
 }
 
-TEST(multistep_run, conserves_what_does_not_cross_the_walls_to_rounding) {
-  for (const auto& name : multistep_method_names()) {
+TEST(equal_steps, conserves_what_does_not_cross_the_walls_to_rounding) {
+  for (const auto& name : names_of_several_steps()) {
     simulation run(gas(name, "dt = 0.002\nend = 0.2\n"));
     ASSERT_TRUE(run.promises().conservation) << name;
     while (!run.finished()) run.advance();
@@ -129,14 +128,14 @@ TEST(multistep_run, conserves_what_does_not_cross_the_walls_to_rounding) {
   }
 }
 
-TEST(multistep_run, begins_again_where_the_length_of_steps_changes) {
+TEST(equal_steps, begins_again_where_the_length_of_steps_changes) {
   for (const std::string name : {"imex-bdf-3", "two-step-8-3-narrow"}) {
     testing::internal::CaptureStderr();
     const auto uneven = end_of(gas(name, "cfl = 0.1\nend = 0.05\n", "[output]\nevery = 0.0131\n"));
     EXPECT_THAT(testing::internal::GetCapturedStderr(),
                 HasSubstr(fmt::format("'{}' begins again there with {} of '{}'", name,
                                       name == "imex-bdf-3" ? "2 steps" : "1 step",
-                                      find_multistep_method(name).starter)));
+                                      find_integrator(name).starter().name)));
     testing::internal::CaptureStderr();
     const auto even = end_of(gas(name, "cfl = 0.1\nend = 0.05\n"));
     // The last step, which ends at time.end, is shorter too, but nothing comes after it.
@@ -146,8 +145,8 @@ TEST(multistep_run, begins_again_where_the_length_of_steps_changes) {
   }
 }
 
-TEST(multistep_run, two_step_methods_promise_positivity_within_their_steps_and_others_do_not) {
-  for (const auto& name : two_step_method_names()) {
+TEST(equal_steps, two_step_methods_promise_positivity_within_their_steps_and_others_do_not) {
+  for (const auto& name : integrator_names("two-step")) {
     const simulation run(gas(name, "safety = 1\nend = 0.05\n"));
     EXPECT_FALSE(run.promises().positivity) << "WENO without the limiter";
     case_config limited = gas(name, "safety = 1\nend = 0.05\n");
@@ -162,7 +161,7 @@ TEST(multistep_run, two_step_methods_promise_positivity_within_their_steps_and_o
   EXPECT_FALSE(simulation(limited).promises().positivity);
 }
 
-TEST(multistep_run, what_needs_one_step_methods_is_refused_by_name) {
+TEST(equal_steps, what_needs_one_step_methods_is_refused_by_name) {
   EXPECT_THAT(refusal_of(gas("imex-bdf-3", "tolerance = 1e-4\ndt = 0.01\nend = 0.05\n")),
               HasSubstr("time.tolerance cannot be kept: method 'imex-bdf-3' needs equal steps"));
   case_config limited = gas("imex-bdf-3", "safety = 1\nend = 0.05\n");
@@ -173,4 +172,4 @@ TEST(multistep_run, what_needs_one_step_methods_is_refused_by_name) {
               testing::ThrowsMessage<input_error>(HasSubstr("'imex-bdf-3' is a multistep method")));
 }
 
-}  // namespace multistep_run_test
+}  // namespace equal_steps_test

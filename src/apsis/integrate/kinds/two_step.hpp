@@ -1,7 +1,8 @@
 #pragma once
 
 #include <apsis/integrate/equal_steps.hpp>
-#include <apsis/method/two_step.hpp>
+#include <apsis/method/kinds/two_step.hpp>
+#include <apsis/method/time_integrator.hpp>
 
 #include <string>
 #include <utility>
@@ -55,12 +56,12 @@ class two_step {
     allocate(u);
     const std::size_t last = m_.stages() - 1;
     add_initial(t, u);
-    scatter(0, t, dt);
+    add_row(0, t, dt);
     for (std::size_t i = 1; i <= last; ++i) {
       if (!solved_)
         problem_.solve_collision(t + abscissae_[i] * dt, dt * m_.D(i, i), dt * dt * m_.ddot[i], rows_[i]);
       solved_ = false;
-      if (i < last) scatter(i, t, dt);
+      if (i < last) add_row(i, t, dt);
     }
     settle(problem_);
     using std::swap;
@@ -99,7 +100,7 @@ class two_step {
 
   /// Adds (p_ij + w_ij) u_j + (w_ij Δt/r) T(u_j) to the accumulators of the rows i that use u_j, and solves
   /// row j + 1 at the same time if the problem can and that row is complete by this.
-  void scatter(std::size_t j, real t, real dt) {
+  void add_row(std::size_t j, real t, real dt) {
     targets_.clear();
     bool next = false;
     for (std::size_t i = j + 1; i < m_.stages(); ++i) {
@@ -132,6 +133,16 @@ class two_step {
   std::vector<target<state, real>> targets_;
   bool solved_ = false;  ///< whether the next row is solved already
   long known_ = 0;       ///< number of earlier values that are known
+};
+
+/// Entry of stepper_kinds.
+struct two_step_steps {
+  static constexpr const char* kind = "two-step";  ///< integrator_kind_entry::name
+  /// Returns use(march).
+  template <problem P, class Use>
+  static auto with(const time_integrator& m, P& p, solutions, const Use& use) {
+    return use(two_step<P>(*m.file(), m.starter(), p));
+  }
 };
 
 }  // namespace apsis

@@ -6,7 +6,6 @@
 #include <apsis/method/trees.hpp>
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace apsis {
@@ -62,21 +61,5 @@ struct two_step_certificate {
 
 /// Certifies a two-step method in arithmetic of 60 digits, with the tolerances of certify().
 two_step_certificate certify_two_step(const method& m);
-
-/// Parses the text of the file of a two-step method (steps = 2). Throws input_error with line and column.
-method parse_two_step_method(std::string_view text, const std::string& file);
-
-/// Parses the text of a method file of one or two steps. Throws input_error with line and column.
-method parse_any_method(std::string_view text, const std::string& file);
-
-/// Returns the certified two-step method called `name`, one of two-step-methods/ or a path FILE.toml. Throws
-/// input_error with the closest name, claim_error if a claim fails, io_error if a file cannot be read.
-method find_two_step_method(const std::string& name);
-
-/// Whether `name` is that of a two-step method of the library, or the path of a file with steps = 2.
-bool is_two_step_method(const std::string& name);
-
-/// Returns the names of the two-step methods that the library contains, sorted.
-std::vector<std::string> two_step_method_names();
 
 }  // namespace apsis

@@ -7,8 +7,8 @@
 
 namespace apsis {
 
-// An exponential method of the class of Hu and Shu (arXiv:1807.03728) has the Shu–Osher form of an IMEX
-// method without Q̇, with the exact solution of the collision in place of every stage solve:
+// A method with exact collisions, of the class of Hu and Shu (arXiv:1807.03728), has the Shu–Osher form of an
+// IMEX method without Q̇, with the exact solution of the collision in place of every stage solve:
 //   u_i = exp(d_i Δt Q)(r_i u^n + Σ_{j<i} p_ij u_j + Σ_{j<i} w_ij (u_j + (Δt/r) T(u_j))),    u^{n+1} = u_s,
 // where exp(sQ) u is v(s) of v' = Q(v), v(0) = u. If all weights and d_i are ≥ 0, it preserves for Δt ≤ r
 // Δt_FE every convex property that forward Euler steps of T and exact collisions preserve. Dimensionless.
@@ -18,8 +18,8 @@ namespace apsis {
 inline constexpr int order_of_resolved_flows = 4;
 
 /// Returns an additive Runge–Kutta method in which every exact collision is a step of the classical method of
-/// fourth order for v' = Q(v), so that its order conditions up to order 4 are those of the exponential
-/// method.
+/// fourth order for v' = Q(v), so that its order conditions up to order 4 are those of the method
+/// with exact collisions.
 template <class Real>
 shu_osher_form<Real> with_resolved_flows(const shu_osher_form<Real>& m) {
   constexpr std::size_t rows_of_flow = 4;

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <apsis/integrate/equal_steps.hpp>
-#include <apsis/method/multistep.hpp>
+#include <apsis/method/kinds/imex_bdf.hpp>
+#include <apsis/method/time_integrator.hpp>
 
 #include <algorithm>
 #include <string>
@@ -26,7 +27,7 @@ class imex_bdf {
   imex_bdf(int k, P& p)
       : problem_(p),
         m_(imex_bdf_coefficients<real>(k)),
-        starter_(find_method(find_multistep_method("imex-bdf-" + std::to_string(k)).starter), p) {}
+        starter_(find_integrator("imex-bdf-" + std::to_string(k)).starter(), p) {}
 
   int order() const { return m_.steps(); }         ///< k
   int first_steps() const { return m_.steps(); }   ///< number of steps before the formula holds
@@ -100,11 +101,21 @@ class imex_bdf {
   }
 
   P& problem_;
-  multistep_coefficients<real> m_;
+  linear_formula<real> m_;
   stepper<P> starter_;
   std::vector<state> accumulators_;
   std::vector<target<state, real>> targets_;
   long known_ = 0;  ///< number of values in the history
+};
+
+/// Entry of stepper_kinds.
+struct imex_bdf_steps {
+  static constexpr const char* kind = "imex-bdf";  ///< integrator_kind_entry::name
+  /// Returns use(march).
+  template <problem P, class Use>
+  static auto with(const time_integrator& m, P& p, solutions, const Use& use) {
+    return use(imex_bdf<P>(m.order, p));
+  }
 };
 
 }  // namespace apsis

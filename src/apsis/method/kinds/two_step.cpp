@@ -1,15 +1,13 @@
-#include <apsis/method/two_step.hpp>
+// Methods of two equal steps, files with steps = 2.
+#include <apsis/method/kinds/two_step.hpp>
 
-#include <apsis/core/embedded.hpp>
-#include <apsis/core/errors.hpp>
-#include <apsis/core/suggest.hpp>
 #include <apsis/method/coefficient.hpp>
-#include <apsis/method/method_file.hpp>
+#include <apsis/method/integrator_kind_registry.hpp>
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace apsis {
 namespace {
@@ -218,36 +216,109 @@ two_step_certificate certify_two_step(const method& m) {
   return c;
 }
 
-bool is_two_step_method(const std::string& name) {
-  if (is_method_file(name)) return parse_any_method(read_method_text(name), name).steps == 2;
-  const auto names = two_step_method_names();
-  return std::find(names.begin(), names.end(), name) != names.end();
+namespace two_step_kind {
+namespace {
+
+/// A two-step method as an integrator, the rows of a file with steps = 2.
+class two_step_integrator final : public time_integrator {
+ public:
+  /// Copies the method; its claims are not checked.
+  explicit two_step_integrator(method m);
+  /// md-imex-10-3-mixed up to order 4, extrapolated Euler above.
+  const method& starter() const override { return *starter_; }
+  const method* file() const override { return &rows_; }
+  amplification growth() const override { return amplification(rows_); }
+  /// The layer is that of the starter.
+  rate_errors errors_at(double z) const override;
+  integrator_certificate certify() const override;
+
+ private:
+  method rows_;
+  const method* starter_;
+};
+
+two_step_integrator::two_step_integrator(method m) : rows_(std::move(m)) {
+  name = rows_.name;
+  title = rows_.title;
+  kind = "two-step";
+  order = rows_.claims.order;
+  steps = 2;
+  form = rows_.coefficients<double>();
+  stages = rows_.stages() - 1;
+  kept_states = static_cast<int>(rows_.stages());
+  needs.equal_steps = true;
+  // The first steps may be of one order less. The first of these methods has the right terms of size epsilon
+  // and is SSP up to r = 1.25; those of higher order are not SSP.
+  const bool has_ssp_starter = order <= 4;
+  starter_ =
+      &find_method(has_ssp_starter ? "md-imex-10-3-mixed" : fmt::format("extrapolated-euler-{}", order));
+  if (has_ssp_starter) ssp_coefficient = std::min(form.r, starter_->coefficients<double>().r);
+  const double previous = weight_of_previous(form);
+  weights = {1.0 - previous, previous};
 }
 
-std::vector<std::string> two_step_method_names() {
-  std::vector<std::string> names;
-  for (const auto& file : embedded::two_step_methods()) names.emplace_back(file.name);
-  return names;
+rate_errors two_step_integrator::errors_at(double z) const {
+  const auto at = two_step_at_finite_rate(form, z);
+  return {at.flux - 1.0, at.last - 1.0, rate_errors_at(*starter_, z).layer};
 }
 
-method find_two_step_method(const std::string& name) {
-  method found;
-  if (is_method_file(name)) {
-    found = parse_two_step_method(read_method_text(name), name);
-  } else {
-    const auto files = embedded::two_step_methods();
-    const auto file =
-        std::find_if(files.begin(), files.end(), [&](const auto& one) { return one.name == name; });
-    if (file == files.end())
-      throw input_error("unknown two-step method '" + name.substr(0, 60) + "'; " +
-                        suggest(name, two_step_method_names()));
-    found = parse_two_step_method(file->text, "two-step-methods/" + name + ".toml");
-  }
-  const auto c = certify_two_step(found);
-  if (!c.claims_hold())
-    throw claim_error(fmt::format("two-step method '{}' does not meet its claims: {}", found.name,
-                                  fmt::join(c.failures, "; ")));
-  return found;
+integrator_certificate two_step_integrator::certify() const {
+  const auto c = certify_two_step(rows_);
+  const auto number = [](const mp_real& x) { return x.convert_to<double>(); };
+  integrator_certificate out;
+  out.failures = c.failures;
+  out.facts = {{"origin", rows_.origin},
+               {"purpose", rows_.purpose},
+               {"kind", to_string(rows_.kind)},
+               {"steps", steps},
+               {"order", c.order},
+               {"order_residual", number(c.order_residual)},
+               {"error_constant", number(c.error_constant)},
+               {"ssp_coefficient", number(c.ssp_coefficient)},
+               {"cfl_limits", {}},
+               {"second_root", number(c.root)},
+               {"type", c.type_a ? "A" : "none"},
+               {"stages", static_cast<int>(stages)},
+               {"explicit_evaluations", c.explicit_evaluations},
+               {"implicit_solves", c.implicit_solves},
+               {"buffers", kept_states + 1},  // rows, among them u^{n−1}, and u^n
+               {"r_per_evaluation", number(c.ssp_coefficient) / c.explicit_evaluations},
+               {"intermediate_regime.keeps", c.keeps_slow_terms ? "slow" : "none"},
+               {"intermediate_regime.band.error", c.band.error},
+               {"intermediate_regime.band.at", c.band.at}};
+  out.lines = {{"steps", "2, of equal length (time.dt or time.cfl)"},
+               {"order", fmt::format("{} ({} conditions, residual {:.1e}), error constant {:.4g}", c.order,
+                                     c.conditions, number(c.order_residual), number(c.error_constant))},
+               {"SSP coefficient r", fmt::format("{:.15g} of the form", number(c.ssp_coefficient))},
+               {"linear stability", {}},
+               {"second root", fmt::format("{:.4g} (zero-stable if below 1 in modulus)", number(c.root))},
+               {"type", c.type_a ? "A: asymptotic preserving" : "none"},
+               {"cost per step", fmt::format("{} transport evaluations, {} implicit solves",
+                                             c.explicit_evaluations, c.implicit_solves)},
+               {"terms of size epsilon",
+                c.keeps_slow_terms ? "exact for data near equilibrium (N1, N2)" : "not exact"},
+               {"where epsilon ~ dt",
+                fmt::format("error of the O(epsilon) term at most {:.3g} dt, at epsilon/C = dt/{:.3g}",
+                            c.band.error, c.band.at)}};
+  return out;
 }
+
+bool reads(const method& file) {
+  return file.steps == 2;
+}
+
+std::unique_ptr<time_integrator> make(method file) {
+  return std::make_unique<two_step_integrator>(std::move(file));
+}
+
+}  // namespace
+}  // namespace two_step_kind
+
+extern const integrator_kind_entry integrator_kind_two_step;
+const integrator_kind_entry integrator_kind_two_step = {
+    .name = "two-step",
+    .description = "stages that also start from u^(n-1) and its transport",
+    .reads = two_step_kind::reads,
+    .of_file = two_step_kind::make};
 
 }  // namespace apsis

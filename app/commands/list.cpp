@@ -140,7 +140,7 @@ json boundaries() {
 
 json claims() {
   json all = json::array();
-  for (const paper::claim_entry* c : find_claims({}))
+  for (const paper::claim_entry* c : paper::find_claims({}))
     all.push_back({{"name", c->id}, {"description", c->statement}, {"section", c->section}, {"how", c->how}});
   return all;
 }

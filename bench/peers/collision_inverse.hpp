@@ -1,7 +1,7 @@
 #pragma once
 
-#include <apsis/model/model.hpp>
 #include <apsis/mesh/field.hpp>
+#include <apsis/model/model.hpp>
 
 #include <memory>
 #include <vector>

@@ -17,7 +17,7 @@ namespace apsis::bench::peers {
 /// that each contestant needs. Dimensionless. T and Q do not depend on t explicitly.
 class stiff_task {
  public:
-  using state = ode_state<double>;
+  using state = paper::ode_state<double>;
 
   virtual ~stiff_task() = default;
   virtual state initial() const = 0;
@@ -35,14 +35,14 @@ class stiff_task {
 
   double epsilon() const { return epsilon_; }
   /// Returns |Δu1| + |Δu2| at t = 1.
-  double error(const state& u) const { return ode_distance(u, exact_); }
+  double error(const state& u) const { return paper::ode_distance(u, exact_); }
 
  protected:
-  stiff_task(double epsilon, ode_state<long double> exact) : epsilon_(epsilon), exact_(exact) {}
+  stiff_task(double epsilon, paper::ode_state<long double> exact) : epsilon_(epsilon), exact_(exact) {}
 
  private:
   double epsilon_;
-  ode_state<long double> exact_;
+  paper::ode_state<long double> exact_;
 };
 
 /// The ODE model of the paper (paper/ode_study.hpp): u2 is initially out of equilibrium.

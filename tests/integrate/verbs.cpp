@@ -4,7 +4,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/relaxation_weights.hpp>
-#include <apsis/integrate/exponential.hpp>
+#include <apsis/integrate/exact_collisions.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
 

@@ -244,7 +244,7 @@ TEST(quantities, stop_when_asked) {
 TEST(quantities, have_distinct_reference_values_of_known_parameters) {
   for (const quantity_entry* quantity : apsis::validation::quantity_entries()) {
     ASSERT_FALSE(quantity->parameters.empty()) << quantity->name;
-    std::set<apsis::quantity_values> seen;
+    std::set<apsis::validation::quantity_values> seen;
     for (const auto& value : quantity->references) {
       EXPECT_TRUE(seen.insert(value.at).second) << quantity->name;
       for (const auto& [name, text] : value.at)
@@ -272,7 +272,7 @@ TEST(compared_value, is_drawn_over_the_first_parameter_where_there_are_several) 
   const quantity_entry& couette = find_quantity("couette");
   std::vector<compared_value> values;
   for (const auto& one : couette.references) values.push_back({&couette, &one, one.value * 1.0005, 1.0});
-  const auto picture = apsis::quantity_picture(couette, values);
+  const auto picture = apsis::validation::quantity_picture(couette, values);
   ASSERT_EQ(picture.panels.size(), 2U);
   EXPECT_EQ(picture.panels[0].curves[0].x.size(), couette.references.size());
   EXPECT_NEAR(picture.panels[1].curves[0].y[0], 5e-4, 1e-12);
@@ -281,14 +281,14 @@ TEST(compared_value, is_drawn_over_the_first_parameter_where_there_are_several) 
   EXPECT_EQ(document["pictures"].size(), 1U);
   EXPECT_TRUE(picture.panels[0].log_x);
   values.resize(2);
-  EXPECT_TRUE(apsis::quantity_picture(couette, values).panels.empty());
+  EXPECT_TRUE(apsis::validation::quantity_picture(couette, values).panels.empty());
 }
 
 TEST(compared_value, is_drawn_at_distance_0_too) {
   const quantity_entry& kramers = find_quantity("kramers");
   std::vector<compared_value> values;
   for (const auto& one : kramers.references) values.push_back({&kramers, &one, one.value, 1.0});
-  const auto picture = apsis::quantity_picture(kramers, values);
+  const auto picture = apsis::validation::quantity_picture(kramers, values);
   ASSERT_EQ(picture.panels.size(), 2U);
   EXPECT_FALSE(picture.panels[0].log_x);  // where 0 would be omitted
 }

@@ -118,7 +118,8 @@ exchanged count_exchanges(const gas& of, const processes_pointer& all) {
 
   const run_setup setup(case_of(of), all);
   const field u = setup.initial_state();
-  domain space = setup.builder().space();
+  const auto made = setup.builder().make_space();
+  domain& space = *made;
   constexpr int width = 4;  // of WENO with the limiter
   space.reserve(u.components(), width);
   const long bytes_before = all->count().bytes;

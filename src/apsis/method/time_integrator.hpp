@@ -12,7 +12,7 @@
 
 namespace apsis {
 
-/// What an integrator requires of a problem and of its steps.
+/// Requirements of an integrator on a problem and on its steps.
 struct integrator_needs {
   bool explicit_collision = false;  ///< evaluates Q(u) at stages (problem_with_explicit_collision)
   bool exact_collision = false;     ///< solves u' = Q(u) exactly (problem_with_exact_collision)

@@ -11,7 +11,7 @@ namespace apsis::paper {
 namespace {
 
 const relaxation_model& relaxation_of(const run_setup& setup) {
-  return dynamic_cast<const relaxation_model&>(*setup.equation);
+  return *setup.equation->as_relaxation();
 }
 
 const initial_data& data_of(const case_config& config, const model& equation) {

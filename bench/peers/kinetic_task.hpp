@@ -59,7 +59,7 @@ class kinetic_task {
 
  private:
   semidiscrete_problem& problem_of(const std::string& integrator) const;
-  const relaxation_model& equation() const { return dynamic_cast<const relaxation_model&>(*setup_.equation); }
+  const relaxation_model& equation() const { return *setup_.equation->as_relaxation(); }
   /// Measures run(u, observer), an integration of u from the initial state.
   template <class Run>
   outcome measure(double seconds_allowed, field* result, const Run& run);

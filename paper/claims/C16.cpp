@@ -39,7 +39,7 @@ populations random_populations(random_source& random) {
 
 struct broadwell {
   std::unique_ptr<model> owner = find_model("broadwell")->make({});
-  const relaxation_model& equation = dynamic_cast<const relaxation_model&>(*owner);
+  const relaxation_model& equation = *owner->as_relaxation();
 };
 
 /// Largest defects of the moment form in the production operators.

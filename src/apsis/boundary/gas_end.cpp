@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t most = 5;  ///< numbers of ω in three dimensions
 
 const gas& gas_of(const model& equation, const std::string& boundary_name) {
-  if (const auto* found = dynamic_cast<const gas_model*>(&equation)) return found->molecules();
+  if (const auto* found = equation.as_gas()) return found->molecules();
   throw input_error(fmt::format(
       "boundary '{}' cannot be used (the model is no gas with density, velocity and temperature); "
       "choose another kind, see: apsis list boundaries",

@@ -352,7 +352,7 @@ std::vector<case_key> output_keys() {
                "Names of the macroscopic fields to write; empty writes the usual ones of the model, of a gas "
                "rho, u, T, stress, heat_flux (with several velocity dimensions u_x, stress_xy, heat_flux_x, "
                "...). Further fields of a gas: p, mach, distance (to equilibrium), knudsen (local Knudsen "
-               "number)."}),
+               "number), divergence and vorticity of u (vorticity_x, ... with three velocity dimensions)."}),
       key("output.units", [](auto& c) -> auto& { return c.output.units; },
           {.scope = key_scope::velocity,
            .doc = "Units of fields, history and report: dimensionless, or those of the SI, with a table "

@@ -454,9 +454,8 @@ class resolver {
     if (config_.output.fields.empty()) return;
     std::vector<std::string> names;
     const auto equation = make_model(config_);
-    for (const auto& field : equation->fields()) names.push_back(field.name);
-    for (const auto& field : equation->further_fields()) names.push_back(field.name);
-    for (const auto& field : equation->gradient_fields()) names.push_back(field.name);
+    for (const auto& group : equation->field_groups())
+      for (const auto& field : group.names) names.push_back(field.name);
     for (const auto& name : config_.output.fields)
       if (std::find(names.begin(), names.end(), name) == names.end())
         throw input_error(

@@ -33,7 +33,7 @@ data_form form_of(const model& equation, const source_place& place) {
 
 /// Names of functions of the velocity that a gas takes in place of the variables: f, or g and h.
 std::vector<std::string> functions_of(const model& equation) {
-  const auto* gas = dynamic_cast<const gas_model*>(&equation);
+  const auto* gas = equation.as_gas();
   if (gas == nullptr) return {};
   std::vector<std::string> names;
   for (const auto& variable : gas->molecules().distribution_form().variables) names.push_back(variable.name);

@@ -30,6 +30,7 @@ inline constexpr dimension mass{1, 0, 0, 0};                 ///< kg
 inline constexpr dimension length{0, 1, 0, 0};               ///< m
 inline constexpr dimension time{0, 0, 1, 0};                 ///< s
 inline constexpr dimension temperature{0, 0, 0, 1};          ///< K
+inline constexpr dimension rate = none / time;               ///< 1/s
 inline constexpr dimension velocity = length / time;         ///< m/s
 inline constexpr dimension number_density{0, -3, 0, 0};      ///< 1/m^3
 inline constexpr dimension density = mass * number_density;  ///< kg/m^3

@@ -2,6 +2,8 @@
 
 #include <apsis/velocity/component_name.hpp>
 
+#include <cstddef>
+
 namespace apsis {
 
 std::vector<field_name> fluid_fields(int dimensions) {
@@ -19,6 +21,31 @@ void fluid_field_values(const fluid_state& state, int dimensions, double* values
   values[0] = state.rho;
   for (int k = 0; k < dimensions; ++k) values[1 + k] = state.u[k];
   values[1 + dimensions] = state.T;
+}
+
+std::vector<field_group> flow_fields(int dimensions) {
+  // ∂u_k/∂x_l: ρ is the first field, u_x the second.
+  const auto slope = [](const field_point& at, int k, int l) {
+    return at.gradients[1 + static_cast<std::size_t>(k)][static_cast<std::size_t>(l)];
+  };
+  field_group divergence{{{"divergence", "divergence of the velocity (dimensionless)", dimensions::rate}},
+                         true,
+                         [=](const field_point& at, double* values) {
+                           *values = 0.0;
+                           for (int k = 0; k < dimensions; ++k) *values += slope(at, k, k);
+                         }};
+  if (dimensions == 1) return {divergence};
+  field_group vorticity{{}, true, [=](const field_point& at, double* values) {
+                          for (int k = dimensions == 2 ? 2 : 0; k < 3; ++k)
+                            *values++ =
+                                slope(at, (k + 2) % 3, (k + 1) % 3) - slope(at, (k + 1) % 3, (k + 2) % 3);
+                        }};
+  for (int k = 0; k < (dimensions == 2 ? 1 : 3); ++k) {
+    const std::string along = dimensions == 2 ? "" : std::string(" along ") + "xyz"[k];
+    vorticity.names.push_back({component_name("vorticity", k, dimensions == 2 ? 1 : 3),
+                               "vorticity" + along + " (dimensionless)", dimensions::rate});
+  }
+  return {divergence, vorticity};
 }
 
 std::vector<std::string> fluid_invariants(int dimensions) {

@@ -161,13 +161,21 @@ void gas_model::macroscopic(const double* f, double* values) const {
   for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) *values++ = m.heat[k];
 }
 
-std::vector<field_name> gas_model::further_fields() const {
-  return {{"p", "pressure (dimensionless)", dimensions::pressure},
-          {"mach", "Mach number"},
-          {"distance", "distance to equilibrium, relative"}};
+std::vector<field_group> gas_model::derived_fields() const {
+  std::vector<field_group> groups = {
+      {{{"p", "pressure (dimensionless)", dimensions::pressure},
+        {"mach", "Mach number"},
+        {"distance", "distance to equilibrium, relative"}},
+       false,
+       [this](const field_point& at, double* values) { thermodynamics(at.u, values); }},
+      {{{"knudsen", "local Knudsen number"}}, true, [this](const field_point& at, double* values) {
+         *values = local_knudsen(at);
+       }}};
+  for (auto& group : flow_fields(gas_.dimensions())) groups.push_back(std::move(group));
+  return groups;
 }
 
-void gas_model::further_macroscopic(const double* f, double* values) const {
+void gas_model::thermodynamics(const double* f, double* values) const {
   const int d = gas_.dimensions();
   double omega[5];
   moments(f, omega);
@@ -187,18 +195,15 @@ void gas_model::further_macroscopic(const double* f, double* values) const {
   *values = all > 0.0 ? difference / all : 0.0;
 }
 
-std::vector<field_name> gas_model::gradient_fields() const {
-  return {{"knudsen", "local Knudsen number"}};
-}
-
-void gas_model::gradient_macroscopic(const double* f, double epsilon, const double* gradients,
-                                     double* values) const {
+double gas_model::local_knudsen(const field_point& at) const {
   double omega[5];
-  moments(f, omega);
+  moments(at.u, omega);
   const fluid_state s = gas_.state(omega);
-  const double viscosity_over_pressure = prandtl_ * epsilon / rate(omega);
+  double square = 0.0;
+  for (const double slope : at.gradients.front()) square += slope * slope;
+  const double viscosity_over_pressure = prandtl_ * at.epsilon / rate(omega);
   const double path = viscosity_over_pressure * std::sqrt(0.5 * std::numbers::pi * s.T);
-  *values = s.admissible() ? path * gradients[0] / s.rho : std::numeric_limits<double>::quiet_NaN();
+  return s.admissible() ? path * std::sqrt(square) / s.rho : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// f ← a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃], the form of all data of the paper, with ũ along x.

@@ -29,6 +29,7 @@ class gas_model : public relaxation_model {
   /// Returns also that of models whose target may be negative in its tails. `usual`: its default.
   static std::vector<model_text> texts_with_tails(const std::string& usual);
 
+  const gas_model* as_gas() const final { return this; }
   const gas& molecules() const { return gas_; }  ///< the rows of the gas
   int components() const override { return gas_.velocities().components(); }
   int space_dimensions() const override { return space_dimensions_; }
@@ -68,14 +69,10 @@ class gas_model : public relaxation_model {
   std::vector<field_name> fields() const override;
   void macroscopic(const double* f, double* values) const override;
   /// Pressure p = ρT, Mach number |u|/√(γT) with γ = (D + 2)/D, and the distance Σ|f − M|/Σ f to equilibrium,
-  /// of g if there are two functions.
-  std::vector<field_name> further_fields() const override;
-  void further_macroscopic(const double* f, double* values) const override;
-  /// The local Knudsen number λ|∇ρ|/ρ with the mean free path by viscosity, λ = μ √(πT/2)/p, and the
-  /// viscosity μ = p ε/C of the model, Pr p ε/C of the ellipsoidal one; NaN where the gas has no temperature.
-  std::vector<field_name> gradient_fields() const override;
-  void gradient_macroscopic(const double* f, double epsilon, const double* gradients,
-                            double* values) const override;
+  /// of g if there are two functions. The local Knudsen number λ|∇ρ|/ρ with the mean free path by viscosity,
+  /// λ = μ √(πT/2)/p, and the viscosity μ = p ε/C of the model, Pr p ε/C of the ellipsoidal one; NaN where
+  /// the gas has no temperature. Divergence and vorticity (flow_fields).
+  std::vector<field_group> derived_fields() const override;
 
   const std::vector<initial_data>& initial() const override { return initial_; }
   std::vector<data_form> data_forms() const override {
@@ -115,6 +112,8 @@ class gas_model : public relaxation_model {
   }
 
  private:
+  void thermodynamics(const double* f, double* values) const;
+  double local_knudsen(const field_point& at) const;
   bool has_stress() const;
   /// Returns 0 if no part is found.
   template <class Find>

@@ -98,9 +98,12 @@ std::vector<dimension> model::invariant_measures() const {
   return std::vector<dimension>(invariants().size());
 }
 
-void model::gradient_macroscopic(const double*, double, const double*, double*) const {}
-
-void model::further_macroscopic(const double*, double*) const {}
+std::vector<field_group> model::field_groups() const {
+  std::vector<field_group> groups = {
+      {fields(), false, [this](const field_point& at, double* values) { macroscopic(at.u, values); }}};
+  for (auto& group : derived_fields()) groups.push_back(std::move(group));
+  return groups;
+}
 
 void relaxation_model::relaxing_moments(const double*, const double*, double*) const {}
 

@@ -7,6 +7,7 @@
 #include <apsis/velocity/position.hpp>
 #include <apsis/velocity/velocity_set.hpp>
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -22,6 +23,26 @@ struct field_name {
   std::string label;       ///< "density (dimensionless)"
   dimension measure = {};  ///< its dimension in units of a gas (gas_scales.hpp)
 };
+
+/// A cell of a mesh with all that its fields depend on.
+struct field_point {
+  const double* u;       ///< its row
+  double epsilon = 0.0;  ///< ε at its centre
+  /// (∂_x φ, ∂_y φ, ∂_z φ) of the model::fields() φ, 0 along directions without space; empty unless the
+  /// group needs them.
+  std::span<const std::array<double, 3>> gradients = {};
+};
+
+/// Macroscopic fields that are computed together.
+struct field_group {
+  std::vector<field_name> names;  ///< at least one
+  bool needs_gradients = false;   ///< whether compute() uses field_point::gradients
+  /// values ← the fields at a point, in the order of the names.
+  std::function<void(const field_point& at, double* values)> compute;
+};
+
+class gas_model;
+class relaxation_model;
 
 /// Initial data and, if a formula is known, the exact solution.
 struct initial_data {
@@ -52,6 +73,11 @@ struct unsupported_initial_data {
 class model : public construction_count<model> {
  public:
   virtual ~model() = default;
+
+  /// Returns this model as a relaxation towards E(ω); null for other models.
+  virtual const relaxation_model* as_relaxation() const { return nullptr; }
+  /// Returns this model as that of a gas with density, velocity and temperature; null for other models.
+  virtual const gas_model* as_gas() const { return nullptr; }
 
   /// Returns the number of components of a row.
   virtual int components() const = 0;
@@ -117,20 +143,17 @@ class model : public construction_count<model> {
   /// default. A momentum may vanish by cancellation of particles that move in opposite directions.
   virtual void invariant_scales(std::span<const double> densities, double* scales) const;
 
-  /// Returns the macroscopic fields of results.
+  /// Returns the macroscopic fields that results have unless output.fields names others.
   virtual std::vector<field_name> fields() const = 0;
   /// values ← the fields of a row, in the order of fields().
   virtual void macroscopic(const double* u, double* values) const = 0;
 
-  /// Returns fields that results have only where output.fields names them; none by default.
-  virtual std::vector<field_name> further_fields() const { return {}; }
-  /// values ← the further fields of a row, in the order of further_fields().
-  virtual void further_macroscopic(const double* u, double* values) const;
-  /// Returns further fields that depend on gradients, which the mesh has; none by default.
-  virtual std::vector<field_name> gradient_fields() const { return {}; }
-  /// values ← the fields of a row in the order of gradient_fields(); `gradients`: |∇φ| of the fields().
-  virtual void gradient_macroscopic(const double* u, double epsilon, const double* gradients,
-                                    double* values) const;
+  /// Returns fields that results have only where output.fields names them; none by default. The model must
+  /// outlive them.
+  virtual std::vector<field_group> derived_fields() const { return {}; }
+  /// Returns all fields: one group with fields() and macroscopic(), then the derived ones. The model must
+  /// outlive them.
+  std::vector<field_group> field_groups() const;
 
   /// Returns the initial data; the first is the default. A model of a registry has some with its default
   /// options; where others leave none, a case needs a table [initial].
@@ -167,6 +190,7 @@ stage_strength strength_of_stage(double a, double b, double rate, double epsilon
 /// λ)s, and s is the deviation from equilibrium (docs/models.md).
 class relaxation_model : public model {
  public:
+  const relaxation_model* as_relaxation() const final { return this; }
   /// Returns the length of ω.
   virtual int moment_count() const = 0;
   /// ω ← ℛu.

@@ -143,7 +143,7 @@ std::optional<velocity_fit> velocity_support::fit_of_moments(const double* omega
 }
 
 std::optional<velocity_support> support_of(const model& equation) {
-  const auto* found = dynamic_cast<const gas_model*>(&equation);
+  const auto* found = equation.as_gas();
   if (found == nullptr) return std::nullopt;
   return velocity_support(found->molecules());
 }
@@ -215,7 +215,7 @@ unsupported_initial_data velocity_problem(const gas& of, const fluid_state& stat
 }
 
 std::string why_beyond_velocities(const model& equation, const double* omega) {
-  const auto* found = dynamic_cast<const gas_model*>(&equation);
+  const auto* found = equation.as_gas();
   if (found == nullptr || !(omega[0] > 0.0)) return "";
   const velocity_grid& grid = found->molecules().grid();
   for (int k = 0; k < grid.dimensions(); ++k) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -28,8 +28,10 @@ void add_names(field_table& table, const std::vector<field_name>& names) {
   }
 }
 
-/// Adds the squares of the derivatives of φ along a direction, within the segments of its pencils.
-void add_squares(const domain& space, int direction, const field& phi, std::vector<double>& sum) {
+using gradient = std::array<double, 3>;
+
+/// Computes the derivatives of φ along a direction, within the segments of its pencils.
+void differentiate(const domain& space, int direction, const field& phi, std::vector<gradient>& slopes) {
   const int stride = space.mesh().stride(direction);
   const auto& segments = space.segments().along(direction);
   for (int number = 0; number < static_cast<int>(segments.size()); ++number) {
@@ -45,47 +47,49 @@ void add_squares(const domain& space, int direction, const field& phi, std::vect
       const int intervals =
           (below == nullptr || below == here ? 0 : 1) + (above == nullptr || above == here ? 0 : 1);
       const double rise = *(above == nullptr ? here : above) - *(below == nullptr ? here : below);
-      const double slope = intervals == 0 ? 0.0 : rise / (intervals * space.mesh().spacing(direction));
-      sum[static_cast<std::size_t>(cell)] += slope * slope;
+      slopes[static_cast<std::size_t>(cell)][static_cast<std::size_t>(direction)] =
+          intervals == 0 ? 0.0 : rise / (intervals * space.mesh().spacing(direction));
     }
   }
 }
 
-/// Returns |∇φ| of every cell.
-std::vector<double> size_of_gradient(const run_setup& setup, const std::vector<double>& phi) {
-  std::vector<double> sum(phi.size(), 0.0);
-  if (setup.has_space()) {
-    const auto made = setup.builder().make_space();
-    domain& space = *made;
-    space.reserve(1, 1);
-    field values(static_cast<int>(phi.size()), 1);
-    for (int cell = 0; cell < values.cells(); ++cell) *values.row(cell) = phi[static_cast<std::size_t>(cell)];
-    space.exchange(values);
-    for (int direction = 0; direction < setup.mesh().dimensions(); ++direction)
-      add_squares(space, direction, values, sum);
-  }
-  for (double& x : sum) x = std::sqrt(x);
-  return sum;
+/// Returns ∇φ of every cell.
+std::vector<gradient> gradients_of(const run_setup& setup, const std::vector<double>& phi) {
+  std::vector<gradient> slopes(phi.size(), gradient{});
+  if (!setup.has_space()) return slopes;
+  const auto made = setup.builder().make_space();
+  domain& space = *made;
+  space.reserve(1, 1);
+  field values(static_cast<int>(phi.size()), 1);
+  for (int cell = 0; cell < values.cells(); ++cell) *values.row(cell) = phi[static_cast<std::size_t>(cell)];
+  space.exchange(values);
+  for (int direction = 0; direction < setup.mesh().dimensions(); ++direction)
+    differentiate(space, direction, values, slopes);
+  return slopes;
 }
 
-void add_gradient_fields(const run_setup& setup, const field& u, std::size_t usual, field_table& table) {
-  const model& equation = *setup.equation;
-  const auto names = equation.gradient_fields();
-  add_names(table, names);
-  std::vector<std::vector<double>> sizes;
-  for (std::size_t k = 0; k < usual; ++k) sizes.push_back(size_of_gradient(setup, table.values[k]));
+/// Adds a group of fields to a table whose first columns are those of model::fields().
+void add_group(const run_setup& setup, const field& u, const field_group& group, field_table& table) {
+  std::vector<std::vector<gradient>> of_fields;  // [field][cell]
+  std::vector<double> epsilon;
+  if (group.needs_gradients) {
+    const std::size_t usual = setup.equation->fields().size();
+    for (std::size_t k = 0; k < usual; ++k) of_fields.push_back(gradients_of(setup, table.values[k]));
+    epsilon = setup.epsilon_at_centres();
+  }
   const std::size_t first = table.values.size();
-  table.values.resize(first + names.size());
-  const std::vector<double> epsilon = setup.epsilon_at_centres();
-  std::vector<double> gradients(usual), values(names.size());
+  add_names(table, group.names);
+  table.values.resize(table.names.size());
+  std::vector<double> values(group.names.size());
+  std::vector<gradient> gradients(of_fields.size());
   for (int cell = 0; cell < u.cells(); ++cell) {
     const auto c = static_cast<std::size_t>(cell);
     if (setup.mesh().solid(cell) >= 0) {
-      for (std::size_t k = 0; k < values.size(); ++k) table.values[first + k].push_back(undefined);
-      continue;
+      std::fill(values.begin(), values.end(), undefined);
+    } else {
+      for (std::size_t k = 0; k < gradients.size(); ++k) gradients[k] = of_fields[k][c];
+      group.compute({u.row(cell), epsilon.empty() ? 0.0 : epsilon[c], gradients}, values.data());
     }
-    for (std::size_t k = 0; k < usual; ++k) gradients[k] = sizes[k][c];
-    equation.gradient_macroscopic(u.row(cell), epsilon[c], gradients.data(), values.data());
     for (std::size_t k = 0; k < values.size(); ++k) table.values[first + k].push_back(values[k]);
   }
 }
@@ -106,25 +110,11 @@ void add_centres(const run_setup& setup, field_table& table) {
 }  // namespace
 
 field_table find_fields(const run_setup& setup, const field& u) {
-  const model& equation = *setup.equation;
   const auto& wanted = setup.config().output.fields;
   field_table table;
-  add_names(table, equation.fields());
-  const std::size_t usual = table.names.size();
-  if (names_one_of(wanted, equation.further_fields())) add_names(table, equation.further_fields());
   add_centres(setup, table);
-  table.values.assign(table.names.size(), {});
-  std::vector<double> values(table.names.size());
-  for (int cell = 0; cell < u.cells(); ++cell) {
-    if (setup.mesh().solid(cell) >= 0) {
-      for (auto& column : table.values) column.push_back(undefined);
-      continue;
-    }
-    equation.macroscopic(u.row(cell), values.data());
-    if (values.size() > usual) equation.further_macroscopic(u.row(cell), values.data() + usual);
-    for (std::size_t k = 0; k < values.size(); ++k) table.values[k].push_back(values[k]);
-  }
-  if (names_one_of(wanted, equation.gradient_fields())) add_gradient_fields(setup, u, usual, table);
+  for (const field_group& group : setup.equation->field_groups())
+    if (table.names.empty() || names_one_of(wanted, group.names)) add_group(setup, u, group, table);
   for (auto& column : table.values) column = gather_cells(setup.builder(), std::move(column));
   return table;
 }

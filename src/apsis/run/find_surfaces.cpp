@@ -72,7 +72,7 @@ struct derived_columns {
 /// The columns of the state of a gas; none for other models.
 class gas_columns {
  public:
-  explicit gas_columns(const model& equation) : gas_(dynamic_cast<const gas_model*>(&equation)) {}
+  explicit gas_columns(const model& equation) : gas_(equation.as_gas()) {}
 
   void add_names(surface_table& table) const {
     const auto add = [&](const std::string& name, const dimension& measure) {

@@ -126,7 +126,7 @@ class reader {
 
 /// u ← E(ℛu), so that data that are given as equilibria are so at every point.
 void project(const model& equation, std::span<double> u) {
-  const auto* relaxation = dynamic_cast<const relaxation_model*>(&equation);
+  const auto* relaxation = equation.as_relaxation();
   if (relaxation == nullptr) return;
   std::vector<double> omega(size(relaxation->moment_count()));
   relaxation->moments(u.data(), omega.data());

@@ -26,7 +26,7 @@ double root_of_chain(int n) {
 
 rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equation) {
   const double of_moments = root_of_chain(equation.components());
-  const auto* relaxation = dynamic_cast<const relaxation_model*>(&equation);
+  const auto* relaxation = equation.as_relaxation();
   const double of_target = relaxation != nullptr ? relaxation->moment_accuracy() / unit_roundoff : 4.0;
   const double of_collision = of_target + of_moments;
   const auto initial = initial_weights(m);

@@ -358,7 +358,7 @@ double run_setup::cfl_length() const {
 }
 
 double run_setup::equilibrium_defect(const field& u) const {
-  const auto* relaxation = dynamic_cast<const relaxation_model*>(equation.get());
+  const auto* relaxation = equation->as_relaxation();
   if (relaxation == nullptr || equation->invariants().empty()) return 0.0;
   const std::size_t count = equation->invariants().size();
   std::vector<double> omega(static_cast<std::size_t>(relaxation->moment_count()));
@@ -400,7 +400,7 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
       exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
   // Stage solves keep the sign of every row; an explicit Q only where the target is an equilibrium, E ≥ 0,
   // and averages are means of values at points.
-  const auto* relaxation = dynamic_cast<const relaxation_model*>(equation.get());
+  const auto* relaxation = equation->as_relaxation();
   const bool relaxes = relaxation != nullptr && relaxation->relaxing_count() > 0;
   const bool collisions = equation->collisions_keep_sign() &&
                           !(explicit_collision && (relaxes || builder_.collides_at_centres()));

@@ -69,7 +69,7 @@ void velocity_watch::set_mass(double mass) {
 }
 
 bool velocity_watch::collides(int cell, const double* omega) const {
-  const auto& relaxation = dynamic_cast<const relaxation_model&>(*setup_.equation);
+  const auto& relaxation = *setup_.equation->as_relaxation();
   return relaxation.rate(omega) * setup_.config().time.end >=
          fewest_collisions * epsilon_[static_cast<std::size_t>(cell)];
 }

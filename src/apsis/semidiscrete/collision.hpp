@@ -12,10 +12,15 @@
 
 namespace apsis {
 
+class cellwise_collision;
+
 /// The collision operator Q(u)/ε of a model on a mesh.
 class collision {
  public:
   virtual ~collision() = default;
+
+  /// Returns this operator if its cells are independent of each other, null otherwise.
+  virtual cellwise_collision* as_cellwise() { return nullptr; }
 
   /// In place u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², a = Δt d ≥ 0, b = Δt² ḋ ≤ 0, t the time of the stage;
   /// or the exact solution after a time a (stage_solution), for which b is 0. A relaxation keeps nonnegative
@@ -50,6 +55,7 @@ double take_largest_cut(per_thread<Scratch>& of_threads) {
 /// A collision operator whose cells are independent of each other.
 class cellwise_collision : public collision {
  public:
+  cellwise_collision* as_cellwise() final { return this; }
   /// Allocates scratch memory for all threads of a loop whose body calls solve_cells().
   virtual void prepare(const field& u) = 0;
   /// Solves the stages of cells begin … end−1 on this thread.

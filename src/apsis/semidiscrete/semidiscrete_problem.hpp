@@ -34,7 +34,7 @@ class semidiscrete_problem {
         transport_(equation, std::move(space), std::move(discretization)),
         has_transport_(equation.space_dimensions() > 0 || equation.has_source()),
         collision_(std::move(q)),
-        cellwise_(dynamic_cast<cellwise_collision*>(collision_.get())),
+        cellwise_(collision_->as_cellwise()),
         stages_(stages) {}
 
   /// Adds a force to the transport. Throws input_error as force does.

@@ -12,7 +12,7 @@ namespace apsis {
 namespace {
 
 const relaxation_model& relaxation_of(const run_setup& setup) {
-  const auto* equation = dynamic_cast<const relaxation_model*>(setup.equation.get());
+  const auto* equation = setup.equation->as_relaxation();
   if (equation == nullptr)
     throw input_error(
         "the model has no limit scheme (its collision is not a relaxation towards E(ω)); choose a relaxation "

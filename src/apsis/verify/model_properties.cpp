@@ -67,7 +67,7 @@ made_model make_with(const model_entry& entry, const std::map<std::string, std::
   config.velocity = {8.0, 40, equilibrium_choice::automatic};
   for (const auto& [name, value] : texts) config.texts.at(name) = value;
   auto made = entry.make(config);
-  const auto* relaxation = dynamic_cast<const relaxation_model*>(made.get());
+  const auto* relaxation = made->as_relaxation();
   return {&entry, std::move(made), relaxation};
 }
 

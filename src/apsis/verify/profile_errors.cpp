@@ -96,7 +96,7 @@ class response {
  public:
   response(const case_config& config, double longest_step, const study_control& control)
       : control_(control), setup_(reference_case(config)), end_(config.time.end), dt_(longest_step) {
-    equation_ = dynamic_cast<const relaxation_model*>(setup_.equation.get());
+    equation_ = setup_.equation->as_relaxation();
     if (equation_ == nullptr || equation_->relaxing_count() > 0 || !setup_.has_space() ||
         equation_->invariants().empty())
       throw input_error(

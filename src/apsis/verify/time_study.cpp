@@ -43,7 +43,7 @@ struct time_study::impl {
   impl(const case_config& config, double eps)
       : setup(with_epsilon(config, eps)),
         limit_setup(with_epsilon(config, 0.0)),
-        equation(dynamic_cast<const relaxation_model*>(setup.equation.get())),
+        equation(setup.equation->as_relaxation()),
         epsilon(eps),
         end(config.time.end) {
     if (equation == nullptr)

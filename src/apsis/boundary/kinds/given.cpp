@@ -70,10 +70,6 @@ data_form detailed_form(const model& equation) {
   return std::move(forms.back());
 }
 
-const gas_model* as_gas(const model& equation) {
-  return dynamic_cast<const gas_model*>(&equation);
-}
-
 }  // namespace
 
 extern const boundary_entry boundary_given;
@@ -82,14 +78,14 @@ const boundary_entry boundary_given = {
     .description = "components that enter are given, for a gas as a function of the velocity",
     .variables =
         [](const model& equation) {
-          const gas_model* of = as_gas(equation);
+          const gas_model* of = equation.as_gas();
           if (of == nullptr) return detailed_form(equation).variables;
           auto functions = of->molecules().distribution_form().variables;
           for (auto& one : functions) one.doc = "formula >= 0 in t, x and v_x, v_y, v_z (dimensionless)";
           return functions;
         },
     .make = [](const boundary_source& from) -> std::unique_ptr<boundary> {
-      if (as_gas(*from.equation) != nullptr) return std::make_unique<given_distribution>(from.values);
+      if (from.equation->as_gas() != nullptr) return std::make_unique<given_distribution>(from.values);
       return std::make_unique<given_components>(
           prescribed_state(detailed_form(*from.equation), from.values, from.equation->components()));
     }};

@@ -181,10 +181,11 @@ class law_model final : public relaxation_model {
     return all;
   }
   void macroscopic(const double* f, double* values) const override { moments(f, values); }
-  std::vector<field_name> further_fields() const override {
-    return {{wave_speed, "fastest wave of the law (dimensionless)"}};
+  std::vector<field_group> derived_fields() const override {
+    return {{{{wave_speed, "fastest wave of the law (dimensionless)"}},
+             false,
+             [this](const field_point& at, double* values) { *values = fastest_wave(at.u); }}};
   }
-  void further_macroscopic(const double* f, double* values) const override { values[0] = fastest_wave(f); }
 
   const std::vector<initial_data>& initial() const override { return initial_; }
   std::vector<data_form> data_forms() const override {

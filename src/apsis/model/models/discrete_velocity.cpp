@@ -120,14 +120,16 @@ class discrete_velocity_model final : public model {
     state.T = square / (state.rho * d());
     fluid_field_values(state, d(), values);
   }
-  std::vector<field_name> further_fields() const override {
-    std::vector<field_name> all;
+  std::vector<field_group> derived_fields() const override {
+    field_group densities{{}, false, [n = components()](const field_point& at, double* values) {
+                            std::copy_n(at.u, n, values);
+                          }};
     for (int j = 0; j < components(); ++j)
-      all.push_back({density_name(j), fmt::format("density of velocity {} (dimensionless)", j + 1)});
-    return all;
-  }
-  void further_macroscopic(const double* f, double* values) const override {
-    std::copy_n(f, components(), values);
+      densities.names.push_back(
+          {density_name(j), fmt::format("density of velocity {} (dimensionless)", j + 1)});
+    std::vector<field_group> groups = {densities};
+    for (auto& group : flow_fields(d())) groups.push_back(std::move(group));
+    return groups;
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }

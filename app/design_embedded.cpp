@@ -45,7 +45,7 @@ int design_embedded(const embedded_options& given) {
   method m = find_method(given.method);
   const embedded_task task = task_of(given, m);
   method_writer file(given.out);
-  const embedded_search search = find_embedded(m, task);
+  const embedded_search search = search_embedded(m, task);
   if (!search.found) {
     std::vector<std::string> tried;
     for (const auto& attempt : search.attempts) tried.push_back(text_of(attempt, task.least_coverage));

@@ -21,7 +21,7 @@ using json = nlohmann::ordered_json;
 
 // Named methods are certified once; a file of the user is certified on request.
 certificate certificate_of(const method& m) {
-  const family_entry* family = find_family(m.name);
+  const family_entry* family = try_find_family(m.name);
   const bool named = family == nullptr ? is_method_name(m.name) : missing_member(*family, m.name).empty();
   return named && &find_method(m.name) == &m ? find_certificate(m.name) : certify(m);
 }

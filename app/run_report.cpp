@@ -83,7 +83,7 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
          fmt::format("{:.2e} (largest relative change of the rate at which the {} relaxes)", s.largest_cut,
                      moment));
   }
-  if (!has_space(*find_model(c.model.name))) {
+  if (!has_space(find_model(c.model.name))) {
     std::string values;
     for (const double x : run.state()) values += fmt::format("{}{:.17g}", values.empty() ? "" : "  ", x);
     line("solution", values);

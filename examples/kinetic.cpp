@@ -12,14 +12,14 @@
 
 int main() {
   using apsis::position, std::numbers::pi;
-  apsis::model_config config = apsis::default_config(*apsis::find_model("bgk"));
+  apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
   config.velocity = {.max = 8.0, .points = 40};
-  const auto bgk = apsis::find_model("bgk")->make(config);
+  const auto bgk = apsis::find_model("bgk").make(config);
   const auto v = bgk->velocities().speeds(0);
 
   apsis::problem_builder builder(*bgk);
   builder.on(apsis::grid::line(40, 0.0, 2.0))
-      .with_reconstruction(apsis::find_reconstruction("weno5-z")->make())
+      .with_reconstruction(apsis::find_reconstruction("weno5-z").make())
       .with_positivity_limiter()
       .with_epsilon([](const position& x) { return 1e-4 + 0.1 * std::pow(std::sin(0.5 * pi * x[0]), 2); });
   const auto problem = builder.build();

@@ -130,7 +130,7 @@ json boundaries() {
   for (const boundary_entry* b : boundary_entries()) {
     json one = {{"name", b->name}, {"description", b->description}};
     if (b->variables != nullptr)
-      for (const auto& v : b->variables(prototype(*find_model("bgk"))))
+      for (const auto& v : b->variables(prototype(find_model("bgk"))))
         one["variables"].push_back(
             fmt::format("{}: {}{}", v.name, v.doc, v.value ? fmt::format(" [{}]", *v.value) : ""));
     all.push_back(one);

@@ -33,7 +33,7 @@ double constant_epsilon(const case_config& config) {
     throw input_error(place_of(config, "model.epsilon"),
                       "the case has no viscosity epsilon T^s from which a mean free path follows; add "
                       "collision_rate = \"viscosity\" or a table [gas]");
-  const int dimensions = prototype(*find_model(config.model.name)).space_dimensions();
+  const int dimensions = prototype(find_model(config.model.name)).space_dimensions();
   const expression formula(config.model.epsilon, place_of(config, "model.epsilon"),
                            formula_of_position(dimensions, true, config.constants));
   if (!formula.is_constant())

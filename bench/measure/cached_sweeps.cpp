@@ -26,7 +26,7 @@ grid mesh_of(const case_config& config) {
 }  // namespace
 
 cached_sweeps::cached_sweeps(const case_config& config, int accumulators)
-    : scheme_(find_reconstruction(config.space.reconstruction)->make()) {
+    : scheme_(find_reconstruction(config.space.reconstruction).make()) {
   const int beyond = halo + scheme_->ghost_width();
   const cell_box box = tiling(mesh_of(config), sweep_block_length(columns), 1).box(0);
   int longest = 0;

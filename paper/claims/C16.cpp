@@ -38,7 +38,7 @@ populations random_populations(random_source& random) {
 }
 
 struct broadwell {
-  std::unique_ptr<model> owner = find_model("broadwell")->make({});
+  std::unique_ptr<model> owner = find_model("broadwell").make({});
   const relaxation_model& equation = *owner->as_relaxation();
 };
 
@@ -75,7 +75,7 @@ void transport_randomly(const broadwell& b, const std::string& scheme, random_so
   constexpr int cells = 15;
   const grid mesh = grid::line(cells, 0.0, cells);
   const transport t(b.equation, std::make_shared<domain>(make_domain(mesh, "periodic")),
-                    {find_reconstruction(scheme)->make(), limiter_kind::none});
+                    {find_reconstruction(scheme).make(), limiter_kind::none});
   const populations start = random_populations(random), slope = random_populations(random);
   field u(cells, 3), change(cells, 3);
   for (int i = 0; i < cells; ++i)

@@ -62,15 +62,15 @@ bool warn_of_loss(Problem& problem, const typename Problem::state& u, double t, 
                   const step_choice& choice, const rate_response& response, bool layer,
                   const Difference& difference) {
   const double dt = std::min(*choice.dt, end - t);
-  const auto found = find_rate_loss(problem, t, u, dt, response, difference, layer);
+  const auto found = compute_rate_loss(problem, t, u, dt, response, difference, layer);
   if (!found) return false;
   const loss_verdict verdict = judge_loss(*found, 0.0, end - t, choice.tolerance);
   if (!verdict.large) return false;
   std::string remedy = "give a smaller dt";
   for (const choice_row& row : choice_table()) {
-    const auto other = find_rate_response(row.method);
+    const auto other = compute_rate_response(row.method);
     if (!other || row.method == m.name || row.tolerance_from) continue;
-    const auto left = find_rate_loss(problem, t, u, dt, *other, difference, layer);
+    const auto left = compute_rate_loss(problem, t, u, dt, *other, difference, layer);
     if (!left || judge_loss(*left, 0.0, end - t, {}).expected > 0.1 * verdict.expected) continue;
     remedy = "choose method = \"" + row.method + "\", or a smaller dt";
     break;
@@ -101,7 +101,7 @@ step_count march_through(Problem& problem, typename Problem::state& u, const std
   const auto observe = [&check](long, double, double, const auto&) { check(); };
   // Equal steps alone: with a tolerance the estimated error shortens them.
   const bool watched = choice.dt && !choice.tolerance && !collides_exactly(problem);
-  const auto response = watched ? find_rate_response(m) : std::nullopt;
+  const auto response = watched ? compute_rate_response(m) : std::nullopt;
   bool warned = false;
   step_count count;
   for (std::size_t k = 1; k < t.size(); ++k) {

@@ -140,10 +140,10 @@ TEST(boundary, periodic_on_one_side_only_is_refused) {
 }
 
 TEST(boundary, every_name_is_found_and_an_unknown_one_gets_a_suggestion) {
-  auto parts = apsis::default_config(*apsis::find_model("bgk"));
+  auto parts = apsis::default_config(apsis::find_model("bgk"));
   parts.velocity.max = 6.0;
   parts.velocity.points = 12;
-  const auto gas = apsis::find_model("bgk")->make(parts);
+  const auto gas = apsis::find_model("bgk").make(parts);
   for (const auto& name : apsis::boundary_names()) {
     apsis::face_quantities values;
     if (name == "inflow" || name == "far-field") values = {{"rho", {1.0}}, {"T", {1.0}}};

@@ -22,7 +22,7 @@ embedded_search search_for(const std::string& name, int order = 0,
   embedded_task task;
   task.order = order;
   task.cost = cost;
-  return find_embedded(find_method(name), task);
+  return search_embedded(find_method(name), task);
 }
 
 embedded_certificate certified(const std::string& name, const embedded_row& row) {
@@ -108,7 +108,7 @@ TEST(embedded_solution, is_a_multiple_of_the_taylor_term_if_possible) {
   EXPECT_NEAR(e.estimate.convert_to<double>(), std::hypot(1.0 / 3.0, 1.0 / 6.0) / 30, 1e-15);
   embedded_task half;
   half.parts = 2;
-  const auto larger = certified("imdrk-3-3", *find_embedded(find_method("imdrk-3-3"), half).found);
+  const auto larger = certified("imdrk-3-3", *search_embedded(find_method("imdrk-3-3"), half).found);
   EXPECT_NEAR((larger.estimate / e.estimate).convert_to<double>(), 15.0, 1e-12);
 }
 
@@ -167,7 +167,7 @@ TEST(embedded_solution, does_not_exist_if_only_the_convex_method_itself_has_the_
 TEST(embedded_solution, respects_the_margin) {
   embedded_task task;
   task.margin = 0.75;  // imdrk-7-4 has 0.46 without it
-  const auto search = find_embedded(find_method("imdrk-7-4"), task);
+  const auto search = search_embedded(find_method("imdrk-7-4"), task);
   ASSERT_TRUE(search.found);
   const auto e = certified("imdrk-7-4", *search.found);
   EXPECT_EQ(e.order, 2);

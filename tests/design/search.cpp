@@ -273,7 +273,7 @@ TEST(design_search, makes_the_band_small) {
   const auto found = search_in_team(task, 1);
   ASSERT_TRUE(found.best);
   const auto band = [](const method& m) {
-    return find_intermediate_band(to_butcher(m.coefficients<double>())).error;
+    return compute_intermediate_band(to_butcher(m.coefficients<double>())).error;
   };
   const auto m = to_polished_method(task, *found.best, "designed");
   EXPECT_LT(band(m), 0.7 * band(find_method("md-imex-8-3")));

@@ -44,18 +44,18 @@ class Layers(unittest.TestCase):
     def test_a_room_may_not_include_what_the_rooms_that_it_includes_may(self):
         rooms = check_layers.read_rooms("apsis_room(a)\napsis_room(b DEPENDS a PUBLIC x)\napsis_room(c DEPENDS b)\n")
         self.assertEqual(rooms, {"a": set(), "b": {"a"}, "c": {"b"}})
-        self.assertEqual(self.planted("src/apsis/scheme/planted.hpp", "#include <apsis/core/errors.hpp>\n"),
-                         ["src/apsis/scheme/planted.hpp:1: scheme includes core (apsis/core/errors.hpp)"])
+        self.assertEqual(self.planted("src/apsis/model/planted.hpp", "#include <apsis/method/method.hpp>\n"),
+                         ["src/apsis/model/planted.hpp:1: model includes method (apsis/method/method.hpp)"])
 
     def test_a_grant_of_a_room_that_comes_later_is_found(self):
         cmake = (SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8")
-        found = self.planted("src/apsis/CMakeLists.txt", cmake.replace("apsis_room(scheme KERNELS DEPENDS exec", "apsis_room(scheme KERNELS DEPENDS exec run"))
+        found = self.planted("src/apsis/CMakeLists.txt", cmake.replace("apsis_room(scheme KERNELS DEPENDS core exec", "apsis_room(scheme KERNELS DEPENDS core exec run"))
         self.assertIn("src/apsis/CMakeLists.txt: scheme may include ['run'] (not declared before it)", found)
 
     def test_a_grant_that_no_file_uses_is_found(self):
         cmake = (SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8")
-        found = self.planted("src/apsis/CMakeLists.txt", cmake.replace("apsis_room(scheme KERNELS DEPENDS exec", "apsis_room(scheme KERNELS DEPENDS core exec"))
-        self.assertEqual(found, ["src/apsis/CMakeLists.txt: scheme may include ['core'] (its files do not)"])
+        found = self.planted("src/apsis/CMakeLists.txt", cmake.replace("apsis_room(scheme KERNELS DEPENDS core exec", "apsis_room(scheme KERNELS DEPENDS core exec velocity"))
+        self.assertEqual(found, ["src/apsis/CMakeLists.txt: scheme may include ['velocity'] (its files do not)"])
 
     def test_a_room_that_cmake_does_not_know_is_found(self):
         self.assertEqual(self.planted("src/apsis/attic/planted.hpp", "#pragma once\n"),

@@ -58,11 +58,11 @@ outcome run(const apsis::method& m, double epsilon, double dt, bool near_equilib
   auto problem = ode_model::as_relaxation<state>(epsilon);
   apsis::stepper march(m, problem);
   state u = start_of(near_equilibrium);
-  const auto response = apsis::find_rate_response(m);
+  const auto response = apsis::compute_rate_response(m);
   double done = 0.0, result = 0.0;
   for (int k = 0; k < 8; ++k) {
     const auto loss =
-        apsis::find_rate_loss(problem, k / 8.0, u, dt, *response, distance, k == 0 && !near_equilibrium);
+        apsis::compute_rate_loss(problem, k / 8.0, u, dt, *response, distance, k == 0 && !near_equilibrium);
     done += loss->rate / 8.0 + loss->layer;
     result = loss->result;
     apsis::integrate(march, u, k / 8.0, (k + 1) / 8.0, apsis::step_rule<double>::fixed(dt));
@@ -128,8 +128,8 @@ TEST(rate_loss, of_a_deviation_that_stiff_transport_sustains_is_the_error) {
       [](double) { return 1.0; }, 0.01);
   const auto estimate = [&](const char* name) {
     const state u{5.0, std::atan(5.0)};
-    return apsis::find_rate_loss(problem, 5.0, u, 0.1, *apsis::find_rate_response(name), largest_difference,
-                                 false);
+    return apsis::compute_rate_loss(problem, 5.0, u, 0.1, *apsis::compute_rate_response(name),
+                                    largest_difference, false);
   };
   const auto unfit = estimate("md-imex-6-3"), fit = estimate("extrapolated-euler-8");
   apsis::stepper march(apsis::find_method("md-imex-6-3"), problem);
@@ -142,8 +142,8 @@ TEST(rate_loss, of_a_deviation_that_stiff_transport_sustains_is_the_error) {
   EXPECT_LT(fit->result, 0.05 * unfit->result);
   // From y(0) = 0 the state says nothing of its size; the deviation that follows does.
   const state zero{0.0, 0.0};
-  const auto start = apsis::find_rate_loss(problem, 0.0, zero, 0.1, *apsis::find_rate_response("md-imex-6-3"),
-                                           largest_difference, false);
+  const auto start = apsis::compute_rate_loss(
+      problem, 0.0, zero, 0.1, *apsis::compute_rate_response("md-imex-6-3"), largest_difference, false);
   EXPECT_TRUE(apsis::judge_loss(*start, 0.0, 10.0, {}).large);
 }
 
@@ -152,8 +152,8 @@ TEST(rate_loss, without_transport_or_deviation_is_nothing) {
       [](double, const state&, state& out) { out = {0.0, 0.0}; }, [](const state& u) { return u[0]; },
       [](double w, state& out) { out = {w, w}; }, [](double) { return 1.0; }, 1e-4);
   const state u{1.0, 1.0};
-  const auto loss =
-      apsis::find_rate_loss(problem, 0.0, u, 0.1, *apsis::find_rate_response("md-imex-6-3"), distance, true);
+  const auto loss = apsis::compute_rate_loss(problem, 0.0, u, 0.1,
+                                             *apsis::compute_rate_response("md-imex-6-3"), distance, true);
   EXPECT_LT(loss->rate + loss->result + loss->layer, 1e-12);
   EXPECT_FALSE(apsis::judge_loss(*loss, 0.0, 1e3, {}).large);
 }
@@ -163,8 +163,8 @@ TEST(rate_loss, is_unknown_where_a_solve_fails) {
       [](double, const state&, state& out) { out = {0.0, 0.0}; }, [](const state& u) { return u[0]; },
       [](double w, state& out) { out = {w, std::sqrt(-w)}; }, [](double) { return 1.0; }, 1e-4);
   const state u{1.0, 1.0};
-  EXPECT_FALSE(
-      apsis::find_rate_loss(problem, 0.0, u, 0.1, *apsis::find_rate_response("md-imex-6-3"), distance, true));
+  EXPECT_FALSE(apsis::compute_rate_loss(problem, 0.0, u, 0.1, *apsis::compute_rate_response("md-imex-6-3"),
+                                        distance, true));
 }
 
 TEST(verdict, is_by_the_error_or_by_the_part_of_all_changes) {

@@ -38,7 +38,7 @@ outcome run_to(const apsis::method& m, double epsilon, double tolerance) {
   apsis::stepper march(m, problem, apsis::solutions::result_and_embedded);
   apsis::step_controller<double> control(tolerance, m.embedded->order);
   auto u = ode_model::initial_state<state>();
-  const auto bounds = apsis::find_plateau_bounds(apsis::to_butcher(m.coefficients<double>()));
+  const auto bounds = apsis::compute_plateau_bounds(apsis::to_butcher(m.coefficients<double>()));
   const auto expected =
       apsis::forecast_tolerance(march, 0.0, u, 1.0, 1.0, control.target(), bounds, distance);
   const auto done = apsis::integrate_to_tolerance(march, u, 0.0, 1.0, apsis::step_rule<double>::unlimited(),

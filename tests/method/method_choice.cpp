@@ -52,7 +52,7 @@ TEST(choice, is_a_method_that_can_do_what_is_asked) {
       EXPECT_LT(apsis::rate_errors_at(m, 2.0 * apsis::resolved_ratio).flux, inf);
     } else {
       EXPECT_EQ(m.kind, apsis::method_kind::imex);
-      const auto response = apsis::find_rate_response(m);
+      const auto response = apsis::compute_rate_response(m);
       ASSERT_TRUE(response);
       // The terms of size ε are right in the limit, so that no choice has a plateau.
       EXPECT_NEAR(apsis::rate_errors_at(m, 1e8).flux, 0.0, 1e-5) << m.name;

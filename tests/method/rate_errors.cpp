@@ -41,7 +41,7 @@ TEST_P(errors_at_rates, have_the_limits_of_the_intermediate_regime) {
 
 TEST_P(errors_at_rates, are_interpolated_to_a_quarter_of_the_largest) {
   const apsis::method& m = apsis::find_method(GetParam());
-  const auto fit = apsis::find_rate_response(m);
+  const auto fit = apsis::compute_rate_response(m);
   ASSERT_TRUE(fit);
   double flux = 0.0, last = 0.0, flux_defect = 0.0, last_defect = 0.0;
   for (double z = 1e-2; z < 1e7; z *= 1.3) {
@@ -80,9 +80,9 @@ TEST(errors_of_other_integrators, are_those_of_their_equations) {
   // Explicit methods have a response within their stability limit, 2 for the method of second order.
   EXPECT_TRUE(std::isfinite(apsis::rate_errors_at(apsis::find_method("ssprk-2-2"), 1.9).flux));
   EXPECT_FALSE(std::isfinite(apsis::rate_errors_at(apsis::find_method("ssprk-2-2"), 2.1).flux));
-  EXPECT_FALSE(apsis::find_rate_response("ssprk-2-2"));
-  EXPECT_FALSE(apsis::find_rate_response("imdrk-2-3"));
-  EXPECT_TRUE(apsis::find_rate_response("exponential-2"));
+  EXPECT_FALSE(apsis::compute_rate_response("ssprk-2-2"));
+  EXPECT_FALSE(apsis::compute_rate_response("imdrk-2-3"));
+  EXPECT_TRUE(apsis::compute_rate_response("exponential-2"));
 }
 
 }  // namespace rate_errors_test

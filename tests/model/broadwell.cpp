@@ -14,7 +14,7 @@ namespace broadwell_test {
 namespace {
 
 const apsis::relaxation_model& broadwell() {
-  static const auto made = apsis::find_model("broadwell")->make({});
+  static const auto made = apsis::find_model("broadwell").make({});
   return dynamic_cast<const apsis::relaxation_model&>(*made);
 }
 

@@ -17,7 +17,7 @@ namespace {
 const apsis::relaxation_model& called(const char* name) {
   static std::map<std::string, std::unique_ptr<apsis::model>> made;
   auto& one = made[name];
-  if (!one) one = apsis::find_model(name)->make({});
+  if (!one) one = apsis::find_model(name).make({});
   return dynamic_cast<const apsis::relaxation_model&>(*one);
 }
 

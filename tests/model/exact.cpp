@@ -49,7 +49,7 @@ TEST(exact_solution, starts_from_the_initial_data) {
 }
 
 TEST(exact_solution, of_the_decay_model_satisfies_its_equation) {
-  const auto m = make(*apsis::find_model("decay"));
+  const auto m = make(apsis::find_model("decay"));
   const auto& general = dynamic_cast<const apsis::general_model&>(*m);
   const auto& exact = m->initial().front().exact;
   check_property("u' = Q(u)", [&] {

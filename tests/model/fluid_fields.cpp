@@ -17,10 +17,10 @@ namespace {
 using testing::ElementsAre;
 
 std::unique_ptr<apsis::model> gas(int dimensions) {
-  auto config = apsis::default_config(*apsis::find_model("bgk"));
+  auto config = apsis::default_config(apsis::find_model("bgk"));
   config.parameters["velocity_dimensions"] = dimensions;
   config.velocity = {9.0, 24, apsis::equilibrium_choice::automatic};
-  return apsis::find_model("bgk")->make(config);
+  return apsis::find_model("bgk").make(config);
 }
 
 std::vector<std::string> names_of_fields(const apsis::model& m) {

@@ -20,7 +20,7 @@ using apsis::point_batch;
 using testing::HasSubstr;
 
 std::unique_ptr<apsis::model> made(const std::string& name) {
-  const auto* entry = apsis::find_model(name);
+  const auto* entry = apsis::try_find_model(name);
   return entry->make(apsis::default_config(*entry));
 }
 

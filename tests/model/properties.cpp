@@ -115,8 +115,8 @@ TEST(models, initial_data_have_distinct_names_and_sorted_jumps) {
     for (const auto& data : apsis::prototype(*entry).initial())
       EXPECT_TRUE(std::is_sorted(data.jumps.begin(), data.jumps.end())) << data.name;
   }
-  EXPECT_EQ(apsis::initial_names(*apsis::find_model("bgk")).front(), "mixed-v");
-  EXPECT_EQ(apsis::initial_names(*apsis::find_model("decay")), std::vector<std::string>{"start"});
+  EXPECT_EQ(apsis::initial_names(apsis::find_model("bgk")).front(), "mixed-v");
+  EXPECT_EQ(apsis::initial_names(apsis::find_model("decay")), std::vector<std::string>{"start"});
 }
 
 TEST(models, a_row_has_one_value_per_velocity_and_component) {
@@ -129,11 +129,11 @@ TEST(models, a_row_has_one_value_per_velocity_and_component) {
 }
 
 TEST(models, the_ode_starts_at_the_given_values) {
-  auto config = apsis::default_config(*apsis::find_model("ode"));
+  auto config = apsis::default_config(apsis::find_model("ode"));
   config.parameters["u1"] = -0.25;
   config.parameters["u2"] = 3.0;
   std::vector<double> u(2);
-  const auto ode = apsis::find_model("ode")->make(config);
+  const auto ode = apsis::find_model("ode").make(config);
   ode->initial().back().point_value({}, u);
   EXPECT_EQ(ode->initial().back().name, "given");
   EXPECT_EQ(u, (std::vector<double>{-0.25, 3.0}));
@@ -141,9 +141,9 @@ TEST(models, the_ode_starts_at_the_given_values) {
 
 TEST(models, bgk_reports_how_its_velocity_grid_must_change) {
   const auto complaint = [](double max, int points) {
-    apsis::model_config config = apsis::default_config(*apsis::find_model("bgk"));
+    apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
     config.velocity = {max, points, apsis::equilibrium_choice::automatic};
-    const auto m = apsis::find_model("bgk")->make(config);
+    const auto m = apsis::find_model("bgk").make(config);
     std::vector<double> u(static_cast<std::size_t>(m->components()));
     m->initial()[0].point_value({0.3}, u);
     return m->check_supported(u.data()).problem;

@@ -16,10 +16,10 @@ namespace relaxation_test {
 namespace {
 
 std::unique_ptr<apsis::model> make(const std::string& flux, double speed) {
-  auto config = apsis::default_config(*apsis::find_model("relaxation"));
+  auto config = apsis::default_config(apsis::find_model("relaxation"));
   config.texts["flux"] = flux;
   config.parameters["speed"] = speed;
-  return apsis::find_model("relaxation")->make(config);
+  return apsis::find_model("relaxation").make(config);
 }
 
 const apsis::relaxation_model& as_relaxation(const apsis::model& m) {

@@ -28,13 +28,13 @@ struct gas_and_model {
 
 gas_and_model make(const char* name, int dimensions, int points, double max = 8.0,
                    const char* tails = "nonnegative") {
-  auto parts = apsis::default_config(*apsis::find_model(name));
+  auto parts = apsis::default_config(apsis::find_model(name));
   if (parts.texts.contains("tails")) parts.texts["tails"] = tails;
   parts.parameters["velocity_dimensions"] = dimensions;
   parts.parameters["degrees_of_freedom"] = 3;
   parts.velocity.max = max;
   parts.velocity.points = points;
-  return {std::make_unique<apsis::gas>(parts), apsis::find_model(name)->make(parts)};
+  return {std::make_unique<apsis::gas>(parts), apsis::find_model(name).make(parts)};
 }
 
 double number(int low, int high) {
@@ -147,8 +147,8 @@ void expect_rates(const char* name, double prandtl, double rate_of_stress, doubl
     const auto state = m.gas->state(omega.data());
     const double A = 0.4, B = 0.3;
     const row v = solved(*m.equation, u, A, -B, 1.0);
-    const auto before = find_central_moments(*m.gas, u.data(), state),
-               after = find_central_moments(*m.gas, v.data(), state);
+    const auto before = compute_central_moments(*m.gas, u.data(), state),
+               after = compute_central_moments(*m.gas, v.data(), state);
     const auto decay = [&](double rate) { return 1.0 / (1.0 + rate * A + rate * rate * B); };
     // Tails beyond the grid carry 1e-9 of the heat flux.
     EXPECT_NEAR((after.stress[0][0] - state.T) / (before.stress[0][0] - state.T), decay(rate_of_stress), 1e-7)

@@ -25,8 +25,8 @@ namespace velocity_lines_test {
 
 namespace {
 
-using apsis::find_velocity_line;
 using apsis::make_lines;
+using apsis::find_velocity_line;
 using apsis::velocity_config;
 using apsis::velocity_grid;
 using apsis::velocity_line;
@@ -85,7 +85,7 @@ std::vector<double> random_row(int size) {
 TEST(velocity_line, integrates_maxwellians) {
   // Moments up to the fourth of a Gaussian of temperature 1: 1, 0, 1, 0, 3; its mass beyond 8 is 1e-15.
   for (const auto& name : names()) {
-    const velocity_line line = find_velocity_line(name)->make(40, 8.0);
+    const velocity_line line = find_velocity_line(name).make(40, 8.0);
     const double exact[] = {1.0, 0.0, 1.0, 0.0, 3.0};
     for (int k = 0; k < 5; ++k)
       EXPECT_NEAR(integral(line, [k](double v) { return std::pow(v, k) * gaussian(v); }), exact[k], 2e-6)
@@ -99,9 +99,9 @@ TEST(velocity_line, for_walls_integrates_halves_of_maxwellians) {
     return integral(line, [power](double v) { return v > 0.0 ? std::pow(v, power) * gaussian(v) : 0.0; });
   };
   const double flux = 1.0 / std::sqrt(2.0 * std::numbers::pi);
-  EXPECT_GT(std::abs(half(find_velocity_line("uniform")->make(32, 8.0), 1) - flux), 2e-3);
+  EXPECT_GT(std::abs(half(find_velocity_line("uniform").make(32, 8.0), 1) - flux), 2e-3);
   for (const char* name : {"graded", "half-range-gauss-hermite"}) {
-    const velocity_line line = find_velocity_line(name)->make(32, name[0] == 'g' ? 8.0 : 0.0);
+    const velocity_line line = find_velocity_line(name).make(32, name[0] == 'g' ? 8.0 : 0.0);
     EXPECT_NEAR(half(line, 0), 0.5, 1e-6) << name;
     EXPECT_NEAR(half(line, 1), flux, 1e-6) << name;
     EXPECT_NEAR(half(line, 2), 0.5, 1e-6) << name;
@@ -110,7 +110,7 @@ TEST(velocity_line, for_walls_integrates_halves_of_maxwellians) {
 
 TEST(velocity_line, graded_has_sixth_order_for_a_jump_at_0) {
   const auto error = [](int points) {
-    const velocity_line line = find_velocity_line("graded")->make(points, 9.0);
+    const velocity_line line = find_velocity_line("graded").make(points, 9.0);
     return std::abs(integral(line, [](double v) { return v > 0.0 ? std::exp(-v) * gaussian(v) : 0.0; }) -
                     0.5 * std::exp(0.5) * std::erfc(1.0 / std::numbers::sqrt2));
   };
@@ -213,9 +213,9 @@ TEST(velocity_line, refuses_what_it_cannot_be) {
 
 TEST(velocity_set_of_a_gas, says_before_the_run_whether_it_holds_the_data) {
   const auto problem = [](const std::string& set, int points, double T) {
-    auto parts = apsis::default_config(*apsis::find_model("bgk"));
+    auto parts = apsis::default_config(apsis::find_model("bgk"));
     parts.velocity = config_of({set}, points, set == "graded" ? 6.0 : 0.0);
-    const auto gas = apsis::find_model("bgk")->make(parts);
+    const auto gas = apsis::find_model("bgk").make(parts);
     std::vector<double> row(static_cast<std::size_t>(gas->components()));
     const auto form = gas->data_forms().front();
     if (!form.row(std::vector<double>{1.0, 0.0, T}, row).empty()) return std::string("no Maxwellian");

@@ -75,7 +75,7 @@ counts made_by_a_run(const std::string& text, const std::vector<std::string>& ov
 }  // namespace
 
 TEST(made_once, are_model_setup_domain_and_formulas_of_a_run) {
-  apsis::prototype(*apsis::find_model("bgk"));  // for questions about the model without a case
+  apsis::prototype(apsis::find_model("bgk"));  // for questions about the model without a case
   const counts made = made_by_a_run(gas, {});
   EXPECT_EQ(made.models, 1);
   EXPECT_EQ(made.setups, 1);

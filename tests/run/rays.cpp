@@ -52,7 +52,7 @@ end = 5
 )toml";
 
 velocity_line line(const std::string& set, int points, double max) {
-  return apsis::find_velocity_line(set)->make(points, max);
+  return apsis::find_velocity_line(set).make(points, max);
 }
 
 double ray_error(const std::string& set, int points, double max) {

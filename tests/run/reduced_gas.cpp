@@ -88,11 +88,11 @@ TEST(reduced_gas, becomes_a_perfect_gas_with_its_ratio_of_specific_heats) {
 }
 
 TEST(reduced_gas, has_the_collision_rate_of_its_viscosity) {
-  apsis::model_config config = apsis::default_config(*apsis::find_model("bgk"));
+  apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
   config.parameters["degrees_of_freedom"] = 3;
   config.parameters["viscosity_exponent"] = 0.81;
   config.texts["collision_rate"] = "viscosity";
-  const auto gas = apsis::find_model("bgk")->make(config);
+  const auto gas = apsis::find_model("bgk").make(config);
   const auto* relaxation = dynamic_cast<const apsis::relaxation_model*>(gas.get());
   ASSERT_NE(relaxation, nullptr);
   const double rho = 1.7, u = 0.3, T = 2.5;

@@ -76,7 +76,7 @@ std::string refusal(const std::string& path) {
 
 /// The path of a small checkpoint.
 std::string some_checkpoint(const test_folder& folder) {
-  run(parse_case(small_case(*find_model("ode"), "md-imex-3-2", ""), "case"), folder / "some", 2);
+  run(parse_case(small_case(find_model("ode"), "md-imex-3-2", ""), "case"), folder / "some", 2);
   return folder / "some/checkpoint.h5";
 }
 
@@ -85,7 +85,7 @@ std::string some_checkpoint(const test_folder& folder) {
 class restart : public testing::TestWithParam<std::string> {};
 
 TEST_P(restart, continues_bit_for_bit_with_every_method_from_any_step) {
-  const auto& model = *find_model(GetParam());
+  const auto& model = find_model(GetParam());
   const test_folder folder;
   std::mt19937 random(7);
   int asked = 0;
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(models, restart, testing::ValuesIn([] {
 TEST(restart_from, a_graded_start_or_a_tolerance_continues_bit_for_bit_from_every_step) {
   const test_folder folder;
   for (const std::string more : {"startup = \"graded\"\n", "tolerance = 1e-4\n"}) {
-    const auto c = parse_case(small_case(*find_model("ode"), "md-imex-8-3", more), "case");
+    const auto c = parse_case(small_case(find_model("ode"), "md-imex-8-3", more), "case");
     const auto whole = run(c, folder / "whole", 1000);
     const auto steps = static_cast<long>(whole.history.rows.size()) - 1;
     ASSERT_GE(steps, 10);
@@ -139,7 +139,7 @@ TEST(restart_from, a_graded_start_or_a_tolerance_continues_bit_for_bit_from_ever
 
 TEST(restart_from, a_kill_keeps_the_snapshots_of_the_distribution_even_if_the_continuation_fails) {
   const test_folder folder;
-  const auto& model = *find_model("relaxation");
+  const auto& model = find_model("relaxation");
   const auto c = parse_case(small_case(model, "md-imex-3-2", "") + "distribution = \"snapshots\"\n", "case");
   run(c, folder / "whole", 1000);
   run(c, folder / "o", 6);
@@ -216,7 +216,7 @@ TEST(a_checkpoint, of_another_commit_is_accepted_with_a_warning) {
   EXPECT_EQ(saved.commit, commit());
   saved.commit = std::string(40, 'a');
   write_checkpoint(folder / "other.h5", saved);
-  const auto c = parse_case(small_case(*find_model("ode"), "md-imex-3-2", ""), "case");
+  const auto c = parse_case(small_case(find_model("ode"), "md-imex-3-2", ""), "case");
   testing::internal::CaptureStderr();
   const auto continued = run(c, folder / "again", 1000, folder / "other.h5");
   const std::string said = testing::internal::GetCapturedStderr();

@@ -31,7 +31,7 @@ using testing::Not;
 namespace {
 
 double limit_of(const std::string& method, const std::string& scheme) {
-  const auto reconstruct = find_reconstruction(scheme)->make();
+  const auto reconstruct = find_reconstruction(scheme).make();
   return cfl_limit(find_integrator(method).growth(), *reconstruct);
 }
 
@@ -170,7 +170,7 @@ TEST(cfl_limits, keep_a_relaxing_gas_of_two_velocities_stable) {
     const double nu = limit_of(name, "upwind5");
     const auto form = find_method(name).coefficients<double>();
     const auto initial = initial_weights(form);
-    const auto edge = linear_edge(*find_reconstruction("upwind5")->make());
+    const auto edge = linear_edge(*find_reconstruction("upwind5").make());
     double largest = 0.0, above = 0.0;
     for (int k = 1; k <= 24; ++k) {
       const complex symbol = transport_symbol(edge, std::numbers::pi * k / 24);

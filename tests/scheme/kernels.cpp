@@ -109,7 +109,7 @@ stencil5 mirrored(stencil5 u) {
 constexpr double rounding = 2e-14;
 
 void expect_edges(const std::string& name, expected (*formula)(const stencil5&), int width, double spike) {
-  const auto scheme = apsis::find_reconstruction(name)->make();
+  const auto scheme = apsis::find_reconstruction(name).make();
   const pencil p = draw(width, 20, scheme->ghost_width(), static_cast<std::uint64_t>(width), spike);
   const auto count = static_cast<std::size_t>(p.cells * width);
   aligned_vector<double> left(count), right(count), out(count), forward;
@@ -145,7 +145,7 @@ TEST(kernels, a_scheme_that_defines_both_edges_alone_gets_its_outflow_edges_from
     }
 
    private:
-    std::unique_ptr<apsis::reconstruction> scheme_ = apsis::find_reconstruction("weno5-z")->make();
+    std::unique_ptr<apsis::reconstruction> scheme_ = apsis::find_reconstruction("weno5-z").make();
   };
   const plain scheme;
   EXPECT_EQ(scheme.operations(true), 0.0) << "not counted";
@@ -178,7 +178,7 @@ TEST(kernels, edges_depend_on_their_own_stencil_alone_whatever_the_size_of_other
     for (const char* name : {"weno5-z", "weno5-js"})
       for (const int width : {1, 3, 8, 40})
         for (const double spike : {1e3, 1e20, 1e60}) {
-          const auto scheme = apsis::find_reconstruction(name)->make();
+          const auto scheme = apsis::find_reconstruction(name).make();
           const pencil p = draw(width, 20, scheme->ghost_width(), static_cast<std::uint64_t>(width), spike);
           const auto all = static_cast<std::size_t>(p.cells * width), one = static_cast<std::size_t>(width);
           aligned_vector<double> left(all), right(all), out(all), own_left(one), own_right(one), own_out(one);

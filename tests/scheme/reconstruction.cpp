@@ -85,7 +85,7 @@ TEST(reconstruction, uses_the_linear_weights_for_tiny_data) {
   // At 1e-150 every β underflows; the edge value must be that of the unlimited fifth-order polynomial,
   // (2a − 13b + 47c + 27d − 3e)/60, as the weights of smooth data give it.
   for (const char* name : {"weno5-z", "weno5-js"}) {
-    const auto scheme = apsis::find_reconstruction(name)->make();
+    const auto scheme = apsis::find_reconstruction(name).make();
     const std::vector<double> shape = {1.0, 0.9, 0.7, 0.65, 0.2};
     std::vector<double> cells;
     for (const double s : shape) cells.push_back(s * 1e-150);
@@ -113,7 +113,7 @@ TEST(reconstruction, has_finite_edges_for_any_finite_data) {
 
 TEST(reconstruction, does_not_oscillate_at_a_jump) {
   for (const char* name : {"weno5-z", "weno5-js"}) {
-    const auto scheme = apsis::find_reconstruction(name)->make();
+    const auto scheme = apsis::find_reconstruction(name).make();
     const edges e = edges_of(*scheme, {1.0, 1.0, 1.0, 0.0, 0.0});
     // The stencils that cross the jump keep weights of about 1e-6 (JS) and below.
     EXPECT_NEAR(e.right, 1.0, 1e-3) << name;

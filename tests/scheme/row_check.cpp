@@ -19,13 +19,13 @@ TEST(row_check, finds_minimum_negative_entries_and_nan_at_any_position) {
         double& value = row[static_cast<std::size_t>(at)];
         for (const double x : {-1e-300, 0.0, -0.0, 1.0, -5.0}) {
           value = x;
-          const auto found = apsis::find_extremes(row.data(), n);
+          const auto found = apsis::compute_extremes(row.data(), n);
           EXPECT_EQ(found.lowest, x);
           EXPECT_EQ(found.negative, x < 0.0 ? 1 : 0);
         }
         for (const double x : {infinity, -infinity, nan}) {
           value = x;
-          EXPECT_TRUE(std::isnan(apsis::find_extremes(row.data(), n).lowest)) << n << " " << at;
+          EXPECT_TRUE(std::isnan(apsis::compute_extremes(row.data(), n).lowest)) << n << " " << at;
         }
       }
   });

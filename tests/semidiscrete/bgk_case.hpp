@@ -18,15 +18,15 @@
 /// A small BGK model for tests of the operators.
 inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, double max = 8.0,
                                                           int dimensions = 1) {
-  apsis::model_config config = apsis::default_config(*apsis::find_model("bgk"));
+  apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
   config.space_dimensions = dimensions;
   config.velocity = {max, points, apsis::equilibrium_choice::automatic};
-  auto made = apsis::find_model("bgk")->make(config);
+  auto made = apsis::find_model("bgk").make(config);
   return std::unique_ptr<apsis::relaxation_model>(dynamic_cast<apsis::relaxation_model*>(made.release()));
 }
 
 inline apsis::spatial_discretization scheme(const std::string& name, apsis::limiter_kind positivity) {
-  return {apsis::find_reconstruction(name)->make(), positivity};
+  return {apsis::find_reconstruction(name).make(), positivity};
 }
 
 inline std::shared_ptr<apsis::domain> space_of(const apsis::grid& mesh,

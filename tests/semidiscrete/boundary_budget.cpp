@@ -29,18 +29,18 @@ using targets = std::vector<apsis::target<budgeted_state, double>>;
 
 /// Two velocity dimensions of a gas in the plane, 12 × 12 velocities.
 std::unique_ptr<apsis::model> gas_in_plane() {
-  apsis::model_config config = apsis::default_config(*apsis::find_model("bgk"));
+  apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
   config.space_dimensions = 2;
   config.parameters["velocity_dimensions"] = config.parameters["degrees_of_freedom"] = 2.0;
   config.velocity = {7.0, 12, apsis::equilibrium_choice::formula};
-  return apsis::find_model("bgk")->make(config);
+  return apsis::find_model("bgk").make(config);
 }
 
 /// A periodic square of 4 × 4 cells.
 apsis::problem_builder builder_of(const apsis::model& m) {
   apsis::problem_builder builder(m);
   builder.on(grid(2, {4, 4, 1}, {}, {1.0, 1.0, 1.0}))
-      .with_reconstruction(apsis::find_reconstruction("upwind1")->make());
+      .with_reconstruction(apsis::find_reconstruction("upwind1").make());
   return builder;
 }
 
@@ -54,7 +54,7 @@ TEST(boundary_budget, of_every_end_is_the_pressure_on_its_cell_face_in_a_gas_at_
   const auto wall = std::shared_ptr<const apsis::boundary>(apsis::make_boundary("diffuse", *m));
   apsis::problem_builder builder(*m);
   builder.on(mesh)
-      .with_reconstruction(apsis::find_reconstruction("upwind1")->make())
+      .with_reconstruction(apsis::find_reconstruction("upwind1").make())
       .with_boundary(face{0, false}, wall)
       .with_boundary(face{0, true}, wall)
       .with_solid(0, wall);
@@ -114,7 +114,7 @@ TEST(boundary_budget, of_an_accumulator_that_is_the_state_itself_changes_after_t
   const auto m = gas_in_plane();
   const auto equations = apsis::problem_builder(*m)
                              .on(grid(2, {4, 4, 1}, {}, {1.0, 1.0, 1.0}))
-                             .with_reconstruction(apsis::find_reconstruction("upwind1")->make())
+                             .with_reconstruction(apsis::find_reconstruction("upwind1").make())
                              .build();
   budgeted_problem problem(*equations);
   budgeted_state u{field(16, m->components()), boundary_budget({1.0, 10.0})}, other = u;

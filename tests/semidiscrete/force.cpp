@@ -30,12 +30,12 @@ using testing::HasSubstr;
 constexpr int cells = 8;
 
 std::unique_ptr<apsis::model> gas_of(int dimensions, int degrees, int points) {
-  auto parts = apsis::default_config(*apsis::find_model("bgk"));
+  auto parts = apsis::default_config(apsis::find_model("bgk"));
   parts.parameters["velocity_dimensions"] = dimensions;
   parts.parameters["degrees_of_freedom"] = degrees;
   parts.velocity.max = 7.0;
   parts.velocity.points = points;
-  return apsis::find_model("bgk")->make(parts);
+  return apsis::find_model("bgk").make(parts);
 }
 
 acceleration constant(std::array<double, 3> a) {
@@ -48,7 +48,7 @@ std::unique_ptr<apsis::semidiscrete_problem> problem_of(const apsis::model& gas,
   apsis::problem_builder builder(gas);
   builder.on(apsis::grid::line(cells, 0.0, 1.0))
       .with_unknowns(apsis::formulation::finite_difference)
-      .with_reconstruction(apsis::find_reconstruction(scheme)->make())
+      .with_reconstruction(apsis::find_reconstruction(scheme).make())
       .with_force(of);
   if (limited) builder.with_positivity_limiter();
   return builder.build();
@@ -204,7 +204,7 @@ TEST(force, refuses_what_it_cannot_hold) {
   EXPECT_THAT(message(constant({std::numeric_limits<double>::infinity(), 0.0, 0.0})),
               HasSubstr("the largest acceleration is inf"));
   const auto other =
-      apsis::find_model("broadwell")->make(apsis::default_config(*apsis::find_model("broadwell")));
+      apsis::find_model("broadwell").make(apsis::default_config(apsis::find_model("broadwell")));
   EXPECT_THROW(problem_of(*other, constant({1.0, 0.0, 0.0}), false), apsis::input_error);
 }
 

@@ -89,9 +89,9 @@ class plain_transport {
   }
 
   double fraction(int i) const {
-    return limiter::harmless_fraction(value(i - 1), value(i),
-                                      static_cast<double>(edge_of(i - 1) - value(i - 1)),
-                                      static_cast<double>(edge_of(i) - value(i)));
+    return limiter::limiter_coefficient(value(i - 1), value(i),
+                                        static_cast<double>(edge_of(i - 1) - value(i - 1)),
+                                        static_cast<double>(edge_of(i) - value(i)));
   }
 
   /// The face between cells i and i + 1.

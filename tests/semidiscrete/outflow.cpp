@@ -12,7 +12,7 @@ using apsis::grid;
 using apsis::limiter_kind;
 
 std::unique_ptr<apsis::relaxation_model> broadwell() {
-  auto made = apsis::find_model("broadwell")->make({});
+  auto made = apsis::find_model("broadwell").make({});
   return std::unique_ptr<apsis::relaxation_model>(dynamic_cast<apsis::relaxation_model*>(made.release()));
 }
 

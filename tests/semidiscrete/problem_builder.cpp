@@ -34,11 +34,11 @@ std::string message_of(const std::function<void()>& body) {
 }
 
 std::shared_ptr<const apsis::reconstruction> weno() {
-  return apsis::find_reconstruction("weno5-z")->make();
+  return apsis::find_reconstruction("weno5-z").make();
 }
 
 std::unique_ptr<apsis::model> made(const std::string& name) {
-  const auto* entry = apsis::find_model(name);
+  const auto* entry = apsis::try_find_model(name);
   return entry->make(apsis::default_config(*entry));
 }
 

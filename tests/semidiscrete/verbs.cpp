@@ -49,7 +49,7 @@ std::unique_ptr<apsis::semidiscrete_problem> problem_of(const apsis::model& m, c
   apsis::problem_builder builder(m);
   builder.on(apsis::grid::line(cells, 0.0, 2.0))
       .with_unknowns(kind.formulation)
-      .with_reconstruction(apsis::find_reconstruction("weno5-z")->make())
+      .with_reconstruction(apsis::find_reconstruction("weno5-z").make())
       .with_epsilon([epsilon](const apsis::position& x) { return epsilon * (1.0 + x[0]); });
   if (kind.at_centres) builder.with_collisions_at(apsis::collision_points::centres);
   return builder.build();

@@ -32,7 +32,7 @@ class broadwell_as_general_model final : public apsis::general_model {
 
  private:
   static std::unique_ptr<apsis::model> make() {
-    const auto* entry = apsis::find_model("broadwell");
+    const auto* entry = apsis::try_find_model("broadwell");
     return entry->make(apsis::default_config(*entry));
   }
   std::unique_ptr<apsis::model> closed_ = make();

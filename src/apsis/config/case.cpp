@@ -152,22 +152,16 @@ velocity_config velocities_of(const case_config& config) {
 }
 
 std::shared_ptr<const model> make_model(const case_config& config) {
-  const model_entry* entry = find_model(config.model.name);
-  if (entry == nullptr) {
-    std::vector<std::string> names;
-    for (const model_entry* known : model_entries()) names.push_back(known->name);
-    throw input_error(fmt::format("unknown model '{}' (there is no such name); {}", shown(config.model.name),
-                                  suggest(config.model.name, names)));
-  }
-  model_config parts = default_config(*entry);
+  const model_entry& entry = find_model(config.model.name);
+  model_config parts = default_config(entry);
   for (const auto& [name, value] : config.model.parameters) parts.parameters[name] = value;
   for (const auto& [name, value] : config.model.texts) parts.texts[name] = value;
   for (const auto& [name, value] : config.model.lists) parts.lists[name] = value;
   parts.constants = config.constants;
   parts.space_dimensions = static_cast<int>(config.space.cells.size());
   parts.velocity = velocities_of(config);
-  const auto make = [&]() -> std::shared_ptr<const model> { return entry->make(parts); };
-  return config.parts->equation.get({entry, parts}, make);
+  const auto make = [&]() -> std::shared_ptr<const model> { return entry.make(parts); };
+  return config.parts->equation.get({&entry, parts}, make);
 }
 
 source_place place_of(const case_config& config, const std::string& path) {

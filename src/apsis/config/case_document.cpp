@@ -270,7 +270,7 @@ void add_output_tables(std::string& out, const case_config& config) {
 }  // namespace
 
 std::string to_toml(const case_config& config) {
-  const model_entry* model = find_model(config.model.name);
+  const model_entry* model = try_find_model(config.model.name);
   std::string out, table;
   // Parameters are the last keys of [model], written before the next table.
   const auto close_table = [&] {

@@ -19,7 +19,7 @@ class explainer {
   explicit explainer(const case_config& config) : config_(config) {}
 
   std::vector<explained_value> explain() {
-    const model_entry& model = *find_model(config_.model.name);
+    const model_entry& model = find_model(config_.model.name);
     for (const case_key& key : case_schema())
       if (applies(key, model)) add_key(key);
     for (const model_parameter& p : model.parameters)

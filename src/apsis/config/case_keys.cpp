@@ -36,7 +36,7 @@ std::vector<std::string> method_choices(const case_config&) {
 }
 
 std::vector<std::string> initial_choices(const case_config& c) {
-  const model_entry* entry = find_model(c.model.name);
+  const model_entry* entry = try_find_model(c.model.name);
   return entry != nullptr ? initial_names(*entry) : std::vector<std::string>{};
 }
 
@@ -46,7 +46,7 @@ std::optional<std::string> check_method_outside_catalogue(const std::string& nam
     static_cast<void>(find_integrator(name));
     return "";
   }
-  const family_entry* family = find_family(name);
+  const family_entry* family = try_find_family(name);
   if (family == nullptr) return std::nullopt;
   return missing_member(*family, name);
 }
@@ -65,7 +65,7 @@ case_key if_given(case_key of) {
 }
 
 bool needs_max(const std::string& name) {
-  const velocity_line_entry* entry = find_velocity_line(name);
+  const velocity_line_entry* entry = try_find_velocity_line(name);
   return entry != nullptr && entry->needs_max;
 }
 

@@ -139,7 +139,7 @@ class resolver {
   void find_the_model() {
     for (const case_key& key : case_schema())
       if (key.path == "model.name") take(key);
-    model_ = find_model(config_.model.name);
+    model_ = try_find_model(config_.model.name);
   }
 
   std::vector<std::string> valid_paths() const {

@@ -38,7 +38,7 @@ source_place place_of_table(const case_text& text, const case_config& config, co
 /// The gas of a table [gas], from its name and its own values.
 gas_species make_gas(const case_text& text, const case_config& config, double temperature) {
   const auto& given = config.gas;
-  gas_species gas = given.name ? *find_gas(*given.name) : gas_species{};
+  gas_species gas = given.name ? *try_find_gas(*given.name) : gas_species{};
   const auto need = [&](bool known, const char* key, const char* example) {
     if (!known)
       throw input_error(place_of_table(text, config, "gas"),
@@ -220,7 +220,7 @@ class epsilon_reader {
                       value == nullptr ? "value" : "mean_free_path"));
     const auto name =
         std::get<std::string>(to_value(key("model.knudsen.mean_free_path"), *definition, config_));
-    const double factor = 1.0 / find_mean_free_path(name)->knudsen_of_epsilon(viscosity_exponent());
+    const double factor = 1.0 / try_find_mean_free_path(name)->knudsen_of_epsilon(viscosity_exponent());
     set(*value, "model.knudsen.value", [factor](double kn) { return kn * factor; }, "({})*{:.17g}", factor);
   }
 

@@ -34,8 +34,7 @@ double step_of(const case_config& config, const model& equation) {
   const grid mesh = make_mesh(config);
   std::vector<double> spacing;
   for (int k = 0; k < mesh.dimensions(); ++k) spacing.push_back(mesh.spacing(k));
-  return (config.time.cfl ? *config.time.cfl : config.time.safety.value_or(1.0)) /
-         equation.crossing_rate(spacing);
+  return (config.time.cfl ? *config.time.cfl : config.time.safety.value_or(1.0)) / equation.cfl_rate(spacing);
 }
 
 /// u ← the initial data of the case at a point of space; empty if they are not in the case.
@@ -54,7 +53,7 @@ std::function<void(const position&, std::span<double>)> data_of(const case_confi
 
 /// Stores the extremes of CΔt/ε over the domain in the request; leaves them empty if the model does not know
 /// its relaxation time, or the data are not admissible, which the run reports.
-void find_ratios(const case_config& config, const model& equation, method_request& wanted) {
+void compute_ratios(const case_config& config, const model& equation, method_request& wanted) {
   if (!equation.has_relaxation_time()) return;
   const int dimensions = equation.space_dimensions();
   const expression epsilon(config.model.epsilon, place_of(config, "model.epsilon"),
@@ -88,7 +87,7 @@ void find_ratios(const case_config& config, const model& equation, method_reques
 
 /// Whether a reconstruction, which an unknown name is not, keeps signs without a limiter.
 bool first_order(const std::string& name) {
-  const reconstruction_entry* scheme = find_reconstruction(name);
+  const reconstruction_entry* scheme = try_find_reconstruction(name);
   return scheme != nullptr && scheme->make()->order() == 1;
 }
 
@@ -104,7 +103,7 @@ method_request request_of(const case_config& config) {
   wanted.signs = config.time.safety.has_value() || config.space.limiter == limiter_choice::positivity ||
                  (wanted.space && equation->positive() && first_order(config.space.reconstruction));
   try {
-    find_ratios(config, *equation, wanted);
+    compute_ratios(config, *equation, wanted);
   } catch (const numerical_error&) {
     return wanted;
   }

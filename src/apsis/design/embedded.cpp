@@ -263,7 +263,7 @@ void require_class(const method& m, const embedded_task& task) {
 
 }  // namespace
 
-embedded_search find_embedded(const method& m, const embedded_task& task) {
+embedded_search search_embedded(const method& m, const embedded_task& task) {
   require_class(m, task);
   embedded_search search;
   const int highest = task.order > 0 ? task.order : m.claims.order - 1,

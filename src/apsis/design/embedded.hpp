@@ -43,7 +43,7 @@ struct embedded_attempt {
   double coverage = 0.0;
 };
 
-/// Result of find_embedded().
+/// Result of search_embedded().
 struct embedded_search {
   std::optional<embedded_row> found;       ///< with coefficients of 45 digits, or exact rationals where
                                            ///< they are simple
@@ -77,6 +77,6 @@ struct embedded_search {
 /// u^{n+1} does not depend on ũ: the bound only keeps ũ itself admissible where stages differ by less than
 /// that. Throws input_error for methods with a nondiagonal D, with an update, or of order 1, and for orders
 /// not below p.
-embedded_search find_embedded(const method& m, const embedded_task& task);
+embedded_search search_embedded(const method& m, const embedded_task& task);
 
 }  // namespace apsis

@@ -76,7 +76,7 @@ Eigen::MatrixXd violation_jacobian(design_problem& problem, const Eigen::VectorX
 
 }  // namespace
 
-feasibility_result find_feasible(design_problem& problem, Eigen::VectorXd x, int most_iterations) {
+feasibility_result search_feasible(design_problem& problem, Eigen::VectorXd x, int most_iterations) {
   constexpr double enough = 1e-11, exact = 1e-14;
   feasibility_result result;
   x = x.cwiseMax(problem.lower()).cwiseMin(problem.upper());

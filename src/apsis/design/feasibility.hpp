@@ -4,7 +4,7 @@
 
 namespace apsis {
 
-/// Result of find_feasible().
+/// Result of search_feasible().
 struct feasibility_result {
   Eigen::VectorXd x;      ///< final point, within the bounds
   double residual = 0.0;  ///< largest |residual| and largest violated limit at x
@@ -16,6 +16,6 @@ struct feasibility_result {
 /// x: each step is the smallest damped change that satisfies the linearized equations; unknowns that would
 /// leave their bounds are fixed there and the step is recomputed for the others. Stops when the equations
 /// hold or convergence stalls.
-feasibility_result find_feasible(design_problem& problem, Eigen::VectorXd x, int most_iterations = 300);
+feasibility_result search_feasible(design_problem& problem, Eigen::VectorXd x, int most_iterations = 300);
 
 }  // namespace apsis

@@ -71,7 +71,7 @@ std::optional<form_type> without_a_stage(const design_task& task, const form_typ
     if (!(solution.residual < 1e-9) || residual_weight > none) continue;
     auto smaller = problem_near(task, without_stage(problem.form(solution.x), stage));
     const auto feasible =
-        find_feasible(smaller, smaller.unknowns_of(without_stage(problem.form(solution.x), stage)));
+        search_feasible(smaller, smaller.unknowns_of(without_stage(problem.form(solution.x), stage)));
     if (feasible.feasible) return smaller.form(feasible.x);
   }
   return std::nullopt;

@@ -119,7 +119,7 @@ std::optional<design_candidate> run_search_start(const design_task& task, int st
     here.from = with_more_stages(*task.from, task.stages, random, static_cast<std::size_t>(task.steps));
   const auto pattern = draw_pattern(here, random);
   design_problem problem(pattern, task.demands);
-  const auto feasible = find_feasible(problem, draw_coefficients(here, problem, random, start == 0));
+  const auto feasible = search_feasible(problem, draw_coefficients(here, problem, random, start == 0));
   residual = feasible.residual;
   if (!feasible.feasible || (stop && stop())) return std::nullopt;
   auto found = best_near(task, problem, feasible.x, stop);

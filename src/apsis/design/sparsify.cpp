@@ -66,9 +66,9 @@ design_candidate drop_zeros(design_problem& problem, const Eigen::VectorXd& x, d
   for (const auto& coefficient : places_of(problem, x))
     if (coefficient.size < zero) coefficient.in(pattern) = 0;
   design_problem smaller(pattern, problem.demands());
-  const auto again = find_feasible(smaller, smaller.unknowns_of(problem.form(x)));
+  const auto again = search_feasible(smaller, smaller.unknowns_of(problem.form(x)));
   if (again.feasible) return candidate_of(smaller, again.x);
-  return candidate_of(problem, find_feasible(problem, x).x);
+  return candidate_of(problem, search_feasible(problem, x).x);
 }
 
 design_candidate sparsify(const design_task& task, design_candidate candidate, double tolerance,
@@ -83,7 +83,7 @@ design_candidate sparsify(const design_task& task, design_candidate candidate, d
       zero_pattern pattern = candidate.pattern;
       coefficient.in(pattern) = 0;
       design_problem smaller(pattern, task.demands);
-      const auto feasible = find_feasible(smaller, smaller.unknowns_of(problem.form(candidate.x)));
+      const auto feasible = search_feasible(smaller, smaller.unknowns_of(problem.form(candidate.x)));
       if (!feasible.feasible) continue;
       const auto solution =
           optimize(smaller, goal_of(smaller, task.objective, task.band_weight), feasible.x, stop);

@@ -139,10 +139,10 @@ class probe {
 /// zD, and every solve divides that by 1 + z. `distance` as for error_estimate; `with_layer`: also what the
 /// initial layer of u adds. Returns nothing where a solve fails: the run itself reports invalid data.
 template <problem P, class Distance>
-std::optional<rate_loss<typename P::real>> find_rate_loss(P& p, typename P::real t,
-                                                          const typename P::state& u, typename P::real dt,
-                                                          const rate_response& response,
-                                                          const Distance& distance, bool with_layer) {
+std::optional<rate_loss<typename P::real>> compute_rate_loss(P& p, typename P::real t,
+                                                             const typename P::state& u, typename P::real dt,
+                                                             const rate_response& response,
+                                                             const Distance& distance, bool with_layer) {
   try {
     return rate_loss_parts::probe<P, Distance>(p, t, u, dt, distance)(response, with_layer);
   } catch (const numerical_error&) {

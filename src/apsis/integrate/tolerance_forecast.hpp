@@ -57,8 +57,8 @@ struct deviations {
 /// Computes the deviations from a step dt of implicit–explicit Euler from the equilibrium `u` with repeated
 /// solves: u + dt T(u) is off equilibrium by zD, and each solve divides that by 1 + z.
 template <problem P, class Distance>
-deviations<typename P::real> find_deviations(P& p, typename P::real t, const typename P::state& u,
-                                             typename P::real dt, const Distance& distance) {
+deviations<typename P::real> compute_deviations(P& p, typename P::real t, const typename P::state& u,
+                                                typename P::real dt, const Distance& distance) {
   using real = typename P::real;
   using state = typename P::state;
   state now = u, plateau = u, band = u, zero = u;
@@ -114,7 +114,7 @@ tolerance_forecast<typename P::real> forecast_tolerance(stepper<P>& method_stepp
     found.dt = forecast::settled_step(method_stepper, t, from, longest, target, distance);
     // Steps far below the relaxation time resolve the O(ε) terms to their order.
     if (!relaxes || found.dt < relaxation / 32) return found;
-    const auto [plateau, band, change] = forecast::find_deviations(p, t, equilibrium, found.dt, distance);
+    const auto [plateau, band, change] = forecast::compute_deviations(p, t, equilibrium, found.dt, distance);
     const real moved = std::min(real(1), change * std::max(real(1), interval / found.dt));
     found.error = (real(bounds.last) + moved * real(bounds.flux)) * plateau +
                   (real(bounds.last_band) + moved * real(bounds.flux_band)) * band;

@@ -66,7 +66,7 @@ std::string place_of(std::string_view name) {
 
 method parse_catalogue_method(std::string_view name) {
   if (const auto text = text_of_one_step(name)) return parse_method(*text, place_of(name));
-  return make_member(*find_family(name), name);
+  return make_member(*try_find_family(name), name);
 }
 
 /// Throws input_error if the name of a method from a file belongs to another method.
@@ -85,7 +85,7 @@ certificate certify_and_complete(method& m) {
 /// Makes a method of the catalogue or a member of a family. Throws input_error if there is none of this name.
 method make_named_method(std::string_view name) {
   if (const auto file = text_of_one_step(name)) return parse_method(*file, place_of(name));
-  if (const family_entry* family = find_family(name)) return make_member(*family, name);
+  if (const family_entry* family = try_find_family(name)) return make_member(*family, name);
   std::vector<std::string> known = method_names();
   for (const family_entry* family : family_entries()) known.push_back(family->pattern);
   const std::string text(name.substr(0, 60));
@@ -135,7 +135,7 @@ std::vector<std::string> method_names() {
 }
 
 bool is_method_name(std::string_view name) {
-  return text_of_one_step(name) || find_family(name) != nullptr;
+  return text_of_one_step(name) || try_find_family(name) != nullptr;
 }
 
 std::vector<std::string> names_of_several_steps() {
@@ -204,7 +204,7 @@ const time_integrator& find_integrator(const std::string& name) {
 
 std::string taken_name(const method& m) {
   if (!is_method_name(m.name)) return "";
-  const family_entry* family = find_family(m.name);
+  const family_entry* family = try_find_family(m.name);
   const bool is_member = family != nullptr && missing_member(*family, m.name).empty();
   if (family != nullptr && !is_member)
     return fmt::format("the name '{}' is reserved (it has the pattern {} of a family); choose another name",

@@ -240,7 +240,7 @@ certificate certify(const method& m) {
   if (has_derivatives(m.kind)) c.stability = analyse_stability(m.coefficients<long double>());
   if (m.kind == method_kind::imex) {
     find_intermediate_regime(form, tolerance, c);
-    c.band = find_intermediate_band(to_butcher(m.coefficients<long double>()));
+    c.band = compute_intermediate_band(to_butcher(m.coefficients<long double>()));
   }
   check_claims(m, form, tolerance, c);
   find_embedded_solution(m, c);

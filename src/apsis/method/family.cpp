@@ -34,7 +34,7 @@ std::size_t stages_of(const family_entry& family, std::string_view name) {
 
 }  // namespace
 
-const family_entry* find_family(std::string_view name) {
+const family_entry* try_find_family(std::string_view name) {
   for (const family_entry* family : family_entries())
     if (has_pattern(*family, name)) return family;
   return nullptr;

@@ -24,7 +24,7 @@ struct family_entry {
 std::vector<const family_entry*> family_entries();
 
 /// Returns the family whose pattern matches `name`, whatever stands in place of S; nullptr if there is none.
-const family_entry* find_family(std::string_view name);
+const family_entry* try_find_family(std::string_view name);
 
 /// Returns why the family has no member of this name, "md-imex-chain-S-2 has S from 3 to 64"; "" if
 /// it has one.

@@ -192,7 +192,7 @@ struct intermediate_band {
 /// Maximizes |excess(z)|/z, excess = flux − 1, over 10⁻³ ≤ z ≤ 10⁵: samples at 40 points per decade and
 /// refines every local maximum by golden section. Returns a NaN error where the excess is NaN.
 template <class Excess>
-intermediate_band find_band_of(const Excess& excess) {
+intermediate_band compute_band_of(const Excess& excess) {
   constexpr int per_decade = 40, first = -3 * per_decade, last = 5 * per_decade;
   const auto z_of = [](double k) { return std::pow(10.0, k / per_decade); };
   const auto error = [&](double k) {
@@ -220,8 +220,8 @@ intermediate_band find_band_of(const Excess& excess) {
 
 /// Returns the band of a method of one step.
 template <class Real>
-intermediate_band find_intermediate_band(const butcher_form<Real>& b) {
-  return find_band_of(
+intermediate_band compute_intermediate_band(const butcher_form<Real>& b) {
+  return compute_band_of(
       [&b](double z) { return static_cast<double>(at_finite_rate(b, Real(z)).flux - Real(1)); });
 }
 

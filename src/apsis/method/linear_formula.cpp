@@ -7,7 +7,7 @@
 
 namespace apsis {
 
-formula_orders find_formula_orders(const linear_formula<mp_real>& m) {
+formula_orders compute_formula_orders(const linear_formula<mp_real>& m) {
   const auto defects = [&m](int q) {
     mp_real values(0), transport(0);
     for (int i = 1; i <= m.steps(); ++i) {

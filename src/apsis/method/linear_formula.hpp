@@ -26,7 +26,7 @@ struct formula_orders {
 
 /// Computes them from 1 = Σ_i a_i x_i^q + q b = Σ_i (a_i x_i^q + q c_i x_i^{q−1}), x_i = 1 − i in units of Δt
 /// from t_n, t_{n+1} = 1.
-formula_orders find_formula_orders(const linear_formula<mp_real>& m);
+formula_orders compute_formula_orders(const linear_formula<mp_real>& m);
 
 /// Returns Σ_n |h_n − h_{n−1}|, the largest change of u in one step where every step adds an error of at most
 /// 1. h_n = Σ_i a_i h_{n−i} with h_0 = 1 is the effect of a single error after n steps. For the weights

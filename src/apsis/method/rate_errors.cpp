@@ -106,14 +106,14 @@ std::optional<rate_response> fit_rate_response(const std::function<rate_errors(d
   return rate_response{interpolate(nodes, flux), interpolate(nodes, last), interpolate(nodes, layer), growth};
 }
 
-std::optional<rate_response> find_rate_response(const method& m) {
+std::optional<rate_response> compute_rate_response(const method& m) {
   if (m.kind == method_kind::explicit_only || m.kind == method_kind::implicit_only) return std::nullopt;
   return fit_rate_response([&m](double z) { return rate_errors_at(m, z); });
 }
 
-std::optional<rate_response> find_rate_response(const std::string& name) {
+std::optional<rate_response> compute_rate_response(const std::string& name) {
   const time_integrator& m = find_integrator(name);
-  if (m.one_step() != nullptr) return find_rate_response(*m.one_step());
+  if (m.one_step() != nullptr) return compute_rate_response(*m.one_step());
   return fit_rate_response([&m](double z) { return m.errors_at(z); });
 }
 

@@ -43,10 +43,10 @@ struct rate_response {
 std::optional<rate_response> fit_rate_response(const std::function<rate_errors(double z)>& errors);
 
 /// Returns the response of a method of one step; nothing for explicit and implicit-only methods.
-std::optional<rate_response> find_rate_response(const method& m);
+std::optional<rate_response> compute_rate_response(const method& m);
 
 /// Returns the response of the integrator called `name`; nothing for explicit and implicit-only methods.
 /// Throws like find_integrator().
-std::optional<rate_response> find_rate_response(const std::string& name);
+std::optional<rate_response> compute_rate_response(const std::string& name);
 
 }  // namespace apsis

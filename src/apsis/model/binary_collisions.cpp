@@ -57,7 +57,7 @@ binary_collisions::binary_collisions(std::vector<std::vector<double>> velocities
             text_of(collisions_[before]), text_of(collisions_[c])));
   }
   if (collisions_.empty()) add_elastic_collisions();
-  find_invariants();
+  compute_invariants();
 }
 
 void binary_collisions::check_velocities() const {
@@ -169,7 +169,7 @@ void binary_collisions::add_elastic_collisions() {
         "velocities, with four at the corners of a rectangle");
 }
 
-void binary_collisions::find_invariants() {
+void binary_collisions::compute_invariants() {
   const Eigen::Index n = size();
   Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(collisions_.size()));
   for (std::size_t c = 0; c < collisions_.size(); ++c) {

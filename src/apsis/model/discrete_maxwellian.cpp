@@ -203,7 +203,7 @@ class entropy_dual {
 }  // namespace
 
 bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m) {
-  const auto moments = find_realizable(grid, omega);
+  const auto moments = compute_realizable(grid, omega);
   if (!moments) return false;
   if (!(moments->rho > 0.0)) {
     std::fill_n(m, grid.size(), 0.0);

@@ -91,7 +91,7 @@ velocity_lattice gas_model::lattice() const {
   return found;
 }
 
-double gas_model::crossing_rate(std::span<const double> spacing) const {
+double gas_model::cfl_rate(std::span<const double> spacing) const {
   double rate = 0.0;
   for (std::size_t k = 0; k < spacing.size(); ++k)
     rate += gas_.grid().line(static_cast<int>(k)).max() / spacing[k];
@@ -153,7 +153,7 @@ void gas_model::macroscopic(const double* f, double* values) const {
   const fluid_state s = gas_.state(omega);
   fluid_field_values(s, d, values);
   values += d + 2;
-  const central_moments m = find_central_moments(gas_, f, s);
+  const central_moments m = compute_central_moments(gas_, f, s);
   const double p = s.rho * s.T;
   for (std::size_t k = 0; has_stress() && k < static_cast<std::size_t>(d); ++k)
     for (std::size_t l = k; l < static_cast<std::size_t>(d); ++l)

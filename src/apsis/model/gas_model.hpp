@@ -37,7 +37,7 @@ class gas_model : public relaxation_model {
   velocity_lattice lattice() const override;
   /// Returns Σ_k v_max,k/Δx_k with the ends of the velocity lines, that of a uniform one half an interval
   /// beyond its last point.
-  double crossing_rate(std::span<const double> spacing) const override;
+  double cfl_rate(std::span<const double> spacing) const override;
   bool positive() const override { return true; }
   bool collisions_keep_sign() const override { return !signed_tails_; }
   std::string why_signed() const override;

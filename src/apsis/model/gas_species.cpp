@@ -29,7 +29,7 @@ std::vector<std::string> gas_names() {
   return names;
 }
 
-const gas_species* find_gas(const std::string& name) {
+const gas_species* try_find_gas(const std::string& name) {
   const auto& gases = known_gases();
   const auto found = std::find_if(gases.begin(), gases.end(), [&](const auto& g) { return g.name == name; });
   return found == gases.end() ? nullptr : &*found;

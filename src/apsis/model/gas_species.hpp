@@ -28,6 +28,6 @@ const std::vector<gas_species>& known_gases();
 std::vector<std::string> gas_names();
 
 /// Returns the gas called `name`; nullptr if there is none.
-const gas_species* find_gas(const std::string& name);
+const gas_species* try_find_gas(const std::string& name);
 
 }  // namespace apsis

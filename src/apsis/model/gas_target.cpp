@@ -149,7 +149,7 @@ void correct(const defect& found, int d, double variance, target_polynomial& p) 
 
 }  // namespace
 
-central_moments find_central_moments(const gas& of, const double* row, const fluid_state& state) {
+central_moments compute_central_moments(const gas& of, const double* row, const fluid_state& state) {
   const velocity_grid& grid = of.grid();
   const int d = grid.dimensions(), n = grid.last_line().points();
   const auto last = static_cast<std::size_t>(d - 1);

@@ -13,7 +13,7 @@ struct central_moments {
   std::array<double, 3> heat{};                   ///< q_k = ½ Σ c_k (|c|² g + h) Δv^d
 };
 /// Returns those of a row whose density and bulk velocity are given.
-central_moments find_central_moments(const gas& of, const double* row, const fluid_state& state);
+central_moments compute_central_moments(const gas& of, const double* row, const fluid_state& state);
 
 /// The polynomial P(c) = k + l·c + cᵀA c + (w·c)|c|² in the resolved components c = v − u.
 struct target_polynomial {

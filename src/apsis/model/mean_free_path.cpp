@@ -35,7 +35,7 @@ std::vector<std::string> mean_free_path_names() {
   return names;
 }
 
-const mean_free_path* find_mean_free_path(const std::string& name) {
+const mean_free_path* try_find_mean_free_path(const std::string& name) {
   const auto& all = mean_free_paths();
   const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
   return found == all.end() ? nullptr : &*found;

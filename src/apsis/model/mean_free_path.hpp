@@ -21,7 +21,7 @@ const std::vector<mean_free_path>& mean_free_paths();
 std::vector<std::string> mean_free_path_names();
 
 /// Returns the definition called `name`; nullptr if there is none.
-const mean_free_path* find_mean_free_path(const std::string& name);
+const mean_free_path* try_find_mean_free_path(const std::string& name);
 
 /// Returns the rarefaction parameter δ = p L/(μ √(2RT)) = 1/(√2 ε); ∞ for ε = 0.
 double rarefaction_of_epsilon(double epsilon);

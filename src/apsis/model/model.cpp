@@ -1,3 +1,6 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/core/printable.hpp>
+#include <apsis/core/suggest.hpp>
 #include <apsis/model/model_registry.hpp>
 
 #include <algorithm>
@@ -7,6 +10,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+
+#include <fmt/format.h>
 
 namespace apsis {
 
@@ -19,7 +24,7 @@ const velocity_set& model::velocities() const {
   return none;
 }
 
-double model::crossing_rate(std::span<const double> spacing) const {
+double model::cfl_rate(std::span<const double> spacing) const {
   double fastest = 0.0;
   for (std::size_t j = 0; j < static_cast<std::size_t>(velocities().size()); ++j) {
     double rate = 0.0;
@@ -88,10 +93,18 @@ std::vector<std::string> initial_names(const model_entry& entry) {
   return names;
 }
 
-const model_entry* find_model(const std::string& name) {
+const model_entry* try_find_model(const std::string& name) {
   for (const model_entry* entry : model_entries())
     if (entry->name == name) return entry;
   return nullptr;
+}
+
+const model_entry& find_model(const std::string& name) {
+  if (const model_entry* found = try_find_model(name)) return *found;
+  std::vector<std::string> names;
+  for (const model_entry* entry : model_entries()) names.push_back(entry->name);
+  throw input_error(
+      fmt::format("unknown model '{}' (there is no such name); {}", printable(name), suggest(name, names)));
 }
 
 std::vector<dimension> model::invariant_measures() const {

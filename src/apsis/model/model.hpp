@@ -91,7 +91,7 @@ class model : public construction_count<model> {
   virtual velocity_lattice lattice() const { return {}; }
   /// Returns R of the CFL number R Δt on cells of the given sizes Δx_k: by default max_j Σ_k |v_jk|/Δx_k,
   /// since every component moves with one velocity.
-  virtual double crossing_rate(std::span<const double> spacing) const;
+  virtual double cfl_rate(std::span<const double> spacing) const;
 
   /// Returns the factors of the sets of components on velocities() under a reflection of a direction of
   /// space: −1 for a set whose sum is a momentum along it; empty, the default: 1 for all. Throws input_error
@@ -107,7 +107,7 @@ class model : public construction_count<model> {
   /// The model must outlive it.
   virtual std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const = 0;
   /// Whether make_collision() knows the exact solution of v' = Q(v)/ε.
-  virtual bool knows_collision() const { return false; }
+  virtual bool has_exact_collision() const { return false; }
   /// Whether make_collision() knows the relaxation time ε/C.
   virtual bool has_relaxation_time() const { return false; }
   /// Returns the number n of unknowns of the systems that Newton's method solves at a point, with n³
@@ -223,7 +223,7 @@ class relaxation_model : public model {
   virtual double rate(const double* omega) const = 0;
   std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const final;
   /// E(ω) does not change during a collision, but targets of moments that relax do.
-  bool knows_collision() const final { return relaxing_count() == 0; }
+  bool has_exact_collision() const final { return relaxing_count() == 0; }
   bool has_relaxation_time() const final { return true; }
   /// Returns the reason for a message: "temperature -0.3 is not positive".
   virtual std::string why_inadmissible(const double* omega) const = 0;

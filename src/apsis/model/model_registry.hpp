@@ -86,6 +86,8 @@ model_config default_config(const model_entry& entry);
 std::vector<const model_entry*> model_entries();
 
 /// Returns the entry called `name`; nullptr if there is none.
-const model_entry* find_model(const std::string& name);
+const model_entry* try_find_model(const std::string& name);
+/// Returns the entry called `name`. Throws input_error with the nearest name if there is none.
+const model_entry& find_model(const std::string& name);
 
 }  // namespace apsis

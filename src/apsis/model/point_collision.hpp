@@ -28,7 +28,7 @@ struct batch_limits {
   std::ptrdiff_t pitch = 0;  ///< of its rows, at least the number of components
   /// Steps within r Δt_FE keep nonnegative data so, which decides what error messages suggest.
   bool keeps_sign = false;
-  stage_solution stages = stage_solution::implicit;  ///< `exact` requires model::knows_collision()
+  stage_solution stages = stage_solution::implicit;  ///< `exact` requires model::has_exact_collision()
 };
 
 /// The collision Q(u)/ε of a model at points of space: the stage solve that every method here is built on,

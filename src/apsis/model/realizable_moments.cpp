@@ -69,7 +69,7 @@ bounds place(const velocity_grid& grid, std::size_t k, double z, realizable_mome
 
 }  // namespace
 
-std::optional<realizable_moments> find_realizable(const velocity_grid& grid, const double* omega) {
+std::optional<realizable_moments> compute_realizable(const velocity_grid& grid, const double* omega) {
   const int d = grid.dimensions();
   realizable_moments found;
   if (!all_finite(omega, d + 2)) return std::nullopt;
@@ -106,7 +106,7 @@ std::string why_unrealizable(const velocity_grid& grid, const double* omega) {
   const int d = grid.dimensions();
   if (!std::isfinite(omega[0])) return "density is not finite";
   if (!all_finite(omega, d + 2)) return "a moment is not finite";
-  if (find_realizable(grid, omega)) return "";
+  if (compute_realizable(grid, omega)) return "";
   if (!(omega[0] > 0.0)) return fmt::format("density {:.6g} is not positive", omega[0]);
   const fluid_state s = to_fluid_state(omega, d);
   if (!(s.T > 0.0)) return fmt::format("temperature {:.6g} is not positive", s.T);

@@ -27,6 +27,6 @@ struct realizable_moments {
 /// sums over the grid; nothing if ω is neither realizable nor close to it, or not finite. If ρ is so small
 /// that moments are subnormal numbers or nearly so, their rounding errors have no bound relative to ρ, and
 /// every finite ω is projected.
-std::optional<realizable_moments> find_realizable(const velocity_grid& grid, const double* omega);
+std::optional<realizable_moments> compute_realizable(const velocity_grid& grid, const double* omega);
 
 }  // namespace apsis

@@ -168,7 +168,7 @@ bool system_flux::differentiate(const double* u, int variable, double size, doub
 
 /// A variable that is 0 (a momentum at rest) has no size but that of its flux and of the others, from which
 /// the right step may be far. Values whose squares underflow, as WENO leaves beside clean data, count as 0.
-void system_flux::find_sizes(const double* u, double typical, double* sizes) const {
+void system_flux::compute_sizes(const double* u, double typical, double* sizes) const {
   constexpr double nothing = 1e-150;
   const std::size_t n = variables_.size();
   std::array<double, most> F{};
@@ -187,7 +187,7 @@ void system_flux::find_sizes(const double* u, double typical, double* sizes) con
 bool system_flux::differentiate_all(const double* u, double typical, std::span<double> derivative) const {
   const std::size_t n = variables_.size();
   std::array<double, most> sizes{};
-  find_sizes(u, typical, sizes.data());
+  compute_sizes(u, typical, sizes.data());
   for (std::size_t k = 0; k < n; ++k)
     if (!differentiate(u, static_cast<int>(k), sizes[k], &derivative[n * k])) return false;
   return true;
@@ -198,7 +198,7 @@ void system_flux::derivative_along(const double* u, const double* d, double typi
   const std::size_t n = variables_.size();
   std::array<double, most> sizes{};
   std::array<double, 2 * most> sides{}, F{};
-  find_sizes(u, typical, sizes.data());
+  compute_sizes(u, typical, sizes.data());
   double longest = 0.0;
   for (std::size_t k = 0; k < n; ++k) longest = std::max(longest, std::abs(d[k]) / sizes[k]);
   std::fill_n(along, n, 0.0);

@@ -50,7 +50,7 @@ class system_flux {
 
  private:
   /// |u_k| + |F_k(u)|/typical, at least a tenth of the largest; positive.
-  void find_sizes(const double* u, double typical, double* sizes) const;
+  void compute_sizes(const double* u, double typical, double* sizes) const;
   bool differentiate_all(const double* u, double typical, std::span<double> derivative) const;
 
   std::vector<std::string> variables_;

@@ -56,7 +56,7 @@ nlohmann::ordered_json to_json(const initial_table& initial) {
 }  // namespace
 
 nlohmann::ordered_json to_json(const case_config& config) {
-  const model_entry* model = find_model(config.model.name);
+  const model_entry* model = try_find_model(config.model.name);
   nlohmann::ordered_json out = {{"source", config.source}};
   for (const case_key& key : case_schema()) {
     const case_value value = key.load(config);

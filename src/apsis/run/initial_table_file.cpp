@@ -81,7 +81,8 @@ void initial_table_file::take_manifest(const std::string& text) {
   manifest_ = json::parse(text, nullptr, false);
   const auto name = at(manifest_, {"case", "model", "name"});
   if (!name.is_string()) refuse("its manifest cannot be read (damaged file); give another file");
-  const model_entry *mine = find_model(config_.model.name), *theirs = find_model(name.get<std::string>());
+  const model_entry *mine = try_find_model(config_.model.name),
+                    *theirs = try_find_model(name.get<std::string>());
   const bool gases = theirs != nullptr && mine->has_velocity_grid && theirs->has_velocity_grid;
   const bool same_variables =
       at(manifest_, {"case", "model", "variables"}) == at(to_json(config_), {"model", "variables"});

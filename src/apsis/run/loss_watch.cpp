@@ -36,7 +36,7 @@ bool has_memory_for(const run_setup& setup) {
 loss_watch::loss_watch(const run_setup& setup, semidiscrete_problem& problem)
     : setup_(setup), problem_(problem) {
   if (!setup.equation->has_relaxation_time()) return;
-  response_ = find_rate_response(setup.config().time.method);
+  response_ = compute_rate_response(setup.config().time.method);
   if (response_ && problem_.collides_exactly()) implicit_ = setup.make_implicit_problem();
 }
 
@@ -49,7 +49,7 @@ std::optional<loss_watch::loss> loss_watch::estimate(double t, const field& u, d
     p.settle();
     return relative_distance(a, b, setup_.processes());
   };
-  return find_rate_loss(p, t, u, dt, of, distance, layer);
+  return compute_rate_loss(p, t, u, dt, of, distance, layer);
 }
 
 void loss_watch::start(double t, const field& u, double dt, bool layer) {
@@ -105,7 +105,7 @@ std::string loss_watch::remedy(double t, const field& u, double dt, bool layer) 
   double least = expected_ / 10.0;  // another method is worth its name where it loses ten times less
   for (const std::string& name : names) {
     if (!best.empty() || name == setup_.integrator_name()) continue;
-    const auto of = find_rate_response(name);
+    const auto of = compute_rate_response(name);
     const auto other = of ? estimate(t, u, dt, *of, layer) : std::nullopt;
     if (!other) continue;
     const double left = judge_loss(*other, 0.0, setup_.config().time.end - t, {}).expected;

@@ -39,7 +39,7 @@ json numbers(const simulation& run) {
   out["velocity_needed"] = s.velocity_needed * units.factor(dimensions::velocity);
   if (std::isnan(run.initial_record().entropy)) out["max_entropy_increase"] = nullptr;
   if (run.initial_record().cut.empty()) out["largest_cut"] = nullptr;
-  if (!has_space(*find_model(run.config().model.name))) out["state"] = run.state();
+  if (!has_space(find_model(run.config().model.name))) out["state"] = run.state();
   return out;
 }
 

@@ -45,7 +45,7 @@ void monitor::check_cells(const field& u, int begin, int end, partial& own) cons
                                {0.0, sizeof(double)});
   for (int cell = begin; cell < end; ++cell) {
     const double* row = u.row(cell);
-    const auto [low, below] = find_extremes(row, u.components());
+    const auto [low, below] = compute_extremes(row, u.components());
     if (std::isnan(low)) {
       if (cell < own.not_finite) own.value = low;
       own.not_finite = std::min(own.not_finite, cell);

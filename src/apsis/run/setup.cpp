@@ -93,8 +93,7 @@ run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> pr
 
 void run_setup::build_space(std::shared_ptr<communicator> processes) {
   const auto& space = config_.space;
-  const reconstruction_entry* scheme = find_reconstruction(space.reconstruction);
-  if (scheme == nullptr) throw input_error("unknown reconstruction '" + space.reconstruction + "'");
+  const reconstruction_entry& scheme = find_reconstruction(space.reconstruction);
   builder_.on(make_mesh(config_)).with_unknowns(space.formulation);
   if (space.collisions) builder_.with_collisions_at(*space.collisions);
   at_key(config_, space.blocks ? "space.blocks" : "space.cells",
@@ -110,7 +109,7 @@ void run_setup::build_space(std::shared_ptr<communicator> processes) {
   at_key(config_, "space.limiter", [&] {
     if (space.limiter == limiter_choice::positivity) builder_.with_positivity_limiter();
   });
-  at_key(config_, "space.cells", [&] { builder_.with_reconstruction(scheme->make()); });
+  at_key(config_, "space.cells", [&] { builder_.with_reconstruction(scheme.make()); });
 }
 
 void run_setup::set_epsilon() {
@@ -129,7 +128,7 @@ void run_setup::check_method() {
            fmt::format("method '{}' cannot integrate model '{}' (it is implicit only and the model has "
                        "transport); choose an IMEX or explicit method",
                        first.name, config_.model.name));
-  if (integrator_->needs.exact_collision && !equation->knows_collision())
+  if (integrator_->needs.exact_collision && !equation->has_exact_collision())
     refuse(config_, "time.method",
            fmt::format("method '{}' cannot integrate model '{}' (it is {}, and collisions of the model "
                        "have no solution in closed form); choose an IMEX method",
@@ -144,7 +143,7 @@ void run_setup::check_method() {
 }
 
 void run_setup::set_stability_limit() {
-  const reconstruction_entry* scheme = find_reconstruction(config_.space.reconstruction);
+  const reconstruction_entry* scheme = try_find_reconstruction(config_.space.reconstruction);
   if (!has_space() || scheme == nullptr) return;  // an unknown one is refused later
   const auto reconstruct = scheme->make();
   stability_limit_ = cfl_limit(integrator_->growth(), *reconstruct);
@@ -354,7 +353,7 @@ double run_setup::cfl_length() const {
   if (!has_space()) throw input_error("time.cfl needs a mesh (the model has no space); give time.dt");
   std::vector<double> spacing;
   for (int k = 0; k < mesh().dimensions(); ++k) spacing.push_back(mesh().spacing(k));
-  return 1.0 / equation->crossing_rate(spacing);
+  return 1.0 / equation->cfl_rate(spacing);
 }
 
 double run_setup::equilibrium_defect(const field& u) const {

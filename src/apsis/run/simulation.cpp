@@ -8,8 +8,8 @@
 #include <apsis/integrate/any_stepper.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/tolerance_forecast.hpp>
-#include <apsis/run/find_fields.hpp>
-#include <apsis/run/find_surfaces.hpp>
+#include <apsis/run/compute_fields.hpp>
+#include <apsis/run/compute_surfaces.hpp>
 #include <apsis/run/gathered_cells.hpp>
 #include <apsis/run/loss_watch.hpp>
 #include <apsis/run/memory_need.hpp>
@@ -118,7 +118,7 @@ struct simulation::impl {
 
   void warn_of_tolerance(double longest) {
     if (setup.integrator().starter().kind == method_kind::explicit_only) return;  // resolves the relaxation
-    const auto bounds = find_plateau_bounds(to_butcher(setup.integrator().form));
+    const auto bounds = compute_plateau_bounds(to_butcher(setup.integrator().form));
     expected = forecast_tolerance(*integrator->one_step(), march.t(), now, config.time.end, longest,
                                   control->target(), bounds, distance());
     warn_of_plateau(setup, *expected, problem->relaxation_time(march.t(), state));
@@ -392,7 +392,7 @@ run_summary simulation::summary() const {
 }
 
 field_table simulation::fields() const {
-  return find_fields(impl_->setup, impl_->state);
+  return compute_fields(impl_->setup, impl_->state);
 }
 
 std::vector<surface_table> simulation::surfaces() const {
@@ -400,7 +400,7 @@ std::vector<surface_table> simulation::surfaces() const {
   const std::vector<double> budget = whole_budget(impl_->setup, impl_->budget),
                             densities = impl_->densities_at_surfaces();
   if (!processes().is_root()) return {};
-  return find_surfaces(impl_->setup, {t(), last().dt, budget, densities});
+  return compute_surfaces(impl_->setup, {t(), last().dt, budget, densities});
 }
 
 bool simulation::has_space() const {

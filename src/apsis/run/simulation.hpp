@@ -94,8 +94,8 @@ class simulation {
   run_summary summary() const;      ///< totals of all steps so far
 
   field_table fields() const;  ///< macroscopic fields of the current state
-  /// Returns what the gas gave in the last step to the surfaces of output.surfaces (find_surfaces()); on the
-  /// root.
+  /// Returns what the gas gave in the last step to the surfaces of output.surfaces (compute_surfaces()); on
+  /// the root.
   std::vector<surface_table> surfaces() const;
   bool has_space() const;              ///< whether the model has a mesh
   const grid& mesh() const;            ///< the mesh; a single cell without space

@@ -13,7 +13,7 @@ namespace apsis {
 struct surface_table {
   std::string name;                      ///< of the face or of the box
   std::vector<std::string> faces;        ///< [row], of the domain or of the box
-  numeric_table numbers;                 ///< [row], see find_surfaces()
+  numeric_table numbers;                 ///< [row], see compute_surfaces()
   std::vector<dimension> measures = {};  ///< of the columns, in units of a gas
 };
 

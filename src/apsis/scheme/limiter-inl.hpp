@@ -40,14 +40,14 @@ HWY_INLINE N interior(N c, N l, N r) {
 
 /// Whether 0.01 u < edge < u/ŵ₁ − 0.01 u for all components, with the absolute margin. If this holds for a
 /// cell and its upstream neighbour, the corrections do no harm: A_out⁺ < (1/ŵ₁ − 1.01) u and −A_in⁻ < 0.99
-/// u_up, which is less than harmless_fraction() allows by far more than rounding errors.
+/// u_up, which is less than limiter_coefficient() allows by far more than rounding errors.
 template <class N>
 HWY_INLINE bool is_moderate(N u, N edge) {
   constexpr double middle = 0.5 / end_weight;
   return N::all(absolute(fma(N(-middle), u, edge)) < fma(N(middle - 0.01), u, N(-absolute_margin)));
 }
 
-/// limiter::harmless_fraction in two parts, because the corrections of most cells need no limiting.
+/// limiter::limiter_coefficient in two parts, because the corrections of most cells need no limiting.
 template <class N>
 class harm_bound {
  public:

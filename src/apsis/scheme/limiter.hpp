@@ -51,7 +51,7 @@ void apply(const double* c, int width, double* left, double* right);
 /// corrections that decrease u, such that
 ///   u − κ (u + ϑ A_out⁺ − u_up + ϑ A_in⁻) ≥ κ absolute_margin,  κ = end_weight,
 /// if K = (1 − κ)u + κ u_up allows it; ϑ = 0 if K is below the margin.
-inline double harmless_fraction(double u_up, double u, double a_in, double a_out) {
+inline double limiter_coefficient(double u_up, double u, double a_in, double a_out) {
   // Both sides are divided by κ, because κ A may underflow to 0.
   const double kept = (1.0 / end_weight - 1.0) * u + u_up;
   const double harm = (a_out > 0.0 ? a_out : 0.0) - (a_in < 0.0 ? a_in : 0.0);

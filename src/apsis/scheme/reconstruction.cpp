@@ -1,7 +1,14 @@
+#include <apsis/core/errors.hpp>
+#include <apsis/core/printable.hpp>
+#include <apsis/core/suggest.hpp>
 #include <apsis/exec/aligned.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <cstddef>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
 
 namespace apsis {
 
@@ -21,10 +28,18 @@ double reconstruction::operations(bool) const {
   return 0.0;
 }
 
-const reconstruction_entry* find_reconstruction(const std::string& name) {
+const reconstruction_entry* try_find_reconstruction(const std::string& name) {
   for (const reconstruction_entry* entry : reconstruction_entries())
     if (entry->name == name) return entry;
   return nullptr;
+}
+
+const reconstruction_entry& find_reconstruction(const std::string& name) {
+  if (const reconstruction_entry* found = try_find_reconstruction(name)) return *found;
+  std::vector<std::string> names;
+  for (const reconstruction_entry* entry : reconstruction_entries()) names.push_back(entry->name);
+  throw input_error(fmt::format("unknown reconstruction '{}' (there is no such name); {}", printable(name),
+                                suggest(name, names)));
 }
 
 }  // namespace apsis

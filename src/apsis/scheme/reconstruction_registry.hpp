@@ -21,6 +21,8 @@ struct reconstruction_entry {
 std::vector<const reconstruction_entry*> reconstruction_entries();
 
 /// Returns the entry called `name`; nullptr if there is none.
-const reconstruction_entry* find_reconstruction(const std::string& name);
+const reconstruction_entry* try_find_reconstruction(const std::string& name);
+/// Returns the entry called `name`. Throws input_error with the nearest name if there is none.
+const reconstruction_entry& find_reconstruction(const std::string& name);
 
 }  // namespace apsis

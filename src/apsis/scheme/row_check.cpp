@@ -47,7 +47,7 @@ namespace {
 HWY_EXPORT(extremes);
 }
 
-row_extremes find_extremes(const double* row, int n) {
+row_extremes compute_extremes(const double* row, int n) {
   return HWY_DYNAMIC_DISPATCH(extremes)(row, n);
 }
 

@@ -9,6 +9,6 @@ struct row_extremes {
 };
 
 /// Computes the extremes of a row of n ≥ 1 numbers with the instruction set of this processor.
-row_extremes find_extremes(const double* row, int n);
+row_extremes compute_extremes(const double* row, int n);
 
 }  // namespace apsis

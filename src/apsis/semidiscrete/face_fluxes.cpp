@@ -57,7 +57,7 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
           acc[k] += (to.beta * (here.inward[k] / mesh.spacing(where.direction))) * values[k];
     }
   }
-  if (observed_) find_densities(surface, place);
+  if (observed_) compute_densities(surface, place);
   // The row becomes that of the fluxes; invariants are linear functions of a row.
   for (std::size_t k = 0; k < here.inward.size(); ++k) values[k] *= here.inward[k];
   double* received = rates_.data() + (here.first + index(place)) * invariants_;
@@ -68,7 +68,7 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
 
 /// Components along a face have no flux through it: beyond a face that prescribes the others they are
 /// continued, and the mean of both sides is the value at the face.
-void face_fluxes::find_densities(int surface, int place) {
+void face_fluxes::compute_densities(int surface, int place) {
   side& here = at(surface);
   double* values = here.values.row(place);
   if (prescribes(surface)) {

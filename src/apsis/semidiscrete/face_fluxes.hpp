@@ -51,7 +51,7 @@ class face_fluxes {
     std::size_t first = 0;       ///< of its ends among those of all budget surfaces
   };
   side& at(int surface) { return sides_[static_cast<std::size_t>(surface)]; }
-  void find_densities(int surface, int place);
+  void compute_densities(int surface, int place);
 
   const model& equation_;
   std::shared_ptr<domain> space_;

@@ -52,7 +52,7 @@ force::force(const model& equation, std::shared_ptr<domain> space, acceleration 
       lattice_(equation.lattice()),
       acceleration_(std::move(of)),
       limited_(discretization.positivity != limiter_kind::none),
-      scheme_(find_reconstruction(discretization.scheme->order() == 1 ? "upwind1" : "upwind5")->make()),
+      scheme_(find_reconstruction(discretization.scheme->order() == 1 ? "upwind1" : "upwind5").make()),
       invariants_(equation.invariants().size()),
       workspaces_(std::make_unique<per_thread<workspace>>()) {
   if (lattice_.points.empty())

@@ -144,7 +144,7 @@ problem_builder& problem_builder::with_implicit_collision() {
 }
 
 problem_builder& problem_builder::with_exact_collision() {
-  if (!equation_->knows_collision())
+  if (!equation_->has_exact_collision())
     throw input_error(
         "exponential methods cannot integrate this model (its collisions have no solution in closed form); "
         "choose an IMEX method");

@@ -18,7 +18,7 @@ namespace apsis {
 ///
 ///   auto problem = problem_builder(equation)
 ///                      .on(grid::line(40, 0.0, 2.0))
-///                      .with_reconstruction(find_reconstruction("weno5-z")->make())
+///                      .with_reconstruction(find_reconstruction("weno5-z").make())
 ///                      .with_positivity_limiter()
 ///                      .with_epsilon([](const position& x) { return 1e-3 + x[0] * x[0]; })
 ///                      .build();

@@ -54,7 +54,7 @@ inline void rows_of(std::span<const target<field, double>> targets, int cell, st
 /// Adds T = |v|/Δx (inflow − outflow) + source to all targets. Reads edges of cells −1 … count.
 void add(const cells& run, std::span<const row_target> targets);
 
-/// Adds T with limited fluxes (limiter::harmless_fraction): a positive correction of the first-order upwind
+/// Adds T with limited fluxes (limiter::limiter_coefficient): a positive correction of the first-order upwind
 /// flux can make its donor cell negative, a negative one its receiver. Reads edges of cells −2 … count+1.
 void add_limited(const cells& run, std::span<const row_target> targets);
 

@@ -26,16 +26,6 @@ bool take_number(std::string_view& text, double& value) {
   return true;
 }
 
-const velocity_line_entry& entry_of(const std::string& name) {
-  if (const velocity_line_entry* found = find_velocity_line(name)) return *found;
-  std::vector<std::string> names;
-  for (const auto* entry : velocity_line_entries()) names.push_back(entry->name);
-  throw input_error(
-      fmt::format("velocity.set = '{}' is not known (it is neither a kind of velocities nor a file "
-                  "NAME.csv or NAME.txt); {}",
-                  name.substr(0, 60), suggest(name, names)));
-}
-
 /// Item k of a list that has one item for all directions, or one for each.
 template <class Item>
 const Item& item_of(const std::vector<Item>& list, std::size_t k, int dimensions, const char* key) {
@@ -53,7 +43,7 @@ velocity_line make_line(const velocity_config& of, const std::string& name, int 
                                     name, line.points()));
     return line;
   }
-  const velocity_line_entry& entry = entry_of(name);
+  const velocity_line_entry& entry = find_velocity_line(name);
   if (points == 0)
     throw input_error(fmt::format(
         "velocity.points is missing (set '{}' needs it); add it, for example: points = 32", name));
@@ -65,10 +55,20 @@ velocity_line make_line(const velocity_config& of, const std::string& name, int 
 
 }  // namespace
 
-const velocity_line_entry* find_velocity_line(const std::string& name) {
+const velocity_line_entry* try_find_velocity_line(const std::string& name) {
   for (const velocity_line_entry* entry : velocity_line_entries())
     if (entry->name == name) return entry;
   return nullptr;
+}
+
+const velocity_line_entry& find_velocity_line(const std::string& name) {
+  if (const velocity_line_entry* found = try_find_velocity_line(name)) return *found;
+  std::vector<std::string> names;
+  for (const auto* entry : velocity_line_entries()) names.push_back(entry->name);
+  throw input_error(
+      fmt::format("velocity.set = '{}' is not known (it is neither a kind of velocities nor a file "
+                  "NAME.csv or NAME.txt); {}",
+                  name.substr(0, 60), suggest(name, names)));
 }
 
 bool is_velocity_file(const std::string& name) {

@@ -23,7 +23,9 @@ struct velocity_line_entry {
 std::vector<const velocity_line_entry*> velocity_line_entries();
 
 /// Returns the entry of a name; nullptr if there is none.
-const velocity_line_entry* find_velocity_line(const std::string& name);
+const velocity_line_entry* try_find_velocity_line(const std::string& name);
+/// Returns the entry of a name. Throws input_error with the nearest name if there is none.
+const velocity_line_entry& find_velocity_line(const std::string& name);
 
 /// Whether the name of a set is that of a file.
 bool is_velocity_file(const std::string& name);

@@ -29,7 +29,7 @@ double smallest(const field& u) {
 
 case_config small_case(const std::string& model, const std::string& method, double epsilon, int cells,
                        const std::vector<std::string>& overrides) {
-  const model_entry* entry = find_model(model);
+  const model_entry* entry = try_find_model(model);
   const bool grid = entry != nullptr && entry->has_velocity_grid;
   const std::string text = fmt::format(
       "title = \"small\"\n[model]\nname = \"{}\"\nepsilon = {:.17g}\n"

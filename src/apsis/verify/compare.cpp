@@ -115,7 +115,7 @@ std::vector<double> field_of(const case_config& config, const std::vector<double
 }
 
 void check_meshes(const case_config& run, const case_config& reference) {
-  const model_entry* entry = find_model(run.model.name);
+  const model_entry* entry = try_find_model(run.model.name);
   if (entry == nullptr || !has_space(*entry)) return;
   if (run.space.domain != reference.space.domain) not_comparable("space.domain", "they have no common mesh");
   if (run.space.formulation != reference.space.formulation)

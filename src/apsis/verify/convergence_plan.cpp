@@ -182,7 +182,7 @@ class planner {
   void choose_reference() {
     reference_type_ = study_.reference.type;
     const std::string model = plan_.runs.front().model.name;
-    const bool on_mesh = has_space(*find_model(model));
+    const bool on_mesh = has_space(find_model(model));
     if (reference_type_ == kind::automatic) {
       reference_type_ = all_exact() ? kind::exact : kind::next;
       if (reference_type_ == kind::next && !resolves_)

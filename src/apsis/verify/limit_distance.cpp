@@ -103,7 +103,7 @@ limit_table limit_distance(const case_config& config, const std::vector<double>&
   limit_table table;
   table.model = config.model.name;
   table.method = config.time.method;
-  if (has_space(*find_model(config.model.name)))
+  if (has_space(find_model(config.model.name)))
     table.formulation =
         config.space.formulation == formulation::finite_volume ? "finite volume" : "finite difference";
   const std::vector<double> given = simulation(config).state();

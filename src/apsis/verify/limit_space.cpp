@@ -55,7 +55,7 @@ limit_space::limit_space(const case_config& config, const relaxation_model& equa
         "the case has no limit scheme (it is known for collisions at Gauss points and of point values); "
         "leave "
         "space.collisions out");
-  const reconstruction_entry* entry = find_reconstruction(config.space.reconstruction);
+  const reconstruction_entry* entry = try_find_reconstruction(config.space.reconstruction);
   if (entry == nullptr) throw input_error("unknown reconstruction '" + config.space.reconstruction + "'");
   scheme_ = entry->make();
   const bool volumes = config.space.formulation == formulation::finite_volume;
@@ -118,12 +118,12 @@ field limit_space::equilibrium_averages(const field& u) const {
   return mean;
 }
 
-double limit_space::harmless_fraction(const pencil& p, int cell, std::size_t k, bool ahead) const {
+double limit_space::limiter_coefficient(const pencil& p, int cell, std::size_t k, bool ahead) const {
   const int upstream = ahead ? cell - 1 : cell + 1;
   const double here = p.row(cell)[k], before = p.row(upstream)[k];
   const double in = ahead ? p.right(upstream, k) : p.left(upstream, k);
   const double out = ahead ? p.right(cell, k) : p.left(cell, k);
-  return limiter::harmless_fraction(before, here, in - before, out - here);
+  return limiter::limiter_coefficient(before, here, in - before, out - here);
 }
 
 /// The upwind value of component k at the face between cells `face` − 1 and `face`.
@@ -133,7 +133,7 @@ double limit_space::face_value(const pencil& p, int face, std::size_t k, bool ah
   const double edge = ahead ? p.right(donor, k) : p.left(donor, k);
   if (limit_fluxes_) {
     const int harmed = edge > average ? donor : receiver;
-    return average + harmless_fraction(p, harmed, k, ahead) * (edge - average);
+    return average + limiter_coefficient(p, harmed, k, ahead) * (edge - average);
   }
   if (limit_edges_) {
     const double l = p.left(donor, k), r = p.right(donor, k);

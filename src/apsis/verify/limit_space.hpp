@@ -42,7 +42,7 @@ class limit_space {
   pencil reconstruct(const field& u, int direction, int segment) const;
   void add_divergence(const field& u, int direction, int segment, field& t) const;
   double face_value(const pencil& p, int face, std::size_t k, bool ahead) const;
-  double harmless_fraction(const pencil& p, int cell, std::size_t k, bool ahead) const;
+  double limiter_coefficient(const pencil& p, int cell, std::size_t k, bool ahead) const;
 
   const relaxation_model& equation_;
   domain space_;

@@ -14,7 +14,7 @@ constexpr double length = 2.0, velocity_max = 12.0;
 }  // namespace
 
 case_config small_case(const std::string& model, const std::vector<std::string>& overrides) {
-  const model_entry* entry = find_model(model);
+  const model_entry* entry = try_find_model(model);
   if (entry == nullptr) throw input_error("unknown model '" + model + "'");
   std::string text = fmt::format("[model]\nname = \"{}\"\n", model);
   double dt = 1.0 / 32.0;
@@ -35,7 +35,7 @@ std::vector<std::string> relaxation_model_names() {
 }
 
 std::vector<std::string> formulation_names(const std::string& model) {
-  if (!has_space(*find_model(model))) return {""};
+  if (!has_space(find_model(model))) return {""};
   return {"finite-volume", "finite-difference"};
 }
 

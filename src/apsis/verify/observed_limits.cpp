@@ -144,7 +144,7 @@ std::vector<experiment> experiments_for(const method& m) {
       permutations(m, staged)};
   for (const auto& model : all_models()) {
     if (!has_space(*model.entry)) continue;
-    if (solves_exactly(m.kind) && !model.equation->knows_collision()) continue;
+    if (solves_exactly(m.kind) && !model.equation->has_exact_collision()) continue;
     if (model.equation->collisions_decrease_entropy()) all.push_back(entropy(m, model.entry->name, stiff));
     if (model.equation->collisions_keep_sign())
       for (const char* form : {"finite-volume", "finite-difference"})

@@ -23,7 +23,7 @@ outcome compute_outcome(const case_config& config, const study_control& control)
   out.exact = run.exact_state();
   if (run.has_space()) out.cell_volume = make_mesh(config).cell_volume();
   // That of a uniform velocity grid, or the mean; velocities of other models have no part in norms.
-  if (find_model(config.model.name)->has_velocity_grid) {
+  if (find_model(config.model.name).has_velocity_grid) {
     const auto weights = run.velocities().weights();
     const bool equal =
         std::all_of(weights.begin(), weights.end(), [&](double w) { return w == weights.front(); });

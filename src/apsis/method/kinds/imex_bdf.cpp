@@ -73,7 +73,7 @@ rate_errors imex_bdf_integrator::errors_at(double z) const {
 }
 
 integrator_certificate imex_bdf_integrator::certify() const {
-  const auto found = find_formula_orders(imex_bdf_coefficients<mp_real>(steps));
+  const auto found = compute_formula_orders(imex_bdf_coefficients<mp_real>(steps));
   const auto number = [](const mp_real& x) { return x.convert_to<double>(); };
   const double of_q = number(found.implicit_constant), of_t = number(found.explicit_constant),
                amplified = error_amplification(weights);

@@ -209,7 +209,7 @@ two_step_certificate certify_two_step(const method& m) {
   find_slow_terms(form, tolerance, c);
   c.root = -weight_of_previous(form);
   const auto rounded = m.coefficients<long double>();
-  c.band = find_band_of([&](double z) {
+  c.band = compute_band_of([&](double z) {
     return static_cast<double>(two_step_at_finite_rate(rounded, static_cast<long double>(z)).flux - 1.0L);
   });
   check_claims(m, tolerance, c);

@@ -73,7 +73,7 @@ class binary_collisions {
   void check_collision(const binary_collision& one) const;
   void add_elastic_collisions();
   bool elastic(const binary_collision& one) const;
-  void find_invariants();
+  void compute_invariants();
 
   std::vector<std::vector<double>> velocities_;
   std::vector<binary_collision> collisions_;

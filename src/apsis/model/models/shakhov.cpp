@@ -38,7 +38,7 @@ class shakhov_model final : public gas_model {
     for (int k = 0; k <= d; ++k) s[k] = 0.0;
     const fluid_state state = molecules().state(omega);
     if (!state.admissible()) return;
-    const central_moments m = find_central_moments(molecules(), f, state);
+    const central_moments m = compute_central_moments(molecules(), f, state);
     for (int k = 0; k < d; ++k) s[k] = m.heat[static_cast<std::size_t>(k)];
   }
 

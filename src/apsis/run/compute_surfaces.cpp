@@ -1,4 +1,4 @@
-#include <apsis/run/find_surfaces.hpp>
+#include <apsis/run/compute_surfaces.hpp>
 
 #include <apsis/core/index.hpp>
 #include <apsis/model/gas_model.hpp>
@@ -225,7 +225,7 @@ class surface_writer {
 
 }  // namespace
 
-std::vector<surface_table> find_surfaces(const run_setup& setup, const surface_values& last) {
+std::vector<surface_table> compute_surfaces(const run_setup& setup, const surface_values& last) {
   std::vector<surface_table> tables;
   const auto& wanted = setup.config().output.surfaces;
   if (wanted.empty()) return tables;

@@ -1,4 +1,4 @@
-#include <apsis/run/find_fields.hpp>
+#include <apsis/run/compute_fields.hpp>
 
 #include <apsis/run/gathered_cells.hpp>
 
@@ -109,7 +109,7 @@ void add_centres(const run_setup& setup, field_table& table) {
 
 }  // namespace
 
-field_table find_fields(const run_setup& setup, const field& u) {
+field_table compute_fields(const run_setup& setup, const field& u) {
   const auto& wanted = setup.config().output.fields;
   field_table table;
   add_centres(setup, table);

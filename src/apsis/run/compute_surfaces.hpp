@@ -31,6 +31,6 @@ struct surface_values {
 /// that arrive as of those that leave, after the step:
 ///   rho, u_x … or u, T   density, bulk velocity and temperature, NaN where they are unknown
 /// Rows of a box in the plane are in the order of s, others in that of the ends.
-std::vector<surface_table> find_surfaces(const run_setup& setup, const surface_values& last);
+std::vector<surface_table> compute_surfaces(const run_setup& setup, const surface_values& last);
 
 }  // namespace apsis

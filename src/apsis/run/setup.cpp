@@ -186,6 +186,12 @@ void run_setup::check_tolerance() const {
         fmt::format("time.tolerance cannot be kept: method '{}' needs equal steps (its coefficients depend "
                     "on earlier steps); give time.dt or time.cfl, or choose a method of one step",
                     integrator_name()));
+  if (integrator_->one_step() == nullptr)
+    refuse(config_, "time.tolerance",
+           fmt::format(
+               "time.tolerance cannot be kept: method '{}' does not estimate the errors of its steps; give "
+               "time.dt or time.cfl, or choose a Runge-Kutta method",
+               integrator_name()));
   // The estimate is a difference of two numbers of double precision, relative to them.
   constexpr double finest = 64.0 * std::numeric_limits<double>::epsilon();
   if (*config_.time.tolerance < finest)

@@ -13,12 +13,14 @@ class construction_count {
   static long so_far() { return made_; }
 
  protected:
+  /// @cond
   construction_count() { ++made_; }
   construction_count(const construction_count&) { ++made_; }
   construction_count(construction_count&&) noexcept {}
   construction_count& operator=(const construction_count&) = default;
   construction_count& operator=(construction_count&&) noexcept = default;
   ~construction_count() = default;
+  /// @endcond
 
  private:
   inline static std::atomic<long> made_{0};

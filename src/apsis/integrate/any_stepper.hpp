@@ -26,6 +26,7 @@ namespace apsis {
 /// equal_step_formula.
 using stepper_kinds = std::tuple<runge_kutta_steps, exponential_steps, two_step_steps, imex_bdf_steps>;
 
+/// @cond
 namespace any_stepper_parts {
 
 template <class Kind, class... Others, problem P, class Use>
@@ -40,6 +41,7 @@ auto with_one_of(std::tuple<Kind, Others...>*, const time_integrator& m, P& p, s
 }
 
 }  // namespace any_stepper_parts
+/// @endcond
 
 /// Returns use(march), `march` being the stepper or the equal_step_formula of an integrator for a problem;
 /// `use` may move it. Stores a reference to the problem, which must outlive it. Throws input_error if the
@@ -76,6 +78,7 @@ class any_stepper {
   virtual stepper<P>* one_step() = 0;
 };
 
+/// @cond
 namespace any_stepper_parts {
 
 /// Steps of a method of one step.
@@ -162,6 +165,7 @@ class dependent_steps final : public any_stepper<P> {
 };
 
 }  // namespace any_stepper_parts
+/// @endcond
 
 /// Returns the stepper of an integrator. `p` must outlive it. `which`: with result_and_embedded, a method of
 /// one step can estimate the errors of its steps. Throws like with_stepper().

@@ -8,6 +8,7 @@
 
 namespace apsis {
 
+/// @cond
 namespace exponential_parts {
 
 template <class P>
@@ -25,6 +26,7 @@ class owning_stepper : private wrapped<P>, public stepper<exact_collisions<P>> {
 };
 
 }  // namespace exponential_parts
+/// @endcond
 
 /// Entry of stepper_kinds: a stepper of a problem with exact collisions. A problem that knows its collision
 /// and solves stages otherwise is wrapped.

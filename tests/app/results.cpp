@@ -134,7 +134,7 @@ TEST(results, files_agree_with_each_other) {
   // A header, the initial state, and every step.
   EXPECT_EQ(history.size(), 2 + manifest["result"]["steps"].get<std::size_t>());
   const auto fields = lines(read(folder.path() / "o/fields.csv"));
-  EXPECT_EQ(fields[0], "t,x,rho,u,T,stress,heat_flux");
+  EXPECT_EQ(fields[0], "t,x,rho,u,T,heat_flux");
   EXPECT_EQ(fields.size(), 1U + 3 * 20);
 
   const auto file = apsis::hdf5_file::open((folder.path() / "o/solution.h5").string());

@@ -36,7 +36,7 @@ void combine(P& p, std::initializer_list<linear_term<typename P::state, typename
       fresh = false;
       if (there) continue;
       if constexpr (array_of_reals<P>) {
-        accumulate<state>(targets, *u, [u = u]() -> const state& { return *u; });  // not called
+        accumulate<state>(targets, *u, [at = u]() -> const state& { return *at; });  // not called
       } else {
         p.add_transport(real(0), *u, targets);
       }

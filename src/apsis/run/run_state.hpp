@@ -46,10 +46,10 @@ struct step_record {
   /// |I − I₀ − received| of this step alone, relative to the same scales; not among the members that are
   /// kept.
   std::vector<double> defect_of_step = {};
-  std::optional<condition_violation> violation = {};  ///< as well not among the members that are kept
+  std::optional<condition_violation> violation = {};  ///< not kept either
   /// Σ_cells |ρ^n − ρ^{n−1}| of the last invariant, relative to its scale; not kept.
   double density_change = 0.0;
-  /// Σ_cells |ρ^n − 2ρ^{n−1} + ρ^{n−2}|, likewise.
+  /// Σ_cells |ρ^n − 2ρ^{n−1} + ρ^{n−2}| of the same invariant, relative to the same scale; not kept.
   double density_turn = 0.0;
 
   /// Calls visit(name, member) for every member of `self`, in the order of the columns of the history.

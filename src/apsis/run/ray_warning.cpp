@@ -1,6 +1,7 @@
 #include <apsis/run/ray_warning.hpp>
 
 #include <apsis/config/emitted_values.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/model/velocity_rays.hpp>
 #include <apsis/model/velocity_support.hpp>
 #include <apsis/velocity/velocity_line_registry.hpp>
@@ -84,15 +85,15 @@ std::string remedy(const case_config& config, int dimensions, int of_velocity, d
 
 }  // namespace
 
-std::string warning_of_rays(const run_setup& setup, double relaxation) {
+void warn_of_rays(const run_setup& setup, double relaxation) {
   const model& equation = *setup.equation;
   const int dimensions = equation.space_dimensions();
   const auto support = support_of(equation);
   // The time is infinite where nothing relaxes, and for epsilon = 0.
-  if (!support || dimensions < 2 || !std::isfinite(relaxation)) return "";
+  if (!support || dimensions < 2 || !std::isfinite(relaxation)) return;
   const case_config& config = setup.config();
   const auto emitted = emission_of(config, equation, support->molecules());
-  if (!emitted || !(emitted->jump > 0.0)) return "";
+  if (!emitted || !(emitted->jump > 0.0)) return;
   double shortest = std::numeric_limits<double>::infinity();
   for (const auto& [from, to] : config.space.domain) shortest = std::min(shortest, to - from);
   const double thermal = std::sqrt(emitted->temperature);
@@ -101,13 +102,13 @@ std::string warning_of_rays(const run_setup& setup, double relaxation) {
   std::vector<velocity_line> lines;
   for (int k = 0; k < dimensions; ++k) lines.push_back(support->molecules().grid().line(k));
   const double error = largest_error(lines, dimensions, emitted->temperature);
-  if (!(error * left > visible)) return "";
-  return fmt::format(
+  if (!(error * left > visible)) return;
+  log::warning(fmt::format(
       "the velocities leave rays (walls or ends emit different gases, molecules cross the domain without "
       "collisions, and their few directions add noise of about {:.1g} of the difference, {:.1g}, to the bulk "
       "velocity); {}",
       error, error * emitted->jump,
-      remedy(config, dimensions, support->molecules().dimensions(), emitted->temperature));
+      remedy(config, dimensions, support->molecules().dimensions(), emitted->temperature)));
 }
 
 }  // namespace apsis

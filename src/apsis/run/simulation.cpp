@@ -81,14 +81,15 @@ struct simulation::impl {
     totals.phase_points = static_cast<long>(setup.whole_mesh().size()) * state.components();
     if (march.done()) return;
     warn_of_dense_stages(setup);
-    warn_of_stiff_collision(setup, problem->relaxation_time(march.t(), state), next_dt());
+    const double relaxation = problem->relaxation_time(march.t(), state);
+    warn_of_stiff_collision(setup, relaxation, next_dt());
     warn_of_fast_source(problem->growth_of_source(march.t(), state), next_dt());
     warn_of_unstable_steps(setup, next_dt());
-    warn_of_rays();
+    warn_of_rays(setup, relaxation);
     // The first step may be shorter than those that follow.
     setup.decide_promises(promises, limit(), forward_euler_limit(), first.negative_values == 0,
                           conserves_to_rounding(setup, state, rounding));
-    start_steps();
+    start_steps(relaxation);
     start_watch();
     problem->take_cut();  // of steps that were only tried
   }
@@ -103,48 +104,25 @@ struct simulation::impl {
   static const field& unknowns_of(const field& u) { return u; }
   static const field& unknowns_of(const budgeted_state& u) { return u.unknowns; }
 
-  void start_steps() {
+  void start_steps(double relaxation) {
     if (control) {
       const double longest = std::min(limit(), config.time.end);
-      warn_of_tolerance(longest);
+      warn_of_tolerance(longest, relaxation);
       const auto rule = step_rule<double>::unlimited().with(
           setup.has_graded_start() ? startup::graded : startup::none, config.time.startup_growth);
       start_control(*problem, march.t(), state, longest, rule, *control, distance());
-      warn_of_layer(control->proposed());
+      warn_of_layer(setup, *problem, state, relaxation, control->proposed());
     } else if (setup.has_graded_start()) {
-      march.start_up(limit(), problem->relaxation_time(march.t(), state));
+      march.start_up(limit(), relaxation);
     }
   }
 
-  void warn_of_tolerance(double longest) {
+  void warn_of_tolerance(double longest, double relaxation) {
     if (setup.integrator().starter().kind == method_kind::explicit_only) return;  // resolves the relaxation
     const auto bounds = compute_plateau_bounds(to_butcher(setup.integrator().form));
     expected = forecast_tolerance(*integrator->one_step(), march.t(), now, config.time.end, longest,
                                   control->target(), bounds, distance());
-    warn_of_plateau(setup, *expected, problem->relaxation_time(march.t(), state));
-  }
-
-  void warn_of_rays() {
-    const std::string warning = warning_of_rays(setup, problem->relaxation_time(march.t(), state));
-    if (!warning.empty()) log::warning(warning);
-  }
-
-  /// Methods of types ARS and CK begin with T(u) of data off equilibrium. They keep an error of
-  /// Δt (T(u) − T(E(ℛu))) from an initial layer that the first step dt skips, and so do their estimates.
-  void warn_of_layer(double dt) {
-    const auto& form = setup.integrator().form;
-    const bool solves_first = form.D(0, 0) != 0.0 || form.ddot[0] != 0.0;
-    const bool is_imex = setup.integrator().starter().kind == method_kind::imex;
-    if (solves_first || !is_imex || setup.has_graded_start()) return;
-    const double relaxation = problem->relaxation_time(march.t(), state);
-    if (!(dt > relaxation)) return;
-    field equilibrium = state, left = state;
-    problem->project_to_equilibrium(march.t(), equilibrium);
-    const target<field, double> to_left{&left, 0.0, dt, false}, from_left{&left, 0.0, -dt, false};
-    problem->add_transport(march.t(), state, {&to_left, 1});
-    problem->add_transport(march.t(), equilibrium, {&from_left, 1});
-    const double error = distance()(state, left);
-    if (error > *config.time.tolerance) log::warning(text_of_layer(setup, dt, error));
+    warn_of_plateau(setup, *expected, relaxation);
   }
 
   /// Estimates what the method loses in the usual steps. A forecast above the tolerance has been reported.

@@ -4,6 +4,7 @@
 #include <apsis/core/log.hpp>
 #include <apsis/integrate/guarded_newton.hpp>
 #include <apsis/method/rate_errors.hpp>
+#include <apsis/run/state_distance.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -76,14 +77,27 @@ void warn_of_dense_stages(const run_setup& setup) {
                   n, std::pow(static_cast<double>(n), 3)));
 }
 
-std::string text_of_layer(const run_setup& setup, double dt, double error) {
-  return fmt::format(
-      "method '{}' does not resolve the initial layer of data off equilibrium in a first step of {:.1g} (it "
-      "is "
-      "asymptotic preserving for consistent data only; the layer leaves a relative error of up to about "
-      "{:.1g}, "
-      "which time.tolerance does not see); give time.startup = \"graded\"",
-      setup.integrator().name, dt, error);
+void warn_of_layer(const run_setup& setup, semidiscrete_problem& problem, const field& u, double relaxation,
+                   double dt) {
+  const auto& form = setup.integrator().form;
+  const bool solves_first = form.D(0, 0) != 0.0 || form.ddot[0] != 0.0;
+  const bool is_imex = setup.integrator().starter().kind == method_kind::imex;
+  if (solves_first || !is_imex || setup.has_graded_start() || !(dt > relaxation)) return;
+  field equilibrium = u, changed = u;
+  problem.project_to_equilibrium(0.0, equilibrium);
+  const target<field, double> add{&changed, 0.0, dt, false}, subtract{&changed, 0.0, -dt, false};
+  problem.add_transport(0.0, u, {&add, 1});
+  problem.add_transport(0.0, equilibrium, {&subtract, 1});
+  problem.settle();
+  const double error = relative_distance(u, changed, setup.processes());
+  if (!(error > *setup.config().time.tolerance)) return;
+  log::warning(
+      fmt::format("method '{}' does not resolve the initial layer of data off equilibrium in a first step of "
+                  "{:.1g} (it is "
+                  "asymptotic preserving for consistent data only; the layer leaves a relative error of up "
+                  "to about {:.1g}, "
+                  "which time.tolerance does not see); give time.startup = \"graded\"",
+                  setup.integrator().name, dt, error));
 }
 
 void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation) {

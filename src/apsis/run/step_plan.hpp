@@ -22,9 +22,11 @@ void warn_of_fast_source(double growth, double dt);
 /// Warns of implicit stages whose dense Newton systems have more than 200 unknowns.
 void warn_of_dense_stages(const run_setup& setup);
 
-/// Returns the warning of a first step dt that does not resolve the initial layer, with the relative error
-/// that it leaves.
-std::string text_of_layer(const run_setup& setup, double dt, double error);
+/// Warns if a first step dt skips the initial layer of the data u, whose width is `relaxation`, and the error
+/// that remains exceeds time.tolerance. Methods of types ARS and CK begin with T(u) of data off equilibrium:
+/// the relative error is Δt ‖T(u) − T(E(ℛu))‖/‖u‖, and error estimates do not see it. Collective.
+void warn_of_layer(const run_setup& setup, semidiscrete_problem& problem, const field& u, double relaxation,
+                   double dt);
 
 /// Warns if the forecast error exceeds time.tolerance, and suggests remedies.
 void warn_of_plateau(const run_setup& setup, const tolerance_forecast<double>& expected, double relaxation);

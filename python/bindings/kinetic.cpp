@@ -1,6 +1,7 @@
 #include "arrays.hpp"
 #include "callback.hpp"
 #include "given_data.hpp"
+#include "kinetic_description.hpp"
 #include "library_call.hpp"
 #include "march.hpp"
 #include "problem_pool.hpp"
@@ -31,181 +32,18 @@
 namespace apsis::python {
 namespace {
 
-/// The entry of that name. Throws input_error with the nearest names.
-template <class Entries>
-const auto& entry_called(const std::string& what, const std::string& name, const Entries& entries) {
-  std::vector<std::string> names;
-  for (const auto* entry : entries) {
-    if (entry->name == name) return *entry;
-    names.push_back(entry->name);
-  }
-  throw input_error(fmt::format("unknown {} '{}' (there is no such name); {}", what, name.substr(0, 60),
-                                suggest(name, names)));
-}
-
-template <class Choice>
-Choice choice_called(const std::string& what, const std::string& name) {
-  const auto& names = choice_names<Choice>;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    if (name == names[k]) return static_cast<Choice>(k);
-  throw input_error(fmt::format("unknown {} '{}' (there is no such name); {}", what, name.substr(0, 60),
-                                suggest(name, {names.begin(), names.end()})));
-}
-
-/// A boundary: its kind, and the values of its variables, lists of numbers and functions.
-using given_face = std::pair<std::string, py::dict>;
-/// Velocities and weights of a direction.
-using given_line = std::pair<std::vector<double>, std::vector<double>>;
-
-/// Description of a problem by names and numbers.
-struct description {
-  std::string model;
-  std::map<std::string, double> parameters;
-  std::map<std::string, std::string> options;
-  std::map<std::string, std::vector<std::string>> lists;
-  double velocity_max;
-  std::vector<int> velocity_points;
-  std::vector<std::string> velocity_sets;
-  std::vector<given_line> velocity_lines;
-  std::string equilibrium;
-  std::vector<int> cells;
-  std::vector<std::array<double, 2>> domain;
-  std::vector<std::array<given_face, 2>> boundary;
-  std::vector<py::object> acceleration;      ///< numbers and functions
-  std::vector<double> largest_acceleration;  ///< of functions; empty if unknown
-  std::string reconstruction, formulation, collisions;
-  bool positivity;
-};
-
-std::unique_ptr<model> make_equation(const description& of) {
-  const model_entry& entry = entry_called("model", of.model, model_entries());
-  model_config config = default_config(entry);
-  for (const auto& given : of.parameters) {
-    const std::string& name = given.first;
-    const double value = given.second;
-    if (!config.parameters.contains(name))
-      throw input_error(
-          fmt::format("unknown parameter '{1}' (model '{0}' has no such parameter); see: apsis list models",
-                      of.model, name));
-    const auto p = std::find_if(entry.parameters.begin(), entry.parameters.end(),
-                                [&name](const auto& one) { return one.name == name; });
-    if (!(value >= p->lowest && value <= p->highest) || (p->integer && value != std::floor(value)))
-      throw input_error(fmt::format("{} = {:g} is out of range ({} from {:g} to {:g} is needed); change it",
-                                    name, value, p->integer ? "an integer" : "a number", p->lowest,
-                                    p->highest));
-    config.parameters[name] = value;
-  }
-  for (const auto& [name, value] : of.options) {
-    if (!config.texts.contains(name))
-      throw input_error(fmt::format(
-          "unknown option '{1}' (model '{0}' has no such option); see: apsis list models", of.model, name));
-    config.texts[name] = value;
-  }
-  for (const auto& [name, value] : of.lists) {
-    if (!config.lists.contains(name))
-      throw input_error(fmt::format(
-          "unknown list '{1}' (model '{0}' has no such list); see: apsis list models", of.model, name));
-    config.lists[name] = value;
-  }
-  if (entry.has_velocity_grid) {
-    config.velocity = {of.velocity_max, of.velocity_points,
-                       choice_called<equilibrium_choice>("equilibrium", of.equilibrium), of.velocity_sets};
-    for (const auto& line : of.velocity_lines) config.velocity.lines.emplace_back(line.first, line.second);
-  }
-  return entry.make(config);
-}
-
-/// A function of t, x and v of Python.
-face_quantity velocity_function(const py::handle& given, const std::string& name, const model& equation) {
-  const shared_callback function(py::reinterpret_borrow<py::function>(given), name);
-  const auto space = static_cast<std::size_t>(equation.space_dimensions()),
-             velocity = static_cast<std::size_t>(equation.velocities().dimensions());
-  return {[function, space, velocity](double t, const position& x, const position& v) {
-    return function.at(t, std::span(x).first(space), std::span(v).first(velocity));
-  }};
-}
-
-/// The boundary of a face; `name` is that of its argument.
-std::shared_ptr<const boundary> make_face(const given_face& of, const model& equation,
-                                          const std::string& name) {
-  face_quantities values;
-  for (const auto& [key, list] : of.second) {
-    const std::string variable = py::str(key);
-    const std::string own = fmt::format("{}['{}']", name, variable);
-    const bool of_velocity = is_of_velocity(of.first, equation, variable);
-    for (const auto item : list) {
-      if (of_velocity && PyCallable_Check(item.ptr()) != 0) {
-        values[variable].push_back(velocity_function(item, own, equation));
-        continue;
-      }
-      quantity_in_time value = to_quantity(item, own, equation.space_dimensions());
-      values[variable].push_back(value.function ? face_quantity(std::move(value.function))
-                                                : face_quantity(value.number));
-    }
-  }
-  return make_boundary(of.first, equation, values);
-}
-
-std::optional<acceleration> make_acceleration(const description& of, const model& equation) {
-  if (of.acceleration.empty()) return std::nullopt;
-  const auto possible = static_cast<std::size_t>(equation.velocities().dimensions());
-  if (of.acceleration.size() > possible)
-    throw input_error(
-        fmt::format("acceleration has {} components (the model has {} velocity dimensions); give {}",
-                    of.acceleration.size(), possible, possible));
-  const auto& bounds = of.largest_acceleration;
-  if (bounds.size() > 1 && bounds.size() != of.acceleration.size())
-    throw input_error(
-        fmt::format("largest_acceleration has {} components and acceleration {}; give one for each",
-                    bounds.size(), of.acceleration.size()));
-  acceleration force;
-  std::vector<quantity_in_time> components;
-  for (std::size_t k = 0; k < of.acceleration.size(); ++k) {
-    components.push_back(to_quantity(of.acceleration[k], "acceleration", equation.space_dimensions()));
-    if (components[k].function && bounds.empty())
-      throw input_error(
-          "largest_acceleration is missing (acceleration is a function, whose largest value limits the "
-          "step); "
-          "give a bound of |acceleration|");
-    force.largest[k] = components[k].function ? bounds.size() == 1 ? bounds.front() : bounds[k]
-                                              : std::abs(components[k].number);
-  }
-  force.value = [components](double t, const position& x) {
-    std::array<double, 3> a{};
-    for (std::size_t k = 0; k < components.size(); ++k)
-      a[k] = components[k].function ? components[k].function(t, x) : components[k].number;
-    return a;
-  };
-  return force;
-}
-
-grid make_grid(const description& of) {
-  std::array<int, 3> cells = {1, 1, 1};
-  std::array<double, 3> lower{}, upper = {1.0, 1.0, 1.0};
-  for (std::size_t k = 0; k < std::min<std::size_t>(of.cells.size(), 3); ++k) {
-    cells[k] = of.cells[k];
-    lower[k] = of.domain[k][0];
-    upper[k] = of.domain[k][1];
-  }
-  return {static_cast<int>(of.cells.size()), cells, lower, upper};
-}
-
-constexpr std::array<std::array<const char*, 2>, 3> face_names = {
-    {{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
-
 /// A model on a mesh, by the problem_builder of the library. Threads may share the object: what its calls
 /// write is their own.
 class kinetic_problem {
  public:
-  kinetic_problem(const description& of, const py::object& epsilon)
+  kinetic_problem(const kinetic_description& of, const py::object& epsilon)
       : equation_(make_equation(of)), builder_(*equation_) {
     if (builder_.has_space()) {
       builder_.on(make_grid(of));
-      for (std::size_t k = 0; k < of.boundary.size(); ++k)
-        for (const bool upper : {false, true})
-          builder_.with_boundary({static_cast<int>(k), upper},
-                                 make_face(of.boundary[k][upper ? 1 : 0], *equation_,
-                                           fmt::format("boundary['{}']", face_names[k][upper ? 1 : 0])));
+      for (std::size_t k = 0; k < 2 * of.boundary.size(); ++k) {
+        const std::string name = fmt::format("boundary['{}']", apsis::face_names[k]);
+        builder_.with_boundary(face_of(k), make_face(of.boundary[k / 2][k % 2], *equation_, name));
+      }
       if (auto force = make_acceleration(of, *equation_)) builder_.with_force(std::move(*force));
       builder_.with_unknowns(choice_called<formulation>("formulation", of.formulation));
       if (!of.collisions.empty())
@@ -213,9 +51,8 @@ class kinetic_problem {
       if (of.positivity)
         builder_.with_positivity_limiter();
       else
-        unlimited_ = entry_called("reconstruction", of.reconstruction, reconstruction_entries()).make();
-      builder_.with_reconstruction(
-          entry_called("reconstruction", of.reconstruction, reconstruction_entries()).make());
+        unlimited_ = find_reconstruction(of.reconstruction).make();
+      builder_.with_reconstruction(find_reconstruction(of.reconstruction).make());
     }
     // The function of the user is called here, once for each point, and not by the threads of a step.
     if (PyCallable_Check(epsilon.ptr()) != 0) {
@@ -506,12 +343,12 @@ void bind_kinetic(py::module_& m) {
                        std::string formulation, std::string collisions, bool positivity,
                        const py::object& epsilon) {
         return std::make_unique<kinetic_problem>(
-            description{std::move(model), std::move(parameters), std::move(options), std::move(lists),
-                        velocity_max, std::move(velocity_points), std::move(velocity_sets),
-                        std::move(velocity_lines), std::move(equilibrium), std::move(cells),
-                        std::move(domain), std::move(boundary), std::move(acceleration),
-                        std::move(largest_acceleration), std::move(reconstruction), std::move(formulation),
-                        std::move(collisions), positivity},
+            kinetic_description{std::move(model), std::move(parameters), std::move(options), std::move(lists),
+                                velocity_max, std::move(velocity_points), std::move(velocity_sets),
+                                std::move(velocity_lines), std::move(equilibrium), std::move(cells),
+                                std::move(domain), std::move(boundary), std::move(acceleration),
+                                std::move(largest_acceleration), std::move(reconstruction),
+                                std::move(formulation), std::move(collisions), positivity},
             epsilon);
       }))
       .def("shape", &kinetic_problem::shape)

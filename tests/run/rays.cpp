@@ -121,8 +121,8 @@ TEST(rays, of_a_free_molecular_square_are_as_large_as_announced) {
 TEST(rays, are_announced_before_a_run_with_more_velocities) {
   const std::string words = words_of({});
   EXPECT_THAT(words,
-              AllOf(HasSubstr("the velocities leave rays"),
-                    HasSubstr(fmt::format("about {:.1g} of the difference", ray_error("graded", 16, 6.5))),
+              AllOf(HasSubstr("(rays of molecules that hardly collide)"),
+                    HasSubstr(fmt::format("{:.1g} of the largest difference", ray_error("graded", 16, 6.5))),
                     HasSubstr("velocity.points = [32, 32] leave")));
 }
 

@@ -9,8 +9,8 @@
 
 namespace apsis {
 
-/// Verbs of every problem that a time step does not need, with their defaults. Only this file contains
-/// defaults: a problem is complete without either verb.
+/// Operations on states that error estimates need and a time step does not. A problem may define them; the
+/// defaults stand here and nowhere else.
 
 /// A problem whose states are arrays of its number type.
 template <class P>

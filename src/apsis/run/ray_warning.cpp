@@ -79,7 +79,7 @@ std::string remedy(const case_config& config, int dimensions, int of_velocity, d
     points.push_back(k < dimensions ? 2 * n : n);
   }
   more.points = points;
-  return fmt::format("velocity.points = [{}] leave {:.1g}", fmt::join(points, ", "),
+  return fmt::format("velocity.points = [{}] leave {:.1g} of it", fmt::join(points, ", "),
                      largest_error(make_lines(more, of_velocity), dimensions, T));
 }
 
@@ -104,10 +104,10 @@ void warn_of_rays(const run_setup& setup, double relaxation) {
   const double error = largest_error(lines, dimensions, emitted->temperature);
   if (!(error * left > visible)) return;
   log::warning(fmt::format(
-      "the velocities leave rays (walls or ends emit different gases, molecules cross the domain without "
-      "collisions, and their few directions add noise of about {:.1g} of the difference, {:.1g}, to the bulk "
-      "velocity); {}",
-      error, error * emitted->jump,
+      "the few directions of the velocities leave noise of about {:.1g} in the bulk velocity, {:.1g} of the "
+      "largest "
+      "difference between the gases that walls and ends emit (rays of molecules that hardly collide); {}",
+      error * emitted->jump, error,
       remedy(config, dimensions, support->molecules().dimensions(), emitted->temperature)));
 }
 

@@ -34,8 +34,7 @@ double constant_epsilon(const case_config& config) {
                       "the case has no viscosity epsilon T^s from which a mean free path follows; add "
                       "collision_rate = \"viscosity\" or a table [gas]");
   const int dimensions = prototype(find_model(config.model.name)).space_dimensions();
-  const expression formula(config.model.epsilon, place_of(config, "model.epsilon"),
-                           formula_of_position(dimensions, true, config.constants));
+  const expression formula = make_epsilon(config, dimensions);
   if (!formula.is_constant())
     throw input_error(place_of(config, "model.epsilon"),
                       "epsilon depends on the position (there is no single Knudsen number); give a number");

@@ -64,7 +64,7 @@ kinetic_task::kinetic_task(const std::string& case_name, std::vector<std::string
       initial_(setup_.initial_state()) {
   const auto& [from, to] = config_.space.domain.front();
   const double dx = (to - from) / config_.space.cells.front();
-  const expression formula(config_.model.epsilon);
+  const expression formula = make_epsilon(config_, 1);
   for (int cell = 0; cell < setup_.mesh().size(); ++cell) {
     const double centre = setup_.mesh().centre(cell, 0);
     double mean = 0.0;

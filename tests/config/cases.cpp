@@ -64,7 +64,7 @@ TEST(cases, numbers_of_overrides_may_be_fractions) {
   EXPECT_EQ(load_case("paper/decay", {"model.u0=2.5e1/4"}).model.parameters.at("u0"), 6.25);
   // Texts stay texts, and formulas are left to the expression parser.
   EXPECT_EQ(load_case("paper/ode", {"title=1/2"}).title, "1/2");
-  EXPECT_EQ(load_case("paper/ode", {"model.epsilon=1/2"}).model.epsilon, "1/2");
+  EXPECT_EQ(load_case("paper/ode", {"model.epsilon=1/2"}).model.epsilon.text, "1/2");
 }
 
 TEST(cases, a_missing_case_is_an_input_error_with_the_nearest_name) {

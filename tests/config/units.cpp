@@ -184,7 +184,7 @@ TEST(gas, units_become_dimensionless_numbers) {
   EXPECT_EQ(c.faces[1].values.at("T").front(), "1 + 0.1*sin(t)");
   // The gas sets the model.
   const double mu = 2.117e-5 * std::pow(300.0 / 273.0, 0.81);
-  expect(number(c.model.epsilon), mu * speed / (10.0 * 1e-3));
+  expect(number(c.model.epsilon.text), mu * speed / (10.0 * 1e-3));
   EXPECT_EQ(c.model.texts.at("collision_rate"), "viscosity");
   EXPECT_EQ(c.model.parameters.at("viscosity_exponent"), 0.81);
   EXPECT_EQ(c.model.parameters.at("prandtl"), 2.0 / 3.0);
@@ -210,7 +210,8 @@ TEST(gas, pressure_density_and_number_density_are_equivalent) {
     const case_config other = parse(in_argon, {"gas." + key + "=" + value});
     EXPECT_FALSE(other.gas.pressure.has_value());
     EXPECT_NEAR(other.scales->pressure(), 10.0, 1e-12);
-    EXPECT_NEAR(number(other.model.epsilon), number(c.model.epsilon), 1e-12 * number(c.model.epsilon));
+    const double epsilon = number(c.model.epsilon.text);
+    EXPECT_NEAR(number(other.model.epsilon.text), epsilon, 1e-12 * epsilon);
     EXPECT_THAT(
         error_of(changed(in_argon, "name = \"argon\"", "name = \"argon\"\n" + key + " = \"" + value + "\"")),
         HasSubstr("(exactly one of pressure, density and number_density sets the reference density)"));
@@ -322,20 +323,47 @@ TEST(knudsen, numbers_of_every_definition_give_epsilon) {
       const case_config c = parse(
           changed(no_units, "[parameters]",
                   fmt::format("knudsen = {{value = {}, mean_free_path = \"{}\"}}\n[parameters]", value, of)));
-      return expression(c.model.epsilon, {}, {{"x"}, true, c.constants}).value(0.5);
+      return make_epsilon(c, 1).value(0.5);
     };
     EXPECT_NEAR(number_of("0.1"), 0.1 / factor, 1e-15) << name;
     EXPECT_NEAR(number_of("\"2*kn\""), 0.2 / factor, 1e-15) << name;
     EXPECT_NEAR(number_of("\"kn + x\""), 0.6 / factor, 1e-15) << name;
     EXPECT_EQ(number_of("0"), 0.0) << name;
   }
-  EXPECT_NEAR(number(parse(no_units, {"model.rarefaction=3"}).model.epsilon), 1.0 / (3.0 * std::sqrt(2.0)),
-              1e-16);
+  EXPECT_NEAR(number(parse(no_units, {"model.rarefaction=3"}).model.epsilon.text),
+              1.0 / (3.0 * std::sqrt(2.0)), 1e-16);
   const case_config varying = parse(no_units, {"model.rarefaction=1 + x"});
-  EXPECT_NEAR(expression(varying.model.epsilon).value(1.0), 1.0 / (2.0 * std::sqrt(2.0)), 1e-15);
+  EXPECT_NEAR(make_epsilon(varying, 1).value(1.0), 1.0 / (2.0 * std::sqrt(2.0)), 1e-15);
   // Without viscosity_exponent the default of the model, hard spheres, holds.
   const case_config hard = parse(changed(no_units, "viscosity_exponent = 0.81", "rarefaction = 2"));
   EXPECT_EQ(hard.model.parameters.at("viscosity_exponent"), 0.5);
+}
+
+TEST(knudsen, a_formula_is_converted_by_arithmetic) {
+  const case_config c = parse(no_units, {"model.knudsen.value=kn + x", "model.knudsen.mean_free_path=vhs"});
+  // The resolved case has the key as given, and reads back to the same numbers.
+  EXPECT_THAT(to_toml(c), HasSubstr("knudsen.value = \"kn + x\"\nknudsen.mean_free_path = \"vhs\"\n"));
+  EXPECT_THAT(to_toml(c), Not(HasSubstr("epsilon = ")));
+  EXPECT_EQ(make_epsilon(parse(to_toml(c)), 1).value(0.3), make_epsilon(c, 1).value(0.3));
+  // epsilon replaces it, on the command line and in a program.
+  EXPECT_EQ(make_epsilon(parse(to_toml(c), {"model.epsilon=0.25"}), 1).value(0.3), 0.25);
+  case_config changed_by_program = c;
+  changed_by_program.model.epsilon = "0.5";
+  EXPECT_EQ(make_epsilon(parse(to_toml(changed_by_program)), 1).value(0.3), 0.5);
+  // A condition keeps its meaning, and a formula of the greatest length is accepted.
+  const case_config jump = parse(no_units, {"model.rarefaction=x < 0.5 ? 1 : 2"});
+  EXPECT_EQ(make_epsilon(jump, 1).value(0.25), 1.0 / std::numbers::sqrt2);
+  EXPECT_EQ(make_epsilon(jump, 1).value(0.75), 1.0 / (2.0 * std::numbers::sqrt2));
+  const std::string longest = "x + 1" + std::string(expression::longest - 5, ' ');
+  EXPECT_EQ(make_epsilon(parse(no_units, {"model.rarefaction=\"" + longest + "\""}), 1).value(0.0),
+            1.0 / std::numbers::sqrt2);
+  // Messages quote the formula as given, and the value that it has.
+  EXPECT_THAT(error_of(no_units, {"model.rarefaction=x"}),
+              HasSubstr("expression 'x' is 0 at x = 0 (inf, to which it is converted, must be finite and not "
+                        "negative); change the formula or the domain"));
+  EXPECT_THAT(error_of(no_units, {"model.rarefaction=x - 2"}),
+              HasSubstr("expression 'x - 2' is -2 at x = 0 (-0.35355339059327373, to which it is converted, "
+                        "must be finite and not negative)"));
 }
 
 TEST(knudsen, what_is_wrong_is_refused) {
@@ -381,8 +409,8 @@ TEST(knudsen, what_is_wrong_is_refused) {
   // A key on the command line replaces those in the file that exclude it.
   const std::string in_file =
       changed(no_units, "[parameters]", "knudsen = {value = 1, mean_free_path = \"vhs\"}\n[parameters]");
-  EXPECT_EQ(parse(in_file, {"model.epsilon=0.25"}).model.epsilon, "0.25");
-  EXPECT_NE(parse(in_file, {"model.knudsen.value=2"}).model.epsilon, parse(in_file).model.epsilon);
+  EXPECT_EQ(parse(in_file, {"model.epsilon=0.25"}).model.epsilon.text, "0.25");
+  EXPECT_NE(parse(in_file, {"model.knudsen.value=2"}).model.epsilon.text, parse(in_file).model.epsilon.text);
   EXPECT_EQ(error_of(in_file, {"model.rarefaction=2"}), "accepted");
 }
 

@@ -47,7 +47,7 @@ plain::bgk::mesh plain_mesh(const case_config& config, const run_setup& setup) {
   const auto& [from, to] = config.space.domain.front();
   plain::bgk::mesh mesh{
       config.space.cells.front(), (to - from) / config.space.cells.front(), {v.begin(), v.end()}, {}};
-  const expression formula(config.model.epsilon);
+  const expression formula = make_epsilon(config, 1);
   for (int cell = 0; cell < mesh.cells; ++cell)
     for (const double xi : gauss3::xi)
       mesh.epsilon.push_back(formula.evaluate(setup.builder().mesh().centre(cell, 0) + xi * mesh.dx));

@@ -174,6 +174,13 @@ source_place place_of(const case_config& config, const std::string& path) {
   return {};
 }
 
+expression make_epsilon(const case_config& config, int dimensions) {
+  const epsilon_formula& given = config.model.epsilon;
+  return expression(given.text, place_of(config, "model.epsilon"),
+                    formula_of_position(dimensions, true, config.constants))
+      .converted(given.conversion);
+}
+
 grid make_mesh(const case_config& config) {
   std::array<int, 3> cells = {1, 1, 1};
   std::array<double, 3> lower{}, upper = {1.0, 1.0, 1.0};

@@ -3,6 +3,7 @@
 #include <apsis/boundary/domain.hpp>
 #include <apsis/config/case_parts.hpp>
 #include <apsis/config/choices.hpp>
+#include <apsis/config/epsilon_formula.hpp>
 #include <apsis/config/initial_table.hpp>
 #include <apsis/config/output_tables.hpp>
 #include <apsis/config/surface_tables.hpp>
@@ -42,8 +43,8 @@ struct case_config {
   /// Table [model].
   struct {
     std::string name;
-    std::string epsilon = "1";  ///< a number or a formula in x, y, z; dimensionless Knudsen number, ≥ 0
-    std::string initial;        ///< name of one of the model's initial data; "" with a table [initial]
+    epsilon_formula epsilon;  ///< relaxation time ε
+    std::string initial;      ///< name of one of the model's initial data; "" with a table [initial]
     std::map<std::string, double> parameters;  ///< numeric parameters of the model; defaults if absent
     std::map<std::string, std::string> texts;  ///< string options of the model; defaults if absent
     std::map<std::string, std::vector<std::string>> lists;  ///< lists of the model; defaults if absent
@@ -105,6 +106,10 @@ struct case_config {
   } output;
   std::shared_ptr<case_parts> parts = std::make_shared<case_parts>();  ///< objects made from the keys
 };
+
+/// Returns ε as a function of the position in `dimensions` space dimensions. Throws input_error as expression
+/// does, at the place of the key that gives ε.
+expression make_epsilon(const case_config& config, int dimensions);
 
 /// Parses the text of a case file and applies overrides "dotted.key=value". Strict: unknown or missing keys,
 /// wrong types and values out of range are input_errors with file, line, column and a suggestion.

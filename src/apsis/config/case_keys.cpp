@@ -74,12 +74,17 @@ bool no_set_is(const case_config& c, bool (*property)(const std::string&)) {
   return !c.velocity.set.empty() && std::none_of(c.velocity.set.begin(), c.velocity.set.end(), property);
 }
 
-/// A key from which the resolver derives model.epsilon, and which a resolved case does not have.
+/// A key from which the resolver derives model.epsilon. A resolved case has it where epsilon depends on x.
 case_key derived_key(std::string path, case_key facts) {
-  facts.path = std::move(path);
   facts.scope = key_scope::velocity;
   facts.store = [](case_config&, const case_value&) {};
-  facts.load = [](const case_config&) { return case_value(); };
+  facts.load = [path](const case_config& c) -> case_value {
+    const epsilon_formula& given = c.model.epsilon;
+    if (path == given.key) return given.text;
+    if (path == "model.knudsen.mean_free_path" && !given.mean_free_path.empty()) return given.mean_free_path;
+    return {};
+  };
+  facts.path = std::move(path);
   if (facts.type == key_type::formula) facts.unit = "dimensionless";
   return facts;
 }

@@ -39,9 +39,10 @@ class resolver {
     check_known();
     take_gas();
     take_constants();
-    derive_epsilon(text_, *model_, config_);
+    const auto derived = derive_epsilon(text_, *model_, config_);
     note_places();  // of derived keys too
     for (const case_key& key : case_schema()) take(key);
+    if (derived) config_.model.epsilon = *derived;
     complete_space();
     take_parameters();
     if (has_space(*model_)) check_dimensions();
@@ -72,7 +73,7 @@ class resolver {
     for (const auto& [path, raw] : text_.values)
       config_.places[path] = is_in(path, "initial") || is_in(path, "boundary") ||
                                      is_in(path, "space.solid") || is_in(path, "force") ||
-                                     is_in(path, "source")
+                                     is_in(path, "source") || path == "model.epsilon"
                                  ? place_of_formula(raw)
                                  : raw.place;
   }
@@ -429,15 +430,12 @@ class resolver {
 
   // At centres and edges of cells along the diagonal, up to a thousand points; the run checks every cell.
   void check_epsilon() const {
-    const raw_value* raw = find("model.epsilon");
-    const source_place place = raw != nullptr ? place_of_formula(*raw) : source_place{file_, 1, 1};
     const bool on_mesh = has_space(*model_);
     const auto dimensions = on_mesh ? config_.space.domain.size() : 0;
-    const expression formula(config_.model.epsilon, place,
-                             formula_of_position(static_cast<int>(dimensions), true, config_.constants));
+    const expression formula = make_epsilon(config_, static_cast<int>(dimensions));
     if (!formula.is_constant() && !on_mesh)
       throw input_error(
-          place,
+          place_of(config_, "model.epsilon"),
           fmt::format("'model.epsilon' depends on x (model '{}' has no space); give a number", model_->name));
     const int points = on_mesh ? std::min(2 * config_.space.cells.front(), 1000) : 0;
     for (int k = 0; k <= points; ++k) {

@@ -176,7 +176,7 @@ class epsilon_reader {
   epsilon_reader(case_text& text, const model_entry& model, const case_config& config)
       : text_(text), model_(model), config_(config) {}
 
-  void derive() {
+  std::optional<epsilon_formula> derive() {
     check_conflicts();
     const bool table = text_.tables.contains("model.knudsen");
     if (table || find(text_, "model.knudsen.value") || find(text_, "model.knudsen.mean_free_path"))
@@ -186,6 +186,7 @@ class epsilon_reader {
     else if (const raw_value* name = find(text_, "model.knudsen"))
       check_from_gas(*name);
     if (config_.scales) agree_with_gas(*config_.scales);
+    return formula_;
   }
 
  private:
@@ -221,31 +222,30 @@ class epsilon_reader {
     const auto name =
         std::get<std::string>(to_value(key("model.knudsen.mean_free_path"), *definition, config_));
     const double factor = 1.0 / try_find_mean_free_path(name)->knudsen_of_epsilon(viscosity_exponent());
-    set(*value, "model.knudsen.value", [factor](double kn) { return kn * factor; }, "({})*{:.17g}", factor);
+    set(*value, {.key = "model.knudsen.value", .mean_free_path = name, .conversion = {factor, false}});
   }
 
   void take_rarefaction(const raw_value& raw) {
-    set(raw, "model.rarefaction", rarefaction_of_epsilon, "1/(({})*{:.17g})", std::numbers::sqrt2);
+    set(raw, {.key = "model.rarefaction", .conversion = {std::numbers::sqrt2, true}});
   }
 
-  /// ε ← convert(value), or the text of a formula with a factor.
-  template <class Convert>
-  void set(const raw_value& raw, const std::string& path, const Convert& convert, const char* formula,
-           double factor) {
-    check_rate(raw, path);
-    const std::string given = std::get<std::string>(to_value(key(path), raw, config_));
+  /// ε ← the converted number, or the formula, whose conversion is returned.
+  void set(const raw_value& raw, epsilon_formula of) {
+    check_rate(raw, of.key);
+    of.text = std::get<std::string>(to_value(key(of.key), raw, config_));
     source_place place = raw.value_place;
     if (place.column > 0 && std::holds_alternative<std::string>(raw.value)) ++place.column;
     const int dimensions = prototype(model_).space_dimensions();
-    const expression own(given, place, formula_of_position(dimensions, true, config_.constants));
+    const expression own(of.text, place, formula_of_position(dimensions, true, config_.constants));
     raw_value epsilon = raw;
     if (own.is_constant()) {
-      const double value = convert(own.evaluate(position{}));
+      const double value = of.conversion(own.evaluate(position{}));
       if (!std::isfinite(value))
-        refuse(raw, path, "epsilon is not finite", "change it to a value in the range of positive numbers");
+        refuse(raw, of.key, "epsilon is not finite", "change it to a value in the range of positive numbers");
       epsilon.value = value;
     } else {
-      epsilon.value = fmt::format(fmt::runtime(formula), given, factor);
+      epsilon.value = of.text;
+      formula_ = std::move(of);
     }
     text_.values.insert_or_assign("model.epsilon", std::move(epsilon));
   }
@@ -305,12 +305,14 @@ class epsilon_reader {
   case_text& text_;
   const model_entry& model_;
   const case_config& config_;
+  std::optional<epsilon_formula> formula_;  ///< of a key other than model.epsilon
 };
 
 }  // namespace
 
-void derive_epsilon(case_text& text, const model_entry& model, const case_config& config) {
-  epsilon_reader(text, model, config).derive();
+std::optional<epsilon_formula> derive_epsilon(case_text& text, const model_entry& model,
+                                              const case_config& config) {
+  return epsilon_reader(text, model, config).derive();
 }
 
 }  // namespace apsis

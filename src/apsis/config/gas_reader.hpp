@@ -23,9 +23,11 @@ void remove_units(case_text& text, const model_entry& model, const std::optional
 /// have it.
 void set_gas_of_model(case_text& text, const model_entry& model, const case_config& config);
 
-/// Sets model.epsilon from model.knudsen, model.rarefaction or the scales in `config`, whose constants hold.
-/// Throws input_error: more than one of them, a value that contradicts the scales, or a model whose viscosity
-/// is not ε T^s.
-void derive_epsilon(case_text& text, const model_entry& model, const case_config& config);
+/// Sets model.epsilon from model.knudsen, model.rarefaction or the scales in `config`, whose constants hold:
+/// to the converted number, or to the formula as given. Returns that formula with its conversion, nothing for
+/// a number or where epsilon is given itself. Throws input_error: more than one of them, a value that
+/// contradicts the scales, or a model whose viscosity is not ε T^s.
+std::optional<epsilon_formula> derive_epsilon(case_text& text, const model_entry& model,
+                                              const case_config& config);
 
 }  // namespace apsis

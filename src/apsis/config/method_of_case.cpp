@@ -56,8 +56,7 @@ std::function<void(const position&, std::span<double>)> data_of(const case_confi
 void compute_ratios(const case_config& config, const model& equation, method_request& wanted) {
   if (!equation.has_relaxation_time()) return;
   const int dimensions = equation.space_dimensions();
-  const expression epsilon(config.model.epsilon, place_of(config, "model.epsilon"),
-                           formula_of_position(dimensions, true, config.constants));
+  const expression epsilon = make_epsilon(config, dimensions);
   const auto data = data_of(config, equation);
   const auto collision =
       equation.make_collision({.points = 1, .pitch = static_cast<std::ptrdiff_t>(equation.components())});

@@ -337,20 +337,32 @@ double expression::value(std::span<const double> variables) const {
 void expression::values(std::span<const double> variables, std::span<double> results) const {
   try {
     compiled_->parsers.evaluate(variables, results);
+    if (conversion_ != value_conversion{})
+      for (double& result : results) result = conversion_(result);
   } catch (const mu::ParserError& e) {
     fail(text(), place_, 0, e.GetMsg(), "check the formula");
   }
 }
 
+expression expression::converted(value_conversion by) const {
+  expression result = *this;
+  result.conversion_ = by;
+  return result;
+}
+
 double expression::evaluate(std::span<const double> variables) const {
-  double result = value(variables);
-  if (std::isnan(result)) result = std::abs(result);  // NaN is printed without a sign
-  if (!std::isfinite(result) || (nonnegative_ && result < 0.0))
+  const double result = value(variables);
+  if (!std::isfinite(result) || (nonnegative_ && result < 0.0)) {
+    const bool converts = conversion_ != value_conversion{};
+    double own = converts ? expression(*this).converted({}).value(variables) : result;
+    if (std::isnan(own)) own = std::abs(own);  // NaN is printed without a sign
     throw input_error(
         place_,
-        fmt::format("expression '{}' is {} at {} (it must be finite{}); change the formula or the domain",
-                    excerpt(text(), 0), result, values_text(variables_, variables),
+        fmt::format("expression '{}' is {} at {} ({} must be finite{}); change the formula or the domain",
+                    excerpt(text(), 0), own, values_text(variables_, variables),
+                    converts ? fmt::format("{}, to which it is converted,", result) : "it",
                     nonnegative_ ? " and not negative" : ""));
+  }
   return result;
 }
 

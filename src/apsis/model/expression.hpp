@@ -35,6 +35,16 @@ std::string why_not_a_constant(const std::string& name);
 /// twice: "'x' is a coordinate or time".
 std::string why_not_variables(const std::vector<std::string>& names, const formula_constants& constants);
 
+/// A conversion of the values of a formula: s v, or 1/(s v) if it is inverse.
+struct value_conversion {
+  double factor = 1.0;   ///< s
+  bool inverse = false;  ///< whether the result is the reciprocal
+
+  /// Returns the converted value.
+  double operator()(double v) const { return inverse ? 1.0 / (v * factor) : v * factor; }
+  bool operator==(const value_conversion&) const = default;  ///< the same factor and kind
+};
+
 /// A formula for coefficients that a case file gives as text (ε(x), a flux F(u)); dimensionless. Operators
 /// + - * / ^, comparisons and `a ? b : c`; functions sin cos tan asin acos atan sinh cosh tanh exp log
 /// (natural) log10 sqrt abs min max; constants pi and e. No assignment.
@@ -59,6 +69,10 @@ class expression {
   /// Returns the value of a formula in one variable. Thread-safe.
   double value(double x) const { return value({&x, 1}); }
 
+  /// Returns this formula with converted values. Text, place and constraint stay; the constraint is that of
+  /// the converted value.
+  expression converted(value_conversion by) const;
+
   /// Returns value(), or throws input_error if it is not finite or violates the constraint of the kind.
   double evaluate(std::span<const double> variables) const;
   /// The same check for a formula in one variable.
@@ -75,6 +89,7 @@ class expression {
   source_place place_;
   std::vector<std::string> variables_;
   bool nonnegative_ = true;
+  value_conversion conversion_{};
 };
 
 }  // namespace apsis

@@ -113,10 +113,8 @@ void run_setup::build_space(std::shared_ptr<communicator> processes) {
 }
 
 void run_setup::set_epsilon() {
-  const auto place = config_.places.find("model.epsilon");
-  const auto formula = std::make_shared<const expression>(
-      config_.model.epsilon, place == config_.places.end() ? source_place{} : place->second,
-      formula_of_position(equation->space_dimensions(), true, config_.constants));
+  const auto formula =
+      std::make_shared<const expression>(make_epsilon(config_, equation->space_dimensions()));
   builder_.with_epsilon([formula](const position& x) { return formula->evaluate(x); });
 }
 

@@ -69,6 +69,17 @@ struct conversion<point_counts> {
     member = std::move(each);
   }
 };
+template <>
+struct conversion<epsilon_formula> {
+  static constexpr key_type type = key_type::formula;
+  // Nothing where another key gives it.
+  static case_value to(const epsilon_formula& member) {
+    return member.key == epsilon_formula().key ? case_value(member.text) : case_value();
+  }
+  static void from(const case_value& value, epsilon_formula& member) {
+    member = std::get<std::string>(value);
+  }
+};
 template <class Member>
 struct conversion<std::optional<Member>> {
   static constexpr key_type type = conversion<Member>::type;

@@ -9,6 +9,9 @@ A comment directly before a block determines its treatment; GitHub does not show
                                 … for any text up to the following one
     <!-- exit: 2 -->            the block ends with this exit code; its output is what it prints and its messages
     <!-- elsewhere: FILE -->    this test of the repository runs the block; it names the page
+
+The engine is the project's own: extensions of Sphinx neither compare numbers by a tolerance nor run C++ and case files
+(docs/measured.md).
 """
 import re
 import textwrap

@@ -38,8 +38,6 @@ TEST(velocity_set, every_set_of_components_moves_with_the_velocities) {
   EXPECT_THAT(plane.speeds(1), ElementsAre(0.0, 0.5, 0.0, 0.5, 0.0, 0.5));
   EXPECT_TRUE(plane.speeds(2).empty());
   EXPECT_THAT(plane.weights(), ElementsAre(0.25, 0.75));
-  EXPECT_EQ(plane.largest_speed(0), 2.0);
-  EXPECT_EQ(plane.largest_speed(2), 0.0);
 }
 
 TEST(velocity_set, none_without_space_and_copies_share_their_numbers) {

@@ -25,7 +25,6 @@ grid::grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower
     spacing_[at(k)] = length / cells[at(k)];
   }
   check_size();
-  global_ = cells_;
   find_fluid();
 }
 

@@ -62,7 +62,6 @@ class grid {
     return cells_[at(direction)];
   }  ///< number of cells along a direction 0, 1 or 2
   int size() const { return cells_[0] * cells_[1] * cells_[2]; }            ///< total number of cells
-  int global_cells(int direction) const { return global_[at(direction)]; }  ///< of the grid it is a block of
   int first(int direction) const { return first_[at(direction)]; }          ///< global number of local cell 0
   double spacing(int direction) const { return spacing_[at(direction)]; }   ///< Δx along a direction
   double cell_volume() const;                                               ///< Π Δx over the D directions
@@ -100,7 +99,7 @@ class grid {
   void find_fluid();
 
   int dimensions_;
-  std::array<int, 3> cells_, global_, first_;
+  std::array<int, 3> cells_, first_;
   std::array<double, 3> lower_, spacing_;
   std::vector<cell_box> solids_;
   std::shared_ptr<std::vector<int>> solid_;  ///< of every cell; null without solid boxes

@@ -99,6 +99,8 @@ json to_json(const simulation& run, const run_records& records) {
   json out = {{"case", apsis::to_json(run.config())}, {"method", run.config().time.method}};
   add_choice(out, run.config());
   out.update(numbers(run));
+  out["expected_plateau"] = run.expected_plateau();
+  out["expected_loss"] = run.expected_loss();
   add_steady(out, run, estimate_steady_state(records.history()));
   json fields = json::object();
   const field_series series = result_units(run.config()).convert(records.fields());

@@ -77,10 +77,4 @@ std::span<const double> velocity_set::weights() const {
   return numbers_->weights;
 }
 
-double velocity_set::largest_speed(int k) const {
-  double fastest = 0.0;
-  for (const double v : speeds(k)) fastest = std::max(fastest, std::abs(v));
-  return fastest;
-}
-
 }  // namespace apsis

@@ -27,8 +27,6 @@ class velocity_set {
   std::span<const double> speeds(int k) const;
   /// w_j, size() numbers.
   std::span<const double> weights() const;
-  /// max_j |v_k|; 0 where k ≥ d.
-  double largest_speed(int k) const;
 
  private:
   struct numbers;

@@ -132,11 +132,12 @@ class kinetic_problem {
 
   py::dict fields(const array& u) const {
     const field state = to_field(u);
-    const auto names = equation_->fields();
+    const field_group group = equation_->fields().front();
+    const auto& names = group.names;
     std::vector<std::vector<double>> columns(names.size());
     std::vector<double> values(names.size());
     for (int cell = 0; cell < state.cells(); ++cell) {
-      equation_->macroscopic(state.row(cell), values.data());
+      group.compute({state.row(cell)}, values.data());
       for (std::size_t k = 0; k < names.size(); ++k) columns[k].push_back(values[k]);
     }
     py::dict out;

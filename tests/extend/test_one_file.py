@@ -1,4 +1,5 @@
-"""A boundary, model, reconstruction, command, claim, quantity, case and method are one file each, a kind of integrator three.
+"""A boundary, model with its fields, reconstruction, command, claim, quantity, case and method are one file each, a kind of
+integrator three.
 
 The files of planted/ are laid over a copy of the sources; a kind of integrator needs an entry of integrate/any_stepper.hpp,
 no other file changes. The program that is built from them lists and uses them all.
@@ -117,6 +118,14 @@ class OneFile(unittest.TestCase):
         for rho in result["fields"]["rho"]:
             self.assertAlmostEqual(rho, 0.5, delta=2e-3)
         self.assertEqual(result["negative_values"], 0)
+
+    def test_a_field_of_the_results_is_part_of_its_model(self):
+        usual = json.loads(output_of(self.program, "run", "planted/exchange", "--json"))["fields"]
+        self.assertNotIn("flux", usual)
+        fields = json.loads(output_of(self.program, "run", "planted/exchange", "output.fields=flux", "--json"))["fields"]
+        # The same number of particles moves in both directions.
+        for flux in fields["flux"]:
+            self.assertAlmostEqual(flux, 0.0, delta=2e-3)
 
     def test_a_claim_is_reproduced(self):
         self.assertIn("C99", output_of(self.program, "reproduce", "C99", folder=self.folder.name))

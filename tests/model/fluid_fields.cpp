@@ -25,7 +25,7 @@ std::unique_ptr<apsis::model> gas(int dimensions) {
 
 std::vector<std::string> names_of_fields(const apsis::model& m) {
   std::vector<std::string> names;
-  for (const auto& field : m.fields()) names.push_back(field.name);
+  for (const auto& field : m.default_fields()) names.push_back(field.name);
   return names;
 }
 
@@ -43,7 +43,7 @@ std::vector<double> maxwellian(const apsis::model& m, double rho, const std::vec
 }
 
 std::vector<double> fields_of(const apsis::model& m, const std::vector<double>& f) {
-  std::vector<double> values(m.fields().size());
+  std::vector<double> values(m.default_fields().size());
   m.macroscopic(f.data(), values.data());
   return values;
 }
@@ -57,8 +57,8 @@ TEST(fluid_fields, have_one_bulk_velocity_per_dimension) {
   EXPECT_THAT(names_of_fields(*gas(3)),
               ElementsAre("rho", "u_x", "u_y", "u_z", "T", "stress_xx", "stress_xy", "stress_xz", "stress_yy",
                           "stress_yz", "stress_zz", "heat_flux_x", "heat_flux_y", "heat_flux_z"));
-  EXPECT_EQ(gas(1)->fields()[1].label, "bulk velocity (dimensionless)");
-  EXPECT_EQ(gas(3)->fields()[2].label, "bulk velocity along y (dimensionless)");
+  EXPECT_EQ(gas(1)->default_fields()[1].label, "bulk velocity (dimensionless)");
+  EXPECT_EQ(gas(3)->default_fields()[2].label, "bulk velocity along y (dimensionless)");
   EXPECT_THAT(gas(1)->invariants(), ElementsAre("mass", "momentum", "energy"));
   EXPECT_THAT(gas(2)->invariants(), ElementsAre("mass", "momentum_x", "momentum_y", "energy"));
 }

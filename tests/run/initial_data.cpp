@@ -42,7 +42,7 @@ field state_of(const std::string& text, const std::vector<std::string>& override
 std::vector<double> fluid(const std::string& text, std::size_t k) {
   const run_setup setup(parse_case(text, "c.toml"));
   const field u = setup.initial_state();
-  std::vector<double> values(setup.equation->fields().size()), out;
+  std::vector<double> values(setup.equation->default_fields().size()), out;
   for (int cell = 0; cell < u.cells(); ++cell) {
     setup.equation->macroscopic(u.row(cell), values.data());
     out.push_back(values[k]);

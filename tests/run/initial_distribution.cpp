@@ -140,7 +140,7 @@ TEST(initial_distribution, is_dimensionless_also_in_the_units_of_a_gas) {
       "\"md-imex-3-2\"\nend = 1\nsafety = 0.5\n";
   const run_setup setup(parse_case(argon, "c.toml"));
   const field u = setup.initial_state();
-  std::vector<double> fields(setup.equation->fields().size());
+  std::vector<double> fields(setup.equation->default_fields().size());
   setup.equation->macroscopic(u.row(4), fields.data());
   EXPECT_NEAR(fields[0], 1.0, 1e-12);
   EXPECT_NEAR(fields[2], 1.0, 1e-12);

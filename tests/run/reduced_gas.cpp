@@ -26,7 +26,7 @@ std::vector<std::vector<double>> fields_after(const std::string& text,
   simulation run(config);
   while (!run.finished()) run.advance();
   const apsis::run_setup setup(config);
-  std::vector<double> values(setup.equation->fields().size());
+  std::vector<double> values(setup.equation->default_fields().size());
   std::vector<std::vector<double>> out(values.size());
   const auto state = run.state();
   const std::size_t width = state.size() / static_cast<std::size_t>(run.cells());

@@ -58,8 +58,9 @@ class plane_wave final : public apsis::relaxation_model {
   std::string why_inadmissible(const double*) const override { return ""; }
   std::vector<std::string> invariants() const override { return {"mass"}; }
   void invariant_densities(const double* u, double* densities) const override { *densities = *u; }
-  std::vector<apsis::field_name> fields() const override { return {{"u", "u"}}; }
-  void macroscopic(const double* u, double* values) const override { *values = *u; }
+  std::vector<apsis::field_group> fields() const override {
+    return {{{{"u", "u"}}, [](const apsis::field_point& at, double* values) { *values = *at.u; }}};
+  }
   const std::vector<apsis::initial_data>& initial() const override { return none_; }
 
  private:

@@ -186,8 +186,7 @@ class plane_advection final : public apsis::relaxation_model {
   std::string why_inadmissible(const double*) const override { return ""; }
   std::vector<std::string> invariants() const override { return {"mass"}; }
   void invariant_densities(const double* u, double* d) const override { moments(u, d); }
-  std::vector<apsis::field_name> fields() const override { return {}; }
-  void macroscopic(const double*, double*) const override {}
+  std::vector<apsis::field_group> fields() const override { return {}; }
   const std::vector<apsis::initial_data>& initial() const override {
     static const std::vector<apsis::initial_data> none;
     return none;

@@ -26,8 +26,7 @@ class broadwell_as_general_model final : public apsis::general_model {
   void invariant_densities(const double* f, double* densities) const override {
     closed_->invariant_densities(f, densities);
   }
-  std::vector<apsis::field_name> fields() const override { return closed_->fields(); }
-  void macroscopic(const double* f, double* values) const override { closed_->macroscopic(f, values); }
+  std::vector<apsis::field_group> fields() const override { return closed_->fields(); }
   const std::vector<apsis::initial_data>& initial() const override { return closed_->initial(); }
 
  private:

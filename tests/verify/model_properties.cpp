@@ -79,8 +79,7 @@ TEST(model_properties, an_equilibrium_that_does_not_conserve_breaks_all_three) {
     std::string why_inadmissible(const double*) const override { return ""; }
     std::vector<std::string> invariants() const override { return {}; }
     void invariant_densities(const double*, double*) const override {}
-    std::vector<apsis::field_name> fields() const override { return {}; }
-    void macroscopic(const double*, double*) const override {}
+    std::vector<apsis::field_group> fields() const override { return {}; }
     const std::vector<apsis::initial_data>& initial() const override { return none_; }
 
    private:

@@ -452,7 +452,7 @@ class resolver {
     if (config_.output.fields.empty()) return;
     std::vector<std::string> names;
     const auto equation = make_model(config_);
-    for (const auto& group : equation->field_groups())
+    for (const auto& group : equation->fields())
       for (const auto& field : group.names) names.push_back(field.name);
     for (const auto& name : config_.output.fields)
       if (std::find(names.begin(), names.end(), name) == names.end())

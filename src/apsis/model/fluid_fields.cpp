@@ -29,17 +29,19 @@ std::vector<field_group> flow_fields(int dimensions) {
     return at.gradients[1 + static_cast<std::size_t>(k)][static_cast<std::size_t>(l)];
   };
   field_group divergence{{{"divergence", "divergence of the velocity (dimensionless)", dimensions::rate}},
-                         true,
                          [=](const field_point& at, double* values) {
                            *values = 0.0;
                            for (int k = 0; k < dimensions; ++k) *values += slope(at, k, k);
-                         }};
+                         },
+                         true};
   if (dimensions == 1) return {divergence};
-  field_group vorticity{{}, true, [=](const field_point& at, double* values) {
+  field_group vorticity{{},
+                        [=](const field_point& at, double* values) {
                           for (int k = dimensions == 2 ? 2 : 0; k < 3; ++k)
                             *values++ =
                                 slope(at, (k + 2) % 3, (k + 1) % 3) - slope(at, (k + 1) % 3, (k + 2) % 3);
-                        }};
+                        },
+                        true};
   for (int k = 0; k < (dimensions == 2 ? 1 : 3); ++k) {
     const std::string along = dimensions == 2 ? "" : std::string(" along ") + "xyz"[k];
     vorticity.names.push_back({component_name("vorticity", k, dimensions == 2 ? 1 : 3),

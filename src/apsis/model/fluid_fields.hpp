@@ -14,8 +14,9 @@ std::vector<field_name> fluid_fields(int dimensions);
 /// values ← density, the components of the bulk velocity, temperature, in the order of fluid_fields().
 void fluid_field_values(const fluid_state& state, int dimensions, double* values);
 
-/// Derived fields of a gas whose fields() begin with fluid_fields(): the divergence ∇·u and, with several
-/// velocity components, the vorticity ∇×u: one number in two dimensions, x, y and z components in three.
+/// Further fields of a gas whose default fields begin with fluid_fields(): the divergence ∇·u and, with
+/// several velocity components, the vorticity ∇×u: one number in two dimensions, x, y and z components in
+/// three.
 std::vector<field_group> flow_fields(int dimensions);
 
 /// Names of the invariants ρ, ρu, 𝓔: mass, momentum (momentum_x, momentum_y, momentum_z if there are

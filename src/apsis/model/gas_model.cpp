@@ -127,7 +127,7 @@ bool gas_model::has_stress() const {
   return gas_.degrees_of_freedom() > 1;
 }
 
-std::vector<field_name> gas_model::fields() const {
+std::vector<field_name> gas_model::names_of_moments() const {
   const int d = gas_.dimensions();
   const std::string axes = "xyz";
   std::vector<field_name> all = fluid_fields(d);
@@ -146,7 +146,7 @@ std::vector<field_name> gas_model::fields() const {
   return all;
 }
 
-void gas_model::macroscopic(const double* f, double* values) const {
+void gas_model::moment_fields(const double* f, double* values) const {
   double omega[5];
   moments(f, omega);
   const int d = gas_.dimensions();
@@ -161,16 +161,16 @@ void gas_model::macroscopic(const double* f, double* values) const {
   for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) *values++ = m.heat[k];
 }
 
-std::vector<field_group> gas_model::derived_fields() const {
+std::vector<field_group> gas_model::fields() const {
   std::vector<field_group> groups = {
+      {names_of_moments(), [this](const field_point& at, double* values) { moment_fields(at.u, values); }},
       {{{"p", "pressure (dimensionless)", dimensions::pressure},
         {"mach", "Mach number"},
         {"distance", "distance to equilibrium, relative"}},
-       false,
        [this](const field_point& at, double* values) { thermodynamics(at.u, values); }},
-      {{{"knudsen", "local Knudsen number"}}, true, [this](const field_point& at, double* values) {
-         *values = local_knudsen(at);
-       }}};
+      {{{"knudsen", "local Knudsen number"}},
+       [this](const field_point& at, double* values) { *values = local_knudsen(at); },
+       true}};
   for (auto& group : flow_fields(gas_.dimensions())) groups.push_back(std::move(group));
   return groups;
 }

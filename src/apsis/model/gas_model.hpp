@@ -55,8 +55,9 @@ class gas_model : public relaxation_model {
   double operations_of_equilibrium() const override { return gas_.operations(); }
   std::string why_inadmissible(const double* omega) const override { return gas_.why_inadmissible(omega); }
 
-  bool has_entropy() const override { return true; }
-  double entropy(const double* f) const override { return gas_.entropy(f); }
+  std::optional<convex_entropy> entropy() const override {
+    return convex_entropy{[this](const double* f) { return gas_.entropy(f); }};
+  }
 
   std::vector<std::string> invariants() const override;
   std::vector<dimension> invariant_measures() const override;
@@ -65,14 +66,14 @@ class gas_model : public relaxation_model {
   /// inequality.
   void invariant_scales(std::span<const double> densities, double* scales) const override;
 
-  /// ρ, u, T, stress p_kl = Σ c_k c_l g − p δ_kl for k ≤ l (none if D = 1), heat flux ½ Σ c (|c|² g + h).
-  std::vector<field_name> fields() const override;
-  void macroscopic(const double* f, double* values) const override;
-  /// Pressure p = ρT, Mach number |u|/√(γT) with γ = (D + 2)/D, and the distance Σ|f − M|/Σ f to equilibrium,
-  /// of g if there are two functions. The local Knudsen number λ|∇ρ|/ρ with the mean free path by viscosity,
-  /// λ = μ √(πT/2)/p, and the viscosity μ = p ε/C of the model, Pr p ε/C of the ellipsoidal one; NaN where
-  /// the gas has no temperature. Divergence and vorticity (flow_fields).
-  std::vector<field_group> derived_fields() const override;
+  /// First group: ρ, u, T, stress p_kl = Σ c_k c_l g − p δ_kl for k ≤ l (none if D = 1), heat flux
+  /// ½ Σ c (|c|² g + h).
+  ///
+  /// Others: pressure p = ρT, Mach number |u|/√(γT) with γ = (D + 2)/D, and the distance Σ|f − M|/Σ f to
+  /// equilibrium, of g if there are two functions. The local Knudsen number λ|∇ρ|/ρ with the mean free path
+  /// by viscosity, λ = μ √(πT/2)/p, and the viscosity μ = p ε/C of the model, Pr p ε/C of the ellipsoidal
+  /// one; NaN where the gas has no temperature. Divergence and vorticity (flow_fields).
+  std::vector<field_group> fields() const override;
 
   const std::vector<initial_data>& initial() const override { return initial_; }
   std::vector<data_form> data_forms() const override {
@@ -112,6 +113,8 @@ class gas_model : public relaxation_model {
   }
 
  private:
+  std::vector<field_name> names_of_moments() const;
+  void moment_fields(const double* f, double* values) const;
   void thermodynamics(const double* f, double* values) const;
   double local_knudsen(const field_point& at) const;
   bool has_stress() const;

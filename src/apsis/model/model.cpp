@@ -39,10 +39,6 @@ void model::source(const double*, double* s) const {
   for (int k = 0; k < components(); ++k) s[k] = 0.0;
 }
 
-double model::entropy(const double*) const {
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 void model::invariant_scales(std::span<const double> densities, double* scales) const {
   for (std::size_t k = 0; k < densities.size(); ++k) scales[k] = std::abs(densities[k]);
 }
@@ -109,13 +105,6 @@ const model_entry& find_model(const std::string& name) {
 
 std::vector<dimension> model::invariant_measures() const {
   return std::vector<dimension>(invariants().size());
-}
-
-std::vector<field_group> model::field_groups() const {
-  std::vector<field_group> groups = {
-      {fields(), false, [this](const field_point& at, double* values) { macroscopic(at.u, values); }}};
-  for (auto& group : derived_fields()) groups.push_back(std::move(group));
-  return groups;
 }
 
 void relaxation_model::relaxing_moments(const double*, const double*, double*) const {}

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,17 +29,24 @@ struct field_name {
 struct field_point {
   const double* u;       ///< its row
   double epsilon = 0.0;  ///< ε at its centre
-  /// (∂_x φ, ∂_y φ, ∂_z φ) of the model::fields() φ, 0 along directions without space; empty unless the
-  /// group needs them.
+  /// (∂_x φ, ∂_y φ, ∂_z φ) of the model::default_fields() φ, 0 along directions without space; empty unless
+  /// the group needs them.
   std::span<const std::array<double, 3>> gradients = {};
 };
 
 /// Macroscopic fields that are computed together.
 struct field_group {
   std::vector<field_name> names;  ///< at least one
-  bool needs_gradients = false;   ///< whether compute() uses field_point::gradients
   /// values ← the fields at a point, in the order of the names.
   std::function<void(const field_point& at, double* values)> compute;
+  bool needs_gradients = false;  ///< whether compute() uses field_point::gradients
+};
+
+/// A convex entropy density η(u) of nonnegative rows. Its sum over all cells decays under upwind transport
+/// and collision.
+struct convex_entropy {
+  std::function<double(const double* u)> density;  ///< η of a row ≥ 0
+  bool collisions_decrease = true;  ///< whether no stage solve of a collision increases the sum
 };
 
 class gas_model;
@@ -124,13 +132,8 @@ class model : public construction_count<model> {
   /// Returns the name of the moments whose relaxation point_collision::take_cut() compares with that of the
   /// published model: "heat_flux"; "", the default, of a model whose target is never changed.
   virtual std::string cut_moment() const { return {}; }
-  /// Whether entropy() is defined.
-  virtual bool has_entropy() const { return false; }
-  /// Whether no stage solve of a collision increases the entropy.
-  virtual bool collisions_decrease_entropy() const { return has_entropy(); }
-  /// Returns the convex entropy density of a nonnegative row, whose sum over all cells decays under upwind
-  /// transport and collision; NaN if it is not defined.
-  virtual double entropy(const double* u) const;
+  /// Returns the entropy; nothing, the default, where none is known. The model must outlive it.
+  virtual std::optional<convex_entropy> entropy() const { return {}; }
 
   /// Returns the names of the quantities, linear in u, that collisions and periodic transport conserve; may
   /// be empty.
@@ -143,17 +146,14 @@ class model : public construction_count<model> {
   /// default. A momentum may vanish by cancellation of particles that move in opposite directions.
   virtual void invariant_scales(std::span<const double> densities, double* scales) const;
 
-  /// Returns the macroscopic fields that results have unless output.fields names others.
-  virtual std::vector<field_name> fields() const = 0;
-  /// values ← the fields of a row, in the order of fields().
-  virtual void macroscopic(const double* u, double* values) const = 0;
-
-  /// Returns fields that results have only where output.fields names them; none by default. The model must
-  /// outlive them.
-  virtual std::vector<field_group> derived_fields() const { return {}; }
-  /// Returns all fields: one group with fields() and macroscopic(), then the derived ones. The model must
-  /// outlive them.
-  std::vector<field_group> field_groups() const;
+  /// Returns the macroscopic fields. Results have those of the first group, which needs no gradients, unless
+  /// output.fields names others. The model must outlive them.
+  virtual std::vector<field_group> fields() const = 0;
+  /// Returns the fields of the first group.
+  std::vector<field_name> default_fields() const { return fields().front().names; }
+  /// values ← the fields of the first group. Loops over rows call its compute() instead, since this function
+  /// makes the groups.
+  void macroscopic(const double* u, double* values) const { fields().front().compute({u}, values); }
 
   /// Returns the initial data; the first is the default. A model of a registry has some with its default
   /// options; where others leave none, a case needs a table [initial].
@@ -175,6 +175,12 @@ class model : public construction_count<model> {
   virtual double automatic_value(const std::string& parameter,
                                  const std::vector<std::vector<double>>& rows) const;
 };
+
+/// Whether the model has an entropy that no stage solve of a collision increases.
+inline bool collisions_decrease_entropy(const model& equation) {
+  const auto entropy = equation.entropy();
+  return entropy && entropy->collisions_decrease;
+}
 
 /// The coefficients of a stage v = u + A (…) + B (…) of a relaxation.
 struct stage_strength {

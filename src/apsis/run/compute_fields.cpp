@@ -68,12 +68,12 @@ std::vector<gradient> gradients_of(const run_setup& setup, const std::vector<dou
   return slopes;
 }
 
-/// Adds a group of fields to a table whose first columns are those of model::fields().
+/// Adds a group of fields to a table whose first columns are those of model::default_fields().
 void add_group(const run_setup& setup, const field& u, const field_group& group, field_table& table) {
   std::vector<std::vector<gradient>> of_fields;  // [field][cell]
   std::vector<double> epsilon;
   if (group.needs_gradients) {
-    const std::size_t usual = setup.equation->fields().size();
+    const std::size_t usual = setup.equation->default_fields().size();
     for (std::size_t k = 0; k < usual; ++k) of_fields.push_back(gradients_of(setup, table.values[k]));
     epsilon = setup.epsilon_at_centres();
   }
@@ -113,7 +113,7 @@ field_table compute_fields(const run_setup& setup, const field& u) {
   const auto& wanted = setup.config().output.fields;
   field_table table;
   add_centres(setup, table);
-  for (const field_group& group : setup.equation->field_groups())
+  for (const field_group& group : setup.equation->fields())
     if (table.names.empty() || names_one_of(wanted, group.names)) add_group(setup, u, group, table);
   for (auto& column : table.values) column = gather_cells(setup.builder(), std::move(column));
   return table;

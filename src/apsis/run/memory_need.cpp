@@ -73,8 +73,8 @@ memory_need::memory_need(const run_setup& setup, int copies)
   const case_config& config = setup.config();
   const auto& output = config.output;
   snapshots_ = 1.0 + (output.every > 0.0 ? config.time.end / output.every : 0.0);
-  fields_ =
-      static_cast<double>(output.fields.empty() ? setup.equation->fields().size() : output.fields.size());
+  fields_ = static_cast<double>(output.fields.empty() ? setup.equation->default_fields().size()
+                                                      : output.fields.size());
   if (setup.has_space()) shape_ = config.space.cells;
   cells_ = product(shape_);
   const auto& points = config.velocity.points;

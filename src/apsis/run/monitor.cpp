@@ -29,6 +29,7 @@ struct monitor::partial {
 monitor::monitor(const run_setup& setup)
     : setup_(setup),
       equation_(*setup.equation),
+      entropy_(equation_.entropy()),
       volume_(setup.cell_volume()),
       ends_(setup.open_ends()),
       entropy_bounds_(setup.entropy_bounds().value_or(std::vector<double>{})),
@@ -67,7 +68,7 @@ void monitor::check_cells(const field& u, int begin, int end, partial& own) cons
     }
     if (conditional && !equation_.check_supported(row).problem.empty())
       own.violating = std::min(own.violating, cell);
-    if (equation_.has_entropy() && below == 0) own.sums.back().add(equation_.entropy(row));
+    if (entropy_ && below == 0) own.sums.back().add(entropy_->density(row));
   }
 }
 
@@ -133,8 +134,7 @@ monitor::totals monitor::sum(const field& u) const {
     t.change = sums[2 * count] / sums[2 * count - 1];
     t.turn = sums[2 * count + 1] / sums[2 * count - 1];
   }
-  t.entropy = !equation_.has_entropy() || t.negative > 0 ? std::numeric_limits<double>::quiet_NaN()
-                                                         : volume_ * sums.back();
+  t.entropy = !entropy_ || t.negative > 0 ? std::numeric_limits<double>::quiet_NaN() : volume_ * sums.back();
   return t;
 }
 

@@ -63,6 +63,7 @@ class monitor {
 
   const run_setup& setup_;
   const model& equation_;
+  std::optional<convex_entropy> entropy_;
   double volume_;                       ///< of a cell; 1 for an ordinary differential equation
   std::vector<std::size_t> ends_;       ///< number at each face
   std::vector<double> entropy_bounds_;  ///< of what is received, [face][invariant]

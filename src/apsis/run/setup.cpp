@@ -40,13 +40,14 @@ namespace {
 /// Returns the smallest and the largest value of every macroscopic field.
 std::pair<std::vector<double>, std::vector<double>> extremes_of_fields(const model& equation,
                                                                        const grid& mesh, const field& u) {
-  std::vector<double> values(equation.fields().size());
+  const field_group fields = equation.fields().front();
+  std::vector<double> values(fields.names.size());
   std::vector<double> lowest(values.size(), std::numeric_limits<double>::infinity()), highest(values.size());
   for (double& value : highest) value = -std::numeric_limits<double>::infinity();
   for (int cell = 0; cell < u.cells(); ++cell) {
     interruptible::poll();
     if (mesh.solid(cell) >= 0) continue;
-    equation.macroscopic(u.row(cell), values.data());
+    fields.compute({u.row(cell)}, values.data());
     for (std::size_t k = 0; k < values.size(); ++k) {
       lowest[k] = std::min(lowest[k], values[k]);
       highest[k] = std::max(highest[k], values[k]);
@@ -411,7 +412,7 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
   promises.why_signed = equation->why_signed();
   promises.positivity = equation->positive() && collisions && nonnegative && within && builder_.keeps_sign();
   // An equilibrium with other moments does not minimize the entropy among the states with those of the data.
-  promises.entropy = equation->collisions_decrease_entropy() && nonnegative && within &&
+  promises.entropy = collisions_decrease_entropy(*equation) && nonnegative && within &&
                      builder_.first_order() && exact_equilibrium && entropy_bounds().has_value();
 }
 

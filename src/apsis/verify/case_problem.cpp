@@ -66,14 +66,15 @@ kept_property<field> positivity() {
 std::vector<std::string> all_entropy_models() {
   std::vector<std::string> names;
   for (const auto& m : all_models())
-    if (has_space(*m.entry) && m.equation->collisions_decrease_entropy()) names.push_back(m.entry->name);
+    if (has_space(*m.entry) && collisions_decrease_entropy(*m.equation)) names.push_back(m.entry->name);
   return names;
 }
 
 double entropy_of(const run_setup& setup, const field& u) {
   if (!(smallest(u) >= 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  const auto entropy = setup.equation->entropy();
   double sum = 0.0;
-  for (int cell = 0; cell < u.cells(); ++cell) sum += setup.equation->entropy(u.row(cell));
+  for (int cell = 0; cell < u.cells(); ++cell) sum += entropy->density(u.row(cell));
   return setup.cell_volume() * sum;
 }
 

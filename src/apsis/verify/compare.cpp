@@ -100,7 +100,8 @@ std::vector<double> field_of(const case_config& config, const std::vector<double
                              const std::string& name) {
   const run_setup setup(config);
   std::vector<std::string> names;
-  for (const auto& field : setup.equation->fields()) names.push_back(field.name);
+  const field_group group = setup.equation->fields().front();
+  for (const auto& field : group.names) names.push_back(field.name);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     throw input_error(fmt::format("no quantity '{}' (model '{}' has no such field); {}", name.substr(0, 60),
@@ -108,7 +109,7 @@ std::vector<double> field_of(const case_config& config, const std::vector<double
   const auto components = static_cast<std::size_t>(setup.equation->components());
   std::vector<double> values(names.size()), out;
   for (std::size_t k = 0; k < state.size(); k += components) {
-    setup.equation->macroscopic(state.data() + k, values.data());
+    group.compute({state.data() + k}, values.data());
     out.push_back(values[static_cast<std::size_t>(found - names.begin())]);
   }
   return out;

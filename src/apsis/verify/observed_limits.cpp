@@ -145,7 +145,7 @@ std::vector<experiment> experiments_for(const method& m) {
   for (const auto& model : all_models()) {
     if (!has_space(*model.entry)) continue;
     if (solves_exactly(m.kind) && !model.equation->has_exact_collision()) continue;
-    if (model.equation->collisions_decrease_entropy()) all.push_back(entropy(m, model.entry->name, stiff));
+    if (collisions_decrease_entropy(*model.equation)) all.push_back(entropy(m, model.entry->name, stiff));
     if (model.equation->collisions_keep_sign())
       for (const char* form : {"finite-volume", "finite-difference"})
         all.push_back(positive_weno(m, model, form, stiff));

@@ -50,12 +50,13 @@ class broadwell_model final : public relaxation_model {
     return fmt::format("density {:.6g} with momentum {:.6g}", omega[0], omega[1]);
   }
 
-  bool has_entropy() const override { return true; }
   /// f₊ log f₊ + 2 f₀ log f₀ + f₋ log f₋ with 0 log 0 = 0: two of the four species of the planar gas rest in
   /// this direction. Collisions change it by q log(f₊f₋/f₀²) ≤ 0, and E is its minimum for given ω.
-  double entropy(const double* f) const override {
-    const auto part = [](double value) { return value > 0.0 ? value * std::log(value) : 0.0; };
-    return part(f[0]) + 2.0 * part(f[1]) + part(f[2]);
+  std::optional<convex_entropy> entropy() const override {
+    return convex_entropy{[](const double* f) {
+      const auto part = [](double value) { return value > 0.0 ? value * std::log(value) : 0.0; };
+      return part(f[0]) + 2.0 * part(f[1]) + part(f[2]);
+    }};
   }
 
   /// z is not invariant: collisions change it.
@@ -67,18 +68,18 @@ class broadwell_model final : public relaxation_model {
     scales[1] = std::max(scales[0], scales[1]);
   }
 
-  std::vector<field_name> fields() const override {
-    return {{"rho", "density (dimensionless)"},
-            {"m", "momentum (dimensionless)"},
-            {"z", "momentum flux (dimensionless)"},
-            {"f_plus", "density of particles of speed 1 (dimensionless)"},
-            {"f_0", "density of particles at rest (dimensionless)"},
-            {"f_minus", "density of particles of speed -1 (dimensionless)"}};
-  }
-  void macroscopic(const double* f, double* values) const override {
-    moments(f, values);
-    values[2] = f[0] + f[2];
-    for (int k = 0; k < 3; ++k) values[3 + k] = f[k];
+  std::vector<field_group> fields() const override {
+    return {{{{"rho", "density (dimensionless)"},
+              {"m", "momentum (dimensionless)"},
+              {"z", "momentum flux (dimensionless)"},
+              {"f_plus", "density of particles of speed 1 (dimensionless)"},
+              {"f_0", "density of particles at rest (dimensionless)"},
+              {"f_minus", "density of particles of speed -1 (dimensionless)"}},
+             [this](const field_point& at, double* values) {
+               moments(at.u, values);
+               values[2] = at.u[0] + at.u[2];
+               std::copy_n(at.u, 3, values + 3);
+             }}};
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }

@@ -65,13 +65,14 @@ class plane_broadwell_model final : public relaxation_model {
     return fmt::format("density {:.6g} with momentum ({:.6g}, {:.6g})", omega[0], omega[1], omega[2]);
   }
 
-  bool has_entropy() const override { return true; }
   /// Σ f log f with 0 log 0 = 0. Collisions change it by 2q log(f→f←/(f↑f↓)) ≤ 0, and E is its minimum for
   /// given ω.
-  double entropy(const double* f) const override {
-    double sum = 0.0;
-    for (int k = 0; k < 4; ++k) sum += f[k] > 0.0 ? f[k] * std::log(f[k]) : 0.0;
-    return sum;
+  std::optional<convex_entropy> entropy() const override {
+    return convex_entropy{[](const double* f) {
+      double sum = 0.0;
+      for (int k = 0; k < 4; ++k) sum += f[k] > 0.0 ? f[k] * std::log(f[k]) : 0.0;
+      return sum;
+    }};
   }
 
   std::vector<std::string> invariants() const override { return {"mass", "momentum_x", "momentum_y"}; }
@@ -82,17 +83,16 @@ class plane_broadwell_model final : public relaxation_model {
     for (int k = 1; k < 3; ++k) scales[k] = std::max(scales[0], scales[k]);
   }
 
-  std::vector<field_name> fields() const override {
+  std::vector<field_group> fields() const override {
     std::vector<field_name> all = {{"rho", "density (dimensionless)"},
                                    {"m_x", "momentum along x (dimensionless)"},
                                    {"m_y", "momentum along y (dimensionless)"}};
     for (const auto& [name, doc] : particles_of)
       all.push_back({name, std::string("density of particles ") + doc});
-    return all;
-  }
-  void macroscopic(const double* f, double* values) const override {
-    moments(f, values);
-    std::copy_n(f, 4, values + 3);
+    return {{all, [this](const field_point& at, double* values) {
+               moments(at.u, values);
+               std::copy_n(at.u, 4, values + 3);
+             }}};
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }

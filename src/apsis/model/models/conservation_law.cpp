@@ -175,15 +175,11 @@ class law_model final : public relaxation_model {
     }
   }
 
-  std::vector<field_name> fields() const override {
+  std::vector<field_group> fields() const override {
     std::vector<field_name> all;
     for (const auto& name : variables()) all.push_back({name, name + " (dimensionless)"});
-    return all;
-  }
-  void macroscopic(const double* f, double* values) const override { moments(f, values); }
-  std::vector<field_group> derived_fields() const override {
-    return {{{{wave_speed, "fastest wave of the law (dimensionless)"}},
-             false,
+    return {{all, [this](const field_point& at, double* values) { moments(at.u, values); }},
+            {{{wave_speed, "fastest wave of the law (dimensionless)"}},
              [this](const field_point& at, double* values) { *values = fastest_wave(at.u); }}};
   }
 

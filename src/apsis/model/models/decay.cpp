@@ -28,8 +28,10 @@ class decay_model final : public general_model {
 
   std::vector<std::string> invariants() const override { return {}; }
   void invariant_densities(const double*, double*) const override {}
-  std::vector<field_name> fields() const override { return {{"u", "u (dimensionless)"}}; }
-  void macroscopic(const double* u, double* values) const override { values[0] = u[0]; }
+  std::vector<field_group> fields() const override {
+    return {
+        {{{"u", "u (dimensionless)"}}, [](const field_point& at, double* values) { values[0] = at.u[0]; }}};
+  }
   const std::vector<initial_data>& initial() const override { return initial_; }
   std::vector<data_form> data_forms() const override {
     return {{"state", {{"u", "u (dimensionless)"}}, [](std::span<const double> given, std::span<double> u) {

@@ -81,12 +81,13 @@ class discrete_velocity_model final : public model {
   bool positive() const override { return true; }
   /// Q̇ is not a multiple of Q: I + |b| Q'² has no nonnegative inverse in general.
   bool collisions_keep_sign() const override { return false; }
-  bool has_entropy() const override { return true; }
-  bool collisions_decrease_entropy() const override { return false; }
-  double entropy(const double* f) const override {
-    double sum = 0.0;
-    for (int j = 0; j < components(); ++j) sum += f[j] > 0.0 ? f[j] * std::log(f[j]) : 0.0;
-    return sum;
+  std::optional<convex_entropy> entropy() const override {
+    return convex_entropy{[n = components()](const double* f) {
+                            double sum = 0.0;
+                            for (int j = 0; j < n; ++j) sum += f[j] > 0.0 ? f[j] * std::log(f[j]) : 0.0;
+                            return sum;
+                          },
+                          false};
   }
 
   std::vector<std::string> invariants() const override {
@@ -106,8 +107,8 @@ class discrete_velocity_model final : public model {
                    collisions_.invariants()[k].weights.lpNorm<Eigen::Infinity>() * std::abs(densities[0]));
   }
 
-  std::vector<field_name> fields() const override { return fluid_fields(d()); }
-  void macroscopic(const double* f, double* values) const override {
+  /// values ← those of fluid_fields().
+  void fluid_moments(const double* f, double* values) const {
     fluid_state state{};
     double square = 0.0;
     for (int j = 0; j < components(); ++j) {
@@ -120,14 +121,15 @@ class discrete_velocity_model final : public model {
     state.T = square / (state.rho * d());
     fluid_field_values(state, d(), values);
   }
-  std::vector<field_group> derived_fields() const override {
-    field_group densities{{}, false, [n = components()](const field_point& at, double* values) {
-                            std::copy_n(at.u, n, values);
-                          }};
+  std::vector<field_group> fields() const override {
+    field_group densities{
+        {}, [n = components()](const field_point& at, double* values) { std::copy_n(at.u, n, values); }};
     for (int j = 0; j < components(); ++j)
       densities.names.push_back(
           {density_name(j), fmt::format("density of velocity {} (dimensionless)", j + 1)});
-    std::vector<field_group> groups = {densities};
+    std::vector<field_group> groups = {
+        {fluid_fields(d()), [this](const field_point& at, double* values) { fluid_moments(at.u, values); }},
+        densities};
     for (auto& group : flow_fields(d())) groups.push_back(std::move(group));
     return groups;
   }
@@ -183,7 +185,7 @@ class discrete_velocity_model final : public model {
     if (!collisions_.minimize_entropy(wanted, f)) return false;
     // A bulk velocity across all v_j is no moment.
     std::array<double, 5> values{};
-    macroscopic(f, values.data());
+    fluid_moments(f, values.data());
     for (std::size_t k = 1; k <= static_cast<std::size_t>(d()); ++k)
       if (!(std::abs(values[k] - given[k]) <= 1e-9 * (1.0 + std::abs(given[k])))) return false;
     return true;

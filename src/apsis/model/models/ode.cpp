@@ -46,12 +46,9 @@ class ode_model final : public relaxation_model {
 
   std::vector<std::string> invariants() const override { return {}; }
   void invariant_densities(const double*, double*) const override {}
-  std::vector<field_name> fields() const override {
-    return {{"u1", "u1 (dimensionless)"}, {"u2", "u2 (dimensionless)"}};
-  }
-  void macroscopic(const double* u, double* values) const override {
-    values[0] = u[0];
-    values[1] = u[1];
+  std::vector<field_group> fields() const override {
+    return {{{{"u1", "u1 (dimensionless)"}, {"u2", "u2 (dimensionless)"}},
+             [](const field_point& at, double* values) { std::copy_n(at.u, 2, values); }}};
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }

@@ -43,12 +43,12 @@ class relaxation_system final : public relaxation_model {
   std::vector<std::string> invariants() const override { return {"mass"}; }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
 
-  std::vector<field_name> fields() const override {
-    return {{"u1", "conserved quantity u1 (dimensionless)"}, {"u2", "its flux u2 (dimensionless)"}};
-  }
-  void macroscopic(const double* f, double* values) const override {
-    values[0] = f[0] + f[1];
-    values[1] = a_ * (f[0] - f[1]);
+  std::vector<field_group> fields() const override {
+    return {{{{"u1", "conserved quantity u1 (dimensionless)"}, {"u2", "its flux u2 (dimensionless)"}},
+             [this](const field_point& at, double* values) {
+               values[0] = at.u[0] + at.u[1];
+               values[1] = a_ * (at.u[0] - at.u[1]);
+             }}};
   }
 
   const std::vector<initial_data>& initial() const override { return initial_; }

@@ -8,7 +8,7 @@ const quantity_entry quantity_planted_density = {
     .description = "mean density between planted walls, dimensionless",
     .source = "the walls let in 1/4 in each of two directions",
     .parameters = {{"epsilon", "0.1", "rate of the exchange"}},
-    .published = {{.at = {}, .value = 0.5, .tolerance = 2e-3}},
+    .references = {theory({}, 0.5, 2e-3)},
     .compute = [](const quantity_values& parameters, const quantity_run& run) {
       return mean_of_field(run("planted/exchange", {"model.epsilon=" + parameters.at("epsilon")}), "rho");
     }};

@@ -22,8 +22,12 @@ class planted_exchange final : public relaxation_model {
   std::string why_inadmissible(const double*) const override { return "the density is not finite"; }
   std::vector<std::string> invariants() const override { return {"mass"}; }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
-  std::vector<field_name> fields() const override { return {{"rho", "density (dimensionless)"}}; }
-  void macroscopic(const double* f, double* values) const override { moments(f, values); }
+  std::vector<field_group> fields() const override {
+    return {{{{"rho", "density (dimensionless)"}},
+             [this](const field_point& at, double* values) { moments(at.u, values); }},
+            {{{"flux", "flux of particles (dimensionless)"}},
+             [](const field_point& at, double* values) { *values = at.u[0] - at.u[1]; }}};
+  }
   const std::vector<initial_data>& initial() const override { return initial_; }
 
  private:

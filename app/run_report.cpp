@@ -4,6 +4,7 @@
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/velocity_support.hpp>
 #include <apsis/run/result_units.hpp>
+#include <apsis/run/setup.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -58,10 +59,10 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
                                      to_text(estimate_steady_state(records.history()), time, of_time)));
   line("largest step", fmt::format("{:.6g}{}", s.dt * time, of_time));
   line("smallest value", fmt::format("{:.6g} ({} negative)", s.min_value, s.negative_values));
-  if (!run.invariants().empty())
+  if (!run.setup().equation->invariants().empty())
     line("conservation defect", fmt::format("{:.2e} (relative)", s.conservation_defect));
-  const auto faces = run.open_faces(), names = run.invariants();
-  const auto densities = run.invariant_measures();
+  const auto faces = run.setup().open_faces(), names = run.setup().equation->invariants();
+  const auto densities = run.setup().equation->invariant_measures();
   for (std::size_t f = 0; f < faces.size() && !names.empty(); ++f) {
     std::vector<std::string> amounts;
     for (std::size_t k = 0; k < names.size(); ++k) {
@@ -77,7 +78,7 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
   if (!std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));
   if (std::isfinite(s.velocity_room)) line("velocities", velocities_text(s, c));
-  if (std::string moment = run.cut_moment(); !moment.empty()) {
+  if (std::string moment = run.setup().equation->cut_moment(); !moment.empty()) {
     std::replace(moment.begin(), moment.end(), '_', ' ');
     line("cut of the target",
          fmt::format("{:.2e} (largest relative change of the rate at which the {} relaxes)", s.largest_cut,

@@ -3,6 +3,7 @@
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/run/setup.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -149,9 +150,9 @@ double mean_of_cells(std::vector<double> values, const std::vector<int>& shape) 
 }
 
 double last_flux(const simulation& run, const std::string& face, const std::string& invariant) {
-  const auto invariants = run.invariants();
+  const auto invariants = run.setup().equation->invariants();
   const std::size_t at =
-      place_in(run.open_faces(), face) * invariants.size() + place_in(invariants, invariant);
+      place_in(run.setup().open_faces(), face) * invariants.size() + place_in(invariants, invariant);
   return run.last().flux.at(at);
 }
 

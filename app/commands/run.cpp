@@ -82,8 +82,8 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
   const simulation& computed = session.computed();
   std::optional<run_profile> profile;
   if (options.profile)
-    profile = finish_profile(computed.summary().wall_s, static_cast<std::size_t>(computed.cells()) *
-                                                            static_cast<std::size_t>(computed.components()));
+    profile =
+        finish_profile(computed.summary().wall_s, static_cast<std::size_t>(computed.summary().phase_points));
   if (options.json) {
     auto out = to_json(computed, session.records());
     if (!processes->is_root()) return code_of(end);

@@ -3,6 +3,7 @@
 #include <apsis/config/case.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <string>
@@ -15,7 +16,7 @@ namespace {
 /// an accumulator and write it: 24 bytes per point, like an element of the triad.
 void step(benchmark::State& state, const std::string& name, const std::string& method) {
   apsis::simulation run(apsis::load_case(name, {"time.method=" + method, "time.end=1e6"}));
-  const auto points = static_cast<double>(run.cells()) * run.components();
+  const auto points = static_cast<double>(run.mesh().size()) * run.setup().equation->components();
   const auto stages = static_cast<double>(apsis::find_method(method).stages());
   const auto start = std::chrono::steady_clock::now();
   for (auto _ : state) run.advance();

@@ -1,5 +1,6 @@
 #include <apsis/core/extremes.hpp>
 #include <apsis/integrate/integrate.hpp>
+#include <apsis/run/simulation.hpp>
 #include <apsis/verify/case_problem.hpp>
 
 #include <algorithm>

@@ -107,7 +107,7 @@ py::dict fields_of(const field_series& series) {
 /// Velocities as in solution.h5, with weights, axes and marginals of f where there are several dimensions.
 void add_velocities(const simulation& run, const std::vector<mesh_axis>& mesh, const std::vector<double>& f,
                     py::dict& out) {
-  const velocity_set& velocities = run.velocities();
+  const velocity_set& velocities = run.setup().equation->velocities();
   py::dict axes, marginal_values;
   if (velocities.dimensions() < 2) {
     out["v"] = to_array(velocity_points(velocities));
@@ -117,7 +117,7 @@ void add_velocities(const simulation& run, const std::vector<mesh_axis>& mesh, c
     const auto weights = velocities.weights();
     out["v_weights"] = to_array(std::vector<double>(weights.begin(), weights.end()));
     for (auto& axis : velocity_axes(velocities)) axes[py::str(axis.name)] = to_array(std::move(axis.nodes));
-    for (auto& one : marginals(f, static_cast<std::uint64_t>(run.cells()), velocities))
+    for (auto& one : marginals(f, static_cast<std::uint64_t>(run.mesh().size()), velocities))
       marginal_values[py::str(one.axis.name)] = to_array(
           std::move(one.values), shape_of(mesh, {}, {static_cast<py::ssize_t>(one.axis.nodes.size())}));
   }
@@ -175,7 +175,7 @@ py::dict result_of(const run_session& session, run_end end) {
   add_velocities(run, fields.axes, f, out);
   const std::vector<surface_table> walls = run.surfaces();
   if (!run.processes().is_root()) return {};
-  out["f"] = to_array(std::move(f), shape_of(fields.axes, {}, {run.components()}));
+  out["f"] = to_array(std::move(f), shape_of(fields.axes, {}, {run.setup().equation->components()}));
   for (const std::string name : {"x", "y", "z"}) out[py::str(name)] = to_array(std::vector<double>());
   for (const auto& axis : fields.axes) out[py::str(axis.name)] = to_array(std::vector<double>(axis.centres));
   out["epsilon"] = epsilon.empty() ? to_array(std::move(epsilon))

@@ -53,7 +53,7 @@ double anisotropy(const apsis::simulation& run) {
   std::map<int, std::vector<std::array<double, 3>>> by_radius;
   double across = 0.0;
   int count = 0;
-  for (int cell = 0; cell < run.cells(); ++cell) {
+  for (int cell = 0; cell < run.mesh().size(); ++cell) {
     const auto x = run.mesh().centre(cell);
     double square = 0.0, radial = 0.0, speed = 0.0;
     int key = 0;  // 4 n² r², an integer

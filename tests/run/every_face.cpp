@@ -4,6 +4,7 @@
 #include "placed_case.hpp"
 
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/run/setup.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -125,10 +126,10 @@ std::string matching_values(int dimensions, const std::string& kind) {
   // The discrete Maxwellian exp(a − b v²), from two of its values.
   const apsis::simulation run(apsis::parse_case(at_rest(dimensions, "periodic", ""), "rest"));
   const auto row = run.row(0);
-  const auto points = static_cast<std::size_t>(run.velocities().size());
+  const auto points = static_cast<std::size_t>(run.setup().equation->velocities().size());
   const auto square = [&](std::size_t j) {
     double sum = 0.0;
-    for (int k = 0; k < dimensions; ++k) sum += std::pow(run.velocities().speeds(k)[j], 2);
+    for (int k = 0; k < dimensions; ++k) sum += std::pow(run.setup().equation->velocities().speeds(k)[j], 2);
     return sum;
   };
   const double b = std::log(row[points / 2] / row[0]) / (square(0) - square(points / 2)),
@@ -189,10 +190,10 @@ TEST(every_face, meets_others_in_corners_without_a_loss) {
       EXPECT_EQ(run.summary().negative_values, 0);
       // Of order 20 steps of 3 stages, as in the promise.
       EXPECT_LT(run.summary().conservation_defect, 1e-13);
-      const std::size_t count = run.invariants().size();
+      const std::size_t count = run.setup().equation->invariants().size();
       double energy = 0.0;
-      for (std::size_t face = 0; face < run.open_faces().size(); ++face) {
-        EXPECT_NEAR(run.last().received[face * count], 0.0, 1e-15) << run.open_faces()[face];
+      for (std::size_t face = 0; face < run.setup().open_faces().size(); ++face) {
+        EXPECT_NEAR(run.last().received[face * count], 0.0, 1e-15) << run.setup().open_faces()[face];
         energy = std::max(energy, std::abs(run.last().received[face * count + count - 1]));
       }
       EXPECT_GT(energy, 1e-5);  // the plates do heat and cool the gas

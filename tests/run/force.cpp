@@ -1,6 +1,7 @@
 // Runs with a force: exact solutions of the momentum, order in time, balances, and what is refused.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <cmath>
@@ -99,7 +100,7 @@ TEST(accelerated_gas, is_a_shifted_maxwellian_without_collisions) {
 
 TEST(accelerated_gas, has_balances_to_rounding) {
   const simulation run = run_of({"space.limiter=positivity"});
-  EXPECT_EQ(run.open_faces(), std::vector<std::string>{"force"});
+  EXPECT_EQ(run.setup().open_faces(), std::vector<std::string>{"force"});
   EXPECT_LE(run.summary().conservation_defect, 1e-13);
   EXPECT_EQ(run.summary().negative_values, 0);
   // The momentum that the force has given is that of the gas.

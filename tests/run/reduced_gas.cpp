@@ -29,8 +29,8 @@ std::vector<std::vector<double>> fields_after(const std::string& text,
   std::vector<double> values(setup.equation->default_fields().size());
   std::vector<std::vector<double>> out(values.size());
   const auto state = run.state();
-  const std::size_t width = state.size() / static_cast<std::size_t>(run.cells());
-  for (std::size_t cell = 0; cell < static_cast<std::size_t>(run.cells()); ++cell) {
+  const std::size_t width = state.size() / static_cast<std::size_t>(run.mesh().size());
+  for (std::size_t cell = 0; cell < static_cast<std::size_t>(run.mesh().size()); ++cell) {
     setup.equation->macroscopic(state.data() + cell * width, values.data());
     for (std::size_t k = 0; k < values.size(); ++k) out[k].push_back(values[k]);
   }

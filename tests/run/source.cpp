@@ -1,6 +1,7 @@
 // Sources: balances, order in time and space, limits, refusals.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ void finish(simulation& run) {
 }
 
 double received(const simulation& run, const std::string& from, const std::string& invariant) {
-  const auto names = run.invariants(), faces = run.open_faces();
+  const auto names = run.setup().equation->invariants(), faces = run.setup().open_faces();
   const auto k = std::find(names.begin(), names.end(), invariant) - names.begin(),
              f = std::find(faces.begin(), faces.end(), from) - faces.begin();
   return run.last().received[static_cast<std::size_t>(f) * names.size() + static_cast<std::size_t>(k)];
@@ -87,7 +88,7 @@ TEST(source, closes_the_balance_with_a_force_and_heated_walls) {
       "[boundary.left]\nkind = \"diffuse\"\nT = \"1 + 0.2*sin(9*t)\"\n[boundary.right]\nkind = "
       "\"diffuse\"\n");
   finish(run);
-  EXPECT_EQ(run.open_faces(), (std::vector<std::string>{"left", "right", "force", "source"}));
+  EXPECT_EQ(run.setup().open_faces(), (std::vector<std::string>{"left", "right", "force", "source"}));
   EXPECT_LT(run.summary().conservation_defect, 1e-13);
   EXPECT_GT(received(run, "source", "mass"), 0.03);
   EXPECT_GT(std::abs(received(run, "force", "momentum")), 0.01);

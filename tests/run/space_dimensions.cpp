@@ -3,6 +3,7 @@
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -165,7 +166,8 @@ TEST(space_dimensions, waves_at_45_degrees_fly_freely_with_fifth_order) {
     while (!run.finished()) run.advance();
     const auto f = run.state();
     const std::size_t row = f.size() / static_cast<std::size_t>(n * n);
-    const auto vx = run.velocities().speeds(0), vy = run.velocities().speeds(1);
+    const auto vx = run.setup().equation->velocities().speeds(0),
+               vy = run.setup().equation->velocities().speeds(1);
     // f(t, x, v) = f(0, x − v t, v), where f(0, ·, v) is ρ times a function of v alone.
     double sum = 0.0;
     std::vector<double> mean(row, 0.0);
@@ -250,11 +252,11 @@ TEST(solids, keep_the_gas_nonnegative_and_close_every_balance_to_rounding) {
     EXPECT_EQ(run.summary().negative_values, 0) << epsilon;
     // Of order 20 steps of 6 stages with 2e5 unknowns each.
     EXPECT_LT(run.summary().conservation_defect, 1e-13) << epsilon;
-    EXPECT_EQ(run.open_faces(),
+    EXPECT_EQ(run.setup().open_faces(),
               (std::vector<std::string>{"left", "right", "bottom", "top", "solid-1", "corner"}));
     // No mass passes a wall, and no energy the specular one.
     const auto& received = run.last().received;
-    const std::size_t count = run.invariants().size();
+    const std::size_t count = run.setup().equation->invariants().size();
     for (std::size_t face = 0; face < 6; ++face) EXPECT_NEAR(received[face * count], 0.0, 1e-15) << epsilon;
     EXPECT_NEAR(received[5 * count + count - 1], 0.0, 1e-15) << epsilon;
   }

@@ -72,7 +72,7 @@ end = {}
 /// Heat at the left plate after every step.
 std::vector<double> fluxes_of(const case_config& c) {
   simulation run(c);
-  const std::size_t energy = run.invariants().size() - 1;
+  const std::size_t energy = run.setup().equation->invariants().size() - 1;
   std::vector<double> flux;
   while (!run.finished()) flux.push_back(run.advance().flux[energy]);
   return flux;

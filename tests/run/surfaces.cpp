@@ -5,6 +5,7 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/text_file.hpp>
 #include <apsis/output/case_json.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -109,7 +110,7 @@ double total(const surface_table& surface, const std::string& name) {
 /// Checks that what the tables give over each step is what the history receives.
 void expect_balance(const std::string& text, const std::vector<std::string>& overrides = {}) {
   simulation run = run_of(text, overrides);
-  const auto faces = run.open_faces(), invariants = run.invariants();
+  const auto faces = run.setup().open_faces(), invariants = run.setup().equation->invariants();
   for (int step = 0; step < 3; ++step) {
     const std::vector<double> before = run.last().received;
     run.advance();

@@ -38,7 +38,7 @@ TEST(symmetry, at_both_ends_is_half_of_a_periodic_run_with_even_data) {
     while (!whole.finished()) whole.advance();
     ASSERT_EQ(half.step(), whole.step());
     const auto a = half.state(), b = whole.state();
-    const std::size_t width = static_cast<std::size_t>(half.components());
+    const std::size_t width = static_cast<std::size_t>(half.setup().equation->components());
     ASSERT_EQ(2 * a.size(), b.size());
     double largest = 0.0;
     for (std::size_t k = 0; k < a.size(); ++k)
@@ -55,7 +55,7 @@ TEST(symmetry, conserves_mass_and_energy_to_rounding) {
   const apsis::run_setup setup(config);
   const auto totals = [&] {
     const auto state = run.state();
-    const std::size_t width = static_cast<std::size_t>(run.components());
+    const std::size_t width = static_cast<std::size_t>(run.setup().equation->components());
     double sums[3] = {0.0, 0.0, 0.0}, row[3];
     for (std::size_t cell = 0; cell < 20; ++cell) {
       setup.equation->invariant_densities(state.data() + cell * width, row);

@@ -2,6 +2,7 @@
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/run/setup.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +77,7 @@ TEST(vacuum, rows_of_zeros_of_subnormal_numbers_and_of_one_velocity_are_integrat
     const auto c = expansion(how, "1e-5", apsis::equilibrium_choice::discrete);
     apsis::simulation run(c);
     auto saved = run.save();
-    const auto width = static_cast<std::size_t>(run.components());
+    const auto width = static_cast<std::size_t>(run.setup().equation->components());
     const auto value = [&](std::size_t cell, std::size_t k) -> double& {
       return saved.unknowns[cell * width + k];
     };

@@ -1,6 +1,7 @@
 // Ends behind which there is vacuum: the solution of free flight, the flow of a continuum, and the promises.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -59,7 +60,7 @@ double error_of_free_flight(const lines& overrides) {
   const double density =
       std::pow(std::sin(std::numbers::pi * run.mesh().centre(run.mesh().size() / 2, 0)), 4);
   finish(run);
-  const auto v = run.velocities().speeds(0);
+  const auto v = run.setup().equation->velocities().speeds(0);
   double sum = 0.0, size = 0.0;
   for (int cell = 0; cell < run.mesh().size(); ++cell) {
     const auto f = run.row(cell);
@@ -103,9 +104,9 @@ TEST(vacuum_end, receives_what_leaves_a_uniform_gas) {
     simulation run = run_of(how);
     const auto row = run.row(0);
     double expected = 0.0;
-    const auto v = run.velocities().speeds(0);
+    const auto v = run.setup().equation->velocities().speeds(0);
     for (std::size_t j = 0; j < v.size(); ++j)
-      if (v[j] > 0.0) expected -= run.velocities().weights()[j] * v[j] * row[j];
+      if (v[j] > 0.0) expected -= run.setup().equation->velocities().weights()[j] * v[j] * row[j];
     for (int step = 0; step < 3; ++step) run.advance();
     EXPECT_NEAR(run.last().flux[3], expected, 1e-14);
   }

@@ -2,6 +2,7 @@
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model_registry.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -65,13 +66,13 @@ void finish(simulation& run) {
 
 /// Received through the left and the right face: [2][invariant].
 double received(const simulation& run, int side, const std::string& invariant) {
-  const auto names = run.invariants();
+  const auto names = run.setup().equation->invariants();
   const auto at = std::find(names.begin(), names.end(), invariant) - names.begin();
   return run.last().received[static_cast<std::size_t>(side) * names.size() + static_cast<std::size_t>(at)];
 }
 
 double flux(const simulation& run, int side, const std::string& invariant) {
-  const auto names = run.invariants();
+  const auto names = run.setup().equation->invariants();
   const auto at = std::find(names.begin(), names.end(), invariant) - names.begin();
   return run.last().flux[static_cast<std::size_t>(side) * names.size() + static_cast<std::size_t>(at)];
 }

@@ -2,6 +2,7 @@
 #include "plane_euler_limit.hpp"
 
 #include <apsis/config/case.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -48,10 +49,10 @@ moments initial(double x, double y, int degrees) {
 
 /// The moments of a run, by plain sums.
 std::vector<moments> moments_of(const apsis::simulation& run) {
-  const auto v = run.velocities();
+  const auto v = run.setup().equation->velocities();
   const auto points = static_cast<std::size_t>(v.size());
   std::vector<moments> all;
-  for (int cell = 0; cell < run.cells(); ++cell) {
+  for (int cell = 0; cell < run.mesh().size(); ++cell) {
     const auto row = run.row(cell);
     moments sum{};
     for (std::size_t j = 0; j < points; ++j) {

@@ -1,3 +1,5 @@
+#include <apsis/run/setup.hpp>
+
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -14,11 +16,11 @@ namespace {
 /// Mean over the cross-section of Σ w v_z (1 − v_⊥²/2) f, minus the heat along the duct that a force carries.
 /// By Onsager's relation it is the mass that a temperature gradient carries.
 double heat_moment(const simulation& run) {
-  const velocity_set& velocities = run.velocities();
+  const velocity_set& velocities = run.setup().equation->velocities();
   const std::span<const double> v_x = velocities.speeds(0), v_y = velocities.speeds(1),
                                 v_z = velocities.speeds(2), w = velocities.weights();
   std::vector<double> of_cells;
-  for (int cell = 0; cell < run.cells(); ++cell) {
+  for (int cell = 0; cell < run.mesh().size(); ++cell) {
     const std::span<const double> f = run.row(cell);
     double sum = 0.0;
     for (std::size_t j = 0; j < w.size(); ++j)

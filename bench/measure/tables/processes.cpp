@@ -2,9 +2,9 @@
 #include "../clock.hpp"
 #include "../table.hpp"
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
-#include <apsis/boundary/domain.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
@@ -190,10 +190,11 @@ void measure_gas(const gas& whole, const settings& options, result_table& result
     seconds.push_back(shared);
   }
   const exchanged of = count_exchanges(whole, all);
-  const double points = static_cast<double>(together.run()->mesh().size()) * together.run()->components();
+  const double points =
+      static_cast<double>(together.run()->mesh().size()) * together.run()->setup().equation->components();
   result.data["gases"].push_back({{"name", whole.name},
                                   {"dimensions", whole.dimensions},
-                                  {"components", together.run()->components()},
+                                  {"components", together.run()->setup().equation->components()},
                                   {"seconds_per_point", median(seconds_alone) / points},
                                   {"exchanges", of.messages},  // two processes: one message in each
                                   {"reductions", of.reductions}});

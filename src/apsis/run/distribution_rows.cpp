@@ -2,6 +2,7 @@
 
 #include <apsis/config/output_tables.hpp>
 #include <apsis/core/index.hpp>
+#include <apsis/run/setup.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -19,7 +20,7 @@ struct thinned_mesh {
 };
 
 thinned_mesh thinned(const simulation& run, int stride) {
-  if (!run.has_space()) return {{}, {0}, {}};
+  if (!run.setup().has_space()) return {{}, {0}, {}};
   const grid& mesh = run.mesh();
   thinned_mesh kept{mesh_axes(mesh), {}, {}};
   for (auto& axis : kept.axes) {
@@ -27,7 +28,7 @@ thinned_mesh thinned(const simulation& run, int stride) {
     for (std::size_t i = 0; i < axis.centres.size(); i += at(stride)) centres.push_back(axis.centres[i]);
     axis.centres = std::move(centres);
   }
-  const grid& block = run.block();
+  const grid& block = run.setup().mesh();
   const auto kept_before = [&](int cell) { return static_cast<std::uint64_t>((cell + stride - 1) / stride); };
   for (int k = 0; k < block.dimensions(); ++k) {
     kept.part.first.push_back(kept_before(block.first(k)));
@@ -44,7 +45,7 @@ thinned_mesh thinned(const simulation& run, int stride) {
 
 std::vector<double> rows_of(const simulation& run, const std::vector<int>& cells) {
   std::vector<double> rows;
-  rows.reserve(cells.size() * at(run.components()));
+  rows.reserve(cells.size() * at(run.setup().equation->components()));
   for (const int cell : cells) {
     const auto row = run.row(cell);
     rows.insert(rows.end(), row.begin(), row.end());
@@ -54,7 +55,7 @@ std::vector<double> rows_of(const simulation& run, const std::vector<int>& cells
 
 /// The number in the block of a cell of the mesh; −1 if another process has it.
 int own_cell(const simulation& run, int cell) {
-  const grid &mesh = run.mesh(), &block = run.block();
+  const grid &mesh = run.mesh(), &block = run.setup().mesh();
   int number = 0;
   for (int k = 0; k < 3; ++k) {
     const int along = cell / mesh.stride(k) % mesh.cells(k) - block.first(k);
@@ -68,17 +69,18 @@ int own_cell(const simulation& run, int cell) {
 std::vector<double> gathered_rows(const simulation& run, const std::vector<int>& cells) {
   std::vector<double> mine;  // place and row
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    const int own = run.has_space() ? own_cell(run, cells[k]) : 0;
+    const int own = run.setup().has_space() ? own_cell(run, cells[k]) : 0;
     if (own < 0) continue;
     mine.push_back(static_cast<double>(k));
     const auto row = run.row(own);
     mine.insert(mine.end(), row.begin(), row.end());
   }
   const std::vector<double> all = gather_numbers(run.processes(), mine);
-  std::vector<double> rows(run.processes().is_root() ? cells.size() * at(run.components()) : 0);
-  for (std::size_t from = 0; from < all.size(); from += 1 + at(run.components()))
-    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(from) + 1, run.components(),
-                rows.begin() + static_cast<std::ptrdiff_t>(all[from]) * run.components());
+  std::vector<double> rows(run.processes().is_root() ? cells.size() * at(run.setup().equation->components())
+                                                     : 0);
+  for (std::size_t from = 0; from < all.size(); from += 1 + at(run.setup().equation->components()))
+    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(from) + 1, run.setup().equation->components(),
+                rows.begin() + static_cast<std::ptrdiff_t>(all[from]) * run.setup().equation->components());
   return rows;
 }
 
@@ -86,7 +88,7 @@ std::vector<double> gathered_rows(const simulation& run, const std::vector<int>&
 
 std::optional<dataset_part> part_of(const simulation& run) {
   if (run.processes().is_single()) return std::nullopt;
-  return part_of(run.block());
+  return part_of(run.setup().mesh());
 }
 
 dataset_part part_of(const grid& block) {
@@ -117,8 +119,8 @@ distribution_snapshot make_distribution_snapshot(const simulation& run) {
   distribution_snapshot now;
   now.t = run.t();
   now.step = run.step();
-  now.components = static_cast<std::uint64_t>(run.components());
-  now.velocities = run.velocities();
+  now.components = static_cast<std::uint64_t>(run.setup().equation->components());
+  now.velocities = run.setup().equation->velocities();
   if (output.distribution_at.empty()) {
     thinned_mesh kept = thinned(run, output.stride);
     now.axes = std::move(kept.axes);

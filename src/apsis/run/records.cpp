@@ -5,6 +5,7 @@
 #include <apsis/core/version.hpp>
 #include <apsis/run/distribution_rows.hpp>
 #include <apsis/run/result_units.hpp>
+#include <apsis/run/setup.hpp>
 
 #include <algorithm>
 
@@ -122,10 +123,11 @@ struct number_reader {
 };
 
 std::vector<std::string> history_columns(const simulation& run) {
-  const std::vector<std::string> invariants = run.invariants(), faces = run.open_faces();
+  const std::vector<std::string> invariants = run.setup().equation->invariants(),
+                                 faces = run.setup().open_faces();
   std::vector<std::string> columns;
   step_record::visit_members(run.initial_record(),
-                             column_writer{invariants, faces, run.cut_moment(), columns});
+                             column_writer{invariants, faces, run.setup().equation->cut_moment(), columns});
   return columns;
 }
 
@@ -167,10 +169,10 @@ void run_records::name_fields(const simulation& run) {
     fields_.labels.push_back(all.labels[k]);
     fields_.measures.push_back(all.measures[k]);
   }
-  if (!run.has_space()) return;
+  if (!run.setup().has_space()) return;
   fields_.axes = mesh_axes(run.mesh());
   for (std::size_t k = 0; k < fields_.axes.size(); ++k)
-    fields_.axes[k].periodic = run.periodic(static_cast<int>(k));
+    fields_.axes[k].periodic = run.setup().periodic(static_cast<int>(k));
 }
 
 void run_records::add_step(const step_record& record) {
@@ -192,8 +194,8 @@ checkpoint make_checkpoint(const simulation& run, const run_records& records) {
   checkpoint c;
   c.case_text = to_toml(run.config());
   c.commit = commit();
-  c.cells = static_cast<std::uint64_t>(run.cells());
-  c.components = static_cast<std::uint64_t>(run.components());
+  c.cells = static_cast<std::uint64_t>(run.mesh().size());
+  c.components = static_cast<std::uint64_t>(run.setup().equation->components());
   c.state = std::move(saved.unknowns);
   c.part = part_of(run);
   c.budget = std::move(saved.budget);
@@ -232,7 +234,7 @@ solution make_solution(const simulation& run, const run_records& records) {
   const result_units units(run.config());
   s.t = run.t() * units.factor(dimensions::time);
   s.step = run.step();
-  s.components = static_cast<std::uint64_t>(run.components());
+  s.components = static_cast<std::uint64_t>(run.setup().equation->components());
   const auto& output = run.config().output;
   if (!output.distribution_at.empty()) {
     s.points = rows_at_points(run, units.factor(dimensions::length));
@@ -240,7 +242,7 @@ solution make_solution(const simulation& run, const run_records& records) {
     s.f = run.state();
     s.part = part_of(run);
   }
-  s.velocities = run.velocities();
+  s.velocities = run.setup().equation->velocities();
   s.epsilon = run.epsilon();
   s.fields = units.convert(records.fields());
   return s;

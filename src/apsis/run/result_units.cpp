@@ -1,5 +1,7 @@
 #include <apsis/run/result_units.hpp>
 
+#include <apsis/run/setup.hpp>
+
 #include <algorithm>
 
 namespace apsis {
@@ -64,13 +66,13 @@ std::vector<std::pair<std::string, dimension>> history_measures(const simulation
   using dimensions::length, dimensions::time;
   std::vector<std::pair<std::string, dimension>> all = {
       {"t", time}, {"dt", time}, {"change", dimensions::none / time}};
-  const auto names = run.invariants();
-  const auto densities = run.invariant_measures();
+  const auto names = run.setup().equation->invariants();
+  const auto densities = run.setup().equation->invariant_measures();
   for (std::size_t k = 0; k < names.size(); ++k) {
     dimension amount = densities[k];
     for (int d = 0; d < run.mesh().dimensions(); ++d) amount = amount * length;
     all.emplace_back("total_" + names[k], amount);
-    for (const auto& face : run.open_faces()) {
+    for (const auto& face : run.setup().open_faces()) {
       all.emplace_back("received_" + face + "_" + names[k], amount);
       all.emplace_back("flux_" + face + "_" + names[k], amount / time);
     }

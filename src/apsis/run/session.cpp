@@ -14,6 +14,7 @@
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/probe_files.hpp>
 #include <apsis/run/result_units.hpp>
+#include <apsis/run/setup.hpp>
 #include <apsis/run/shared_files.hpp>
 #include <apsis/run/surface_files.hpp>
 
@@ -251,9 +252,9 @@ void run_session::resume(const std::string& path) {
   const checkpoint saved = read_by_all(path, processes(), part_of(simulation_));
   warn_of_another_commit(saved, path);
   check_same_case(simulation_.config(), saved.case_text, path);
-  if (saved.cells != static_cast<std::uint64_t>(simulation_.cells()) ||
-      saved.components != static_cast<std::uint64_t>(simulation_.components()))
-    refuse_size(path, saved, simulation_.cells(), simulation_.components());
+  if (saved.cells != static_cast<std::uint64_t>(simulation_.mesh().size()) ||
+      saved.components != static_cast<std::uint64_t>(simulation_.setup().equation->components()))
+    refuse_size(path, saved, simulation_.mesh().size(), simulation_.setup().equation->components());
   const run_state state = to_run_state(saved);
   if (!(state.march.t < simulation_.config().time.end))
     throw input_error(fmt::format("'{}' is already at t = {} (time.end is {}); give a later time.end", path,

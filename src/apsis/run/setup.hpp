@@ -5,7 +5,7 @@
 #include <apsis/method/time_integrator.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/velocity_support.hpp>
-#include <apsis/run/simulation.hpp>
+#include <apsis/run/run_promises.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
 
 #include <limits>

@@ -271,20 +271,11 @@ simulation& simulation::operator=(simulation&&) noexcept = default;
 const case_config& simulation::config() const {
   return impl_->config;
 }
+const run_setup& simulation::setup() const {
+  return impl_->setup;
+}
 const run_promises& simulation::promises() const {
   return impl_->promises;
-}
-std::vector<std::string> simulation::invariants() const {
-  return impl_->setup.equation->invariants();
-}
-std::vector<dimension> simulation::invariant_measures() const {
-  return impl_->setup.equation->invariant_measures();
-}
-std::string simulation::cut_moment() const {
-  return impl_->setup.equation->cut_moment();
-}
-std::vector<std::string> simulation::open_faces() const {
-  return impl_->setup.open_faces();
 }
 double simulation::t() const {
   return impl_->march.t();
@@ -381,26 +372,11 @@ std::vector<surface_table> simulation::surfaces() const {
   return compute_surfaces(impl_->setup, {t(), last().dt, budget, densities});
 }
 
-bool simulation::has_space() const {
-  return impl_->setup.has_space();
-}
 const grid& simulation::mesh() const {
   return impl_->setup.whole_mesh();
 }
-const grid& simulation::block() const {
-  return impl_->setup.mesh();
-}
 communicator& simulation::processes() const {
   return impl_->setup.processes();
-}
-bool simulation::periodic(int direction) const {
-  return impl_->setup.periodic(direction);
-}
-int simulation::cells() const {
-  return impl_->setup.whole_mesh().size();
-}
-int simulation::components() const {
-  return impl_->state.components();
 }
 
 std::vector<double> simulation::state() const {
@@ -408,11 +384,11 @@ std::vector<double> simulation::state() const {
 }
 
 std::vector<double> simulation::whole_state() const {
-  return gather_cells(impl_->setup.builder(), state(), components());
+  return gather_cells(impl_->setup.builder(), state(), impl_->state.components());
 }
 
 std::span<const double> simulation::row(int cell) const {
-  return {impl_->state.row(cell), static_cast<std::size_t>(components())};
+  return {impl_->state.row(cell), static_cast<std::size_t>(impl_->state.components())};
 }
 
 std::vector<double> simulation::exact_state() const {
@@ -420,9 +396,6 @@ std::vector<double> simulation::exact_state() const {
   return exact ? without_padding(*exact) : std::vector<double>{};
 }
 
-const velocity_set& simulation::velocities() const {
-  return impl_->setup.equation->velocities();
-}
 std::vector<double> simulation::epsilon() const {
   return gather_cells(impl_->setup.builder(), impl_->setup.epsilon_at_centres());
 }

@@ -4,9 +4,10 @@
 #include <apsis/exec/communicator.hpp>
 #include <apsis/mesh/field.hpp>
 #include <apsis/mesh/grid.hpp>
+#include <apsis/run/field_table.hpp>
+#include <apsis/run/run_promises.hpp>
 #include <apsis/run/run_state.hpp>
 #include <apsis/run/surface_table.hpp>
-#include <apsis/velocity/velocity_set.hpp>
 
 #include <functional>
 #include <limits>
@@ -16,28 +17,6 @@
 #include <vector>
 
 namespace apsis {
-
-/// Properties guaranteed by the configuration of a run. A broken promise ends the run (exit code 3).
-struct run_promises {
-  bool positivity = false;    ///< nonnegative data, limiter (or first-order upwind), Δt ≤ r Δt_FE
-  bool conservation = false;  ///< with what crosses the faces, and Q implicit or Δt ≤ r Δt_FE
-  bool entropy = false;       ///< positivity with first-order upwind, and ends that are periodic or walls
-  std::string condition;      ///< of the model on the state (model::condition()); "" if there is none
-  std::string why_signed;     ///< model::why_signed(); "" if the model keeps signs
-  std::string text() const;   ///< returns one line for the log
-};
-
-/// Macroscopic fields on the mesh at one time: values[field][cell], the last direction of space fastest.
-struct field_table {
-  std::vector<double> x;                    ///< of the centre of every cell; {0} without space
-  std::vector<std::string> names,           ///< field names: "rho"
-      labels;                               ///< for plots: "density (dimensionless)"
-  std::vector<std::vector<double>> values;  ///< [field][cell]
-  std::vector<dimension> measures = {};     ///< dimensions in units of a gas
-  std::vector<double> y = {},               ///< of the centre of every cell; empty in one dimension
-      z = {};                               ///< of the centre of every cell; empty in fewer than three
-  std::vector<int> shape = {};              ///< number of cells along x, y, z; {1} without space
-};
 
 class run_setup;
 
@@ -59,20 +38,14 @@ class simulation {
   simulation(simulation&&) noexcept;             ///< leaves the source empty
   simulation& operator=(simulation&&) noexcept;  ///< leaves the source empty
 
-  const case_config& config() const;            ///< the case as given
-  const run_promises& promises() const;         ///< promises checked after every step
-  std::vector<std::string> invariants() const;  ///< names in the order of conservation_defect
-  /// Returns the dimensions of the densities of the invariants in units of a gas.
-  std::vector<dimension> invariant_measures() const;
-  std::string cut_moment() const;  ///< model::cut_moment()
-  /// Returns the names of the faces that are not periodic, "force" and "source" if there are any, in the
-  /// order of step_record::received.
-  std::vector<std::string> open_faces() const;
-  double t() const;          ///< time reached
-  double dt() const;         ///< length of the next step
-  long step() const;         ///< steps taken
-  long steps_total() const;  ///< estimate of the total number of steps
-  bool finished() const;     ///< whether t() is time.end, or the state is steady
+  const case_config& config() const;     ///< the case as given
+  const run_setup& setup() const;        ///< the objects of the case: its model, mesh and faces
+  const run_promises& promises() const;  ///< promises checked after every step
+  double t() const;                      ///< time reached
+  double dt() const;                     ///< length of the next step
+  long step() const;                     ///< steps taken
+  long steps_total() const;              ///< estimate of the total number of steps
+  bool finished() const;                 ///< whether t() is time.end, or the state is steady
   /// Returns the forecast of the relative error from terms of size ε in a run with time.tolerance; a warning
   /// is given if it exceeds the tolerance. 0 if the steps resolve the relaxation, or without tolerance.
   double expected_plateau() const;
@@ -97,22 +70,16 @@ class simulation {
   /// Returns what the gas gave in the last step to the surfaces of output.surfaces (compute_surfaces()); on
   /// the root.
   std::vector<surface_table> surfaces() const;
-  bool has_space() const;              ///< whether the model has a mesh
-  const grid& mesh() const;            ///< the mesh; a single cell without space
-  const grid& block() const;           ///< the cells of this process; all if there is one
-  communicator& processes() const;     ///< the processes that share the mesh
-  bool periodic(int direction) const;  ///< whether both ends of the mesh along a direction are periodic
-  int cells() const;                   ///< number of cells of the mesh; 1 without space
-  int components() const;              ///< unknowns per cell
-  std::vector<double> state() const;   ///< [cells of block()][components], contiguous
-  /// Returns the unknowns of a cell of block(), valid until the next step.
+  const grid& mesh() const;           ///< the mesh; a single cell without space
+  communicator& processes() const;    ///< the processes that share the mesh
+  std::vector<double> state() const;  ///< [cells of setup().mesh()][components], contiguous
+  /// Returns the unknowns of a cell of setup().mesh(), valid until the next step.
   std::span<const double> row(int cell) const;
   /// Returns the state of the whole mesh, [cells][components]; on the root, elsewhere nothing. Collective.
   std::vector<double> whole_state() const;
   /// Returns the exact solution at t() in the form of state(); empty if no formula is known.
   std::vector<double> exact_state() const;
-  const velocity_set& velocities() const;  ///< velocities of the components; empty without space
-  std::vector<double> epsilon() const;     ///< ε at the cell centres
+  std::vector<double> epsilon() const;  ///< ε at the cell centres
 
   /// Returns the state for a restart that is bitwise identical.
   run_state save() const;

@@ -1,6 +1,7 @@
 #include <apsis/verify/outcome.hpp>
 
 #include <apsis/model/model_registry.hpp>
+#include <apsis/run/setup.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -17,14 +18,14 @@ outcome compute_outcome(const case_config& config, const study_control& control)
   out.config = run.config();
   out.summary = run.summary();
   out.fields = run.fields();
-  out.cells = run.cells();
-  out.components = run.components();
+  out.cells = run.mesh().size();
+  out.components = run.setup().equation->components();
   out.state = run.state();
   out.exact = run.exact_state();
-  if (run.has_space()) out.cell_volume = make_mesh(config).cell_volume();
+  if (run.setup().has_space()) out.cell_volume = make_mesh(config).cell_volume();
   // That of a uniform velocity grid, or the mean; velocities of other models have no part in norms.
   if (find_model(config.model.name).has_velocity_grid) {
-    const auto weights = run.velocities().weights();
+    const auto weights = run.setup().equation->velocities().weights();
     const bool equal =
         std::all_of(weights.begin(), weights.end(), [&](double w) { return w == weights.front(); });
     out.component_weight =

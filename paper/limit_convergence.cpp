@@ -1,5 +1,6 @@
 #include <paper/limit_convergence.hpp>
 
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/method/certificate.hpp>
 
 #include <array>
@@ -18,11 +19,11 @@ struct smooth_problem {
   std::vector<double> sizes;  ///< cells, or steps without space
   bool has_space = true;
 
-  case_config configure(const std::string& formulation, const std::string& method, double size) const {
+  case_config configure(const std::string& discretization, const std::string& method, double size) const {
     auto all = overrides;
     all.push_back("time.method=" + method);
     if (has_space) {
-      all.push_back("space.formulation=" + formulation);
+      all.push_back(discretization_override(discretization));
       all.push_back(fmt::format("space.cells={}", size));
     } else {
       all.push_back(fmt::format("time.dt={:.17g}", 1.0 / size));
@@ -46,21 +47,21 @@ std::vector<smooth_problem> smooth_problems() {
 
 struct convergence_series {
   std::size_t problem;
-  std::string formulation, method;
+  std::string discretization, method;
   std::vector<double> errors = {};
 };
 
 std::string series_name(const smooth_problem& p, const convergence_series& s) {
-  return p.title + (p.has_space ? ", " + s.formulation : "") + ", " + s.method;
+  return p.title + (p.has_space ? ", " + s.discretization : "") + ", " + s.method;
 }
 
 std::vector<convergence_series> all_series(const std::vector<smooth_problem>& problems) {
   std::vector<convergence_series> series;
   for (std::size_t k = 0; k < problems.size(); ++k)
-    for (const char* formulation : {"finite-volume", "finite-difference"})
+    for (const char* discretization : {"finite-volume", "finite-difference"})
       for (const char* method : {"md-imex-3-2", "md-imex-6-3"})
-        if (problems[k].has_space || formulation == std::string("finite-volume"))
-          series.push_back({k, formulation, method, std::vector<double>(problems[k].sizes.size())});
+        if (problems[k].has_space || discretization == std::string("finite-volume"))
+          series.push_back({k, discretization, method, std::vector<double>(problems[k].sizes.size())});
   return series;
 }
 
@@ -77,8 +78,9 @@ void run_series(const std::vector<smooth_problem>& problems, std::vector<converg
   run_all(control, "convergence to the limit systems", static_cast<int>(jobs.size()), [&](int job) {
     const auto [s, k] = jobs[static_cast<std::size_t>(job)];
     const auto& p = problems[series[s].problem];
-    series[s].errors[k] = distance_from_limit_solution(
-        p.configure(series[s].formulation, series[s].method, p.sizes[k]), exact[series[s].problem], control);
+    series[s].errors[k] =
+        distance_from_limit_solution(p.configure(series[s].discretization, series[s].method, p.sizes[k]),
+                                     exact[series[s].problem], control);
   });
 }
 
@@ -92,7 +94,7 @@ report_table table_of(const std::vector<smooth_problem>& problems,
     const auto& p = problems[s.problem];
     for (std::size_t k = 0; k < s.errors.size(); ++k)
       table.rows.push_back(
-          {p.title, p.has_space ? s.formulation : "", s.method, fmt::format("{}", p.sizes[k]),
+          {p.title, p.has_space ? s.discretization : "", s.method, fmt::format("{}", p.sizes[k]),
            fmt::format("{:.3e}", s.errors[k]),
            k + 1 < s.errors.size() ? fmt::format("{:.2f}", std::log2(s.errors[k] / s.errors[k + 1])) : ""});
   }
@@ -129,7 +131,7 @@ void add_limit_convergence(const std::string& id, const study_control& control, 
     const std::size_t last = s.errors.size() - 1;
     result.findings.push_back(at_least(series_name(p, s) + ": order of convergence at ε = 0",
                                        std::log2(s.errors[last - 1] / s.errors[last]), order - 0.15));
-    const bool dashed = s.formulation == "finite-difference";
+    const bool dashed = s.discretization == "finite-difference";
     curve c{s.method + (dashed ? ", finite differences" : ""),
             {},
             s.errors,

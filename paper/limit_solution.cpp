@@ -55,7 +55,7 @@ double distance_from_limit_solution(const case_config& config, const fourier_sol
   const run_setup setup(config);
   const auto& equation = relaxation_of(setup);
   const outcome run = compute_limit(config, control);
-  const bool averages = setup.has_space() && config.space.formulation == formulation::finite_volume;
+  const bool averages = setup.has_space() && !setup.builder().of_space().unknown().pointwise();
   const double h = averages ? run.cell_volume : 0.0;
   std::vector<double> omega(static_cast<std::size_t>(equation.moment_count()));
   std::vector<double> difference(omega.size(), 0.0), size(omega.size(), 0.0);

@@ -1,6 +1,8 @@
 #include "clock.hpp"
 #include "mixed_step.hpp"
 
+#include <apsis/config/discretization_of_case.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,25 +11,25 @@ namespace apsis::bench {
 
 namespace {
 
-case_config mixed_case(const std::string& formulation, const std::string& method, int cells,
+case_config mixed_case(const std::string& discretization, const std::string& method, int cells,
                        std::vector<std::string> overrides) {
-  overrides.insert(overrides.begin(), {"space.formulation=" + formulation, "time.method=" + method,
+  overrides.insert(overrides.begin(), {discretization_override(discretization), "time.method=" + method,
                                        "space.cells=" + std::to_string(cells)});
   return load_case("paper/bgk-mixed", overrides);
 }
 
 }  // namespace
 
-mixed_step::mixed_step(const std::string& formulation, const std::string& method, int cells,
+mixed_step::mixed_step(const std::string& discretization, const std::string& method, int cells,
                        std::vector<std::string> overrides)
-    : mixed_step(mixed_case(formulation, method, cells, std::move(overrides))) {}
+    : mixed_step(mixed_case(discretization, method, cells, std::move(overrides))) {}
 
 mixed_step::mixed_step(const case_config& config)
     : setup_(config),
       problem_(setup_.make_problem()),
       stepper_(setup_.integrator().starter(), *problem_),
       u_(setup_.initial_state()),
-      fuses_solves_(config.space.formulation == formulation::finite_difference),
+      fuses_solves_(setup_.builder().collisions().cellwise),
       dt_(0.9 * stepper_.r() * problem_->forward_euler_step(0.0, u_)) {
   take(1);  // allocates the buffers
 }

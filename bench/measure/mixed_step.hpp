@@ -21,7 +21,7 @@ struct sweep_work {
 class mixed_step {
  public:
   /// `overrides` are additional keys of the case, "key=value".
-  mixed_step(const std::string& formulation, const std::string& method, int cells,
+  mixed_step(const std::string& discretization, const std::string& method, int cells,
              std::vector<std::string> overrides = {});
   /// Steps of another case.
   explicit mixed_step(const case_config& config);

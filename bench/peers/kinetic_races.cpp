@@ -2,6 +2,7 @@
 #include "kinetic_races.hpp"
 #include "sundials_kinetic.hpp"
 
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
@@ -169,10 +170,10 @@ result_table race_on_broadwell(const settings& options) {
   double furthest = 0.0;
   for (const double epsilon :
        quick ? std::vector<double>{1e-2} : std::vector<double>{1.0, 1e-2, 1e-4, 1e-6}) {
-    kinetic_task task(
-        "paper/broadwell",
-        {fmt::format("model.epsilon={:g}", epsilon), "space.cells=80", "space.formulation=finite-difference"},
-        end);
+    kinetic_task task("paper/broadwell",
+                      {fmt::format("model.epsilon={:g}", epsilon), "space.cells=80",
+                       discretization_override("finite-difference")},
+                      end);
     furthest = std::max(furthest, find_broadwell_reference(task, quick));
     kinetic_settings choices{
         .factors = by_octaves(4.0, 1.0 / 32.0),

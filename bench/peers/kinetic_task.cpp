@@ -68,11 +68,9 @@ kinetic_task::kinetic_task(const std::string& case_name, std::vector<std::string
   for (int cell = 0; cell < setup_.mesh().size(); ++cell) {
     const double centre = setup_.mesh().centre(cell, 0);
     double mean = 0.0;
-    for (std::size_t q = 0; q < gauss3::points; ++q)
-      mean += gauss3::weight[q] / formula.evaluate(centre + gauss3::xi[q] * dx);
-    const bool in_cells = config_.space.formulation == formulation::finite_volume &&
-                          config_.space.collisions != collision_points::centres;
-    rates_.push_back(in_cells ? mean : 1.0 / formula.evaluate(centre));
+    for (const auto& [offset, weight] : setup_.builder().collisions().points)
+      mean += weight / formula.evaluate(centre + offset * dx);
+    rates_.push_back(mean);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <apsis/model/model_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/collision.hpp>
-#include <apsis/semidiscrete/transport.hpp>
+#include <apsis/semidiscrete/upwind_transport.hpp>
 
 #include <algorithm>
 #include <array>
@@ -74,8 +74,8 @@ void transport_randomly(const broadwell& b, const std::string& scheme, random_so
                         moment_form_defects& worst) {
   constexpr int cells = 15;
   const grid mesh = grid::line(cells, 0.0, cells);
-  const transport t(b.equation, std::make_shared<domain>(make_domain(mesh, "periodic")),
-                    {find_reconstruction(scheme).make(), limiter_kind::none});
+  const upwind_transport t(b.equation, std::make_shared<domain>(make_domain(mesh, "periodic")),
+                           {find_reconstruction(scheme).make()}, cell_averages());
   const populations start = random_populations(random), slope = random_populations(random);
   field u(cells, 3), change(cells, 3);
   for (int i = 0; i < cells; ++i)

@@ -1,3 +1,4 @@
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/core/extremes.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/verify/limit_distance.hpp>
@@ -72,22 +73,22 @@ std::vector<double> epsilons() {
   return values;
 }
 
-// Decrease of the distance: every model, every formulation, every method that promises it.
+// Decrease of the distance: every model, every discretization, every method that promises it.
 
 struct distance_job {
-  std::string model, formulation, method;
+  std::string model, discretization, method;
   limit_table table = {};
 };
 
 std::vector<distance_job> all_distances(const study_control& control) {
   std::vector<distance_job> jobs;
   for (const auto& model : relaxation_model_names())
-    for (const auto& formulation : formulation_names(model))
+    for (const auto& discretization : formulation_names(model))
       for (const auto& method : imex_methods([](const certificate& c) { return c.ap_data == "any data"; }))
-        jobs.push_back({model, formulation, method});
+        jobs.push_back({model, discretization, method});
   run_all(control, "distances to the limit scheme", static_cast<int>(jobs.size()), [&](int k) {
     auto& job = jobs[static_cast<std::size_t>(k)];
-    auto overrides = formulation_override(job.formulation);
+    auto overrides = formulation_override(job.discretization);
     overrides.push_back("time.method=" + job.method);
     job.table = limit_distance(small_case(job.model, overrides), epsilons());
   });
@@ -101,8 +102,8 @@ void judge_distances(const std::vector<distance_job>& jobs, claim_result& result
       if (std::find(others.begin(), others.end(), job.method) == others.end()) others.push_back(job.method);
       continue;
     }
-    const std::string name = fmt::format("{}{}{}, {}", job.model, job.formulation.empty() ? "" : ", ",
-                                         job.formulation, job.method);
+    const std::string name = fmt::format("{}{}{}, {}", job.model, job.discretization.empty() ? "" : ", ",
+                                         job.discretization, job.method);
     result.findings.push_back(
         at_least(name + ": slope of the distances in ε", smallest_slope(job.table), 0.9));
     result.findings.push_back(at_most(name + ": distances at ε = 0", largest_floor(job.table), round_off));
@@ -134,7 +135,7 @@ picture draw_distances(const std::vector<distance_job>& jobs) {
       p.panels.push_back(distance_panel(job.model, "distance of ω"));
       p.panels.back().slopes = {1.0};
     }
-    const bool dashed = job.formulation == "finite-difference";
+    const bool dashed = job.discretization == "finite-difference";
     p.panels.back().curves.push_back(distance_curve(
         job.table, &limit_row::moments_end, job.method + (dashed ? ", finite differences" : ""),
         dashed ? curve_style::dashed_and_markers : curve_style::line_and_markers,
@@ -146,7 +147,7 @@ picture draw_distances(const std::vector<distance_job>& jobs) {
 /// Cases with pointwise equilibrium, so that consistent data are exactly consistent.
 case_config pointwise_case(const std::string& model, const std::string& method, double step) {
   std::vector<std::string> overrides = {"time.method=" + method};
-  if (model != "ode") overrides.emplace_back("space.formulation=finite-difference");
+  if (model != "ode") overrides.emplace_back(discretization_override("finite-difference"));
   case_config config = small_case(model, overrides);
   *config.time.dt *= step;
   return config;

@@ -45,9 +45,8 @@ class kinetic_problem {
         builder_.with_boundary(face_of(k), make_face(of.boundary[k / 2][k % 2], *equation_, name));
       }
       if (auto force = make_acceleration(of, *equation_)) builder_.with_force(std::move(*force));
-      builder_.with_unknowns(choice_called<formulation>("formulation", of.formulation));
-      if (!of.collisions.empty())
-        builder_.with_collisions_at(choice_called<collision_points>("collisions", of.collisions));
+      builder_.with_discretization(of.discretization);
+      builder_.with_collisions_at(of.collisions);
       if (of.positivity)
         builder_.with_positivity_limiter();
       else
@@ -341,7 +340,7 @@ void bind_kinetic(py::module_& m) {
                        std::vector<int> cells, std::vector<std::array<double, 2>> domain,
                        std::vector<std::array<given_face, 2>> boundary, std::vector<py::object> acceleration,
                        std::vector<double> largest_acceleration, std::string reconstruction,
-                       std::string formulation, std::string collisions, bool positivity,
+                       std::string discretization, std::string collisions, bool positivity,
                        const py::object& epsilon) {
         return std::make_unique<kinetic_problem>(
             kinetic_description{std::move(model), std::move(parameters), std::move(options), std::move(lists),
@@ -349,7 +348,7 @@ void bind_kinetic(py::module_& m) {
                                 std::move(velocity_lines), std::move(equilibrium), std::move(cells),
                                 std::move(domain), std::move(boundary), std::move(acceleration),
                                 std::move(largest_acceleration), std::move(reconstruction),
-                                std::move(formulation), std::move(collisions), positivity},
+                                std::move(discretization), std::move(collisions), positivity},
             epsilon);
       }))
       .def("shape", &kinetic_problem::shape)

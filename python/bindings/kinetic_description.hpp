@@ -54,7 +54,7 @@ struct kinetic_description {
   std::vector<std::array<given_face, 2>> boundary;
   std::vector<py::object> acceleration;      ///< numbers and functions
   std::vector<double> largest_acceleration;  ///< of functions; empty if unknown
-  std::string reconstruction, formulation, collisions;
+  std::string reconstruction, discretization, collisions;
   bool positivity;
 };
 

@@ -32,7 +32,7 @@ TEST(cases, the_mixed_regime_case_is_the_one_of_the_paper) {
   EXPECT_EQ(c.model.initial, "mixed-v");
   EXPECT_EQ(c.space.cells, std::vector<int>{40});
   EXPECT_EQ(c.space.domain, (std::vector<apsis::interval>{{0.0, 2.0}}));
-  EXPECT_EQ(c.space.formulation, formulation::finite_volume);
+  EXPECT_EQ(c.space.discretization, "finite-volume");
   EXPECT_EQ(c.space.limiter, apsis::limiter_choice::positivity);
   EXPECT_EQ(c.velocity.points, 150);
   EXPECT_EQ(c.velocity.max, 15.0);

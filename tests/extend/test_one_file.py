@@ -1,5 +1,5 @@
-"""A boundary, model with its fields, reconstruction, command, claim, quantity, case and method are one file each, a kind of
-integrator three.
+"""A boundary, model with its fields, reconstruction, discretization, command, claim, quantity, case and method are one file each,
+a kind of integrator three.
 
 The files of planted/ are laid over a copy of the sources; a kind of integrator needs an entry of integrate/any_stepper.hpp,
 no other file changes. The program that is built from them lists and uses them all.
@@ -79,6 +79,7 @@ class OneFile(unittest.TestCase):
         keys = {item["name"]: item for item in json.loads(output_of(self.program, "list", "keys", "--json"))}
         self.assertIn("planted-wall", keys["space.boundary"]["choices"])
         self.assertIn("planted-upwind", keys["space.reconstruction"]["choices"])
+        self.assertEqual(keys["space.formulation"]["choices"], ["finite-volume", "finite-difference", "planted-averages"])
 
     def test_a_method_of_each_kind_is_a_file_of_one_folder(self):
         one_step, several = self.names("methods"), self.names("multistep")
@@ -126,6 +127,24 @@ class OneFile(unittest.TestCase):
         # The same number of particles moves in both directions.
         for flux in fields["flux"]:
             self.assertAlmostEqual(flux, 0.0, delta=2e-3)
+
+    def test_a_discretization_is_one_file(self):
+        def density(formulation, cells):
+            result = json.loads(output_of(self.program, "run", "paper/bgk-mixed", f"space.formulation={formulation}",
+                                          f"space.cells={cells}", "model.epsilon=0.05", "time.end=0.2", "velocity.points=60",
+                                          "--json"))
+            self.assertLess(result["conservation_defect"], 1e-13)  # rounding of some thousand steps
+            self.assertEqual(result["negative_values"], 0)
+            return result["fields"]["rho"]
+        # Averages that collide as they are differ from those that collide at Gauss points by the second order.
+        differences = [max(abs(a - b) for a, b in zip(density("planted-averages", cells), density("finite-volume", cells), strict=True))
+                       for cells in (40, 80)]
+        self.assertGreater(differences[0], 1e-7)
+        self.assertGreater(differences[0] / differences[1], 3)
+        refused = subprocess.run([self.program, "run", "gas/cavity", "space.formulation=planted-averages"], capture_output=True,
+                                 text=True, check=False)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("planted averages are those of intervals: one space dimension only", refused.stderr)
 
     def test_a_claim_is_reproduced(self):
         self.assertIn("C99", output_of(self.program, "reproduce", "C99", folder=self.folder.name))

@@ -10,8 +10,6 @@ namespace broadwell_test {
 
 namespace {
 
-using apsis::formulation;
-
 apsis::case_config case_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
   return apsis::load_case("paper/" + name, overrides);
 }
@@ -57,9 +55,9 @@ TEST(broadwell, averages_of_cells_cut_by_a_jump_are_exact) {
 TEST(broadwell, the_first_riemann_problem_becomes_one_shock_at_the_speed_of_the_limit) {
   // Rankine–Hugoniot: s = [m]/[ρ]. The total mass determines the position of the shock; it changes by the
   // flux through the ends, m_left − m_right per unit of time.
-  for (const auto how : {formulation::finite_volume, formulation::finite_difference}) {
+  for (const auto how : {"finite-volume", "finite-difference"}) {
     auto c = case_of("broadwell-riemann-1", {"space.cells=100", "model.epsilon=1e-8"});
-    c.space.formulation = how;
+    c.space.discretization = how;
     apsis::simulation run(c);
     EXPECT_TRUE(run.promises().positivity);
     EXPECT_TRUE(run.promises().conservation);  // together with what flows in at the left

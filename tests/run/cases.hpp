@@ -8,7 +8,7 @@
 #include <vector>
 
 /// The paper's mixed-regime case with some keys changed.
-inline apsis::case_config mixed(const std::string& data, const std::string& method, apsis::formulation how) {
+inline apsis::case_config mixed(const std::string& data, const std::string& method, const std::string& how) {
   apsis::case_config c;
   c.model.name = "bgk";
   const apsis::model_config defaults = apsis::default_config(apsis::find_model("bgk"));
@@ -18,7 +18,7 @@ inline apsis::case_config mixed(const std::string& data, const std::string& meth
   c.model.initial = data;
   c.space.cells = {40};
   c.space.domain = {{0.0, 2.0}};
-  c.space.formulation = how;
+  c.space.discretization = how;
   c.space.reconstruction = "weno5-z";
   c.space.limiter = apsis::limiter_choice::positivity;
   c.velocity = {15.0, 150, apsis::equilibrium_choice::automatic};
@@ -29,7 +29,7 @@ inline apsis::case_config mixed(const std::string& data, const std::string& meth
 }
 
 /// A coarse velocity grid, so that a step costs little.
-inline apsis::case_config small(const std::string& method, apsis::formulation how) {
+inline apsis::case_config small(const std::string& method, const std::string& how) {
   apsis::case_config c = mixed("mixed-v", method, how);
   c.space.cells = {20};
   c.velocity = {9.0, 36, apsis::equilibrium_choice::automatic};

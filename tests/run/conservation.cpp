@@ -13,12 +13,10 @@
 
 namespace conservation_test {
 
-using apsis::formulation;
-
 namespace {
 
 apsis::case_config in_dimensions(int dimensions, int points, double v_max) {
-  auto c = mixed("mixed-v", "md-imex-6-3", formulation::finite_volume);
+  auto c = mixed("mixed-v", "md-imex-6-3", "finite-volume");
   c.model.parameters["velocity_dimensions"] = dimensions;
   c.velocity = {v_max, points, apsis::equilibrium_choice::automatic};
   c.space.cells = {10};
@@ -55,7 +53,7 @@ TEST(conservation, does_not_drift_in_three_velocity_dimensions) {
 }
 
 TEST(conservation, allows_four_times_the_rounding_for_four_times_the_stages) {
-  auto c = small("md-imex-chain-64-2", formulation::finite_volume);
+  auto c = small("md-imex-chain-64-2", "finite-volume");
   c.model.epsilon = "0";
   c.time.end = 1.0;
   apsis::simulation run(c);
@@ -68,7 +66,7 @@ TEST(conservation, allows_four_times_the_rounding_for_four_times_the_stages) {
 }
 
 TEST(conservation, detects_a_factor_of_1e_13_at_the_next_step) {
-  for (const auto how : {formulation::finite_volume, formulation::finite_difference}) {
+  for (const auto how : {"finite-volume", "finite-difference"}) {
     const auto c = small("md-imex-6-3", how);
     EXPECT_EQ(message_of(c, 0.0, 10), "");
     for (const double defect : {1e-13, -1e-13, 1e-11}) {
@@ -85,7 +83,7 @@ TEST(conservation, detects_a_factor_of_1e_13_at_the_next_step) {
 
 TEST(conservation, detects_a_defect_of_a_single_late_step) {
   // A bound proportional to the number of steps would accept 1e-13 after about twenty steps.
-  auto c = small("md-imex-6-3", formulation::finite_difference);
+  auto c = small("md-imex-6-3", "finite-difference");
   c.time.end = 10.0;
   apsis::simulation run(c);
   for (int step = 0; step < 300; ++step) run.advance();
@@ -101,7 +99,7 @@ TEST(conservation, detects_a_defect_of_a_single_late_step) {
 }
 
 TEST(conservation, detects_a_defect_of_every_step_in_the_first) {
-  const auto c = small("md-imex-6-3", formulation::finite_difference);
+  const auto c = small("md-imex-6-3", "finite-difference");
   const double rounding =
       apsis::rounding_of(apsis::find_method("md-imex-6-3").coefficients<double>(), *apsis::make_model(c))
           .of_step;
@@ -113,7 +111,7 @@ TEST(conservation, does_not_drift_by_the_rounding_of_weights) {
   // Weights of u and E whose sum is 1 ± 1e-17 would multiply the mass by as much in every stage, always in
   // the same direction: with them these runs end at 8e-15 to 8e-14.
   for (const char* method : {"md-imex-3-2", "md-imex-6-3", "md-imex-8-3-mixed"}) {
-    auto c = small(method, formulation::finite_difference);
+    auto c = small(method, "finite-difference");
     c.model.epsilon = "0.7";
     c.time.end = 10.0;
     apsis::simulation run(c);

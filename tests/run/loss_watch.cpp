@@ -155,7 +155,7 @@ TEST(automatic_method, runs_every_built_in_case) {
 }
 
 TEST(automatic_method, of_a_case_that_was_never_resolved_is_chosen_by_the_run) {
-  apsis::case_config c = small("auto", apsis::formulation::finite_difference);
+  apsis::case_config c = small("auto", "finite-difference");
   const apsis::simulation run(c);
   EXPECT_EQ(run.config().time.method, "md-imex-8-3-mixed");
 }

@@ -34,7 +34,7 @@ constexpr int cells = 6, points = 24;
 constexpr double v_max = 9.0, spacing = 2.0 * v_max / points;
 
 case_config gas(int dimensions) {
-  case_config c = small("md-imex-3-2", formulation::finite_difference);
+  case_config c = small("md-imex-3-2", "finite-difference");
   c.model.parameters["velocity_dimensions"] = dimensions;
   c.space.cells = {cells};
   c.velocity = {v_max, points, equilibrium_choice::automatic};

@@ -33,7 +33,7 @@ TEST(sizes, too_many_velocities_are_refused_with_the_largest_number) {
   for (const auto& [dimensions, points, most] :
        {std::tuple{3, 1025, "1024"}, std::tuple{3, 1291, "1024"}, std::tuple{3, 2000000000, "1024"},
         std::tuple{2, 32769, "32768"}, std::tuple{1, 2000000000, "1073741824"}}) {
-    auto c = small("md-imex-3-2", apsis::formulation::finite_difference);
+    auto c = small("md-imex-3-2", "finite-difference");
     c.model.parameters["velocity_dimensions"] = dimensions;
     c.velocity.points = points;
     const std::string message = refusal([&] { apsis::simulation run(c); });
@@ -71,7 +71,7 @@ TEST(sizes, blocks_of_the_longest_range_cover_it) {
 
 TEST(sizes, a_row_of_a_million_velocities_is_transported) {
   // The product of columns and vectors of a row is 32 768 times 131 072 here, beyond 32 bits.
-  auto c = small("ssprk-3-3", apsis::formulation::finite_difference);
+  auto c = small("ssprk-3-3", "finite-difference");
   c.model.epsilon = "1e12";
   c.space.cells = {7};
   c.space.limiter = apsis::limiter_choice::none;

@@ -67,7 +67,7 @@ TEST(startup, restarts_in_its_middle_bit_for_bit) {
   for (const long steps : {0L, 1L, 5L, 10L, 11L, 12L})
     expect_same_after_restart(ode("md-imex-4-2", "1e-4", "graded"), steps);
   for (const char* rule : {"cfl", "safety"}) {
-    auto c = small("md-imex-4-2", apsis::formulation::finite_difference);
+    auto c = small("md-imex-4-2", "finite-difference");
     c.model.epsilon = "1e-6 + x";
     c.time.startup = apsis::startup_choice::graded;
     c.time.end = 0.01;
@@ -90,7 +90,7 @@ TEST(startup, takes_fewer_steps_with_a_larger_ratio) {
 }
 
 TEST(startup, follows_the_smallest_epsilon_of_the_mesh_and_keeps_the_promises) {
-  for (const auto how : {apsis::formulation::finite_volume, apsis::formulation::finite_difference}) {
+  for (const auto how : {"finite-volume", "finite-difference"}) {
     auto c = small("md-imex-4-2", how);
     c.time.startup = apsis::startup_choice::graded;
     c.time.cfl.reset();

@@ -33,7 +33,7 @@ class environment {
 }  // namespace
 
 TEST(threads_for, a_case_follow_the_environment_or_its_size) {
-  auto c = small("md-imex-3-2", apsis::formulation::finite_difference);
+  auto c = small("md-imex-3-2", "finite-difference");
   {
     const environment three("3,2");
     EXPECT_EQ(apsis::threads_for(c), 3);

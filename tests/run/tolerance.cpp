@@ -88,7 +88,7 @@ TEST(tolerance, restarts_bit_for_bit) {
     EXPECT_EQ(rest_of(whole), rest_of(second)) << steps;
   };
   for (const long steps : {0L, 1L, 2L, 7L}) expect_same(ode("md-imex-8-3", "tolerance = 1e-5\n"), steps);
-  auto c = small("md-imex-3-2", apsis::formulation::finite_difference);
+  auto c = small("md-imex-3-2", "finite-difference");
   c.time.tolerance = 1e-4;
   c.time.end = 0.01;
   expect_same(c, 3);
@@ -116,7 +116,7 @@ TEST(tolerance, is_kept_by_explicit_additive_and_exponential_methods) {
 
 TEST(tolerance, restarts_bit_for_bit_with_doubled_steps) {
   for (const char* name : {"ars-443", "ark-436"}) {
-    auto c = small(name, apsis::formulation::finite_volume);
+    auto c = small(name, "finite-volume");
     c.time.tolerance = 1e-4;
     c.time.end = 0.01;
     apsis::simulation whole(c), first(c), second(c);
@@ -132,7 +132,7 @@ TEST(tolerance, restarts_bit_for_bit_with_doubled_steps) {
 }
 
 TEST(tolerance, keeps_the_promises_of_the_step_rule) {
-  auto c = small("md-imex-8-3", apsis::formulation::finite_volume);
+  auto c = small("md-imex-8-3", "finite-volume");
   c.time.cfl.reset();
   c.time.safety = 1.0;
   c.time.tolerance = 1e-3;
@@ -239,7 +239,7 @@ namespace {
 
 /// Knudsen numbers from 1e-5 to 1 on point values, so that runs with different steps solve the same system.
 apsis::case_config mixed_bgk(const std::string& method, double tolerance) {
-  auto c = small(method, apsis::formulation::finite_difference);
+  auto c = small(method, "finite-difference");
   c.time.cfl = 4.0;  // only the tolerance limits the step
   c.time.end = 0.01;
   c.time.tolerance = tolerance;

@@ -51,21 +51,23 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
 
 namespace {
 
+using limits = apsis::limited_reconstruction::limits;
+
 enum class unknowns { averages, averages_at_centres, points };
 
 apsis::semidiscrete_problem problem_of(const apsis::relaxation_model& m, const apsis::grid& mesh,
                                        unknowns what) {
   const auto cells = static_cast<std::size_t>(mesh.size());
   if (what == unknowns::points)
-    return {m, space_of(mesh), scheme("weno5-z", apsis::limiter_kind::fluxes),
-            apsis::make_pointwise_collision(m, std::vector<double>(cells, 1e-3))};
-  const auto how = scheme("weno5-z", apsis::limiter_kind::edges);
+    return upwind_problem(m, space_of(mesh), scheme("weno5-z", limits::fluxes),
+                          apsis::make_pointwise_collision(m, std::vector<double>(cells, 1e-3)));
+  const auto how = scheme("weno5-z", limits::edges);
   const auto space = space_of(mesh);
   if (what == unknowns::averages_at_centres)
-    return {m, space, how,
-            apsis::make_cell_centre_collision(m, space, true, std::vector<double>(cells, 1e-3))};
-  return {m, space, how,
-          apsis::make_cell_average_collision(m, space, how, std::vector<double>(3 * cells, 1e-3))};
+    return upwind_problem(
+        m, space, how, apsis::make_cell_centre_collision(m, space, true, std::vector<double>(cells, 1e-3)));
+  return upwind_problem(
+      m, space, how, apsis::make_cell_average_collision(m, space, how, std::vector<double>(3 * cells, 1e-3)));
 }
 
 struct heap_use {
@@ -157,8 +159,8 @@ long allocations_beside(const apsis::boundary_entry& kind, bool in_plane, bool c
       std::make_shared<apsis::domain>(apsis::phase_space{mesh, gas->velocities()}, sides, solids);
   const auto cells = static_cast<std::size_t>(mesh.size());
   const bool points = what == unknowns::points;
-  const auto how = scheme("weno5-z", points ? apsis::limiter_kind::fluxes : apsis::limiter_kind::edges);
-  apsis::semidiscrete_problem problem(
+  const auto how = scheme("weno5-z", points ? limits::fluxes : limits::edges);
+  apsis::semidiscrete_problem problem = upwind_problem(
       *gas, space, how,
       points ? apsis::make_pointwise_collision(*gas, std::vector<double>(cells, 1e-3))
              : apsis::make_cell_average_collision(*gas, space, how, std::vector<double>(3 * cells, 1e-3)));

@@ -4,6 +4,7 @@
 #include <apsis/model/model_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
+#include <apsis/semidiscrete/upwind_transport.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,13 +26,30 @@ inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, doubl
   return std::unique_ptr<apsis::relaxation_model>(dynamic_cast<apsis::relaxation_model*>(made.release()));
 }
 
-inline apsis::spatial_discretization scheme(const std::string& name, apsis::limiter_kind positivity) {
+inline apsis::limited_reconstruction scheme(const std::string& name,
+                                            apsis::limited_reconstruction::limits positivity) {
   return {apsis::find_reconstruction(name).make(), positivity};
 }
 
 inline std::shared_ptr<apsis::domain> space_of(const apsis::grid& mesh,
                                                const std::string& kind = "periodic") {
   return std::make_shared<apsis::domain>(apsis::make_domain(mesh, kind));
+}
+
+/// The transport without a source, for which the meaning of the unknowns is irrelevant.
+inline apsis::upwind_transport upwind(const apsis::model& m, std::shared_ptr<apsis::domain> space,
+                                      apsis::limited_reconstruction edges) {
+  return {m, std::move(space), std::move(edges), apsis::point_values()};
+}
+
+/// A problem with such a transport.
+inline apsis::semidiscrete_problem upwind_problem(const apsis::model& m,
+                                                  const std::shared_ptr<apsis::domain>& space,
+                                                  apsis::limited_reconstruction edges,
+                                                  std::unique_ptr<apsis::collision> q) {
+  return {m, space,
+          std::make_unique<apsis::upwind_transport>(m, space, std::move(edges), apsis::point_values()),
+          std::move(q)};
 }
 
 /// Nonnegative rows with zeros, jumps and values of very different magnitudes.

@@ -14,7 +14,7 @@ namespace {
 
 using apsis::field;
 using apsis::grid;
-using apsis::limiter_kind;
+using limits = apsis::limited_reconstruction::limits;
 
 double epsilon_of(double x) {
   return 1e-5 + std::tanh(1 - 11 * (x - 1)) + std::tanh(1 + 11 * (x - 1));
@@ -49,10 +49,10 @@ TEST(collision, conserves_to_rounding_although_epsilon_varies_inside_cells) {
   const auto m = small_bgk();
   const grid mesh = grid::line(20, 0.0, 2.0);
   for (const bool averages : {true, false}) {
-    const auto q = averages ? apsis::make_cell_average_collision(*m, space_of(mesh),
-                                                                 scheme("weno5-z", limiter_kind::edges),
-                                                                 at_gauss_points(mesh, epsilon_of))
-                            : apsis::make_pointwise_collision(*m, at_centres(mesh, epsilon_of));
+    const auto q =
+        averages ? apsis::make_cell_average_collision(*m, space_of(mesh), scheme("weno5-z", limits::edges),
+                                                      at_gauss_points(mesh, epsilon_of))
+                 : apsis::make_pointwise_collision(*m, at_centres(mesh, epsilon_of));
     field u = smooth(*m, mesh, averages);
     const field before = u;
     q->solve(0.0, 1e-2, -1e-4, u);
@@ -67,8 +67,8 @@ TEST(collision, averages_are_fifth_order_against_the_exact_average_of_relaxed_po
   const auto error = [&](int n) {
     const grid mesh = grid::line(n, 0.0, 2.0);
     const auto smooth_epsilon = [](double x) { return 1.2 + std::sin(std::numbers::pi * x); };
-    const auto q = apsis::make_cell_average_collision(
-        *m, space_of(mesh), scheme("weno5-z", limiter_kind::edges), at_gauss_points(mesh, +smooth_epsilon));
+    const auto q = apsis::make_cell_average_collision(*m, space_of(mesh), scheme("weno5-z", limits::edges),
+                                                      at_gauss_points(mesh, +smooth_epsilon));
     field u = smooth(*m, mesh, true);
     q->solve(0.0, a, 0.0, u);
     std::vector<double> row(static_cast<std::size_t>(m->components())), e = row, omega(3);
@@ -113,9 +113,8 @@ TEST(collision, keeps_limited_data_nonnegative) {
   check_property("nonnegative", [&] {
     static double epsilon = 1.0;
     epsilon = *rc::gen::inRange(0, 4) == 0 ? 0.0 : std::pow(10.0, *rc::gen::inRange(-12, 13));
-    const auto q =
-        apsis::make_cell_average_collision(*m, space_of(mesh), scheme("weno5-z", limiter_kind::edges),
-                                           at_gauss_points(mesh, [](double) { return epsilon; }));
+    const auto q = apsis::make_cell_average_collision(*m, space_of(mesh), scheme("weno5-z", limits::edges),
+                                                      at_gauss_points(mesh, [](double) { return epsilon; }));
     field u(12, m->components());
     for (int i = 0; i < 12; ++i)
       for (int k = 0; k < m->components(); ++k)
@@ -162,9 +161,9 @@ TEST(collision, advises_the_limiter_only_where_it_is_off) {
   const std::vector<double> ones(24, 1.0);
   EXPECT_NE(said(*apsis::make_pointwise_collision(*m, ones)).find(off), std::string::npos);
   EXPECT_NE(said(*apsis::make_pointwise_collision(*m, ones, true)).find(on), std::string::npos);
-  for (const auto kind : {limiter_kind::none, limiter_kind::edges}) {
+  for (const auto kind : {limits::nothing, limits::edges}) {
     const auto q = apsis::make_cell_average_collision(*m, space_of(mesh), scheme("weno5-z", kind), ones);
-    EXPECT_NE(said(*q).find(kind == limiter_kind::none ? off : on), std::string::npos) << said(*q);
+    EXPECT_NE(said(*q).find(kind == limits::nothing ? off : on), std::string::npos) << said(*q);
   }
 }
 
@@ -172,10 +171,10 @@ TEST(collision, explicit_evaluation_agrees_with_the_implicit_one_for_small_steps
   const auto m = small_bgk();
   const grid mesh = grid::line(10, 0.0, 2.0);
   for (const bool averages : {true, false}) {
-    const auto q = averages ? apsis::make_cell_average_collision(*m, space_of(mesh),
-                                                                 scheme("weno5-z", limiter_kind::none),
-                                                                 std::vector<double>(30, 0.5))
-                            : apsis::make_pointwise_collision(*m, std::vector<double>(10, 0.5));
+    const auto q =
+        averages ? apsis::make_cell_average_collision(*m, space_of(mesh), scheme("weno5-z", limits::nothing),
+                                                      std::vector<double>(30, 0.5))
+                 : apsis::make_pointwise_collision(*m, std::vector<double>(10, 0.5));
     const field u = smooth(*m, mesh, averages);
     field implicit = u, change(10, m->components());
     const double dt = 1e-7;

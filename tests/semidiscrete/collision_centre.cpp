@@ -238,23 +238,23 @@ TEST(collision_centre, rate_is_the_slope_of_a_short_stage) {
 
 TEST(collision_centre, states_what_it_cannot_do) {
   const auto m = small_bgk();
-  const auto message = [&](int cells, apsis::formulation unknowns) -> std::string {
+  const auto message = [&](int cells, const std::string& unknowns) -> std::string {
     try {
       apsis::problem_builder(*m)
           .on(grid::line(cells, 0.0, 1.0))
-          .with_unknowns(unknowns)
-          .with_collisions_at(apsis::collision_points::centres)
-          .with_reconstruction(scheme("weno5-z", apsis::limiter_kind::none).scheme)
+          .with_discretization(unknowns)
+          .with_collisions_at("centres")
+          .with_reconstruction(scheme("weno5-z", apsis::limited_reconstruction::limits::nothing).scheme)
           .build();
     } catch (const apsis::input_error& e) {
       return e.what();
     }
     return "";
   };
-  EXPECT_THAT(message(6, apsis::formulation::finite_volume), testing::HasSubstr("give at least 7"));
-  EXPECT_THAT(message(8, apsis::formulation::finite_difference),
+  EXPECT_THAT(message(6, "finite-volume"), testing::HasSubstr("give at least 7"));
+  EXPECT_THAT(message(8, "finite-difference"),
               testing::HasSubstr("point values, which collide where they are"));
-  EXPECT_EQ(message(7, apsis::formulation::finite_volume), "");
+  EXPECT_EQ(message(7, "finite-volume"), "");
 }
 
 }  // namespace collision_centre_test

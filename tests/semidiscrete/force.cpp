@@ -47,7 +47,7 @@ std::unique_ptr<apsis::semidiscrete_problem> problem_of(const apsis::model& gas,
                                                         bool limited, const std::string& scheme = "weno5-z") {
   apsis::problem_builder builder(gas);
   builder.on(apsis::grid::line(cells, 0.0, 1.0))
-      .with_unknowns(apsis::formulation::finite_difference)
+      .with_discretization("finite-difference")
       .with_reconstruction(apsis::find_reconstruction(scheme).make())
       .with_force(of);
   if (limited) builder.with_positivity_limiter();

@@ -20,7 +20,7 @@ namespace {
 
 using apsis::field;
 using apsis::grid;
-using apsis::limiter_kind;
+using limits = apsis::limited_reconstruction::limits;
 namespace limiter = apsis::limiter;
 
 /// A perturbed velocity distribution with tails below 1e-150, exact zeros and isolated spikes.
@@ -54,7 +54,7 @@ field steep(int cells, int components, std::uint64_t seed) {
 class plain_transport {
  public:
   plain_transport(const field& u, int k, double speed, double spacing,
-                  const apsis::spatial_discretization& discretization)
+                  const apsis::limited_reconstruction& discretization)
       : discretization_(discretization) {
     n_ = u.cells();
     rate_ = std::abs(speed) / spacing;
@@ -83,7 +83,7 @@ class plain_transport {
   long double edge_of(int i) const { return edge_[static_cast<std::size_t>(i + 4)]; }
 
   long double edge(double c, double l, double r) const {
-    if (discretization_.positivity != limiter_kind::edges) return r;
+    if (!discretization_.limits_edges()) return r;
     const double theta = limiter::scaling(c, std::min({l, r, limiter::interior(c, l, r)}));
     return theta < 1.0 ? c + theta * (static_cast<long double>(r) - c) : static_cast<long double>(r);
   }
@@ -96,12 +96,12 @@ class plain_transport {
 
   /// The face between cells i and i + 1.
   long double flux(int i) const {
-    if (discretization_.positivity != limiter_kind::fluxes) return edge_of(i);
+    if (!discretization_.limits_fluxes()) return edge_of(i);
     const long double correction = edge_of(i) - value(i);
     return value(i) + fraction(correction > 0.0L ? i : i + 1) * correction;
   }
 
-  apsis::spatial_discretization discretization_;
+  apsis::limited_reconstruction discretization_;
   std::vector<double> u_;
   std::vector<long double> edge_;
   double rate_ = 0.0;
@@ -109,12 +109,12 @@ class plain_transport {
   bool reversed_ = false;
 };
 
-void expect_plain_transport(const apsis::relaxation_model& m, const std::string& name, limiter_kind kind,
+void expect_plain_transport(const apsis::relaxation_model& m, const std::string& name, limits kind,
                             const field& u) {
   const int cells = u.cells();
   const grid mesh = grid::line(cells, 0.0, 1.0);
   const auto discretization = scheme(name, kind);
-  const apsis::transport t(m, space_of(mesh), discretization);
+  const auto t = upwind(m, space_of(mesh), discretization);
   field first(cells, m.components()), second = u;
   const double dt = t.forward_euler_step();
   t.add_transport(0.0, u,
@@ -143,7 +143,7 @@ TEST(kernels, transport_agrees_with_scalar_code_in_every_instruction_set) {
     // Rows of whole vectors, with a vector of mixed velocity signs in the middle, and short rows that are
     // joined.
     for (const int points : {4, 8, 20, 150})
-      for (const auto kind : {limiter_kind::none, limiter_kind::edges, limiter_kind::fluxes}) {
+      for (const auto kind : {limits::nothing, limits::edges, limits::fluxes}) {
         const auto m = small_bgk(points);
         const int n = m->components();
         for (const auto& [name, cells] : {std::pair{"weno5-z", 90}, {"weno5-js", 11}, {"upwind1", 30}}) {
@@ -223,8 +223,8 @@ void expect_same_in_one_pass(int cells, int threads) {
   const auto make = [&] {
     std::vector<double> epsilon(static_cast<std::size_t>(cells));
     for (std::size_t i = 0; i < epsilon.size(); ++i) epsilon[i] = std::pow(10.0, -static_cast<double>(i % 8));
-    return apsis::semidiscrete_problem(*m, space_of(mesh), scheme("weno5-z", limiter_kind::fluxes),
-                                       apsis::make_pointwise_collision(*m, epsilon));
+    return upwind_problem(*m, space_of(mesh), scheme("weno5-z", limits::fluxes),
+                          apsis::make_pointwise_collision(*m, epsilon));
   };
   auto problem = make();
   field u = sample(mesh, m->components(), false, [](double x, int k) {

@@ -9,7 +9,7 @@ namespace {
 
 using apsis::field;
 using apsis::grid;
-using apsis::limiter_kind;
+using limits = apsis::limited_reconstruction::limits;
 
 std::unique_ptr<apsis::relaxation_model> broadwell() {
   auto made = apsis::find_model("broadwell").make({});
@@ -18,12 +18,12 @@ std::unique_ptr<apsis::relaxation_model> broadwell() {
 
 struct choice {
   const char* scheme;
-  limiter_kind positivity;
+  limits positivity;
 };
-constexpr choice choices[] = {{"upwind1", limiter_kind::none},
-                              {"weno5-z", limiter_kind::edges},
-                              {"weno5-z", limiter_kind::fluxes},
-                              {"weno5-js", limiter_kind::edges}};
+constexpr choice choices[] = {{"upwind1", limits::nothing},
+                              {"weno5-z", limits::edges},
+                              {"weno5-z", limits::fluxes},
+                              {"weno5-js", limits::edges}};
 
 }  // namespace
 
@@ -31,7 +31,7 @@ TEST(outflow, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
   const auto m = broadwell();
   const grid mesh = grid::line(7, 0.0, 1.0);  // the stencil of every cell reaches an end
   for (const auto& c : choices) {
-    const apsis::transport t(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
+    const auto t = upwind(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
     check_property(c.scheme, [&] {
       const field u = random_rows(mesh, 3);
       field result(mesh.size(), 3);
@@ -48,9 +48,8 @@ TEST(outflow, collisions_in_cells_keep_any_data_nonnegative) {
   check_property("collisions of any strength", [&] {
     field u = random_rows(mesh, 3);
     const double epsilon = std::pow(10.0, *rc::gen::inRange(-12, 3));
-    const auto q = apsis::make_cell_average_collision(*m, space_of(mesh, "outflow"),
-                                                      scheme("weno5-z", limiter_kind::edges),
-                                                      std::vector<double>(21, epsilon));
+    const auto q = apsis::make_cell_average_collision(
+        *m, space_of(mesh, "outflow"), scheme("weno5-z", limits::edges), std::vector<double>(21, epsilon));
     q->solve(0.0, *rc::gen::element(0.0, 0.1), -*rc::gen::element(0.0, 0.1), u);
     RC_ASSERT(smallest(u) >= 0.0);
   });
@@ -60,7 +59,7 @@ TEST(outflow, uniform_data_do_not_change) {
   const auto m = broadwell();
   const grid mesh = grid::line(9, 0.0, 1.0);
   for (const auto& c : choices) {
-    const apsis::transport t(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
+    const auto t = upwind(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
     const field change = transport_of(t, sample(mesh, 3, false, [](double, int k) { return 0.1 + k; }));
     // Differences of equal fluxes: a rounding error of the edge values over Δx = 1/9.
     for (int i = 0; i < 9; ++i)
@@ -74,7 +73,7 @@ TEST(outflow, a_pulse_leaves_without_reflection) {
   const grid mesh = grid::line(60, 0.0, 1.0);
   const auto pulse = [](double x) { return std::exp(-400.0 * x * x); };
   for (const auto& c : choices) {
-    const apsis::transport t(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
+    const auto t = upwind(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
     field u = sample(mesh, 3, true, [&](double x, int k) { return pulse(x - (k == 0 ? 0.3 : 0.7)); });
     const double start = total(*m, u, 0);
     double inside = start;

@@ -80,7 +80,7 @@ TEST(problem_builder, cell_averages_are_exact_between_jumps_and_point_values_are
   // ∫ x² over [0, 0.2] is 0.2³/3; the jump is in the middle of the third cell, [0.4, 0.6].
   EXPECT_NEAR(averages.row(0)[0], 0.04 / 3.0, 1e-16);
   EXPECT_NEAR(averages.row(2)[1], (0.125 - 0.064) / 3.0 / 0.2 + 1.0, 1e-15);
-  const auto points = builder.with_unknowns(apsis::formulation::finite_difference).sample(data, {0.5});
+  const auto points = builder.with_discretization("finite-difference").sample(data, {0.5});
   EXPECT_EQ(points.row(0)[0], 0.1 * 0.1);
   EXPECT_EQ(points.row(2)[0], 2.0);
 }
@@ -90,7 +90,7 @@ TEST(problem_builder, data_and_epsilon_are_functions_of_position_in_the_plane) {
   const grid mesh(2, {9, 11, 1}, {0.0, 10.0, 0.0}, {0.9, 11.1, 0.0});
   problem_builder builder(m);
   builder.on(mesh)
-      .with_unknowns(apsis::formulation::finite_difference)
+      .with_discretization("finite-difference")
       .with_reconstruction(weno())
       .with_epsilon([](const position& x) { return x[0] + 100.0 * x[1] + 1e4 * x[2]; });
   const auto u =
@@ -149,7 +149,7 @@ TEST(problem_builder, refuses_inconsistent_parts) {
   EXPECT_THAT(message_of([&] {
                 problem_builder(plane)
                     .on(grid(2, {9, 9, 1}, {0, 0, 0}, {1, 1, 1}))
-                    .with_unknowns(apsis::formulation::finite_volume)
+                    .with_discretization("finite-volume")
                     .with_reconstruction(weno())
                     .build();
               }),
@@ -182,12 +182,12 @@ TEST(problem_builder, collisions_of_exponential_methods_are_exact_where_the_mode
 TEST(problem_builder, a_general_model_on_a_mesh_agrees_with_its_closed_form) {
   const auto closed = made("broadwell");
   const broadwell_as_general_model general;
-  for (const auto unknowns : {apsis::formulation::finite_volume, apsis::formulation::finite_difference}) {
+  for (const auto unknowns : {"finite-volume", "finite-difference"}) {
     const auto solve = [&](const apsis::model& equation) {
       problem_builder builder(equation);
       builder.on(grid::line(20, -1.0, 1.0))
           .with_reconstruction(weno())
-          .with_unknowns(unknowns)
+          .with_discretization(unknowns)
           .with_epsilon([](const position& x) { return 1e-3 + x[0] * x[0]; });
       const auto problem = builder.build();
       auto u = builder.sample([](const position& x, std::span<double> f) {

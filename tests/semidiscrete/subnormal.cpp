@@ -15,7 +15,7 @@ namespace {
 
 using apsis::field;
 using apsis::grid;
-using apsis::limiter_kind;
+using limits = apsis::limited_reconstruction::limits;
 
 constexpr double unit = std::numeric_limits<double>::denorm_min();
 
@@ -64,12 +64,12 @@ grid random_mesh(int dimensions, int cells, apsis::random_source& random) {
   return {dimensions, count, {0.0, 0.0, 0.0}, upper};
 }
 
-void expect_nonnegative_steps(const std::string& name, limiter_kind kind, int dimensions, int rounds) {
+void expect_nonnegative_steps(const std::string& name, limits kind, int dimensions, int rounds) {
   apsis::random_source random(11);
   for (int round = 0; round < rounds; ++round) {
     const grid mesh = random_mesh(dimensions, 11 + round % 7, random);
     const auto m = small_bgk(dimensions == 1 ? 10 : 4, 8.0, dimensions);
-    const apsis::transport t(*m, space_of(mesh), scheme(name, kind));
+    const auto t = upwind(*m, space_of(mesh), scheme(name, kind));
     const field u = tiny_rows(mesh.size(), m->components(), random);
     const double alpha = round % 3 == 0 ? 1.0 : std::pow(10.0, random.uniform(-8.0, 0.0));
     ASSERT_GE(smallest_unknown(longest_step(t, u, alpha, round % 2 == 0)), 0.0)
@@ -82,17 +82,16 @@ void expect_nonnegative_steps(const std::string& name, limiter_kind kind, int di
 TEST(subnormal, the_largest_step_keeps_every_value_nonnegative_in_every_instruction_set) {
   for_each_instruction_set([] {
     for (const auto* const name : {"weno5-z", "weno5-js"})
-      for (const auto kind : {limiter_kind::edges, limiter_kind::fluxes})
-        expect_nonnegative_steps(name, kind, 1, 400);
-    expect_nonnegative_steps("upwind1", limiter_kind::none, 1, 400);
+      for (const auto kind : {limits::edges, limits::fluxes}) expect_nonnegative_steps(name, kind, 1, 400);
+    expect_nonnegative_steps("upwind1", limits::nothing, 1, 400);
   });
 }
 
 TEST(subnormal, the_largest_step_keeps_every_value_nonnegative_in_several_dimensions) {
   for_each_instruction_set([] {
     for (const int dimensions : {2, 3}) {
-      expect_nonnegative_steps("weno5-z", limiter_kind::fluxes, dimensions, 20);
-      expect_nonnegative_steps("upwind1", limiter_kind::none, dimensions, 20);
+      expect_nonnegative_steps("weno5-z", limits::fluxes, dimensions, 20);
+      expect_nonnegative_steps("upwind1", limits::nothing, dimensions, 20);
     }
   });
 }
@@ -103,7 +102,7 @@ TEST(subnormal, a_step_beyond_the_bound_gives_a_negative_value) {
   const auto m = small_bgk(10);
   field u(20, m->components());
   for (int k = 0; k < m->components(); ++k) u.row(9)[k] = 1.0;
-  const apsis::transport t(*m, space_of(mesh), scheme("upwind1", limiter_kind::none));
+  const auto t = upwind(*m, space_of(mesh), scheme("upwind1", limits::nothing));
   field result(20, m->components());
   const apsis::target<field, double> to{&result, 1.0, 1.001 * t.forward_euler_step(), true};
   t.add_transport(0.0, u, {&to, 1});

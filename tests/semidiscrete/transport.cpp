@@ -13,13 +13,13 @@ namespace {
 
 using apsis::field;
 using apsis::grid;
-using apsis::limiter_kind;
+using limits = apsis::limited_reconstruction::limits;
 
 /// L1 error of T(u) for u = 1 + sin(2πx), which touches zero.
-double transport_error(const apsis::relaxation_model& m, const std::string& name, limiter_kind kind,
-                       bool averages, int n) {
+double transport_error(const apsis::relaxation_model& m, const std::string& name, limits kind, bool averages,
+                       int n) {
   const grid mesh = grid::line(n, 0.0, 1.0);
-  const apsis::transport t(m, space_of(mesh), scheme(name, kind));
+  const auto t = upwind(m, space_of(mesh), scheme(name, kind));
   const double w = 2.0 * std::numbers::pi;
   const field u =
       sample(mesh, m.components(), averages, [w](double x, int) { return 1.0 + std::sin(w * x); });
@@ -40,8 +40,8 @@ TEST(transport, fifth_order_in_both_formulations_with_and_without_limiter) {
   for (const char* name : {"weno5-z", "weno5-js"}) {
     for (const bool limited : {false, true}) {
       for (const bool averages : {true, false}) {
-        const limiter_kind cut = averages ? limiter_kind::edges : limiter_kind::fluxes;
-        const limiter_kind kind = limited ? cut : limiter_kind::none;
+        const limits cut = averages ? limits::edges : limits::fluxes;
+        const limits kind = limited ? cut : limits::nothing;
         const double slope = std::log2(transport_error(*m, name, kind, averages, 80) /
                                        transport_error(*m, name, kind, averages, 160));
         EXPECT_GT(slope, 4.8) << name << " limited " << limited << " averages " << averages;
@@ -53,18 +53,18 @@ TEST(transport, fifth_order_in_both_formulations_with_and_without_limiter) {
 TEST(transport, limiting_edges_of_point_values_costs_three_orders_and_limiting_fluxes_none) {
   // The flux function of 1 + sin(2πx) is negative near the minimum; see limiter.hpp.
   const auto m = small_bgk(8);
-  const auto slope = [&m](limiter_kind kind) {
+  const auto slope = [&m](limits kind) {
     const auto error = [&](int n) { return transport_error(*m, "weno5-z", kind, false, n); };
     return std::log2(error(80) / error(160));
   };
-  EXPECT_LT(slope(limiter_kind::edges), 2.5);
-  EXPECT_GT(slope(limiter_kind::fluxes), 4.8);
+  EXPECT_LT(slope(limits::edges), 2.5);
+  EXPECT_GT(slope(limits::fluxes), 4.8);
 }
 
 TEST(transport, first_order_upwind_is_the_difference_of_neighbours) {
   const auto m = small_bgk(6);
   const grid mesh = grid::line(9, 0.0, 1.8);
-  const apsis::transport t(*m, space_of(mesh), scheme("upwind1", limiter_kind::none));
+  const auto t = upwind(*m, space_of(mesh), scheme("upwind1", limits::nothing));
   const field u = sample(mesh, 6, false, [](double x, int k) { return 1.0 + x * x + k; });
   const field change = transport_of(t, u);
   for (int i = 0; i < 9; ++i) {
@@ -80,9 +80,9 @@ TEST(transport, first_order_upwind_is_the_difference_of_neighbours) {
 TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
   const auto m = small_bgk(8);
   const grid mesh = grid::line(12, 0.0, 1.0);
-  for (const auto kind : {limiter_kind::edges, limiter_kind::fluxes, limiter_kind::none}) {
-    const std::string name = kind == limiter_kind::none ? "upwind1" : "weno5-z";
-    const apsis::transport t(*m, space_of(mesh), scheme(name, kind));
+  for (const auto kind : {limits::edges, limits::fluxes, limits::nothing}) {
+    const std::string name = kind == limits::nothing ? "upwind1" : "weno5-z";
+    const auto t = upwind(*m, space_of(mesh), scheme(name, kind));
     const double dt = t.forward_euler_step();
     check_property(name + " limiter " + std::to_string(static_cast<int>(kind)), [&] {
       const field u = random_rows(mesh, 8);
@@ -101,20 +101,20 @@ TEST(transport, above_dt_fe_positivity_breaks) {
   // the update is negative beyond some multiple of Δt_FE.
   const auto m = small_bgk(8);
   const grid mesh = grid::line(12, 0.0, 1.0);
-  const apsis::transport upwind(*m, space_of(mesh), scheme("upwind1", limiter_kind::none));
+  const auto t = upwind(*m, space_of(mesh), scheme("upwind1", limits::nothing));
   field u(12, 8);
   for (int k = 0; k < 8; ++k) u.row(5)[k] = 1.0;
   field result(12, 8);
-  const apsis::target<field, double> to{&result, 1.0, 1.0001 * upwind.forward_euler_step(), true};
-  upwind.add_transport(0.0, u, {&to, 1});
+  const apsis::target<field, double> to{&result, 1.0, 1.0001 * t.forward_euler_step(), true};
+  t.add_transport(0.0, u, {&to, 1});
   EXPECT_LT(smallest(result), 0.0);
 }
 
 TEST(transport, conserves_every_component) {
   const auto m = small_bgk(8);
   const grid mesh = grid::line(20, 0.0, 1.0);
-  for (const auto kind : {limiter_kind::none, limiter_kind::edges, limiter_kind::fluxes}) {
-    const apsis::transport t(*m, space_of(mesh), scheme("weno5-z", kind));
+  for (const auto kind : {limits::nothing, limits::edges, limits::fluxes}) {
+    const auto t = upwind(*m, space_of(mesh), scheme("weno5-z", kind));
     const field u = sample(mesh, 8, true, [](double x, int k) { return x < 0.4 ? 1.0 + k : 1e-3; });
     const field change = transport_of(t, u);
     for (int k = 0; k < 8; ++k) {
@@ -131,7 +131,7 @@ TEST(transport, conserves_every_component) {
 TEST(transport, does_not_depend_on_the_number_of_threads_or_on_blocks) {
   const auto m = small_bgk(150, 15.0);
   const grid mesh = grid::line(97, 0.0, 2.0);
-  const apsis::transport t(*m, space_of(mesh), scheme("weno5-z", limiter_kind::edges));
+  const auto t = upwind(*m, space_of(mesh), scheme("weno5-z", limits::edges));
   const field u =
       sample(mesh, 150, false, [](double x, int k) { return std::exp(std::sin(3.0 * x) - 0.1 * k); });
   apsis::set_threads(1);
@@ -148,8 +148,8 @@ TEST(transport, of_many_targets_is_that_of_each_of_them) {
   const auto m = small_bgk(20);
   const grid mesh = grid::line(13, 0.0, 2.0);
   const field u = sample(mesh, 20, false, [](double x, int k) { return 2.0 + std::sin(3.0 * x + k); });
-  for (const auto kind : {limiter_kind::none, limiter_kind::fluxes}) {
-    const apsis::transport t(*m, space_of(mesh), scheme("weno5-z", kind));
+  for (const auto kind : {limits::nothing, limits::fluxes}) {
+    const auto t = upwind(*m, space_of(mesh), scheme("weno5-z", kind));
     std::vector<field> together(20, u), alone(20, u);
     std::vector<apsis::target<field, double>> targets;
     for (int k = 0; k < 20; ++k)
@@ -200,7 +200,7 @@ TEST(transport, is_fifth_order_in_two_dimensions) {
   const double w = 2.0 * std::numbers::pi;
   const auto error = [&](int n) {
     const grid mesh(2, {n, n, 1}, {0, 0, 0}, {1, 1, 1});
-    const apsis::transport t(m, space_of(mesh), scheme("weno5-z", limiter_kind::edges));
+    const auto t = upwind(m, space_of(mesh), scheme("weno5-z", limits::edges));
     field u(mesh.size(), 3), exact(mesh.size(), 3);
     for (int i = 0; i < mesh.size(); ++i) {
       const double x = mesh.centre(i, 0), y = mesh.centre(i, 1);

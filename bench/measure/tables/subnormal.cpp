@@ -34,10 +34,10 @@ struct outcome {
 };
 
 /// Both start from a state whose tails contain subnormal numbers.
-outcome compare(const std::string& formulation, int max, const settings& options) {
+outcome compare(const std::string& discretization, int max, const settings& options) {
   const std::vector<std::string> grid = {fmt::format("velocity.max={}", max),
                                          fmt::format("velocity.points={}", 10 * max)};
-  mixed_step plain(formulation, "md-imex-3-2", 40, grid), flushed(formulation, "md-imex-3-2", 40, grid);
+  mixed_step plain(discretization, "md-imex-3-2", 40, grid), flushed(discretization, "md-imex-3-2", 40, grid);
   const int warm_up = options.quick ? 2 : 100, turns = options.quick ? 1 : 5 * options.repeats;
   plain.take(warm_up);
   flushed.take(warm_up);

@@ -42,9 +42,9 @@ result_table measure(const settings& options) {
   result.columns = {"formulation", "N",       "ms per step, 1 thread", "ms per step, 2 threads", "ratio",
                     "the machine", "in steps"};
   const std::vector<int> sizes = options.quick ? std::vector<int>{40} : std::vector<int>{40, 400, 4000};
-  for (const char* formulation : {"finite-difference", "finite-volume"})
+  for (const char* discretization : {"finite-difference", "finite-volume"})
     for (const int cells : sizes) {
-      mixed_step run(formulation, "md-imex-3-2", cells);
+      mixed_step run(discretization, "md-imex-3-2", cells);
       // Short jobs and many turns: a disturbance affects one turn only.
       const int steps = run.steps_in(options.quick ? 0.01 : 0.04),
                 turns = options.quick ? 1 : 5 * options.repeats;
@@ -56,7 +56,7 @@ result_table measure(const settings& options) {
                                      }},
                                     turns, wall_seconds);
       const double one = median(seconds[0]), two = median(seconds[1]);
-      result.rows.push_back({formulation, cells, 1e3 * one / steps, 1e3 * two / steps,
+      result.rows.push_back({discretization, cells, 1e3 * one / steps, 1e3 * two / steps,
                              two_digits(median_ratio(seconds, 0, 1)), two_digits(ideal(one, 1, turns)),
                              two_digits(ideal(one, steps * run.passes(), turns))});
     }

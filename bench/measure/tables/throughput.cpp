@@ -44,9 +44,9 @@ turn measure_turn(mixed_step& run, int steps) {
   return now;
 }
 
-std::vector<nlohmann::json> row_of(const std::string& formulation, const std::string& method, int cells,
+std::vector<nlohmann::json> row_of(const std::string& discretization, const std::string& method, int cells,
                                    const settings& options) {
-  mixed_step run(formulation, method, cells);
+  mixed_step run(discretization, method, cells);
   const auto each = run.count_work();
   const int steps = run.steps_in(options.quick ? 0.01 : 0.2);
   std::vector<double> speed, of_operations, of_bytes, binding;
@@ -58,7 +58,7 @@ std::vector<nlohmann::json> row_of(const std::string& formulation, const std::st
     binding.push_back(std::max(of_operations.back(), of_bytes.back()));
   }
   const auto per = [&](double x) { return x / run.point_stages(); };
-  return {formulation,
+  return {discretization,
           method,
           threads(),
           median(speed),
@@ -81,10 +81,10 @@ result_table measure(const settings& options) {
   result.columns = {"formulation", "method",           "threads",  "point·stages/s",        "operations",
                     "bytes",       "of multiply–adds", "of triad", "of the binding ceiling"};
   for (const int n : {1, 2})
-    for (const char* formulation : {"finite-difference", "finite-volume"})
+    for (const char* discretization : {"finite-difference", "finite-volume"})
       for (const char* method : {"md-imex-3-2", "md-imex-6-3"}) {
         set_threads(n);
-        result.rows.push_back(row_of(formulation, method, cells, options));
+        result.rows.push_back(row_of(discretization, method, cells, options));
       }
   set_threads(1);
   return result;

@@ -54,8 +54,8 @@ struct case_config {
   struct {
     std::vector<int> cells = {40};                             ///< in every direction
     std::vector<std::array<double, 2>> domain = {{0.0, 1.0}};  ///< lower and upper end in every direction
-    apsis::formulation formulation = apsis::formulation::finite_volume;
-    std::optional<apsis::collision_points> collisions;  ///< of cell averages; default: Gauss points
+    std::string discretization = "finite-volume";              ///< by discretization_key
+    std::optional<std::string> collisions;  ///< where cells collide; default: the first choice
     std::string reconstruction = "weno5-z";
     limiter_choice limiter = limiter_choice::none;
     std::string boundary = "periodic";       ///< kind of every face without one of its own

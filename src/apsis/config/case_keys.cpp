@@ -1,4 +1,5 @@
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/config/internal/key_of_member.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
@@ -202,13 +203,15 @@ std::vector<case_key> space_keys() {
            .highest = 10'000'000,
            .doc = "Number of blocks of cells in each direction, one block for each process; by default those "
                   "with the least to send."}),
-      key("space.formulation", [](auto& c) -> auto& { return c.space.formulation; },
+      key(discretization_key, [](auto& c) -> auto& { return c.space.discretization; },
           {.scope = key_scope::space,
+           .choices = [](const case_config&) { return discretization_names(); },
            .doc =
                "Unknowns are cell averages (finite-volume) or point values (finite-difference; about a third "
                "of the cost of cell averages with collisions at Gauss points)."}),
       key("space.collisions", [](auto& c) -> auto& { return c.space.collisions; },
           {.scope = key_scope::space,
+           .choices = [](const case_config&) { return collision_place_names(); },
            .doc =
                "Where cell averages collide: gauss: three Gauss points of each cell, on its reconstruction; "
                "centres: values at cell centres that all averages together imply, of fourth order in space, "

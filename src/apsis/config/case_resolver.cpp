@@ -4,6 +4,7 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/data_samples.hpp>
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/gas_reader.hpp>
 #include <apsis/config/initial_reader.hpp>
@@ -230,8 +231,8 @@ class resolver {
     const std::size_t dimensions = config_.space.cells.size();
     if (find("space.domain") == nullptr)
       config_.space.domain.assign(dimensions, config_.space.domain.front());
-    if (dimensions > 1 && find("space.formulation") == nullptr)
-      config_.space.formulation = formulation::finite_difference;
+    if (find(discretization_key) == nullptr)
+      config_.space.discretization = default_discretization(static_cast<int>(dimensions)).name;
   }
 
   /// The table [parameters].
@@ -343,7 +344,7 @@ class resolver {
     check_dimensions();
     for (std::size_t k = 0; k < config_.space.domain.size(); ++k)
       check_interval(config_.space.domain[k], config_.space.cells[k]);
-    check_formulation();
+    check_discretization();
     check_faces();
     if (!config_.solids.empty()) check_solids();
     make_acceleration(config_, *checked_model());
@@ -391,15 +392,25 @@ class resolver {
              "give a domain nearer to 0 or fewer cells");
   }
 
-  void check_formulation() const {
-    if (config_.space.cells.size() > 1 && config_.space.formulation == formulation::finite_volume)
-      refuse(*find("space.formulation"), "space.formulation",
-             "cell averages collide at the Gauss points of intervals: one space dimension only",
-             "write \"finite-difference\", or leave it out");
-    if (config_.space.collisions && config_.space.formulation == formulation::finite_difference)
+  void check_discretization() const {
+    const discretization& chosen = discretization_of(config_);
+    const auto dimensions = static_cast<int>(config_.space.cells.size());
+    if (const std::string why = chosen.why_on_a_line(); dimensions > 1 && !why.empty())
+      refuse(*find(discretization_key), discretization_key, why + ": one space dimension only",
+             fmt::format("write \"{}\", or leave it out", default_discretization(dimensions).name));
+    const auto places = chosen.collision_places();
+    if (!config_.space.collisions ||
+        std::find(places.begin(), places.end(), *config_.space.collisions) != places.end())
+      return;
+    const std::string chosen_by =
+        fmt::format("{} = \"{}\"", discretization_key, config_.space.discretization);
+    if (places.empty())
       refuse(*find("space.collisions"), "space.collisions",
-             "point values collide where they are (space.formulation = \"finite-difference\")",
+             fmt::format("{} collide where they are ({})", chosen.unknown().plural(), chosen_by),
              "leave it out");
+    refuse(*find("space.collisions"), "space.collisions",
+           fmt::format("cells do not collide there ({})", chosen_by),
+           suggest(*config_.space.collisions, places));
   }
 
   void check_solids() const {
@@ -410,10 +421,10 @@ class resolver {
         throw input_error(place_of(config_, fmt::format("space.solid.{}.kind", k + 1)),
                           "a solid box cannot be periodic (nothing lies behind its faces); give it a wall, "
                           "for example kind = \"diffuse\"");
-    if (config_.space.formulation == formulation::finite_volume)
+    if (const std::string why = discretization_of(config_).why_without_solids(); !why.empty())
       throw input_error(place_of(config_, "space.solid.1"),
-                        "solid boxes need point values (cell averages are collided on whole lines); write "
-                        "space.formulation = \"finite-difference\"");
+                        fmt::format("solid boxes need point values ({}); write {} = \"finite-difference\"",
+                                    why, discretization_key));
   }
 
   void check_faces() const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <apsis/model/model_registry.hpp>
-#include <apsis/scheme/formulation.hpp>
 
 #include <array>
 
@@ -53,14 +52,10 @@ inline constexpr std::array choice_names<precision_choice> = {"double", "single"
 template <>
 inline constexpr std::array choice_names<units_choice> = {"dimensionless", "SI"};
 template <>
-inline constexpr std::array choice_names<formulation> = {"finite-volume", "finite-difference"};
-template <>
-inline constexpr std::array choice_names<collision_points> = {"gauss", "centres"};
-template <>
 inline constexpr std::array choice_names<equilibrium_choice> = {"auto", "formula", "discrete"};
 /// @endcond
 
-/// The name of an enumerator in a case file: "finite-volume".
+/// The name of an enumerator in a case file: "positivity".
 template <class Choice>
 constexpr const char* choice_name(Choice choice) {
   return choice_names<Choice>[static_cast<std::size_t>(choice)];

@@ -37,7 +37,7 @@ class reader {
   std::pair<line_rows, bool> read() {
     line_rows rows;
     rows.components = equation_.components();
-    rows.unknowns = source_.unknowns();
+    rows.second_moment = source_.unknown().second_moment();
     bool equilibrium = false;
     if (source_.has_state()) {
       rows.values = source_.state();
@@ -169,12 +169,12 @@ state_of_file sample_initial_file(const case_config& config, const model& equati
   const auto [rows, equilibrium] = reader(config, equation).read();
   if (mesh.dimensions() > 1) return on_the_same_mesh(config, equation, builder, rows, equilibrium);
   const bool on_line = builder.has_space();
+  const cell_unknown& unknown = builder.of_space().unknown();
   const bool same_mesh =
       !on_line ||
-      (rows.cells == mesh.size() && rows.unknowns == config.space.formulation &&
+      (rows.cells == mesh.size() && rows.second_moment == unknown.second_moment() &&
        rows.lower == config.space.domain.front()[0] && rows.upper == config.space.domain.front()[1]);
-  const bool points = config.space.formulation == formulation::finite_difference;
-  if (same_mesh && config.prescribed.regions.empty() && (!equilibrium || points || !on_line))
+  if (same_mesh && config.prescribed.regions.empty() && (!equilibrium || unknown.pointwise() || !on_line))
     return {copied(rows, builder), !equilibrium};
   const cell_polynomials between(rows, equation.positive());
   const bool project_rows = equilibrium;

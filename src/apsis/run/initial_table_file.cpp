@@ -1,5 +1,6 @@
 #include <apsis/run/initial_table_file.hpp>
 
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/config/quantity.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/text_file.hpp>
@@ -76,7 +77,7 @@ std::string initial_table_file::place_of_row(std::size_t row) const {
   return row < lines_.size() ? fmt::format("line {}", lines_[row]) : fmt::format("cell {}", row);
 }
 
-/// Of an earlier result: its model, units and formulation.
+/// Of an earlier result: its model, units and discretization.
 void initial_table_file::take_manifest(const std::string& text) {
   manifest_ = json::parse(text, nullptr, false);
   const auto name = at(manifest_, {"case", "model", "name"});
@@ -90,8 +91,17 @@ void initial_table_file::take_manifest(const std::string& text) {
     refuse(fmt::format(
         "it is a result of model '{}'{} (the case has model '{}'); give a result of this model",
         name.get<std::string>(), theirs == mine ? " with other variables" : "", config_.model.name));
-  if (at(manifest_, {"case", "space", "formulation"}) == choice_name(formulation::finite_difference))
-    unknowns_ = formulation::finite_difference;
+  const std::string key = discretization_key;
+  const auto discretized = at(manifest_, {"case", "space", key.substr(key.find('.') + 1).c_str()});
+  if (discretized.is_string()) {
+    const auto* entry = try_find_discretization(discretized.get<std::string>());
+    if (entry == nullptr)
+      refuse(
+          fmt::format("it is a result of {} = \"{}\" (this program has no such discretization); give another "
+                      "file",
+                      key, discretized.get<std::string>()));
+    unknown_ = &entry->instance().unknown();
+  }
   const auto scales = at(manifest_, {"scales"});
   const bool in_si = at(manifest_, {"case", "output", "units"}) == choice_name(units_choice::si);
   if (!scales.is_null() && config_.scales && !in_si && scales != to_json(*config_.scales))

@@ -4,7 +4,7 @@
 #include <apsis/model/model.hpp>
 #include <apsis/output/column_file.hpp>
 #include <apsis/output/hdf5_file.hpp>
-#include <apsis/scheme/formulation.hpp>
+#include <apsis/semidiscrete/cell_unknown.hpp>
 
 #include <map>
 #include <optional>
@@ -29,7 +29,7 @@ class initial_table_file {
   /// Returns the unknowns, [cells][components].
   std::vector<double> state() const { return state_; }
   /// Returns what the numbers are: those of a result as in its case, others cell averages.
-  formulation unknowns() const { return unknowns_; }
+  const cell_unknown& unknown() const { return *unknown_; }
 
   /// Whether the file has a column of one of these names.
   bool has_any(const std::vector<std::string>& names) const;
@@ -83,7 +83,7 @@ class initial_table_file {
   const model& equation_;
   std::string path_;
   json manifest_;  ///< of an earlier result; null for other files
-  formulation unknowns_ = formulation::finite_volume;
+  const cell_unknown* unknown_ = &cell_averages();
   /// A column of an HDF5 file: its dataset, and which snapshot of one with several.
   struct stored_column {
     std::string dataset;

@@ -24,7 +24,7 @@ int buffers_of(const run_setup& setup) {
   const int of_step = compares ? schedule(m.with_embedded_row().coefficients<double>(), true).buffers()
                                : apsis::buffers_of(setup.integrator()) + of_doubling;
   const int compared = setup.config().time.steady ? 1 : 0;
-  const int changes = setup.builder().collides_at_centres() ? 1 : 0;
+  const int changes = setup.builder().collisions().reach > 0 ? 1 : 0;
   return compared + changes + of_step;
 }
 

@@ -95,7 +95,7 @@ run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> pr
 void run_setup::build_space(std::shared_ptr<communicator> processes) {
   const auto& space = config_.space;
   const reconstruction_entry& scheme = find_reconstruction(space.reconstruction);
-  builder_.on(make_mesh(config_)).with_unknowns(space.formulation);
+  builder_.on(make_mesh(config_)).with_discretization(space.discretization);
   if (space.collisions) builder_.with_collisions_at(*space.collisions);
   at_key(config_, space.blocks ? "space.blocks" : "space.cells",
          [&] { builder_.shared_by(std::move(processes), given_blocks(space.blocks)); });
@@ -407,7 +407,7 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
   const auto* relaxation = equation->as_relaxation();
   const bool relaxes = relaxation != nullptr && relaxation->relaxing_count() > 0;
   const bool collisions = equation->collisions_keep_sign() &&
-                          !(explicit_collision && (relaxes || builder_.collides_at_centres()));
+                          !(explicit_collision && (relaxes || builder_.collisions().reach > 0));
   promises.condition = equation->condition();
   promises.why_signed = equation->why_signed();
   promises.positivity = equation->positive() && collisions && nonnegative && within && builder_.keeps_sign();

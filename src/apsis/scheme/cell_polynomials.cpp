@@ -34,7 +34,7 @@ double line_rows::at(int cell, int k) const {
 
 cell_polynomials::cell_polynomials(const line_rows& rows, bool nonnegative)
     : lower_(rows.lower), width_(rows.width()), cells_(rows.cells), components_(rows.components) {
-  const double offset = rows.unknowns == formulation::finite_volume ? 1.0 / 12.0 : 0.0;  // the mean of ξ²
+  const double offset = rows.second_moment;
   std::vector<double> scales(static_cast<std::size_t>(components_));
   for (int cell = 0; cell < cells_; ++cell)
     for (int k = 0; k < components_; ++k) {

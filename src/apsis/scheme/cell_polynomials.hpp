@@ -1,7 +1,5 @@
 #pragma once
 
-#include <apsis/scheme/formulation.hpp>
-
 #include <span>
 #include <vector>
 
@@ -9,12 +7,12 @@ namespace apsis {
 
 /// Rows on equal cells of a line, [cells][components]: cell averages or values at the centres.
 struct line_rows {
-  double lower = 0.0,                                 ///< lower end of the line
-      upper = 1.0;                                    ///< upper end
-  int cells = 0;                                      ///< number of cells
-  int components = 0;                                 ///< numbers of a row
-  std::vector<double> values;                         ///< row by row
-  formulation unknowns = formulation::finite_volume;  ///< what the values are
+  double lower = 0.0,                 ///< lower end of the line
+      upper = 1.0;                    ///< upper end
+  int cells = 0;                      ///< number of cells
+  int components = 0;                 ///< numbers of a row
+  std::vector<double> values;         ///< row by row
+  double second_moment = 1.0 / 12.0;  ///< value of ξ², ξ = (x − centre)/width: 1/12 of averages, 0 at centres
   /// Returns the width of a cell.
   double width() const { return (upper - lower) / cells; }
   /// Returns value k of a cell.

@@ -14,25 +14,12 @@ int cells_of_a_row(int stride) {
   return std::max(1, enough / std::max(stride, 1));
 }
 
-/// Returns the number of cells on either side on which edges and limiter of a cell depend.
-int reach_of(const spatial_discretization& discretization) {
-  return std::max(discretization.scheme->ghost_width(), halo_of(discretization));
-}
-
 }  // namespace
 
 kernel_work traffic(block_sweep::targets_view targets) {
   kernel_work each;
   for (const auto& to : targets) each.bytes += sizeof(double) * (to.fresh ? 1.0 : 2.0);
   return each;
-}
-
-int halo_of(const spatial_discretization& discretization) {
-  return discretization.positivity == limiter_kind::fluxes ? 2 : 1;
-}
-
-int sweep_ghosts(const spatial_discretization& discretization) {
-  return halo_of(discretization) + reach_of(discretization);
 }
 
 std::vector<line_speeds> line_speeds::of(const model& equation, const grid& mesh) {
@@ -53,8 +40,8 @@ std::vector<line_speeds> line_speeds::of(const model& equation, const grid& mesh
 
 void block_sweep::reserve(const context& of, int cells, int width, std::size_t targets) {
   of_ = &of;
-  halo_ = halo_of(of.discretization);
-  reach_ = reach_of(of.discretization);
+  halo_ = of.edges.halo();
+  reach_ = of.edges.reach();
   const auto rows = static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_ + reach_);
   rows_.reserve(rows);
   joined_.reserve(rows);
@@ -72,9 +59,8 @@ void block_sweep::run(const context& of, const field& u, const place& at, target
   const double numbers = static_cast<double>(cells) * width_;
   {
     const double repeated = 1.0 + 2.0 * halo_ / cells;  // edges of the halo are those of another block too
-    const profile::section timed(
-        kernel::edges, numbers,
-        {repeated * of.discretization.scheme->operations(both_edges()), sizeof(double)});
+    const profile::section timed(kernel::edges, numbers,
+                                 {repeated * of.edges.scheme->operations(both_edges()), sizeof(double)});
     for (int i = at.begin - halo_; i < at.end + halo_;) {
       const run_of_cells run = run_from(i, at.end + halo_ - i);
       make_edges(i, run);
@@ -134,20 +120,19 @@ void block_sweep::record(const segment_end& end, bool upper, const place& at) {
                           line_->forward.data() + at.first,
                           line_->per_cell.data() + at.first,
                           nullptr};
-  upwind::fluxes_of_cell(one, of_->discretization.positivity == limiter_kind::fluxes, in_.data(),
-                         out_.data());
+  upwind::fluxes_of_cell(one, of_->edges.limits_fluxes(), in_.data(), out_.data());
   double* values = of_->faces.recorded(end.surface, end.place) + at.first;
   for (std::size_t k = 0; k < width; ++k)
     values[k] = (line_->forward[k + static_cast<std::size_t>(at.first)] != 0.0) == upper ? out_[k] : in_[k];
 }
 
 bool block_sweep::both_edges() const {
-  return of_->discretization.positivity == limiter_kind::edges;
+  return of_->edges.limits_edges();
 }
 
 kernel_work block_sweep::work_of(targets_view targets, int cells) const {
   kernel_work each = traffic(targets);
-  each.operations = upwind::operations(of_->discretization.positivity == limiter_kind::fluxes, cells) +
+  each.operations = upwind::operations(of_->edges.limits_fluxes(), cells) +
                     upwind::operations_of_target * static_cast<double>(targets.size());
   return each;
 }
@@ -159,8 +144,8 @@ void block_sweep::prepare(const context& of, const field& u, const place& at) {
   width_ = at.last - at.first;
   first_component_ = at.first;
   whole_rows_ = width_ == u.stride();
-  halo_ = halo_of(of.discretization);
-  reach_ = reach_of(of.discretization);
+  halo_ = of.edges.halo();
+  reach_ = of.edges.reach();
   first_edge_ = at.begin - halo_;
   const int beyond = halo_ + reach_;
   first_row_ = at.begin - beyond;
@@ -190,7 +175,7 @@ block_sweep::run_of_cells block_sweep::run_from(int i, int most) const {
 }
 
 void block_sweep::make_edges(int i, const run_of_cells& run) {
-  const auto& scheme = *of_->discretization.scheme;
+  const auto& scheme = *of_->edges.scheme;
   const int width = run.joined * width_;
   double *left = left_.data() + offset(i), *right = right_.data() + offset(i);
   if (!both_edges())
@@ -221,7 +206,7 @@ void block_sweep::add(int i, const run_of_cells& run, const place& at, targets_v
                            line_->forward.data() + at.first,
                            line_->per_cell.data() + at.first,
                            first && of_->equation.has_source() ? source(i, run) : nullptr};
-  if (of_->discretization.positivity == limiter_kind::fluxes) {
+  if (of_->edges.limits_fluxes()) {
     upwind::add_limited(some, targets_);
   } else {
     upwind::add(some, targets_);

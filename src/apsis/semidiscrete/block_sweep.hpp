@@ -22,22 +22,16 @@ struct line_speeds {
   static std::vector<line_speeds> of(const model& equation, const grid& mesh);
 };
 
-/// Returns the number of cells beyond a block whose edges are needed: one for the flux, one more for its
-/// limiter.
-int halo_of(const spatial_discretization& discretization);
-/// Returns the number of ghost rows that sweeps read beyond the end of a segment.
-int sweep_ghosts(const spatial_discretization& discretization);
-
 /// T along one direction for some components of some cells of a segment. A workspace of one thread.
 class block_sweep {
  public:
   /// The objects that all sweeps of a transport share.
   struct context {
-    const model& equation;                         ///< equation
-    const domain& space;                           ///< cells and ghost rows
-    const spatial_discretization& discretization;  ///< edges and limiter
-    const std::vector<line_speeds>& speeds;        ///< of each direction
-    face_fluxes& faces;                            ///< takes the fluxes at surfaces
+    const model& equation;                   ///< equation
+    const domain& space;                     ///< cells and ghost rows
+    const limited_reconstruction& edges;     ///< edge values and limiter
+    const std::vector<line_speeds>& speeds;  ///< of each direction
+    face_fluxes& faces;                      ///< takes the fluxes at surfaces
   };
   /// The part of the phase space that a sweep changes.
   struct place {

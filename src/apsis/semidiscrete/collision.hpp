@@ -1,9 +1,11 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/problem.hpp>
+#include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/semidiscrete/sweep.hpp>
+#include <apsis/semidiscrete/limited_reconstruction.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -75,7 +77,7 @@ std::unique_ptr<collision> make_pointwise_collision(const model& equation, std::
 /// averages, with the (limited) values there; the new average is the weighted mean, which conserves exactly
 /// even if ε varies within the cell. `epsilon` holds three values per cell, in the order of the points.
 std::unique_ptr<collision> make_cell_average_collision(const model& equation, std::shared_ptr<domain> space,
-                                                       spatial_discretization discretization,
+                                                       limited_reconstruction edges,
                                                        std::vector<double> epsilon,
                                                        stage_solution stages = stage_solution::implicit);
 

@@ -5,6 +5,7 @@
 #include <apsis/semidiscrete/collision.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
 #include <apsis/semidiscrete/point_times.hpp>
+#include <apsis/semidiscrete/sweep.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,15 +18,14 @@ namespace {
 
 class cell_average_collision final : public collision {
  public:
-  cell_average_collision(const model& equation, std::shared_ptr<domain> space,
-                         spatial_discretization discretization, std::vector<double> epsilon,
-                         stage_solution stages)
+  cell_average_collision(const model& equation, std::shared_ptr<domain> space, limited_reconstruction edges,
+                         std::vector<double> epsilon, stage_solution stages)
       : equation_(equation),
         space_(std::move(space)),
-        discretization_(std::move(discretization)),
+        edges_(std::move(edges)),
         epsilon_(std::move(epsilon)),
         stages_(stages) {
-    space_->reserve(equation.components(), discretization_.scheme->ghost_width());
+    space_->reserve(equation.components(), edges_.scheme->ghost_width());
   }
 
   void solve(double t, double a, double b, field& u) override {
@@ -78,7 +78,7 @@ class cell_average_collision final : public collision {
     std::vector<upwind::row_target> rows;
   };
 
-  bool limited() const { return discretization_.positivity != limiter_kind::none; }
+  bool limited() const { return edges_.keeps_sign(); }
   static int cells_per_batch(const field& u) {
     return std::max(1, points_per_batch(u.stride()) / gauss3::points);
   }
@@ -86,8 +86,7 @@ class cell_average_collision final : public collision {
   void prepare(const field& u) {
     const int points = cells_per_batch(u) * gauss3::points;
     scratch_.prepare([&](auto& own) {
-      own.block.reserve(discretization_, std::min(collision_block_length(u.stride()), u.cells()), 0,
-                        u.stride());
+      own.block.reserve(edges_, std::min(collision_block_length(u.stride()), u.cells()), 0, u.stride());
       own.points.resize(static_cast<std::size_t>(points) * static_cast<std::size_t>(u.stride()));
       if (!own.local) own.local = equation_.make_collision({points, u.stride(), limited(), stages_});
     });
@@ -104,8 +103,8 @@ class cell_average_collision final : public collision {
       auto& own = scratch_.here();
       {
         const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(),
-                                     {discretization_.scheme->operations(true), sizeof(double)});
-        own.block.load(u, *space_, discretization_, 0, 0, begin, end, 0);
+                                     {edges_.scheme->operations(true), sizeof(double)});
+        own.block.load(u, *space_, edges_, 0, 0, begin, end, 0);
       }
       for (int i = begin; i < end; i += length) {
         const int cells = std::min(length, end - i);
@@ -132,7 +131,7 @@ class cell_average_collision final : public collision {
 
   const model& equation_;
   std::shared_ptr<domain> space_;
-  spatial_discretization discretization_;
+  limited_reconstruction edges_;
   std::vector<double> epsilon_;
   stage_solution stages_;
   field result_;
@@ -142,13 +141,13 @@ class cell_average_collision final : public collision {
 }  // namespace
 
 std::unique_ptr<collision> make_cell_average_collision(const model& equation, std::shared_ptr<domain> space,
-                                                       spatial_discretization discretization,
+                                                       limited_reconstruction edges,
                                                        std::vector<double> epsilon, stage_solution stages) {
   if (space->mesh().dimensions() != 1)
     throw input_error(
-        "the finite volume formulation collides at the Gauss points of intervals and knows one space "
-        "dimension only; use the finite difference formulation");
-  return std::make_unique<cell_average_collision>(equation, std::move(space), std::move(discretization),
+        "collisions at Gauss points need one space dimension (cell averages collide at the Gauss points of "
+        "intervals); use point values");
+  return std::make_unique<cell_average_collision>(equation, std::move(space), std::move(edges),
                                                   std::move(epsilon), stages);
 }
 

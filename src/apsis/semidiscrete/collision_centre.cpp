@@ -195,8 +195,8 @@ std::unique_ptr<collision> make_cell_centre_collision(const model& equation, std
                                                       stage_solution stages) {
   if (space->mesh().dimensions() != 1)
     throw input_error(
-        "collisions at the centres of cells map averages along one line and know one space dimension only; "
-        "use the finite difference formulation");
+        "collisions at the centres of cells need one space dimension (averages are mapped along one line); "
+        "use point values");
   return std::make_unique<cell_centre_collision>(equation, std::move(space), limited, std::move(epsilon),
                                                  stages);
 }

@@ -46,13 +46,13 @@ force::~force() = default;
 force::force(force&&) noexcept = default;
 
 force::force(const model& equation, std::shared_ptr<domain> space, acceleration of,
-             const spatial_discretization& discretization)
+             const limited_reconstruction& edges)
     : equation_(equation),
       space_(std::move(space)),
       lattice_(equation.lattice()),
       acceleration_(std::move(of)),
-      limited_(discretization.positivity != limiter_kind::none),
-      scheme_(find_reconstruction(discretization.scheme->order() == 1 ? "upwind1" : "upwind5").make()),
+      limited_(edges.keeps_sign()),
+      scheme_(find_reconstruction(edges.scheme->order() == 1 ? "upwind1" : "upwind5").make()),
       invariants_(equation.invariants().size()),
       workspaces_(std::make_unique<per_thread<workspace>>()) {
   if (lattice_.points.empty())

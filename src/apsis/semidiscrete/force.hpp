@@ -6,7 +6,7 @@
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/acceleration.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/semidiscrete/sweep.hpp>
+#include <apsis/semidiscrete/limited_reconstruction.hpp>
 
 #include <array>
 #include <memory>
@@ -17,15 +17,15 @@ namespace apsis {
 
 /// The part −a(t, x)·∇_v f of T on a velocity lattice: conservative differences of the linear fifth-order
 /// upwind reconstruction along v, no flux through the ends of the lattice, and limited fluxes where
-/// positivity is kept (limiter_kind::fluxes). The sums of the reconstruction make the discrete force give the
-/// momentum ρa and the energy ρu·a per unit of time, to rounding, but for limited fluxes and molecules at the
-/// ends of the lattice. Dimensionless.
+/// positivity is kept (limited_reconstruction). The sums of the reconstruction make the discrete force give
+/// the momentum ρa and the energy ρu·a per unit of time, to rounding, but for limited fluxes and molecules at
+/// the ends of the lattice. Dimensionless.
 class force {
  public:
   /// `equation` must outlive the object. Throws input_error if its velocities are no lattice of at least five
   /// points, or `of` has no finite bound.
   force(const model& equation, std::shared_ptr<domain> space, acceleration of,
-        const spatial_discretization& discretization);
+        const limited_reconstruction& edges);
   ~force();
   force(force&&) noexcept;  ///< leaves the source empty
 

@@ -2,40 +2,17 @@
 
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/core/printable.hpp>
+#include <apsis/core/suggest.hpp>
 #include <apsis/exec/interruption.hpp>
-#include <apsis/scheme/quartic.hpp>
-#include <apsis/semidiscrete/centre_rows.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <boost/math/quadrature/gauss.hpp>
 #include <fmt/format.h>
 
 namespace apsis {
-namespace {
-
-struct interval {
-  double centre, half;
-};
-
-/// The cell cut at the jumps that lie in it; the cell itself where there are none. A jump on an edge, up to
-/// rounding, cuts nothing.
-std::vector<interval> smooth_parts(const std::vector<double>& jumps, double centre, double half) {
-  std::vector<double> ends = {centre - half};
-  for (auto jump = std::lower_bound(jumps.begin(), jumps.end(), centre - half);
-       jump != jumps.end() && *jump < centre + half; ++jump)
-    if (std::abs(*jump - centre) < (1.0 - 1e-9) * half) ends.push_back(*jump);
-  if (ends.size() == 1) return {{centre, half}};
-  ends.push_back(centre + half);
-  std::vector<interval> parts;
-  for (std::size_t k = 1; k < ends.size(); ++k)
-    parts.push_back({0.5 * (ends[k - 1] + ends[k]), 0.5 * (ends[k] - ends[k - 1])});
-  return parts;
-}
-
-}  // namespace
 
 problem_builder::problem_builder(const model& equation)
     : equation_(&equation), mesh_(grid::line(1, 0.0, 1.0)), epsilon_([](const position&) { return 1.0; }) {}
@@ -100,18 +77,18 @@ problem_builder& problem_builder::with_reconstruction(std::shared_ptr<const reco
       throw input_error(
           fmt::format("a mesh of {} cells is smaller than the stencil ({} cells); give at least {}", cells,
                       needed, needed));
-  discretization_.scheme = std::move(scheme);
+  scheme_ = std::move(scheme);
   check_cells();
   return *this;
 }
 
-problem_builder& problem_builder::with_unknowns(formulation unknowns) {
-  unknowns_ = unknowns;
+problem_builder& problem_builder::with_discretization(const std::string& name) {
+  discretization_ = &find_discretization(name);
   return *this;
 }
 
-problem_builder& problem_builder::with_collisions_at(collision_points points) {
-  collisions_ = points;
+problem_builder& problem_builder::with_collisions_at(const std::string& place) {
+  collisions_ = place;
   return *this;
 }
 
@@ -163,22 +140,14 @@ problem_builder& problem_builder::with_source(source_rate rate) {
   return *this;
 }
 
-formulation problem_builder::unknowns() const {
-  return unknowns_.value_or(mesh_.dimensions() > 1 ? formulation::finite_difference
-                                                   : formulation::finite_volume);
+const discretization& problem_builder::of_space() const {
+  const bool chosen = has_space() && discretization_ != nullptr;
+  return (chosen ? *discretization_ : default_discretization(equation_->space_dimensions())).instance();
 }
 
-/// Collision on the unknowns themselves: point values, or first order, where the quartic would be too much.
-bool problem_builder::pointwise() const {
-  return !has_space() || first_order() || unknowns() == formulation::finite_difference;
-}
-
-spatial_discretization problem_builder::complete_discretization() const {
-  spatial_discretization discretization = discretization_;
-  if (limited_ && !first_order())
-    discretization.positivity =
-        unknowns() == formulation::finite_volume ? limiter_kind::edges : limiter_kind::fluxes;
-  return discretization;
+collision_layout problem_builder::collisions() const {
+  if (!has_space()) return {point_values().points()};
+  return of_space().collisions_at(collisions_, *scheme_);
 }
 
 void problem_builder::check_solids() const {
@@ -186,12 +155,33 @@ void problem_builder::check_solids() const {
     if (!solids_[k]) throw input_error(fmt::format("solid box {} has no wall; call with_solid()", k));
 }
 
-/// For collisions at centres; with_reconstruction() checks the stencil of the reconstruction.
+/// For collisions; with_reconstruction() checks the stencil of the reconstruction.
 void problem_builder::check_cells() const {
-  if (collides_at_centres() && whole_mesh().cells(0) <= centre_rows::reach)
+  const int reach = scheme_ ? collisions().reach : 0;
+  if (reach > 0 && whole_mesh().cells(0) <= reach)
     throw input_error(
         fmt::format("{} cells (values at their centres depend on {} neighbours); give at least {}",
-                    whole_mesh().cells(0), centre_rows::reach, centre_rows::reach + 1));
+                    whole_mesh().cells(0), reach, reach + 1));
+}
+
+void problem_builder::check_discretization() const {
+  const discretization& chosen = of_space();
+  const std::string otherwise = "use finite differences";
+  if (const std::string why = chosen.why_on_a_line(); mesh_.dimensions() > 1 && !why.empty())
+    throw input_error(fmt::format("{} in {} space dimensions ({}); {}", chosen.unknown().plural(),
+                                  mesh_.dimensions(), why, otherwise));
+  const auto places = chosen.collision_places();
+  if (!collisions_.empty() && places.empty())
+    throw input_error(fmt::format(
+        "points of collisions (the unknowns are {}, which collide where they are); leave them out",
+        chosen.unknown().plural()));
+  if (!collisions_.empty() && std::find(places.begin(), places.end(), collisions_) == places.end())
+    throw input_error(fmt::format("unknown collisions '{}' (there is no such name); {}",
+                                  printable(collisions_), suggest(collisions_, places)));
+  check_cells();
+  if (const std::string why = chosen.why_without_solids();
+      !mesh_.solids().empty() && !why.empty() && !collisions().cellwise)
+    throw input_error(fmt::format("solid boxes with {} ({}); {}", chosen.unknown().plural(), why, otherwise));
 }
 
 std::shared_ptr<domain> problem_builder::make_space() const {
@@ -215,11 +205,11 @@ const domain& problem_builder::whole_space() const {
   return *whole_;
 }
 
-/// In every cell at the points `offsets` · Δx from its centre, along the first direction.
-std::vector<double> problem_builder::epsilon_at(std::span<const double> offsets) const {
+/// In every cell at its points along the first direction.
+std::vector<double> problem_builder::epsilon_at(std::span<const weighted_point> points) const {
   std::vector<double> values;
   for (int cell = 0; cell < mesh_.size(); ++cell)
-    for (const double offset : offsets) {
+    for (const auto& [offset, weight] : points) {
       interruptible::poll();
       position x = has_space() ? mesh_.centre(cell) : position{};
       x[0] += offset * mesh_.spacing(0);
@@ -232,46 +222,30 @@ std::vector<double> problem_builder::epsilon_at(std::span<const double> offsets)
 }
 
 std::vector<double> problem_builder::epsilon_at_centres() const {
-  constexpr double centre = 0.0;
-  return epsilon_at({&centre, 1});
-}
-
-std::unique_ptr<collision> problem_builder::make_collision(const std::shared_ptr<domain>& space) const {
-  if (pointwise())
-    return make_pointwise_collision(*equation_, epsilon_at_centres(), keeps_sign(), mesh_.fluid(), stages_);
-  if (collides_at_centres())
-    // Where solutions may be negative, limited averages would lose what they cut off.
-    return make_cell_centre_collision(*equation_, space,
-                                      keeps_sign() && !smooth_collisions_ && equation_->why_signed().empty(),
-                                      epsilon_at_centres(), stages_);
-  return make_cell_average_collision(*equation_, space, complete_discretization(), epsilon_at(gauss3::xi),
-                                     stages_);
+  return epsilon_at(point_values().points());
 }
 
 std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   if (has_space() && sides_.empty()) throw input_error("no mesh (the model has space); call on()");
-  if (has_space() && !discretization_.scheme)
+  if (has_space() && !scheme_)
     throw input_error("no reconstruction (the model has space); call with_reconstruction()");
-  if (has_space() && mesh_.dimensions() > 1 && unknowns() == formulation::finite_volume)
-    throw input_error(fmt::format(
-        "cell averages in {} space dimensions (they are collided at the Gauss points of intervals); "
-        "use the finite difference formulation",
-        mesh_.dimensions()));
-  if (collisions_ && (!has_space() || unknowns() == formulation::finite_difference))
-    throw input_error(
-        "points of collisions (the unknowns are point values, which collide where they are); leave them out");
-  check_cells();
-  if (!mesh_.solids().empty() && !pointwise())
-    throw input_error(
-        "solid boxes with cell averages (they are collided on whole lines); use the finite difference "
-        "formulation");
+  check_discretization();
   this->space();
   // Ghost rows belong to one problem.
   const auto space = space_.use_count() > 1 ? make_space() : space_;
-  auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, complete_discretization(),
-                                                        make_collision(space), stages_);
+  const problem_parts parts{.equation = *equation_,
+                            .space = space,
+                            .scheme = scheme_,
+                            .limited = limited_,
+                            .smooth_collisions = smooth_collisions_,
+                            .collisions = collisions_,
+                            .stages = stages_,
+                            .epsilon_at = [this](auto points) { return epsilon_at(points); }};
+  const discretization& chosen = of_space();
+  auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, chosen.make_transport(parts),
+                                                        chosen.make_collision(parts), stages_);
   if (force_) problem->set_force(*force_);
-  if (source_) problem->set_source(*source_, unknowns());
+  if (source_) problem->set_source(*source_);
   if (explicit_collision_) problem->treat_collision_explicitly();
   return problem;
 }
@@ -279,30 +253,12 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
 field problem_builder::sample(const data& value, const std::vector<double>& jumps) const {
   field u(mesh_.size(), equation_->components());
   std::vector<double> values(static_cast<std::size_t>(u.components()));
-  const bool averages = has_space() && unknowns() == formulation::finite_volume;
+  const cell_unknown& unknown = of_space().unknown();
   for (int cell = 0; cell < u.cells(); ++cell) {
     interruptible::poll();
     if (mesh_.solid(cell) >= 0) continue;
     const position centre = has_space() ? mesh_.centre(cell) : position{};
-    const double half = 0.5 * mesh_.spacing(0);
-    double* row = u.row(cell);
-    const auto add = [&](double x, double weight) {
-      value({x, centre[1], centre[2]}, values);
-      for (std::size_t k = 0; k < values.size(); ++k) row[k] += weight * values[k];
-    };
-    if (averages) {
-      // Ten points on every smooth part: exact to round-off for data that the mesh resolves at all.
-      using rule = boost::math::quadrature::gauss<double, 10>;
-      for (const auto& part : smooth_parts(jumps, centre[0], half)) {
-        for (std::size_t q = 0; q < rule::abscissa().size(); ++q) {
-          const double weight = part.half / half * 0.5 * rule::weights()[q];
-          add(part.centre - part.half * rule::abscissa()[q], weight);
-          add(part.centre + part.half * rule::abscissa()[q], weight);
-        }
-      }
-    } else {
-      add(centre[0], 1.0);
-    }
+    unknown.sample(value, jumps, centre, mesh_.spacing(0), values, u.row(cell));
   }
   return u;
 }

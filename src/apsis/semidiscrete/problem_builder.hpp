@@ -2,7 +2,7 @@
 
 #include <apsis/boundary/domain.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/scheme/formulation.hpp>
+#include <apsis/semidiscrete/discretization_registry.hpp>
 #include <apsis/semidiscrete/semidiscrete_problem.hpp>
 
 #include <array>
@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace apsis {
@@ -30,7 +31,7 @@ class problem_builder {
   /// ε at a point of space, finite and ≥ 0; 0 is the limit system.
   using scale = std::function<double(const position&)>;
   /// u ← the components at a point of space; at a jump, those of its right side.
-  using data = std::function<void(const position&, std::span<double> u)>;
+  using data = state_function;
 
   /// `equation` must outlive the builder and what it builds.
   explicit problem_builder(const model& equation);
@@ -49,13 +50,14 @@ class problem_builder {
   /// Sets the reconstruction scheme. Throws input_error if the mesh, which must be set before, is smaller
   /// than its stencil.
   problem_builder& with_reconstruction(std::shared_ptr<const reconstruction> scheme);
-  /// Sets the meaning of the unknowns: cell averages, on a line only, or point values.
-  problem_builder& with_unknowns(formulation unknowns);
+  /// Sets the discretization of space. Throws input_error with the nearest name if there is none of this
+  /// name.
+  problem_builder& with_discretization(const std::string& name);
   /// Keeps nonnegative data nonnegative for steps up to r Δt_FE. Throws input_error if the unknowns of the
   /// model may be negative.
   problem_builder& with_positivity_limiter();
-  /// Points at which cell averages collide; Gauss points by default.
-  problem_builder& with_collisions_at(collision_points points);
+  /// Sets where cells collide: one of discretization::collision_places(), the first by default.
+  problem_builder& with_collisions_at(const std::string& place);
   /// Sets ε(x).
   problem_builder& with_epsilon(scale epsilon);
   /// Adds the force −a·∇_v f of an acceleration, on models whose velocities are a lattice.
@@ -74,10 +76,10 @@ class problem_builder {
   problem_builder& with_implicit_collision();
 
   /// Returns the problem. Throws input_error if the mesh or the reconstruction is missing, ε is not a finite
-  /// number ≥ 0, only one face of a direction is periodic, cell averages have more than one space dimension,
-  /// point values are to collide elsewhere than at the centres, or the force is not possible (force.hpp).
+  /// number ≥ 0, only one face of a direction is periodic, the discretization does not serve the dimensions,
+  /// solid boxes or place of collisions, or the force is not possible (force.hpp).
   std::unique_ptr<semidiscrete_problem> build() const;
-  /// Returns cell averages or point values of data, [cells][components], 0 in solid cells; averages are exact
+  /// Returns the unknowns of data (cell_unknown), [cells][components], 0 in solid cells; averages are exact
   /// to rounding if the data are smooth between the `jumps` (in increasing order).
   field sample(const data& value, const std::vector<double>& jumps = {}) const;
 
@@ -99,23 +101,22 @@ class problem_builder {
   /// Returns a new domain, for ghost rows of its own.
   std::shared_ptr<domain> make_space() const;
   /// Whether the reconstruction is first-order upwind.
-  bool first_order() const { return discretization_.scheme && discretization_.scheme->order() == 1; }
+  bool first_order() const { return scheme_ && scheme_->order() == 1; }
   /// Whether steps within r Δt_FE keep nonnegative data nonnegative.
   bool keeps_sign() const { return limited_ || first_order() || !has_space(); }
-  /// Whether cell averages collide at the centres of cells.
-  bool collides_at_centres() const { return collisions_ == collision_points::centres && !pointwise(); }
+  /// Returns the discretization of space; that of a point without space.
+  const discretization& of_space() const;
+  /// Returns where cells collide. Requires a reconstruction if the model has space.
+  collision_layout collisions() const;
   /// Returns ε at the cell centres. Throws input_error if it is not a finite number ≥ 0.
   std::vector<double> epsilon_at_centres() const;
 
  private:
-  formulation unknowns() const;
-  bool pointwise() const;
   void forget_spaces() { space_ = whole_ = nullptr; }
   void check_solids() const;
   void check_cells() const;
-  spatial_discretization complete_discretization() const;
-  std::vector<double> epsilon_at(std::span<const double> offsets) const;
-  std::unique_ptr<collision> make_collision(const std::shared_ptr<domain>& space) const;
+  void check_discretization() const;
+  std::vector<double> epsilon_at(std::span<const weighted_point> points) const;
 
   const model* equation_;
   grid mesh_;
@@ -123,9 +124,9 @@ class problem_builder {
   std::optional<distribution> distribution_;
   std::vector<domain::faces> sides_;
   std::vector<std::shared_ptr<const boundary>> solids_;
-  spatial_discretization discretization_;
-  std::optional<formulation> unknowns_;
-  std::optional<collision_points> collisions_;
+  std::shared_ptr<const reconstruction> scheme_;
+  const discretization_entry* discretization_ = nullptr;  ///< null: the default
+  std::string collisions_;                                ///< "": the default
   bool limited_ = false, explicit_collision_ = false, smooth_collisions_ = false;
   stage_solution stages_ = stage_solution::implicit;
   scale epsilon_;

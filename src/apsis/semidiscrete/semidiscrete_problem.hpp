@@ -26,24 +26,22 @@ class semidiscrete_problem {
   using state = field;  ///< f[cell][component]
   using real = double;  ///< type of time and coefficients
 
-  /// `equation` must outlive the problem; `stages`: what the collision solves.
-  semidiscrete_problem(const model& equation, std::shared_ptr<domain> space,
-                       spatial_discretization discretization, std::unique_ptr<collision> q,
-                       stage_solution stages = stage_solution::implicit)
-      : space_(space),
-        transport_(equation, std::move(space), std::move(discretization)),
+  /// `equation` must outlive the problem; T and Q are operators on `space`; `stages`: what the collision
+  /// solves.
+  semidiscrete_problem(const model& equation, std::shared_ptr<domain> space, std::unique_ptr<transport> t,
+                       std::unique_ptr<collision> q, stage_solution stages = stage_solution::implicit)
+      : space_(std::move(space)),
+        transport_(std::move(t)),
         has_transport_(equation.space_dimensions() > 0 || equation.has_source()),
         collision_(std::move(q)),
         cellwise_(collision_->as_cellwise()),
         stages_(stages) {}
 
   /// Adds a force to the transport. Throws input_error as force does.
-  void set_force(acceleration of) { transport_.set_force(std::move(of)); }
+  void set_force(acceleration of) { transport_->set_force(std::move(of)); }
 
   /// Adds a source to the transport, of a model with space.
-  void set_source(source_rate rate, formulation unknowns) {
-    transport_.set_source(std::move(rate), unknowns);
-  }
+  void set_source(source_rate rate) { transport_->set_source(std::move(rate)); }
 
   /// For methods that treat T and Q explicitly and preserve what u + Δt (T + Q) preserves: with 1/Δt = 1/Δt_T
   /// + 1/Δt_Q that is a convex combination of forward Euler steps of T and of Q.
@@ -51,7 +49,7 @@ class semidiscrete_problem {
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(t, u) for every target; boundaries know the time t.
   void add_transport(double t, const field& u, std::span<const target<field, double>> targets) {
-    guarded(u, [&] { transport_.add_transport(t, u, targets); });
+    guarded(u, [&] { transport_->add_transport(t, u, targets); });
   }
   /// u ← v with v = u + a Q(v)/ε + b Q̇(v)/ε², or the exact solution after a time a if it collides_exactly().
   /// Throws numerical_error where there is no equilibrium, or Newton's method finds no solution.
@@ -60,7 +58,7 @@ class semidiscrete_problem {
   }
   /// sum ← Σ_k α_k u_k, with padding, as required by `problem_with_combination`.
   void combine(std::span<const linear_term<field, double>> terms, field& sum) {
-    guarded(sum, [&] { transport_.combine(terms, sum); });
+    guarded(sum, [&] { transport_->combine(terms, sum); });
   }
   /// u ← E(ℛu) up to rounding, whatever ε; of averages, what their stage solves lead to.
   void project_to_equilibrium(double t, field& u) {
@@ -76,7 +74,7 @@ class semidiscrete_problem {
     if (cellwise_) cellwise_->prepare(*due.u);
     bool done = false;
     guarded(u, [&] {
-      done = transport_.add_transport(t, u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
+      done = transport_->add_transport(t, u, targets, cellwise_ ? cells_job::of(collide_cells) : cells_job());
     });
     // Collisions of cells that are independent need no other process.
     if (!done && !(cellwise_ && failure_))
@@ -90,7 +88,7 @@ class semidiscrete_problem {
   /// Returns the rates of a boundary_budget in the last evaluation of T, by add_transport() or
   /// add_transport_and_solve(). On several processes each has those of its own ends, and one those of force
   /// and source.
-  std::span<const double> budget_rates() const { return transport_.budget_rates(); }
+  std::span<const double> budget_rates() const { return transport_->budget_rates(); }
   /// Throws on all processes what one of them met since the last call, with the number of the cell in the
   /// whole mesh.
   void settle() {
@@ -100,19 +98,19 @@ class semidiscrete_problem {
   /// a boundary_budget; settles. Throws what boundaries throw.
   std::vector<double> densities_at_surfaces(double t, const field& u) {
     std::vector<double> found;
-    guarded(u, [&] { found = transport_.densities_at_surfaces(t, u); });
+    guarded(u, [&] { found = transport_->densities_at_surfaces(t, u); });
     settle();
     return found;
   }
   /// Returns the largest |∂S/∂u| of a source, per unit of time; 0 without one that depends on u.
   double growth_of_source(double t, const field& u) const {
-    if (!transport_.source_depends_on_state()) return 0.0;
-    return -lowest([&] { return -transport_.growth_of_source(t, u); });
+    if (!transport_->source_depends_on_state()) return 0.0;
+    return -lowest([&] { return -transport_->growth_of_source(t, u); });
   }
   /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it. A
   /// source that depends on u limits it by 1/|∂S/∂u|.
   double forward_euler_step(double t, const field& u) const {
-    double of_transport = transport_.forward_euler_step();
+    double of_transport = transport_->forward_euler_step();
     if (const double growth = growth_of_source(t, u); growth > 0.0)
       of_transport = 1.0 / (1.0 / of_transport + growth);
     if (!explicit_collision_) return of_transport;
@@ -156,7 +154,7 @@ class semidiscrete_problem {
   }
 
   std::shared_ptr<domain> space_;
-  transport transport_;
+  std::unique_ptr<transport> transport_;
   bool has_transport_;
   std::unique_ptr<collision> collision_;
   cellwise_collision* cellwise_;  ///< the collision if its cells are independent; else null

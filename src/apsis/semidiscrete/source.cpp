@@ -3,7 +3,6 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/first_error.hpp>
 #include <apsis/exec/parallel.hpp>
-#include <apsis/scheme/quartic.hpp>
 #include <apsis/semidiscrete/global_integrals.hpp>
 
 #include <algorithm>
@@ -15,23 +14,22 @@
 
 namespace apsis {
 
-source::source(const model& equation, std::shared_ptr<domain> space, source_rate rate, formulation unknowns)
+source::source(const model& equation, std::shared_ptr<domain> space, source_rate rate,
+               const cell_unknown& unknown)
     : equation_(equation),
       space_(std::move(space)),
       rate_(std::move(rate)),
-      averages_(unknowns == formulation::finite_volume),
+      points_(unknown.points()),
       values_(space_->mesh().size(), equation.components()) {}
 
 void source::compute_cell(double t, int cell, const field& u, std::vector<double>& row) {
   const grid& mesh = space_->mesh();
   double* sum = values_.row(cell);
   std::fill_n(sum, values_.components(), 0.0);
-  const auto points = averages_ ? std::size_t{gauss3::points} : std::size_t{1};
-  for (std::size_t q = 0; q < points; ++q) {
+  for (const auto& [offset, weight] : points_) {
     position x = mesh.centre(cell);
-    if (averages_) x[0] += gauss3::xi[q] * mesh.spacing(0);
+    x[0] += offset * mesh.spacing(0);
     rate_.value(t, x, {u.row(cell), row.size()}, row);
-    const double weight = averages_ ? gauss3::weight[q] : 1.0;
     for (std::size_t k = 0; k < row.size(); ++k) {
       if (!std::isfinite(row[k]) || (row[k] < 0.0 && equation_.positive()))
         throw numerical_error(

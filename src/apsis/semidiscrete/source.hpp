@@ -5,7 +5,7 @@
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/model/source_rate.hpp>
-#include <apsis/scheme/formulation.hpp>
+#include <apsis/semidiscrete/cell_unknown.hpp>
 
 #include <memory>
 #include <span>
@@ -13,14 +13,15 @@
 
 namespace apsis {
 
-/// A source S(t, x, u) as a part of T: point values at the centres of cells, or averages by three Gauss
-/// points, where u is the average, so that a source that depends on u is of second order there. Where the
+/// A source S(t, x, u) as a part of T, by the quadrature of the unknowns of a cell: point values at centres,
+/// or averages by three Gauss points, where u is the average, so that a source that depends on u is of second
+/// order there. Where the
 /// unknowns are nonnegative, so is S, and it does not limit Δt_FE: a forward Euler step that keeps u ≥ 0
 /// keeps u + Δt S ≥ 0. Dimensionless.
 class source {
  public:
   /// `equation` must outlive the object.
-  source(const model& equation, std::shared_ptr<domain> space, source_rate rate, formulation unknowns);
+  source(const model& equation, std::shared_ptr<domain> space, source_rate rate, const cell_unknown& unknown);
 
   /// acc ← acc + β S(t, u) for every target. Throws numerical_error where S is not finite, or negative in a
   /// model whose unknowns are not.
@@ -39,7 +40,8 @@ class source {
   const model& equation_;
   std::shared_ptr<domain> space_;
   source_rate rate_;
-  bool averages_, known_ = false;
+  std::span<const weighted_point> points_;
+  bool known_ = false;
   field values_;
   std::vector<double> given_;
 };

@@ -4,25 +4,25 @@
 
 namespace apsis {
 
-void pencil_block::reserve(const spatial_discretization& discretization, int cells, int halo, int stride) {
+void pencil_block::reserve(const limited_reconstruction& edges, int cells, int halo, int stride) {
   const auto count = static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo);
-  rows.reserve(count + 2 * static_cast<std::size_t>(discretization.scheme->ghost_width()));
+  rows.reserve(count + 2 * static_cast<std::size_t>(edges.scheme->ghost_width()));
   const std::size_t needed = count * static_cast<std::size_t>(stride);
   if (left.size() >= needed) return;
   left.resize(needed);
   right.resize(needed);
 }
 
-void pencil_block::load(const field& u, const domain& space, const spatial_discretization& discretization,
+void pencil_block::load(const field& u, const domain& space, const limited_reconstruction& edges,
                         int direction, int segment, int begin, int end, int halo) {
-  const int ghosts = discretization.scheme->ghost_width();
+  const int ghosts = edges.scheme->ghost_width();
   const int count = end - begin + 2 * halo;
   width = u.stride();
   first_edge = begin - halo;
   first_row = first_edge - ghosts;
   space.segment_rows(u, direction, segment, first_row, end + halo + ghosts, rows);
-  reserve(discretization, end - begin, halo, width);
-  discretization.scheme->edges(rows.data() + ghosts, count, width, left.data(), right.data());
+  reserve(edges, end - begin, halo, width);
+  edges.scheme->edges(rows.data() + ghosts, count, width, left.data(), right.data());
 }
 
 int block_length(int width) {

@@ -3,50 +3,20 @@
 #include <apsis/boundary/domain.hpp>
 #include <apsis/exec/aligned.hpp>
 #include <apsis/mesh/field.hpp>
-#include <apsis/scheme/reconstruction.hpp>
+#include <apsis/semidiscrete/limited_reconstruction.hpp>
 
-#include <memory>
 #include <vector>
 
 namespace apsis {
-
-/// Positivity limiter.
-enum class limiter_kind {
-  none,   ///< no limiter
-  edges,  ///< scales edge values of cell averages towards the average (Zhang & Shu)
-  fluxes  ///< blends fluxes of point values with first-order upwind (Zalesak, Xu)
-};
-
-/// A function of cells begin … end−1, a reference to a lambda that does not allocate; empty by default.
-struct cells_job {
-  void (*call)(const void* body, int begin, int end) = nullptr;  ///< calls the lambda; null if empty
-  const void* body = nullptr;                                    ///< the lambda, not copied
-
-  /// Returns a job that calls body(begin, end); `body` must outlive it.
-  template <class Body>
-  static cells_job of(const Body& body) {
-    return {[](const void* b, int begin, int end) { (*static_cast<const Body*>(b))(begin, end); }, &body};
-  }
-  /// Whether the job is not empty.
-  explicit operator bool() const { return call != nullptr; }
-  /// Calls the lambda; the job must not be empty.
-  void operator()(int begin, int end) const { call(body, begin, end); }
-};
-
-/// Spatial discretization: reconstruction and limiter.
-struct spatial_discretization {
-  std::shared_ptr<const reconstruction> scheme;  ///< reconstruction of edge values; null without space
-  limiter_kind positivity = limiter_kind::none;  ///< positivity limiter of edges or fluxes
-};
 
 /// Edge values of consecutive cells of a pencil, few enough to stay in cache. The buffers are reused from
 /// block to block, so that they are allocated once.
 struct pencil_block {
   /// Allocates buffers for load() with the given number of cells.
-  void reserve(const spatial_discretization& discretization, int cells, int halo, int stride);
+  void reserve(const limited_reconstruction& edges, int cells, int halo, int stride);
 
   /// Computes the edge values of cells begin−halo … end−1+halo of a segment.
-  void load(const field& u, const domain& space, const spatial_discretization& discretization, int direction,
+  void load(const field& u, const domain& space, const limited_reconstruction& edges, int direction,
             int segment, int begin, int end, int halo);
 
   /// Returns the row of a cell or ghost cell of the segment.

@@ -1,6 +1,7 @@
 #include <apsis/verify/compare.hpp>
 
 #include <apsis/config/boundary_reader.hpp>
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/run/setup.hpp>
@@ -27,61 +28,6 @@ const std::map<std::string, error_norm>& norms() {
   throw input_error(
       fmt::format("a run and its reference differ in '{}' ({}); leave it the same in both", key, why));
 }
-
-struct averages {
-  std::size_t ratio, components;
-
-  std::vector<double> operator()(const std::vector<double>& fine) const {
-    std::vector<double> coarse(fine.size() / ratio, 0.0);
-    for (std::size_t k = 0; k < fine.size(); ++k)
-      coarse[k / components / ratio * components + k % components] += fine[k];
-    for (double& value : coarse) value /= static_cast<double>(ratio);
-    return coarse;
-  }
-};
-
-/// Polynomial interpolation between the centres of a uniform mesh.
-class interpolation {
- public:
-  interpolation(long fine, long coarse, bool periodic) : fine_(fine), coarse_(coarse), periodic_(periodic) {}
-
-  std::vector<double> operator()(const std::vector<double>& values, std::size_t components) const {
-    std::vector<double> out(static_cast<std::size_t>(coarse_) * components, 0.0);
-    for (long i = 0; i < coarse_; ++i) {
-      // Position of the centre in cells of the fine mesh, (i + ½) fine/coarse − ½, over a common denominator.
-      const long above = (2 * i + 1) * fine_ - coarse_, below = 2 * coarse_;
-      double* row = out.data() + static_cast<std::size_t>(i) * components;
-      const long first = first_point(above / below), count = std::min(longest, fine_);
-      for (long k = 0; k < count; ++k) {
-        const double weight =
-            lagrange(static_cast<double>(above - first * below) / static_cast<double>(below), k, count);
-        const auto from = static_cast<std::size_t>(((first + k) % fine_ + fine_) % fine_) * components;
-        for (std::size_t c = 0; c < components && weight != 0.0; ++c) row[c] += weight * values[from + c];
-      }
-    }
-    return out;
-  }
-
- private:
-  static constexpr long longest = 8;
-
-  /// Part of a stencil around a position; stencils stay inside a mesh without periodic continuation.
-  long first_point(long position) const {
-    const long first = position - (longest / 2 - 1);
-    return periodic_ && fine_ >= longest ? first : std::clamp(first, 0L, std::max(0L, fine_ - longest));
-  }
-
-  /// The Lagrange polynomial that is 1 at point k of 0 … count−1 and 0 at the others.
-  static double lagrange(double s, long k, long count) {
-    double product = 1.0;
-    for (long m = 0; m < count; ++m)
-      if (m != k) product *= (s - static_cast<double>(m)) / static_cast<double>(k - m);
-    return product;
-  }
-
-  long fine_, coarse_;
-  bool periodic_;
-};
 
 double norm_of(const std::vector<double>& a, const std::vector<double>& b, double volume, error_norm norm) {
   double sum = 0.0, largest = 0.0;
@@ -119,15 +65,17 @@ void check_meshes(const case_config& run, const case_config& reference) {
   const model_entry* entry = try_find_model(run.model.name);
   if (entry == nullptr || !has_space(*entry)) return;
   if (run.space.domain != reference.space.domain) not_comparable("space.domain", "they have no common mesh");
-  if (run.space.formulation != reference.space.formulation)
-    not_comparable("space.formulation", "one has cell averages, the other point values");
+  const cell_unknown &unknown = discretization_of(run).unknown(),
+                     &other = discretization_of(reference).unknown();
+  if (&unknown != &other)
+    not_comparable(discretization_key,
+                   fmt::format("one has {}, the other {}", unknown.plural(), other.plural()));
   const int cells = make_mesh(run).size(), fine = make_mesh(reference).size();
-  const bool averaged = run.space.formulation == formulation::finite_volume;
-  if (fine < cells || (averaged && fine % cells != 0))
+  if (const std::string why = unknown.why_not_restricted(fine, cells); !why.empty())
     throw input_error(
         fmt::format("a reference with {} cells cannot be compared with a run of {} ({}); choose numbers of "
                     "cells that are multiples",
-                    fine, cells, fine < cells ? "it is coarser" : "averages need whole cells"));
+                    fine, cells, why));
 }
 
 }  // namespace
@@ -159,12 +107,11 @@ void check_comparable(const case_config& run, const case_config& reference, cons
 
 std::vector<double> on_mesh_of(const outcome& run, const outcome& finer) {
   check_meshes(run.config, finer.config);
-  const auto components = static_cast<std::size_t>(finer.components);
   if (run.cells == finer.cells) return finer.state;
-  if (run.config.space.formulation == formulation::finite_volume)
-    return averages{static_cast<std::size_t>(finer.cells / run.cells), components}(finer.state);
   const bool periodic = make_boundaries(run.config, make_model(run.config)).front()[0]->periodic();
-  return interpolation(finer.cells, run.cells, periodic)(finer.state, components);
+  return discretization_of(run.config)
+      .unknown()
+      .restricted(finer.state, finer.components, run.cells, periodic);
 }
 
 double difference_norm(const outcome& run, const std::vector<double>& state, error_norm norm,

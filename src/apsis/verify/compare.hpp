@@ -20,7 +20,7 @@ error_norm find_norm(const std::string& name);
 /// Returns the name that find_norm() accepts.
 std::string to_string(error_norm norm);
 
-/// Whether results of the two cases can be subtracted: same model, end time, domain, formulation and
+/// Whether results of the two cases can be subtracted: same model, end time, domain, unknowns of a cell and
 /// velocities (the last only where the full state is compared, `quantity` ""), and a mesh of `reference` that
 /// can be brought onto that of `run`. Throws input_error, with the key that differs.
 void check_comparable(const case_config& run, const case_config& reference, const std::string& quantity);

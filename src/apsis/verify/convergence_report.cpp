@@ -1,5 +1,6 @@
 #include <apsis/verify/convergence_report.hpp>
 
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/method/time_integrator.hpp>
 #include <apsis/output/case_json.hpp>
 #include <apsis/verify/settings.hpp>
@@ -73,7 +74,7 @@ std::string row_name(const convergence_table& table, const convergence_row& row)
 /// Value of a key in the label of a curve.
 std::string label_part(const std::string& key, const std::string& value) {
   if (key == "model.epsilon") return "ε = " + value;
-  if (key == "time.method" || key == "model.initial" || key == "space.formulation") return value;
+  if (key == "time.method" || key == "model.initial" || key == discretization_key) return value;
   return fmt::format("{} = {}", key.substr(key.find('.') + 1), value);
 }
 

@@ -81,7 +81,7 @@ std::optional<double> limit_table::slope(double limit_row::* column, double roun
 report_table limit_table::report() const {
   report_table table;
   table.title = fmt::format("{}{}{}, {}: distance to the limit scheme, dt = {:.4g}, {} steps", model,
-                            formulation.empty() ? "" : ", ", formulation, method, dt, steps);
+                            discretization.empty() ? "" : ", ", discretization, method, dt, steps);
   table.columns = {"epsilon", "moments, first step", "moments, end", "state, first step", "state, end"};
   for (const limit_row& row : rows)
     table.rows.push_back({fmt::format("{:.3g}", row.epsilon), fmt::format("{:.3g}", row.moments_first),
@@ -103,9 +103,8 @@ limit_table limit_distance(const case_config& config, const std::vector<double>&
   limit_table table;
   table.model = config.model.name;
   table.method = config.time.method;
-  if (has_space(find_model(config.model.name)))
-    table.formulation =
-        config.space.formulation == formulation::finite_volume ? "finite volume" : "finite difference";
+  if (has_space(find_model(config.model.name))) table.discretization = config.space.discretization;
+  std::replace(table.discretization.begin(), table.discretization.end(), '-', ' ');
   const std::vector<double> given = simulation(config).state();
   const std::vector<double> equilibrium = scheme.equilibrium_of(given);
   table.off_equilibrium = relative_difference(given, equilibrium);

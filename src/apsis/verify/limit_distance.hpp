@@ -30,7 +30,7 @@ struct limit_row {
 struct limit_table {
   std::string model,             ///< model.name
       method,                    ///< time.method
-      formulation;               ///< "finite volume" or "finite difference"; "" without space
+      discretization;            ///< "finite volume" or "finite difference"; "" without space
   double dt = 0.0;               ///< first step of the run with the first ε
   long steps = 0;                ///< number of its steps
   double off_equilibrium = 0.0;  ///< distance of the initial data from their local equilibrium

@@ -1,6 +1,7 @@
 #include <apsis/verify/limit_space.hpp>
 
 #include <apsis/config/boundary_reader.hpp>
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/scheme/limiter.hpp>
 #include <apsis/scheme/quartic.hpp>
@@ -50,7 +51,7 @@ struct limit_space::pencil {
 limit_space::limit_space(const case_config& config, const relaxation_model& equation)
     : equation_(equation), space_(space_of(config, equation)), has_space_(equation.space_dimensions() > 0) {
   if (!has_space_) return;
-  if (config.space.collisions == collision_points::centres)
+  if (config.space.collisions == "centres")
     throw input_error(
         "the case has no limit scheme (it is known for collisions at Gauss points and of point values); "
         "leave "
@@ -58,7 +59,12 @@ limit_space::limit_space(const case_config& config, const relaxation_model& equa
   const reconstruction_entry* entry = try_find_reconstruction(config.space.reconstruction);
   if (entry == nullptr) throw input_error("unknown reconstruction '" + config.space.reconstruction + "'");
   scheme_ = entry->make();
-  const bool volumes = config.space.formulation == formulation::finite_volume;
+  const bool volumes = config.space.discretization == "finite-volume";
+  if (!volumes && config.space.discretization != "finite-difference")
+    throw input_error(
+        fmt::format("the case has no limit scheme ({} is neither finite-volume nor "
+                    "finite-difference); choose one of them",
+                    discretization_key));
   const bool first_order = scheme_->order() == 1;
   averages_ = volumes && !first_order;
   if (config.space.limiter == limiter_choice::positivity && !first_order)

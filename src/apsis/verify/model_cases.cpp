@@ -1,5 +1,6 @@
 #include <apsis/verify/model_cases.hpp>
 
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/verify/model_properties.hpp>
 
@@ -39,9 +40,9 @@ std::vector<std::string> formulation_names(const std::string& model) {
   return {"finite-volume", "finite-difference"};
 }
 
-std::vector<std::string> formulation_override(const std::string& formulation) {
-  if (formulation.empty()) return {};
-  return {"space.formulation=" + formulation};
+std::vector<std::string> formulation_override(const std::string& discretization) {
+  if (discretization.empty()) return {};
+  return {discretization_override(discretization)};
 }
 
 }  // namespace apsis

@@ -15,10 +15,11 @@ case_config small_case(const std::string& model, const std::vector<std::string>&
 /// Names of the models of the registry whose collision is a relaxation.
 std::vector<std::string> relaxation_model_names();
 
-/// "finite-volume" and "finite-difference"; "" alone for a model without space.
+/// The discretizations with a limit scheme (limit_space): "finite-volume" and "finite-difference"; "" alone
+/// for a model without space.
 std::vector<std::string> formulation_names(const std::string& model);
 
-/// The override that sets the formulation; none for "".
-std::vector<std::string> formulation_override(const std::string& formulation);
+/// The override that sets the discretization (discretization_override()); none for "".
+std::vector<std::string> formulation_override(const std::string& discretization);
 
 }  // namespace apsis

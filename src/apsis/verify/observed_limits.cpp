@@ -1,5 +1,6 @@
 #include <apsis/verify/observed_limits.hpp>
 
+#include <apsis/config/discretization_of_case.hpp>
 #include <apsis/core/extremes.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/method/time_integrator.hpp>
@@ -111,7 +112,7 @@ experiment positive_weno(const method& m, const made_model& model, const std::st
   return {model.entry->name + ", WENO5 with limiter, " + form, "positivity", epsilons,
           [&m, name = model.entry->name, form, tame](double epsilon, double promised) {
             case_problem problem(small_case(name, stand_in(m.kind), epsilon, 12,
-                                            {"space.limiter=positivity", "space.formulation=" + form}));
+                                            {"space.limiter=positivity", discretization_override(form)}));
             const auto data = adversarial_states(problem, 6, tame ? 0.3 : 1e-8, !tame);
             return largest_step(m, *problem.equations, std::span<const field>(data), positivity(),
                                 {.steps = 2, .rung = 1.25, .accuracy = 1e-3, .promised = promised});

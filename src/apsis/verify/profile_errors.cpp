@@ -21,7 +21,7 @@ namespace {
 
 /// The case on point values with the method of both solutions.
 case_config reference_case(case_config config) {
-  config.space.formulation = formulation::finite_difference;
+  config.space.discretization = "finite-difference";
   config.time.method = "ars-443";
   config.time.startup = startup_choice::none;
   config.time.safety.reset();

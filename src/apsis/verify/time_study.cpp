@@ -31,7 +31,7 @@ struct time_study::impl {
   std::unique_ptr<semidiscrete_problem> limit;  ///< ε = 0, to find equilibria
 
   static case_config with_epsilon(case_config config, double epsilon) {
-    config.space.formulation = formulation::finite_difference;
+    config.space.discretization = "finite-difference";
     config.model.epsilon = fmt::format("{:.17g}", epsilon);
     config.time.method = "forward-backward-euler";
     config.time.safety.reset();

@@ -1,10 +1,9 @@
-#include <apsis/semidiscrete/transport.hpp>
+#include <apsis/semidiscrete/upwind_transport.hpp>
 
 #include <apsis/core/first_error.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/model/vector_math.hpp>
-#include <apsis/scheme/limiter.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/tiling.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
@@ -37,7 +36,7 @@ int first_component(int width, int columns, int column) {
 
 }  // namespace
 
-struct transport::scratch {
+struct upwind_transport::scratch {
   per_thread<block_sweep> sweeps;
   per_thread<std::vector<upwind::row_target>> rows;
   std::vector<double> given;  ///< by force and source
@@ -62,40 +61,40 @@ struct transport::scratch {
 };
 
 /// How a sweep is divided into tasks: boxes of the tiling, or boxes times parts of the rows.
-struct transport::sweep_plan {
+struct upwind_transport::sweep_plan {
   const tiling& boxes;
   int columns;    ///< parts of a row
   bool by_boxes;  ///< whether a task is a whole box, whose cells are complete at its end
 };
 
-transport::~transport() = default;
-transport::transport(transport&&) noexcept = default;
+upwind_transport::~upwind_transport() = default;
 
-transport::transport(const model& equation, std::shared_ptr<domain> space,
-                     spatial_discretization discretization)
+upwind_transport::upwind_transport(const model& equation, std::shared_ptr<domain> space,
+                                   limited_reconstruction edges, const cell_unknown& unknown)
     : equation_(equation),
       space_(std::move(space)),
-      discretization_(std::move(discretization)),
+      edges_(std::move(edges)),
+      unknown_(unknown),
       scratch_(std::make_unique<scratch>()) {
   const bool has_space = equation.space_dimensions() > 0;
-  if (has_space) space_->reserve(equation.components(), sweep_ghosts(discretization_));
+  if (has_space) space_->reserve(equation.components(), edges_.ghosts());
   faces_ = std::make_unique<face_fluxes>(equation_, space_);
   if (has_space) speeds_ = line_speeds::of(equation, mesh());
 }
 
-void transport::set_force(acceleration of) {
-  force_ = std::make_unique<force>(equation_, space_, std::move(of), discretization_);
+void upwind_transport::set_force(acceleration of) {
+  force_ = std::make_unique<force>(equation_, space_, std::move(of), edges_);
 }
 
-void transport::set_source(source_rate rate, formulation unknowns) {
-  source_ = std::make_unique<source>(equation_, space_, std::move(rate), unknowns);
+void upwind_transport::set_source(source_rate rate) {
+  source_ = std::make_unique<source>(equation_, space_, std::move(rate), unknown_);
 }
 
-double transport::growth_of_source(double t, const field& u) const {
+double upwind_transport::growth_of_source(double t, const field& u) const {
   return source_depends_on_state() ? source_->growth(t, u) : 0.0;
 }
 
-double transport::forward_euler_step() const {
+double upwind_transport::forward_euler_step() const {
   double rate = force_ ? force_->rate() : 0.0;  // 1/0 is the infinity of a model without space
   double fastest = 0.0;                         // every component moves with one velocity
   for (std::size_t k = 0; !speeds_.empty() && k < speeds_.front().per_cell.size(); ++k) {
@@ -104,11 +103,11 @@ double transport::forward_euler_step() const {
     fastest = std::max(fastest, each);
   }
   rate += fastest;
-  return rounding_allowance * (discretization_.positivity != limiter_kind::none ? limiter::end_weight : 1.0) /
-         rate;
+  return rounding_allowance * edges_.kappa() / rate;
 }
 
-bool transport::add_transport(double t, const field& u, targets_view targets, const cells_job& then) const {
+bool upwind_transport::add_transport(double t, const field& u, targets_view targets,
+                                     const cells_job& then) const {
   const bool moves =
       std::any_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta != 0.0; });
   if (!moves) {
@@ -143,7 +142,7 @@ bool transport::add_transport(double t, const field& u, targets_view targets, co
   return done;
 }
 
-void transport::combine(std::span<const linear_term<field, double>> terms, field& sum) const {
+void upwind_transport::combine(std::span<const linear_term<field, double>> terms, field& sum) const {
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto& [alpha, u] = terms[k];
     if (k == 0 && u == &sum && alpha == 1.0) continue;
@@ -152,7 +151,7 @@ void transport::combine(std::span<const linear_term<field, double>> terms, field
   }
 }
 
-std::vector<double> transport::densities_at_surfaces(double t, const field& u) const {
+std::vector<double> upwind_transport::densities_at_surfaces(double t, const field& u) const {
   if (equation_.space_dimensions() == 0) return {};
   struct observation {
     face_fluxes& of;
@@ -163,7 +162,7 @@ std::vector<double> transport::densities_at_surfaces(double t, const field& u) c
   return faces_->densities();
 }
 
-void transport::add_source(const field& u, targets_view targets) const {
+void upwind_transport::add_source(const field& u, targets_view targets) const {
   std::vector<double> t(static_cast<std::size_t>(u.stride()), 0.0);
   for (int cell = 0; cell < u.cells(); ++cell) {
     if (equation_.has_source()) equation_.source(u.row(cell), t.data());
@@ -175,7 +174,7 @@ void transport::add_source(const field& u, targets_view targets) const {
   }
 }
 
-void transport::add_weighted(const field& u, targets_view targets, const cells_job& then) const {
+void upwind_transport::add_weighted(const field& u, targets_view targets, const cells_job& then) const {
   scratch_->rows.prepare([&](auto& rows) { rows.reserve(targets.size()); });
   // As many cells as make a row whose length is an int.
   const int longest = std::min(block_length(u.stride()), std::max(1, longest_row / std::max(u.stride(), 1)));
@@ -196,7 +195,7 @@ void transport::add_weighted(const field& u, targets_view targets, const cells_j
 
 /// body(segment, begin, end) for the cells of a box along a direction, as cells of segments.
 template <class Body>
-void transport::for_segments(int direction, const cell_box& box, const Body& body) const {
+void upwind_transport::for_segments(int direction, const cell_box& box, const Body& body) const {
   const auto k = static_cast<std::size_t>(direction);
   const int inner = mesh().stride(direction), first = box.first[k], last = first + box.cells[k];
   const auto& table = space_->segments();
@@ -217,9 +216,9 @@ void transport::for_segments(int direction, const cell_box& box, const Body& bod
       }
 }
 
-void transport::sweep_box(const field& u, targets_view targets, const cell_box& box, int first,
-                          int last) const {
-  const block_sweep::context all{equation_, *space_, discretization_, speeds_, *faces_};
+void upwind_transport::sweep_box(const field& u, targets_view targets, const cell_box& box, int first,
+                                 int last) const {
+  const block_sweep::context all{equation_, *space_, edges_, speeds_, *faces_};
   for (int direction = 0; direction < mesh().dimensions(); ++direction)
     for_segments(direction, box, [&](int segment, int begin, int end) {
       scratch_->sweeps.here().run(all, u, {direction, segment, begin, end, first, last}, targets);
@@ -227,7 +226,7 @@ void transport::sweep_box(const field& u, targets_view targets, const cell_box& 
 }
 
 /// Adds what enters through surfaces at the cells of a box.
-void transport::complete_box(double t, targets_view targets, const cell_box& box) const {
+void upwind_transport::complete_box(double t, targets_view targets, const cell_box& box) const {
   if (space_->budget_surfaces().empty()) return;
   for (int direction = 0; direction < mesh().dimensions(); ++direction)
     for_segments(direction, box, [&](int number, int begin, int end) {
@@ -240,7 +239,7 @@ void transport::complete_box(double t, targets_view targets, const cell_box& box
     });
 }
 
-void transport::finish_box(const cell_box& box, const cells_job& then) const {
+void upwind_transport::finish_box(const cell_box& box, const cells_job& then) const {
   const int direction = mesh().dimensions() - 1;
   for_segments(direction, box, [&](int number, int begin, int end) {
     const int first = space_->segment_at(direction, number).first;
@@ -248,7 +247,7 @@ void transport::finish_box(const cell_box& box, const cells_job& then) const {
   });
 }
 
-bool transport::sweep(double t, const field& u, targets_view targets, const cells_job& then) const {
+bool upwind_transport::sweep(double t, const field& u, targets_view targets, const cells_job& then) const {
   const int n = mesh().cells(0), width = u.stride();
   const bool on_a_line = mesh().dimensions() == 1;
   // A source is a function of all components of a cell.
@@ -264,7 +263,7 @@ bool transport::sweep(double t, const field& u, targets_view targets, const cell
     columns = std::max(columns, width / least_columns);
   if (!by_boxes) columns = static_cast<int>(std::clamp<long>(most_tasks / boxes.count(), 1, columns));
   const int widest = (width / packet_length / columns + 1) * packet_length;
-  const block_sweep::context all{equation_, *space_, discretization_, speeds_, *faces_};
+  const block_sweep::context all{equation_, *space_, edges_, speeds_, *faces_};
   scratch_->sweeps.prepare([&](auto& sweep) {
     sweep.reserve(all, std::min(std::max({mesh().cells(0), mesh().cells(1), mesh().cells(2)}), longest),
                   std::min(width, widest + width % packet_length), targets.size());
@@ -278,8 +277,8 @@ bool transport::sweep(double t, const field& u, targets_view targets, const cell
   return by_boxes && then;
 }
 
-void transport::sweep_boxes(double t, const field& u, targets_view targets, const sweep_plan& plan,
-                            const std::vector<int>& numbers, const cells_job& then) const {
+void upwind_transport::sweep_boxes(double t, const field& u, targets_view targets, const sweep_plan& plan,
+                                   const std::vector<int>& numbers, const cells_job& then) const {
   const int count = static_cast<int>(numbers.size()), columns = plan.columns;
   const auto component = [&](int column) { return first_component(u.stride(), columns, column); };
   const auto box = [&](int k) { return plan.boxes.box(numbers[static_cast<std::size_t>(k)]); };

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <apsis/semidiscrete/discretization.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// A discretization of space: a file of semidiscrete/discretizations/ defines `extern const
+/// discretization_entry discretization_<file>`.
+struct discretization_entry {
+  std::string name;                     ///< "finite-volume"
+  std::string description;              ///< one line
+  std::string source;                   ///< citation
+  const discretization& (*instance)();  ///< returns the object, which lives as long as the program
+};
+
+/// Returns all discretizations, sorted by file name (generated).
+std::vector<const discretization_entry*> discretization_entries();
+
+/// Returns the names of all discretizations, the default on a line first.
+std::vector<std::string> discretization_names();
+/// Returns all places where cells of some discretization may collide.
+std::vector<std::string> collision_place_names();
+
+/// Returns the entry called `name`; nullptr if there is none.
+const discretization_entry* try_find_discretization(const std::string& name);
+/// Returns the entry called `name`. Throws input_error with the nearest name if there is none.
+const discretization_entry& find_discretization(const std::string& name);
+/// Returns the default on meshes of so many dimensions: finite volumes on a line, else finite differences,
+/// which are also that of a model without space.
+const discretization_entry& default_discretization(int dimensions);
+
+}  // namespace apsis

@@ -1,0 +1,63 @@
+#include <apsis/semidiscrete/centre_rows.hpp>
+#include <apsis/semidiscrete/discretization_registry.hpp>
+#include <apsis/semidiscrete/upwind_transport.hpp>
+
+namespace apsis {
+namespace {
+
+constexpr const char *gauss_points = "gauss", *cell_centres = "centres";
+
+/// Cell averages on a line. They collide at points where the reconstruction, or all averages together, give
+/// values; with first-order upwind, which is no better than the average, each average collides as it is.
+class finite_volumes final : public discretization {
+ public:
+  const cell_unknown& unknown() const override { return cell_averages(); }
+  std::string why_on_a_line() const override {
+    return "cell averages collide at the Gauss points of intervals";
+  }
+  std::string why_without_solids() const override { return "cell averages are collided on whole lines"; }
+  std::vector<std::string> collision_places() const override { return {gauss_points, cell_centres}; }
+
+  collision_layout collisions_at(const std::string& place, const reconstruction& scheme) const override {
+    if (scheme.order() == 1) return {point_values().points()};
+    if (place == cell_centres) return {point_values().points(), false, centre_rows::reach};
+    return {cell_averages().points(), false};
+  }
+
+  std::unique_ptr<transport> make_transport(const problem_parts& of) const override {
+    return std::make_unique<upwind_transport>(of.equation, of.space, edges(of), unknown());
+  }
+
+  std::unique_ptr<collision> make_collision(const problem_parts& of) const override {
+    auto epsilon = of.epsilon_at(collisions_at(of.collisions, *of.scheme).points);
+    if (of.first_order())
+      return make_pointwise_collision(of.equation, std::move(epsilon), of.keeps_sign(),
+                                      of.space->mesh().fluid(), of.stages);
+    if (of.collisions == cell_centres) {
+      // Where solutions may be negative, limited averages would lose what they cut off.
+      const bool limited = of.limited && !of.smooth_collisions && of.equation.why_signed().empty();
+      return make_cell_centre_collision(of.equation, of.space, limited, std::move(epsilon), of.stages);
+    }
+    return make_cell_average_collision(of.equation, of.space, edges(of), std::move(epsilon), of.stages);
+  }
+
+ private:
+  static limited_reconstruction edges(const problem_parts& of) {
+    using limits = limited_reconstruction::limits;
+    return {of.scheme, of.limited && !of.first_order() ? limits::edges : limits::nothing};
+  }
+};
+
+}  // namespace
+
+extern const discretization_entry discretization_finite_volume;
+const discretization_entry discretization_finite_volume = {
+    .name = "finite-volume",
+    .description = "cell averages on a line, with edge values of the solution",
+    .source = "Shu, NASA/CR-97-206253 (1997); Zhang, Shu, JCP 229 (2010)",
+    .instance = []() -> const discretization& {
+      static const finite_volumes instance;
+      return instance;
+    }};
+
+}  // namespace apsis

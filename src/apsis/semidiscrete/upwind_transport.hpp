@@ -1,0 +1,74 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/integrate/problem.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/semidiscrete/block_sweep.hpp>
+#include <apsis/semidiscrete/cell_unknown.hpp>
+#include <apsis/semidiscrete/face_fluxes.hpp>
+#include <apsis/semidiscrete/force.hpp>
+#include <apsis/semidiscrete/source.hpp>
+#include <apsis/semidiscrete/transport.hpp>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// Transport by upwind fluxes of reconstructed edge values. For constant speeds the operator is the same for
+/// cell averages (finite volumes) and point values (finite differences). With the positivity limiter and
+/// β max_j Σ_k |v_jk|/Δx_k ≤ α/12 no result is negative, also in floating point.
+class upwind_transport final : public transport {
+ public:
+  /// `equation` and `unknown` must outlive the operator. Without space `edges` is ignored.
+  upwind_transport(const model& equation, std::shared_ptr<domain> space, limited_reconstruction edges,
+                   const cell_unknown& unknown);
+  ~upwind_transport() override;
+
+  /// Fused where cells are complete box by box: without force and source, in many boxes.
+  bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
+                     const cells_job& then = {}) const override;
+  void combine(std::span<const linear_term<field, double>> terms, field& sum) const override;
+  std::span<const double> budget_rates() const override { return faces_->rates(); }
+  std::vector<double> densities_at_surfaces(double t, const field& u) const override;
+
+  void set_force(acceleration of) override;
+  void set_source(source_rate rate) override;
+
+  /// Δt_FE = κ / (max_j Σ_k |v_jk|/Δx_k + Σ_k max|a_k|/Δv), κ = limited_reconstruction::kappa().
+  double forward_euler_step() const override;
+  double growth_of_source(double t, const field& u) const override;
+  bool source_depends_on_state() const override { return source_ && source_->depends_on_state(); }
+
+ private:
+  void add_source(const field& u, std::span<const target<field, double>> targets) const;
+  void add_weighted(const field& u, std::span<const target<field, double>> targets,
+                    const cells_job& then) const;
+  bool sweep(double t, const field& u, std::span<const target<field, double>> targets,
+             const cells_job& then) const;
+  struct sweep_plan;
+  void sweep_boxes(double t, const field& u, std::span<const target<field, double>> targets,
+                   const sweep_plan& plan, const std::vector<int>& numbers, const cells_job& then) const;
+  void sweep_box(const field& u, std::span<const target<field, double>> targets, const cell_box& box,
+                 int first, int last) const;
+  void complete_box(double t, std::span<const target<field, double>> targets, const cell_box& box) const;
+  void finish_box(const cell_box& box, const cells_job& then) const;
+  template <class Body>
+  void for_segments(int direction, const cell_box& box, const Body& body) const;
+
+  const grid& mesh() const { return space_->mesh(); }
+
+  const model& equation_;
+  std::shared_ptr<domain> space_;
+  limited_reconstruction edges_;
+  const cell_unknown& unknown_;
+  std::unique_ptr<face_fluxes> faces_;
+  std::unique_ptr<force> force_;    ///< null without
+  std::unique_ptr<source> source_;  ///< null without
+  struct scratch;
+  std::vector<line_speeds> speeds_;   ///< of each direction
+  std::unique_ptr<scratch> scratch_;  ///< scratch memory of loops; one loop at a time
+};
+
+}  // namespace apsis

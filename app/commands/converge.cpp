@@ -12,7 +12,7 @@
 #include <apsis/output/case_json.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
-#include <apsis/verify/convergence_report.hpp>
+#include <apsis/study/convergence_report.hpp>
 
 #include <memory>
 #include <optional>

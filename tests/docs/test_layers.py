@@ -18,8 +18,9 @@ class Layers(unittest.TestCase):
         rooms = check_layers.read_rooms((SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8"))
         self.assertEqual(rooms["core"], set())
         self.assertEqual(rooms["integrate"], {"core", "method"})
+        self.assertEqual(rooms["verify"], {"core", "method", "integrate"})  # questions to any problem
         for room in ("method", "integrate", "velocity", "mesh", "model", "scheme"):
-            self.assertFalse(rooms[room] & {"semidiscrete", "config", "output", "run", "verify"}, room)
+            self.assertFalse(rooms[room] & {"semidiscrete", "config", "output", "run", "study"}, room)
         self.assertIn("semidiscrete", rooms["run"])
 
     def planted(self, file, text):

@@ -23,6 +23,7 @@ class Layers(unittest.TestCase):
         for room in ("method", "integrate", "velocity", "mesh", "model", "scheme"):
             self.assertFalse(rooms[room] & {"semidiscrete", "config", "output", "run", "study"}, room)
         self.assertIn("semidiscrete", rooms["run"])
+        self.assertFalse(rooms["output"] & {"config", "run"})  # files know no case
 
     def planted(self, file, text):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,7 +1,7 @@
 #include <apsis/study/convergence_report.hpp>
 
+#include <apsis/config/case_json.hpp>
 #include <apsis/method/time_integrator.hpp>
-#include <apsis/output/case_json.hpp>
 #include <apsis/study/settings.hpp>
 
 #include <algorithm>

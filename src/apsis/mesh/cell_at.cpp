@@ -1,4 +1,4 @@
-#include <apsis/config/output_tables.hpp>
+#include <apsis/mesh/cell_at.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,4 @@ nlohmann::ordered_json to_json(const case_config& config);
 /// Returns the gas and its quantities(), each with "value" and "unit".
 nlohmann::ordered_json to_json(const gas_scales& scales);
 
-/// Returns the text of a JSON value; invalid UTF-8 (possible in file names) is replaced.
-std::string json_text(const nlohmann::ordered_json& value);
-
 }  // namespace apsis

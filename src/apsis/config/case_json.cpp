@@ -1,4 +1,4 @@
-#include <apsis/output/case_json.hpp>
+#include <apsis/config/case_json.hpp>
 
 #include <apsis/config/case_schema.hpp>
 
@@ -101,10 +101,6 @@ nlohmann::ordered_json to_json(const gas_scales& scales) {
   for (const auto& one : scales.quantities())
     out[one.name] = {{"value", one.value}, {"unit", unit_of(one.measure)}};
   return out;
-}
-
-std::string json_text(const nlohmann::ordered_json& value) {
-  return value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace apsis

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/verify/convergence.hpp>
+#include <apsis/study/convergence.hpp>
 
 #include <string>
 #include <vector>

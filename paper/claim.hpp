@@ -1,8 +1,8 @@
 #pragma once
 
 #include <apsis/output/picture.hpp>
-#include <apsis/verify/report_table.hpp>
-#include <apsis/verify/study_control.hpp>
+#include <apsis/study/report_table.hpp>
+#include <apsis/study/study_control.hpp>
 
 #include <string>
 #include <vector>

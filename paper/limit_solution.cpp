@@ -2,7 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/run/setup.hpp>
-#include <apsis/verify/outcome.hpp>
+#include <apsis/study/outcome.hpp>
 
 #include <algorithm>
 #include <cmath>

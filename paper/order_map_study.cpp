@@ -1,7 +1,7 @@
 #include <paper/order_map_study.hpp>
 
-#include <apsis/verify/model_cases.hpp>
-#include <apsis/verify/order_map.hpp>
+#include <apsis/study/model_cases.hpp>
+#include <apsis/study/order_map.hpp>
 
 #include <cmath>
 #include <string>

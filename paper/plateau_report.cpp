@@ -2,7 +2,7 @@
 // related functions.
 #include <apsis/core/errors.hpp>
 #include <apsis/core/extremes.hpp>
-#include <apsis/verify/time_study.hpp>
+#include <apsis/study/time_study.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <paper/plateau_study.hpp>
 
-#include <apsis/verify/time_study.hpp>
+#include <apsis/study/time_study.hpp>
 
 #include <algorithm>
 #include <cmath>

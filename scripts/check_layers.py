@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
-"""check_layers.py [ROOT]: includes of a room above the including one.
+"""check_layers.py [ROOT]: includes of a room above the including one, and of a client by another.
 
 The rooms, and what each may include, are those of the apsis_room() calls in src/apsis/CMakeLists.txt: an explicit list, which
 grants nothing that a listed room may include. Above the library
 lie paper/, app/, python/bindings/, tests/, bench/ and examples/, which it may not include. The README of a room names the
-rooms that its files include. Prints one line for each violation; exit code 1 if there are any.
+rooms that its files include. The clients paper/, validation/ and bench/ neither include nor link each other. Prints one line for each violation; exit code 1 if there are any.
 """
 import re
 import sys
 from pathlib import Path
 
+CLIENTS = ("paper", "validation", "bench")
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.MULTILINE)
 
 
@@ -58,7 +59,24 @@ def violations(root: Path) -> list[str]:
             found.append(f"src/apsis/CMakeLists.txt: {room} may include {sorted(allowed - included)} (its files do not)")
         if named != included:
             found.append(f"src/apsis/{room}/README.md: states that it includes {sorted(named)} (its files include {sorted(included)})")
-    return found
+    return found + [problem for client in CLIENTS for problem in violations_of_client(root, client)]
+
+
+def violations_of_client(root: Path, client: str) -> list[str]:
+    """Includes of another client, written from the root or relative to the file, and links to its library."""
+    found = []
+    for file in sorted((root / client).rglob("*.[ch]pp")):
+        text = file.read_text(encoding="utf-8")
+        for match in INCLUDE.finditer(text):
+            places = [place for place in (file.parent / match[1], root / match[1]) if place.exists()]
+            other = places[0].resolve().relative_to(root.resolve()).parts[0] if places else match[1].split("/")[0]
+            if other in CLIENTS and other != client:
+                line = text.count("\n", 0, match.start()) + 1
+                found.append(f"{file.relative_to(root)}:{line}: {client} includes {other} ({match[1]})")
+    cmake = root / client / "CMakeLists.txt"
+    text = cmake.read_text(encoding="utf-8") if cmake.exists() else ""
+    return found + [f"{client}/CMakeLists.txt: {client} links {other}"
+                    for other in CLIENTS if other != client and re.search(rf"\bapsis_{other}\b", text)]
 
 
 if __name__ == "__main__":

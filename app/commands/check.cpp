@@ -11,8 +11,8 @@
 #include <apsis/method/integrator_kind_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_file.hpp>
-#include <apsis/verify/observed_limits.hpp>
-#include <apsis/verify/profile_errors.hpp>
+#include <apsis/study/observed_limits.hpp>
+#include <apsis/study/profile_errors.hpp>
 
 #include <algorithm>
 #include <cmath>

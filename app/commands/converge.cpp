@@ -9,10 +9,10 @@
 #include <apsis/core/log.hpp>
 #include <apsis/core/version.hpp>
 #include <apsis/exec/parallel.hpp>
-#include <apsis/output/case_json.hpp>
+#include <apsis/output/json_text.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
-#include <apsis/verify/convergence_report.hpp>
+#include <apsis/study/convergence_report.hpp>
 
 #include <memory>
 #include <optional>

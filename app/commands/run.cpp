@@ -15,7 +15,7 @@
 #include <apsis/exec/interruption.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
-#include <apsis/output/case_json.hpp>
+#include <apsis/output/json_text.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/run/session.hpp>
 

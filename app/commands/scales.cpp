@@ -2,10 +2,11 @@
 #include "print.hpp"
 #include "scales_text.hpp"
 
+#include <apsis/config/case_json.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/model/mean_free_path.hpp>
-#include <apsis/output/case_json.hpp>
+#include <apsis/output/json_text.hpp>
 
 #include <array>
 #include <memory>

@@ -16,9 +16,9 @@ namespace {
 
 /// The paper's model; `Definition` of relaxation_task.
 struct ode_model {
-  static auto problem(double epsilon) { return paper::ode_problem(epsilon); }
+  static auto problem(double epsilon) { return ode_problem(epsilon); }
   static stiff_task::state initial() { return {2.0, 0.0}; }
-  static paper::ode_state<long double> exact(double epsilon) { return paper::ode_reference(epsilon); }
+  static ode_state<long double> exact(double epsilon) { return ode_reference(epsilon); }
   static stiff_task::state transport(const stiff_task::state& u) { return {u[1], 0.0}; }
   static Eigen::Matrix2d transport_jacobian(const stiff_task::state&) {
     return Eigen::Matrix2d{{0.0, 1.0}, {0.0, 0.0}};
@@ -43,7 +43,7 @@ auto problem_of(double epsilon) {
 struct kaps {
   static auto problem(double epsilon) { return problem_of<kaps>(epsilon); }
   static stiff_task::state initial() { return {1.0, 1.0}; }
-  static paper::ode_state<long double> exact(double) { return {std::exp(-1.0L), std::exp(-2.0L)}; }
+  static ode_state<long double> exact(double) { return {std::exp(-1.0L), std::exp(-2.0L)}; }
   static stiff_task::state transport(const stiff_task::state& u) {
     return {u[1] - u[0] - u[0] * u[0], -2.0 * u[1]};
   }
@@ -60,7 +60,7 @@ struct prothero_robinson {
   static constexpr double phase = std::numbers::pi / 4.0;
   static auto problem(double epsilon) { return problem_of<prothero_robinson>(epsilon); }
   static stiff_task::state initial() { return {0.0, std::sin(phase)}; }
-  static paper::ode_state<long double> exact(double) {
+  static ode_state<long double> exact(double) {
     return {1.0L, std::sin(std::numbers::pi_v<long double> / 4 + 1)};
   }
   static stiff_task::state transport(const stiff_task::state& u) { return {1.0, std::cos(phase + u[0])}; }

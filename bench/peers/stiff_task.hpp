@@ -3,13 +3,13 @@
 #include "contest.hpp"
 
 #include <apsis/method/method.hpp>
+#include <apsis/verify/ode_model.hpp>
 
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
-#include <paper/ode_study.hpp>
 
 namespace apsis::bench::peers {
 
@@ -17,7 +17,7 @@ namespace apsis::bench::peers {
 /// that each contestant needs. Dimensionless. T and Q do not depend on t explicitly.
 class stiff_task {
  public:
-  using state = paper::ode_state<double>;
+  using state = ode_state<double>;
 
   virtual ~stiff_task() = default;
   virtual state initial() const = 0;
@@ -35,17 +35,17 @@ class stiff_task {
 
   double epsilon() const { return epsilon_; }
   /// Returns |Δu1| + |Δu2| at t = 1.
-  double error(const state& u) const { return paper::ode_distance(u, exact_); }
+  double error(const state& u) const { return ode_distance(u, exact_); }
 
  protected:
-  stiff_task(double epsilon, paper::ode_state<long double> exact) : epsilon_(epsilon), exact_(exact) {}
+  stiff_task(double epsilon, ode_state<long double> exact) : epsilon_(epsilon), exact_(exact) {}
 
  private:
   double epsilon_;
-  paper::ode_state<long double> exact_;
+  ode_state<long double> exact_;
 };
 
-/// The ODE model of the paper (paper/ode_study.hpp): u2 is initially out of equilibrium.
+/// The ODE model of the paper (apsis/verify/ode_model.hpp): u2 is initially out of equilibrium.
 std::unique_ptr<stiff_task> make_ode_model(double epsilon);
 /// Kaps' problem in the variables u1 = y2, u2 = y1: u1' = u2 − u1 − u1², u2' = −2u2 + (u1² − u2)/ε from (1,
 /// 1), with the solution u1 = e^{−t}, u2 = u1² for every ε (Kaps, Rentrop, Numer. Math. 33 (1979) 55–68).

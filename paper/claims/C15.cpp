@@ -1,6 +1,6 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/random_source.hpp>
-#include <apsis/verify/model_properties.hpp>
+#include <apsis/study/model_properties.hpp>
 
 #include <algorithm>
 #include <cmath>

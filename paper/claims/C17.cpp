@@ -1,8 +1,8 @@
 #include <apsis/config/discretization_of_case.hpp>
 #include <apsis/core/extremes.hpp>
 #include <apsis/method/certificate.hpp>
-#include <apsis/verify/limit_distance.hpp>
-#include <apsis/verify/model_cases.hpp>
+#include <apsis/study/limit_distance.hpp>
+#include <apsis/study/model_cases.hpp>
 
 #include <algorithm>
 #include <cmath>

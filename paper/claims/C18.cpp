@@ -1,7 +1,7 @@
 #include <apsis/core/extremes.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/run/simulation.hpp>
-#include <apsis/verify/case_problem.hpp>
+#include <apsis/study/case_problem.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <apsis/verify/conserved_fields.hpp>
-#include <apsis/verify/outcome.hpp>
+#include <apsis/study/conserved_fields.hpp>
+#include <apsis/study/outcome.hpp>
 
 #include <algorithm>
 #include <array>

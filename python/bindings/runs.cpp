@@ -11,7 +11,6 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/processes.hpp>
 #include <apsis/model/model_registry.hpp>
-#include <apsis/output/case_json.hpp>
 #include <apsis/output/probe.hpp>
 #include <apsis/output/velocity_axes.hpp>
 #include <apsis/run/result_units.hpp>

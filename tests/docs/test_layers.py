@@ -1,4 +1,5 @@
-"""The rooms of src/apsis include only the rooms below them, and a planted violation of each kind is found."""
+"""The rooms of src/apsis include only the rooms below them, clients nothing of each other, and a planted violation of each kind
+is found."""
 import shutil
 import sys
 import tempfile
@@ -18,9 +19,11 @@ class Layers(unittest.TestCase):
         rooms = check_layers.read_rooms((SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8"))
         self.assertEqual(rooms["core"], set())
         self.assertEqual(rooms["integrate"], {"core", "method"})
+        self.assertEqual(rooms["verify"], {"core", "method", "integrate"})  # questions to any problem
         for room in ("method", "integrate", "velocity", "mesh", "model", "scheme"):
-            self.assertFalse(rooms[room] & {"semidiscrete", "config", "output", "run", "verify"}, room)
+            self.assertFalse(rooms[room] & {"semidiscrete", "config", "output", "run", "study"}, room)
         self.assertIn("semidiscrete", rooms["run"])
+        self.assertFalse(rooms["output"] & {"config", "run"})  # files know no case
 
     def planted(self, file, text):
         with tempfile.TemporaryDirectory() as folder:
@@ -40,6 +43,28 @@ class Layers(unittest.TestCase):
                          ["src/apsis/mesh/planted.cpp:1: mesh includes model (apsis/model/model.hpp)"])
         self.assertEqual(self.planted("src/apsis/verify/planted.cpp", "#include <paper/claim.hpp>\n"),
                          ["src/apsis/verify/planted.cpp:1: verify includes paper/claim.hpp (above the library)"])
+        self.assertEqual(self.planted("paper/planted.cpp", "#include <bench/plain/bgk.hpp>\n"),
+                         ["paper/planted.cpp:1: paper includes bench (bench/plain/bgk.hpp)"])
+
+    def planted_in_client(self, file, text):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for client in check_layers.CLIENTS:
+                shutil.copytree(SOURCE / client, root / client)
+            (root / file).write_text(text, encoding="utf-8")
+            return [problem for client in check_layers.CLIENTS for problem in check_layers.violations_of_client(root, client)]
+
+    def test_clients_include_and_link_nothing_of_each_other(self):
+        self.assertEqual(self.planted_in_client("bench/micro/planted.cpp", "// why\n#include <paper/claim.hpp>\n"),
+                         ["bench/micro/planted.cpp:2: bench includes paper (paper/claim.hpp)"])
+        self.assertEqual(self.planted_in_client("validation/planted.hpp", '#include "../bench/plain/bgk.hpp"\n'),
+                         ["validation/planted.hpp:1: validation includes bench (../bench/plain/bgk.hpp)"])
+        self.assertEqual(self.planted_in_client("paper/claims/planted.cpp", '#include "validation/absent.hpp"\n'),
+                         ["paper/claims/planted.cpp:1: paper includes validation (validation/absent.hpp)"])
+        self.assertEqual(self.planted_in_client("bench/measure/planted.cpp", '#include "table.hpp"\n#include <apsis/core/errors.hpp>\n'), [])
+        cmake = (SOURCE / "bench/CMakeLists.txt").read_text(encoding="utf-8")
+        self.assertEqual(self.planted_in_client("bench/CMakeLists.txt", cmake + "target_link_libraries(apsis_measure PRIVATE apsis_paper)\n"),
+                         ["bench/CMakeLists.txt: bench links paper"])
 
     def test_a_room_may_not_include_what_the_rooms_that_it_includes_may(self):
         rooms = check_layers.read_rooms("apsis_room(a)\napsis_room(b DEPENDS a PUBLIC x)\napsis_room(c DEPENDS b)\n")

@@ -28,7 +28,7 @@ configure(${WORK}/refused ${WORK}/refused/build -DCMAKE_PREFIX_PATH=${WORK}/pref
 # After several calls apsis::apsis contains all components that were found.
 write_project("find_package(apsis REQUIRED COMPONENTS integrate)\nfind_package(apsis REQUIRED COMPONENTS kinetic)"
   "get_target_property(all apsis::apsis INTERFACE_LINK_LIBRARIES)
-   if(NOT all STREQUAL \"apsis::integrate;apsis::kinetic\")
+   if(NOT all STREQUAL \"apsis::integrate;apsis::verify;apsis::kinetic\")
      message(FATAL_ERROR \"apsis::apsis links \${all}\")
    endif()")
 configure(${WORK}/refused ${WORK}/refused/build -DCMAKE_PREFIX_PATH=${WORK}/prefix)

@@ -1,5 +1,5 @@
 // Inputs that models refuse, and bit-for-bit agreement of batches. Properties 2–5 of the paper are in
-// tests/verify/model_properties.cpp.
+// tests/study/model_properties.cpp.
 #include <apsis/model/model_registry.hpp>
 
 #include <algorithm>

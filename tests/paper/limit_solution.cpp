@@ -4,13 +4,13 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/run/setup.hpp>
-#include <apsis/verify/model_properties.hpp>
+#include <apsis/study/model_properties.hpp>
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 #include <paper/limit_equations.hpp>
-#include <verify/limit_cases.hpp>
+#include <study/limit_cases.hpp>
 
 namespace limit_solution_test {
 

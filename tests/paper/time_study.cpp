@@ -1,8 +1,8 @@
 // Temporal accuracy of a discretised case against its exact solution in time.
-#include <apsis/verify/time_study.hpp>
+#include <apsis/study/time_study.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/verify/model_cases.hpp>
+#include <apsis/study/model_cases.hpp>
 
 #include <cmath>
 

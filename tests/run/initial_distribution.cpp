@@ -1,7 +1,7 @@
 // Initial data of the table [initial] as functions of the velocity: f, or g and h of a reduced gas.
 #include <apsis/config/case.hpp>
+#include <apsis/config/case_json.hpp>
 #include <apsis/config/case_schema.hpp>
-#include <apsis/output/case_json.hpp>
 #include <apsis/run/setup.hpp>
 
 #include <cmath>

@@ -3,8 +3,8 @@
 #include "support/folder.hpp"
 #include "support/property.hpp"
 
+#include <apsis/config/case_json.hpp>
 #include <apsis/config/case_schema.hpp>
-#include <apsis/output/case_json.hpp>
 #include <apsis/output/column_file.hpp>
 #include <apsis/output/hdf5_file.hpp>
 #include <apsis/output/probe.hpp>

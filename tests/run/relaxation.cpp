@@ -1,9 +1,9 @@
 // The relaxation system on a mesh, compared with exact solutions of its limiting conservation laws.
 #include "cases.hpp"
 
+#include <apsis/config/case_json.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/parallel.hpp>
-#include <apsis/output/case_json.hpp>
 
 #include <cmath>
 #include <numbers>

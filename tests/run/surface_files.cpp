@@ -2,9 +2,9 @@
 #include "cases_in_space.hpp"
 #include "support/folder.hpp"
 
+#include <apsis/config/case_json.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/text_file.hpp>
-#include <apsis/output/case_json.hpp>
 #include <apsis/output/checkpoint.hpp>
 
 #include <algorithm>

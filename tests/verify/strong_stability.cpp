@@ -1,13 +1,8 @@
-// The largest step that preserves a property: the promise Δt ≤ r Δt_FE of every method of the catalogue, and
-// its sharpness.
+// The largest step that preserves a property: the promise Δt ≤ r Δt_FE, and its sharpness.
 #include <apsis/verify/strong_stability.hpp>
-
-#include "support/catalogue.hpp"
 
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/verify/adversaries.hpp>
-#include <apsis/verify/case_problem.hpp>
-#include <apsis/verify/observed_limits.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -43,34 +38,6 @@ step_limit words(const std::string& name, double epsilon, double lowest = 0.0625
   return largest_step(find_method(name), problem, std::span<const row>(data),
                       stays_inside<row>("positivity", negative_part(1), 1e-13),
                       {.stages = true, .lowest = lowest});
-}
-
-class every_method : public testing::TestWithParam<std::string> {};
-TEST_P(every_method, preserves_the_promised_property) {
-  const auto all = observe_limits(find_method(GetParam()));
-  EXPECT_FALSE(all.empty());
-  for (const auto& one : all)
-    EXPECT_TRUE(one.keeps_promise()) << one.problem << ", " << one.property << ": " << one.limit.lost << " "
-                                     << one.worst;
-}
-/// Some tenths of a second per stage.
-std::vector<std::string> methods_with(bool many_stages) {
-  return methods_where([&](const method& m) { return (m.stages() > 9) == many_stages; });
-}
-
-INSTANTIATE_TEST_SUITE_P(catalogue, every_method, testing::ValuesIn(methods_with(false)), test_name);
-INSTANTIATE_TEST_SUITE_P(families, every_method,
-                         testing::Values("md-imex-chain-5-2", "md-imex-plateau-free-6-2"), test_name);
-INSTANTIATE_TEST_SUITE_P(SLOW_catalogue, every_method, testing::ValuesIn(methods_with(true)), test_name);
-
-TEST(strong_stability, third_order_imex_loses_positivity_of_the_broadwell_model_just_above_r) {
-  const method& m = find_method("md-imex-6-3");
-  for (const auto& one : observe_limits(m)) {
-    if (one.problem != "broadwell, WENO5 with limiter, finite-difference") continue;
-    EXPECT_NEAR(one.limit.lost, one.promised, 0.005 * one.promised);
-    return;
-  }
-  FAIL() << "no such problem";
 }
 
 TEST(strong_stability, the_promise_is_sharp_for_operators_that_change_from_stage_to_stage) {
@@ -125,16 +92,11 @@ TEST(strong_stability, implicit_methods_on_square_decay_preserve_what_their_cert
   EXPECT_EQ(promised_coefficient(find_certificate("dirk-4-3")), 0.0);
 }
 
-TEST(strong_stability, forward_euler_steps_of_the_problems_are_sharp) {
+TEST(strong_stability, the_forward_euler_step_of_upwind_advection_is_sharp) {
   ring_advection ring;
   const auto rows = adversarial_rows(24, 5);
   const auto tv = does_not_grow<row>("total variation", total_variation);
   EXPECT_NEAR(largest_forward_euler_step(ring, std::span<const row>(rows), tv).kept, 1.0, bisection);
-  case_problem weno(small_case("broadwell", "md-imex-3-2", 1.0, 12,
-                               {"space.limiter=positivity", "space.formulation=finite-difference"}));
-  const auto data = adversarial_states(weno, 10, 1e-8, true);
-  EXPECT_NEAR(largest_forward_euler_step(*weno.equations, std::span<const field>(data), positivity()).kept,
-              1.0, bisection);
 }
 
 TEST(strong_stability, a_wrong_promise_is_detected) {

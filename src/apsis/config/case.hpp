@@ -5,7 +5,6 @@
 #include <apsis/config/choices.hpp>
 #include <apsis/config/epsilon_formula.hpp>
 #include <apsis/config/initial_table.hpp>
-#include <apsis/config/output_tables.hpp>
 #include <apsis/config/surface_tables.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/graded_start.hpp>
@@ -13,6 +12,7 @@
 #include <apsis/model/gas_scales.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/model/model_registry.hpp>
+#include <apsis/output/probe.hpp>
 
 #include <array>
 #include <map>

@@ -3,6 +3,7 @@
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/mesh/cell_at.hpp>
 
 #include <algorithm>
 #include <cctype>

@@ -8,6 +8,9 @@
 
 namespace apsis {
 
+/// Stands for every surface in output.surfaces.
+inline constexpr const char* all_surfaces = "all";
+
 /// A table [boundary.left], [boundary.right], …: the boundary condition of a face.
 struct face_table {
   std::optional<std::string> kind;  ///< space.boundary where it is not set

@@ -1,10 +1,33 @@
 #pragma once
 
-#include <apsis/config/output_tables.hpp>
 #include <apsis/output/field_series.hpp>
 #include <apsis/output/table.hpp>
 
+#include <string>
+#include <vector>
+
 namespace apsis {
+
+/// A line along which the fields are written, a table [[output.probe]].
+struct line_probe {
+  std::string name;          ///< of its file probes/NAME.csv
+  std::vector<double> from,  ///< first point
+      to;                    ///< last point
+  int points = 101;          ///< equidistant points, both ends included
+
+  /// Multiplies the coordinates by a unit of length.
+  void scale(double unit) {
+    for (auto* end : {&from, &to})
+      for (double& x : *end) x *= unit;
+  }
+};
+
+/// A plane on which the fields are written, a table [[output.slice]].
+struct plane_slice {
+  std::string name;   ///< of its files slices/NAME.h5 and slices/NAME.xdmf
+  int direction = 0;  ///< of the normal
+  double at = 0.0;    ///< coordinate along the normal
+};
 
 /// Returns the fields along a line: a row for each point with columns s (distance from the first point), the
 /// coordinates and the fields, preceded by t if there are several snapshots. The fields are interpolated

@@ -1,7 +1,7 @@
 #include <apsis/run/distribution_rows.hpp>
 
-#include <apsis/config/output_tables.hpp>
 #include <apsis/core/index.hpp>
+#include <apsis/mesh/cell_at.hpp>
 #include <apsis/run/setup.hpp>
 
 #include <algorithm>

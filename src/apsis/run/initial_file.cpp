@@ -3,6 +3,7 @@
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/exec/interruption.hpp>
+#include <apsis/mesh/cell_at.hpp>
 #include <apsis/run/initial_table_file.hpp>
 #include <apsis/scheme/cell_polynomials.hpp>
 

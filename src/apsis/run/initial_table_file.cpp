@@ -1,10 +1,10 @@
 #include <apsis/run/initial_table_file.hpp>
 
+#include <apsis/config/case_json.hpp>
 #include <apsis/config/discretization_of_case.hpp>
 #include <apsis/config/quantity.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/text_file.hpp>
-#include <apsis/output/case_json.hpp>
 #include <apsis/output/mesh_axis.hpp>
 #include <apsis/output/velocity_axes.hpp>
 

@@ -1,9 +1,9 @@
 #include <apsis/run/manifest.hpp>
 
+#include <apsis/config/case_json.hpp>
 #include <apsis/core/version.hpp>
 #include <apsis/method/method_choice.hpp>
 #include <apsis/model/model_registry.hpp>
-#include <apsis/output/case_json.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/run/result_units.hpp>
 

@@ -9,7 +9,7 @@
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/processors.hpp>
-#include <apsis/output/case_json.hpp>
+#include <apsis/output/json_text.hpp>
 #include <apsis/run/distribution_rows.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/probe_files.hpp>

@@ -1,0 +1,34 @@
+// Conserved fields from macroscopic ones: found by name, whatever their order.
+#include <apsis/study/conserved_fields.hpp>
+
+#include <apsis/core/errors.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conserved_fields_test {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(conserved_fields, are_those_of_density_velocity_and_temperature_in_any_order) {
+  const apsis::field_table fields{
+      {0.5, 1.5}, {"T", "rho", "u"}, {"", "", ""}, {{2.0, 1.0}, {4.0, 1.0}, {-0.5, 2.0}}};
+  const auto conserved = apsis::conserved(fields);
+  EXPECT_THAT(conserved[0], ElementsAre(4.0, 1.0));
+  EXPECT_THAT(conserved[1], ElementsAre(-2.0, 2.0));
+  EXPECT_THAT(conserved[2], ElementsAre(4.5, 2.5));
+}
+
+TEST(conserved_fields, of_several_velocity_dimensions_are_refused) {
+  const apsis::field_table plane{
+      {0.5}, {"rho", "u_x", "u_y", "T"}, {"", "", "", ""}, {{1.0}, {0.25}, {0.5}, {2.0}}};
+  try {
+    static_cast<void>(apsis::conserved(plane));
+    FAIL() << "accepted";
+  } catch (const apsis::input_error& refusal) {
+    EXPECT_THAT(refusal.what(), HasSubstr("there is no field 'u'"));
+  }
+}
+
+}  // namespace conserved_fields_test

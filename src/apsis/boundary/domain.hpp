@@ -63,8 +63,8 @@ class domain : public construction_count<domain> {
   const boundary* side(int surface) const { return sides_[static_cast<std::size_t>(surface)].get(); }
   /// Returns the point at which a segment meets a surface.
   position meeting_point(int surface, int place) const;
-  /// Returns the cell in front of a surface, which may belong to another process only where the end does not
-  /// lie here (segment::ends_here()).
+  /// Returns the cell in front of a surface: local if segment::ends_here(), otherwise possibly of another
+  /// process.
   int cell_at(int surface, int place) const;
   /// Returns the faces that are not periodic and the solid boxes, in this order.
   const std::vector<budget_surface>& budget_surfaces() const { return budget_surfaces_; }

@@ -167,7 +167,7 @@ class model : public construction_count<model> {
   /// Returns the name of the condition that check_supported() states, if a solution may violate it later, so
   /// that a run checks it after every step: "subcharacteristic condition"; "" if there is none.
   virtual std::string condition() const { return ""; }
-  /// Likewise for data whose macroscopic fields lie between these extremes.
+  /// Returns the same for data whose default fields lie between these extremes.
   virtual unsupported_initial_data check_supported_range(const double* lowest, const double* highest) const;
 
   /// Returns the value of an automatic parameter (model_parameter::automatic) for initial data with

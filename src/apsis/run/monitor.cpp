@@ -109,7 +109,7 @@ monitor::totals monitor::sum(const field& u) const {
   together(processes, [&] {
     if (mine.not_finite != partial::none)
       throw numerical_error(
-          "a value of the state is not finite (the step is unstable, or the data are); use a smaller step",
+          "a value of the state is not finite (unstable step or invalid data); use a smaller step",
           {-1, std::numeric_limits<double>::quiet_NaN(), setup_.number_in_whole_mesh(mine.not_finite),
            mine.value});
   });

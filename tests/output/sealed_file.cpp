@@ -1,0 +1,76 @@
+// A seal notices every change of a file.
+#include <apsis/output/sealed_file.hpp>
+
+#include "support/folder.hpp"
+
+#include <apsis/core/errors.hpp>
+
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sealed_file_test {
+
+using namespace apsis;
+using testing::HasSubstr;
+
+namespace {
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+std::string refusal(const std::string& path, const std::string& kind = "checkpoint") {
+  try {
+    check_seal(path, kind);
+  } catch (const io_error& problem) {
+    return problem.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST(a_seal, accepts_the_file_and_no_other) {
+  const test_folder folder;
+  const std::string path = folder / "file";
+  write(path, std::string(seal_length, ' ') + "the content of a file\n");
+  seal(path, "checkpoint");
+  EXPECT_EQ(refusal(path), "accepted");
+  EXPECT_THAT(refusal(path, "solution"), HasSubstr(path));
+  const std::string sealed = bytes_of(path);
+  for (std::size_t at = seal_length; at < sealed.size(); ++at)
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string changed = sealed;
+      changed[at] = static_cast<char>(changed[at] ^ (1 << bit));
+      write(path, changed);
+      EXPECT_THAT(refusal(path), HasSubstr(path)) << at << " " << bit;
+    }
+  for (std::size_t kept = 0; kept < sealed.size(); kept += 7) {
+    write(path, sealed.substr(0, kept));
+    EXPECT_THAT(refusal(path), HasSubstr(path)) << kept;
+  }
+  write(path, sealed + "more");
+  EXPECT_THAT(refusal(path), HasSubstr(path));
+  write(path, sealed);
+  EXPECT_EQ(refusal(path), "accepted");
+}
+
+TEST(a_seal, names_the_version_of_another_program) {
+  const test_folder folder;
+  const std::string path = folder / "file";
+  write(path, std::string(seal_length, ' '));
+  seal(path, "checkpoint", "0.0.7");
+  EXPECT_THAT(refusal(path), HasSubstr("0.0.7"));
+  std::filesystem::remove(path);
+  EXPECT_THAT(refusal(path), HasSubstr(path));
+}
+
+}  // namespace sealed_file_test

@@ -18,6 +18,11 @@
 
 #include <hwy/highway.h>
 
+/// Headers of formulas included after this one are for packs (exec/number.hpp).
+#ifndef APSIS_PACKS
+#define APSIS_PACKS
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
@@ -33,7 +38,7 @@ using wide = hn::CappedTag<double, 8>;
 /// A single number, for the ends of rows that are not padded.
 using narrow = hn::CappedTag<double, 1>;
 
-/// A vector of doubles with the operators of a double. Operations round like those on one double; fma(a, b,
+/// A vector of doubles with the operations of exec/number.hpp. They round like those on one double; fma(a, b,
 /// c) = ab + c rounds once where the instruction set has it.
 template <class D>
 struct pack {
@@ -114,6 +119,51 @@ HWY_INLINE pack<D> minimum(pack<D> a, pack<D> b) {
 template <class D>
 HWY_INLINE pack<D> absolute(pack<D> a) {
   return {hn::Abs(a.v)};
+}
+
+/// The other operations of exec/number.hpp on exponents.
+template <class D>
+HWY_INLINE pack<D> truncated(pack<D> a) {
+  return {hn::PromoteTo(D(), hn::DemoteTo(hn::Rebind<std::int32_t, D>(), a.v))};
+}
+
+template <class D>
+HWY_INLINE pack<D> power_of_two(pack<D> a) {
+  const hn::RebindToUnsigned<D> bits;
+  return {hn::BitCast(D(), hn::ShiftLeft<52>(hn::BitCast(bits, (a + pack<D>(0x1p52 + 1023.0)).v)))};
+}
+
+/// The biased exponent of a 2^½, that of √½ being the first of its binade, as an integer.
+template <class D>
+HWY_INLINE auto biased_near_one(pack<D> a) {
+  const hn::RebindToUnsigned<D> bits;
+  return hn::ShiftRight<52>(
+      hn::Add(hn::BitCast(bits, a.v), hn::Set(bits, std::uint64_t{0x00095f6200000000})));
+}
+
+template <class D>
+HWY_INLINE pack<D> exponent_near_one(pack<D> a) {
+  const hn::RebindToUnsigned<D> bits;
+  // An integer below 2^52 is the fraction of 2^52 + itself.
+  const auto shifted = hn::Or(biased_near_one(a), hn::BitCast(bits, hn::Set(D(), 0x1p52)));
+  return pack<D>(hn::BitCast(D(), shifted)) - pack<D>(0x1p52 + 1023.0);
+}
+
+template <class D>
+HWY_INLINE pack<D> scaled_near_one(pack<D> a) {
+  const hn::RebindToUnsigned<D> bits;
+  const auto exponent = hn::Sub(biased_near_one(a), hn::Set(bits, std::uint64_t{1023}));
+  return {hn::BitCast(D(), hn::Sub(hn::BitCast(bits, a.v), hn::ShiftLeft<52>(exponent)))};
+}
+
+/// Whether a mask of packs N is set somewhere, or everywhere.
+template <class N, class Mask>
+HWY_INLINE bool any(Mask mask) {
+  return N::any(mask);
+}
+template <class N, class Mask>
+HWY_INLINE bool all(Mask mask) {
+  return N::all(mask);
 }
 
 /// Calls body(pack type, k) for k = 0 … width−1, one pack at a time and the remainder one by one.

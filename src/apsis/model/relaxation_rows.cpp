@@ -4,7 +4,7 @@
 
 #include <apsis/model/relaxation_rows.hpp>
 
-#include <apsis/exec/simd-inl.hpp>
+#include <apsis/model/formulas/relaxation.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
@@ -12,8 +12,7 @@ namespace apsis::HWY_NAMESPACE {
 void combine(double share, const double* base, const double* other, int width, double* result) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    const N from = N::load(base + k);
-    fma(N(share), N::load(other + k) - from, from).store(result + k);
+    moved_towards(N::load(base + k), N(share), N::load(other + k)).store(result + k);
   });
 }
 
@@ -23,10 +22,9 @@ void mean_of_three(const relaxation::weighted_rows* of_points, int width, double
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     N sum(0.0);
-    for (const auto& point : points) {
-      const N from = N::load(point.base + k);
-      sum = fma(N(point.share), N::load(point.other + k) - from, fma(N(point.weight), from, sum));
-    }
+    for (const auto& point : points)
+      sum =
+          with_part(sum, N(point.weight), N::load(point.base + k), N(point.share), N::load(point.other + k));
     sum.store(mean + k);
   });
 }
@@ -35,10 +33,9 @@ void mean_of_any(const relaxation::weighted_rows* points, int count, int width, 
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     N sum(0.0);
-    for (int p = 0; p < count; ++p) {
-      const N from = N::load(points[p].base + k);
-      sum = fma(N(points[p].share), N::load(points[p].other + k) - from, fma(N(points[p].weight), from, sum));
-    }
+    for (const auto& point : std::span(points, static_cast<std::size_t>(count)))
+      sum =
+          with_part(sum, N(point.weight), N::load(point.base + k), N(point.share), N::load(point.other + k));
     sum.store(mean + k);
   });
 }
@@ -46,7 +43,7 @@ void mean_of_any(const relaxation::weighted_rows* points, int count, int width, 
 void change(double strength, const double* e, const double* u, int width, double* q) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    (N(strength) * (N::load(e + k) - N::load(u + k))).store(q + k);
+    relaxation_rate(N(strength), N::load(e + k), N::load(u + k)).store(q + k);
   });
 }
 

@@ -4,7 +4,7 @@
 
 #include <apsis/model/target_rows.hpp>
 
-#include <apsis/exec/simd-inl.hpp>
+#include <apsis/model/formulas/target.hpp>
 
 #include <limits>
 
@@ -19,15 +19,10 @@ bool weigh(const double* m, const double* v, double u, const target_rows::cubic*
     const target_rows::cubic p = of_lines[line];
     for_packs(n, [&](auto lanes, int k) APSIS_PACKED {
       using N = pack<decltype(lanes)>;
-      const N c = N::load(v + k) - N(u);
-      const N value = N::load(m + k) * fma(fma(fma(N(p.k3), c, N(p.k2)), c, N(p.k1)), c, N(p.k0));
-      if (!bounded) {
-        value.store(e + k);
-        return;
-      }
-      const N bound = negative_fma(N(keep), N::load(f + k), N(0.0));
-      raised = raised || N::any(value < bound);
-      larger(value, bound).store(e + k);
+      const cubic_polynomial<N> of{N(p.k0), N(p.k1), N(p.k2), N(p.k3)};
+      N value = N::load(m + k) * of(N::load(v + k) - N(u));
+      if (bounded) raised |= raise(value, N(keep), N::load(f + k));
+      value.store(e + k);
     });
   }
   return raised;
@@ -38,24 +33,12 @@ void power_sums(const double* f, const double* v, double u, int lines, int n, ta
   const int length = static_cast<int>(hn::Lanes(wide()));
   const auto total = [](N x) { return hn::GetLane(hn::SumOfLanes(wide(), x.v)); };
   for (int line = 0; line < lines; ++line, f += n) {
-    N s0(0.0), s1(0.0), s2(0.0), s3(0.0);
+    sums_of_powers<N> packed;
     int k = 0;
-    for (; k + length <= n; k += length) {
-      const N c = N::load(v + k) - N(u), f0 = N::load(f + k), f1 = f0 * c, f2 = f1 * c;
-      s0 = s0 + f0;
-      s1 = s1 + f1;
-      s2 = s2 + f2;
-      s3 = fma(f2, c, s3);
-    }
-    target_rows::powers sums = {total(s0), total(s1), total(s2), total(s3)};
-    for (; k < n; ++k) {
-      const double c = v[k] - u, f1 = f[k] * c, f2 = f1 * c;
-      sums[0] += f[k];
-      sums[1] += f1;
-      sums[2] += f2;
-      sums[3] += f2 * c;
-    }
-    of_lines[line] = sums;
+    for (; k + length <= n; k += length) packed.add(N::load(f + k), N::load(v + k) - N(u));
+    sums_of_powers<double> sums{total(packed.s0), total(packed.s1), total(packed.s2), total(packed.s3)};
+    for (; k < n; ++k) sums.add_last(f[k], v[k] - u);
+    of_lines[line] = {sums.s0, sums.s1, sums.s2, sums.s3};
   }
 }
 

@@ -4,13 +4,11 @@
 
 #include <apsis/model/velocity_rows.hpp>
 
-#include <apsis/exec/simd-inl.hpp>
+#include <apsis/model/formulas/velocity.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
@@ -38,23 +36,12 @@ HWY_INLINE void store_some(N x, int count, double* to) {
   hn::BlendedStore(x.v, hn::FirstN(wide(), static_cast<std::size_t>(count)), wide(), to);
 }
 
-struct partial_sums {
-  N mass, momentum, energy;
-
-  HWY_INLINE partial_sums() : mass(0.0), momentum(0.0), energy(0.0) {}
-  HWY_INLINE void add(N value, N v, N half_square) {
-    mass = mass + value;
-    momentum = fma(v, value, momentum);
-    energy = fma(half_square, value, energy);
-  }
-};
-
 /// Several rows share the loads of v and ½v².
 template <int Rows>
 HWY_INLINE void moments_of(const double* f, std::ptrdiff_t pitch, const double* v, const double* half_square,
                            int n, velocity_rows::sums* of_rows) {
   const int length = static_cast<int>(hn::Lanes(wide()));
-  partial_sums sums[Rows][2];  // two of each kind: an addition waits for the one before it
+  sums_of_moments<N> sums[Rows][2];  // two of each kind: an addition waits for the one before it
   int j = 0;
   for (; j + 2 * length <= n; j += 2 * length)
     for (int half = 0; half < 2; ++half) {
@@ -81,26 +68,18 @@ void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, c
 
 double entropy(const double* f, int n) {
   const int length = static_cast<int>(hn::Lanes(wide()));
-  const auto term = [](N value)
-                        APSIS_PACKED { return value * N(hn::Log(wide(), larger(value, N(1e-300)).v)); };
   N sum[2] = {0.0, 0.0};
   int j = 0;
   for (; j + 2 * length <= n; j += 2 * length)
-    for (int half = 0; half < 2; ++half) sum[half] = sum[half] + term(N::load(f + j + half * length));
-  for (; j < n; j += length) sum[0] = sum[0] + term(load_some(f + j, n - j));
+    for (int half = 0; half < 2; ++half) sum[half] = sum[half] + entropy_term(N::load(f + j + half * length));
+  for (; j < n; j += length) sum[0] = sum[0] + entropy_term(load_some(f + j, n - j));
   return total(sum[0] + sum[1]);
-}
-
-/// 0 below e^−690.
-HWY_INLINE N exponential(N x) {
-  const N lowest(-690.0);
-  return select(x > lowest, N(hn::Exp(wide(), larger(x, lowest).v)), N(0.0));
 }
 
 /// v − u of all points of vector k.
 HWY_INLINE N distances(const velocity_rows::points& line, double u, double k) {
   const auto length = static_cast<double>(hn::Lanes(wide()));
-  return line.spacing * (N(hn::Iota(wide(), 0.0)) + N(k * length + 0.5 - 0.5 * line.n)) - N(u);
+  return distance_to(N(u), N(line.spacing), N(hn::Iota(wide(), 0.0)) + N(k * length + 0.5 - 0.5 * line.n));
 }
 
 void gaussian_by_exponentials(const velocity_rows::points& line, const velocity_rows::gaussian& of,
@@ -108,7 +87,7 @@ void gaussian_by_exponentials(const velocity_rows::points& line, const velocity_
   const int length = static_cast<int>(hn::Lanes(wide())), vectors = (line.n + length - 1) / length;
   for (int k = 0; k < vectors; ++k) {
     const N x = distances(line, of.u, k);
-    store_some(of.a * exponential(-(x * x) / N(2.0 * of.T)), line.n - k * length, m + k * length);
+    store_some(gaussian_value(N(of.a), x, N(of.T)), line.n - k * length, m + k * length);
   }
 }
 
@@ -118,37 +97,24 @@ struct outwards {
   N value, right, left, change;
 };
 
-/// With `Deep` some values leave the range of normal numbers.
-template <bool Deep>
-HWY_INLINE N moved(N value, N factor) {
-  const N next = value * factor;
-  if constexpr (Deep) return select(next > N(1e-300), next, N(0.0));
-  return next;
-}
-
 template <bool Deep>
 HWY_INLINE void fill(const outwards& from, int centre, int n, double* m) {
   const int length = static_cast<int>(hn::Lanes(wide()));
-  N value = from.value, factor = from.right;
+  gaussian_walk<Deep, N> walk{from.value, from.right, from.change};
   int k = centre * length;
   for (; k + length <= n; k += length) {
-    value.store(m + k);
-    value = moved<Deep>(value, factor);
-    factor = factor * from.change;
+    walk.value.store(m + k);
+    walk.advance();
   }
-  if (k < n) store_some(value, n - k, m + k);
-  value = from.value;
-  factor = from.left;
+  if (k < n) store_some(walk.value, n - k, m + k);
+  walk = {from.value, from.left, from.change};
   for (k = (centre - 1) * length; k >= 0; k -= length) {
-    value = moved<Deep>(value, factor);
-    factor = factor * from.change;
-    value.store(m + k);
+    walk.advance();
+    walk.value.store(m + k);
   }
 }
 
-/// The first vectors of as many Gaussians as a vector has numbers. With x the distances of vector `centre`
-/// and J the length of a vector, the next one has exp(−(x + J)²/(2T)) = exp(−x²/(2T)) × right, right =
-/// exp(−(2xJ + J²)/(2T)), and right changes by exp(−J²/T) from vector to vector. The last is one number for a
+/// The first vectors of as many Gaussians as a vector has numbers. The change of `right` is one number for a
 /// Gaussian, so that those of all of them are one exponential. The others could be made from a few numbers as
 /// well, but then all their numbers would err to the same side, and so would the moments.
 class first_vectors {
@@ -156,34 +122,28 @@ class first_vectors {
   first_vectors(const velocity_rows::points& line, const velocity_rows::gaussian* of, int rows)
       : line_(line) {
     const int vectors = (line.n + length - 1) / length;
-    const N at = (gathered(&of->u, rows) / N(line.spacing) + N(0.5 * line.n)) / N(length);
-    N(hn::Floor(smaller(larger(at, N(0.0)), N(static_cast<double>(vectors - 1))).v)).store(centre_);
+    gaussian_vector(gathered(&of->u, rows), N(line.spacing), N(line.n), N(length), N(vectors)).store(centre_);
     const N per = N(0.5) / gathered(&of->T, rows);
     per.store(per_);
     // All of them before the first row is filled: exponentials are long chains, which then overlap.
     for (int p = 0; p < rows; ++p) {
       const N x = distances(line, of[p].u, centre_[p]);
-      const N value = of[p].a * exponential(-(x * x) * per_[p]);
-      select(value > N(1e-300), value, N(0.0)).store(values_[p]);
-      exponential(-(2.0 * jump() * x + N(jump() * jump())) * per_[p]).store(right_[p]);
+      gaussian_start(N(of[p].a), x, N(per_[p])).store(values_[p]);
+      gaussian_right(x, N(per_[p]), N(jump())).store(right_[p]);
     }
-    exponential(N(-2.0 * jump() * jump()) * per).store(change_);
+    gaussian_change(per, N(jump())).store(change_);
   }
 
   void fill_row(int p, const velocity_rows::gaussian& of, double* m) const {
-    // The factors are exponentials of up to three times this, whose rounding they have; and k vectors away a
-    // value has k²/2 roundings of `change`, which may be many where the Gaussian is still large: at most one
-    // in 5 times this.
-    const double decay = jump() * jump() * per_[p];
-    if (!(decay > 0.02 && decay < 8.0)) return gaussian_by_exponentials(line_, of, m);
+    if (!gaussian_recurs(jump() * jump() * per_[p])) return gaussian_by_exponentials(line_, of, m);
     const N right = N::load(right_[p]), change(change_[p]);
     const outwards from{N::load(values_[p]), right, change / right, change};
     const int centre = static_cast<int>(centre_[p]);
     const double farthest = 0.5 * line_.spacing * line_.n + jump() + std::abs(of.u);
-    if (farthest * farthest * per_[p] < 600.0 && of.a > 1e-30) {
-      fill<false>(from, centre, line_.n, m);
-    } else {
+    if (gaussian_is_deep(of.a, farthest, per_[p])) {
       fill<true>(from, centre, line_.n, m);
+    } else {
+      fill<false>(from, centre, line_.n, m);
     }
   }
 

@@ -2,7 +2,7 @@
 #define HWY_TARGET_INCLUDE "apsis/scheme/limiter.cpp"
 #include <hwy/foreach_target.h>
 
-#include <apsis/scheme/limiter-inl.hpp>
+#include <apsis/scheme/formulas/limiter.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
@@ -10,14 +10,10 @@ namespace apsis::HWY_NAMESPACE {
 void limit_edges(const double* c, int width, double* left, double* right) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    const N average = N::load(c + k), l = N::load(left + k), r = N::load(right + k);
-    const N lowest = smaller(smaller(l, r), limiter::interior(average, l, r));
-    const N bound = limiter::lower_bound(average);
-    if (!N::any(lowest < bound)) return;
-    const N theta = limiter::scaling(average, lowest, bound);
-    const auto limited = theta < N(1.0);
-    select(limited, fma(theta, l - average, average), l).store(left + k);
-    select(limited, fma(theta, r - average, average), r).store(right + k);
+    N l = N::load(left + k), r = N::load(right + k);
+    if (!limiter::limit_edges(N::load(c + k), l, r)) return;
+    l.store(left + k);
+    r.store(right + k);
   });
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <apsis/scheme/nodes.hpp>
+
 #include <array>
 
 namespace apsis {
@@ -37,13 +39,10 @@ struct quartic {
 /// Three-point Gauss–Legendre rule on [−½, ½].
 struct gauss3 {
   static constexpr int points = 3;                                   ///< number of nodes
-  static constexpr double outer = 0.38729833462074168852;            ///< √(3/5)/2
+  static constexpr double outer = gauss3_outer;                      ///< √(3/5)/2
   static constexpr std::array<double, 3> xi = {-outer, 0.0, outer};  ///< nodes
   /// Weights, which sum to exactly 1 in floating point.
   static constexpr std::array<double, 3> weight = {5.0 / 18.0, 1.0 - 2.0 * (5.0 / 18.0), 5.0 / 18.0};
 };
-
-/// Interior nodes ±1/(2√5) of the four-point Gauss–Lobatto rule on [−½, ½].
-inline constexpr double lobatto4_inner = 0.22360679774997896964;
 
 }  // namespace apsis

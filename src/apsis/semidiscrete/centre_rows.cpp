@@ -5,55 +5,13 @@
 #include <apsis/semidiscrete/centre_rows.hpp>
 
 #include <apsis/exec/counted.hpp>
-#include <apsis/exec/simd-inl.hpp>
+#include <apsis/semidiscrete/formulas/centre.hpp>
 
 #include <cstddef>
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
-
-/// A ρ^k.
-constexpr double weights[] = {0.0,
-                              -0.0498962651136544960533352,
-                              0.00227271749006668625943531,
-                              -0.000103519667812601654241598,
-                              4.71520181055013387984795e-06,
-                              -2.14772019501291115056886e-07,
-                              9.78261847827065140353490e-09};
-
-/// Row i of the stencil is at(i), i = −3 … 3.
-template <class N, class At>
-HWY_INLINE N value(const At& at, bool limited) {
-  const N here = at(0), twice = here + here;
-  N change(0.0);
-  // The smallest terms first, and both sides together: mirrored data give mirrored bits.
-#pragma GCC unroll 6
-  for (int k = centre_rows::reach; k > 0; --k) change = fma(N(weights[k]), (at(-k) + at(k)) - twice, change);
-  const N all = here + change;
-  return limited ? maximum(all, N(0.5) * here) : all;
-}
-
-/// A cell with the change d of its point value and b = u + d.
-template <class N>
-struct changed_cell {
-  N d, b, half;
-  HWY_INLINE changed_cell(N u, N change) : d(change), b(u + change), half(N(0.5) * b) {}
-};
-
-/// Flux between two cells.
-template <class N>
-HWY_INLINE N flux(const changed_cell<N>& before, const changed_cell<N>& after, bool limited) {
-  const N all = N(1.0 / 24.0) * (after.d - before.d);
-  return limited ? maximum(minimum(all, after.half), -before.half) : all;
-}
-
-template <class N>
-HWY_INLINE N average(N b, N flux_before, N flux_after, bool limited) {
-  const N all = b + (flux_after - flux_before);
-  // Rounding of halves of the smallest numbers.
-  return limited ? maximum(all, minimum(b, N(0.0))) : all;
-}
 
 /// Values of sizeof...(Row) − 12 cells, so that neighbours share the loads of their rows.
 template <class N, std::size_t... Row>
@@ -64,7 +22,7 @@ HWY_INLINE void values_of_some(const double* const* u, bool limited, int k, int 
 #pragma GCC unroll 3
   for (int i = 0; i < cells; ++i) {
     const auto at = [&](int j) APSIS_PACKED { return rows[i + j + centre_rows::reach]; };
-    value<N>(at, limited).store(points + i * width + k);
+    centre_value<N>(at, limited).store(points + i * width + k);
   }
 }
 
@@ -94,8 +52,7 @@ bool is_negative(const double* average, const double* d, int width) {
 void lower(const double* average, const double* d, bool all, int width, double* points) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    const N u = N::load(average + k), p = N::load(points + k), least = smaller(u, p);
-    (all ? least : select(u + N::load(d + k) < N(0.0), least, p)).store(points + k);
+    lowered_centre(N::load(average + k), N::load(d + k), N::load(points + k), all).store(points + k);
   });
 }
 
@@ -106,12 +63,12 @@ void add_averages(const double* const* u, const double* const* d, int count, boo
     const auto cell = [&](int i)
                           APSIS_PACKED { return changed_cell<N>(N::load(u[i] + k), N::load(d[i] + k)); };
     changed_cell<N> here = cell(0);
-    N before = flux(cell(-1), here, limited);
+    N before = centre_flux(cell(-1), here, limited);
     double* to = averages + k;
     for (int i = 0; i < count; ++i, to += width) {
       const changed_cell<N> next = cell(i + 1);
-      const N after = flux(here, next, limited);
-      average(here.b, before, after, limited).store(to);
+      const N after = centre_flux(here, next, limited);
+      centre_average(here.b, before, after, limited).store(to);
       here = next;
       before = after;
     }
@@ -121,9 +78,9 @@ void add_averages(const double* const* u, const double* const* d, int count, boo
 double operations() {
   const counted x(0.0);
   return counted::operations_of([&] {
-    value<counted>([&](int) { return x; }, true);
+    centre_value<counted>([&](int) { return x; }, true);
     const changed_cell<counted> next(x, x);
-    average(x, x, flux(next, next, true), true);
+    centre_average(x, x, centre_flux(next, next, true), true);
   });
 }
 

@@ -5,8 +5,8 @@
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
 #include <apsis/exec/counted.hpp>
-#include <apsis/scheme/limiter-inl.hpp>
 #include <apsis/scheme/walk-inl.hpp>
+#include <apsis/semidiscrete/formulas/upwind.hpp>
 
 #include <algorithm>
 
@@ -45,11 +45,11 @@ HWY_INLINE void accumulate(const Walk& way, const cells& run, std::span<const ro
   for (std::size_t k = 0; k < targets.size(); ++k) {
     const auto& to = targets[k];
     way.prefetch(to.acc, to.pitch, j);
-    N sum = to.fresh ? N(to.alpha) * u : fma(N(to.alpha), u, way.load(to.acc, to.pitch, j));
-    if (run.source != nullptr) sum = fma(N(to.beta), way.load(run.source, run.pitch, j), sum);
-    // λ first: (|v|/Δx)(in − out) would round a second time among subnormal numbers, where 2.5 units count as
-    // much as 3, and u − (in − out) could become negative (docs/space.md, "Rounding").
-    way.store(fma(factors.of(targets, k), difference, sum), to.acc, to.pitch, j);
+    const auto old = [&]() APSIS_PACKED { return way.load(to.acc, to.pitch, j); };
+    const auto source = [&]() APSIS_PACKED { return way.load(run.source, run.pitch, j); };
+    way.store(transported(N(to.alpha), u, factors.of(targets, k), difference, to.fresh, old,
+                          run.source != nullptr, N(to.beta), source),
+              to.acc, to.pitch, j);
   }
 }
 
@@ -72,49 +72,22 @@ void add(const cells& of, std::span<const row_target> targets) {
   });
 }
 
-/// A cell and its outflow seen in the direction of motion, and the fraction of its corrections that does no
-/// harm.
-template <class N>
-struct limited_cell {
-  N u, edge, fraction;
-  bool moderate;  ///< the corrections of all components are small (limiter::is_moderate)
-  bool harms;     ///< some component has a fraction below 1
-
-  HWY_INLINE N correction() const { return edge - u; }
-};
-
-/// Cell j, whose corrections are not limited yet.
 template <class Walk, class N = typename Walk::number>
-HWY_INLINE limited_cell<N> load_cell(const Walk& way, const cells& run, int j) {
-  const N u = way.load(run.u, j), edge = outflow(way, run, j);
-  return {u, edge, N(1.0), limiter::is_moderate(u, edge), false};
+HWY_INLINE limited_cell<N> first_cell(const Walk& way, const cells& run, int j) {
+  return unlimited(way.load(run.u, j), outflow(way, run, j));
 }
 
 template <class Walk, class N = typename Walk::number>
 HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j,
                                      const limited_cell<N>& upstream) {
-  auto cell = load_cell(way, run, j);
-  if (cell.moderate && upstream.moderate) return cell;
-  const limiter::harm_bound<N> of(upstream.u, cell.u, upstream.correction(), cell.correction());
-  cell.harms = of.exceeded();
-  if (cell.harms) cell.fraction = of.fraction();
-  return cell;
-}
-
-/// The flux from `donor` to `receiver`.
-template <class N>
-HWY_INLINE N limited_flux(const limited_cell<N>& donor, const limited_cell<N>& receiver) {
-  if (!donor.harms && !receiver.harms) return donor.edge;
-  const N correction = donor.correction();
-  const N fraction = select(correction > N(0.0), donor.fraction, receiver.fraction);
-  return select(fraction < N(1.0), fma(fraction, correction, donor.u), donor.edge);
+  return limited_after(upstream, way.load(run.u, j), outflow(way, run, j));
 }
 
 template <class Walk, class N = typename Walk::number>
 HWY_INLINE void add_limited_along(const Walk& way, N speed, const cells& run,
                                   std::span<const row_target> targets) {
   const step_factors<N> factors(targets, speed);
-  const auto before = next_cell(way, run, -1, load_cell(way, run, -2));
+  const auto before = next_cell(way, run, -1, first_cell(way, run, -2));
   auto here = next_cell(way, run, 0, before);
   N in = limited_flux(before, here);
   for (int j = 0; j < run.count; ++j) {
@@ -142,7 +115,7 @@ void fluxes_of_cell(const cells& of, bool limited, double* in, double* out) {
       way.store(outflow(way, run, -1), in, 0, 0);
       return way.store(outflow(way, run, 0), out, 0, 0);
     }
-    const auto before = next_cell(way, run, -1, load_cell(way, run, -2));
+    const auto before = next_cell(way, run, -1, first_cell(way, run, -2));
     const auto here = next_cell(way, run, 0, before);
     const auto after = next_cell(way, run, 1, here);
     way.store(limited_flux(before, here), in, 0, 0);

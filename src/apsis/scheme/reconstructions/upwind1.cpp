@@ -1,17 +1,13 @@
+#include <apsis/scheme/formulas/upwind.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
-#include <cmath>
 #include <cstddef>
 
 namespace apsis {
 namespace {
 
-/// Values below it have edges 0: in several directions the fluxes of a cell round separately, and three
-/// subnormal numbers may round to more than their sum (docs/space.md, "Rounding").
-constexpr double negligible = 1e-270;
-
 void copy_row(const double* row, int width, double* edge) {
-  for (int k = 0; k < width; ++k) edge[k] = std::abs(row[k]) < negligible ? 0.0 : row[k];
+  for (int k = 0; k < width; ++k) edge[k] = scalar::upwind1_edge(row[k]);
 }
 
 /// Both edges equal the value of the cell: with upwind fluxes, the first-order upwind scheme, monotone and

@@ -1,3 +1,4 @@
+#include <apsis/scheme/formulas/upwind.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <cstddef>
@@ -5,11 +6,7 @@
 namespace apsis {
 namespace {
 
-/// Right edge of the cell c of five, from the quartic through their averages; the left one by mirror
-/// symmetry.
-double edge_of(double a, double b, double c, double d, double e) {
-  return c + (2.0 * (a - c) - 13.0 * (b - c) + 27.0 * (d - c) - 3.0 * (e - c)) / 60.0;
-}
+using scalar::upwind5_edge;
 
 /// The linear scheme that WENO approaches on smooth data, without protection against oscillations. Sums of
 /// its fluxes over a line are those of the values: Σ û_{i+1/2} = Σ u_i and Σ x_{i+1/2} û_{i+1/2} = Σ x_i u_i
@@ -24,8 +21,8 @@ class upwind5 final : public reconstruction {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * width;
 #pragma omp simd
       for (int k = 0; k < width; ++k) {
-        left[at + k] = edge_of(e[k], d[k], c[k], b[k], a[k]);
-        right[at + k] = edge_of(a[k], b[k], c[k], d[k], e[k]);
+        left[at + k] = upwind5_edge(e[k], d[k], c[k], b[k], a[k]);
+        right[at + k] = upwind5_edge(a[k], b[k], c[k], d[k], e[k]);
       }
     }
   }
@@ -36,8 +33,8 @@ class upwind5 final : public reconstruction {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * width;
 #pragma omp simd
       for (int k = 0; k < width; ++k)
-        edge[at + k] =
-            forward[k] != 0.0 ? edge_of(a[k], b[k], c[k], d[k], e[k]) : edge_of(e[k], d[k], c[k], b[k], a[k]);
+        edge[at + k] = forward[k] != 0.0 ? upwind5_edge(a[k], b[k], c[k], d[k], e[k])
+                                         : upwind5_edge(e[k], d[k], c[k], b[k], a[k]);
     }
   }
 };

@@ -2,27 +2,12 @@
 #define HWY_TARGET_INCLUDE "apsis/scheme/reconstructions/weno5_js.cpp"
 #include <hwy/foreach_target.h>
 
+#include <apsis/scheme/formulas/weno5_js.hpp>
+
 #include <apsis/scheme/weno5-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
-
-/// g_k = 1/(β_k + 1e-6)² (Jiang & Shu, JCP 126, 1996). The constant 1e-6 is that of the reference and has the
-/// unit of the data squared. With it no product underflows, and none overflows for differences below 1e18.
-struct weights_js {
-  static constexpr double added = 1e-6;
-  static constexpr bool of_any_size = false;
-
-  template <class Window>
-  static HWY_INLINE auto smoothness(const Window& u) {
-    return weno5::indicators(u);
-  }
-  template <class N>
-  static HWY_INLINE weno5::factors<N> factors(const weno5::smoothness<N>& y) {
-    const N z0 = y.s0 * y.s0, z1 = y.s1 * y.s1, z2 = y.s2 * y.s2;
-    return {z1 * z2, z0 * z2, z0 * z1};
-  }
-};
 
 void edges_js(const double* const* rows, int count, int width, double* left, double* right) {
   weno5::sweep_edges<weights_js>(rows, count, width, left, right);

@@ -1,16 +1,16 @@
-// The formulas of limiter.hpp for packs.
-#if defined(APSIS_SPACE_LIMITER_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef APSIS_SPACE_LIMITER_INL_HPP
-#undef APSIS_SPACE_LIMITER_INL_HPP
+// The limiters of scheme/limiter.hpp.
+#if defined(APSIS_SCHEME_FORMULAS_LIMITER) == defined(HWY_TARGET_TOGGLE)
+#ifdef APSIS_SCHEME_FORMULAS_LIMITER
+#undef APSIS_SCHEME_FORMULAS_LIMITER
 #else
-#define APSIS_SPACE_LIMITER_INL_HPP
+#define APSIS_SCHEME_FORMULAS_LIMITER
 #endif
 
-#include <apsis/exec/simd-inl.hpp>
+#include <apsis/exec/number.hpp>
 #include <apsis/scheme/limiter.hpp>
 
-HWY_BEFORE_NAMESPACE();
-namespace apsis::HWY_NAMESPACE::limiter {
+APSIS_BEFORE_FORMULAS();
+namespace apsis::APSIS_NUMBERS::limiter {
 
 using apsis::limiter::absolute_margin;
 using apsis::limiter::end_weight;
@@ -18,23 +18,23 @@ using apsis::limiter::relative_margin;
 
 /// Returns max(x, 0), and 0 for NaN.
 template <class N>
-HWY_INLINE N nonnegative(N x) {
+APSIS_FORMULA N nonnegative(N x) {
   return select(x > N(0.0), x, N(0.0));
 }
 
 template <class N>
-HWY_INLINE N lower_bound(N c) {
+APSIS_FORMULA N lower_bound(N c) {
   return minimum(fma(N(relative_margin), c, N(absolute_margin)), c);
 }
 
 /// limiter::scaling with bound = lower_bound(c).
 template <class N>
-HWY_INLINE N scaling(N c, N m, N bound) {
+APSIS_FORMULA N scaling(N c, N m, N bound) {
   return nonnegative(select(m < bound, (c - bound) / (c - m), N(1.0)));
 }
 
 template <class N>
-HWY_INLINE N interior(N c, N l, N r) {
+APSIS_FORMULA N interior(N c, N l, N r) {
   return (c - end_weight * (l + r)) * (1.0 / (1.0 - 2.0 * end_weight));
 }
 
@@ -42,30 +42,42 @@ HWY_INLINE N interior(N c, N l, N r) {
 /// cell and its upstream neighbour, the corrections do no harm: A_out⁺ < (1/ŵ₁ − 1.01) u and −A_in⁻ < 0.99
 /// u_up, which is less than limiter_coefficient() allows by far more than rounding errors.
 template <class N>
-HWY_INLINE bool is_moderate(N u, N edge) {
+APSIS_FORMULA bool is_moderate(N u, N edge) {
   constexpr double middle = 0.5 / end_weight;
-  return N::all(absolute(fma(N(-middle), u, edge)) < fma(N(middle - 0.01), u, N(-absolute_margin)));
+  return all<N>(absolute(fma(N(-middle), u, edge)) < fma(N(middle - 0.01), u, N(-absolute_margin)));
 }
 
 /// limiter::limiter_coefficient in two parts, because the corrections of most cells need no limiting.
 template <class N>
 class harm_bound {
  public:
-  HWY_INLINE harm_bound(N u_up, N u, N a_in, N a_out)
+  APSIS_FORMULA harm_bound(N u_up, N u, N a_in, N a_out)
       : allowed_(maximum(fma(N((1.0 - relative_margin) * (1.0 / end_weight - 1.0)), u,
                              fma(N(1.0 - relative_margin), u_up, N(-absolute_margin))),
                          N(0.0))),
         harm_(maximum(a_out, N(0.0)) - minimum(a_in, N(0.0))) {}
 
   /// Whether some component has a fraction below 1.
-  HWY_INLINE bool exceeded() const { return N::any(harm_ > allowed_); }
-  HWY_INLINE N fraction() const { return nonnegative(select(harm_ > allowed_, allowed_ / harm_, N(1.0))); }
+  APSIS_FORMULA bool exceeded() const { return any<N>(harm_ > allowed_); }
+  APSIS_FORMULA N fraction() const { return nonnegative(select(harm_ > allowed_, allowed_ / harm_, N(1.0))); }
 
  private:
   N allowed_, harm_;
 };
 
-}  // namespace apsis::HWY_NAMESPACE::limiter
-HWY_AFTER_NAMESPACE();
+/// Limits the edge values of a cell of average c; returns false if none of them changes.
+template <class N>
+APSIS_FORMULA bool limit_edges(N c, N& left, N& right) {
+  const N lowest = smaller(smaller(left, right), interior(c, left, right)), bound = lower_bound(c);
+  if (!any<N>(lowest < bound)) return false;
+  const N theta = scaling(c, lowest, bound);
+  const auto limited = theta < N(1.0);
+  left = select(limited, fma(theta, left - c, c), left);
+  right = select(limited, fma(theta, right - c, c), right);
+  return true;
+}
+
+}  // namespace apsis::APSIS_NUMBERS::limiter
+APSIS_AFTER_FORMULAS();
 
 #endif

@@ -1,0 +1,135 @@
+// Formulas on a number type. A formula is a template on a number N and uses the operations below only, so
+// that one text is a vector of the host (pack, exec/simd-inl.hpp), a single double (reference in tests,
+// kernels of other processors), or a count of operations (exec/counted.hpp). Headers of formulas lie in the
+// folders formulas/ of the rooms. They include neither the standard library nor Highway, throw nothing and
+// allocate nothing. Such a header reads
+//   #if defined(APSIS_SCHEME_FORMULAS_LIMITER) == defined(HWY_TARGET_TOGGLE)
+//   #ifdef APSIS_SCHEME_FORMULAS_LIMITER
+//   #undef APSIS_SCHEME_FORMULAS_LIMITER
+//   #else
+//   #define APSIS_SCHEME_FORMULAS_LIMITER
+//   #endif
+//   #include <apsis/exec/number.hpp>
+//   APSIS_BEFORE_FORMULAS();
+//   namespace apsis::APSIS_NUMBERS {
+//   template <class N> APSIS_FORMULA N mean(N a, N b) { return N(0.5) * (a + b); }
+//   }
+//   APSIS_AFTER_FORMULAS();
+//   #endif
+// In a kernel file, which is compiled once for each instruction set, it is included as often: a function must
+// carry the attributes of the instructions that it uses. APSIS_NUMBERS is the namespace of the instruction
+// set there; it is `scalar` in all other files.
+//
+// Operations on numbers a, b, c of type N, beside + − * / and the comparisons < and >, whose result is a
+// mask:
+//   N(x)                     the constant x;
+//   fma(a, b, c)             ab + c, rounded once (twice where the instruction set has no such instruction);
+//   negative_fma(a, b, c)    c − ab, likewise;
+//   select(mask, a, b)       a where the mask is set, else b;
+//   smaller(a, b)            a < b ? a : b, hence b if either is NaN; larger(a, b) likewise;
+//   minimum(a, b)            as smaller, but unspecified if either is NaN or both are zeros; maximum(a, b)
+//   likewise; absolute(a)              |a|; any<N>(mask), all<N>(mask)   whether the mask is set somewhere,
+//   or everywhere. A formula may use them to skip work, not
+//                            to change a result: a number must not depend on those beside it;
+//   inverse_power_of_two(a)  2^−e for a = 2^e m, 1 ≤ m < 2, a normal and below 2^1022;
+//   truncated(a)             a rounded towards 0, |a| < 2^31;
+//   power_of_two(a)          2^a for an integer −1022 ≤ a ≤ 1023;
+//   exponent_near_one(a)     e with 2^−e a between √½ and √2, for a normal and positive;
+//   scaled_near_one(a)       this 2^−e a.
+// Files with formulas on doubles are compiled with -ffp-contract=off: fma only where the source requests it.
+#if defined(HWY_TARGET_INCLUDE) || defined(APSIS_PACKS)
+#include <apsis/exec/simd-inl.hpp>
+#endif
+
+#ifndef APSIS_EXEC_NUMBER_HPP
+#define APSIS_EXEC_NUMBER_HPP
+
+/// Attribute of formulas: they are part of the loop that applies them.
+#define APSIS_FORMULA inline __attribute__((always_inline))
+
+#if defined(HWY_TARGET_INCLUDE) || defined(APSIS_PACKS)
+
+#define APSIS_BEFORE_FORMULAS() HWY_BEFORE_NAMESPACE()
+#define APSIS_AFTER_FORMULAS() HWY_AFTER_NAMESPACE()
+#define APSIS_NUMBERS HWY_NAMESPACE
+
+#else
+
+#define APSIS_BEFORE_FORMULAS() static_assert(true)
+#define APSIS_AFTER_FORMULAS() static_assert(true)
+#define APSIS_NUMBERS scalar
+
+/// Formulas on single numbers, and the operations on a double.
+namespace apsis::scalar {
+
+APSIS_FORMULA double fma(double a, double b, double c) {
+  return __builtin_fma(a, b, c);
+}
+APSIS_FORMULA double negative_fma(double a, double b, double c) {
+  return __builtin_fma(-a, b, c);
+}
+/// For every number type whose comparisons give a bool.
+template <class N>
+APSIS_FORMULA N select(bool mask, N yes, N no) {
+  return mask ? yes : no;
+}
+template <class N>
+APSIS_FORMULA bool any(bool mask) {
+  return mask;
+}
+template <class N>
+APSIS_FORMULA bool all(bool mask) {
+  return mask;
+}
+template <class N>
+APSIS_FORMULA N smaller(N a, N b) {
+  return a < b ? a : b;
+}
+template <class N>
+APSIS_FORMULA N larger(N a, N b) {
+  return a > b ? a : b;
+}
+template <class N>
+APSIS_FORMULA N minimum(N a, N b) {
+  return a < b ? a : b;
+}
+template <class N>
+APSIS_FORMULA N maximum(N a, N b) {
+  return a > b ? a : b;
+}
+APSIS_FORMULA double absolute(double a) {
+  return __builtin_fabs(a);
+}
+
+/// Bits of a double, and back.
+APSIS_FORMULA unsigned long long bits_of(double a) {
+  return __builtin_bit_cast(unsigned long long, a);
+}
+APSIS_FORMULA double from_bits(unsigned long long bits) {
+  return __builtin_bit_cast(double, bits);
+}
+
+APSIS_FORMULA double inverse_power_of_two(double a) {
+  return from_bits(0x7fe0000000000000ull - (bits_of(a) & 0x7ff0000000000000ull));
+}
+APSIS_FORMULA double truncated(double a) {
+  return static_cast<double>(static_cast<int>(a));
+}
+APSIS_FORMULA double power_of_two(double a) {
+  return from_bits(bits_of(a + (0x1p52 + 1023.0)) << 52);
+}
+/// The biased exponent of a 2^½, that of √½ being the first of its binade.
+APSIS_FORMULA unsigned long long biased_near_one(double a) {
+  return (bits_of(a) + 0x00095f6200000000ull) >> 52;
+}
+APSIS_FORMULA double exponent_near_one(double a) {
+  return static_cast<double>(static_cast<int>(biased_near_one(a)) - 1023);
+}
+APSIS_FORMULA double scaled_near_one(double a) {
+  return from_bits(bits_of(a) - ((biased_near_one(a) - 1023) << 52));
+}
+
+}  // namespace apsis::scalar
+
+#endif
+#endif

@@ -1,0 +1,106 @@
+// The formulas of model/velocity_rows.hpp.
+#if defined(APSIS_MODEL_FORMULAS_VELOCITY) == defined(HWY_TARGET_TOGGLE)
+#ifdef APSIS_MODEL_FORMULAS_VELOCITY
+#undef APSIS_MODEL_FORMULAS_VELOCITY
+#else
+#define APSIS_MODEL_FORMULAS_VELOCITY
+#endif
+
+#include <apsis/exec/number.hpp>
+#include <apsis/model/formulas/exponential.hpp>
+
+APSIS_BEFORE_FORMULAS();
+namespace apsis::APSIS_NUMBERS {
+
+/// Sums over velocity points of a row.
+template <class N>
+struct sums_of_moments {
+  N mass, momentum, energy;
+
+  APSIS_FORMULA sums_of_moments() : mass(0.0), momentum(0.0), energy(0.0) {}
+  APSIS_FORMULA void add(N value, N v, N half_square) {
+    mass = mass + value;
+    momentum = fma(v, value, momentum);
+    energy = fma(half_square, value, energy);
+  }
+};
+
+/// f log f for f ≥ 0.
+template <class N>
+APSIS_FORMULA N entropy_term(N f) {
+  return f * log_of(larger(f, N(1e-300)));
+}
+
+/// e^x, 0 below e^−690.
+template <class N>
+APSIS_FORMULA N exp_or_zero(N x) {
+  const N lowest(-690.0);
+  return select(x > lowest, exp_of(larger(x, lowest)), N(0.0));
+}
+
+/// v_j − u for points v_j = Δv j, j a half integer.
+template <class N>
+APSIS_FORMULA N distance_to(N u, N spacing, N j) {
+  return spacing * j - u;
+}
+
+/// a exp(−x²/(2T)), where no recursion is used.
+template <class N>
+APSIS_FORMULA N gaussian_value(N a, N x, N T) {
+  return a * exp_or_zero(-(x * x) / (N(2.0) * T));
+}
+
+/// A Gaussian by a recursion. It takes vectors of points, J = jump apart. With x the distances of one vector,
+/// the next one has exp(−(x + J)²/(2T)) = exp(−x²/(2T)) × right, right = exp(−(2xJ + J²)/(2T)), and right
+/// changes by change = exp(−J²/T) from vector to vector; per = 1/(2T).
+template <class N>
+APSIS_FORMULA N gaussian_start(N a, N x, N per) {
+  const N value = a * exp_or_zero(-(x * x) * per);
+  return select(value > N(1e-300), value, N(0.0));
+}
+template <class N>
+APSIS_FORMULA N gaussian_right(N x, N per, N jump) {
+  return exp_or_zero(-(N(2.0) * jump * x + jump * jump) * per);
+}
+template <class N>
+APSIS_FORMULA N gaussian_change(N per, N jump) {
+  return exp_or_zero(N(-2.0) * jump * jump * per);
+}
+
+/// The vector at which the recursion starts: that of the centre u, or the nearest one. It has `length` of n
+/// points.
+template <class N>
+APSIS_FORMULA N gaussian_vector(N u, N spacing, N n, N length, N vectors) {
+  const N at = (u / spacing + N(0.5) * n) / length;
+  return truncated(smaller(larger(at, N(0.0)), vectors - N(1.0)));
+}
+
+/// Whether the recursion is accurate. The factors are exponentials of up to three times `decay` = J²/(2T),
+/// whose rounding they have; and k vectors away a value has k²/2 roundings of `change`, which may be many
+/// where the Gaussian is still large: at most one in 5 times this.
+APSIS_FORMULA bool gaussian_recurs(double decay) {
+  return decay > 0.02 && decay < 8.0;
+}
+
+/// Whether some values may leave the range of normal numbers; `farthest` is a bound of |x| + J.
+APSIS_FORMULA bool gaussian_is_deep(double a, double farthest, double per) {
+  return !(farthest * farthest * per < 600.0 && a > 1e-30);
+}
+
+/// The values of a Gaussian from vector to vector outwards; `factor` is right, or change/right to the left.
+/// With `Deep` some values leave the range of normal numbers.
+template <bool Deep, class N>
+struct gaussian_walk {
+  N value, factor, change;
+
+  APSIS_FORMULA void advance() {
+    value = value * factor;
+    if constexpr (Deep) value = select(value > N(1e-300), value, N(0.0));
+    factor = factor * change;
+  }
+};
+
+}  // namespace apsis::APSIS_NUMBERS
+APSIS_AFTER_FORMULAS();
+
+#endif

@@ -1,0 +1,34 @@
+#if defined(APSIS_SCHEME_FORMULAS_ROW) == defined(HWY_TARGET_TOGGLE)
+#ifdef APSIS_SCHEME_FORMULAS_ROW
+#undef APSIS_SCHEME_FORMULAS_ROW
+#else
+#define APSIS_SCHEME_FORMULAS_ROW
+#endif
+
+#include <apsis/exec/number.hpp>
+
+APSIS_BEFORE_FORMULAS();
+namespace apsis::APSIS_NUMBERS {
+
+/// What a row of numbers contains.
+template <class N>
+struct row_contents {
+  N lowest;      ///< the smallest number so far
+  N negative;    ///< how many are negative
+  N not_finite;  ///< 0, and NaN as soon as one is not finite: x − x
+
+  /// Without numbers `least` is infinite.
+  APSIS_FORMULA row_contents(N least, N below_zero, N differences)
+      : lowest(least), negative(below_zero), not_finite(differences) {}
+
+  APSIS_FORMULA void add(N x) {
+    lowest = smaller(x, lowest);
+    not_finite = not_finite + (x - x);
+    negative = negative + select(x < N(0.0), N(1.0), N(0.0));
+  }
+};
+
+}  // namespace apsis::APSIS_NUMBERS
+APSIS_AFTER_FORMULAS();
+
+#endif

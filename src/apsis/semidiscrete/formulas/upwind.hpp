@@ -1,0 +1,67 @@
+// Upwind fluxes between cells seen in the direction of motion.
+#if defined(APSIS_SEMIDISCRETE_FORMULAS_UPWIND) == defined(HWY_TARGET_TOGGLE)
+#ifdef APSIS_SEMIDISCRETE_FORMULAS_UPWIND
+#undef APSIS_SEMIDISCRETE_FORMULAS_UPWIND
+#else
+#define APSIS_SEMIDISCRETE_FORMULAS_UPWIND
+#endif
+
+#include <apsis/exec/number.hpp>
+#include <apsis/scheme/formulas/limiter.hpp>
+
+APSIS_BEFORE_FORMULAS();
+namespace apsis::APSIS_NUMBERS {
+
+/// αu + βT in a target, added to its content old() unless it is fresh, T = |v|/Δx (in − out) + source(). Both
+/// are called only where they are needed. λ = β|v|/Δx first: (|v|/Δx)(in − out) would round a second time
+/// among subnormal numbers, where 2.5 units count as much as 3, and u − (in − out) could become negative
+/// (docs/space.md, "Rounding").
+template <class N, class Old, class Source>
+APSIS_FORMULA N transported(N alpha, N u, N lambda, N difference, bool fresh, const Old& old, bool has_source,
+                            N beta, const Source& source) {
+  N sum = fresh ? alpha * u : fma(alpha, u, old());
+  if (has_source) sum = fma(beta, source(), sum);
+  return fma(lambda, difference, sum);
+}
+
+/// A cell and its outflow seen in the direction of motion, and the fraction of its corrections that does no
+/// harm.
+template <class N>
+struct limited_cell {
+  N u, edge, fraction;
+  bool moderate;  ///< the corrections of all components are small (limiter::is_moderate)
+  bool harms;     ///< some component has a fraction below 1
+
+  APSIS_FORMULA N correction() const { return edge - u; }
+};
+
+/// A cell whose corrections are not limited yet.
+template <class N>
+APSIS_FORMULA limited_cell<N> unlimited(N u, N edge) {
+  return {u, edge, N(1.0), limiter::is_moderate(u, edge), false};
+}
+
+/// The cell downstream of another one, with the fraction that this one leaves it.
+template <class N>
+APSIS_FORMULA limited_cell<N> limited_after(const limited_cell<N>& upstream, N u, N edge) {
+  limited_cell<N> cell = unlimited(u, edge);
+  if (cell.moderate && upstream.moderate) return cell;
+  const limiter::harm_bound<N> of(upstream.u, cell.u, upstream.correction(), cell.correction());
+  cell.harms = of.exceeded();
+  if (cell.harms) cell.fraction = of.fraction();
+  return cell;
+}
+
+/// The flux from `donor` to `receiver`.
+template <class N>
+APSIS_FORMULA N limited_flux(const limited_cell<N>& donor, const limited_cell<N>& receiver) {
+  if (!donor.harms && !receiver.harms) return donor.edge;
+  const N correction = donor.correction();
+  const N fraction = select(correction > N(0.0), donor.fraction, receiver.fraction);
+  return select(fraction < N(1.0), fma(fraction, correction, donor.u), donor.edge);
+}
+
+}  // namespace apsis::APSIS_NUMBERS
+APSIS_AFTER_FORMULAS();
+
+#endif

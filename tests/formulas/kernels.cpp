@@ -1,0 +1,80 @@
+// Formulas of all families on a double, as kernels of a graphics processor would use them: compiled to
+// assembly only (test_formulas.py), without any library.
+#include <apsis/model/formulas/line.hpp>
+#include <apsis/model/formulas/relaxation.hpp>
+#include <apsis/model/formulas/target.hpp>
+#include <apsis/model/formulas/velocity.hpp>
+#include <apsis/scheme/formulas/quartic.hpp>
+#include <apsis/scheme/formulas/row.hpp>
+#include <apsis/scheme/formulas/upwind.hpp>
+#include <apsis/scheme/formulas/weno5_js.hpp>
+#include <apsis/scheme/formulas/weno5_z.hpp>
+#include <apsis/semidiscrete/formulas/centre.hpp>
+#include <apsis/semidiscrete/formulas/collision.hpp>
+#include <apsis/semidiscrete/formulas/upwind.hpp>
+
+namespace scalar = apsis::scalar;
+
+namespace {
+
+template <class Weights>
+double outflow_edge(const double* u) {
+  using namespace scalar::weno5;
+  const window<Weights, double> at(u[0], u[1], u[2], u[3], u[4]);
+  right_fraction<double> cell(edge_terms<Weights, double>{at});
+  if constexpr (!Weights::of_any_size)
+    cell.replace_if_too_large(right_fraction<double>(edge_terms<scaled<Weights>, double>(at)));
+  return cell.edge();
+}
+
+}  // namespace
+
+extern "C" void transport_z(const double* u, double* acc) {
+  const auto first = scalar::unlimited(u[2], outflow_edge<scalar::weights_z>(u));
+  const auto here = scalar::limited_after(first, u[3], outflow_edge<scalar::weights_z>(u + 1));
+  const auto next = scalar::limited_after(here, u[4], outflow_edge<scalar::weights_z>(u + 2));
+  const double in = scalar::limited_flux(first, here), out = scalar::limited_flux(here, next);
+  acc[0] = scalar::transported(
+      0.5, u[3], 0.1, in - out, false, [acc] { return acc[0]; }, true, 0.2, [acc] { return acc[1]; });
+}
+
+extern "C" void linear_edges(const double* u, double* to) {
+  to[0] = outflow_edge<scalar::weights_js>(u);
+  to[1] = scalar::upwind1_edge(u[0]);
+  to[2] = scalar::upwind5_edge(u[0], u[1], u[2], u[3], u[4]);
+  scalar::limiter::limit_edges(u[2], to[0], to[2]);
+}
+
+extern "C" void collisions(const double* u, double* to) {
+  const auto points = scalar::quartic_values<true>(u[0], u[1], u[2], u[3], u[4]);
+  to[0] = scalar::collision_part(u[0], u[1], u[2], scalar::with_collision(points.g0, points.g1, points.g2));
+  to[1] = scalar::with_part(0.0, u[0], u[1], u[2], scalar::moved_towards(u[3], u[4], u[5]));
+  to[2] = scalar::relaxation_rate(u[0], u[1], u[2]);
+  to[3] = scalar::centre_value<double>([u](int i) { return u[i]; }, true);
+  const scalar::changed_cell<double> cell(u[0], u[1]), next(u[1], u[2]);
+  to[4] = scalar::centre_average(cell.b, u[5], scalar::centre_flux(cell, next, true), true);
+  to[5] = scalar::lowered_centre(u[0], u[1], u[2], true);
+}
+
+extern "C" void equilibria(const double* u, double* to) {
+  const scalar::cubic_polynomial<double> cubic{u[0], u[1], u[2], u[3]};
+  double value = u[5] * cubic(u[4]);
+  scalar::raise(value, u[6], u[7]);
+  scalar::sums_of_powers<double> powers;
+  powers.add(value, u[0]);
+  scalar::sums_of_weights<double> weights;
+  weights.add(scalar::line_weight(u[0], u[1], u[2], u[3], u[4]), u[0], u[1]);
+  scalar::sums_of_products<double> products;
+  products.add(weights.mass, u[0], u[1]);
+  scalar::sums_of_moments<double> moments;
+  moments.add(scalar::entropy_term(value), u[0], u[1]);
+  scalar::gaussian_walk<true, double> walk{scalar::gaussian_start(u[0], u[1], u[2]), u[3], u[4]};
+  walk.advance();
+  scalar::row_contents<double> contents(u[0], 0.0, 0.0);
+  contents.add(walk.value);
+  to[0] = value;
+  to[1] = powers.s3;
+  to[2] = products.cc;
+  to[3] = moments.energy;
+  to[4] = contents.lowest + contents.not_finite;
+}

@@ -1,0 +1,331 @@
+// Kernels against their formulas on single numbers, point by point: the same bits in every instruction set.
+// Sums have one chain of additions per lane; the reference adds in the same chains.
+#include <apsis/core/random_source.hpp>
+#include <apsis/exec/aligned.hpp>
+#include <apsis/model/formulas/line.hpp>
+#include <apsis/model/formulas/relaxation.hpp>
+#include <apsis/model/formulas/target.hpp>
+#include <apsis/model/formulas/velocity.hpp>
+#include <apsis/model/line_sums.hpp>
+#include <apsis/model/relaxation_rows.hpp>
+#include <apsis/model/target_rows.hpp>
+#include <apsis/model/vector_math.hpp>
+#include <apsis/model/velocity_rows.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <support/property.hpp>
+#include <support/reference_numbers.hpp>
+
+namespace model_formulas_test {
+
+namespace {
+
+using apsis::random_source;
+namespace scalar = apsis::scalar;
+
+/// The total of one member of the sums of all lanes.
+template <class Sums, class Member>
+double total(const std::vector<Sums>& lanes, Member member) {
+  using N = std::decay_t<decltype(lanes[0].*member)>;
+  std::vector<N> parts;
+  for (const auto& lane : lanes) parts.push_back(lane.*member);
+  return sum_of_lanes(parts);
+}
+
+/// Numbers of the size of velocities.
+double any_velocity(random_source& random) {
+  return random.uniform(-15.0, 15.0);
+}
+
+}  // namespace
+
+TEST(formulas, exponential_and_logarithm_are_accurate_to_two_units_in_the_last_place) {
+  check_property("exp and log", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    for (int i = 0; i < 100; ++i) {
+      const double x = random.one_in(3) ? random.uniform(-1.0, 1.0) : random.uniform(-700.0, 700.0);
+      const double y = random.one_in(3) ? random.uniform(0.5, 2.0) : random.magnitude(-307.0, 308.0);
+      const long double e = std::exp(static_cast<long double>(x)), l = std::log(static_cast<long double>(y));
+      // Without a fused product the reduced argument has another rounding.
+      RC_ASSERT(std::abs(scalar::exp_of(x) - e) <= 2.3e-16L * e);
+      RC_ASSERT(std::abs(value_of(scalar::exp_of(unfused(x))) - e) <= 4.5e-16L * e);
+      RC_ASSERT(std::abs(scalar::log_of(y) - l) <= 2.3e-16L * std::abs(l));
+      RC_ASSERT(std::abs(value_of(scalar::log_of(unfused(y))) - l) <= 4.5e-16L * std::abs(l));
+    }
+  });
+  EXPECT_EQ(scalar::exp_of(0.0), 1.0);
+  EXPECT_EQ(scalar::exp_of(-1001.0), 0.0);
+  EXPECT_EQ(scalar::exp_of(std::numeric_limits<double>::quiet_NaN()), 0.0);
+  EXPECT_EQ(scalar::exp_of(800.0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(scalar::log_of(1.0), 0.0);
+}
+
+TEST(formulas, relaxations_are_those_of_single_numbers) {
+  check_property("relaxation", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40));
+    std::vector<std::vector<double>> row;
+    for (int i = 0; i < 10; ++i) row.push_back(drawn(n, random, any_size));
+    const double share = random.uniform(0.0, 0.5);
+    std::vector<apsis::relaxation::weighted_rows> points;
+    for (std::size_t p = 0; p < 5; ++p)
+      points.push_back({0.2, 0.2 * random.uniform(0.0, 0.5), row[2 * p].data(), row[2 * p + 1].data()});
+    const auto width = static_cast<int>(n);
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      auto u = row[0], v = row[0];
+      std::vector<double> mean3(n), mean5(n), q(n);
+      apsis::relaxation::combine(1.0 - share, share, row[1].data(), width, u.data());
+      apsis::relaxation::combine(share, 1.0 - share, row[1].data(), width, v.data());
+      apsis::relaxation::mean({points.data(), 3}, width, mean3.data());
+      apsis::relaxation::mean(points, width, mean5.data());
+      apsis::relaxation::change(1e6, row[1].data(), row[0].data(), width, q.data());
+      for (std::size_t k = 0; k < n; ++k) {
+        const N here(row[0][k]), there(row[1][k]);
+        RC_ASSERT(same_bits(u[k], value_of(scalar::moved_towards(here, N(share), there))));
+        RC_ASSERT(same_bits(v[k], value_of(scalar::moved_towards(there, N(share), here))));
+        RC_ASSERT(same_bits(q[k], value_of(scalar::relaxation_rate(N(1e6), there, here))));
+        N sum(0.0);
+        for (std::size_t p = 0; p < 5; ++p) {
+          const auto& of = points[p];
+          sum = scalar::with_part(sum, N(of.weight), N(of.base[k]), N(of.share), N(of.other[k]));
+          if (p == 2) {
+            RC_ASSERT(same_bits(mean3[k], value_of(sum)));
+          }
+        }
+        RC_ASSERT(same_bits(mean5[k], value_of(sum)));
+      }
+    });
+  });
+}
+
+TEST(formulas, weighed_targets_are_those_of_single_numbers) {
+  check_property("targets", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40));
+    constexpr std::size_t lines = 2;
+    const auto m = drawn(lines * n, random, any_size), f = drawn(lines * n, random, any_size),
+               v = drawn(n, random, any_velocity);
+    std::array<apsis::target_rows::cubic, lines> p;
+    for (auto& of : p)
+      of = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    const double u = any_velocity(random);
+    for (const double keep : {std::numeric_limits<double>::infinity(), 0.0, 0.3})
+      for_each_number([&](auto number, int lanes) {
+        using N = decltype(number);
+        std::vector<double> e(lines * n);
+        const bool raised = apsis::target_rows::weigh(m.data(), v.data(), u, p.data(), lines, f.data(), keep,
+                                                      static_cast<int>(n), e.data());
+        bool of_any = false;
+        for (std::size_t line = 0; line < lines; ++line)
+          for (std::size_t k = 0; k < n; ++k) {
+            const auto at = line * n + k;
+            const auto& c = p[line];
+            const scalar::cubic_polynomial<N> cubic{N(c.k0), N(c.k1), N(c.k2), N(c.k3)};
+            N value = N(m[at]) * cubic(N(v[k]) - N(u));
+            if (std::isfinite(keep)) of_any |= scalar::raise(value, N(keep), N(f[at]));
+            RC_ASSERT(same_bits(e[at], value_of(value)));
+          }
+        RC_ASSERT(raised == of_any);
+
+        std::array<apsis::target_rows::powers, lines> sums{};
+        apsis::target_rows::power_sums(f.data(), v.data(), u, lines, static_cast<int>(n), sums.data());
+        for (std::size_t line = 0; line < lines; ++line) {
+          const auto width = static_cast<std::size_t>(lanes);
+          std::vector<scalar::sums_of_powers<N>> of(width);
+          std::size_t k = 0;
+          for (; k + width <= n; k += width)
+            for (std::size_t lane = 0; lane < width; ++lane)
+              of[lane].add(N(f[line * n + k + lane]), N(v[k + lane]) - N(u));
+          using powers = scalar::sums_of_powers<N>;
+          scalar::sums_of_powers<double> all{total(of, &powers::s0), total(of, &powers::s1),
+                                             total(of, &powers::s2), total(of, &powers::s3)};
+          for (; k < n; ++k) all.add_last(f[line * n + k], v[k] - u);
+          const apsis::target_rows::powers expected{all.s0, all.s1, all.s2, all.s3};
+          for (std::size_t power = 0; power < 4; ++power)
+            RC_ASSERT(same_bits(sums[line][power], expected[power]));
+        }
+      });
+  });
+}
+
+TEST(formulas, sums_over_a_line_are_those_of_single_numbers) {
+  check_property("lines", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40));
+    constexpr auto packet = static_cast<std::size_t>(apsis::packet_length);
+    const std::size_t padded = (n + packet - 1) / packet * packet;
+    apsis::aligned_vector<double> x(padded), c(padded), base(padded, 1.0), w(padded);
+    for (std::size_t j = 0; j < n; ++j) {
+      x[j] = any_velocity(random);
+      c[j] = random.uniform(0.0, 100.0);
+      base[j] = random.uniform(0.0, 2.0);
+    }
+    const double beta = random.uniform(-3.0, 3.0), tau = random.uniform(-1.0, 10.0),
+                 shift = random.uniform(-5.0, 5.0);
+    const bool with_base = random.one_in(2);
+    for_each_number([&](auto number, int lanes) {
+      using N = decltype(number);
+      const auto width = static_cast<std::size_t>(lanes);
+      const auto values = apsis::line_sums::weigh(x.data(), c.data(), with_base ? base.data() : nullptr,
+                                                  static_cast<int>(n), beta, tau, shift, w.data());
+      const auto products = apsis::line_sums::multiply(x.data(), c.data(), w.data(), static_cast<int>(n));
+      using weights = scalar::sums_of_weights<N>;
+      using second = scalar::sums_of_products<N>;
+      std::vector<weights> of(width);
+      std::vector<second> of_second(width);
+      for (std::size_t j = 0; j < (n + width - 1) / width * width; ++j) {
+        N weight = j < n ? scalar::line_weight(N(x[j]), N(c[j]), N(beta), N(tau), N(shift)) : N(0.0);
+        if (with_base) weight = weight * N(base[j]);
+        RC_ASSERT(same_bits(w[j], value_of(weight)));
+        of[j % width].add(weight, N(x[j]), N(c[j]));
+        of_second[j % width].add(weight, N(x[j]), N(c[j]));
+      }
+      RC_ASSERT(same_bits(values.mass, total(of, &weights::mass)));
+      RC_ASSERT(same_bits(values.above, total(of, &weights::above)));
+      RC_ASSERT(same_bits(values.below, total(of, &weights::below)));
+      RC_ASSERT(same_bits(values.energy, total(of, &weights::energy)));
+      RC_ASSERT(same_bits(products.above_x, total(of_second, &second::above_x)));
+      RC_ASSERT(same_bits(products.above_c, total(of_second, &second::above_c)));
+      RC_ASSERT(same_bits(products.below_x, total(of_second, &second::below_x)));
+      RC_ASSERT(same_bits(products.below_c, total(of_second, &second::below_c)));
+      RC_ASSERT(same_bits(products.cc, total(of_second, &second::cc)));
+    });
+  });
+}
+
+namespace {
+
+/// Calls add(chain, lane, k) for every place of a row, those behind n included: two chains while two vectors
+/// are left.
+template <class Add>
+void in_two_chains(std::size_t n, std::size_t lanes, const Add& add) {
+  std::size_t k = 0;
+  for (; k + 2 * lanes <= n; k += 2 * lanes)
+    for (std::size_t i = 0; i < 2 * lanes; ++i) add(i / lanes, i % lanes, k + i);
+  for (; k < n; k += lanes)
+    for (std::size_t lane = 0; lane < lanes; ++lane) add(0, lane, k + lane);
+}
+
+/// The sum over lanes of the sums of two chains.
+template <class Sums, class Member>
+double total_of_chains(const std::array<std::vector<Sums>, 2>& chains, Member member) {
+  using N = std::decay_t<decltype(chains[0][0].*member)>;
+  std::vector<N> parts;
+  for (std::size_t lane = 0; lane < chains[0].size(); ++lane)
+    parts.push_back(chains[0][lane].*member + chains[1][lane].*member);
+  return sum_of_lanes(parts);
+}
+
+}  // namespace
+
+TEST(formulas, moments_and_entropies_are_those_of_single_numbers) {
+  check_property("moments", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, apsis::velocity_rows::longest_chain + 1));
+    const int rows = *rc::gen::inRange(1, 6);
+    const auto f = drawn(n * static_cast<std::size_t>(rows), random, any_size),
+               v = drawn(n, random, any_velocity);
+    std::vector<double> half;
+    for (const double x : v) half.push_back(0.5 * x * x);
+    for_each_number([&](auto number, int lanes) {
+      using N = decltype(number);
+      using moments = scalar::sums_of_moments<N>;
+      std::vector<apsis::velocity_rows::sums> sums(static_cast<std::size_t>(rows));
+      apsis::velocity_rows::moments(f.data(), static_cast<std::ptrdiff_t>(n), rows, v.data(), half.data(),
+                                    static_cast<int>(n), sums.data());
+      for (std::size_t r = 0; r < sums.size(); ++r) {
+        const auto width = static_cast<std::size_t>(lanes);
+        std::array<std::vector<moments>, 2> of{std::vector<moments>(width), std::vector<moments>(width)};
+        struct entropy_sum {
+          N sum{0.0};
+        };
+        std::array<std::vector<entropy_sum>, 2> s{std::vector<entropy_sum>(width),
+                                                  std::vector<entropy_sum>(width)};
+        in_two_chains(n, width, [&](std::size_t chain, std::size_t lane, std::size_t k) {
+          const N value(k < n ? f[r * n + k] : 0.0);
+          of[chain][lane].add(value, N(k < n ? v[k] : 0.0), N(k < n ? half[k] : 0.0));
+          s[chain][lane].sum = s[chain][lane].sum + scalar::entropy_term(value);
+        });
+        RC_ASSERT(same_bits(sums[r].mass, total_of_chains(of, &moments::mass)));
+        RC_ASSERT(same_bits(sums[r].momentum, total_of_chains(of, &moments::momentum)));
+        RC_ASSERT(same_bits(sums[r].energy, total_of_chains(of, &moments::energy)));
+        const double entropy = apsis::velocity_rows::entropy(f.data() + r * n, static_cast<int>(n));
+        RC_ASSERT(same_bits(entropy, total_of_chains(s, &entropy_sum::sum)));
+      }
+    });
+  });
+}
+
+namespace {
+
+/// A Gaussian at all points, by the formulas on single numbers and vectors of so many points.
+template <class N>
+std::vector<double> gaussian(const apsis::velocity_rows::points& line,
+                             const apsis::velocity_rows::gaussian& of, int length) {
+  const int n = line.n, vectors = (n + length - 1) / length;
+  std::vector<double> m(static_cast<std::size_t>(n));
+  const auto x = [&](int j) { return scalar::distance_to(N(of.u), N(line.spacing), N(j + 0.5 - 0.5 * n)); };
+  const double jump = line.spacing * length;
+  const N per = N(0.5) / N(of.T);
+  const auto put = [&](int j, N value) {
+    if (j < n) m[static_cast<std::size_t>(j)] = value_of(value);
+  };
+  if (!scalar::gaussian_recurs(jump * jump * value_of(per))) {
+    for (int j = 0; j < n; ++j) put(j, scalar::gaussian_value(N(of.a), x(j), N(of.T)));
+    return m;
+  }
+  const double farthest = 0.5 * line.spacing * n + jump + std::abs(of.u);
+  const N change = scalar::gaussian_change(per, N(jump));
+  const int centre = static_cast<int>(
+      value_of(scalar::gaussian_vector(N(of.u), N(line.spacing), N(n), N(length), N(vectors))));
+  const auto fill = [&]<bool Deep>(std::bool_constant<Deep>) {
+    for (int lane = 0; lane < length; ++lane) {
+      const N from = x(centre * length + lane), start = scalar::gaussian_start(N(of.a), from, per),
+              right = scalar::gaussian_right(from, per, N(jump));
+      scalar::gaussian_walk<Deep, N> walk{start, right, change};
+      for (int k = centre; k < vectors; ++k, walk.advance()) put(k * length + lane, walk.value);
+      walk = {start, change / right, change};
+      for (int k = centre - 1; k >= 0; --k) {
+        walk.advance();
+        put(k * length + lane, walk.value);
+      }
+    }
+  };
+  if (scalar::gaussian_is_deep(of.a, farthest, value_of(per))) {
+    fill(std::true_type());
+  } else {
+    fill(std::false_type());
+  }
+  return m;
+}
+
+}  // namespace
+
+TEST(formulas, gaussians_are_those_of_single_numbers) {
+  check_property("gaussians", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const apsis::velocity_rows::points line{*rc::gen::inRange(1, 160), random.uniform(0.05, 0.5)};
+    std::vector<apsis::velocity_rows::gaussian> of;
+    const int rows = *rc::gen::inRange(1, 12);
+    for (int p = 0; p < rows; ++p)
+      of.push_back({random.magnitude(-40.0, 10.0), random.uniform(-20.0, 20.0), random.magnitude(-3.0, 3.0)});
+    const auto n = static_cast<std::size_t>(line.n);
+    for_each_number([&](auto number, int lanes) {
+      std::vector<double> m(n * of.size());
+      apsis::velocity_rows::gaussians(line, of.data(), rows, m.data(), line.n);
+      for (std::size_t p = 0; p < of.size(); ++p) {
+        const auto expected = gaussian<decltype(number)>(line, of[p], lanes);
+        for (std::size_t j = 0; j < n; ++j) RC_ASSERT(same_bits(m[p * n + j], expected[j]));
+      }
+    });
+  });
+}
+
+}  // namespace model_formulas_test

@@ -98,7 +98,7 @@ json regime_json(const certificate& c) {
   return {{"flux", number(terms.flux)},
           {"last", number(terms.last)},
           {"layer", number(terms.layer)},
-          {"keeps", c.kept_terms()},
+          {"keeps", c.remaining_terms()},
           {"next",
            {{"flux_place", number(terms.flux_place)},
             {"flux_slope", number(terms.flux_slope)},

@@ -62,7 +62,7 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
   if (!run.setup().equation->invariants().empty())
     line("conservation defect", fmt::format("{:.2e} (relative)", s.conservation_defect));
   const auto faces = run.setup().open_faces(), names = run.setup().equation->invariants();
-  const auto densities = run.setup().equation->invariant_measures();
+  const auto densities = run.setup().equation->invariant_dimensions();
   for (std::size_t f = 0; f < faces.size() && !names.empty(); ++f) {
     std::vector<std::string> amounts;
     for (std::size_t k = 0; k < names.size(); ++k) {

@@ -11,7 +11,7 @@ std::string scales_text(const gas_scales& scales) {
   for (const auto& one : scales.quantities()) {
     if (one.name == "epsilon") break;  // the rest is knudsen_text()
     out += fmt::format("{:<22}{:.6g}{}\n", one.name, one.value,
-                       one.measure == dimensions::none ? "" : " " + unit_of(one.measure));
+                       one.dimension == dimensions::none ? "" : " " + unit_of(one.dimension));
   }
   return out;
 }

@@ -21,7 +21,7 @@ limit_equations broadwell() {
 
 /// The equation u_t + F(u)_x = 0; empty for a flux given as a formula, which is its own description.
 std::optional<limit_equations> conservation_law(const case_config& config) {
-  const std::string& flux = config.model.texts.at("flux");
+  const std::string& flux = config.model.options.at("flux");
   if (flux == "burgers")
     return limit_equations{
         "Burgers' equation", 1, [](const double* u, double* f) { f[0] = 0.5 * u[0] * u[0]; }, {}};

@@ -83,7 +83,7 @@ json models() {
                        {"formulas_in", l.variables.empty() ? json(nullptr) : json(l.variables)},
                        {"doc", l.doc}});
     json texts = json::array();
-    for (const auto& t : m->texts)
+    for (const auto& t : m->options)
       texts.push_back({{"name", t.name},
                        {"default", t.value},
                        {"choices", t.choices},

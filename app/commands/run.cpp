@@ -56,7 +56,7 @@ constexpr double longest_wait = 60.0;
 int run_on(const std::shared_ptr<communicator>& processes, run_options options) {
   processes->limit_waiting(interrupted, longest_wait);
   case_config config;
-  together(*processes, [&] { config = load_case(options.case_name, options.overrides); });
+  run_collectively(*processes, [&] { config = load_case(options.case_name, options.overrides); });
   set_threads(options.threads.value_or(threads_for(config, *processes)));
   progress_bar bar;
   options.session.processes = processes;

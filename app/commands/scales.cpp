@@ -29,8 +29,8 @@ struct scales_options {
 
 /// Returns the constant ε of a case. Throws input_error if its model has no viscosity ε T^s, or ε(x) varies.
 double constant_epsilon(const case_config& config) {
-  const auto rate = config.model.texts.find("collision_rate");
-  if (rate == config.model.texts.end() || rate->second != "viscosity")
+  const auto rate = config.model.options.find("collision_rate");
+  if (rate == config.model.options.end() || rate->second != "viscosity")
     throw input_error(place_of(config, "model.epsilon"),
                       "the case has no viscosity epsilon T^s from which a mean free path follows; add "
                       "collision_rate = \"viscosity\" or a table [gas]");

@@ -43,10 +43,10 @@ std::unique_ptr<model> make_equation(const kinetic_description& of) {
     config.parameters[name] = value;
   }
   for (const auto& [name, value] : of.options) {
-    if (!config.texts.contains(name))
+    if (!config.options.contains(name))
       throw input_error(fmt::format(
           "unknown option '{1}' (model '{0}' has no such option); see: apsis list models", of.model, name));
-    config.texts[name] = value;
+    config.options[name] = value;
   }
   for (const auto& [name, value] : of.lists) {
     if (!config.lists.contains(name))

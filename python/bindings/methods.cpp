@@ -111,7 +111,7 @@ py::dict certificate_of(const method& m) {
   all["implicit_solves"] = c.implicit_solves;
   all["angle"] = c.stability.angle;
   all["l_stable"] = c.stability.l_stable;
-  all["keeps"] = c.kept_terms();
+  all["keeps"] = c.remaining_terms();
   const step_estimate how = estimate_of(m);
   all["estimate"] = how.doubles ? "step doubling" : "embedded solution of order " + std::to_string(how.order);
   all["claims_hold"] = c.claims_hold;

@@ -210,8 +210,8 @@ py::object run_on(const std::shared_ptr<communicator>& processes, const std::opt
                   const py::object& initial, const std::vector<double>& jumps) {
   const silence_of_others quiet(*processes);
   case_config config;
-  together(*processes,
-           [&] { config = text ? parse_case(*text, name, overrides) : load_case(name, overrides); });
+  run_collectively(*processes,
+                   [&] { config = text ? parse_case(*text, name, overrides) : load_case(name, overrides); });
   const library_call own(threads.value_or(threads_for(config, *processes)));
   attendant asks(progress);
   session_options how;
@@ -230,7 +230,7 @@ py::object run_on(const std::shared_ptr<communicator>& processes, const std::opt
   if (!initial.is_none())
     how.initial = [&initial, &jumps](const run_setup& setup) {
       field state;
-      together(setup.processes(), [&] {
+      run_collectively(setup.processes(), [&] {
         const py::gil_scoped_acquire python;
         state = make_state(initial, *setup.equation, setup.builder(), jumps, "initial");
       });

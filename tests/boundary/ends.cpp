@@ -56,7 +56,7 @@ std::vector<double> entering(const apsis::model& gas, const std::string& kind, c
   const std::vector<double> ghost = maxwellian(gas, inside);
   const std::array<const double*, 3> ghosts = {ghost.data(), ghost.data(), ghost.data()};
   std::vector<double> row(ghost.size());
-  (own ? own : boundary)->incoming_beside(where, 0.0, {}, ghost.data(), ghosts, row.data());
+  (own ? own : boundary)->incoming_given_outgoing(where, 0.0, {}, ghost.data(), ghosts, row.data());
   return row;
 }
 
@@ -162,10 +162,10 @@ TEST(gas_ends, fill_a_vacuum) {
   const std::array<const double*, 1> ghosts = {nothing.data()};
   std::vector<double> row(nothing.size());
   make_boundary("far-field", *gas, {{"rho", {0.5}}, {"T", {1.0}}})
-      ->incoming_beside(where, 0.0, {}, nothing.data(), ghosts, row.data());
+      ->incoming_given_outgoing(where, 0.0, {}, nothing.data(), ghosts, row.data());
   EXPECT_NEAR(moment(*gas, row, 0), 0.5, 1e-12);
   make_boundary("pressure", *gas, {{"p", {2.0}}})
-      ->incoming_beside(where, 0.0, {}, nothing.data(), ghosts, row.data());
+      ->incoming_given_outgoing(where, 0.0, {}, nothing.data(), ghosts, row.data());
   EXPECT_NEAR(moment(*gas, row, 0), 2.0, 1e-12);
   EXPECT_NEAR(moment(*gas, row, 1), 2.0 * std::sqrt(heat_ratio), 1e-12);
 }

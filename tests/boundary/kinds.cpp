@@ -89,7 +89,7 @@ TEST(boundary, computed_rows_give_the_results_of_repeated_rows) {
   for (const grid& mesh : {grid::line(5, 0, 1), grid(2, {2, 4, 1}, {0, 0, 0}, {1, 1, 1}),
                            grid(3, {4, 3, 2}, {0, 0, 0}, {1, 1, 1})})
     for (const std::string& name : apsis::boundary_names()) {
-      if (apsis::find_boundary(name).variables != nullptr || !apsis::make_boundary(name)->repeated_cell(0, 5))
+      if (apsis::find_boundary(name).variables != nullptr || !apsis::make_boundary(name)->cell_of_ghost(0, 5))
         continue;
       const auto side = std::make_shared<copied>(apsis::make_boundary(name));
       domain repeated = apsis::make_domain(mesh, name);

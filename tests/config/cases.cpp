@@ -144,9 +144,9 @@ TEST(cases, each_end_may_have_its_own_boundary) {
 
 TEST(cases, text_values_of_a_model_read_back_unchanged) {
   const case_config c = load_case("paper/relaxation", {"model.flux=u < 0.5 ? u/4 : (u - 0.25)/2"});
-  EXPECT_EQ(c.model.texts.at("flux"), "u < 0.5 ? u/4 : (u - 0.25)/2");
-  EXPECT_EQ(parse_case(to_toml(c), "again").model.texts, c.model.texts);
-  EXPECT_EQ(load_case("paper/relaxation", {"model.flux=0"}).model.texts.at("flux"), "0");
+  EXPECT_EQ(c.model.options.at("flux"), "u < 0.5 ? u/4 : (u - 0.25)/2");
+  EXPECT_EQ(parse_case(to_toml(c), "again").model.options, c.model.options);
+  EXPECT_EQ(load_case("paper/relaxation", {"model.flux=0"}).model.options.at("flux"), "0");
 }
 
 TEST(cases, a_list_of_one_name_is_given_without_brackets_and_quotes) {
@@ -158,7 +158,7 @@ TEST(cases, a_list_of_one_name_is_given_without_brackets_and_quotes) {
 TEST(schema, a_parameter_name_has_one_type_in_all_models) {
   // The command line decides whether a value needs quotes before the model is known.
   for (const model_entry* one : model_entries())
-    for (const model_text& text : one->texts) {
+    for (const model_option& text : one->options) {
       EXPECT_NE(std::find(text.choices.begin(), text.choices.end(), text.value), text.choices.end());
       for (const model_entry* other : model_entries())
         for (const model_parameter& p : other->parameters) EXPECT_NE(text.name, p.name);

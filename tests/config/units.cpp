@@ -185,7 +185,7 @@ TEST(gas, units_become_dimensionless_numbers) {
   // The gas sets the model.
   const double mu = 2.117e-5 * std::pow(300.0 / 273.0, 0.81);
   expect(number(c.model.epsilon.text), mu * speed / (10.0 * 1e-3));
-  EXPECT_EQ(c.model.texts.at("collision_rate"), "viscosity");
+  EXPECT_EQ(c.model.options.at("collision_rate"), "viscosity");
   EXPECT_EQ(c.model.parameters.at("viscosity_exponent"), 0.81);
   EXPECT_EQ(c.model.parameters.at("prandtl"), 2.0 / 3.0);
   EXPECT_EQ(c.model.parameters.at("degrees_of_freedom"), 3.0);

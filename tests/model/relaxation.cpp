@@ -17,7 +17,7 @@ namespace {
 
 std::unique_ptr<apsis::model> make(const std::string& flux, double speed) {
   auto config = apsis::default_config(apsis::find_model("relaxation"));
-  config.texts["flux"] = flux;
+  config.options["flux"] = flux;
   config.parameters["speed"] = speed;
   return apsis::find_model("relaxation").make(config);
 }

@@ -71,7 +71,7 @@ const std::map<std::string, job> collectives = {
     {"broadcast-of-megabytes", [](communicator& all) { broadcast_from(2, std::size_t{1} << 22U, all); }},
     {"gather-of-megabytes", [](communicator& all) { gather_bytes(std::size_t{1} << 22U, all); }},
     {"exchange", exchange_in_a_ring},
-    {"agreement", [](communicator& all) { apsis::together(all, [] {}); }},
+    {"agreement", [](communicator& all) { apsis::run_collectively(all, [] {}); }},
 };
 
 volatile std::sig_atomic_t asked = 0;

@@ -13,7 +13,7 @@ inline apsis::case_config mixed(const std::string& data, const std::string& meth
   c.model.name = "bgk";
   const apsis::model_config defaults = apsis::default_config(apsis::find_model("bgk"));
   c.model.parameters = defaults.parameters;
-  c.model.texts = defaults.texts;
+  c.model.options = defaults.options;
   c.model.epsilon = "1e-5 + tanh(1 - 11*(x - 1)) + tanh(1 + 11*(x - 1))";
   c.model.initial = data;
   c.space.cells = {40};

@@ -194,10 +194,10 @@ TEST(every_model, reads_its_resolved_case_back_with_any_parameters) {
         const double value = std::max(lowest, std::min(p.highest, lowest * (1.0 - part) + p.highest * part));
         c.model.parameters[p.name] = p.integer ? std::floor(value) : value;
       }
-      for (const auto& t : entry->texts) {
+      for (const auto& t : entry->options) {
         auto choices = t.choices;
         if (!t.variable.empty()) choices.push_back(t.variable + "/3 < 1 ? -2 : \t" + t.variable + "^2");
-        c.model.texts[t.name] = *rc::gen::elementOf(choices);
+        c.model.options[t.name] = *rc::gen::elementOf(choices);
       }
       c.model.initial = *rc::gen::elementOf(initial_names(*entry));
       try {
@@ -207,7 +207,7 @@ TEST(every_model, reads_its_resolved_case_back_with_any_parameters) {
       }
       const case_config again = parse_case(to_toml(c), "again");
       RC_ASSERT(again.model.parameters == c.model.parameters);
-      RC_ASSERT(again.model.texts == c.model.texts);
+      RC_ASSERT(again.model.options == c.model.options);
       RC_ASSERT(again.model.initial == c.model.initial);
       RC_ASSERT(to_toml(again) == to_toml(c));
     });

@@ -83,7 +83,7 @@ TEST(flow_fields, have_the_unit_of_a_rate) {
   for (const std::string name : {"divergence", "vorticity"}) {
     const auto found = std::find(table.names.begin(), table.names.end(), name);
     ASSERT_NE(found, table.names.end());
-    EXPECT_EQ(apsis::unit_of(table.measures[static_cast<std::size_t>(found - table.names.begin())]), "1/s");
+    EXPECT_EQ(apsis::unit_of(table.dimensions[static_cast<std::size_t>(found - table.names.begin())]), "1/s");
   }
 }
 

@@ -91,7 +91,7 @@ TEST(reduced_gas, has_the_collision_rate_of_its_viscosity) {
   apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
   config.parameters["degrees_of_freedom"] = 3;
   config.parameters["viscosity_exponent"] = 0.81;
-  config.texts["collision_rate"] = "viscosity";
+  config.options["collision_rate"] = "viscosity";
   const auto gas = apsis::find_model("bgk").make(config);
   const auto* relaxation = dynamic_cast<const apsis::relaxation_model*>(gas.get());
   ASSERT_NE(relaxation, nullptr);

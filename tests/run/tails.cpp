@@ -190,7 +190,7 @@ TEST(tails, models_without_a_target_that_can_be_cut_have_no_such_column) {
     const auto count = std::count_if(names.begin(), names.end(),
                                      [](const std::string& one) { return one.rfind("cut_", 0) == 0; });
     EXPECT_EQ(count, std::string(model) == "bgk" ? 0 : 1) << model;
-    EXPECT_EQ(c.model.texts.contains("tails"), std::string(model) != "bgk");
+    EXPECT_EQ(c.model.options.contains("tails"), std::string(model) != "bgk");
   }
 }
 

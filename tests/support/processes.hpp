@@ -76,7 +76,7 @@ class member final : public apsis::communicator {
   member(std::shared_ptr<group> all, int rank) : all_(std::move(all)), rank_(rank) {}
   int rank() const override { return rank_; }
   int size() const override { return all_->size(); }
-  bool all_arrive(double) override { return true; }
+  bool all_call_within(double) override { return true; }
   bool end_together(const std::exception_ptr&, double) override { return true; }
   [[noreturn]] void abort(int) const override { throw std::runtime_error("aborted"); }
 

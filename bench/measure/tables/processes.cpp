@@ -78,7 +78,7 @@ class timed_run {
  private:
   /// A barrier without a busy loop, which would disturb the others. A process that arrives late wakes nobody.
   void wait_asleep() {
-    if (!all_->all_arrive(3600.0)) throw std::runtime_error("a process did not arrive within an hour");
+    if (!all_->all_call_within(3600.0)) throw std::runtime_error("a process did not arrive within an hour");
   }
 
   processes_pointer all_;

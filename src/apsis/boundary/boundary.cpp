@@ -10,14 +10,14 @@ std::shared_ptr<const boundary> boundary::prepared(const face&, const velocity_s
   return nullptr;
 }
 
-std::optional<int> boundary::repeated_cell(int, int) const {
+std::optional<int> boundary::cell_of_ghost(int, int) const {
   return std::nullopt;
 }
 
 void repeating_boundary::fill(const face&, double, const pencil_end& rows) const {
   const int cells = static_cast<int>(rows.inside.size());
   for (std::size_t g = 0; g < rows.ghosts.size(); ++g) {
-    const auto cell = static_cast<std::size_t>(*repeated_cell(static_cast<int>(g), cells));
+    const auto cell = static_cast<std::size_t>(*cell_of_ghost(static_cast<int>(g), cells));
     std::copy_n(rows.inside[cell], rows.components, rows.ghosts[g]);
   }
 }
@@ -53,8 +53,9 @@ struct continuation {
 
 void boundary::incoming(const face&, double, const position&, const double*, double*) const {}
 
-void boundary::incoming_beside(const face& where, double t, const position& at, const double* outgoing,
-                               std::span<const double* const>, double* values) const {
+void boundary::incoming_given_outgoing(const face& where, double t, const position& at,
+                                       const double* outgoing, std::span<const double* const>,
+                                       double* values) const {
   incoming(where, t, at, outgoing, values);
 }
 

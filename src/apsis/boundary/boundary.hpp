@@ -36,7 +36,7 @@ class boundary {
   /// Returns the cell, counted inwards from the face, whose row is used as ghost row `ghost` = 0, 1, …
   /// (counted outwards) of a pencil of `cells` cells; empty if fill() computes the row. Repeated rows are not
   /// copied.
-  virtual std::optional<int> repeated_cell(int ghost, int cells) const;
+  virtual std::optional<int> cell_of_ghost(int ghost, int cells) const;
   /// Fills the ghost rows of a pencil at time t. Called before every evaluation of T, and of Q if it depends
   /// on neighbouring cells, concurrently for different pencils.
   virtual void fill(const face& where, double t, const pencil_end& rows) const = 0;
@@ -51,8 +51,9 @@ class boundary {
                         double* incoming) const;
   /// The same for conditions that depend on the whole state inside: `ghosts` are the rows of fill(), counted
   /// outwards. Calls incoming() unless it is overridden.
-  virtual void incoming_beside(const face& where, double t, const position& at, const double* outgoing,
-                               std::span<const double* const> ghosts, double* incoming) const;
+  virtual void incoming_given_outgoing(const face& where, double t, const position& at,
+                                       const double* outgoing, std::span<const double* const> ghosts,
+                                       double* incoming) const;
   /// Returns the velocity of the wall, which does the work u_w · (force) on it; 0, the default, of a wall at
   /// rest and of an open end.
   virtual std::array<double, 3> wall_velocity(double /*t*/, const position& /*at*/) const { return {}; }

@@ -97,7 +97,7 @@ std::size_t domain::ends_at(const budget_surface& one) const {
 }
 
 bool domain::repeats(int surface) const {
-  return !sides_[at(surface)] || sides_[at(surface)]->repeated_cell(0, 1).has_value();
+  return !sides_[at(surface)] || sides_[at(surface)]->cell_of_ghost(0, 1).has_value();
 }
 
 void domain::reserve(int components, int width) {
@@ -242,7 +242,7 @@ const double* domain::ghost_row(const field& u, int direction, int number, bool 
     ghost -= one.beyond[upper ? 1 : 0];
     const auto& [surface, place] = one.ends[upper ? 1 : 0];
     if (surface >= 0) {
-      const auto repeated = sides_[at(surface)]->repeated_cell(ghost, visible(direction, one, upper));
+      const auto repeated = sides_[at(surface)]->cell_of_ghost(ghost, visible(direction, one, upper));
       return repeated ? inside_row(u, direction, one, upper, *repeated)
                       : ghost_rows(surface, place)[at(ghost)];
     }

@@ -59,8 +59,8 @@ fluid_state gas_end::state_at_face(std::span<const double* const> ghosts, double
   return molecules_.state(omega.data());
 }
 
-void gas_end::incoming_beside(const face& where, double t, const position& at, const double*,
-                              std::span<const double* const> ghosts, double* values) const {
+void gas_end::incoming_given_outgoing(const face& where, double t, const position& at, const double*,
+                                      std::span<const double* const> ghosts, double* values) const {
   const fluid_state inside = state_at_face(ghosts, values);
   const fluid_state state = outside(inside, where, t, at);
   std::array<double, most> omega{};

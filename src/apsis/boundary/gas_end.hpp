@@ -18,8 +18,8 @@ class gas_end : public incoming_boundary {
   gas_end(const model& equation, std::string boundary_name);
 
   /// Throws numerical_error if no Maxwellian has the state outside.
-  void incoming_beside(const face& where, double t, const position& at, const double* outgoing,
-                       std::span<const double* const> ghosts, double* incoming) const final;
+  void incoming_given_outgoing(const face& where, double t, const position& at, const double* outgoing,
+                               std::span<const double* const> ghosts, double* incoming) const final;
 
  protected:
   /// Returns the state of what enters, given the one inside at the face, which is not admissible if there is

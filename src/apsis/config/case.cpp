@@ -155,7 +155,7 @@ std::shared_ptr<const model> make_model(const case_config& config) {
   const model_entry& entry = find_model(config.model.name);
   model_config parts = default_config(entry);
   for (const auto& [name, value] : config.model.parameters) parts.parameters[name] = value;
-  for (const auto& [name, value] : config.model.texts) parts.texts[name] = value;
+  for (const auto& [name, value] : config.model.options) parts.options[name] = value;
   for (const auto& [name, value] : config.model.lists) parts.lists[name] = value;
   parts.constants = config.constants;
   parts.space_dimensions = static_cast<int>(config.space.cells.size());

@@ -45,8 +45,8 @@ struct case_config {
     std::string name;
     epsilon_formula epsilon;  ///< relaxation time ε
     std::string initial;      ///< name of one of the model's initial data; "" with a table [initial]
-    std::map<std::string, double> parameters;  ///< numeric parameters of the model; defaults if absent
-    std::map<std::string, std::string> texts;  ///< string options of the model; defaults if absent
+    std::map<std::string, double> parameters;    ///< numeric parameters of the model; defaults if absent
+    std::map<std::string, std::string> options;  ///< string options of the model; defaults if absent
     std::map<std::string, std::vector<std::string>> lists;  ///< lists of the model; defaults if absent
   } model;
   initial_table prescribed;  ///< table [initial]; empty if model.initial names the data

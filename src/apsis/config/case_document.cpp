@@ -142,7 +142,7 @@ std::string describe(const model_entry& model) {
                                 p.automatic ? fmt::format(", or \"{0}\"; default \"{0}\"", automatic_word)
                                             : fmt::format(", default {}", p.value),
                                 p.doc));
-  for (const model_text& t : model.texts)
+  for (const model_option& t : model.options)
     out += indented(fmt::format(
         "{} (text, one of {}{}, default \"{}\"): {}", t.name, fmt::join(t.choices, ", "),
         t.variable.empty() ? "" : fmt::format(", or a formula in {}", t.variable), t.value, t.doc));
@@ -277,7 +277,8 @@ std::string to_toml(const case_config& config) {
     if (table != "model") return;
     for (const auto& [name, value] : config.model.parameters)
       out += fmt::format("{} = {}\n", name, number_text(value));
-    for (const auto& [name, value] : config.model.texts) out += fmt::format("{} = {}\n", name, quoted(value));
+    for (const auto& [name, value] : config.model.options)
+      out += fmt::format("{} = {}\n", name, quoted(value));
     for (const auto& [name, value] : config.model.lists)
       out += fmt::format("{} = {}\n", name, to_toml(case_value(value)));
   };

@@ -25,8 +25,8 @@ class explainer {
     for (const model_parameter& p : model.parameters)
       if (const auto at = config_.model.parameters.find(p.name); at != config_.model.parameters.end())
         add("model." + p.name, to_toml(case_value(at->second)), at->second == p.value);
-    for (const model_text& t : model.texts)
-      if (const auto at = config_.model.texts.find(t.name); at != config_.model.texts.end())
+    for (const model_option& t : model.options)
+      if (const auto at = config_.model.options.find(t.name); at != config_.model.options.end())
         add("model." + t.name, to_toml(case_value(at->second)), at->second == t.value);
     for (const model_list& l : model.lists)
       if (const auto at = config_.model.lists.find(l.name); at != config_.model.lists.end())

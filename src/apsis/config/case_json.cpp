@@ -72,7 +72,7 @@ nlohmann::ordered_json to_json(const case_config& config) {
     *place = std::visit(to_json_visitor{}, value);
   }
   for (const auto& [name, value] : config.model.parameters) out["model"][name] = value;
-  for (const auto& [name, value] : config.model.texts) out["model"][name] = value;
+  for (const auto& [name, value] : config.model.options) out["model"][name] = value;
   for (const auto& [name, value] : config.model.lists) out["model"][name] = value;
   if (!config.constants.empty()) out["parameters"] = config.constants;
   for (std::size_t k = 0; k < config.faces.size(); ++k)

@@ -124,12 +124,12 @@ std::vector<case_key> model_keys() {
 
 /// A quantity of the table [gas].
 template <class At>
-case_key gas_quantity(std::string path, At at, dimension measure, const std::string& doc) {
+case_key gas_quantity(std::string path, At at, dimension dims, const std::string& doc) {
   return key(std::move(path), at,
              {.type = key_type::quantity,
               .scope = key_scope::velocity,
-              .unit = unit_of(measure),
-              .measure = measure,
+              .unit = unit_of(dims),
+              .dimension = dims,
               .doc = doc});
 }
 
@@ -194,7 +194,7 @@ std::vector<case_key> space_keys() {
                   "direction."}),
       key("space.domain", [](auto& c) -> auto& { return c.space.domain; },
           {.scope = key_scope::space,
-           .measure = dimensions::length,
+           .dimension = dimensions::length,
            .doc = "Lower and upper end of the domain, [lower, upper] with lower < upper; in several "
                   "dimensions a list of such pairs."}),
       key("space.blocks", [](auto& c) -> auto& { return c.space.blocks; },
@@ -245,7 +245,7 @@ std::vector<case_key> space_keys() {
           {.scope = key_scope::velocity,
            .required = true,
            .optional = [](const case_config& c) { return no_set_is(c, needs_max); },
-           .measure = dimensions::velocity,
+           .dimension = dimensions::velocity,
            .lowest = 0.0,
            .highest = 1e6,
            .lowest_excluded = true,
@@ -294,11 +294,11 @@ std::vector<case_key> time_keys() {
            .also = check_method_outside_catalogue}),
       key("time.end", [](auto& c) -> auto& { return c.time.end; },
           {.required = true,
-           .measure = dimensions::time,
+           .dimension = dimensions::time,
            .lowest = 0.0,
            .doc = "Final time; the start is t = 0."}),
       key("time.dt", [](auto& c) -> auto& { return c.time.dt; },
-          {.measure = dimensions::time,
+          {.dimension = dimensions::time,
            .lowest = 0.0,
            .lowest_excluded = true,
            .doc = "Step size. Exactly one of dt, cfl and safety is given."}),
@@ -340,7 +340,7 @@ std::vector<case_key> time_keys() {
                   "two steps "
                   "of half the length with one instead, and continue with the two."}),
       key("time.steady", [](auto& c) -> auto& { return c.time.steady; },
-          {.measure = dimensions::none / dimensions::time,
+          {.dimension = dimensions::none / dimensions::time,
            .lowest = 0.0,
            .lowest_excluded = true,
            .doc =
@@ -352,7 +352,7 @@ std::vector<case_key> time_keys() {
 std::vector<case_key> output_keys() {
   return {
       key("output.every", [](auto& c) -> auto& { return c.output.every; },
-          {.measure = dimensions::time,
+          {.dimension = dimensions::time,
            .lowest = 0.0,
            .doc = "Time between snapshots of the fields; 0 keeps the final state only."}),
       key("output.fields", [](auto& c) -> auto& { return c.output.fields; },
@@ -370,7 +370,7 @@ std::vector<case_key> output_keys() {
                   "also for every snapshot, into files of their own in snapshots/."}),
       if_given(key("output.distribution_at", [](auto& c) -> auto& { return c.output.distribution_at; },
                    {.scope = key_scope::space,
-                    .measure = dimensions::length,
+                    .dimension = dimensions::length,
                     .doc = "Points [[x, y], ...]: f is written in the cells that contain them, as points/f "
                            "of the file, and not in all cells."})),
       key("output.surfaces", [](auto& c) -> auto& { return c.output.surfaces; },

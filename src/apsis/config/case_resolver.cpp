@@ -149,7 +149,7 @@ class resolver {
     for (const case_key& key : case_schema())
       if (applies(key, *model_)) paths.push_back(key.path);
     for (const model_parameter& p : model_->parameters) paths.push_back("model." + p.name);
-    for (const model_text& t : model_->texts) paths.push_back("model." + t.name);
+    for (const model_option& t : model_->options) paths.push_back("model." + t.name);
     for (const model_list& l : model_->lists) paths.push_back("model." + l.name);
     return paths;
   }
@@ -264,9 +264,9 @@ class resolver {
       if (p.of_space && value == 0.0) value = static_cast<double>(config_.space.cells.size());
       config_.model.parameters[p.name] = value;
     }
-    for (const model_text& t : model_->texts) {
+    for (const model_option& t : model_->options) {
       const raw_value* raw = find("model." + t.name);
-      config_.model.texts[t.name] = raw == nullptr ? t.value : to_text(t, *raw, config_.constants);
+      config_.model.options[t.name] = raw == nullptr ? t.value : to_text(t, *raw, config_.constants);
     }
     for (const model_list& l : model_->lists) {
       const raw_value* raw = find("model." + l.name);

@@ -51,7 +51,7 @@ struct case_key {
   /// Whether the keys before make a required key optional.
   std::function<bool(const case_config&)> optional = {};
   std::string unit{};            ///< "dimensionless", "steps", …; "" for text
-  dimension measure{};           ///< with a table [gas], values with units of this dimension are valid
+  apsis::dimension dimension{};  ///< with a table [gas], values with units of this dimension are valid
   double lowest = -infinite,     ///< smallest allowed number
       highest = infinite;        ///< largest allowed number
   bool lowest_excluded = false;  ///< only numbers above `lowest`

@@ -106,12 +106,12 @@ std::string formula(const case_key& key, const raw_value& raw) {
 
 std::string positive_quantity(const case_key& key, const raw_value& raw) {
   const auto* text = std::get_if<std::string>(&raw.value);
-  const std::string unit = unit_of(key.measure);
+  const std::string unit = unit_of(key.dimension);
   if (text == nullptr || !looks_like_quantity(*text))
     refuse(raw, key.path, "a number, a space and a unit are needed",
            fmt::format("write for example \"1 {}\"", unit));
   const quantity given = parse_quantity(*text, raw.place);
-  if (given.unit != key.measure)
+  if (given.unit != key.dimension)
     refuse(raw, key.path, fmt::format("its unit is that of {}", unit_of(given.unit)),
            fmt::format("give it in {}", unit));
   if (!(given.value > 0.0)) refuse(raw, key.path, "it must be above 0", "give a positive number");
@@ -181,7 +181,7 @@ std::vector<std::vector<double>> points(const case_key& key, const raw_value& ra
 
 }  // namespace
 
-std::string to_text(const model_text& text, const raw_value& raw, const formula_constants& constants) {
+std::string to_text(const model_option& text, const raw_value& raw, const formula_constants& constants) {
   const std::string path = "model." + text.name;
   const auto* value = std::get_if<std::string>(&raw.value);
   if (value == nullptr) refuse(raw, path, "a text is needed", type_advice(key_type::text));

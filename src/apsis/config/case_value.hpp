@@ -15,7 +15,7 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
 
 /// Returns the value of a string option: a predefined name or a formula, which may use `constants`. Throws
 /// input_error at the place of the key, or within the formula.
-std::string to_text(const model_text& text, const raw_value& raw, const formula_constants& constants);
+std::string to_text(const model_option& text, const raw_value& raw, const formula_constants& constants);
 
 /// The value of an automatic parameter that leaves it to the model.
 inline constexpr const char* automatic_word = "auto";

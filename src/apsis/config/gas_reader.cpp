@@ -135,7 +135,7 @@ void set_gas_of_model(case_text& text, const model_entry& model, const case_conf
     implied.place = implied.value_place = table;
     text.values.emplace("model." + name, std::move(implied));
   };
-  for (const model_text& option : model.texts) {
+  for (const model_option& option : model.options) {
     if (option.name != "collision_rate") continue;
     const raw_value* raw = find(text, "model.collision_rate");
     if (raw != nullptr && !is_text(*raw, "viscosity"))

@@ -18,9 +18,9 @@ bool begins_with(const std::string& path, const char* head) {
 
 /// Dimensions of the variables of [initial] and of boundaries by name.
 std::map<std::string, dimension> measures_of_variables(const model& equation) {
-  std::map<std::string, dimension> measures;
-  const auto add = [&measures](const std::vector<data_variable>& variables) {
-    for (const auto& one : variables) measures[one.name] = one.measure;
+  std::map<std::string, dimension> dims;
+  const auto add = [&dims](const std::vector<data_variable>& variables) {
+    for (const auto& one : variables) dims[one.name] = one.dimension;
   };
   for (const auto& form : equation.data_forms()) add(form.variables);
   for (const boundary_entry* kind : boundary_entries()) {
@@ -31,7 +31,7 @@ std::map<std::string, dimension> measures_of_variables(const model& equation) {
       continue;  // the model cannot have this kind
     }
   }
-  return measures;
+  return dims;
 }
 
 class unit_remover {
@@ -41,17 +41,17 @@ class unit_remover {
 
   void convert(const std::string& path, raw_value& raw) const {
     if (begins_with(path, "parameters.")) return convert(path, raw, nullptr);
-    if (const auto measure = measure_of(path)) convert(path, raw, &*measure);
+    if (const auto dims = dimension_of(path)) convert(path, raw, &*dims);
   }
 
  private:
   /// Returns the dimension of a numeric key; nothing of a key that takes text.
-  std::optional<dimension> measure_of(const std::string& path) const {
+  std::optional<dimension> dimension_of(const std::string& path) const {
     for (const case_key& key : case_schema())
       if (key.path == path) {
         const bool is_text =
             key.type == key_type::text || key.type == key_type::text_list || key.type == key_type::quantity;
-        return is_text ? std::nullopt : std::optional(key.measure);
+        return is_text ? std::nullopt : std::optional(key.dimension);
       }
     for (const model_parameter& p : model_.parameters)
       if ("model." + p.name == path) return dimensions::none;
@@ -67,10 +67,10 @@ class unit_remover {
     return variable == variables_.end() ? std::nullopt : std::optional(variable->second);
   }
 
-  /// `measure`: of the key; null if any is valid.
-  void convert(const std::string& path, raw_value& raw, const dimension* measure) const {
+  /// `dims`: of the key; null if any is valid.
+  void convert(const std::string& path, raw_value& raw, const dimension* dims) const {
     if (auto* list = std::get_if<raw_value::list>(&raw.value)) {
-      for (raw_value& item : *list) convert(path, item, measure);
+      for (raw_value& item : *list) convert(path, item, dims);
       return;
     }
     const auto* text = std::get_if<std::string>(&raw.value);
@@ -79,12 +79,12 @@ class unit_remover {
     if (!scales_)
       refuse(raw, path, "a unit needs the scales of a gas",
              "add a table [gas], or give a dimensionless number");
-    if (measure != nullptr && *measure == dimensions::density && given.unit == dimensions::number_density)
+    if (dims != nullptr && *dims == dimensions::density && given.unit == dimensions::number_density)
       given = {given.value * scales_->gas().mass, dimensions::density};
-    if (measure != nullptr && given.unit != *measure)
+    if (dims != nullptr && given.unit != *dims)
       refuse(raw, path, fmt::format("its unit is that of {}", unit_of(given.unit)),
-             *measure == dimensions::none ? "give a number without a unit"
-                                          : fmt::format("give it in {}", unit_of(*measure)));
+             *dims == dimensions::none ? "give a number without a unit"
+                                       : fmt::format("give it in {}", unit_of(*dims)));
     raw.value = given.value / scales_->unit(given.unit);
   }
 

@@ -13,7 +13,7 @@ void agree_on_errors(communicator& processes, const std::exception_ptr& mine);
 
 /// Runs body() on every process, without collective calls inside, and throws on all what one of them throws.
 template <class Body>
-void together(communicator& processes, const Body& body) {
+void run_collectively(communicator& processes, const Body& body) {
   if (processes.is_single()) return body();
   std::exception_ptr mine;
   try {

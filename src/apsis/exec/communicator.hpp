@@ -59,7 +59,7 @@ class communicator {
   /// single process.
   virtual std::int64_t handle() const { return -1; }
   /// Returns true once all processes have called this, and false after some seconds; a barrier that sleeps.
-  virtual bool all_arrive(double seconds) = 0;
+  virtual bool all_call_within(double seconds) = 0;
   /// The last call of every process. `mine` is the error with which it ends, or nullptr. Those that wait for
   /// a process that fails, in any member, throw its error with its rank in the message; so does this member
   /// without an error of its own. Returns true once all have called it, and false after some seconds: then a

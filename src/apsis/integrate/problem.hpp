@@ -136,14 +136,14 @@ concept problem_with_fused_stages =
 
 /// A problem whose errors may come after the call that met them, for processes that must not wait in vain for
 /// one that has failed:
-///   settle()   throws what the calls since the last settle() met; a step calls it before it changes u
+///   throw_late_errors()   rethrows the first error since its last call; a step calls it before it changes u
 template <class P>
-concept problem_with_late_errors = problem<P> && requires(P p) { p.settle(); };
+concept problem_with_late_errors = problem<P> && requires(P p) { p.throw_late_errors(); };
 
 /// Throws the late errors of a problem, if it has such.
 template <problem P>
-void settle(P& p) {
-  if constexpr (problem_with_late_errors<P>) p.settle();
+void throw_late_errors(P& p) {
+  if constexpr (problem_with_late_errors<P>) p.throw_late_errors();
 }
 
 /// A problem that knows the width of its initial layer, for a graded start:

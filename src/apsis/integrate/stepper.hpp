@@ -78,7 +78,7 @@ class stepper {
   /// Advances u = u^n at time t to u^{n+1}. Strong exception guarantee: if a stage throws, u is still u^n.
   void step(real t, real dt, state& u) {
     carry_out(whole_step_, t, dt, u);
-    settle(problem_);
+    throw_late_errors(problem_);
     accept(u);
   }
 

@@ -248,7 +248,7 @@ certificate certify(const method& m) {
   return c;
 }
 
-std::string certificate::kept_terms() const {
+std::string certificate::remaining_terms() const {
   if (!keeps_slow_terms) return "none";
   return keeps_layer ? "all" : "slow";
 }

@@ -86,7 +86,7 @@ struct certificate {
   bool keeps_slow_terms = false;  ///< (N1), (N2): exact for data near equilibrium; for BGK, the viscosity
   bool keeps_layer = false;       ///< (N3): the integral over an initial layer is exact, too
   /// Returns "all" if both flags are set, "slow" if only keeps_slow_terms is, otherwise "none".
-  std::string kept_terms() const;
+  std::string remaining_terms() const;
 
   std::optional<embedded_certificate> embedded;  ///< present for methods with an embedded row
 

@@ -113,7 +113,7 @@ class binary_collision_solver final : public point_collision {
       if (!std::isfinite(frequency)) fail("a density is not finite", p, at);
       const auto weights = relax_weights(a, b, frequency, at.epsilon[p]);
       if (weights.of_e == 0.0) continue;
-      const double share = strength_of_stage(a, b, frequency, at.epsilon[p]).share;
+      const double share = coefficients_of_stage(a, b, frequency, at.epsilon[p]).weight_of_b;
       const stage_weights of = {weights.of_u, weights.of_e * (1.0 - share) / frequency,
                                 weights.of_e * share / frequency / frequency};
       const bool found = solve(of, weights.of_e);

@@ -16,7 +16,7 @@ struct data_variable {
   std::string doc;                   ///< meaning with unit
   int size = 1;                      ///< number of components of a vector
   std::optional<double> value = {};  ///< default of every component; the variable is required without it
-  dimension measure = {};            ///< its dimension in units of a gas (gas_scales.hpp)
+  apsis::dimension dimension = {};   ///< its dimension in units of a gas (gas_scales.hpp)
   /// Whether it is a function of the velocity too, whose values at all velocities follow each other.
   bool of_velocity = false;
 };

@@ -15,10 +15,10 @@ namespace apsis {
 gas_model::gas_model(const model_config& config, double prandtl)
     : gas_(config),
       space_dimensions_(config.space_dimensions),
-      by_viscosity_(config.texts.at("collision_rate") == "viscosity"),
+      by_viscosity_(config.options.at("collision_rate") == "viscosity"),
       exponent_(1.0 - config.parameters.at("viscosity_exponent")),
       prandtl_(prandtl),
-      signed_tails_(config.texts.contains("tails") && config.texts.at("tails") == "signed") {
+      signed_tails_(config.options.contains("tails") && config.options.at("tails") == "signed") {
   make_initial_data();
 }
 
@@ -36,7 +36,7 @@ std::vector<model_parameter> gas_model::parameters(double degrees_of_freedom) {
   return all;
 }
 
-std::vector<model_text> gas_model::texts() {
+std::vector<model_option> gas_model::options() {
   return {{.name = "collision_rate",
            .value = "constant",
            .choices = {"constant", "viscosity"},
@@ -45,8 +45,8 @@ std::vector<model_text> gas_model::texts() {
                   "epsilon T^s with s = viscosity_exponent"}};
 }
 
-std::vector<model_text> gas_model::texts_with_tails(const std::string& usual) {
-  auto all = texts();
+std::vector<model_option> gas_model::texts_with_tails(const std::string& usual) {
+  auto all = options();
   all.push_back({.name = "tails",
                  .value = usual,
                  .choices = {"signed", "nonnegative"},
@@ -108,7 +108,7 @@ std::vector<std::string> gas_model::invariants() const {
   return fluid_invariants(gas_.dimensions());
 }
 
-std::vector<dimension> gas_model::invariant_measures() const {
+std::vector<dimension> gas_model::invariant_dimensions() const {
   std::vector<dimension> all(static_cast<std::size_t>(gas_.moment_count()), dimensions::mass_flux);
   all.front() = dimensions::density;
   all.back() = dimensions::pressure;

@@ -25,9 +25,9 @@ class gas_model : public relaxation_model {
   /// Returns the parameters that all of these models have. `degrees_of_freedom`: their only number of them; 0
   /// leaves it to the user.
   static std::vector<model_parameter> parameters(double degrees_of_freedom);
-  static std::vector<model_text> texts();  ///< the string options of all
+  static std::vector<model_option> options();  ///< the string options of all
   /// Returns also that of models whose target may be negative in its tails. `usual`: its default.
-  static std::vector<model_text> texts_with_tails(const std::string& usual);
+  static std::vector<model_option> texts_with_tails(const std::string& usual);
 
   const gas_model* as_gas() const final { return this; }
   const gas& molecules() const { return gas_; }  ///< the rows of the gas
@@ -60,7 +60,7 @@ class gas_model : public relaxation_model {
   }
 
   std::vector<std::string> invariants() const override;
-  std::vector<dimension> invariant_measures() const override;
+  std::vector<dimension> invariant_dimensions() const override;
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
   /// Momenta cancel between particles of opposite velocities; Σ|v_k| f ≤ √(2ρ𝓔) by the Cauchy–Schwarz
   /// inequality.

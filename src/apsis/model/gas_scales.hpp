@@ -10,9 +10,9 @@ namespace apsis {
 
 /// A quantity with its name and dimension; value in SI units.
 struct named_quantity {
-  std::string name;        ///< "number_density"
-  double value = 0.0;      ///< in unit_of(measure)
-  dimension measure = {};  ///< its dimension
+  std::string name;                 ///< "number_density"
+  double value = 0.0;               ///< in unit_of(dimension)
+  apsis::dimension dimension = {};  ///< its dimension
 };
 
 /// Reference state of a gas, from which units of all dimensionless quantities follow: ρ₀, T₀, √(RT₀) with R =

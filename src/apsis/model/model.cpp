@@ -68,7 +68,7 @@ int relaxation_model::equilibria(const double* omega, int rows, double* e, std::
 model_config default_config(const model_entry& entry) {
   model_config config;
   for (const auto& p : entry.parameters) config.parameters[p.name] = p.value;
-  for (const auto& t : entry.texts) config.texts[t.name] = t.value;
+  for (const auto& t : entry.options) config.options[t.name] = t.value;
   for (const auto& l : entry.lists) config.lists[l.name] = l.value;
   if (entry.has_velocity_grid) config.velocity = {.max = 8.0, .points = 16};
   return config;
@@ -103,26 +103,26 @@ const model_entry& find_model(const std::string& name) {
       fmt::format("unknown model '{}' (there is no such name); {}", printable(name), suggest(name, names)));
 }
 
-std::vector<dimension> model::invariant_measures() const {
+std::vector<dimension> model::invariant_dimensions() const {
   return std::vector<dimension>(invariants().size());
 }
 
 void relaxation_model::relaxing_moments(const double*, const double*, double*) const {}
 
-void relaxation_model::relax(const stage_strength&, double*) const {}
+void relaxation_model::relax(const stage_coefficients&, double*) const {}
 
 bool relaxation_model::target(const double* omega, const double*, const double*, double, double* e,
                               double&) const {
   return equilibrium(omega, e);
 }
 
-stage_strength strength_of_stage(double a, double b, double rate, double epsilon) {
+stage_coefficients coefficients_of_stage(double a, double b, double rate, double epsilon) {
   const double k = rate > 0.0 || rate != rate ? rate / epsilon : 0.0;
-  stage_strength of;
+  stage_coefficients of;
   of.a = a == 0.0 ? 0.0 : a * k;
   const double once = b == 0.0 ? 0.0 : -b * k;  // B/A without overflow of B
   of.b = once == 0.0 ? 0.0 : once * k;
-  if (once > 0.0) of.share = std::isinf(once) ? 1.0 : once / (a + once);
+  if (once > 0.0) of.weight_of_b = std::isinf(once) ? 1.0 : once / (a + once);
   return of;
 }
 

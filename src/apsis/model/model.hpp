@@ -20,9 +20,9 @@ namespace apsis {
 
 /// A macroscopic field of the results.
 struct field_name {
-  std::string name;        ///< "rho"
-  std::string label;       ///< "density (dimensionless)"
-  dimension measure = {};  ///< its dimension in units of a gas (gas_scales.hpp)
+  std::string name;                 ///< "rho"
+  std::string label;                ///< "density (dimensionless)"
+  apsis::dimension dimension = {};  ///< its dimension in units of a gas (gas_scales.hpp)
 };
 
 /// A cell of a mesh with all that its fields depend on.
@@ -141,7 +141,7 @@ class model : public construction_count<model> {
   /// densities ← the densities of the invariants of a row, in the order of invariants().
   virtual void invariant_densities(const double* u, double* densities) const = 0;
   /// Returns the dimensions of the densities of the invariants in units of a gas; numbers by default.
-  virtual std::vector<dimension> invariant_measures() const;
+  virtual std::vector<dimension> invariant_dimensions() const;
   /// scales ← the sizes of the sums behind the invariants, to which rounding is relative; |densities| by
   /// default. A momentum may vanish by cancellation of particles that move in opposite directions.
   virtual void invariant_scales(std::span<const double> densities, double* scales) const;
@@ -183,13 +183,13 @@ inline bool collisions_decrease_entropy(const model& equation) {
 }
 
 /// The coefficients of a stage v = u + A (…) + B (…) of a relaxation.
-struct stage_strength {
-  double a = 0.0,   ///< A = aC/ε
-      b = 0.0,      ///< B = |b|(C/ε)²
-      share = 0.0;  ///< B/(A + B); 0 if both are 0
+struct stage_coefficients {
+  double a = 0.0,         ///< A = aC/ε
+      b = 0.0,            ///< B = |b|(C/ε)²
+      weight_of_b = 0.0;  ///< B/(A + B); 0 if both are 0
 };
 /// Returns the coefficients for C/ε, which may be infinite.
-stage_strength strength_of_stage(double a, double b, double rate, double epsilon);
+stage_coefficients coefficients_of_stage(double a, double b, double rate, double epsilon);
 
 /// Q(u) = C(ω)(E − u) with ω = ℛu and ℛQ = 0 (paper, Properties 3–5); every stage is solved in closed form.
 /// The target is the equilibrium E(ω), or depends also on moments s of u that relax: then 𝒮E(ω, s) = (1 −
@@ -217,7 +217,7 @@ class relaxation_model : public model {
   virtual void relaxing_moments(const double* u, const double* omega, double* s) const;
   /// s ← those of the solution of a stage whose explicit part has s, σ/(1 + λA + λ²B), and what target()
   /// needs of the derivative Q̇ in the stage, of weight λB/(A + B).
-  virtual void relax(const stage_strength& strength, double* s) const;
+  virtual void relax(const stage_coefficients& strength, double* s) const;
   /// e ← E(ω, s) + λB/(A + B) E_s s, the target of a stage after relax(), or E(ω, s), for a row u ≥ 0. Where
   /// it is less than −keep·u, a model that keeps the sign changes it, so that the solution of the stage is
   /// not negative; keep = 0 for an explicit Q(u), whose forward Euler step ends at the target. `cut`: the

@@ -26,7 +26,7 @@ struct model_parameter {
 };
 
 /// A string option of a model: one of several names, or a formula.
-struct model_text {
+struct model_option {
   std::string name;                  ///< key in the table [model]
   std::string value;                 ///< default
   std::vector<std::string> choices;  ///< predefined names
@@ -47,7 +47,7 @@ struct model_list {
 /// Configuration of a model.
 struct model_config {
   std::map<std::string, double> parameters;                    ///< complete: defaults filled in
-  std::map<std::string, std::string> texts;                    ///< complete; each a choice or a valid formula
+  std::map<std::string, std::string> options;                  ///< complete; each a choice or a valid formula
   velocity_config velocity;                                    ///< only where the entry has_velocity_grid
   formula_constants constants = {};                            ///< constants of formulas
   std::map<std::string, std::vector<std::string>> lists = {};  ///< complete; valid names or formulas
@@ -62,7 +62,7 @@ struct model_entry {
   std::string source;                            ///< citation
   bool has_velocity_grid = false;                ///< made from the table [velocity]
   std::vector<model_parameter> parameters = {};  ///< in the order in which they are documented
-  std::vector<model_text> texts = {};            ///< in the order in which they are documented
+  std::vector<model_option> options = {};        ///< in the order in which they are documented
   std::vector<model_list> lists = {};            ///< in the order in which they are documented
   /// Returns the model. Throws input_error if the velocity grid or a formula is invalid.
   std::unique_ptr<model> (*make)(const model_config&) = nullptr;

@@ -133,7 +133,7 @@ class relaxation_collision final : public point_collision {
       constexpr double margin = 1e-13;
       const double keep = weights.of_e > 0.0 ? (1.0 - margin) * (weights.of_u / weights.of_e) : 0.0;
       equation_.relaxing_moments(row, omega(p), relaxing_.data());
-      equation_.relax(strength_of_stage(a, b, rate, at.epsilon[p]), relaxing_.data());
+      equation_.relax(coefficients_of_stage(a, b, rate, at.epsilon[p]), relaxing_.data());
       double cut = 0.0;
       if (!equation_.target(omega(p), relaxing_.data(), row, keep, equilibria_.data() + p * pitch_, cut))
         return p;

@@ -143,7 +143,7 @@ void write_checkpoint(const std::string& path, const checkpoint& c,
                       const std::shared_ptr<communicator>& processes) {
   write_hdf5(path, seal_length, processes, [&c](hdf5_file& file) { write_contents(file, c); });
   if (!processes) return seal(path, kind);
-  together(*processes, [&] {
+  run_collectively(*processes, [&] {
     if (processes->is_root()) seal(path, kind);
   });
 }

@@ -22,7 +22,7 @@ struct field_series {
       units = {};                           ///< of the fields; empty if they are dimensionless
   std::string unit_of_x = "dimensionless",  ///< unit of coordinates
       unit_of_t = "dimensionless";          ///< unit of times
-  std::vector<dimension> measures = {};     ///< dimensions of the fields in units of a gas
+  std::vector<dimension> dimensions = {};   ///< dimensions of the fields in units of a gas
   std::vector<snapshot> snapshots;          ///< in order of time
 };
 

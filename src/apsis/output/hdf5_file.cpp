@@ -287,10 +287,10 @@ void write_hdf5(const std::string& path, std::uint64_t free_bytes,
     file.close();
   };
   if (!processes || processes->is_single()) return write(hdf5_file::create(path, free_bytes));
-  together(*processes, [&] {
+  run_collectively(*processes, [&] {
     if (processes->is_root()) write(hdf5_file::create_frame(path, free_bytes));
   });
-  together(*processes, [&] {
+  run_collectively(*processes, [&] {
     write(hdf5_file::open_parts(path, fmt::format("process {} on {}", processes->rank(), host_name())));
   });
 }

@@ -24,7 +24,7 @@ void add_names(field_table& table, const std::vector<field_name>& names) {
   for (const auto& one : names) {
     table.names.push_back(one.name);
     table.labels.push_back(one.label);
-    table.measures.push_back(one.measure);
+    table.dimensions.push_back(one.dimension);
   }
 }
 

@@ -43,7 +43,7 @@ struct derived_columns {
   void add_names(surface_table& table, const std::vector<dimension>& fluxes) const {
     const auto add = [&](const char* name, std::size_t invariant) {
       table.numbers.columns.emplace_back(name);
-      table.measures.push_back(fluxes[invariant]);
+      table.dimensions.push_back(fluxes[invariant]);
     };
     if (momenta.empty()) return;
     add("pressure", momenta.front());
@@ -75,9 +75,9 @@ class gas_columns {
   explicit gas_columns(const model& equation) : gas_(equation.as_gas()) {}
 
   void add_names(surface_table& table) const {
-    const auto add = [&](const std::string& name, const dimension& measure) {
+    const auto add = [&](const std::string& name, const dimension& dims) {
       table.numbers.columns.push_back(name);
-      table.measures.push_back(measure);
+      table.dimensions.push_back(dims);
     };
     if (gas_ == nullptr) return;
     add("rho", dimensions::density);
@@ -142,7 +142,7 @@ class surface_writer {
         invariants_(setup.equation->invariants()),
         derived_(*setup.equation),
         gas_(*setup.equation) {
-    for (const dimension& density : setup.equation->invariant_measures())
+    for (const dimension& density : setup.equation->invariant_dimensions())
       fluxes_.push_back(density * dimensions::length / dimensions::time);
   }
 
@@ -163,9 +163,9 @@ class surface_writer {
 
   surface_table with_columns(const std::string& name) const {
     surface_table table{name, {}, {}};
-    const auto add = [&](const std::string& column, const dimension& measure) {
+    const auto add = [&](const std::string& column, const dimension& dims) {
       table.numbers.columns.push_back(column);
-      table.measures.push_back(measure);
+      table.dimensions.push_back(dims);
     };
     const int dimensions = space_.mesh().dimensions();
     if (in_plane()) add("s", dimensions::length);
@@ -207,7 +207,7 @@ class surface_writer {
     const auto& rows = table.numbers.rows;
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return rows[a].front() < rows[b].front(); });
-    surface_table sorted{table.name, {}, {table.numbers.columns, {}}, table.measures};
+    surface_table sorted{table.name, {}, {table.numbers.columns, {}}, table.dimensions};
     for (const std::size_t k : order) {
       sorted.faces.push_back(table.faces[k]);
       sorted.numbers.rows.push_back(rows[k]);

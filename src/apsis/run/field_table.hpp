@@ -13,7 +13,7 @@ struct field_table {
   std::vector<std::string> names,           ///< field names: "rho"
       labels;                               ///< for plots: "density (dimensionless)"
   std::vector<std::vector<double>> values;  ///< [field][cell]
-  std::vector<dimension> measures = {};     ///< dimensions in units of a gas
+  std::vector<dimension> dimensions = {};   ///< dimensions in units of a gas
   std::vector<double> y = {},               ///< of the centre of every cell; empty in one dimension
       z = {};                               ///< of the centre of every cell; empty in fewer than three
   std::vector<int> shape = {};              ///< number of cells along x, y, z; {1} without space

@@ -86,7 +86,7 @@ class reader {
     std::vector<std::vector<double>> given;
     for (const auto& variable : form.variables)
       for (int k = 0; k < variable.size; ++k)
-        given.push_back(source_.column(columns_of(variable, k), variable.measure));
+        given.push_back(source_.column(columns_of(variable, k), variable.dimension));
     rows.cells = static_cast<int>(given.front().size());
     const std::vector<bool> solid = source_.solid_rows(given.front().size());
     std::vector<double> numbers(given.size()), row(size(rows.components));

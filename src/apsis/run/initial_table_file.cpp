@@ -419,7 +419,7 @@ std::vector<std::string> initial_table_file::columns() const {
 
 /// The unit of a column of the file in units of the case.
 double initial_table_file::factor(const std::string& name, const std::string& unit,
-                                  const dimension& measure) const {
+                                  const dimension& dims) const {
   if (unit.empty() || unit == none) return 1.0;
   if (!config_.scales)
     refuse(
@@ -432,20 +432,19 @@ double initial_table_file::factor(const std::string& name, const std::string& un
   } catch (const input_error& problem) {
     refuse(fmt::format("the unit of '{}': {}", name, problem.what()));
   }
-  if (measure == dimensions::density && one.unit == dimensions::number_density)
+  if (dims == dimensions::density && one.unit == dimensions::number_density)
     one = {one.value * config_.scales->gas().mass, dimensions::density};
-  if (one.unit != measure)
-    refuse(
-        fmt::format("'{}' has the unit {} (that of {} is needed); change it", name, unit, unit_of(measure)));
-  return one.value / config_.scales->unit(measure);
+  if (one.unit != dims)
+    refuse(fmt::format("'{}' has the unit {} (that of {} is needed); change it", name, unit, unit_of(dims)));
+  return one.value / config_.scales->unit(dims);
 }
 
 std::vector<double> initial_table_file::column(const std::vector<std::string>& names,
-                                               const dimension& measure) const {
+                                               const dimension& dims) const {
   const auto name =
       std::find_if(names.begin(), names.end(), [this](const auto& one) { return has_column(one); });
   std::vector<double> values = load(*name);
-  const double by = factor(*name, unit_text(*name), measure);
+  const double by = factor(*name, unit_text(*name), dims);
   if (by != 1.0)
     for (double& value : values) value *= by;
   return values;

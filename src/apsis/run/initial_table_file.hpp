@@ -34,7 +34,7 @@ class initial_table_file {
   /// Whether the file has a column of one of these names.
   bool has_any(const std::vector<std::string>& names) const;
   /// Returns the first of these columns, in units of the case.
-  std::vector<double> column(const std::vector<std::string>& names, const dimension& measure) const;
+  std::vector<double> column(const std::vector<std::string>& names, const dimension& dims) const;
   /// Returns the names of all columns.
   std::vector<std::string> columns() const;
 
@@ -77,7 +77,7 @@ class initial_table_file {
   void take_manifest(const std::string& text);
   bool same_unknowns(const hdf5_file& file) const;
   std::size_t chosen(const std::vector<double>& times) const;
-  double factor(const std::string& name, const std::string& unit, const dimension& measure) const;
+  double factor(const std::string& name, const std::string& unit, const dimension& dims) const;
 
   const case_config& config_;
   const model& equation_;

@@ -46,7 +46,7 @@ std::optional<loss_watch::loss> loss_watch::estimate(double t, const field& u, d
                                                      const rate_response& of, bool layer) {
   semidiscrete_problem& p = implicit_ ? *implicit_ : problem_;
   const auto distance = [&](const field& a, const field& b) {
-    p.settle();
+    p.throw_late_errors();
     return relative_distance(a, b, setup_.processes());
   };
   return compute_rate_loss(p, t, u, dt, of, distance, layer);

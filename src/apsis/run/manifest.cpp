@@ -63,12 +63,13 @@ void add_units(json& out, const simulation& run) {
   json names = json::object();
   for (int k = 0; k < run.mesh().dimensions(); ++k)
     names[std::string(1, "xyz"[k])] = unit_of(dimensions::length);
-  for (const auto& [column, measure] : history_measures(run)) names[column] = unit_of(measure);
+  for (const auto& [column, dims] : history_dimensions(run)) names[column] = unit_of(dims);
   for (const surface_table& surface : run.surfaces())
-    for (std::size_t k = 0; k < surface.measures.size(); ++k)
-      names[surface.numbers.columns[k]] = unit_of(surface.measures[k]);
+    for (std::size_t k = 0; k < surface.dimensions.size(); ++k)
+      names[surface.numbers.columns[k]] = unit_of(surface.dimensions[k]);
   const field_table fields = run.fields();
-  for (std::size_t k = 0; k < fields.names.size(); ++k) names[fields.names[k]] = unit_of(fields.measures[k]);
+  for (std::size_t k = 0; k < fields.names.size(); ++k)
+    names[fields.names[k]] = unit_of(fields.dimensions[k]);
   out["units"] = names;
 }
 

@@ -106,7 +106,7 @@ monitor::totals monitor::sum(const field& u) const {
   const std::size_t count = equation_.invariants().size();
   partial mine = check_block(u);
   communicator& processes = setup_.processes();
-  together(processes, [&] {
+  run_collectively(processes, [&] {
     if (mine.not_finite != partial::none)
       throw numerical_error(
           "a value of the state is not finite (unstable step or invalid data); use a smaller step",
@@ -219,7 +219,7 @@ std::optional<condition_violation> monitor::violation_in(const field& u, const t
   if (!t.violated) return std::nullopt;
   // As an error, on which all processes agree.
   try {
-    together(setup_.processes(), [&] {
+    run_collectively(setup_.processes(), [&] {
       if (t.violating < 0) return;
       const double* row = u.row(t.violating);
       const auto found = equation_.check_supported(row);

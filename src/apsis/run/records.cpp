@@ -167,7 +167,7 @@ void run_records::name_fields(const simulation& run) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), all.names[k]) == wanted.end()) continue;
     fields_.names.push_back(all.names[k]);
     fields_.labels.push_back(all.labels[k]);
-    fields_.measures.push_back(all.measures[k]);
+    fields_.dimensions.push_back(all.dimensions[k]);
   }
   if (!run.setup().has_space()) return;
   fields_.axes = mesh_axes(run.mesh());

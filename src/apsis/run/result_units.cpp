@@ -23,8 +23,8 @@ void multiply(std::vector<double>& values, double factor) {
 result_units::result_units(const case_config& config)
     : scales_(config.output.units == units_choice::si ? config.scales : std::nullopt) {}
 
-std::string result_units::suffix(const dimension& measure) const {
-  return are_si() && measure != dimensions::none ? " " + unit_of(measure) : "";
+std::string result_units::suffix(const dimension& dims) const {
+  return are_si() && dims != dimensions::none ? " " + unit_of(dims) : "";
 }
 
 field_series result_units::convert(field_series fields) const {
@@ -34,10 +34,10 @@ field_series result_units::convert(field_series fields) const {
   fields.unit_of_t = unit_of(dimensions::time);
   fields.units.clear();
   for (std::size_t k = 0; k < fields.names.size(); ++k) {
-    const dimension& measure = fields.measures[k];
-    fields.units.push_back(unit_of(measure));
+    const dimension& dims = fields.dimensions[k];
+    fields.units.push_back(unit_of(dims));
     fields.labels[k] = with_unit(fields.labels[k], fields.units[k]);
-    for (auto& snapshot : fields.snapshots) multiply(snapshot.values[k], factor(measure));
+    for (auto& snapshot : fields.snapshots) multiply(snapshot.values[k], factor(dims));
   }
   for (auto& snapshot : fields.snapshots) snapshot.t *= factor(dimensions::time);
   return fields;
@@ -46,28 +46,28 @@ field_series result_units::convert(field_series fields) const {
 surface_table result_units::convert(surface_table surface) const {
   if (!are_si()) return surface;
   for (auto& row : surface.numbers.rows)
-    for (std::size_t k = 0; k < row.size(); ++k) row[k] *= factor(surface.measures[k]);
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] *= factor(surface.dimensions[k]);
   return surface;
 }
 
 numeric_table result_units::convert(numeric_table history, const simulation& run) const {
   if (!are_si()) return history;
-  for (const auto& [name, measure] : history_measures(run)) {
+  for (const auto& [name, dims] : history_dimensions(run)) {
     const auto found = std::find(history.columns.begin(), history.columns.end(), name);
     if (found == history.columns.end()) continue;
     const auto column = static_cast<std::size_t>(found - history.columns.begin());
-    const double by = factor(measure);
+    const double by = factor(dims);
     for (auto& row : history.rows) row[column] *= by;
   }
   return history;
 }
 
-std::vector<std::pair<std::string, dimension>> history_measures(const simulation& run) {
+std::vector<std::pair<std::string, dimension>> history_dimensions(const simulation& run) {
   using dimensions::length, dimensions::time;
   std::vector<std::pair<std::string, dimension>> all = {
       {"t", time}, {"dt", time}, {"change", dimensions::none / time}};
   const auto names = run.setup().equation->invariants();
-  const auto densities = run.setup().equation->invariant_measures();
+  const auto densities = run.setup().equation->invariant_dimensions();
   for (std::size_t k = 0; k < names.size(); ++k) {
     dimension amount = densities[k];
     for (int d = 0; d < run.mesh().dimensions(); ++d) amount = amount * length;

@@ -20,9 +20,9 @@ class result_units {
   /// Whether results are in SI units.
   bool are_si() const { return scales_.has_value(); }
   /// Returns the factor of dimensionless quantities of a dimension; 1 if results are dimensionless.
-  double factor(const dimension& measure) const { return scales_ ? scales_->unit(measure) : 1.0; }
+  double factor(const dimension& dims) const { return scales_ ? scales_->unit(dims) : 1.0; }
   /// Returns " Pa" with a leading space for reports; "" if there is no unit.
-  std::string suffix(const dimension& measure) const;
+  std::string suffix(const dimension& dims) const;
 
   /// Returns the fields in these units, with the units in their labels.
   field_series convert(field_series fields) const;
@@ -37,6 +37,6 @@ class result_units {
 
 /// Returns the dimensions of the columns of the history that have one, in units of a gas: times, and what is
 /// in the domain and crosses its faces, on a line per area and in the plane per length.
-std::vector<std::pair<std::string, dimension>> history_measures(const simulation& run);
+std::vector<std::pair<std::string, dimension>> history_dimensions(const simulation& run);
 
 }  // namespace apsis

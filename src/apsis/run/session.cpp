@@ -65,7 +65,7 @@ constexpr long many_steps = 100'000'000;
 case_config with_method_of_restart(case_config config, const session_options& options) {
   if (!options.restart || config.time.method_reason.empty()) return config;
   std::string text;
-  together(*options.processes, [&] {
+  run_collectively(*options.processes, [&] {
     if (options.processes->is_root()) text = read_case_of_checkpoint(*options.restart);
   });
   broadcast_text(*options.processes, text);
@@ -85,7 +85,7 @@ std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& config
     log::info(fmt::format("{}: time.method = \"{}\" is {} ({})", config.source, automatic_method,
                           config.time.method, config.time.method_reason));
   std::unique_ptr<run_setup> setup;
-  together(*options.processes, [&] {
+  run_collectively(*options.processes, [&] {
     setup = std::make_unique<run_setup>(config, options.processes);
     const int copies = options.out ? 2 : 0;
     check_memory(*setup, copies);
@@ -117,10 +117,10 @@ const case_config& same_on_all(const case_config& mine, const session_options& o
   communicator& processes = *options.processes;
   if (processes.is_single()) return mine;
   std::string first;
-  together(processes, [&] { first = description_of(mine, options); });
+  run_collectively(processes, [&] { first = description_of(mine, options); });
   const std::string own = first;
   broadcast_text(processes, first);
-  together(processes, [&] {
+  run_collectively(processes, [&] {
     const auto [there, here] = first_difference(first, own);
     if (first != own)
       throw input_error(
@@ -135,10 +135,10 @@ const case_config& same_on_all(const case_config& mine, const session_options& o
 checkpoint read_by_all(const std::string& path, communicator& processes,
                        const std::optional<dataset_part>& part) {
   checkpoint saved;
-  together(processes, [&] {
+  run_collectively(processes, [&] {
     if (processes.is_root()) saved = read_checkpoint(path, part);
   });
-  together(processes, [&] {
+  run_collectively(processes, [&] {
     if (!processes.is_root()) saved = read_checkpoint(path, part, false);
   });
   return saved;
@@ -216,7 +216,7 @@ run_session::run_session(const case_config& configured, session_options options)
       simulation_(setup_with_room_for_results(same_on_all(configured, options_), options_),
                   start_of(configured, options_)) {
   // Locked first: a checkpoint in a folder that another run writes into must not be read.
-  together(processes(), [this] {
+  run_collectively(processes(), [this] {
     if (options_.out && processes().is_root()) folder_ = std::make_unique<result_folder>(*options_.out);
   });
   if (options_.restart)
@@ -317,7 +317,7 @@ void run_session::write_distribution_snapshot() {
 /// Resumes the series with the snapshots taken before the checkpoint.
 void run_session::resume_snapshots(const std::string& checkpoint) {
   if (simulation_.config().output.distribution != distribution_choice::snapshots) return;
-  together(processes(), [&] {
+  run_collectively(processes(), [&] {
     if (!folder_) return;
     folder_->resume_series(snapshots, std::filesystem::path(checkpoint).parent_path(),
                            [this](const std::string& path) {
@@ -397,7 +397,7 @@ void run_session::write_results(result_folder* folder, run_end end, const std::s
   solution final_state = make_solution(simulation_, *shown_);
   final_state.manifest = about;
   const std::vector<surface_table> walls = simulation_.surfaces();
-  together(processes(), [&] {
+  run_collectively(processes(), [&] {
     if (folder != nullptr) write_tables(*folder, final_state, walls);
   });
   const auto by_all = [&](const char* name, const file_writer& write) {
@@ -411,7 +411,7 @@ void run_session::write_results(result_folder* folder, run_end end, const std::s
     by_all("checkpoint.h5",
            [&](const std::string& path) { write_checkpoint(path, *before_end_, options_.processes); });
   }
-  together(processes(), [&] {
+  run_collectively(processes(), [&] {
     if (folder == nullptr) return;
     folder->prepare_text(result_folder::manifest, about);
     folder->commit();
@@ -436,7 +436,7 @@ void run_session::save_failure(const std::string& message) {
   // Results of an earlier successful run are not replaced by those of a failed one.
   std::unique_ptr<result_folder> beside;
   bool earlier = false;
-  together(processes(), [&] {
+  run_collectively(processes(), [&] {
     if (!folder_ || !std::filesystem::exists(folder_->path() / result_folder::manifest)) return;
     earlier = true;
     if (const auto failed = folder_->path() / "failed"; std::filesystem::is_symlink(failed))

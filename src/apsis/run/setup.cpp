@@ -277,7 +277,7 @@ field run_setup::initial_state() const {
            "the case has no initial data (they were given in Python); run it with apsis.run(case, "
            "initial=...), or continue from a checkpoint");
   state_of_file read;
-  together(processes(), [&] {
+  run_collectively(processes(), [&] {
     if (config_.prescribed.file.empty())
       read.state = builder_.sample(data().point_value, data().jumps);
     else
@@ -288,11 +288,12 @@ field run_setup::initial_state() const {
 
 field run_setup::checked(field u, bool computed) const {
   std::vector<std::string> warnings;
-  together(processes(), [&] { warnings = check_emitted_gas(config_, *equation); });
+  run_collectively(processes(), [&] { warnings = check_emitted_gas(config_, *equation); });
   for (const std::string& warning : warnings) log::warning(warning);
   check_cells(u, computed);
   std::vector<double> lowest, highest;
-  together(processes(), [&] { std::tie(lowest, highest) = extremes_of_fields(*equation, mesh(), u); });
+  run_collectively(processes(),
+                   [&] { std::tie(lowest, highest) = extremes_of_fields(*equation, mesh(), u); });
   for (double& value : highest) value = -value;
   processes().lowest(lowest);
   processes().lowest(highest);
@@ -308,7 +309,7 @@ void run_setup::check_cells(const field& u, bool computed) const {
       worst(omega.size());
   double missed = 0.0;
   int worst_cell = -1;
-  together(processes(), [&] {
+  run_collectively(processes(), [&] {
     for (int cell = 0; cell < u.cells(); ++cell) {
       interruptible::poll();
       if (mesh().solid(cell) >= 0) continue;
@@ -381,7 +382,7 @@ double run_setup::equilibrium_defect(const field& u) const {
       all[k].add(scales[k]);
     }
   };
-  together(processes(), [&] {
+  run_collectively(processes(), [&] {
     for (int cell = 0; cell < u.cells(); ++cell) {
       interruptible::poll();
       add_cell(cell);

@@ -39,7 +39,7 @@ namespace {
 std::unique_ptr<run_setup> setup_that_fits(const case_config& config,
                                            const std::shared_ptr<communicator>& processes) {
   std::unique_ptr<run_setup> setup;
-  together(*processes, [&] {
+  run_collectively(*processes, [&] {
     setup = std::make_unique<run_setup>(config, processes);
     check_memory(*setup, 0);
   });
@@ -48,7 +48,7 @@ std::unique_ptr<run_setup> setup_that_fits(const case_config& config,
 
 std::unique_ptr<semidiscrete_problem> problem_of(const run_setup& setup) {
   std::unique_ptr<semidiscrete_problem> problem;
-  together(setup.processes(), [&] { problem = setup.make_problem(); });
+  run_collectively(setup.processes(), [&] { problem = setup.make_problem(); });
   return problem;
 }
 
@@ -97,7 +97,7 @@ struct simulation::impl {
   /// ‖u − v‖₂/‖u‖₂, after the errors that processes met while they computed u and v.
   auto distance() {
     return [this](const auto& u, const auto& v) {
-      problem->settle();
+      problem->throw_late_errors();
       return relative_distance(unknowns_of(u), unknowns_of(v), setup.processes());
     };
   }

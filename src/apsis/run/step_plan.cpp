@@ -88,7 +88,7 @@ void warn_of_layer(const run_setup& setup, semidiscrete_problem& problem, const 
   const target<field, double> add{&changed, 0.0, dt, false}, subtract{&changed, 0.0, -dt, false};
   problem.add_transport(0.0, u, {&add, 1});
   problem.add_transport(0.0, equilibrium, {&subtract, 1});
-  problem.settle();
+  problem.throw_late_errors();
   const double error = relative_distance(u, changed, setup.processes());
   if (!(error > *setup.config().time.tolerance)) return;
   log::warning(

@@ -67,7 +67,7 @@ class budgeted_problem {
     combine_budgets(u, targets, {});
   }
   /// Throws the late errors of the problem.
-  void settle() { equations_.settle(); }
+  void throw_late_errors() { equations_.throw_late_errors(); }
   /// Δt_FE of the problem.
   double forward_euler_step(double t, const state& u) const {
     return equations_.forward_euler_step(t, u.unknowns);

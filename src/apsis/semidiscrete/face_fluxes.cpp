@@ -45,8 +45,8 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
     for (std::size_t k = 0; k < here.inward.size(); ++k)
       if (!(here.inward[k] < 0.0)) values[k] = 0.0;
     double* incoming = here.incoming.row(place);
-    space_->side(surface)->incoming_beside(where, t, space_->meeting_point(surface, place), values,
-                                           space_->ghost_rows(surface, place), incoming);
+    space_->side(surface)->incoming_given_outgoing(where, t, space_->meeting_point(surface, place), values,
+                                                   space_->ghost_rows(surface, place), incoming);
     const int cell = space_->cell_at(surface, place);
     for (std::size_t k = 0; k < here.inward.size(); ++k)
       if (here.inward[k] > 0.0) values[k] = incoming[k];

@@ -20,7 +20,7 @@ namespace apsis {
 /// It has scratch memory: one call at a time, also where a function in a boundary or a force calls again.
 ///
 /// On several processes every member function is collective. An error on one of them does not end the stage,
-/// in which the others wait for its rows: it is kept until settle(), which throws it on all.
+/// in which the others wait for its rows: it is kept until throw_late_errors(), which throws it on all.
 class semidiscrete_problem {
  public:
   using state = field;  ///< f[cell][component]
@@ -91,7 +91,7 @@ class semidiscrete_problem {
   std::span<const double> budget_rates() const { return transport_->budget_rates(); }
   /// Throws on all processes what one of them met since the last call, with the number of the cell in the
   /// whole mesh.
-  void settle() {
+  void throw_late_errors() {
     if (space_->shared()) agree_on_errors(space_->processes(), failure_.take());
   }
   /// Returns the densities of the invariants of the gas at the ends of this process, in the order of
@@ -99,7 +99,7 @@ class semidiscrete_problem {
   std::vector<double> densities_at_surfaces(double t, const field& u) {
     std::vector<double> found;
     guarded(u, [&] { found = transport_->densities_at_surfaces(t, u); });
-    settle();
+    throw_late_errors();
     return found;
   }
   /// Returns the largest |∂S/∂u| of a source, per unit of time; 0 without one that depends on u.
@@ -130,7 +130,7 @@ class semidiscrete_problem {
   double take_cut() { return collision_->take_cut(); }
 
  private:
-  /// Runs a part of a step over u; on several processes its errors wait for settle().
+  /// Runs a part of a step over u; on several processes its errors wait for throw_late_errors().
   template <class Body>
   void guarded(const field& u, const Body& body) {
     const loops_over numbers(u.size());
@@ -149,7 +149,7 @@ class semidiscrete_problem {
   template <class Function>
   double lowest(const Function& of) const {
     double mine = 0.0;
-    together(space_->processes(), [&] { mine = of(); });
+    run_collectively(space_->processes(), [&] { mine = of(); });
     return global_lowest(space_->processes(), mine);
   }
 

@@ -25,7 +25,7 @@ domain space_of(const case_config& config, const relaxation_model& equation) {
     throw input_error("the case has no limit scheme (it has solid boxes); remove them");
   domain made({make_mesh(config), equation.velocities()}, make_boundaries(config, make_model(config)));
   for (const budget_surface& one : made.budget_surfaces())
-    if (!made.side(one.surfaces.front())->repeated_cell(0, 1))
+    if (!made.side(one.surfaces.front())->cell_of_ghost(0, 1))
       throw input_error(
           fmt::format("the case has no limit scheme (rows beyond the face '{}' are not rows of cells); use "
                       "\"periodic\" or \"outflow\" there",

@@ -65,7 +65,7 @@ double derivative_defect(const relaxation_model& m, const row& u, const row& q, 
 made_model make_with(const model_entry& entry, const std::map<std::string, std::string>& texts) {
   model_config config = default_config(entry);
   config.velocity = {8.0, 40, equilibrium_choice::automatic};
-  for (const auto& [name, value] : texts) config.texts.at(name) = value;
+  for (const auto& [name, value] : texts) config.options.at(name) = value;
   auto made = entry.make(config);
   const auto* relaxation = made->as_relaxation();
   return {&entry, std::move(made), relaxation};
@@ -84,7 +84,7 @@ std::vector<made_model> nonnegative_models() {
   for (const auto* entry : model_entries()) {
     made_model made = make_with(*entry, {});
     if (!made.equation->positive()) continue;
-    if (!made.equation->collisions_keep_sign() && default_config(*entry).texts.contains("tails"))
+    if (!made.equation->collisions_keep_sign() && default_config(*entry).options.contains("tails"))
       made = make_with(*entry, {{"tails", "nonnegative"}});
     all.push_back(std::move(made));
   }

@@ -6,7 +6,7 @@ namespace {
 /// Zero gradient: every ghost row is the row of the cell at the face.
 class outflow_boundary final : public repeating_boundary {
  public:
-  std::optional<int> repeated_cell(int, int) const override { return 0; }
+  std::optional<int> cell_of_ghost(int, int) const override { return 0; }
 };
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace {
 /// The domain continues at its opposite face, repeatedly if the stencil is wider than the mesh.
 class periodic_boundary final : public repeating_boundary {
  public:
-  std::optional<int> repeated_cell(int ghost, int cells) const override { return cells - 1 - ghost % cells; }
+  std::optional<int> cell_of_ghost(int ghost, int cells) const override { return cells - 1 - ghost % cells; }
   bool periodic() const override { return true; }
 };
 

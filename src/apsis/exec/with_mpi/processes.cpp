@@ -63,7 +63,7 @@ class mpi_communicator final : public communicator {
   int size() const override { return size_; }
   int processes_here() const override { return here_; }
   std::int64_t handle() const override { return MPI_Comm_c2f(all_); }
-  bool all_arrive(double seconds) override {
+  bool all_call_within(double seconds) override {
     MPI_Request request = MPI_REQUEST_NULL;
     check_mpi(MPI_Ibarrier(ends_, &request), "MPI_Ibarrier");
     for (const stopwatch waited; waited.seconds() < seconds; pause()) {
@@ -289,7 +289,8 @@ class mpi_communicator final : public communicator {
       longest_withdrawal = 10.0;                  ///< s
 
   std::shared_ptr<void> session_;
-  MPI_Comm all_ = MPI_COMM_NULL, ends_ = MPI_COMM_NULL;  ///< the second one for all_arrive() and failures
+  MPI_Comm all_ = MPI_COMM_NULL,
+           ends_ = MPI_COMM_NULL;  ///< the second one for all_call_within() and failures
   int rank_ = 0, size_ = 1, here_ = 1;
   pending exchange_, discarded_;
   std::vector<std::byte> unread_;

@@ -52,7 +52,7 @@ class imex_bdf {
       problem_.add_transport(t, u, targets_);
       problem_.solve_collision(t + dt, dt * m_.b, real(0), next);
     }
-    settle(problem_);
+    throw_late_errors(problem_);
     using std::swap;
     swap(u, next);
     ++known_;

@@ -63,7 +63,7 @@ class two_step {
       solved_ = false;
       if (i < last) add_row(i, t, dt);
     }
-    settle(problem_);
+    throw_late_errors(problem_);
     using std::swap;
     swap(rows_[0], u);
     swap(u, rows_[last]);

@@ -9,7 +9,7 @@ const model_entry model_bgk = {
     .source = "Bhatnagar, Gross, Krook (1954); Gottlieb, Grant, Hu, Shu, BGK model",
     .has_velocity_grid = true,
     .parameters = gas_model::parameters(0.0),
-    .texts = gas_model::texts(),
+    .options = gas_model::options(),
     .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<gas_model>(config);
     }};

@@ -65,10 +65,10 @@ class es_bgk_model final : public gas_model {
       for (std::size_t l = k; l < size(); ++l) *s++ = m.stress[k][l] - (k == l ? state.T : 0.0);
   }
 
-  void relax(const stage_strength& of, double* s) const override {
+  void relax(const stage_coefficients& of, double* s) const override {
     const double decay = 1.0 / (1.0 + rate_of_stress_ * of.a + rate_of_stress_ * rate_of_stress_ * of.b);
     for (int k = 0; k < pairs(); ++k) s[k] *= decay;
-    s[pairs()] = rate_of_stress_ * of.share;
+    s[pairs()] = rate_of_stress_ * of.weight_of_b;
   }
 
   bool target(const double* omega, const double* s, const double* f, double keep, double* e,
@@ -153,7 +153,7 @@ const model_entry model_es_bgk = {
                                 "monatomic gas"});
           return all;
         }(),
-    .texts = gas_model::texts_with_tails("nonnegative"),
+    .options = gas_model::texts_with_tails("nonnegative"),
     .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<es_bgk_model>(config);
     }};

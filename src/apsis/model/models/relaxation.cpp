@@ -17,8 +17,8 @@ class relaxation_system final : public relaxation_model {
  public:
   explicit relaxation_system(const model_config& config)
       : a_(config.parameters.at("speed")),
-        flux_(config.texts.at("flux"), config.parameters.at("slope"), config.parameters.at("viscosity_ratio"),
-              config.constants),
+        flux_(config.options.at("flux"), config.parameters.at("slope"),
+              config.parameters.at("viscosity_ratio"), config.constants),
         velocities_({{a_, -a_}}, {1.0, 1.0}) {
     make_initial_data(config.parameters.at("left"), config.parameters.at("right"),
                       config.parameters.at("jump"));
@@ -167,11 +167,11 @@ const model_entry model_relaxation = {
                     .lowest = -1e6,
                     .highest = 1e6,
                     .doc = "x of the jump (dimensionless)"}},
-    .texts = {{.name = "flux",
-               .value = "burgers",
-               .choices = scalar_flux::names(),
-               .variable = "u",
-               .doc = "F(u); 'burgers' is u^2/2"}},
+    .options = {{.name = "flux",
+                 .value = "burgers",
+                 .choices = scalar_flux::names(),
+                 .variable = "u",
+                 .doc = "F(u); 'burgers' is u^2/2"}},
     .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<relaxation_system>(config);
     }};

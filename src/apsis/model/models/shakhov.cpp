@@ -46,11 +46,11 @@ class shakhov_model final : public gas_model {
     for (int k = 0; k < d; ++k) s[k] = m.heat[static_cast<std::size_t>(k)];
   }
 
-  void relax(const stage_strength& of, double* s) const override {
+  void relax(const stage_coefficients& of, double* s) const override {
     const int d = molecules().dimensions();
     const double decay = 1.0 / (1.0 + prandtl_ * of.a + prandtl_ * prandtl_ * of.b);
     for (int k = 0; k < d; ++k) s[k] *= decay;
-    s[d] = prandtl_ * of.share;
+    s[d] = prandtl_ * of.weight_of_b;
   }
 
   bool target(const double* omega, const double* s, const double* f, double keep, double* e,
@@ -103,7 +103,7 @@ const model_entry model_shakhov = {
                          .doc = "Prandtl number; 2/3 for a monatomic gas"});
           return all;
         }(),
-    .texts = gas_model::texts_with_tails("signed"),
+    .options = gas_model::texts_with_tails("signed"),
     .make = [](const model_config& config) -> std::unique_ptr<model> {
       return std::make_unique<shakhov_model>(config);
     }};

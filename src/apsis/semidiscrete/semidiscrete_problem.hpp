@@ -89,13 +89,13 @@ class semidiscrete_problem {
   /// add_transport_and_solve(). On several processes each has those of its own ends, and one those of force
   /// and source.
   std::span<const double> budget_rates() const { return transport_->budget_rates(); }
-  /// Throws on all processes what one of them met since the last call, with the number of the cell in the
-  /// whole mesh.
+  /// Rethrows on all processes the first error since the last call, with the number of the cell in the whole
+  /// mesh.
   void throw_late_errors() {
     if (space_->shared()) agree_on_errors(space_->processes(), failure_.take());
   }
   /// Returns the densities of the invariants of the gas at the ends of this process, in the order of
-  /// a boundary_budget; settles. Throws what boundaries throw.
+  /// a boundary_budget. Throws what boundaries throw, and late errors.
   std::vector<double> densities_at_surfaces(double t, const field& u) {
     std::vector<double> found;
     guarded(u, [&] { found = transport_->densities_at_surfaces(t, u); });

@@ -99,7 +99,7 @@ nlohmann::ordered_json to_json(const gas_scales& scales) {
   nlohmann::ordered_json out;
   if (!scales.gas().name.empty()) out["gas"] = scales.gas().name;
   for (const auto& one : scales.quantities())
-    out[one.name] = {{"value", one.value}, {"unit", unit_of(one.measure)}};
+    out[one.name] = {{"value", one.value}, {"unit", unit_of(one.dimension)}};
   return out;
 }
 

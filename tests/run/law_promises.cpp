@@ -2,7 +2,6 @@
 #include "laws.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/exec/parallel.hpp>
 #include <apsis/model/scalar_flux.hpp>
 
 #include <cmath>
@@ -41,16 +40,6 @@ TEST(law, conserves_every_variable_to_rounding) {
       for (const double defect : run.last().conservation_defect) EXPECT_LT(defect, 1e-13) << name << ends;
     }
   }
-}
-
-TEST(law, gives_the_same_bits_on_any_number_of_threads) {
-  const overrides long_mesh = {cells(700), "time.end=0.02"};
-  apsis::set_threads(1);
-  const auto one = finished_case("euler-sod", long_mesh).state();
-  apsis::set_threads(3);
-  const auto three = finished_case("euler-sod", long_mesh).state();
-  apsis::set_threads(1);
-  EXPECT_EQ(one, three);
 }
 
 TEST(law, with_a_speed_that_the_data_exceed_is_refused) {

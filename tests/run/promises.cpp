@@ -1,7 +1,6 @@
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/exec/parallel.hpp>
 
 #include <cmath>
 #include <limits>
@@ -160,23 +159,6 @@ TEST(promises, a_formula_with_inexact_moments_disables_the_promise_of_conservati
   EXPECT_TRUE(apsis::simulation(c).promises().conservation);
   EXPECT_EQ(testing::internal::GetCapturedStderr().find("warning"), std::string::npos);
   EXPECT_LE(finished(c).conservation_defect, 1e-12);
-}
-
-TEST(simulation, repeated_runs_on_any_number_of_threads_give_the_same_bits) {
-  for (const auto how : both) {
-    const auto c = small("md-imex-6-3", how);
-    apsis::set_threads(1);
-    apsis::simulation one(c), again(c);
-    finish(one);
-    finish(again);
-    apsis::set_threads(3);
-    apsis::simulation three(c);
-    finish(three);
-    apsis::set_threads(1);
-    EXPECT_EQ(one.state(), again.state());
-    EXPECT_EQ(one.state(), three.state());
-    EXPECT_EQ(one.last().entropy, three.last().entropy);
-  }
 }
 
 TEST(simulation, continues_a_saved_run_bit_for_bit) {

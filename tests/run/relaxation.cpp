@@ -2,7 +2,6 @@
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/exec/parallel.hpp>
 #include <apsis/output/case_json.hpp>
 
 #include <cmath>
@@ -93,17 +92,6 @@ TEST(relaxation, buckley_leverett_has_its_shock_at_the_position_of_the_tangent_c
   double mass = 0.0;
   for (const double u : fields.values[0]) mass += cell * u;
   EXPECT_NEAR(mass, 0.5 + 0.4, 1e-10);
-}
-
-TEST(relaxation, a_formula_gives_the_same_bits_on_any_number_of_threads) {
-  const std::vector<std::string> overrides = {"model.flux=sin(u)/2 + u^3/9", "space.cells=700",
-                                              "time.end=0.02"};
-  apsis::set_threads(1);
-  const auto one = finished_run("relaxation", overrides).state();
-  apsis::set_threads(3);
-  const auto three = finished_run("relaxation", overrides).state();
-  apsis::set_threads(1);
-  EXPECT_EQ(one, three);
 }
 
 TEST(relaxation, reports_values_that_the_data_rule_out_at_their_key) {

@@ -2,7 +2,6 @@
 // accuracy, and solid boxes.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
-#include <apsis/exec/parallel.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
@@ -184,18 +183,6 @@ TEST(space_dimensions, waves_at_45_degrees_fly_freely_with_fifth_order) {
   };
   const double coarse = error(12), fine = error(24);
   EXPECT_GT(std::log2(coarse / fine), 4.8) << coarse << " " << fine;
-}
-
-TEST(space_dimensions, results_do_not_depend_on_the_number_of_threads) {
-  const std::vector<std::string> settings = {"space.cells=[40,35]", "space.domain=[[0,1],[0,1]]",
-                                             "initial.rho=1 + 0.2*sin(2*pi*x)*cos(2*pi*y)",
-                                             "space.boundary=diffuse", "time.end=0.003"};
-  const auto one = result_of(settings);
-  for (const int threads : {2, 3, 7}) {
-    apsis::set_threads(threads);
-    EXPECT_EQ(result_of(settings), one) << threads;
-  }
-  apsis::set_threads(1);
 }
 
 namespace {

@@ -416,7 +416,7 @@ TEST(results, the_list_of_methods_fits_a_wide_terminal_and_names_the_families) {
   EXPECT_THAT(text, HasSubstr("k = 3, order 3, r = 0\n"));
 }
 
-TEST(results, multistep_methods_are_checked_shown_and_refused_where_one_step_is_needed) {
+TEST(results, multistep_methods_are_checked_and_shown) {
   const work_folder folder;
   const json bdf = json::parse(run_apsis(folder, {"check", "imex-bdf-3", "--json"}).out);
   EXPECT_EQ(bdf["order"], 3);
@@ -427,14 +427,6 @@ TEST(results, multistep_methods_are_checked_shown_and_refused_where_one_step_is_
   folder.file("copy.toml", file);
   EXPECT_EQ(json::parse(run_apsis(folder, {"check", "copy.toml", "--json"}).out),
             json::parse(run_apsis(folder, {"check", "two-step-8-3-narrow", "--json"}).out));
-  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
-    const outcome result = run_apsis(folder, arguments);
-    EXPECT_EQ(result.code, 2);
-    EXPECT_THAT(result.err, HasSubstr(message));
-  };
-  refused({"show", "imex-bdf-3"}, "method 'imex-bdf-3' has no file");
-  refused({"show", "two-step-8-3-narrow", "--format", "json"}, "use --format toml");
-  refused({"check", "imex-bdf-3", "--observe"}, "need a method of one step ('imex-bdf-3' takes several)");
 }
 
 TEST(results, a_member_of_a_family_is_a_method_like_any_other) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace promises_test {
@@ -194,39 +195,23 @@ TEST(simulation, an_interval_of_length_zero_returns_the_initial_state) {
   EXPECT_EQ(run.fields().x.size(), 20u);
 }
 
-namespace {
-std::string complaint(const apsis::case_config& c) {
-  try {
-    apsis::simulation run(c);
-  } catch (const apsis::input_error& e) {
-    return e.what();
-  }
-  return "";
-}
-}  // namespace
-
 TEST(simulation, refuses_invalid_configurations_before_the_first_step) {
   const auto base = small("md-imex-3-2", formulation::finite_volume);
-  EXPECT_EQ(complaint(base), "");
-  auto c = base;
-  c.velocity.max = 3.0;
-  EXPECT_NE(complaint(c).find("velocity.max = 3 is too small"), std::string::npos) << complaint(c);
-  c = base;
-  c.velocity.points = 6;
-  EXPECT_NE(complaint(c).find("velocity.points = 6 is too few"), std::string::npos) << complaint(c);
-  c = base;
-  c.space.cells = {4};
-  EXPECT_NE(complaint(c).find("smaller than the stencil"), std::string::npos) << complaint(c);
-  c = base;
-  c.time.method = "imdrk-2-3";
-  EXPECT_NE(complaint(c).find("cannot integrate"), std::string::npos) << complaint(c);
-  c = base;
-  c.model.epsilon = "x - 1";
-  EXPECT_NE(complaint(c).find("expression 'x - 1' is -"), std::string::npos) << complaint(c);
-  c = base;
-  c.time.cfl.reset();
-  c.time.dt = 1e-300;
-  EXPECT_NE(complaint(c).find("dt is too small"), std::string::npos) << complaint(c);
+  const auto refused = [&base](const auto& change) {
+    auto c = base;
+    change(c);
+    EXPECT_THROW(apsis::simulation{c}, apsis::input_error);
+  };
+  EXPECT_NO_THROW(apsis::simulation{base});
+  refused([](auto& c) { c.velocity.max = 3.0; });
+  refused([](auto& c) { c.velocity.points = 6; });
+  refused([](auto& c) { c.space.cells = {4}; });
+  refused([](auto& c) { c.time.method = "imdrk-2-3"; });
+  refused([](auto& c) { c.model.epsilon = "x - 1"; });
+  refused([](auto& c) {
+    c.time.cfl.reset();
+    c.time.dt = 1e-300;
+  });
 }
 
 TEST(simulation, without_space_is_an_ordinary_differential_equation) {
@@ -244,7 +229,8 @@ TEST(simulation, without_space_is_an_ordinary_differential_equation) {
   EXPECT_NEAR(std::log2(error(4096) / error(8192)), 4.0, 0.15);
   c.time.dt.reset();
   c.time.safety = 1.0;
-  EXPECT_NE(complaint(c).find("nothing limits the time step"), std::string::npos) << complaint(c);
+  EXPECT_THAT([&] { apsis::simulation{c}; },
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("nothing limits the time step")));
 }
 
 TEST(simulation, free_flight_is_fifth_order_with_and_without_limiter) {

@@ -47,7 +47,8 @@ test: ## install packages, build everything, run all tests except the slow ones
 	@scripts/install-packages.sh test
 	cmake --preset release -DAPSIS_TESTS=ON -DAPSIS_BENCH=ON -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) $(WHOLE) >/dev/null
 	cmake --build build/release
-	ctest --preset release -LE slow
+	ctest --preset release -LE slow --output-junit $(CURDIR)/build/release/quick-tests.xml
+	$(PYTHON) tests/slowest.py build/release/quick-tests.xml
 
 test-slow:
 	ctest --preset release -L slow --no-tests=ignore

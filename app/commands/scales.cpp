@@ -32,7 +32,7 @@ double constant_epsilon(const case_config& config) {
   const auto rate = config.model.options.find("collision_rate");
   if (rate == config.model.options.end() || rate->second != "viscosity")
     throw input_error(place_of(config, "model.epsilon"),
-                      "the case has no viscosity epsilon T^s from which a mean free path follows; add "
+                      "the case has no viscosity epsilon T^s (a mean free path follows from it); add "
                       "collision_rate = \"viscosity\" or a table [gas]");
   const int dimensions = prototype(find_model(config.model.name)).space_dimensions();
   const expression formula = make_epsilon(config, dimensions);

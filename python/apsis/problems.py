@@ -93,7 +93,8 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
     if startup not in ("none", "graded"):
         raise InputError(f"unknown start-up {startup!r} (there is no such name); give \"none\" or \"graded\"")
     if startup == "none" and startup_growth != 2:
-        raise InputError("startup_growth has no meaning without a graded start; give startup = \"graded\" too, or remove it")
+        raise InputError("startup_growth has no meaning without a graded start (it is the ratio of its times); "
+                         "give startup = \"graded\" too, or remove it")
     chosen, reason = _chosen(problem, dt, startup, tolerance) if _is_auto(method) else (method, "")
     integrator = chosen if isinstance(chosen, Method) else find_method(_name(chosen))
     steps_by = (None if dt is None else number("dt", dt), number("safety", safety, positive=True),

@@ -126,55 +126,6 @@ TEST(converge, an_interrupt_retains_finished_runs) {
     EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
 }
 
-struct bad_line {
-  std::string name;
-  std::vector<std::string> arguments;
-  std::string says;
-};
-
-void PrintTo(const bad_line& b, std::ostream* out) {
-  *out << b.name;
-}
-
-class bad_lines : public testing::TestWithParam<bad_line> {};
-
-TEST_P(bad_lines, give_one_message_and_leave_nothing) {
-  const work_folder folder;
-  auto arguments = GetParam().arguments;
-  arguments.insert(arguments.begin(), "converge");
-  const outcome result = run_apsis(folder, arguments);
-  EXPECT_EQ(result.code, 2) << result.err;
-  EXPECT_THAT(result.err, HasSubstr(GetParam().says));
-  EXPECT_EQ(result.err.find("error: "), result.err.rfind("error: "));
-  EXPECT_THAT(result.out, IsEmpty());
-  EXPECT_TRUE(fs::is_empty(folder.path()));
-}
-
-const std::vector<bad_line> lines = {
-    {"no_case", {"--vary", "time.dt=1/4"}, "CASE"},
-    {"no_vary", {"paper/ode", "--out", "o"}, "--vary"},
-    {"vary_without_value", {"paper/ode", "--vary"}, "--vary"},
-    {"empty_list", {"paper/ode", "--vary", "time.dt=", "--out", "o"}, "a value is empty"},
-    {"unknown_key", {"paper/ode", "--vary", "time.dtt=1/4", "--out", "o"}, "did you mean 'time.dt'?"},
-    {"bad_override",
-     {"paper/ode", "time.ned=2", "--vary", "time.dt=1/4", "--out", "o"},
-     "did you mean 'time.end'?"},
-    {"unknown_norm", {"paper/ode", "--vary", "time.dt=1/4", "--norm", "l3", "--out", "o"}, "no norm 'l3'"},
-    {"unknown_reference",
-     {"paper/ode", "--vary", "time.dt=1/4", "--reference", "tme", "--out", "o"},
-     "'time'?"},
-    {"exact",
-     {"paper/ode", "--vary", "time.dt=1/4", "--reference", "exact", "--out", "o"},
-     "no exact solution"},
-    {"unknown_option",
-     {"paper/ode", "--vary", "time.dt=1/4", "--refrence", "exact"},
-     "did you mean '--reference'?"},
-    {"threads", {"paper/ode", "--vary", "time.dt=1/4", "--threads", "-1"}, "--threads"},
-};
-
-INSTANTIATE_TEST_SUITE_P(table, bad_lines, testing::ValuesIn(lines),
-                         [](const auto& b) { return b.param.name; });
-
 TEST(converge, rejects_an_impossible_folder_before_it_computes) {
   const work_folder folder;
   folder.file("file", "x");

@@ -80,16 +80,6 @@ TEST(design, writes_a_two_step_method_that_can_be_checked_improved_and_run) {
   // Ipopt stops within 1e-9 of an optimum.
   EXPECT_LE(json::parse(again.out)["method"]["error_constant"].get<double>(),
             found["method"]["error_constant"].get<double>() * (1.0 + 1e-6));
-  for (const auto& [more, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{"--implicit"}, "--implicit cannot be combined with --steps 2"},
-           {{"--regime", "all"}, "--regime all cannot be combined with --steps 2"},
-           {{"--angle", "60"}, "--angle cannot be combined with --steps 2"}}) {
-    std::vector<std::string> wrong = {"--steps", "2", "--order", "2", "--stages", "3"};
-    wrong.insert(wrong.end(), more.begin(), more.end());
-    const outcome refused = run_apsis(folder, design(wrong));
-    EXPECT_EQ(refused.code, 2) << why;
-    EXPECT_THAT(refused.err, HasSubstr(why));
-  }
 }
 
 TEST(design, reports_the_nearest_residual_if_nothing_is_found) {
@@ -114,63 +104,6 @@ TEST(design, leaves_the_best_so_far_when_interrupted) {
   EXPECT_THAT(result.err, HasSubstr("best method so far is in 'found.toml'"));
   const outcome check = run_apsis(folder, {"check", "found.toml"});
   EXPECT_EQ(check.code, 0) << check.err;
-}
-
-TEST(design, rejects_impossible_demands) {
-  const work_folder folder;
-  const auto refused = [&folder](const std::vector<std::string>& more, const std::string& message) {
-    const outcome result = run_apsis(folder, design(more));
-    EXPECT_EQ(result.code, 2) << message;
-    EXPECT_THAT(result.err, HasSubstr(message));
-    EXPECT_THAT(folder.listing(), IsEmpty());
-  };
-  refused({"--stages", "3"}, "--order is missing");
-  refused({"--order", "2"}, "--stages is missing");
-  refused({"--order", "0", "--stages", "3"}, "--order 0 is out of range (from 1 to 6)");
-  refused({"--order", "2", "--stages", "99"}, "--stages 99 is out of range (from 1 to 32)");
-  refused({"--order", "2", "--stages", "1"}, "an IMEX method needs 2");
-  refused({"--order", "2", "--stages", "3", "--evaluations", "3"}, "--evaluations 3 is out of range");
-  refused({"--order", "2", "--stages", "3", "--box", "-1"}, "--box -1 is out of range");
-  refused({"--order", "2", "--stages", "3", "--box", "nan"}, "--box cannot be 'nan'");
-  refused({"--order", "2", "--stages", "3", "--margin", "5"}, "--margin 5 is out of range");
-  refused({"--order", "2", "--stages", "3", "--ssp", "0"}, "--ssp 0 is out of range");
-  refused({"--order", "2", "--stages", "3", "--angle", "91"},
-          "--angle 91 is out of range (from 0 to 90 degrees)");
-  refused({"--order", "2", "--stages", "3", "--angle", "nan"}, "--angle cannot be 'nan'");
-  refused({"--order", "2", "--stages", "3", "--pole", "-1"},
-          "--pole -1 is out of range (from 0 to 1/sqrt(margin) = 31.62)");
-  refused({"--order", "2", "--stages", "3", "--pole", "32"}, "--pole 32 is out of range");
-  refused({"--order", "2", "--stages", "3", "--buffers", "0"}, "--buffers 0 is out of range (at least 1)");
-  refused({"--order", "2", "--stages", "3", "--time", "0"}, "--time 0 is out of range");
-  refused({"--order", "2", "--stages", "3", "--starts", "0"}, "--starts 0 is out of range");
-  refused({"--order", "2", "--stages", "3", "--objective", "eror"}, "did you mean 'error'");
-  refused({"--order", "2", "--stages", "3", "--regime", "fast"}, "unknown --regime 'fast'");
-  refused({"--implicit", "--order", "2", "--stages", "1", "--regime", "slow"}, "there is no transport");
-  const outcome result = run_apsis(folder, {"design", "--order", "2", "--stages", "3", "--out", "found.txt"});
-  EXPECT_EQ(result.code, 2);
-  EXPECT_THAT(result.err, HasSubstr("'found.txt' is not a method file"));
-  EXPECT_THAT(folder.listing(), IsEmpty());
-}
-
-TEST(design, creates_no_folder_and_no_unreadable_method) {
-  const work_folder folder;
-  const auto refused = [&](const std::string& out, const std::string& message) {
-    for (const std::vector<std::string>& what :
-         {std::vector<std::string>{"--order", "2", "--stages", "3"}, {"--embedded", "md-imex-chain-7-2"}}) {
-      std::vector<std::string> arguments = {"design", "--out", out};
-      arguments.insert(arguments.end(), what.begin(), what.end());
-      const outcome result = run_apsis(folder, arguments);
-      EXPECT_EQ(result.code, 2) << out;
-      EXPECT_THAT(result.err, HasSubstr(message)) << out;
-    }
-  };
-  refused("some/missing/folder/x.toml",
-          "no folder 'some/missing/folder' for --out 'some/missing/folder/x.toml'");
-  refused("some/missing/folder/x", "is not a method file (it does not end in .toml)");
-  refused("two words.toml", "would name the method 'two words'");
-  refused("md-imex-3-2.toml", "would name the method 'md-imex-3-2'");
-  refused("md-imex-chain-99-2.toml", "family reserves it");
-  EXPECT_THAT(folder.listing(), IsEmpty());
 }
 
 TEST(design, writes_a_method_again_with_its_embedded_solution) {
@@ -207,25 +140,17 @@ TEST(design, writes_a_method_again_with_its_embedded_solution) {
 
 TEST(design, explains_why_there_is_no_embedded_solution) {
   const work_folder folder;
-  const auto refused = [&folder](const std::vector<std::string>& more, int code, const std::string& message) {
+  const auto refused = [&folder](const std::vector<std::string>& more, const std::string& message) {
     std::vector<std::string> arguments = {"design", "--embedded"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     arguments.insert(arguments.end(), {"--out", "found.toml"});
     const outcome result = run_apsis(folder, arguments);
-    EXPECT_EQ(result.code, code) << message;
+    EXPECT_EQ(result.code, 3) << message;
     EXPECT_THAT(result.err, HasSubstr(message));
     EXPECT_THAT(folder.listing(), IsEmpty());
   };
-  refused({"md-imex-3-2", "--cost", "nothing"}, 3,
-          "(order 1: nearest residual 4.0e-01); try --cost one-solve");
-  refused({"imdrk-7-4", "--order", "3"}, 3, "order 3: coverage 0 of the error, at least 0.15 needed");
-  refused({"ars-443"}, 2, "Q of a stage enters a later one");
-  refused({"ssprk-3-3"}, 2, "it is explicit and has no stage solves");
-  refused({"forward-backward-euler"}, 2, "its order is 1");
-  refused({"md-imex-3-3"}, 2, "did you mean 'md-imex-3-2'?");
-  refused({"md-imex-3-2", "--order", "2"}, 2, "--order 2 is out of range (from 1 to 1");
-  refused({"md-imex-3-2", "--cost", "two"}, 2, "unknown --cost 'two'");
-  refused({"md-imex-3-2", "--stages", "3"}, 2, "--stages excludes --embedded");
+  refused({"md-imex-3-2", "--cost", "nothing"}, "(order 1: nearest residual 4.0e-01); try --cost one-solve");
+  refused({"imdrk-7-4", "--order", "3"}, "order 3: coverage 0 of the error, at least 0.15 needed");
 }
 
 TEST(design, removes_stages_and_retains_the_best_method_when_time_is_over) {
@@ -239,12 +164,6 @@ TEST(design, removes_stages_and_retains_the_best_method_when_time_is_over) {
                                           "imdrk-2-3", "--out", "n.toml"});
   EXPECT_EQ(none.code, 3);
   EXPECT_THAT(none.err, HasSubstr("no stage of 2 can be removed (least sum of weights 0.08"));
-  EXPECT_FALSE(fs::exists(folder.path() / "n.toml"));
-  const outcome fewer = run_apsis(folder, {"design", "--order", "3", "--stages", "6", "--evaluations", "2",
-                                           "--from", "md-imex-6-3", "--out", "n.toml"});
-  EXPECT_EQ(fewer.code, 2);
-  EXPECT_THAT(fewer.err,
-              HasSubstr("--evaluations 2 is out of range ('md-imex-6-3' has 3: as many, or more)"));
   EXPECT_FALSE(fs::exists(folder.path() / "n.toml"));
   // Removing one of 16 stages takes seconds, so there is no time for the second.
   const outcome late = run_apsis(folder, {"design", "--order", "4", "--stages", "14", "--time", "0.5",

@@ -35,23 +35,6 @@ TEST(epsilon_profile, prints_predicted_errors_for_the_step_of_the_case_and_three
             result["rows"][3]["error"]["mass"].get<double>());
 }
 
-TEST(epsilon_profile, needs_a_case_for_overrides_and_a_case_that_exists) {
-  const work_folder folder;
-  const outcome lonely = run_apsis(folder, {"check", "md-imex-6-3", "time.dt=0.1"});
-  EXPECT_EQ(lonely.code, 2);
-  EXPECT_THAT(lonely.err,
-              HasSubstr("command line: 'time.dt=0.1' has no case to change (apsis check reads one only "
-                        "for --epsilon-profile); add --epsilon-profile CASE"));
-  const outcome missing =
-      run_apsis(folder, {"check", "md-imex-6-3", "--epsilon-profile", "paper/bgk-mixd-fd"});
-  EXPECT_EQ(missing.code, 2);
-  EXPECT_THAT(missing.err, HasSubstr("paper/bgk-mixed-fd"));
-  const outcome explicit_method =
-      run_apsis(folder, {"check", "ssprk-3-3", "--epsilon-profile", "paper/bgk-mixed-fd"});
-  EXPECT_EQ(explicit_method.code, 2);
-  EXPECT_THAT(explicit_method.err, HasSubstr("it is no IMEX method"));
-}
-
 }  // namespace
 
 }  // namespace epsilon_profile_test

@@ -95,37 +95,6 @@ TEST(option_values, that_cannot_be_meant_are_refused_by_the_name_of_the_option) 
     }
 }
 
-#if APSIS_HAS_DESIGN
-TEST(option_values, of_design_beyond_their_range_are_refused_by_the_name_of_the_option) {
-  const work_folder folder;
-  const std::vector<std::string> design = {"design", "--order", "2", "--stages", "3", "--out", "d.toml"};
-  const std::vector<std::pair<std::string, std::vector<std::string>>> ranges = {
-      {"--box", {"0", "-1", "1001"}}, {"--margin", {"-1", "1e9"}}, {"--ssp", {"0", "-1", "1e9"}},
-      {"--angle", {"-1", "91"}},      {"--pole", {"-1", "1e9"}},   {"--buffers", {"0", "-1"}},
-      {"--sparsify", {"-0.1", "1"}},  {"--starts", {"0", "-1"}},   {"--time", {"0", "-1"}},
-      {"--evaluations", {"-1", "3"}}, {"--threads", {"-1"}},       {"--starts", {"3000000000"}},
-      {"--buffers", {"3000000000"}},  {"--objective", {"speed"}},  {"--regime", {"fast"}},
-  };
-  for (const auto& [option, values] : ranges)
-    for (const auto& value : values) {
-      SCOPED_TRACE(option + " " + value);
-      auto arguments = design;
-      arguments.insert(arguments.end(), {option, value});
-      expect_refusal(folder, arguments, option);
-    }
-  // Decimal, not octal: 010 is ten.
-  expect_refusal(folder, {"design", "--stages", "3", "--out", "d.toml", "--order", "010"}, "--order 10");
-}
-#endif
-
-TEST(option_values, beyond_their_range_are_refused_by_the_name_of_the_option) {
-  const work_folder folder;
-  for (const char* value : {"0", "-1", "-1e-300"})
-    expect_refusal(folder, {"run", "paper/ode", "--wall", value}, "--wall: a number above 0 is required");
-  for (const char* command : {"run", "converge", "reproduce"})
-    expect_refusal(folder, {command, "--threads", "-1"}, "--threads");
-}
-
 TEST(option_values, whole_numbers_may_be_written_as_any_number) {
   const work_folder folder;
   EXPECT_EQ(run_apsis(folder, {"run", "paper/ode", "--threads", "1e0"}).code, 0);

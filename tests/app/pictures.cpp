@@ -61,26 +61,6 @@ TEST(plot, compares_runs_and_takes_a_format_and_a_folder) {
   EXPECT_THAT(read(folder.path() / "pictures" / "both.svg"), HasSubstr("</svg>"));
 }
 
-TEST(plot, refuses_what_it_cannot_draw_and_leaves_nothing_behind) {
-  const work_folder folder;
-  fs::create_directory(folder.path() / "damaged");
-  folder.file("damaged/manifest.json", "{");
-  folder.file("no-method.toml", "name = \"x\"\n");
-  const auto before = folder.listing();
-  const auto unknown = run_apsis(folder, {"plot", "ars-223"});
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'ars-222'?"));
-  EXPECT_EQ(run_apsis(folder, {"plot", "ars-222", "--format", "gif"}).code, 2);
-  EXPECT_EQ(run_apsis(folder, {"plot", "no-method.toml"}).code, 2);
-  EXPECT_EQ(run_apsis(folder, {"plot"}).code, 2);
-  const auto damaged = run_apsis(folder, {"plot", "damaged"});
-  EXPECT_EQ(damaged.code, 4);
-  EXPECT_THAT(damaged.err, HasSubstr("damaged/manifest.json"));
-  EXPECT_EQ(run_apsis(folder, {"report", "damaged"}).code, 4);
-  EXPECT_EQ(run_apsis(folder, {"report", "nowhere"}).code, 4);
-  EXPECT_EQ(folder.listing(), before);
-}
-
 TEST(report, is_one_page_and_goes_with_the_results_that_it_reports) {
   const work_folder folder;
   make_runs(folder);

@@ -90,20 +90,6 @@ TEST(reproduce, keeps_the_data_where_no_python_draws) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "r" / "report.html"));
 }
 
-TEST(reproduce, names_the_nearest_claim_and_leaves_nothing_behind) {
-  const work_folder folder;
-  const auto before = folder.listing();
-  for (const auto& arguments : std::vector<std::vector<std::string>>{{"reproduce", "C99"},
-                                                                     {"reproduce", ""},
-                                                                     {"reproduce", "C3", "--threads", "-1"},
-                                                                     {"reproduce", "--outt", "x"}}) {
-    const auto result = run_apsis(folder, arguments);
-    EXPECT_EQ(result.code, 2) << result.err;
-  }
-  EXPECT_EQ(folder.listing(), before);
-  EXPECT_EQ(run_apsis(folder, {"reproduce", "C3", "--out", "/proc/nowhere"}).code, 4);
-}
-
 TEST(reproduce, an_interrupt_retains_checked_claims) {
   const work_folder folder;
   // All claims take more than a minute, so the first one is not the last when the signal comes.

@@ -45,18 +45,4 @@ TEST(validate, computes_a_value_for_other_parameters) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "results"));  // nothing is written
 }
 
-TEST(validate, refuses_settings_without_one_quantity) {
-  const work_folder folder;
-  for (const auto& words : std::vector<std::vector<std::string>>{
-           {"validate", "delta=2"}, {"validate", "couette", "prandtl", "delta=2"}}) {
-    const auto result = run_apsis(folder, words);
-    EXPECT_EQ(result.code, 2);
-    EXPECT_THAT(result.err, HasSubstr("one is needed"));
-  }
-  const auto unknown = run_apsis(folder, {"validate", "couete", "--out", "v"});
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'couette'"));
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "v"));
-}
-
 }  // namespace validate_test

@@ -68,12 +68,8 @@ TEST(cases, numbers_of_overrides_may_be_fractions) {
 }
 
 TEST(cases, a_missing_case_is_an_input_error_with_the_nearest_name) {
-  try {
-    load_case("paper/bgk-mixd");
-    FAIL();
-  } catch (const input_error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("did you mean 'paper/bgk-mixed'?"));
-  }
+  EXPECT_THAT([] { load_case("paper/bgk-mixd"); },
+              testing::ThrowsMessage<input_error>(HasSubstr("did you mean 'paper/bgk-mixed'?")));
   EXPECT_THROW(load_case("/"), io_error);
 }
 

@@ -96,15 +96,6 @@ TEST(automatic_method, is_written_as_the_method_it_is) {
   EXPECT_EQ(again.time.method_reason, "");
 }
 
-TEST(automatic_method, is_suggested_like_a_name) {
-  try {
-    gas({"time.cfl=0.5", "time.method=atuo"});
-    FAIL();
-  } catch (const apsis::input_error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("did you mean 'auto'?"));
-  }
-}
-
 TEST(explanation, marks_what_is_given_what_is_a_default_and_what_is_derived) {
   const auto c = gas({"time.cfl=0.5", "space.limiter=none"});
   using origin = apsis::value_origin;

@@ -26,7 +26,6 @@ using testing::HasSubstr;
 
 namespace {
 
-// Line numbers below refer to this text.
 const std::string in_argon = R"toml([gas]
 name = "argon"
 pressure = "10 Pa"
@@ -86,16 +85,6 @@ case_config parse(const std::string& text, const std::vector<std::string>& overr
   return parse_case(text, "c.toml", overrides);
 }
 
-std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    parse(text, overrides);
-  } catch (const error& e) {
-    EXPECT_EQ(e.code(), exit_code::input);
-    return e.what();
-  }
-  return "accepted";
-}
-
 std::string changed(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -139,18 +128,15 @@ TEST(quantities, wrong_ones_are_refused) {
     }
     return "accepted";
   };
-  EXPECT_EQ(refused("3"),
-            "c.toml:3:4: '3' is not a quantity (a number, a space and a unit are needed); write for "
-            "example \"10 Pa\"");
-  EXPECT_THAT(refused("3 pa"),
-              HasSubstr("unknown unit 'pa' (no such symbol, with or without a prefix); did you "
-                        "mean 'Pa'? valid: m, g, u, s, K,"));
-  EXPECT_THAT(refused("3 W/degC"), HasSubstr("degC is part of a unit (its zero is not that of K); give the "
-                                             "temperature in K"));
+  for (const auto& [text, reason] :
+       std::vector<std::pair<std::string, std::string>>{{"3", "c.toml:3:4: '3' is not a quantity"},
+                                                        {"3 pa", "did you mean 'Pa'?"},
+                                                        {"3 W/degC", "degC is part of a unit"},
+                                                        {"1e300 MPa MPa", "is not finite"}})
+    EXPECT_THAT(refused(text), HasSubstr(reason));
   for (const char* text : {"3 m/", "3 m^", "3 m^x", "3 (m", "3 m)", "3 m//s", "3 ((((((((((m))))))))))",
                            "3 m^99", "3 ((m^9)^9)^9"})
     EXPECT_THAT(refused(text), HasSubstr("is not a unit")) << text;
-  EXPECT_THAT(refused("1e300 MPa MPa"), HasSubstr("is not finite"));
 }
 
 RC_GTEST_PROP(quantities, text_after_a_number_is_read_or_refused, ()) {
@@ -212,9 +198,6 @@ TEST(gas, pressure_density_and_number_density_are_equivalent) {
     EXPECT_NEAR(other.scales->pressure(), 10.0, 1e-12);
     const double epsilon = number(c.model.epsilon.text);
     EXPECT_NEAR(number(other.model.epsilon.text), epsilon, 1e-12 * epsilon);
-    EXPECT_THAT(
-        error_of(changed(in_argon, "name = \"argon\"", "name = \"argon\"\n" + key + " = \"" + value + "\"")),
-        HasSubstr("(exactly one of pressure, density and number_density sets the reference density)"));
   }
 }
 
@@ -231,81 +214,6 @@ TEST(gas, of_ones_own_is_described_by_its_values) {
   EXPECT_EQ(named.scales->gas().mass, 66.3e-27);
   EXPECT_EQ(named.model.parameters.at("viscosity_exponent"), 0.5);
   EXPECT_EQ(parse(in_argon, {"gas.viscosity_exponent=0"}).model.parameters.at("viscosity_exponent"), 0.0);
-  EXPECT_THAT(
-      error_of(changed(own, "mass = \"40 u\"\n", "")),
-      HasSubstr(
-          "c.toml:1:1: key 'gas.mass' is missing (the gas has no name from which it is known); add name "
-          "= \"argon\", or mass = \"6.63e-26 kg\""));
-}
-
-TEST(gas, contradictions_and_wrong_units_are_refused_at_their_place) {
-  struct wrong {
-    std::string from, to, says;
-  };
-  const std::vector<wrong> all = {
-      {"T = \"350 K\"", "T = \"350 m\"",
-       "c.toml:20:1: 'boundary.left.T' is the text '350 m' (its unit is that of m); give it in K"},
-      {"velocity = [0, \"20 m/s\"]", "velocity = [0, \"20 K\"]",
-       "c.toml:21:1: 'boundary.left.velocity' is the text '20 K' (its unit is that of K); give it in m/s"},
-      {"T = \"350 K\"", "accommodation = \"1 m/m\"", "accepted"},
-      {"T = \"350 K\"", "accommodation = \"1 m\"",
-       "c.toml:20:1: 'boundary.left.accommodation' is the text '1 m' (its unit is that of m); give a number "
-       "without a "
-       "unit"},
-      {"end = \"2 us\"", "end = \"2 um\"",
-       "'time.end' is the text '2 um' (its unit is that of m); give it in s"},
-      {"end = \"2 us\"", "end = \"-2 us\"", "'time.end' is the text '-2 us' (it must be at least 0)"},
-      {"cells = 20", "cells = \"20 m\"",
-       "'space.cells' is the text '20 m' (its unit is that of m); give a number"},
-      {"\"1e-3 m\"", "\"1e-3 s\"",
-       "'space.domain' is the text '1e-3 s' (its unit is that of s); give it in m"},
-      {"\"300 K\"", "\"-300 degC\"", "'gas.temperature' is the text '-300 degC' (it must be above 0)"},
-      {"\"10 Pa\"", "\"10 K\"",
-       "c.toml:3:1: 'gas.pressure' is the text '10 K' (its unit is that of K); give it in Pa"},
-      {"\"10 Pa\"", "10",
-       "c.toml:3:1: 'gas.pressure' is the integer 10 (a number, a space and a unit are needed); "
-       "write for example \"1 Pa\""},
-      {"\"10 Pa\"", "\"0 Pa\"",
-       "'gas.pressure' is the text '0 Pa' (it must be above 0); give a positive number"},
-      {"length = \"1 mm\"\n", "", "c.toml:1:1: key 'gas.length' is missing"},
-      {"temperature = \"300 K\"\n", "", "key 'gas.temperature' is missing"},
-      {"pressure = \"10 Pa\"\n", "", "c.toml:1:1: no reference density is given"},
-      {"\"argon\"", "\"argn\"",
-       "'gas.name' is the text 'argn' (there is no such name); did you mean 'argon'?"},
-      {"\"argon\"", "\"nitrogen\"",
-       "c.toml:1:1: the table [gas] has degrees_of_freedom = 5 (model 'shakhov' takes 3 "
-       "to 3); choose another model or gas"},
-      {"velocity_dimensions = 2", "velocity_dimensions = 2\nepsilon = 0.1",
-       "c.toml:11:1: the Knudsen number contradicts the table [gas] (epsilon is 0.571"},
-      {"velocity_dimensions = 2", "velocity_dimensions = 2\nepsilon = \"0.57 + x\"",
-       "contradicts the table [gas]"},
-      {"velocity_dimensions = 2", "velocity_dimensions = 2\nrarefaction = 1", "contradicts the table [gas]"},
-      {"velocity_dimensions = 2", "velocity_dimensions = 2\nprandtl = 0.7",
-       "'model.prandtl' is the number 0.7 (the table [gas] has 0.666667); remove it, or change [gas]"},
-      {"velocity_dimensions = 2", "velocity_dimensions = 2\nviscosity_exponent = 0.5",
-       "'model.viscosity_exponent' is the number 0.5 (the table [gas] has 0.81)"},
-      {"velocity_dimensions = 2", "velocity_dimensions = 2\ncollision_rate = \"constant\"",
-       "'model.collision_rate' is the text 'constant' (a table [gas] gives the viscosity of the model)"},
-      {"velocity_dimensions = 2", "velocity_dimensions = 2\nknudsen = \"from gas\"", "accepted"},
-      {"\"10 Pa\"", "\"1e-320 Pa\"", "c.toml:1:1: the table [gas] gives pressure ="},
-  };
-  for (const auto& [from, to, says] : all)
-    EXPECT_THAT(error_of(changed(in_argon, from, to)), HasSubstr(says)) << to;
-}
-
-TEST(gas, units_need_it) {
-  EXPECT_THAT(
-      error_of(no_units, {"time.end=1 us"}),
-      HasSubstr("'time.end' is the text '1 us' (a unit needs the scales of a gas); add a table [gas], or "
-                "give a dimensionless number"));
-  EXPECT_THAT(
-      error_of(no_units, {"output.units=SI"}),
-      HasSubstr("'output.units' is the text 'SI' (the scales are those of a gas, and there is no table "
-                "[gas]); add the table, or write units = \"dimensionless\""));
-  EXPECT_EQ(error_of("title = \"2 mm of gas\"\n" + no_units), "accepted");
-  EXPECT_THAT(
-      error_of("[model]\nname = \"decay\"\n[gas]\n[time]\nmethod = \"md-imex-6-3\"\nend = 1\ndt = 0.1\n"),
-      HasSubstr("c.toml:3:1: the table [gas] is not used (model 'decay' is not a gas); remove it"));
 }
 
 TEST(knudsen, numbers_of_every_definition_give_epsilon) {
@@ -357,61 +265,14 @@ TEST(knudsen, a_formula_is_converted_by_arithmetic) {
   const std::string longest = "x + 1" + std::string(expression::longest - 5, ' ');
   EXPECT_EQ(make_epsilon(parse(no_units, {"model.rarefaction=\"" + longest + "\""}), 1).value(0.0),
             1.0 / std::numbers::sqrt2);
-  // Messages quote the formula as given, and the value that it has.
-  EXPECT_THAT(error_of(no_units, {"model.rarefaction=x"}),
-              HasSubstr("expression 'x' is 0 at x = 0 (inf, to which it is converted, must be finite and not "
-                        "negative); change the formula or the domain"));
-  EXPECT_THAT(error_of(no_units, {"model.rarefaction=x - 2"}),
-              HasSubstr("expression 'x - 2' is -2 at x = 0 (-0.35355339059327373, to which it is converted, "
-                        "must be finite and not negative)"));
 }
 
-TEST(knudsen, what_is_wrong_is_refused) {
-  const auto with = [](const std::string& line) {
-    return error_of(changed(no_units, "[parameters]", line + "\n[parameters]"));
-  };
-  EXPECT_THAT(
-      with("knudsen = 0.1"),
-      HasSubstr("c.toml:6:1: 'model.knudsen' is the number 0.1 (a Knudsen number needs the definition of its "
-                "mean free path); write for example knudsen = {value = 0.1, mean_free_path = \"vhs\"}"));
-  EXPECT_THAT(with("knudsen = {value = 0.1}"), HasSubstr("key 'model.knudsen.mean_free_path' is missing"));
-  EXPECT_THAT(with("knudsen = {mean_free_path = \"vhs\"}"),
-              HasSubstr("key 'model.knudsen.value' is missing"));
-  EXPECT_THAT(with("knudsen = {}"), HasSubstr("key 'model.knudsen.value' is missing"));
-  EXPECT_THAT(with("knudsen = {value = 0.1, mean_free_path = \"vhz\"}"),
-              HasSubstr("(there is no such name); did you mean 'vhs'? valid: viscosity, mean-speed, vhs, "
-                        "hard-sphere, equivalent"));
-  EXPECT_THAT(with("knudsen = {value = 0.1, mean_free_path = \"vhs\", mean = 1}"),
-              HasSubstr("unknown key 'model.knudsen.mean'"));
-  EXPECT_THAT(with("knudsen = {value = -0.1, mean_free_path = \"vhs\"}"),
-              HasSubstr("(it must be at least 0)"));
-  EXPECT_THAT(with("knudsen = {value = \"x - 1\", mean_free_path = \"vhs\"}"), HasSubstr("c.toml:6:"));
-  EXPECT_THAT(with("knudsen = {value = \"2*y\", mean_free_path = \"vhs\"}"), HasSubstr("unknown name 'y'"));
-  EXPECT_THAT(error_of(changed(changed(no_units, "0.81", "3"), "[parameters]",
-                               "knudsen = {value = 0.1, mean_free_path = \"vhs\"}\n[parameters]")),
-              HasSubstr("'model.viscosity_exponent' is the integer 3 (it must be from 0 to 2"));
-  EXPECT_THAT(with("knudsen = \"from gas\""), HasSubstr("(there is no table [gas])"));
-  EXPECT_THAT(with("rarefaction = 0"),
-              HasSubstr("'model.rarefaction' is the integer 0 (it must be above 0)"));
-  EXPECT_THAT(with("rarefaction = \"0*kn\""), HasSubstr("(epsilon is not finite)"));
-  EXPECT_THAT(
-      with("rarefaction = 2\nepsilon = 1"),
-      HasSubstr("'model.rarefaction' conflicts with 'model.epsilon' (each sets the Knudsen number); remove "
-                "one of them"));
-  EXPECT_THAT(with("knudsen = {value = 1, mean_free_path = \"vhs\"}\nepsilon = 1"),
-              HasSubstr("'model.knudsen.value' conflicts with 'model.epsilon'"));
-  EXPECT_THAT(
-      error_of(changed(no_units, "\"viscosity\"", "\"constant\"\nrarefaction = 2")),
-      HasSubstr(
-          "c.toml:5:1: 'model.rarefaction' is the integer 2 (a mean free path follows from the viscosity "
-          "epsilon T^s, which the model has only with collision_rate = \"viscosity\"); add "
-          "collision_rate = \"viscosity\" to [model], or give epsilon"));
-  // A key on the command line replaces those in the file that exclude it.
+TEST(knudsen, keys_on_the_command_line_replace_those_in_the_file_that_exclude_them) {
   const std::string in_file =
       changed(no_units, "[parameters]", "knudsen = {value = 1, mean_free_path = \"vhs\"}\n[parameters]");
   EXPECT_EQ(parse(in_file, {"model.epsilon=0.25"}).model.epsilon.text, "0.25");
   EXPECT_NE(parse(in_file, {"model.knudsen.value=2"}).model.epsilon.text, parse(in_file).model.epsilon.text);
-  EXPECT_EQ(error_of(in_file, {"model.rarefaction=2"}), "accepted");
+  EXPECT_NO_THROW(parse(in_file, {"model.rarefaction=2"}));
 }
 
 }  // namespace

@@ -66,13 +66,4 @@ inline void run_into(const std::string& folder, const std::string& text,
   ASSERT_EQ(session.run(), apsis::run_end::complete);
 }
 
-inline std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    static_cast<void>(apsis::parse_case(text, "case.toml", overrides));
-  } catch (const apsis::input_error& refused) {
-    return refused.what();
-  }
-  return "accepted";
-}
-
 }  // namespace in_several_dimensions

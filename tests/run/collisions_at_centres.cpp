@@ -1,5 +1,4 @@
 // Runs with space.collisions = "centres".
-#include <apsis/exec/parallel.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <cmath>
@@ -52,16 +51,6 @@ TEST(collisions_at_centres, are_asymptotic_preserving) {
   const auto limit = with(0.0);
   const double order = std::log10(distance(with(1e-6), limit) / distance(with(1e-8), limit)) / 2.0;
   EXPECT_NEAR(order, 1.0, 0.05);
-}
-
-TEST(collisions_at_centres, do_not_depend_on_the_number_of_threads) {
-  const std::vector<std::string> overrides = {"space.collisions=centres", "time.end=0.01",
-                                              "time.method=md-imex-6-3"};
-  const auto one = state_at_end(overrides);
-  apsis::set_threads(3);
-  const auto three = state_at_end(overrides);
-  apsis::set_threads(1);
-  EXPECT_EQ(one, three);
 }
 
 TEST(collisions_at_centres, have_no_limiter_for_methods_without_signs) {

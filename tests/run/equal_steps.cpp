@@ -1,5 +1,5 @@
 // Runs whose time.method takes several equal steps: the results of integrate(), observed orders, restarts,
-// conservation between walls, changes of the step, promises and refusals.
+// conservation between walls, changes of the step and promises.
 #include "gas_between_walls.hpp"
 #include "same_results.hpp"
 
@@ -26,7 +26,7 @@ namespace equal_steps_test {
 namespace {
 
 using namespace apsis;
-using between_walls::distance, between_walls::end_of, between_walls::refusal_of;
+using between_walls::distance, between_walls::end_of;
 using testing::HasSubstr;
 
 case_config gas(const std::string& method, const std::string& time, const std::string& more = "") {
@@ -161,13 +161,7 @@ TEST(equal_steps, two_step_methods_promise_positivity_within_their_steps_and_oth
   EXPECT_FALSE(simulation(limited).promises().positivity);
 }
 
-TEST(equal_steps, what_needs_one_step_methods_is_refused_by_name) {
-  EXPECT_THAT(refusal_of(gas("imex-bdf-3", "tolerance = 1e-4\ndt = 0.01\nend = 0.05\n")),
-              HasSubstr("time.tolerance cannot be kept: method 'imex-bdf-3' needs equal steps"));
-  case_config limited = gas("imex-bdf-3", "safety = 1\nend = 0.05\n");
-  limited.space.limiter = limiter_choice::positivity;
-  EXPECT_THAT(refusal_of(limited),
-              HasSubstr("time.safety needs a method with an SSP coefficient (that of 'imex-bdf-3' is 0)"));
+TEST(equal_steps, methods_are_not_found_among_those_of_one_step) {
   EXPECT_THAT([] { static_cast<void>(find_method("imex-bdf-3")); },
               testing::ThrowsMessage<input_error>(HasSubstr("'imex-bdf-3' is a multistep method")));
 }

@@ -23,7 +23,6 @@ namespace {
 
 using namespace apsis;
 using between_walls::distance, between_walls::end_of;
-using testing::HasSubstr;
 
 constexpr const char* name = "exponential-2";
 
@@ -36,13 +35,6 @@ const std::vector<std::string> spaces = {"formulation = \"finite-difference\"",
                                          "formulation = \"finite-volume\"",
                                          "formulation = \"finite-volume\"\ncollisions = \"centres\"",
                                          "formulation = \"finite-volume\"\nreconstruction = \"upwind1\""};
-
-std::string refusal_of(const std::string& model, const std::string& more) {
-  return between_walls::refusal_of(
-      parse_case(fmt::format("[model]\nname = \"{}\"\n{}\n[time]\nmethod = \"{}\"\nend = 0.1\ndt = 0.01\n",
-                             model, more, name),
-                 "case.toml"));
-}
 
 }  // namespace
 
@@ -108,20 +100,6 @@ TEST(exponential_run, becomes_the_explicit_scheme_of_the_limit) {
   // z = Δt/(3ε) = 33 leaves e^{−33} = 3e-15 of every deviation.
   EXPECT_LT(distance(end("1e-5"), limit), 1e-12);
   EXPECT_GT(distance(end("1e-3"), limit), 1e-4);
-}
-
-TEST(exponential_run, models_without_a_known_solution_of_their_collisions_are_refused_at_the_key) {
-  const std::string gas_data =
-      "epsilon = 0.1\n[initial]\nrho = 1\nT = 1\n[space]\ncells = 12\ndomain = [0, 1]\n[velocity]\nmax = "
-      "7\npoints = 24\n";
-  for (const std::string model : {"es-bgk", "shakhov", "decay"})
-    EXPECT_THAT(
-        refusal_of(model, model == "decay" ? "epsilon = 0.1" : gas_data),
-        HasSubstr("method 'exponential-2' cannot integrate model '" + model +
-                  "' (it is exponential, and collisions of the model have no solution in closed form); "
-                  "choose an IMEX method"));
-  EXPECT_EQ(refusal_of("bgk", gas_data), "");
-  EXPECT_EQ(refusal_of("ode", "epsilon = 0.1"), "");
 }
 
 TEST(exponential_run, keeps_a_tolerance_by_step_doubling) {

@@ -126,14 +126,6 @@ TEST(flow_fields, of_a_gas_with_one_velocity_are_the_divergence_alone) {
   for (std::size_t cell = 0; cell < divergence.size(); ++cell)
     EXPECT_NEAR(divergence[cell], 0.2 * std::sin(h) / h * std::cos((static_cast<double>(cell) + 0.5) * h),
                 of_sampling);
-  std::vector<std::string> other = line;
-  other.back() = "output.fields=[\"vorticity\"]";
-  try {
-    run_of(other);
-    FAIL() << "accepted";
-  } catch (const apsis::input_error& refused) {
-    EXPECT_THAT(refused.what(), testing::HasSubstr("unknown field 'vorticity'"));
-  }
 }
 
 TEST(flow_fields, in_solid_boxes_are_undefined_and_one_sided_beside_them) {

@@ -1,4 +1,4 @@
-// Runs with a force: exact solutions of the momentum, order in time, balances, and what is refused.
+// Runs with a force: exact solutions of the momentum, order in time, balances.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/run/setup.hpp>
@@ -16,8 +16,6 @@ namespace force_test {
 namespace {
 
 using apsis::simulation;
-using testing::AllOf;
-using testing::HasSubstr;
 
 /// A uniform periodic gas whose molecules all have the same acceleration.
 const std::string accelerated_gas = R"toml(
@@ -49,15 +47,6 @@ simulation run_of(const std::vector<std::string>& overrides) {
   simulation run(apsis::parse_case(accelerated_gas, "force.toml", overrides));
   while (!run.finished()) run.advance();
   return run;
-}
-
-std::string refusal(const std::vector<std::string>& overrides) {
-  try {
-    simulation run(apsis::parse_case(accelerated_gas, "force.toml", overrides));
-  } catch (const apsis::input_error& failure) {
-    return failure.what();
-  }
-  return "accepted";
 }
 
 double velocity_after(const std::vector<std::string>& overrides) {
@@ -105,15 +94,6 @@ TEST(accelerated_gas, has_balances_to_rounding) {
   EXPECT_EQ(run.summary().negative_values, 0);
   // The momentum that the force has given is that of the gas.
   EXPECT_NEAR(run.last().received.at(1), run.last().total.at(1), 1e-13);
-}
-
-TEST(accelerated_gas, does_not_take_wrong_formulas) {
-  EXPECT_THAT(refusal({"force.acceleration=[0.1, 0.2]"}),
-              AllOf(HasSubstr("has 2 formulas"), HasSubstr("give at most 1")));
-  EXPECT_THAT(refusal({"force.acceleration=1/(t-0.4)"}), HasSubstr("force.acceleration"));
-  EXPECT_THAT(refusal({"force.acceleration=b*t"}), HasSubstr("'b'"));
-  EXPECT_THAT(refusal({"force.direction=1"}), HasSubstr("unknown key 'force.direction'"));
-  EXPECT_THAT(refusal({"force.acceleration="}), HasSubstr("force.acceleration"));
 }
 
 }  // namespace force_test

@@ -41,14 +41,4 @@ inline double distance(const std::vector<double>& a, const std::vector<double>& 
   return std::sqrt(sum);
 }
 
-/// The message of the input error, "" without one.
-inline std::string refusal_of(const apsis::case_config& c) {
-  try {
-    const apsis::simulation run(c);
-  } catch (const apsis::input_error& refused) {
-    return refused.what();
-  }
-  return {};
-}
-
 }  // namespace between_walls

@@ -1,5 +1,4 @@
-// Initial data of the table [initial]: values, averages across the edges of regions, and errors with their
-// place.
+// Initial data of the table [initial]: values, averages across the edges of regions.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/run/setup.hpp>
@@ -20,8 +19,6 @@ using apsis::field;
 using apsis::input_error;
 using apsis::parse_case;
 using apsis::run_setup;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 /// A case whose line 5 begins the table [initial].
 std::string gas(const std::string& initial, const std::string& model = "name = \"bgk\"") {
@@ -179,72 +176,6 @@ TEST(parameters, are_constants_of_every_formula) {
   const std::string flux =
       without_velocities(gas("[initial]\nu1 = 0.5", "name = \"relaxation\"\nflux = \"M*u^2/4\""));
   EXPECT_EQ(state_of(flux).row(0)[0], 0.5 * (0.5 + 0.125));
-}
-
-struct bad_data {
-  std::string initial, place, message;
-};
-
-TEST(bad_initial_data, are_refused_with_place_and_reason) {
-  const std::string base = "[initial]\nrho = 1\nT = 1\n";
-  const std::string region = base + "[[initial.region]]\n";
-  for (const auto& bad : std::vector<bad_data>{
-           {"[initial]\nrho = \"x - 1\"\nT = 1", "5:1", "no Maxwellian at x = "},
-           {"[initial]\nrho = \"x - 1\"\nT = 1", "5:1", "density -0."},
-           {"[initial]\nrho = 1\nT = \"x < 1.1 ? 1 : -1\"", "5:1", "temperature -1"},
-           {"[initial]\nrho = \"log(x - 1)\"\nT = 1", "6:8", "is nan at x = 0."},
-           {"[initial]\nrho = \"1 + q\"\nT = 1", "6:12", "unknown name 'q'"},
-           {"[initial]\nrho = 1", "5:1", "key 'initial.T' is missing"},
-           {"[initial]\nT = 1\nrh = 1", "7:1", "did you mean 'rho'?"},
-           {"[initial]\nrho = [1, 2]\nT = 1", "6:7", "'initial.rho' has 2 components (the model has 1)"},
-           {"[initial]\nrho = true\nT = 1", "6:1", "is a boolean (a number or a formula is needed)"},
-           {region + "T = 2", "8:1", "key 'initial.region.1.where' is missing"},
-           {region + "where = \"x > 3\"\nT = 2", "9:10", "covers no point of the mesh"},
-           {region + "where = \"x >\"\nT = 2", "9:12", "ends too early"},
-           {region + "where = \"x > 1\"", "8:1", "changes nothing"},
-           {region + "where = \"x > 1\"\nwho = 1", "10:1", "unknown key 'initial.region.1.who'"},
-           {region + "where = \"x > 1\"\nT = -1", "8:1", "temperature -1 is not positive"},
-           {base + "[initial.region]\nwhere = \"x > 1\"\nT = 2", "10:1", "write [[initial.region]]"},
-           {base + "[[initial.part]]\nrho = 1\nT = 1", "5:1", "has variables and parts"},
-           {"[[initial.part]]\nrho = 1", "5:1", "key 'initial.part.1.T' is missing"},
-           {"[[initial.part]]\nrho = 1\nT = 1\n[[initial.region]]\nwhere = \"x > 1\"\nT = 2", "8:1",
-            "a sum of parts lies below the region"}}) {
-    try {
-      state_of(gas(bad.initial));
-      ADD_FAILURE() << "accepted: " << bad.initial;
-    } catch (const input_error& e) {
-      EXPECT_THAT(e.what(), StartsWith("c.toml:" + bad.place + ": ")) << bad.initial;
-      EXPECT_THAT(e.what(), HasSubstr(bad.message)) << bad.initial;
-    }
-  }
-}
-
-TEST(bad_initial_data, of_models_and_parameters_are_refused) {
-  const auto message = [](const std::string& text) -> std::string {
-    try {
-      state_of(text);
-    } catch (const input_error& e) {
-      return e.what();
-    }
-    return "accepted";
-  };
-  const std::string good = gas("[initial]\nrho = 1\nT = 1");
-  EXPECT_EQ(message(good), "accepted");
-  EXPECT_THAT(message(gas("[initial]\nrho = 1\nT = 1", "name = \"bgk\"\ninitial = \"mixed-v\"")),
-              HasSubstr("'model.initial' conflicts with the table [initial]"));
-  EXPECT_THAT(message(without_velocities(gas("[initial]\nrho = 1\nf_0 = 1", "name = \"broadwell\""))),
-              HasSubstr("the variables f_0, rho do not belong together"));
-  EXPECT_THAT(message(without_velocities(gas("[initial]\nrho = 1\nm = 2", "name = \"broadwell\""))),
-              HasSubstr("|m| > rho"));
-  for (const auto& [name, reason] : std::vector<std::pair<std::string, std::string>>{
-           {"sin", "function or constant"}, {"x", "variable of formulas"}, {"a-b", "letters, digits"}})
-    EXPECT_THAT(message("[parameters]\n" + name + " = 1\n" + good.substr(good.find("[model]"))),
-                HasSubstr(reason));
-  EXPECT_THAT(message("[parameters]\nM = \"x\"\n" + good.substr(good.find("[model]"))),
-              HasSubstr("'parameters.M' is the text 'x' (a number is needed)"));
-  const std::string ode =
-      "[model]\nname = \"ode\"\n[initial]\nu1 = \"x\"\n[time]\nmethod = \"md-imex-3-2\"\nend = 1\ndt = 0.1\n";
-  EXPECT_THAT(message(ode), HasSubstr("depends on x (the model has no space)"));
 }
 
 }  // namespace initial_data_test

@@ -364,7 +364,6 @@ TEST(initial_file, that_cannot_be_used_is_refused_with_the_key_the_place_and_a_r
   }
   EXPECT_THAT(refused(csv(head + "0.75,1,0,1\n"), {"initial.time=1"}),
               HasSubstr("it has no times (no column 't'); remove initial.time"));
-  EXPECT_THAT(refused(gas(from(files / "missing.h5"))), HasSubstr("it does not exist"));
   EXPECT_THAT(refused(gas(from(table(files / "t.txt", head)))),
               HasSubstr("its kind is not known (neither .h5 nor .csv)"));
   EXPECT_THAT(refused(gas(from(table(files / "bad.h5", "no HDF5")))), HasSubstr("not an HDF5 file"));
@@ -401,25 +400,6 @@ TEST(initial_file, that_is_truncated_anywhere_is_refused) {
     apsis::write_text_file(files / "short.csv", table_text.substr(0, length));
     EXPECT_THAT(refused(gas(from(files / "short.csv"))), HasSubstr("c.toml:5:9: initial.file = ")) << length;
   }
-}
-
-TEST(initial_file, conflicts_with_other_initial_data) {
-  const std::string file = from("nowhere.csv");
-  EXPECT_THAT(
-      refused(gas(file + "rho = 1\n")),
-      HasSubstr("'initial.rho' conflicts with 'initial.file' (both give the state); remove one of them"));
-  EXPECT_THAT(refused(gas(file + "[[initial.part]]\nrho = 1\nT = 1\n")),
-              HasSubstr("conflicts with 'initial.file'"));
-  EXPECT_THAT(refused(gas(file), {"model.initial=mixed-v"}),
-              HasSubstr("'model.initial' conflicts with the table [initial]"));
-  EXPECT_THAT(refused(gas("[initial]\nfile = 3\n")),
-              HasSubstr("'initial.file' is the integer 3 (it must be a text)"));
-  EXPECT_THAT(refused(gas("[initial]\nrho = 1\nT = 1\ntime = 2\n")),
-              HasSubstr("'initial.time' has no meaning"));
-  EXPECT_THAT(refused(gas(file + "time = \"x\"\n")), HasSubstr("x"));
-  EXPECT_THAT(refused(gas("[initial]\nfrom = \"python\"\n")),
-              HasSubstr("the case has no initial data (they were given in Python)"));
-  EXPECT_THAT(refused(gas("[initial]\nfrom = \"julia\"\n")), HasSubstr("it must be \"python\""));
 }
 
 TEST(initial_file, is_written_with_its_case_and_read_back) {

@@ -177,15 +177,6 @@ end = 0.3
 dt = 0.01
 )case";
 
-std::string refusal(const std::string& text, const overrides& changes) {
-  try {
-    static_cast<void>(apsis::simulation(apsis::parse_case(text, "law.toml", changes)));
-  } catch (const apsis::input_error& refused) {
-    return refused.what();
-  }
-  return "accepted";
-}
-
 }  // namespace
 
 TEST(models_in_the_plane, broadwell_along_x_is_the_model_on_a_line) {
@@ -335,28 +326,6 @@ TEST(models_in_the_plane, steps_are_as_long_as_every_single_velocity_allows) {
                         "1\ncfl = 0.5\nmethod = \"md-imex-3-2\"\n",
                         "nine", {}));
   EXPECT_DOUBLE_EQ(nine.cfl_length(), 0.05);
-}
-
-TEST(models_in_the_plane, laws_need_a_flux_along_every_direction) {
-  using testing::HasSubstr;
-  EXPECT_EQ(refusal(basin, {}), "accepted");
-  EXPECT_THAT(refusal(basin, {"model.flux_y=[]"}),
-              HasSubstr("model.flux_y is missing (space has 2 dimensions); give the flux along y"));
-  EXPECT_THAT(refusal(basin, {"model.flux_y=[\"q\"]"}), HasSubstr("model.flux_y has 1 formula "));
-  EXPECT_THAT(refusal(basin, {"model.flux_z=[\"q\"]"}),
-              HasSubstr("model.flux_z is not used (space has 2 dimensions)"));
-  EXPECT_THAT(refusal(basin, {"space.cells=20", "space.domain=[-1, 1]"}),
-              HasSubstr("model.flux_y is not used (space has 1 dimension)"));
-  EXPECT_THAT(refusal(basin, {"model.odd_y=[\"m\"]"}),
-              HasSubstr("model.odd_y has 'm' (it is no variable of the law)"));
-  EXPECT_THAT(refusal(basin, {"model.odd_y=[]"}),
-              HasSubstr("model.odd_y does not say which variables change"));
-  EXPECT_THAT(
-      refusal(basin, {"model.speed=2"}),
-      HasSubstr(
-          "the subcharacteristic condition is |lambda| <= speed/2 in 2 dimensions); give at least 2.0"));
-  EXPECT_THAT(refusal(plane, {"space.cells=[4, 4, 4]", "space.domain=[0, 1]"}),
-              HasSubstr("its particles move in a plane"));
 }
 
 }  // namespace models_in_the_plane_test

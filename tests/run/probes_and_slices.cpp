@@ -19,7 +19,6 @@ namespace probes_and_slices_test {
 using namespace apsis;
 using namespace in_several_dimensions;
 using testing::ElementsAre;
-using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 using shape = hdf5_file::shape;
@@ -100,35 +99,6 @@ at = 0
   const auto json = to_json(once);
   EXPECT_EQ(json["output"]["probe"][1]["points"], 3);
   EXPECT_EQ(json["output"]["slice"][0]["normal"], "y");
-}
-
-TEST(probes_and_slices, that_are_not_possible_are_refused_with_their_key) {
-  const std::string probe = in_plane + "[[output.probe]]\nfrom = [0, 0]\nto = [1, 1]\n";
-  EXPECT_EQ(refusal(probe), "accepted");
-  EXPECT_THAT(refusal(probe, {"output.probe.1.to=[1, 1.5]"}),
-              HasSubstr("'output.probe.1.to' is outside the domain (y = 1.5 is not in [-1, 1])"));
-  EXPECT_THAT(refusal(probe, {"output.probe.1.to=[1, 1, 1]"}), HasSubstr("a point has 2 coordinates here"));
-  EXPECT_THAT(refusal(probe, {"output.probe.1.to=[nan, 1]"}), HasSubstr("it must be finite"));
-  EXPECT_THAT(refusal(probe, {"output.probe.1.to=[0, 0]"}), HasSubstr("the same point as 'from'"));
-  EXPECT_THAT(refusal(probe, {"output.probe.1.points=1"}), HasSubstr("at least 2 and at most 1000000"));
-  EXPECT_THAT(refusal(probe, {"output.probe.1.name=../x"}), HasSubstr("the name of a file is needed"));
-  EXPECT_THAT(refusal(probe, {"output.probe.1.form=[0, 0]"}), HasSubstr("did you mean 'from'"));
-  EXPECT_THAT(refusal(probe, {"output.probe.2.from=[0, 0]"}),
-              HasSubstr("key 'output.probe.2.to' is missing"));
-  EXPECT_THAT(refusal(probe, {"output.probe.x.from=[0, 0]"}), HasSubstr("numbered from 1 to at most 1000"));
-  EXPECT_THAT(refusal(probe + "name = \"a\"\n[[output.probe]]\nname = \"a\"\nfrom = [0, 0]\nto = [1, 1]\n"),
-              HasSubstr("two tables [[output.probe]] have the name 'a'"));
-  EXPECT_THAT(refusal(in_plane + "[output]\nprobe = 5\n"), HasSubstr("write [[output.probe]]"));
-  EXPECT_THAT(refusal(in_plane, {"output.slice.1.normal=z", "output.slice.1.at=0"}),
-              HasSubstr("it must be one of x, y"));
-  EXPECT_THAT(refusal(in_plane, {"output.slice.1.normal=x", "output.slice.1.at=2"}),
-              HasSubstr("'output.slice.1.at' is outside the domain (x = 2 is not in [0, 1])"));
-  EXPECT_THAT(refusal(in_plane, {"output.distribution_at=[[0.5, 3]]"}), HasSubstr("outside the domain"));
-  EXPECT_THAT(refusal(in_plane, {"output.distribution_at=[0.5, 0.5]"}), HasSubstr("a list of points"));
-  EXPECT_THAT(refusal(in_plane, {"output.distribution_at=[[0.5, 0]]", "output.stride=2"}),
-              HasSubstr("conflicts with output.stride"));
-  EXPECT_THAT(refusal(in_plane, {"output.distribution_at=[[0.5, 0]]", "output.distribution=none"}),
-              HasSubstr("conflicts with output.distribution"));
 }
 
 TEST(probes_and_slices, are_in_the_units_of_the_results) {

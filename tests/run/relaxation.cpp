@@ -3,7 +3,6 @@
 
 #include <apsis/config/case_json.hpp>
 #include <apsis/core/errors.hpp>
-#include <apsis/exec/parallel.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -29,15 +28,6 @@ double burgers(double t, double x) {
     u -= (u - 0.4 - 0.3 * std::sin(at)) / (1.0 + 0.3 * std::numbers::pi * t * std::cos(at));
   }
   return u;
-}
-
-std::string complaint(const std::vector<std::string>& overrides) {
-  try {
-    const apsis::simulation run(apsis::load_case("paper/relaxation", overrides));
-  } catch (const apsis::input_error& e) {
-    return e.what();
-  }
-  return "";
 }
 
 }  // namespace
@@ -93,30 +83,6 @@ TEST(relaxation, buckley_leverett_has_its_shock_at_the_position_of_the_tangent_c
   double mass = 0.0;
   for (const double u : fields.values[0]) mass += cell * u;
   EXPECT_NEAR(mass, 0.5 + 0.4, 1e-10);
-}
-
-TEST(relaxation, a_formula_gives_the_same_bits_on_any_number_of_threads) {
-  const std::vector<std::string> overrides = {"model.flux=sin(u)/2 + u^3/9", "space.cells=700",
-                                              "time.end=0.02"};
-  apsis::set_threads(1);
-  const auto one = finished_run("relaxation", overrides).state();
-  apsis::set_threads(3);
-  const auto three = finished_run("relaxation", overrides).state();
-  apsis::set_threads(1);
-  EXPECT_EQ(one, three);
-}
-
-TEST(relaxation, reports_values_that_the_data_rule_out_at_their_key) {
-  EXPECT_EQ(complaint({}), "");
-  EXPECT_EQ(complaint({"model.speed=0.7"}), "");
-  EXPECT_EQ(
-      complaint({"model.speed=0.6"}).rfind("override 'model.speed=0.6': model.speed = 0.6 is too small", 0),
-      0U);
-  EXPECT_EQ(
-      complaint({"model.flux=log(u - 0.2)"}).rfind("override 'model.flux=log(u - 0.2)': model.flux = ", 0),
-      0U);
-  EXPECT_NE(complaint({"space.limiter=positivity"}).find("unknowns of the model may be negative"),
-            std::string::npos);
 }
 
 TEST(relaxation, boundaries_named_per_end_equal_one_name_for_both) {

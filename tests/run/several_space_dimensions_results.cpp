@@ -231,9 +231,6 @@ TEST(results_in_space, around_a_solid_box_have_no_values_inside_and_start_anothe
       EXPECT_EQ(again.values[0][cell], rho[cell]);
     }
   }
-  std::vector<std::string> inside = box;
-  inside.emplace_back("output.distribution_at=[[0.3, -0.9]]");
-  EXPECT_THAT(refusal(in_plane, inside), HasSubstr("has a point inside a solid ([0.3, -0.9])"));
 }
 
 }  // namespace several_space_dimensions_results_test

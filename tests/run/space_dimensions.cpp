@@ -2,7 +2,6 @@
 // accuracy, and solid boxes.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
-#include <apsis/exec/parallel.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
@@ -23,7 +22,6 @@ namespace space_dimensions_test {
 namespace {
 
 using apsis::simulation;
-using testing::HasSubstr;
 
 const std::string gas_in_a_box = R"toml(
 title = "Gas in a box"
@@ -186,18 +184,6 @@ TEST(space_dimensions, waves_at_45_degrees_fly_freely_with_fifth_order) {
   EXPECT_GT(std::log2(coarse / fine), 4.8) << coarse << " " << fine;
 }
 
-TEST(space_dimensions, results_do_not_depend_on_the_number_of_threads) {
-  const std::vector<std::string> settings = {"space.cells=[40,35]", "space.domain=[[0,1],[0,1]]",
-                                             "initial.rho=1 + 0.2*sin(2*pi*x)*cos(2*pi*y)",
-                                             "space.boundary=diffuse", "time.end=0.003"};
-  const auto one = result_of(settings);
-  for (const int threads : {2, 3, 7}) {
-    apsis::set_threads(threads);
-    EXPECT_EQ(result_of(settings), one) << threads;
-  }
-  apsis::set_threads(1);
-}
-
 namespace {
 
 /// A box of 20 x 16 cells with two solid boxes, heated and moving walls.
@@ -268,31 +254,6 @@ TEST(solids, fields_are_undefined_inside_and_only_there) {
   int solid = 0;
   for (const double value : rho) solid += std::isnan(value) ? 1 : 0;
   EXPECT_EQ(solid, 4 * 5 + 4 * 8);
-}
-
-TEST(solids, that_do_not_fit_are_refused_with_the_nearest_edges) {
-  const auto message = [](const std::vector<std::string>& more) -> std::string {
-    try {
-      simulation run(apsis::parse_case(gas_in_a_box, "box.toml", with_boxes(more)));
-    } catch (const apsis::input_error& problem) {
-      return problem.what();
-    }
-    return "accepted";
-  };
-  EXPECT_THAT(
-      message({"space.solid.1.to=[0.52,0.45]"}),
-      HasSubstr("'space.solid.1.to' = 0.52 along x is not on an edge of the cells (the nearest are 0.5 "
-                "and 0.55); move it, or change space.cells"));
-  EXPECT_THAT(message({"space.solid.1.to=[1.5,0.45]"}), HasSubstr("the nearest are 0.95 and 1"));
-  EXPECT_THAT(message({"space.solid.1.to=[0.3,0.45]"}), HasSubstr("has no extent along x"));
-  EXPECT_THAT(message({"space.solid.1.to=[0.5]"}), HasSubstr("it has 1 numbers, the space 2 dimensions"));
-  EXPECT_THAT(message({"space.solid.2.kind=periodic"}), HasSubstr("a solid box cannot be periodic"));
-  EXPECT_THAT(message({"space.solid.1.kind=difuse"}), HasSubstr("did you mean 'diffuse'?"));
-  EXPECT_THAT(message({"space.solid.1.temperature=2"}),
-              HasSubstr("unknown key 'space.solid.1.temperature' (boundary 'diffuse' has no such variable)"));
-  EXPECT_THAT(message({"space.solid.1.name=left"}), HasSubstr("it is taken"));
-  EXPECT_THAT(message({"space.solid.3.from=[0,0]"}), HasSubstr("key 'space.solid.3.to' is missing"));
-  EXPECT_THAT(message({"space.formulation=finite-volume"}), HasSubstr("write \"finite-difference\""));
 }
 
 }  // namespace space_dimensions_test

@@ -116,35 +116,4 @@ TEST(startup, follows_the_smallest_epsilon_of_the_mesh_and_keeps_the_promises) {
   }
 }
 
-TEST(startup, is_refused_where_it_has_no_meaning) {
-  const auto complaint = [](const auto& make) -> std::string {
-    try {
-      const apsis::simulation run(make());
-    } catch (const apsis::input_error& e) {
-      return e.what();
-    }
-    return "";
-  };
-  using testing::HasSubstr, testing::StartsWith;
-  EXPECT_THAT(complaint([] { return ode("ssprk-3-3", "1e-2", "graded"); }),
-              StartsWith("c.toml:8:1: time.startup = \"graded\" has no meaning for method 'ssprk-3-3'"));
-  EXPECT_THAT(complaint([] { return ode("md-imex-4-2", "1e-2", "gradd"); }),
-              HasSubstr("did you mean 'graded'?"));
-  EXPECT_EQ(complaint([] { return ode("ssprk-3-3", "1e-2", "none"); }), "");
-  const auto with_growth = [](const std::string& growth, const std::string& startup) {
-    return [=] {
-      return apsis::load_case("paper/ode", {"time.startup_growth=" + growth, "time.startup=" + startup});
-    };
-  };
-  EXPECT_THAT(complaint(with_growth("4", "none")),
-              HasSubstr("time.startup_growth has no meaning without a graded start"));
-  EXPECT_THAT(complaint(with_growth("1", "graded")), HasSubstr("time.startup_growth"));
-  EXPECT_THAT(complaint(with_growth("65", "graded")), HasSubstr("time.startup_growth"));
-  EXPECT_EQ(complaint(with_growth("64", "graded")), "");
-  EXPECT_THAT(complaint([] { return apsis::load_case("paper/decay", {"time.startup=graded"}); }),
-              HasSubstr("has no meaning for model 'decay' (its relaxation time is not known)"));
-  EXPECT_EQ(apsis::load_case("paper/ode", {"time.startup=graded"}).time.startup,
-            apsis::startup_choice::graded);
-}
-
 }  // namespace startup_test

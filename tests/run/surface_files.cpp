@@ -212,33 +212,4 @@ TEST(surfaces_of_a_case, are_read_back_from_its_text) {
   EXPECT_THAT(schema_text(), HasSubstr("surfaces (text or a list of texts"));
 }
 
-TEST(surfaces_of_a_case, that_it_does_not_have_are_refused_at_their_place) {
-  EXPECT_EQ(refusal(gas, {"output.surfaces=[\"all\", \"top\"]"}), "accepted");
-  EXPECT_THAT(
-      refusal(gas, {"output.surfaces=[\"blok\"]"}),
-      HasSubstr("unknown surface 'blok' in 'output.surfaces' (no face or solid box has this name); did you "
-                "mean 'block'? valid: left, right, bottom, top, block, all"));
-  EXPECT_THAT(refusal(gas, {"output.surfaces=[\"front\"]"}), HasSubstr("no face or solid box has this name"));
-  EXPECT_THAT(
-      refusal(in_plane, {"space.boundary=periodic", "boundary.top.kind=outflow",
-                         "boundary.bottom.kind=outflow", "output.surfaces=[\"left\"]"}),
-      HasSubstr(
-          "unknown surface 'left' in 'output.surfaces' (this face is periodic); valid: bottom, top, all"));
-  EXPECT_THAT(
-      refusal(in_plane, {"space.boundary=periodic", "output.surfaces=[\"all\"]"}),
-      HasSubstr("'output.surfaces' has no meaning (every face is periodic, and there are no solid boxes)"));
-  EXPECT_THAT(refusal(gas, {"space.solid.1.name=all"}), HasSubstr("it is taken"));
-  EXPECT_THAT(refusal("[model]\nname = \"ode\"\n[time]\nmethod = \"imdrk-2-3\"\nend = 1\ndt = 0.1\n"
-                      "[output]\nsurfaces = \"all\"\n"),
-              HasSubstr("key 'output.surfaces' is not used (model 'ode' has no space); remove it"));
-  try {
-    static_cast<void>(parse_case(in_plane + "[output]\nsurfaces = [\n\"left\",\n\"rigth\"]\n", "case.toml"));
-    FAIL() << "accepted";
-  } catch (const input_error& refused) {
-    EXPECT_THAT(refused.what(), HasSubstr("did you mean 'right'"));
-    const auto lines = std::count(in_plane.begin(), in_plane.end(), '\n');
-    EXPECT_THAT(refused.what(), HasSubstr(fmt::format("case.toml:{}:1", lines + 4)));
-  }
-}
-
 }  // namespace surface_files_test

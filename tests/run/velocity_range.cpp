@@ -228,48 +228,6 @@ TEST(velocity_range, of_published_decks_is_accepted) {
       << hot.warnings;
 }
 
-TEST(velocity_range, ends_walls_solids_and_sources_are_refused_before_the_start) {
-  const struct {
-    overrides changes;
-    std::string message;
-  } cases[] = {
-      {{"boundary.right.kind=pressure", "boundary.right.p=1", "boundary.right.T=0.01"},
-       "velocity.points = 28 is too few for the gas of [boundary.right]"},
-      {{"boundary.right.kind=far-field", "boundary.right.rho=1", "boundary.right.u=0",
-        "boundary.right.T=0.01"},
-       "velocity.points = 28 is too few for the gas of [boundary.right]"},
-      {{"boundary.right.kind=inflow", "boundary.right.rho=1", "boundary.right.u=6", "boundary.right.T=1"},
-       "velocity.max = 7 is too small for the gas of [boundary.right]"},
-      {{"boundary.right.T=0.01"}, "velocity.points = 28 is too few for the gas of [boundary.right]"},
-      {{"boundary.right.T=\"1 + 1000*t\""},
-       "velocity.max = 7 is too small for the gas of [boundary.right] at t = 0.01"},
-      {{"boundary.right.kind=given", "boundary.right.g=\"exp(-v_x^2/100)\"",
-        "boundary.right.h=\"40*exp(-v_x^2/100)\""},
-       "velocity.max = 7 is too small for the gas of [boundary.right]"},
-      {{"source.rho=0.1", "source.T=9"}, "velocity.max = 7 is too small for the gas of [source]"},
-      {{"source.g=\"0.1*exp(-(v_x - 6)^2)\"", "source.h=\"0.1*exp(-(v_x - 6)^2)\""},
-       "velocity.max = 7 is too small for the gas of [source]"},
-      {{"velocity.max=2.4"}, "velocity.max = 2.4 is too small"},
-  };
-  for (const auto& one : cases) {
-    const outcome found = run_of(gas, one.changes);
-    EXPECT_EQ(found.code, 2) << one.message;
-    EXPECT_THAT(found.error, AllOf(HasSubstr(one.message), HasSubstr("; give "))) << one.changes.front();
-  }
-  const std::string solid = R"toml(
-[[space.solid]]
-name = "box"
-from = [0.25, 0.25]
-to = [0.5, 0.5]
-T = 0.01
-)toml";
-  std::string plane = gas;
-  plane.insert(plane.find("[velocity]"), solid);
-  const outcome box = run_of(plane, {"space.cells=[8,8]", "space.domain=[[0,1],[0,1]]"});
-  EXPECT_EQ(box.code, 2);
-  EXPECT_THAT(box.error, HasSubstr("velocity.points = 28 is too few for the gas of [space.solid.1]"));
-}
-
 TEST(velocity_range, messages_of_a_gas_with_units_have_them) {
   const std::string argon = R"toml(
 title = "Argon"

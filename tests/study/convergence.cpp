@@ -3,7 +3,6 @@
 #include <apsis/study/convergence.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/exec/parallel.hpp>
 
 #include <atomic>
 #include <cmath>
@@ -46,11 +45,6 @@ std::vector<double> numbers(const convergence_table& table) {
         all.push_back(x);
   return all;
 }
-
-class threads_again {
- public:
-  ~threads_again() { set_threads(1); }
-};
 
 }  // namespace
 
@@ -180,16 +174,6 @@ TEST(convergence, rows_go_from_coarse_to_fine_however_the_values_are_given) {
   auto first = decay("imdrk-2-3,imdrk-1-2", "1/8,1/16,1/32");
   std::swap(first.vary[0], first.vary[1]);
   EXPECT_EQ(numbers(converge(first)), numbers(sorted));
-}
-
-TEST(convergence, nothing_depends_on_the_number_of_threads) {
-  const threads_again restore;
-  auto study = bgk("md-imex-3-2", "space.cells=8,16");
-  study.vary.insert(study.vary.begin(), parse_vary("model.epsilon=1,1e-3"));
-  set_threads(1);
-  const auto one = converge(study);
-  set_threads(4);
-  EXPECT_EQ(numbers(one), numbers(converge(study)));
 }
 
 TEST(convergence, the_same_run_is_computed_once) {

@@ -44,6 +44,15 @@ std::vector<std::string> boundary_variables(const std::string& kind, const model
   return at_place(place, [&] { return variables_of(kind, equation); });
 }
 
+source_place place_of_emitter(const case_config& config, const std::string& path) {
+  const source_place table = place_of(config, path);
+  if (!table.file.empty()) return table;
+  if (config.places.contains(path + ".kind")) return place_of(config, path + ".kind");
+  const auto key = config.places.lower_bound(path + ".");
+  if (key != config.places.end() && key->first.starts_with(path + ".")) return key->second;
+  return place_of(config, "space.boundary");
+}
+
 std::shared_ptr<const boundary> make_wall(const case_config& config, const model& equation,
                                           const std::string& path, const std::string& kind,
                                           const state_formulas& values) {
@@ -55,10 +64,7 @@ std::shared_ptr<const boundary> make_wall(const case_config& config, const model
       compiled[name].push_back(
           compile(formula, at, config, equation, of_velocity ? equation.velocities().dimensions() : 0));
     }
-  source_place place = place_of(config, path);
-  if (place.file.empty())  // not a table of the file
-    place = place_of(config, config.places.contains(path + ".kind") ? path + ".kind" : "space.boundary");
-  return at_place(place, [&] { return make_boundary(kind, equation, compiled); });
+  return at_place(place_of_emitter(config, path), [&] { return make_boundary(kind, equation, compiled); });
 }
 
 void read_boundary_values(const case_text& text, const model& equation, case_config& config) {

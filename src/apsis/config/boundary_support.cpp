@@ -1,5 +1,6 @@
 #include <apsis/config/boundary_support.hpp>
 
+#include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/emitted_values.hpp>
 #include <apsis/config/source_reader.hpp>
 #include <apsis/core/errors.hpp>
@@ -37,7 +38,7 @@ class worst_maxwellian {
     if (!(fit_.missed > velocity_limits::good)) return std::nullopt;
     const velocity_words words = words_of(config, fmt::format("the gas of [{}] at t = {:.4g}", path, t_));
     const std::string problem = velocity_problem(support_.molecules(), state_, fit_, words).problem;
-    if (fit_.missed > velocity_limits::bad) throw input_error(place_of(config, path), problem);
+    if (fit_.missed > velocity_limits::bad) throw input_error(place_of_emitter(config, path), problem);
     return problem;
   }
 

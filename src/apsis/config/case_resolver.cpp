@@ -93,7 +93,8 @@ class resolver {
       return body();
     } catch (const input_error& failure) {
       const std::string message = failure.what();
-      const std::string key = message.substr(0, message.find(' '));
+      std::string key = message.substr(0, message.find(' '));
+      if (key == "model") key = "model.name";  // "model 'NAME' cannot …"
       const source_place place = key.find('.') == std::string::npos ? source_place{} : place_of(config_, key);
       if (place.file.empty()) throw;
       throw input_error(place, message);

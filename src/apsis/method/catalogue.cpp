@@ -94,7 +94,7 @@ method make_named_method(std::string_view name) {
     throw input_error(
         "'" + text +
         "' is a multistep method (a method of one step is needed here); see: apsis list methods");
-  throw input_error("unknown method '" + text + "'; " + suggest(text, known));
+  throw input_error("unknown method '" + text + "' (there is no such name); " + suggest(text, known));
 }
 
 /// Parses and certifies a method on first use and caches it. A method file is cached by path and contents,

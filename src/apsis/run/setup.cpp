@@ -1,5 +1,6 @@
 #include <apsis/run/setup.hpp>
 
+#include <apsis/config/at_place.hpp>
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/boundary_support.hpp>
 #include <apsis/config/force_reader.hpp>
@@ -111,6 +112,7 @@ void run_setup::build_space(std::shared_ptr<communicator> processes) {
     if (space.limiter == limiter_choice::positivity) builder_.with_positivity_limiter();
   });
   at_key(config_, "space.cells", [&] { builder_.with_reconstruction(scheme.make()); });
+  at_place(place_of(config_, "space.boundary"), [this] { static_cast<void>(builder_.space()); });
 }
 
 void run_setup::set_epsilon() {
@@ -159,7 +161,8 @@ void run_setup::check_startup() const {
   if (!has_graded_start()) {
     if (config_.time.startup_growth != default_growth)
       refuse(config_, "time.startup_growth",
-             "time.startup_growth has no meaning without a graded start; give time.startup = \"graded\" too, "
+             "time.startup_growth has no meaning without a graded start (it is the ratio of its times); give "
+             "time.startup = \"graded\" too, "
              "or remove it");
     return;
   }

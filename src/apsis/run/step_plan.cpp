@@ -1,5 +1,6 @@
 #include <apsis/run/step_plan.hpp>
 
+#include <apsis/config/at_place.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/integrate/guarded_newton.hpp>
@@ -18,7 +19,9 @@ time_marcher<double> times_of(const run_setup& setup) {
   const case_config& config = setup.config();
   const auto dt = setup.given_dt();
   const double every = config.output.every;
-  time_marcher<double> march(0.0, config.time.end, dt, config.time.startup_growth);
+  auto march = at_place(place_of(config, "time.dt"), [&] {
+    return time_marcher<double>(0.0, config.time.end, dt, config.time.startup_growth);
+  });
   try {
     march.stop_every(every);
     if (march.adjusted())

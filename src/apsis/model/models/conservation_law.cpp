@@ -321,7 +321,8 @@ class law_model final : public relaxation_model {
     moments(f, u.data());
     const std::string at = text_of(u.data()), key = fmt::format("model.{}", flux_lists.at(direction));
     if (!std::isfinite(waves.speed))
-      return outside_law(key, fmt::format("{} has no finite derivative at {}", key, at), "");
+      return outside_law(key, fmt::format("{} has no finite derivative at {}", key, at),
+                         "its wave speeds are not defined there");
     if (waves.imaginary > not_real * a_)
       return outside_law(
           key, fmt::format("{} is not hyperbolic at {}", key, at),
@@ -339,10 +340,9 @@ class law_model final : public relaxation_model {
   /// `reason`: in addition to that of a run, which started inside the law.
   unsupported_initial_data outside_law(const std::string& key, const std::string& problem,
                                        const std::string& reason) const {
-    const std::string data = reason.empty() ? problem : fmt::format("{} ({})", problem, reason);
     const char* const left = "the solution left the states for which the law is valid";
-    return {key, data + "; change the formulas or the data",
-            fmt::format("{} ({}{}{}); {}{}", problem, reason, reason.empty() ? "" : ": ", left, more_robust,
+    return {key, fmt::format("{} ({}); change the formulas or the data", problem, reason),
+            fmt::format("{} ({}: {}); {}{}", problem, reason, left, more_robust,
                         positive_.empty() ? "; name depths, densities or pressures in model.positive" : "")};
   }
 

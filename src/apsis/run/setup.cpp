@@ -1,6 +1,5 @@
 #include <apsis/run/setup.hpp>
 
-#include <apsis/config/at_place.hpp>
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/boundary_support.hpp>
 #include <apsis/config/force_reader.hpp>
@@ -112,7 +111,6 @@ void run_setup::build_space(std::shared_ptr<communicator> processes) {
     if (space.limiter == limiter_choice::positivity) builder_.with_positivity_limiter();
   });
   at_key(config_, "space.cells", [&] { builder_.with_reconstruction(scheme.make()); });
-  at_place(place_of(config_, "space.boundary"), [this] { static_cast<void>(builder_.space()); });
 }
 
 void run_setup::set_epsilon() {

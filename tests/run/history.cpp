@@ -2,11 +2,24 @@
 #include <apsis/config/case.hpp>
 #include <apsis/run/session.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 namespace run_history_test {
+
+namespace {
+
+/// A column of a run without its quantity is NaN.
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+}  // namespace
 
 TEST(a_history, of_a_run_respects_the_limit_of_the_case) {
   const auto rows = [](const std::string& most) {
@@ -19,7 +32,7 @@ TEST(a_history, of_a_run_respects_the_limit_of_the_case) {
   EXPECT_EQ(all.size(), 4001U);
   EXPECT_LE(some.size(), 100U);
   EXPECT_GE(some.size(), 50U);
-  for (const auto& one : some) EXPECT_EQ(one, all[static_cast<std::size_t>(one[0])]);
+  for (const auto& one : some) EXPECT_TRUE(same(one, all[static_cast<std::size_t>(one[0])]));
 }
 
 }  // namespace run_history_test

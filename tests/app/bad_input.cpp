@@ -85,7 +85,8 @@ TEST(bad_input, is_refused_at_its_place_with_its_reason) {
   const work_folder folder;
   write_files(folder);
   auto rows = bad_input::rows_in(APSIS_BAD_INPUT);
-  if (!APSIS_HAS_DESIGN) std::erase_if(rows, [](const auto& r) { return !r.run.empty() && r.run[0] == "design"; });
+  if (!APSIS_HAS_DESIGN)
+    std::erase_if(rows, [](const auto& r) { return !r.run.empty() && r.run[0] == "design"; });
   bad_input::expect_answers(rows, [&](const bad_input::row& r) { return answer_to(folder, r.run); });
 }
 

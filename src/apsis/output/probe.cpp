@@ -93,7 +93,7 @@ numeric_table to_table(const field_series& fields, const line_probe& line) {
 field_series slice_of(const field_series& fields, const plane_slice& plane) {
   const auto direction = static_cast<std::size_t>(plane.direction);
   const auto [lower, upper, weight] = neighbours_of(fields.axes[direction], plane.at);
-  field_series out{fields.axes,      fields.names,     fields.labels,   fields.units,
+  field_series out{fields.axes,      fields.names,     fields.labels,     fields.units,
                    fields.unit_of_x, fields.unit_of_t, fields.dimensions, {}};
   out.axes[direction] = {fields.axes[direction].name, {plane.at}};
   std::size_t inner = 1;

@@ -10,7 +10,7 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// What a row of numbers contains.
+/// The contents of a row of numbers that a check looks at.
 template <class N>
 struct row_contents {
   N lowest;      ///< the smallest number so far

@@ -125,18 +125,18 @@ TEST(files_of_surfaces, are_in_the_units_of_the_results_as_the_history_is) {
   const gas_scales scales = *parse_case(gas, "case.toml").scales;
   const table own = read_surface(folder / "own/surfaces/left.csv"),
               si = read_surface(folder / "si/surfaces/left.csv");
-  const std::map<std::string, dimension> dims = {{"s", dimensions::length},
-                                                 {"y", dimensions::length},
-                                                 {"area", dimensions::length},
-                                                 {"momentum_x", dimensions::pressure},
-                                                 {"energy", dimensions::heat_flux},
-                                                 {"pressure", dimensions::pressure},
-                                                 {"shear_stress", dimensions::pressure},
-                                                 {"heat_flux", dimensions::heat_flux},
-                                                 {"rho", dimensions::density},
-                                                 {"u_x", dimensions::velocity},
-                                                 {"T", dimensions::temperature}};
-  for (const auto& [name, dims] : dims)
+  const std::map<std::string, dimension> columns = {{"s", dimensions::length},
+                                                    {"y", dimensions::length},
+                                                    {"area", dimensions::length},
+                                                    {"momentum_x", dimensions::pressure},
+                                                    {"energy", dimensions::heat_flux},
+                                                    {"pressure", dimensions::pressure},
+                                                    {"shear_stress", dimensions::pressure},
+                                                    {"heat_flux", dimensions::heat_flux},
+                                                    {"rho", dimensions::density},
+                                                    {"u_x", dimensions::velocity},
+                                                    {"T", dimensions::temperature}};
+  for (const auto& [name, dims] : columns)
     for (std::size_t k = 0; k < 5; ++k) {
       const double expected = own.columns.at(name)[k] * scales.unit(dims);
       EXPECT_NEAR(si.columns.at(name)[k], expected, 1e-14 * std::abs(expected)) << name;

@@ -24,13 +24,13 @@
 // mask:
 //   N(x)                     the constant x;
 //   fma(a, b, c)             ab + c, rounded once (twice where the instruction set has no such instruction);
-//   negative_fma(a, b, c)    c − ab, likewise;
+//   negative_fma(a, b, c)    c − ab, rounded in the same way;
 //   select(mask, a, b)       a where the mask is set, else b;
-//   smaller(a, b)            a < b ? a : b, hence b if either is NaN; larger(a, b) likewise;
-//   minimum(a, b)            as smaller, but unspecified if either is NaN or both are zeros; maximum(a, b)
-//   likewise; absolute(a)              |a|; any<N>(mask), all<N>(mask)   whether the mask is set somewhere,
-//   or everywhere. A formula may use them to skip work, not
-//                            to change a result: a number must not depend on those beside it;
+//   smaller(a, b)            a < b ? a : b, hence b if either is NaN; also larger(a, b);
+//   minimum(a, b)            as smaller, but unspecified if either is NaN or both are zeros; also maximum;
+//   absolute(a)              |a|;
+//   any<N>(mask), all<N>(mask)   whether the mask is set somewhere, or everywhere. A formula may use them to
+//                            skip work, not to change a result: a number must not depend on those beside it;
 //   inverse_power_of_two(a)  2^−e for a = 2^e m, 1 ≤ m < 2, a normal and below 2^1022;
 //   truncated(a)             a rounded towards 0, |a| < 2^31;
 //   power_of_two(a)          2^a for an integer −1022 ≤ a ≤ 1023;
@@ -62,9 +62,11 @@
 /// Formulas on single numbers, and the operations on a double.
 namespace apsis::scalar {
 
+/// Returns ab + c, rounded once.
 APSIS_FORMULA double fma(double a, double b, double c) {
   return __builtin_fma(a, b, c);
 }
+/// Returns c − ab, rounded once.
 APSIS_FORMULA double negative_fma(double a, double b, double c) {
   return __builtin_fma(-a, b, c);
 }
@@ -73,48 +75,59 @@ template <class N>
 APSIS_FORMULA N select(bool mask, N yes, N no) {
   return mask ? yes : no;
 }
+/// Whether the mask is set.
 template <class N>
 APSIS_FORMULA bool any(bool mask) {
   return mask;
 }
+/// Whether the mask is set.
 template <class N>
 APSIS_FORMULA bool all(bool mask) {
   return mask;
 }
+/// Returns a where a < b, else b.
 template <class N>
 APSIS_FORMULA N smaller(N a, N b) {
   return a < b ? a : b;
 }
+/// Returns a where a > b, else b.
 template <class N>
 APSIS_FORMULA N larger(N a, N b) {
   return a > b ? a : b;
 }
+/// Returns the smaller number; unspecified for NaN and for two zeros.
 template <class N>
 APSIS_FORMULA N minimum(N a, N b) {
   return a < b ? a : b;
 }
+/// Returns the larger number; unspecified for NaN and for two zeros.
 template <class N>
 APSIS_FORMULA N maximum(N a, N b) {
   return a > b ? a : b;
 }
+/// Returns |a|.
 APSIS_FORMULA double absolute(double a) {
   return __builtin_fabs(a);
 }
 
-/// Bits of a double, and back.
+/// Returns the bits of a double.
 APSIS_FORMULA unsigned long long bits_of(double a) {
   return __builtin_bit_cast(unsigned long long, a);
 }
+/// Returns the double of these bits.
 APSIS_FORMULA double from_bits(unsigned long long bits) {
   return __builtin_bit_cast(double, bits);
 }
 
+/// Returns 2^−e for a = 2^e m, 1 ≤ m < 2, a normal and below 2^1022.
 APSIS_FORMULA double inverse_power_of_two(double a) {
   return from_bits(0x7fe0000000000000ull - (bits_of(a) & 0x7ff0000000000000ull));
 }
+/// Returns a rounded towards 0, |a| < 2^31.
 APSIS_FORMULA double truncated(double a) {
   return static_cast<double>(static_cast<int>(a));
 }
+/// Returns 2^a for an integer −1022 ≤ a ≤ 1023.
 APSIS_FORMULA double power_of_two(double a) {
   return from_bits(bits_of(a + (0x1p52 + 1023.0)) << 52);
 }
@@ -122,9 +135,11 @@ APSIS_FORMULA double power_of_two(double a) {
 APSIS_FORMULA unsigned long long biased_near_one(double a) {
   return (bits_of(a) + 0x00095f6200000000ull) >> 52;
 }
+/// Returns e with 2^−e a between √½ and √2, for a normal and positive.
 APSIS_FORMULA double exponent_near_one(double a) {
   return static_cast<double>(static_cast<int>(biased_near_one(a)) - 1023);
 }
+/// Returns this 2^−e a.
 APSIS_FORMULA double scaled_near_one(double a) {
   return from_bits(bits_of(a) - ((biased_near_one(a) - 1023) << 52));
 }

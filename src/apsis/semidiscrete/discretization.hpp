@@ -17,13 +17,13 @@ namespace apsis {
 
 /// The parts from which the operators T and Q of a problem are made.
 struct problem_parts {
-  const model& equation;                         ///< outlives the operators
-  std::shared_ptr<domain> space;                 ///< cells and ghost rows
-  std::shared_ptr<const reconstruction> scheme;  ///< null without space
-  bool limited = false;                          ///< with a positivity limiter
-  bool smooth_collisions = false;                ///< collisions need not keep signs
-  std::string collisions;                        ///< one of collision_places(); "" for the default
-  stage_solution stages = stage_solution::implicit;
+  const model& equation;                             ///< outlives the operators
+  std::shared_ptr<domain> space;                     ///< cells and ghost rows
+  std::shared_ptr<const reconstruction> scheme;      ///< null without space
+  bool limited = false;                              ///< with a positivity limiter
+  bool smooth_collisions = false;                    ///< collisions need not keep signs
+  std::string collisions;                            ///< one of collision_places(); "" for the default
+  stage_solution stages = stage_solution::implicit;  ///< what the collision solves
   /// Returns ε at points of every cell, [cells][points].
   std::function<std::vector<double>(std::span<const weighted_point> points)> epsilon_at;
 

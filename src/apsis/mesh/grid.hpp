@@ -61,10 +61,10 @@ class grid {
   int cells(int direction) const {
     return cells_[at(direction)];
   }  ///< number of cells along a direction 0, 1 or 2
-  int size() const { return cells_[0] * cells_[1] * cells_[2]; }            ///< total number of cells
-  int first(int direction) const { return first_[at(direction)]; }          ///< global number of local cell 0
-  double spacing(int direction) const { return spacing_[at(direction)]; }   ///< Δx along a direction
-  double cell_volume() const;                                               ///< Π Δx over the D directions
+  int size() const { return cells_[0] * cells_[1] * cells_[2]; }           ///< total number of cells
+  int first(int direction) const { return first_[at(direction)]; }         ///< global number of local cell 0
+  double spacing(int direction) const { return spacing_[at(direction)]; }  ///< Δx along a direction
+  double cell_volume() const;                                              ///< Π Δx over the D directions
   /// Returns the area of a face of a cell: 1 in one dimension.
   double face_area(const face& where) const { return cell_volume() / spacing(where.direction); }
   /// Returns the coordinate of the lower edge of a cell 0 … n along a direction, counted along it.

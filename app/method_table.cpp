@@ -20,7 +20,7 @@ std::string short_data(const std::string& data) {
   return data.ends_with("(moments only)") ? first + " m" : first;
 }
 
-/// A number of the table, "-" if there is none.
+/// A number of the table, "-" without one.
 std::string entry(const json& number, const std::string& none = "-") {
   return number.is_null() ? none : fmt::format("{:.4g}", number.get<double>());
 }

@@ -29,7 +29,7 @@ std::size_t place_in(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(found - names.begin());
 }
 
-/// Returns the number that is all of a text, NaN if there is none.
+/// Returns the number that is all of a text, NaN without one.
 double number_of(const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

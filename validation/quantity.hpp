@@ -68,7 +68,7 @@ struct quantity_entry {
 /// Every quantity, sorted by file name (generated).
 std::vector<const quantity_entry*> quantity_entries();
 
-/// Returns the quantity of a name. Throws input_error with the nearest name if there is none.
+/// Returns the quantity of a name. Throws input_error with the nearest name for an unknown one.
 const quantity_entry& find_quantity(const std::string& name);
 
 /// Computes a quantity. `settings`: "parameter=value", or "key.of.the.case=value" for the run; `progress` is

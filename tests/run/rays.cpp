@@ -120,10 +120,11 @@ TEST(rays, of_a_free_molecular_square_are_as_large_as_announced) {
 
 TEST(rays, are_announced_before_a_run_with_more_velocities) {
   const std::string words = words_of({});
-  EXPECT_THAT(words,
-              AllOf(HasSubstr("(rays of molecules that hardly collide)"),
-                    HasSubstr(fmt::format("{:.1g} of the largest difference", ray_error("graded", 16, 6.5))),
-                    HasSubstr("velocity.points = [32, 32] leave")));
+  EXPECT_THAT(
+      words,
+      AllOf(HasSubstr("(few velocity directions and few collisions)"),
+            HasSubstr(fmt::format("{:.1g} % of the largest jump", 100.0 * ray_error("graded", 16, 6.5))),
+            HasSubstr("velocity.points = [32, 32] reduce it to")));
 }
 
 TEST(rays, are_not_announced_where_there_are_none) {

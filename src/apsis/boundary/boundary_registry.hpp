@@ -69,7 +69,7 @@ std::vector<const boundary_entry*> boundary_entries();
 /// Returns the names of all kinds: "outflow", "periodic", …
 std::vector<std::string> boundary_names();
 
-/// Returns the kind of a name. Throws input_error with the nearest name if there is none.
+/// Returns the kind of a name. Throws input_error with the nearest name for an unknown one.
 const boundary_entry& find_boundary(const std::string& name);
 /// Whether a variable of a kind is a function of the velocity. Throws input_error as find_boundary() does, or
 /// if the model cannot have this kind.

@@ -129,7 +129,7 @@ velocity_config velocities_of(const case_config& config);
 /// there is no such model.
 std::shared_ptr<const model> make_model(const case_config& config);
 
-/// Returns the place of a key, or of the innermost known table around it; nowhere if there is none.
+/// Returns the place of a key, or of the innermost known table around it; nowhere without one.
 source_place place_of(const case_config& config, const std::string& path);
 
 /// The mesh of the table [space] with its solid boxes. Throws input_error as grid does, and where a box does

@@ -26,7 +26,7 @@ struct initial_region {
 /// Table [initial]: a state as formulas of the position, a sum of states, or a file, with regions on top of
 /// each other, the last one uppermost. Empty if the case takes data of the model by name.
 struct initial_table {
-  std::string file;                 ///< result, CSV or HDF5 file, in place of `state`; "" if there is none
+  std::string file;                 ///< result, CSV or HDF5 file, in place of `state`; "" without one
   std::optional<double> time;       ///< of the snapshot in the file (dimensionless); the last one by default
   bool from_python = false;         ///< whether the data are given by the caller of a run
   state_formulas state;             ///< variables outside all regions

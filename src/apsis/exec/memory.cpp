@@ -17,7 +17,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// Returns the number that follows `key` in a file of lines "key number"; `missing` if there is none.
+/// Returns the number that follows `key` in a file of lines "key number"; `missing` without one.
 double number_after(const fs::path& path, const std::string& key, double missing) {
   std::ifstream in(path);
   for (std::string word; in >> word;)

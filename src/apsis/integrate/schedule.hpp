@@ -55,7 +55,7 @@ class schedule {
   int buffers() const { return buffers_; }
   /// Returns the buffer of u^{n+1}.
   int result_buffer() const { return result_; }
-  /// Returns the buffer of the embedded solution; −1 if there is none.
+  /// Returns the buffer of the embedded solution; −1 without one.
   int embedded_buffer() const { return embedded_; }
   /// Returns the number of evaluations of T per step.
   int transport_evaluations() const { return transports_; }

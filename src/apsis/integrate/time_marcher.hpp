@@ -257,7 +257,7 @@ class time_marcher {
   }
   /// Returns the first k · every after t.
   Real next_multiple() const { return Real(multiples_until(t_, every_) + 1) * every_; }
-  /// Returns the next stop before t1; 0 if there is none.
+  /// Returns the next stop before t1; 0 without one.
   Real next_stop() const {
     if (!(every_ > Real(0))) return Real(0);
     const Real stop = next_multiple();

@@ -82,7 +82,7 @@ certificate certify_and_complete(method& m) {
   return c;
 }
 
-/// Makes a method of the catalogue or a member of a family. Throws input_error if there is none of this name.
+/// Makes a method of the catalogue or a member of a family. Throws input_error for an unknown name.
 method make_named_method(std::string_view name) {
   if (const auto file = text_of_one_step(name)) return parse_method(*file, place_of(name));
   if (const family_entry* family = try_find_family(name)) return make_member(*family, name);

@@ -23,7 +23,7 @@ struct family_entry {
 /// Returns all families, in the order of the registry.
 std::vector<const family_entry*> family_entries();
 
-/// Returns the family whose pattern matches `name`, whatever stands in place of S; nullptr if there is none.
+/// Returns the family whose pattern matches `name`, whatever stands in place of S; nullptr without one.
 const family_entry* try_find_family(std::string_view name);
 
 /// Returns why the family has no member of this name, "md-imex-chain-S-2 has S from 3 to 64"; "" if
@@ -33,7 +33,7 @@ std::string missing_member(const family_entry& family, std::string_view name);
 /// Returns the name of the member with the given S.
 std::string member_name(const family_entry& family, std::size_t stages);
 
-/// Returns the member called `name`, not certified. Throws input_error if there is none.
+/// Returns the member called `name`, not certified. Throws input_error for an unknown name.
 method make_member(const family_entry& family, std::string_view name);
 
 }  // namespace apsis

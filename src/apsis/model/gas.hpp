@@ -36,7 +36,7 @@ class gas {
   void moments(const double* row, std::ptrdiff_t pitch, int rows, double* omega) const;
   /// Returns density, bulk velocity and temperature of ω without checking that they are admissible.
   fluid_state state(const double* omega) const;
-  /// row ← the equilibrium of ω. Returns false if there is none on the grid, which moments of rows f ≥ 0 have
+  /// row ← the equilibrium of ω. Returns false without one on the grid, which moments of rows f ≥ 0 have
   /// always.
   bool equilibrium(const double* omega, double* row) const;
   /// equilibrium() of several rows, `pitch` apart; returns the number of rows before the first without one.

@@ -27,7 +27,7 @@ const std::vector<gas_species>& known_gases();
 /// Returns the names of known_gases().
 std::vector<std::string> gas_names();
 
-/// Returns the gas called `name`; nullptr if there is none.
+/// Returns the gas called `name`; nullptr for an unknown name.
 const gas_species* try_find_gas(const std::string& name);
 
 }  // namespace apsis

@@ -20,7 +20,7 @@ const std::vector<mean_free_path>& mean_free_paths();
 /// Returns the names of mean_free_paths().
 std::vector<std::string> mean_free_path_names();
 
-/// Returns the definition called `name`; nullptr if there is none.
+/// Returns the definition called `name`; nullptr for an unknown name.
 const mean_free_path* try_find_mean_free_path(const std::string& name);
 
 /// Returns the rarefaction parameter δ = p L/(μ √(2RT)) = 1/(√2 ε); ∞ for ε = 0.

@@ -165,7 +165,7 @@ class model : public construction_count<model> {
   /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could.
   virtual unsupported_initial_data check_supported(const double* u) const;
   /// Returns the name of the condition that check_supported() states, if a solution may violate it later, so
-  /// that a run checks it after every step: "subcharacteristic condition"; "" if there is none.
+  /// that a run checks it after every step: "subcharacteristic condition"; "" without one.
   virtual std::string condition() const { return ""; }
   /// Returns the same for data whose default fields lie between these extremes.
   virtual unsupported_initial_data check_supported_range(const double* lowest, const double* highest) const;

@@ -85,9 +85,9 @@ model_config default_config(const model_entry& entry);
 /// Returns all models, sorted by name (generated).
 std::vector<const model_entry*> model_entries();
 
-/// Returns the entry called `name`; nullptr if there is none.
+/// Returns the entry called `name`; nullptr for an unknown name.
 const model_entry* try_find_model(const std::string& name);
-/// Returns the entry called `name`. Throws input_error with the nearest name if there is none.
+/// Returns the entry called `name`. Throws input_error with the nearest name for an unknown one.
 const model_entry& find_model(const std::string& name);
 
 }  // namespace apsis

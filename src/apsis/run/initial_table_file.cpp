@@ -28,7 +28,7 @@ constexpr std::uint64_t most_rows = 1'000'000'000;
 /// Datasets of a result that are no columns.
 const std::set<std::string> not_columns = {"f", "v", "v_weights", "v_x", "v_y", "v_z", "t"};
 
-/// Member of a JSON object by dotted path; null where there is none.
+/// Member of a JSON object by dotted path; null without one.
 nlohmann::ordered_json at(const nlohmann::ordered_json& object, std::initializer_list<const char*> path) {
   const nlohmann::ordered_json* found = &object;
   for (const char* name : path) {

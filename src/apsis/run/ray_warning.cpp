@@ -79,8 +79,8 @@ std::string remedy(const case_config& config, int dimensions, int of_velocity, d
     points.push_back(k < dimensions ? 2 * n : n);
   }
   more.points = points;
-  return fmt::format("velocity.points = [{}] leave {:.1g} of it", fmt::join(points, ", "),
-                     largest_error(make_lines(more, of_velocity), dimensions, T));
+  return fmt::format("velocity.points = [{}] reduce it to {:.1g} %", fmt::join(points, ", "),
+                     100.0 * largest_error(make_lines(more, of_velocity), dimensions, T));
 }
 
 }  // namespace
@@ -104,10 +104,9 @@ void warn_of_rays(const run_setup& setup, double relaxation) {
   const double error = largest_error(lines, dimensions, emitted->temperature);
   if (!(error * left > visible)) return;
   log::warning(fmt::format(
-      "the few directions of the velocities leave noise of about {:.1g} in the bulk velocity, {:.1g} of the "
-      "largest "
-      "difference between the gases that walls and ends emit (rays of molecules that hardly collide); {}",
-      error * emitted->jump, error,
+      "rays leave noise of about {:.1g} in the bulk velocity, {:.1g} % of the largest jump between emitted "
+      "gases (few velocity directions and few collisions); {}",
+      error * emitted->jump, 100.0 * error,
       remedy(config, dimensions, support->molecules().dimensions(), emitted->temperature)));
 }
 

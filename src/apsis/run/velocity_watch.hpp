@@ -81,7 +81,7 @@ struct worst_velocities {
   std::vector<double> omega;  ///< its moments
 };
 /// Returns it from what they miss in the worst cell of this process, the number of that cell in the whole
-/// mesh, negative if there is none, and its moments; nothing where no process has a cell. Collective.
+/// mesh, negative without one, and its moments; nothing where no process has a cell. Collective.
 std::optional<worst_velocities> worst_of_all(communicator& processes, double missed, long number,
                                              const std::vector<double>& omega);
 

@@ -20,9 +20,9 @@ struct reconstruction_entry {
 /// Returns all schemes, sorted by file name (generated).
 std::vector<const reconstruction_entry*> reconstruction_entries();
 
-/// Returns the entry called `name`; nullptr if there is none.
+/// Returns the entry called `name`; nullptr for an unknown name.
 const reconstruction_entry* try_find_reconstruction(const std::string& name);
-/// Returns the entry called `name`. Throws input_error with the nearest name if there is none.
+/// Returns the entry called `name`. Throws input_error with the nearest name for an unknown one.
 const reconstruction_entry& find_reconstruction(const std::string& name);
 
 }  // namespace apsis

@@ -24,9 +24,9 @@ std::vector<std::string> discretization_names();
 /// Returns all places where cells of some discretization may collide.
 std::vector<std::string> collision_place_names();
 
-/// Returns the entry called `name`; nullptr if there is none.
+/// Returns the entry called `name`; nullptr for an unknown name.
 const discretization_entry* try_find_discretization(const std::string& name);
-/// Returns the entry called `name`. Throws input_error with the nearest name if there is none.
+/// Returns the entry called `name`. Throws input_error with the nearest name for an unknown one.
 const discretization_entry& find_discretization(const std::string& name);
 /// Returns the default on meshes of so many dimensions: finite volumes on a line, else finite differences,
 /// which are also that of a model without space.

@@ -50,8 +50,8 @@ class problem_builder {
   /// Sets the reconstruction scheme. Throws input_error if the mesh, which must be set before, is smaller
   /// than its stencil.
   problem_builder& with_reconstruction(std::shared_ptr<const reconstruction> scheme);
-  /// Sets the discretization of space. Throws input_error with the nearest name if there is none of this
-  /// name.
+  /// Sets the discretization of space. Throws input_error with the nearest name for an unknown
+  /// one.
   problem_builder& with_discretization(const std::string& name);
   /// Keeps nonnegative data nonnegative for steps up to r Δt_FE. Throws input_error if the unknowns of the
   /// model may be negative.

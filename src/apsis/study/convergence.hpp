@@ -27,7 +27,7 @@ struct convergence_row {
   std::vector<std::string> values;  ///< values of the varied keys as given, in the order of the study
   case_config config;               ///< as resolved
   double h = 0.0;                   ///< denominator of the rate: Δx, Δt, Δv, or the value of the key
-  double error = 0.0;  ///< norm of the difference from the reference; NaN if there is none, see `problem`
+  double error = 0.0;  ///< norm of the difference from the reference; NaN without one, see `problem`
   double rate = 0.0;   ///< log(error before/error) / log(h before/h); NaN in the first row and without errors
   long steps = 0;      ///< steps done
   double dt = 0.0,     ///< longest step

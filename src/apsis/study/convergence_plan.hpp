@@ -16,7 +16,7 @@ struct convergence_plan {
     long reference;                   ///< index of the reference; −1 is the exact solution
     double h;                         ///< h of the rate; for time keys set when the step is known
   };
-  /// Runs that differ only in the refined key; all runs if there is none.
+  /// Runs that differ only in the refined key; all runs without one.
   struct block {
     std::vector<std::string> values;  ///< of the other keys
     std::string title;                ///< "time.method = md-imex-3-2, model.epsilon = 1"

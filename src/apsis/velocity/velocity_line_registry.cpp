@@ -16,7 +16,7 @@
 namespace apsis {
 namespace {
 
-/// The first number of a text, which it is removed from; false if there is none.
+/// The first number of a text, which it is removed from; false without one.
 bool take_number(std::string_view& text, double& value) {
   const auto first = text.find_first_not_of(" \t,;");
   if (first == std::string_view::npos) return false;

@@ -22,9 +22,9 @@ struct velocity_line_entry {
 /// Every kind of line, sorted by file name (generated).
 std::vector<const velocity_line_entry*> velocity_line_entries();
 
-/// Returns the entry of a name; nullptr if there is none.
+/// Returns the entry of a name; nullptr for an unknown name.
 const velocity_line_entry* try_find_velocity_line(const std::string& name);
-/// Returns the entry of a name. Throws input_error with the nearest name if there is none.
+/// Returns the entry of a name. Throws input_error with the nearest name for an unknown one.
 const velocity_line_entry& find_velocity_line(const std::string& name);
 
 /// Whether the name of a set is that of a file.

@@ -168,7 +168,7 @@ double size_of_moments(const gas_and_model& m, const row& omega, const row& u, c
   return std::sqrt(sum);
 }
 
-/// The cut that a solver dims in a stage (a > 0), or in Q/ε (a = 0), and the same from the results of the
+/// The cut that a solver measures in a stage (a > 0), or in Q/ε (a = 0), and the same from the results of the
 /// bounded and of the published target.
 std::pair<double, double> measured_and_expected_cut(const char* name, int d, const row& u, double a, double b,
                                                     double lambda) {

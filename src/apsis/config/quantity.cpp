@@ -1,5 +1,5 @@
-// A parser of its own, because UDUNITS reads "pa" as pico-years, has older values of u and Torr, and needs
-// files at run time (docs/measured.md, "Machinery that a library could replace").
+// Why not UDUNITS: it reads "pa" as pico-years. Its values of u and Torr are older. It needs files at run
+// time (docs/measured.md, "Machinery that a library could replace").
 #include <apsis/config/quantity.hpp>
 
 #include <apsis/config/case_text.hpp>

@@ -1,8 +1,8 @@
-// Formulas on a number type. A formula is a template on a number N and uses the operations below only, so
-// that one text is a vector of the host (pack, exec/simd-inl.hpp), a single double (reference in tests,
-// kernels of other processors), or a count of operations (exec/counted.hpp). Headers of formulas lie in the
-// folders formulas/ of the rooms. They include neither the standard library nor Highway, throw nothing and
-// allocate nothing. Such a header reads
+// Formulas on a number type. A formula is a template on a number N and uses only the operations below. N is a
+// vector of the host (pack, exec/simd-inl.hpp), a double (reference in tests, kernels of other processors),
+// or a count of operations (exec/counted.hpp). Headers of formulas lie in the folders formulas/ of the rooms.
+// They include neither the standard library nor Highway, throw nothing and allocate nothing. Such a header
+// reads
 //   #if defined(APSIS_SCHEME_FORMULAS_LIMITER) == defined(HWY_TARGET_TOGGLE)
 //   #ifdef APSIS_SCHEME_FORMULAS_LIMITER
 //   #undef APSIS_SCHEME_FORMULAS_LIMITER

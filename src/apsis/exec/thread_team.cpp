@@ -1,5 +1,5 @@
-// A team of its own, because on a busy machine oneTBB takes up to 1.3 times as long for loops of
-// microseconds, and OpenMP waits for preempted threads (docs/measured.md).
+// Why not oneTBB: loops of microseconds take up to 1.3 times as long on a busy machine. Why not OpenMP: it
+// waits for preempted threads (docs/measured.md).
 #include <apsis/exec/thread_team.hpp>
 
 #include <apsis/exec/processors.hpp>

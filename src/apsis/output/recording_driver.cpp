@@ -1,5 +1,5 @@
-// A driver of its own, because with H5FD_CORE a full disk ends the process by SIGSEGV and every file lies in
-// memory, and posix_fallocate needs the size beforehand (docs/measured.md).
+// Why not H5FD_CORE: it keeps every file in memory, and a full disk ends the process by SIGSEGV. Why not
+// posix_fallocate: it needs the size of a file beforehand (docs/measured.md).
 #include <apsis/output/recording_driver.hpp>
 
 #include <apsis/core/new_file.hpp>

@@ -75,9 +75,12 @@ class problem_builder {
   /// Undoes with_exact_collision().
   problem_builder& with_implicit_collision();
 
-  /// Returns the problem. Throws input_error if the mesh or the reconstruction is missing, ε is not a finite
-  /// number ≥ 0, only one face of a direction is periodic, the discretization does not serve the dimensions,
-  /// solid boxes or place of collisions, or the force is not possible (force.hpp).
+  /// Returns the problem. Throws input_error if
+  /// - the mesh or the reconstruction is missing;
+  /// - ε is not a finite number ≥ 0;
+  /// - only one face of a direction is periodic;
+  /// - the discretization does not serve the dimensions, the solid boxes or the place of collisions;
+  /// - the force is not possible (force.hpp).
   std::unique_ptr<semidiscrete_problem> build() const;
   /// Returns the unknowns of data (cell_unknown), [cells][components], 0 in solid cells; averages are exact
   /// to rounding if the data are smooth between the `jumps` (in increasing order).

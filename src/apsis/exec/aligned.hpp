@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <new>
-#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -28,28 +27,6 @@ struct aligned_allocator {
   void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(alignment)); }
   bool operator==(const aligned_allocator&) const { return true; }
   /// @endcond
-};
-
-/// Aligned allocator for vectors that must not touch their memory on construction: elements stay
-/// uninitialized until they are assigned, so that the first thread to write a page gets it into its
-/// memory (first touch).
-template <class T>
-struct untouched_allocator : aligned_allocator<T> {
-  /// @cond
-  using value_type = T;
-  untouched_allocator() = default;
-  template <class U>
-  untouched_allocator(const untouched_allocator<U>&) {}
-  template <class U>
-  struct rebind {
-    using other = untouched_allocator<U>;
-  };
-  /// @endcond
-  /// Constructs an element from arguments; without arguments, writes nothing.
-  template <class U, class... Args>
-  void construct(U* p, Args&&... args) {
-    if constexpr (sizeof...(Args) > 0) ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
-  }
 };
 
 /// Vector whose data are aligned to `alignment` bytes.

@@ -2,10 +2,12 @@
 
 #include <apsis/exec/parallel.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <new>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 namespace apsis {
 
@@ -17,19 +19,54 @@ std::size_t field::numbers(int cells, int stride) {
   return rows * width;
 }
 
-void field::fill_rows(const double* values) {
-  // In the parts of all other loops over cells: memory is near to the core that writes it first.
+namespace {
+
+/// Calls work(first number, count) for parts of all rows: in the parts of all other loops over cells if the
+/// host does the work, since memory is near to the core that writes it first; otherwise once.
+template <class Work>
+void for_parts(const field& of, const Work& work) {
+  if (!of.memory().on_host()) {
+    work(std::size_t{0}, of.size());
+    return;
+  }
   constexpr int block = 4096;
-  const loops_over numbers(size());
-  parallel_blocks(cells_, block, [&](int begin, int end) {
-    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(begin) * stride_,
-                         count = static_cast<std::ptrdiff_t>(end - begin) * stride_;
-    if (values == nullptr) {
-      std::fill_n(data_.data() + first, count, 0.0);
-    } else {
-      std::copy_n(values + first, count, data_.data() + first);
-    }
+  const loops_over numbers(of.size());
+  const auto width = static_cast<std::size_t>(of.stride());
+  parallel_blocks(of.cells(), block, [&](int begin, int end) {
+    work(static_cast<std::size_t>(begin) * width, static_cast<std::size_t>(end - begin) * width);
   });
+}
+
+}  // namespace
+
+void field::clear() {
+  for_parts(*this,
+            [&](std::size_t first, std::size_t count) { memory().clear(data_.data() + first, count); });
+}
+
+void field::copy_numbers(const field& other) {
+  for_parts(*this, [&](std::size_t first, std::size_t count) {
+    memory().copy(other.data_.data() + first, count, data_.data() + first);
+  });
+}
+
+void field::copy_rows(const field& from) {
+  if (from.cells_ != cells_ || from.components_ != components_) {
+    throw std::invalid_argument(fmt::format("rows of {} x {} numbers cannot be copied into {} x {}",
+                                            from.cells_, from.components_, cells_, components_));
+  }
+  const memory_space &here = memory(), &there = from.memory();
+  if (&here == &there) {
+    copy_numbers(from);
+  } else if (there.on_host()) {
+    here.copy_from_host(from.data_.data(), size(), data_.data());
+  } else if (here.on_host()) {
+    there.copy_to_host(from.data_.data(), size(), data_.data());
+  } else {  // between two devices, by way of the host
+    field between(cells_, components_);
+    between.copy_rows(from);
+    copy_rows(between);
+  }
 }
 
 }  // namespace apsis

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <apsis/exec/aligned.hpp>
+#include <apsis/exec/memory_space.hpp>
 
 #include <cstddef>
-#include <vector>
 
 namespace apsis {
 
@@ -13,26 +12,30 @@ namespace apsis {
 class field {
  public:
   field() = default;
-  /// A field of zeros. Throws std::bad_alloc, also if its size exceeds the address space.
-  field(int cells, int components)
-      : cells_(cells), components_(components), stride_(padded(components)), data_(numbers(cells, stride_)) {
-    fill_rows(nullptr);
+  /// A field of zeros in the given memory. Throws std::bad_alloc, also if its size exceeds the address space.
+  field(int cells, int components, const memory_space& memory = host_memory())
+      : cells_(cells),
+        components_(components),
+        stride_(padded(components)),
+        data_(numbers(cells, stride_), memory) {
+    clear();
   }
-  /// Copies rows, including padding, on the threads that will work on them (first touch).
+  /// Copies rows, including padding, into the same memory, on the threads that will work on them (first
+  /// touch).
   field(const field& other)
       : cells_(other.cells_),
         components_(other.components_),
         stride_(other.stride_),
-        data_(other.data_.size()) {
-    fill_rows(other.data_.data());
+        data_(other.data_.size(), other.memory()) {
+    copy_numbers(other);
   }
-  /// Does not allocate if the sizes are equal.
+  /// Does not allocate if the sizes and the memory are equal.
   field& operator=(const field& other) {
-    if (data_.size() != other.data_.size()) return *this = field(other);
+    if (data_.size() != other.data_.size() || &memory() != &other.memory()) return *this = field(other);
     cells_ = other.cells_;
     components_ = other.components_;
     stride_ = other.stride_;
-    fill_rows(other.data_.data());
+    copy_numbers(other);
     return *this;
   }
   field(field&&) noexcept = default;             ///< leaves the source with sizes but without rows
@@ -43,12 +46,17 @@ class field {
   int components() const { return components_; }  ///< numbers of a row without padding
   /// Distance between rows, including padding.
   int stride() const { return stride_; }
-  std::size_t size() const { return data_.size(); }  ///< numbers of all rows with their padding
+  std::size_t size() const { return data_.size(); }             ///< numbers of all rows with their padding
+  const memory_space& memory() const { return data_.space(); }  ///< where the rows live
 
   /// Returns the stride of rows with the given number of components.
   static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
 
-  /// Returns the row of a cell, 0 … cells() − 1 (not checked).
+  /// Copies the rows of a field of equal sizes, whose memory may be another one.
+  /// Throws std::invalid_argument if the sizes differ.
+  void copy_rows(const field& from);
+
+  /// Returns the row of a cell, 0 … cells() − 1 (not checked). The pointer leads into memory().
   double* row(int cell) {
     return data_.data() + static_cast<std::size_t>(cell) * static_cast<std::size_t>(stride_);
   }
@@ -60,12 +68,12 @@ class field {
  private:
   static std::size_t numbers(int cells, int stride);
 
-  /// Copies `values`, or fills with zeros if it is null. Each thread writes the rows that it works on later,
-  /// so that their pages are local to it (first touch).
-  void fill_rows(const double* values);
+  // Each thread writes the rows that it works on later, so that their pages are local to it (first touch).
+  void clear();
+  void copy_numbers(const field& other);
 
   int cells_ = 0, components_ = 0, stride_ = 0;
-  std::vector<double, untouched_allocator<double>> data_;
+  stored_numbers data_;
 };
 
 }  // namespace apsis

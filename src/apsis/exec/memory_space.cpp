@@ -1,0 +1,59 @@
+#include <apsis/exec/memory_space.hpp>
+
+#include <apsis/exec/aligned.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace apsis {
+
+namespace {
+
+class host final : public memory_space {
+ public:
+  std::string_view name() const override { return "host"; }
+  bool on_host() const override { return true; }
+  double* allocate(std::size_t count) const override { return aligned_allocator<double>().allocate(count); }
+  void release(double* numbers, std::size_t count) const noexcept override {
+    aligned_allocator<double>().deallocate(numbers, count);
+  }
+  void clear(double* numbers, std::size_t count) const override { std::fill_n(numbers, count, 0.0); }
+  void copy(const double* from, std::size_t count, double* to) const override {
+    std::copy_n(from, count, to);
+  }
+  void copy_from_host(const double* from, std::size_t count, double* to) const override {
+    std::copy_n(from, count, to);
+  }
+  void copy_to_host(const double* from, std::size_t count, double* to) const override {
+    std::copy_n(from, count, to);
+  }
+};
+
+}  // namespace
+
+const memory_space& host_memory() {
+  static const host only;
+  return only;
+}
+
+stored_numbers::stored_numbers(std::size_t count, const memory_space& space)
+    : space_(&space), data_(count > 0 ? space.allocate(count) : nullptr), count_(count) {}
+
+stored_numbers::stored_numbers(stored_numbers&& other) noexcept
+    : space_(other.space_),
+      data_(std::exchange(other.data_, nullptr)),
+      count_(std::exchange(other.count_, 0)) {}
+
+stored_numbers& stored_numbers::operator=(stored_numbers&& other) noexcept {
+  std::swap(space_, other.space_);
+  std::swap(data_, other.data_);
+  std::swap(count_, other.count_);
+  stored_numbers(std::move(other));  // releases what this object owned
+  return *this;
+}
+
+stored_numbers::~stored_numbers() {
+  if (data_ != nullptr) space_->release(data_, count_);
+}
+
+}  // namespace apsis

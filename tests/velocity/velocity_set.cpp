@@ -1,6 +1,6 @@
 // Sets of velocities: what a row of components is transported with, and what is refused.
 #include <apsis/core/errors.hpp>
-#include <apsis/mesh/phase_space.hpp>
+#include <apsis/velocity/velocity_set.hpp>
 
 #include <limits>
 #include <numeric>
@@ -61,13 +61,6 @@ TEST(velocity_set, refuses_what_is_no_set_of_velocities) {
   EXPECT_THAT(refusal_of({{1.0}}, {-0.5}), HasSubstr("not a finite number >= 0"));
   EXPECT_THAT(refusal_of({{1.0}}, {1.0}, 0), HasSubstr("0 sets of components"));
   EXPECT_EQ(refusal_of({{1.0}}, {0.0}), "accepted");
-}
-
-TEST(phase_space, has_as_many_unknowns_as_cells_times_components) {
-  const apsis::phase_space space(apsis::grid(2, {3, 4, 1}, {0, 0, 0}, {1, 1, 1}),
-                                 {{{1.0, -1.0}}, {1.0, 1.0}, 2});
-  EXPECT_EQ(space.points(), 3 * 4 * 4);
-  EXPECT_EQ(apsis::phase_space(apsis::grid::line(5, 0.0, 1.0)).points(), 0);
 }
 
 }  // namespace velocity_set_test

@@ -1,17 +1,15 @@
+// Cells in space: pencils, blocks, sizes, and what is no mesh.
 #include <apsis/core/errors.hpp>
-#include <apsis/mesh/field.hpp>
 #include <apsis/mesh/grid.hpp>
-#include <apsis/scheme/quartic.hpp>
+#include <apsis/mesh/phase_space.hpp>
 
-#include <cmath>
-#include <cstdint>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
-#include <support/property.hpp>
 
-namespace mesh_test {
+namespace grid_test {
 
 TEST(grid, pencils_of_every_direction_visit_every_cell_once) {
   const apsis::grid mesh(3, {3, 4, 5}, {0, 0, 0}, {1, 2, 3});
@@ -32,35 +30,6 @@ TEST(grid, refuses_what_is_no_mesh) {
   EXPECT_THROW(apsis::grid::line(0, 0.0, 1.0), apsis::input_error);
   EXPECT_THROW(apsis::grid::line(4, 1.0, 1.0), apsis::input_error);
   EXPECT_THROW(apsis::grid::line(4, 0.0, std::numeric_limits<double>::infinity()), apsis::input_error);
-}
-
-TEST(field, rows_of_a_kinetic_field_start_on_cache_lines) {
-  apsis::field u(7, 150);
-  for (int cell = 0; cell < 7; ++cell) EXPECT_EQ(reinterpret_cast<std::uintptr_t>(u.row(cell)) % 64, 0u);
-}
-
-TEST(quartic, meets_its_five_conditions_and_gauss_integrates_it) {
-  check_property("conditions", [] {
-    const auto number = [] { return *rc::gen::inRange(-1000, 1000) * 1e-3; };
-    const double m = number(), c = number(), p = number(), l = number(), r = number();
-    const apsis::quartic q(m, c, p, l, r);
-    // Averages over [a, a+1] by the antiderivative.
-    const auto average = [&q](double a) {
-      const auto primitive = [&q](double x) {
-        return x * (q.c + q.d0 + x * (q.d1 / 2 + x * (q.d2 / 3 + x * (q.d3 / 4 + x * q.d4 / 5))));
-      };
-      return primitive(a + 1.0) - primitive(a);
-    };
-    const double rounding = 1e-13;  // about 20 operations with coefficients up to 10
-    RC_ASSERT(std::abs(q(-0.5) - l) < rounding);
-    RC_ASSERT(std::abs(q(0.5) - r) < rounding);
-    RC_ASSERT(std::abs(average(-1.5) - m) < rounding);
-    RC_ASSERT(std::abs(average(-0.5) - c) < rounding);
-    RC_ASSERT(std::abs(average(0.5) - p) < rounding);
-    double gauss = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) gauss += apsis::gauss3::weight[k] * q(apsis::gauss3::xi[k]);
-    RC_ASSERT(std::abs(gauss - c) < rounding);
-  });
 }
 
 TEST(grid, a_block_has_the_coordinates_of_the_whole_to_the_last_bit) {
@@ -87,4 +56,11 @@ TEST(grid, a_block_lies_inside) {
   EXPECT_EQ(line.block({7, 0, 0}, {1, 1, 1}).centre(0, 0), line.centre(7, 0));
 }
 
-}  // namespace mesh_test
+TEST(phase_space, has_as_many_unknowns_as_cells_times_components) {
+  const apsis::phase_space space(apsis::grid(2, {3, 4, 1}, {0, 0, 0}, {1, 1, 1}),
+                                 {{{1.0, -1.0}}, {1.0, 1.0}, 2});
+  EXPECT_EQ(space.points(), 3 * 4 * 4);
+  EXPECT_EQ(apsis::phase_space(apsis::grid::line(5, 0.0, 1.0)).points(), 0);
+}
+
+}  // namespace grid_test

@@ -125,7 +125,7 @@ APSIS_FORMULA double inverse_power_of_two(double a) {
 }
 /// Returns a rounded towards 0, |a| < 2^31.
 APSIS_FORMULA double truncated(double a) {
-  return static_cast<double>(static_cast<int>(a));
+  return __builtin_trunc(a) + 0.0;  // not −0; defined also for NaN, which a conversion to int is not
 }
 /// Returns 2^a for an integer −1022 ≤ a ≤ 1023.
 APSIS_FORMULA double power_of_two(double a) {

@@ -16,6 +16,13 @@ struct discretization_entry {
   const discretization& (*instance)();  ///< returns the object, which lives as long as the program
 };
 
+/// Returns the only object of a discretization, for its entry.
+template <class Discretization>
+const discretization& instance_of() {
+  static const Discretization one;
+  return one;
+}
+
 /// Returns all discretizations, sorted by file name (generated).
 std::vector<const discretization_entry*> discretization_entries();
 

@@ -34,9 +34,6 @@ const discretization_entry discretization_finite_difference = {
     .name = "finite-difference",
     .description = "point values at the centres of cells, with numerical fluxes at their edges",
     .source = "Shu, Osher, JCP 83 (1989); Xu, Math. Comp. 83 (2014)",
-    .instance = []() -> const discretization& {
-      static const finite_differences instance;
-      return instance;
-    }};
+    .instance = instance_of<finite_differences>};
 
 }  // namespace apsis

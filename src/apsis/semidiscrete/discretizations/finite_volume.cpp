@@ -55,9 +55,6 @@ const discretization_entry discretization_finite_volume = {
     .name = "finite-volume",
     .description = "cell averages on a line, with edge values of the solution",
     .source = "Shu, NASA/CR-97-206253 (1997); Zhang, Shu, JCP 229 (2010)",
-    .instance = []() -> const discretization& {
-      static const finite_volumes instance;
-      return instance;
-    }};
+    .instance = instance_of<finite_volumes>};
 
 }  // namespace apsis

@@ -35,9 +35,6 @@ const discretization_entry discretization_planted_averages = {
     .name = "planted-averages",
     .description = "cell averages on a line that collide as they are, of second order",
     .source = "LeVeque, Finite Volume Methods for Hyperbolic Problems (2002)",
-    .instance = []() -> const discretization& {
-      static const averages_as_they_are instance;
-      return instance;
-    }};
+    .instance = instance_of<averages_as_they_are>};
 
 }  // namespace apsis

@@ -159,7 +159,12 @@ def schemes(program: Program) -> str:
             "their use.\n\n" + table(
                 ["name", "order", "ghost cells", "what", "source"],
                 [[f"`{s['name']}`", s["order"], s["ghost_width"], plain(s["description"]), plain(s["source"])]
-                 for s in program.list("schemes")]))
+                 for s in program.list("schemes")])
+            + "\nFormulations, for `space.formulation`: what the unknown of a cell is, and where cells collide.\n\n" + table(
+                ["name", "unknowns", "dimensions", "`space.collisions`", "what", "source"],
+                [[f"`{f['name']}`", f["unknown"], "1" if f["only_on_a_line"] else "1 to 3",
+                  ", ".join(f"`{c}`" for c in f["collisions"]) or "-", plain(f["description"]), plain(f["source"])]
+                 for f in program.list("formulations")]))
 
 
 def claims(program: Program) -> str:

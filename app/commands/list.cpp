@@ -17,6 +17,7 @@
 #include <apsis/model/model_registry.hpp>
 #include <apsis/run/cfl_limit.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
+#include <apsis/semidiscrete/discretization_registry.hpp>
 
 #include <map>
 #include <memory>
@@ -121,6 +122,21 @@ json schemes() {
                    {"source", r->source},
                    {"order", scheme->order()},
                    {"ghost_width", scheme->ghost_width()}});
+  }
+  return all;
+}
+
+/// The choices of space.formulation.
+json formulations() {
+  json all = json::array();
+  for (const discretization_entry* d : discretization_entries()) {
+    const discretization& of = d->instance();
+    all.push_back({{"name", d->name},
+                   {"description", d->description},
+                   {"source", d->source},
+                   {"unknown", of.unknown().plural()},
+                   {"only_on_a_line", !of.why_on_a_line().empty()},
+                   {"collisions", of.collision_places()}});
   }
   return all;
 }
@@ -248,9 +264,10 @@ std::string as_text(const std::string& what, const json& all) {
 
 const std::map<std::string, json (*)()>& lists() {
   static const std::map<std::string, json (*)()> all = {
-      {"methods", methods},       {"families", families},     {"multistep", multistep}, {"models", models},
-      {"cases", cases},           {"schemes", schemes},       {"claims", claims},       {"keys", keys},
-      {"boundaries", boundaries}, {"quantities", quantities}, {"gases", gases},         {"choices", choices}};
+      {"methods", methods}, {"families", families},     {"multistep", multistep},       {"models", models},
+      {"cases", cases},     {"schemes", schemes},       {"formulations", formulations}, {"claims", claims},
+      {"keys", keys},       {"boundaries", boundaries}, {"quantities", quantities},     {"gases", gases},
+      {"choices", choices}};
   return all;
 }
 

@@ -141,6 +141,7 @@ class OneFile(unittest.TestCase):
                        for cells in (40, 80)]
         self.assertGreater(differences[0], 1e-7)
         self.assertGreater(differences[0] / differences[1], 3)
+        self.assertIn("planted-averages", self.names("formulations"))
         refused = subprocess.run([self.program, "run", "gas/cavity", "space.formulation=planted-averages"], capture_output=True,
                                  text=True, check=False)
         self.assertEqual(refused.returncode, 2)

@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -183,6 +184,8 @@ void domain::fill_surface(int surface, double t, const field& u, end_kind which)
   const face& of_end = where;
   const std::vector<int>& segments = ends;
   parallel_blocks(static_cast<int>(segments.size()), ends_at_once, [&](int begin, int end) {
+    const profile::section timed(kernel::walls, static_cast<double>(end - begin) * width_ * u.stride(),
+                                 {0.0, sizeof(double)});
     for (int place = begin; place < end; ++place) {
       const segment& one = segment_at(of_end.direction, segments[at(place)]);
       if (which != end_kind::all &&

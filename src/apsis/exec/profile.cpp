@@ -25,6 +25,10 @@ const char* kernel_name(kernel which) {
       return "multiples of u";
     case kernel::halo:
       return "halo";
+    case kernel::walls:
+      return "walls";
+    case kernel::forces:
+      return "forces";
     case kernel::points:
       return "Gauss points";
     case kernel::equilibria:

@@ -14,6 +14,8 @@ enum class kernel {
   fluxes,      ///< flux limiter, T(u), and adding its multiples to the accumulators
   multiples,   ///< adding multiples of u alone to the accumulators
   halo,        ///< packing rows for other processes, and waiting for theirs
+  walls,       ///< rows beyond surfaces, and what enters through them
+  forces,      ///< forces and sources
   points,      ///< values at Gauss points from cell averages
   equilibria,  ///< moments and equilibria
   relaxation,  ///< convex combination with the equilibrium

@@ -3,6 +3,8 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/first_error.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
+#include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/global_integrals.hpp>
 
 #include <algorithm>
@@ -48,6 +50,7 @@ void source::compute(double t, const field& u) {
   first_error failure;
   failure.run([&] {
     parallel_blocks(values_.cells(), block, [&](int begin, int end) {
+      const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(), {});
       std::vector<double> row(static_cast<std::size_t>(values_.components()));
       for (int cell = begin; cell < end; ++cell) {
         if (space_->mesh().solid(cell) < 0) compute_cell(t, cell, u, row);
@@ -74,6 +77,8 @@ void source::add(double t, const field& u, std::span<const target<field, double>
   if (!known_) compute(t, u);
   constexpr int block = 64;
   parallel_blocks(values_.cells(), block, [&](int begin, int end) {
+    const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(),
+                                 traffic(targets));
     for (const auto& to : targets)
       for (int cell = begin; cell < end; ++cell) {
         const double* s = values_.row(cell);

@@ -40,6 +40,8 @@ cached_sweeps::cached_sweeps(const case_config& config, int accumulators)
         {accumulators_.data() + static_cast<std::size_t>(k) * rows * columns, columns, 0.0, 1e-6, false});
   for (std::size_t k = 0; k < u_.size(); ++k) u_[k] = 1.0 + 0.1 * std::sin(0.01 * static_cast<double>(k));
   speeds_.assign(columns, 1.0);
+  for (int k = 0; k < columns; ++k)  // of equally distant velocities
+    capacities_.push_back(columns / std::abs(columns - 1.0 - 2.0 * k));
   forward_.assign(columns, 0.0);
   std::fill_n(forward_.begin(), columns / 2, 1.0);
   for (std::size_t k = 0; k < config.space.cells.size(); ++k) {
@@ -57,8 +59,9 @@ void cached_sweeps::evaluate(int times) {
       const double* const* first = one.rows.data() + beyond - halo;
       scheme_->outflow_edges(first, one.cells + 2 * halo, columns, forward_.data(), edges_.data());
       const double* edges = edges_.data() + halo * columns;
-      const upwind::cells run{first + halo, edges,           edges,          columns, one.cells,
-                              columns,      forward_.data(), speeds_.data(), nullptr};
+      const upwind::cells run{first + halo,       edges,   edges,           columns,
+                              one.cells,          columns, forward_.data(), speeds_.data(),
+                              capacities_.data(), nullptr};
       upwind::add_limited(run, targets_);
     }
 }

@@ -32,7 +32,7 @@ class cached_sweeps {
   };
 
   std::shared_ptr<const reconstruction> scheme_;
-  aligned_vector<double> u_, edges_, accumulators_, speeds_, forward_;
+  aligned_vector<double> u_, edges_, accumulators_, speeds_, forward_, capacities_;
   std::vector<upwind::row_target> targets_;
   std::vector<sweep> sweeps_;
 };

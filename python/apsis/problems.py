@@ -79,7 +79,7 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
     `method` is a name, a file or a Method. "auto" chooses by the table of `apsis list choices`; the choice and its reason are in the
     result. Without dt, with forward_euler_step, admissible or positivity, it preserves bounds. A warning on standard error names a
     method that fits where dt is unfit for ε (docs/plateaus.md). Steps have the length dt, shortened until it divides each interval, or
-    safety · r · Δt_FE, 0 < safety, where r is at most the linear stability limit (Certificate.cfl_limits) on a mesh without limiter.
+    safety · r · Δt_FE, 0 < safety, where r Δt_FE is at most the linear stability limit (Certificate.cfl_limits) on a mesh.
     startup = "graded" resolves the initial layer of data out of equilibrium by short first
     steps. startup_growth, from 2 to 64, is the ratio of their successive times: with 4 they are half as many as with 2 and less accurate. With a tolerance steps are
     shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it; then

@@ -47,10 +47,8 @@ class kinetic_problem {
       if (auto force = make_acceleration(of, *equation_)) builder_.with_force(std::move(*force));
       builder_.with_discretization(of.discretization);
       builder_.with_collisions_at(of.collisions);
-      if (of.positivity)
-        builder_.with_positivity_limiter();
-      else
-        unlimited_ = find_reconstruction(of.reconstruction).make();
+      if (of.positivity) builder_.with_positivity_limiter();
+      scheme_ = find_reconstruction(of.reconstruction).make();
       builder_.with_reconstruction(find_reconstruction(of.reconstruction).make());
     }
     // The function of the user is called here, once for each point, and not by the threads of a step.
@@ -197,10 +195,21 @@ class kinetic_problem {
     return dt;
   }
 
-  /// Returns the stable part of r: without limiter r Δt_FE may exceed the linear stability limit.
+  /// Returns the stable part of r: r Δt_FE may exceed the linear stability limit.
   double stable_fraction(const method& m) const {
-    if (!unlimited_) return 1.0;
-    return std::min(1.0, cfl_limit(amplification(m), *unlimited_) / m.coefficients<double>().r);
+    if (!scheme_) return 1.0;
+    return std::min(
+        1.0, cfl_limit(amplification(m), *scheme_) / (builder_.cfl_number() * m.coefficients<double>().r));
+  }
+
+  /// Returns the share of r Δt_FE that the limiter is for, as in a run of a case: 1 where steps are not
+  /// known.
+  static double limiter_share(const semidiscrete_problem& of, const field& u, const method& m,
+                              const step_choice& choice) {
+    const double r = m.coefficients<double>().r;
+    if (choice.tolerance || m.kind == method_kind::explicit_only || !(r > 0.0)) return 1.0;
+    const double longest = r * of.forward_euler_step(0.0, u);
+    return std::min(1.0, choice.dt.value_or(choice.safety * longest) / longest);
   }
 
   py::tuple integrate(const array& u0, const std::vector<double>& t, const method& m,
@@ -215,6 +224,7 @@ class kinetic_problem {
     step_count count;
     {
       const py::gil_scoped_release others;
+      problem->limit_for_steps(limiter_share(*problem, u, m, stable));
       count = march_through(
           *problem, u, t, m, stable, true, largest_difference, [&all](const field& now) { append(now, all); },
           raise_pending_signals);
@@ -322,7 +332,7 @@ class kinetic_problem {
 
   std::unique_ptr<model> equation_;
   problem_builder builder_;
-  std::unique_ptr<reconstruction> unlimited_;  ///< without limiter
+  std::unique_ptr<reconstruction> scheme_;  ///< null without space
   problem_pool implicit_{[this] { return builder_.build(); }},
       explicit_{[this] { return problem_builder(builder_).with_explicit_collision().build(); }},
       exact_{[this] { return problem_builder(builder_).with_exact_collision().build(); }};

@@ -45,7 +45,7 @@ TEST(scales, of_a_case_without_a_gas_are_the_knudsen_numbers) {
 TEST(scales, results_in_si_units_name_their_units) {
   const work_folder folder;
   const std::vector<std::string> arguments = {
-      "run", "gas/micro-channel", "time.end=0.2 ns", "output.every=0.1 ns", "velocity.points=16", "--out",
+      "run", "gas/micro-channel", "time.end=0.2 ns", "output.every=0.05 ns", "velocity.points=16", "--out",
       "r"};
   const outcome text = run_apsis(folder, arguments);
   ASSERT_EQ(text.code, 0) << text.err;

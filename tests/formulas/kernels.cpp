@@ -30,9 +30,9 @@ double outflow_edge(const double* u) {
 }  // namespace
 
 extern "C" void transport_z(const double* u, double* acc) {
-  const auto first = scalar::unlimited(u[2], outflow_edge<scalar::weights_z>(u));
-  const auto here = scalar::limited_after(first, u[3], outflow_edge<scalar::weights_z>(u + 1));
-  const auto next = scalar::limited_after(here, u[4], outflow_edge<scalar::weights_z>(u + 2));
+  const auto first = scalar::unlimited(u[2], outflow_edge<scalar::weights_z>(u), acc[2]);
+  const auto here = scalar::limited_after(first, u[3], outflow_edge<scalar::weights_z>(u + 1), acc[2]);
+  const auto next = scalar::limited_after(here, u[4], outflow_edge<scalar::weights_z>(u + 2), acc[2]);
   const double in = scalar::limited_flux(first, here), out = scalar::limited_flux(here, next);
   acc[0] = scalar::transported(
       0.5, u[3], 0.1, in - out, false, [acc] { return acc[0]; }, true, 0.2, [acc] { return acc[1]; });

@@ -99,7 +99,7 @@ std::string at_rest(int dimensions, const std::string& kind, const std::string& 
                          : "[model]\nname = \"bgk\"\n[initial]\nrho = 1.3\nT = 0.9\n"
                            "[space]\ncells = [6, 5, 7]\ndomain = [[0, 0.6], [0, 0.5], [0, 0.7]]\n"
                            "[velocity]\nmax = 6\npoints = 8\n";
-  text += "[time]\nmethod = \"md-imex-3-2\"\nsafety = 1\nend = 0.002\n";
+  text += "[time]\nmethod = \"md-imex-3-2\"\nsafety = 1\nend = 0.02\n";
   const std::vector<std::string> faces = {"left", "right", "bottom", "top", "back", "front"};
   for (std::size_t k = 0; k < 2 * static_cast<std::size_t>(dimensions); ++k)
     text += fmt::format("[boundary.{}]\nkind = \"{}\"\n{}", faces[k], kind, values);

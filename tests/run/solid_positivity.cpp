@@ -69,7 +69,7 @@ TEST(solid_positivity, is_lost_in_steps_a_quarter_longer_than_promised) {
   random_boxes cases(7);
   int negative = 0;
   for (int k = 0; k < 6; ++k) {
-    const std::string text = cases.next("bgk", "md-imex-3-2", 2);
+    const std::string text = cases.next("bgk", "md-imex-6-3", 2);
     apsis::simulation run(apsis::parse_case(text, "random.toml", {"time.safety=1.25"}));
     EXPECT_FALSE(run.promises().positivity);
     for (int step = 0; step < 15; ++step) run.advance();

@@ -204,7 +204,7 @@ TEST(walls, whose_entropy_is_not_bounded_promise_no_decay) {
 }
 
 TEST(walls, beyond_the_step_limit_values_become_negative) {
-  simulation run = run_of({"time.safety=14", "model.epsilon=1e12", "initial.rho=\"x < 0.4 ? 1 : 1e-9\""});
+  simulation run = run_of({"time.safety=1.5", "model.epsilon=1e12", "initial.rho=\"x < 0.4 ? 1 : 1e-9\""});
   EXPECT_FALSE(run.promises().positivity);
   finish(run);
   EXPECT_GT(run.summary().negative_values, 0);

@@ -132,11 +132,6 @@ void run_setup::check_method() {
            fmt::format("method '{}' cannot integrate model '{}' (it is {}, and collisions of the model "
                        "have no solution in closed form); choose an IMEX method",
                        first.name, config_.model.name, to_string(first.kind)));
-  if (config_.time.safety && step_coefficient() == 0.0)
-    refuse(config_, "time.safety",
-           fmt::format("time.safety needs a method with an SSP coefficient (that of '{}' is 0); give time.dt "
-                       "or time.cfl",
-                       integrator_name()));
   check_startup();
   check_tolerance();
 }
@@ -149,10 +144,9 @@ void run_setup::set_stability_limit() {
 }
 
 double run_setup::step_coefficient() const {
-  if (!has_space() || config_.space.limiter == limiter_choice::positivity) return ssp_coefficient();
-  const bool known = std::isfinite(stability_limit_);
-  if (ssp_coefficient() == 0.0) return known ? stability_limit_ : 0.0;
-  return std::min(ssp_coefficient(), stability_limit_);
+  if (!has_space()) return ssp_coefficient();
+  const double stable = stability_limit_ / builder_.cfl_number();
+  return ssp_coefficient() == 0.0 ? stable : std::min(ssp_coefficient(), stable);
 }
 
 void run_setup::check_startup() const {

@@ -41,9 +41,8 @@ class run_setup : public construction_count<run_setup> {
   /// Returns the linear stability limit of time.method with space.reconstruction, in a CFL number; infinite
   /// without space.
   double stability_limit() const { return stability_limit_; }
-  /// Returns the longest step in units of Δt_FE, to which time.safety is relative: r with the positivity
-  /// limiter, which bounds what linear stability does not; without it the smaller of r and
-  /// stability_limit(), or the latter alone if the method has no r.
+  /// Returns the longest step in units of Δt_FE, to which time.safety is relative: the smaller of r and of
+  /// stability_limit()/κ, κ = problem_builder::cfl_number(), or the latter alone if the method has no r.
   double step_coefficient() const;
 
   /// Returns the semi-discrete problem of the case. This setup, whose model it refers to, must outlive it.

@@ -74,6 +74,7 @@ struct simulation::impl {
       control.emplace(*config.time.tolerance, estimate_of(setup.integrator().starter()).order);
       estimate.emplace(of_one_step.weight_of_estimate(), of_one_step.resolves_collisions());
     }
+    limit_for_steps();
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
@@ -131,6 +132,14 @@ struct simulation::impl {
     if (expected && expected->error > *config.time.tolerance) return;
     const bool layer = !control && !setup.has_graded_start();
     losses.start(march.t(), state, std::min(dt, config.time.end - march.t()), layer);
+  }
+
+  /// Steps that are known to be shorter than the longest need less of the limiter.
+  void limit_for_steps() {
+    if (control || setup.integrator().needs.explicit_collision || problem->source_depends_on_state()) return;
+    const double longest = forward_euler_limit();
+    if (const double dt = limit(); dt < longest) limiter_share = dt / longest;
+    problem->limit_for_steps(limiter_share);
   }
 
   double forward_euler_limit() {
@@ -229,7 +238,8 @@ struct simulation::impl {
   run_promises promises;
   step_record first, last;
   run_summary totals;
-  bool inside_step = false;  ///< also after a step that failed
+  double limiter_share = 1.0;  ///< of r Δt_FE
+  bool inside_step = false;    ///< also after a step that failed
 };
 
 namespace {
@@ -303,6 +313,10 @@ bool simulation::next_step_depends_on_end() const {
   if (far || finished()) return false;
   return impl_->march.shaped_by_end(impl_->proposed());
 }
+double simulation::limiter_share() const {
+  return impl_->limiter_share;
+}
+
 double simulation::expected_loss() const {
   return impl_->losses.expected();
 }

@@ -52,6 +52,9 @@ class simulation {
   /// Returns the estimate of the relative error at time.end from terms of size ε that the method loses in its
   /// steps (loss_watch); a warning is given where it matters. 0 if nothing is lost or nothing is known.
   double expected_loss() const;
+  /// Returns the share of r Δt_FE that the positivity limiter is for (transport::limit_for_steps); 1 if steps
+  /// vary.
+  double limiter_share() const;
   /// Returns the number of snapshot times k · output.every, k ≥ 1, up to t(); steps end at each of them
   /// exactly.
   long snapshot_times_passed() const;

@@ -64,7 +64,7 @@ void warn_of_unstable_steps(const run_setup& setup, double dt) {
   if (config.time.safety && setup.step_coefficient() < r) {
     const std::string text = fmt::format(
         "time.safety is relative to the CFL number {:.4g}, the linear stability limit of '{}' with "
-        "'{}' (its SSP coefficient {:.4g} holds with space.limiter = \"positivity\" only)",
+        "'{}' (shorter than its SSP coefficient {:.4g})",
         limit, setup.integrator_name(), config.space.reconstruction, r);
     if (limit < hopeless)
       log::warning(text + "; choose a method of order 3, or space.reconstruction = \"upwind1\"");

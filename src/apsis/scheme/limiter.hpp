@@ -2,12 +2,12 @@
 
 namespace apsis {
 
-/// Positivity limiter of Zhang & Shu (JCP 229, 2010) with the four-point Gauss–Lobatto rule, whose end weight
-/// is ŵ₁ = 1/12: a cell average c is ŵ₁ L + (1 − 2ŵ₁) ξ* + ŵ₁ R, and if L, R, ξ* ≥ 0 then a forward Euler
-/// step of upwind transport with Δt ≤ ŵ₁ Δx/v keeps the average nonnegative.
+/// Limiters that keep forward Euler steps of upwind transport nonnegative (docs/space.md, "Positivity").
 namespace limiter {
 
-/// Quadrature weight ŵ₁ of each edge.
+/// Quadrature weight ŵ₁ of each edge in the four-point Gauss–Lobatto rule of the limiter of edges (Zhang &
+/// Shu, JCP 229, 2010): a cell average c is ŵ₁ L + (1 − 2ŵ₁) ξ* + ŵ₁ R, and if L, R, ξ* ≥ 0 then a step with
+/// Δt ≤ ŵ₁ Δx/v keeps the average nonnegative.
 inline constexpr double end_weight = 1.0 / 12.0;
 
 /// Values are kept above this fraction of the average (or of K) instead of above 0: rounding errors of the
@@ -43,19 +43,32 @@ inline double interior(double c, double l, double r) {
 /// the averages c.
 void apply(const double* c, int width, double* left, double* right);
 
-/// Limits fluxes of point values. Their flux function may be negative where the solution touches zero (near a
+/// Values below it do not flow out: in several directions the fluxes of a cell round separately, and three
+/// subnormal numbers may round to more than their sum (docs/space.md, "Rounding").
+inline constexpr double negligible = 1e-270;
+
+/// Returns the value at the edge of a cell in the first-order upwind scheme.
+inline double carried(double u) {
+  return u < negligible && u > -negligible ? 0.0 : u;
+}
+
+/// Least κ that fluxes are limited for: slower velocities, and those of shorter steps, hardly need a limiter.
+inline constexpr double least_share = 1e-3;
+
+/// Limits fluxes. The flux function of point values may be negative where the solution touches zero (near a
 /// minimum it is lower by Δx² u''/24), so edge values must not be cut off at zero. Instead the fluxes into
 /// and out of a cell are limited together, between first-order upwind and the high-order edge (as in Xu,
-/// Math. Comp. 83, 2014, or Zalesak, JCP 31, 1979). In the direction of motion, with the values u_up, u ≥ 0
-/// and the corrections A = edge − donor of inflow and outflow, returns the fraction ϑ ∈ [0, 1] of the
-/// corrections that decrease u, such that
-///   u − κ (u + ϑ A_out⁺ − u_up + ϑ A_in⁻) ≥ κ absolute_margin,  κ = end_weight,
-/// if K = (1 − κ)u + κ u_up allows it; ϑ = 0 if K is below the margin.
-inline double limiter_coefficient(double u_up, double u, double a_in, double a_out) {
+/// Math. Comp. 83, 2014, or Zalesak, JCP 31, 1979). In the direction of motion, with the values u_up, u ≥ 0,
+/// the values w = carried(u) and the corrections A = edge − w of inflow and outflow, returns the fraction ϑ ∈
+/// [0, 1] of the corrections that decrease u, such that
+///     u − κ (w + ϑ A_out⁺ − w_up + ϑ A_in⁻) ≥ absolute_margin
+/// if K = u − κ w + κ w_up allows it; ϑ = 0 if K is below the margin. `capacity` is 1/κ ≥ 1: an outflow of
+/// so many times the value would empty the cell.
+inline double limiter_coefficient(double u_up, double u, double a_in, double a_out, double capacity) {
   // Both sides are divided by κ, because κ A may underflow to 0.
-  const double kept = (1.0 / end_weight - 1.0) * u + u_up;
+  const double kept = capacity * u - carried(u) + carried(u_up);
   const double harm = (a_out > 0.0 ? a_out : 0.0) - (a_in < 0.0 ? a_in : 0.0);
-  const double left = (1.0 - relative_margin) * kept - absolute_margin;
+  const double left = (1.0 - relative_margin) * kept - capacity * absolute_margin;
   const double allowed = left > 0.0 ? left : 0.0;
   const double fraction = harm > allowed ? allowed / harm : 1.0;
   return fraction > 0.0 ? fraction : 0.0;

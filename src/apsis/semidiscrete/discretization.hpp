@@ -59,6 +59,10 @@ class discretization {
   /// Returns where cells collide for one of these choices, or "".
   virtual collision_layout collisions_at(const std::string& place, const reconstruction& scheme) const = 0;
 
+  /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k with the positivity limiter and collisions at a place, or
+  /// "", with a reconstruction of order 2 or more.
+  virtual double limited_cfl_number(const std::string& place) const = 0;
+
   /// Returns T without force and source. It reserves the ghost rows that it needs.
   virtual std::unique_ptr<transport> make_transport(const problem_parts& of) const = 0;
   /// Returns Q/ε. It reserves the ghost rows that it needs.

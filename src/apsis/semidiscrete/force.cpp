@@ -2,7 +2,9 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/first_error.hpp>
+#include <apsis/exec/profile.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
+#include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/global_integrals.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
@@ -17,11 +19,12 @@
 namespace apsis {
 namespace {
 
-constexpr int halo = 2,            // cells beyond a line whose edges limited fluxes see
-    reach = 2,                     // cells on either side on which an edge depends
-    beyond = halo + reach;         // rows of vacuum at either end of a line
-constexpr int enough_lanes = 64;   // lines of several cells are swept together, so that they fill vectors
-constexpr int cells_of_task = 64;  // some blocks of lines
+constexpr int halo = 2,               // cells beyond a line whose edges limited fluxes see
+    reach = 2,                        // cells on either side on which an edge depends
+    beyond = halo + reach;            // rows of vacuum at either end of a line
+constexpr double kappa = 1.0 / 12.0;  // of limited fluxes along velocities
+constexpr int enough_lanes = 64;      // lines of several cells are swept together, so that they fill vectors
+constexpr int cells_of_task = 64;     // some blocks of lines
 
 std::size_t size(int n) {
   return static_cast<std::size_t>(n);
@@ -31,7 +34,7 @@ std::size_t size(int n) {
 
 /// Buffers of one thread. A "lane" is a line of the lattice: [point][lane].
 struct force::workspace {
-  aligned_vector<double> values, edges, change, forward, per_cell, in, out, sum;
+  aligned_vector<double> values, edges, change, forward, per_cell, capacity, in, out, sum;
   std::vector<const double*> rows;
   std::vector<std::array<double, 3>> a;  ///< of every cell of the block
   std::vector<upwind::row_target> target;
@@ -76,7 +79,7 @@ double force::rate() const {
   double sum = 0.0;
   for (std::size_t k = 0; k < lattice_.points.size(); ++k)
     if (acceleration_.largest[k] > 0.0) sum += acceleration_.largest[k] / lattice_.spacing[k];
-  return sum;
+  return limited_ ? sum / kappa : sum;
 }
 
 void force::add(double t, const field& u, std::span<const target<field, double>> targets) const {
@@ -90,6 +93,7 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
     here.edges.resize((line + 2 * halo) * width);
     here.change.resize(line * width);
     for (auto* row : {&here.forward, &here.per_cell, &here.in, &here.out}) row->resize(width);
+    here.capacity.assign(width, 1.0 / std::max(limiter::least_share, kappa * share_));
     here.sum.resize(size(together) * size(u.stride()));
     here.rows.resize(line + 2 * beyond);
     here.a.resize(size(together));
@@ -98,6 +102,8 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
   first_error failure;
   failure.run([&] {
     parallel_blocks(u.cells(), std::max(together, cells_of_task), [&](int begin, int end) {
+      const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(),
+                                   traffic(targets));
       for_cells_in(space_->mesh().fluid(), begin, end, [&](int from, int to) {
         for (int first = from; first < to; first += together)
           add_cells(t, u, targets, first, std::min(to, first + together), workspaces_->here());
@@ -164,8 +170,16 @@ void force::add_direction(const field& u, const place& at, workspace& here) cons
   here.target.assign(1, {here.change.data(), width, 0.0, 1.0, true});
   const auto run_of = [&](int first, int count) {
     const double* of_first = edges + static_cast<std::ptrdiff_t>(first) * width;
-    return upwind::cells{rows + first,         of_first, of_first, width, count, width, here.forward.data(),
-                         here.per_cell.data(), nullptr};
+    return upwind::cells{rows + first,
+                         of_first,
+                         of_first,
+                         width,
+                         count,
+                         width,
+                         here.forward.data(),
+                         here.per_cell.data(),
+                         here.capacity.data(),
+                         nullptr};
   };
   if (limited_) {
     upwind::add_limited(run_of(0, n), here.target);

@@ -37,8 +37,13 @@ class force {
   /// Returns the mass per unit of time and β that entered the last points of the lattice in the last add(),
   /// in the direction of the force: it cannot leave.
   double held() const { return held_; }
-  /// Returns Σ_k |a_k|/Δv with the bounds.
+  /// Returns the rate 1/Δt_FE of the force alone: Σ_k |a_k|/Δv with the bounds, and 12 times that where
+  /// fluxes are limited. Between neighbouring velocities f may differ by powers of ten, so that limiting
+  /// fluxes for steps up to Δv/|a| would cost accuracy. A force is weak beside the motion through cells, so
+  /// that short steps cost little.
   double rate() const;
+  /// Tells the limiter that β rate() ≤ share α in all calls to come, 0 < share ≤ 1 (initially 1).
+  void limit_for_steps(double share) { share_ = share; }
 
  private:
   struct workspace;
@@ -60,6 +65,7 @@ class force {
   velocity_lattice lattice_;
   acceleration acceleration_;
   bool limited_;
+  double share_ = 1.0;  ///< that the limiter is for
   std::shared_ptr<const reconstruction> scheme_;
   std::size_t invariants_;
   mutable std::vector<double> of_cells_, given_;

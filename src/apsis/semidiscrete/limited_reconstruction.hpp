@@ -33,9 +33,9 @@ struct limited_reconstruction {
   int reach() const { return std::max(scheme->ghost_width(), halo()); }
   /// Returns the number of ghost rows that a sweep reads beyond the end of a segment.
   int ghosts() const { return halo() + reach(); }
-  /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k: 1/12 with a limiter (Zhang & Shu 2010), else 1, which for
-  /// first-order upwind keeps positivity, total variation and entropy.
-  double kappa() const { return keeps_sign() ? limiter::end_weight : 1.0; }
+  /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k: 1/12 with limited edges (Zhang & Shu 2010), else 1, up to
+  /// which limited fluxes keep positivity, and first-order upwind also total variation and entropy.
+  double kappa() const { return limits_edges() ? limiter::end_weight : 1.0; }
 };
 
 }  // namespace apsis

@@ -107,6 +107,10 @@ class problem_builder {
   bool first_order() const { return scheme_ && scheme_->order() == 1; }
   /// Whether steps within r Δt_FE keep nonnegative data nonnegative.
   bool keeps_sign() const { return limited_ || first_order() || !has_space(); }
+  /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k: 1 without the positivity limiter.
+  double cfl_number() const {
+    return limited_ && has_space() && !first_order() ? of_space().limited_cfl_number(collisions_) : 1.0;
+  }
   /// Returns the discretization of space; that of a point without space.
   const discretization& of_space() const;
   /// Returns where cells collide. Requires a reconstruction if the model has space.

@@ -107,6 +107,8 @@ class semidiscrete_problem {
     if (!transport_->source_depends_on_state()) return 0.0;
     return -lowest([&] { return -transport_->growth_of_source(t, u); });
   }
+  /// Whether there is a source that depends on u.
+  bool source_depends_on_state() const { return transport_->source_depends_on_state(); }
   /// Δt_FE of T, or that of T + Q/ε after treat_collision_explicitly(); +infinity if nothing limits it. A
   /// source that depends on u limits it by 1/|∂S/∂u|.
   double forward_euler_step(double t, const field& u) const {
@@ -117,6 +119,8 @@ class semidiscrete_problem {
     return 1.0 / (1.0 / of_transport +
                   1.0 / (rounding_allowance * lowest([&] { return collision_->forward_euler_step(u); })));
   }
+  /// For steps Δt ≤ share r Δt_FE from now on, share ≤ 1: as transport::limit_for_steps().
+  void limit_for_steps(double share) { transport_->limit_for_steps(share); }
   /// Required by `problem_with_exact_collision`.
   bool collides_exactly() const { return stages_ == stage_solution::exact; }
   /// Whether the model has space or a source.

@@ -64,6 +64,9 @@ class transport {
   /// Returns Δt_FE of advection and force: a step within it preserves what the discretization preserves.
   /// +infinity without space.
   virtual double forward_euler_step() const = 0;
+  /// Tells the limiter that β ≤ share α Δt_FE in all calls to come, 0 < share ≤ 1 (initially 1): it then
+  /// changes less, and preserves the same.
+  virtual void limit_for_steps(double share) = 0;
   /// Returns the largest source_rate::growth in the cells of this process; 0 without a source that depends on
   /// u.
   virtual double growth_of_source(double t, const field& u) const = 0;

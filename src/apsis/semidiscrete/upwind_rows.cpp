@@ -73,25 +73,25 @@ void add(const cells& of, std::span<const row_target> targets) {
 }
 
 template <class Walk, class N = typename Walk::number>
-HWY_INLINE limited_cell<N> first_cell(const Walk& way, const cells& run, int j) {
-  return unlimited(way.load(run.u, j), outflow(way, run, j));
+HWY_INLINE limited_cell<N> first_cell(const Walk& way, const cells& run, int j, N capacity) {
+  return unlimited(way.load(run.u, j), outflow(way, run, j), capacity);
 }
 
 template <class Walk, class N = typename Walk::number>
-HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j,
+HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j, N capacity,
                                      const limited_cell<N>& upstream) {
-  return limited_after(upstream, way.load(run.u, j), outflow(way, run, j));
+  return limited_after(upstream, way.load(run.u, j), outflow(way, run, j), capacity);
 }
 
 template <class Walk, class N = typename Walk::number>
-HWY_INLINE void add_limited_along(const Walk& way, N speed, const cells& run,
+HWY_INLINE void add_limited_along(const Walk& way, N speed, N capacity, const cells& run,
                                   std::span<const row_target> targets) {
   const step_factors<N> factors(targets, speed);
-  const auto before = next_cell(way, run, -1, first_cell(way, run, -2));
-  auto here = next_cell(way, run, 0, before);
+  const auto before = next_cell(way, run, -1, capacity, first_cell(way, run, -2, capacity));
+  auto here = next_cell(way, run, 0, capacity, before);
   N in = limited_flux(before, here);
   for (int j = 0; j < run.count; ++j) {
-    const auto after = next_cell(way, run, j + 1, here);
+    const auto after = next_cell(way, run, j + 1, capacity, here);
     const N out = limited_flux(here, after);
     accumulate(way, run, targets, factors, j, here.u, in - out);
     here = after;
@@ -103,21 +103,22 @@ void add_limited(const cells& of, std::span<const row_target> targets) {
   const cells run = of;  // a copy, which the compiler knows to stay as it is when targets are stored
   for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
     using N = typename std::decay_t<decltype(way)>::number;
-    add_limited_along(way, N::load(run.per_cell + k), run, targets);
+    add_limited_along(way, N::load(run.per_cell + k), N::load(run.capacity + k), run, targets);
   });
 }
 
 void fluxes_of_cell(const cells& of, bool limited, double* in, double* out) {
   const cells run = of;
   for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
-    (void)k;
+    using N = typename std::decay_t<decltype(way)>::number;
     if (!limited) {
       way.store(outflow(way, run, -1), in, 0, 0);
       return way.store(outflow(way, run, 0), out, 0, 0);
     }
-    const auto before = next_cell(way, run, -1, first_cell(way, run, -2));
-    const auto here = next_cell(way, run, 0, before);
-    const auto after = next_cell(way, run, 1, here);
+    const N capacity = N::load(run.capacity + k);
+    const auto before = next_cell(way, run, -1, capacity, first_cell(way, run, -2, capacity));
+    const auto here = next_cell(way, run, 0, capacity, before);
+    const auto after = next_cell(way, run, 1, capacity, here);
     way.store(limited_flux(before, here), in, 0, 0);
     way.store(limited_flux(here, after), out, 0, 0);
   });
@@ -129,7 +130,7 @@ double operations_of_run(bool limited, int cells_in_run) {
   run.count = cells_in_run;
   return counted::operations_of([&] {
     if (limited) {
-      add_limited_along(counting_walk(), counted(0.0), run, {});
+      add_limited_along(counting_walk(), counted(0.0), counted(1.0), run, {});
     } else {
       add_along(counting_walk(), counted(0.0), run, {});
     }

@@ -80,14 +80,24 @@ upwind_transport::upwind_transport(const model& equation, std::shared_ptr<domain
   if (has_space) space_->reserve(equation.components(), edges_.ghosts());
   faces_ = std::make_unique<face_fluxes>(equation_, space_);
   if (has_space) speeds_ = line_speeds::of(equation, mesh());
+  limit_for_steps(1.0);
 }
 
 void upwind_transport::set_force(acceleration of) {
   force_ = std::make_unique<force>(equation_, space_, std::move(of), edges_);
+  limit_for_steps(share_);
 }
 
 void upwind_transport::set_source(source_rate rate) {
   source_ = std::make_unique<source>(equation_, space_, std::move(rate), unknown_);
+}
+
+void upwind_transport::limit_for_steps(double share) {
+  share_ = share;
+  // Of 1/Δt_FE, in units of 1/κ.
+  const double rate = force_ ? edges_.kappa() * force_->rate() : 0.0;
+  capacities_ = line_speeds::capacities(speeds_, share, rate);
+  if (force_) force_->limit_for_steps(share);
 }
 
 double upwind_transport::growth_of_source(double t, const field& u) const {
@@ -95,15 +105,14 @@ double upwind_transport::growth_of_source(double t, const field& u) const {
 }
 
 double upwind_transport::forward_euler_step() const {
-  double rate = force_ ? force_->rate() : 0.0;  // 1/0 is the infinity of a model without space
-  double fastest = 0.0;                         // every component moves with one velocity
+  double fastest = 0.0;  // every component moves with one velocity
   for (std::size_t k = 0; !speeds_.empty() && k < speeds_.front().per_cell.size(); ++k) {
     double each = 0.0;
     for (const auto& line : speeds_) each += line.per_cell[k];
     fastest = std::max(fastest, each);
   }
-  rate += fastest;
-  return rounding_allowance * edges_.kappa() / rate;
+  const double rate = fastest + edges_.kappa() * (force_ ? force_->rate() : 0.0);
+  return rounding_allowance * edges_.kappa() / rate;  // 1/0 is the infinity of a model without space
 }
 
 bool upwind_transport::add_transport(double t, const field& u, targets_view targets,
@@ -218,7 +227,7 @@ void upwind_transport::for_segments(int direction, const cell_box& box, const Bo
 
 void upwind_transport::sweep_box(const field& u, targets_view targets, const cell_box& box, int first,
                                  int last) const {
-  const block_sweep::context all{equation_, *space_, edges_, speeds_, *faces_};
+  const block_sweep::context all{equation_, *space_, edges_, speeds_, capacities_, *faces_};
   for (int direction = 0; direction < mesh().dimensions(); ++direction)
     for_segments(direction, box, [&](int segment, int begin, int end) {
       scratch_->sweeps.here().run(all, u, {direction, segment, begin, end, first, last}, targets);
@@ -233,8 +242,9 @@ void upwind_transport::complete_box(double t, targets_view targets, const cell_b
       const segment& one = space_->segment_at(direction, number);
       for (const bool upper : {false, true}) {
         const auto& [surface, place] = one.ends[upper ? 1 : 0];
-        if (surface >= 0 && one.ends_here(upper) && (upper ? end == one.cells : begin == 0))
-          faces_->complete(surface, place, t, targets);
+        if (surface < 0 || !one.ends_here(upper) || (upper ? end != one.cells : begin != 0)) continue;
+        const profile::section timed(kernel::walls, equation_.components(), traffic(targets));
+        faces_->complete(surface, place, t, targets);
       }
     });
 }
@@ -263,7 +273,7 @@ bool upwind_transport::sweep(double t, const field& u, targets_view targets, con
     columns = std::max(columns, width / least_columns);
   if (!by_boxes) columns = static_cast<int>(std::clamp<long>(most_tasks / boxes.count(), 1, columns));
   const int widest = (width / packet_length / columns + 1) * packet_length;
-  const block_sweep::context all{equation_, *space_, edges_, speeds_, *faces_};
+  const block_sweep::context all{equation_, *space_, edges_, speeds_, capacities_, *faces_};
   scratch_->sweeps.prepare([&](auto& sweep) {
     sweep.reserve(all, std::min(std::max({mesh().cells(0), mesh().cells(1), mesh().cells(2)}), longest),
                   std::min(width, widest + width % packet_length), targets.size());

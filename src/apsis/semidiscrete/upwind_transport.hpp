@@ -18,7 +18,7 @@ namespace apsis {
 
 /// Transport by upwind fluxes of reconstructed edge values. For constant speeds the operator is the same for
 /// cell averages (finite volumes) and point values (finite differences). With the positivity limiter and
-/// β max_j Σ_k |v_jk|/Δx_k ≤ α/12 no result is negative, also in floating point.
+/// β ≤ α Δt_FE no result is negative, also in floating point.
 class upwind_transport final : public transport {
  public:
   /// `equation` and `unknown` must outlive the operator. Without space `edges` is ignored.
@@ -36,8 +36,9 @@ class upwind_transport final : public transport {
   void set_force(acceleration of) override;
   void set_source(source_rate rate) override;
 
-  /// Δt_FE = κ / (max_j Σ_k |v_jk|/Δx_k + Σ_k max|a_k|/Δv), κ = limited_reconstruction::kappa().
+  /// 1/Δt_FE = max_j Σ_k |v_jk|/Δx_k / κ + force::rate(), κ = limited_reconstruction::kappa().
   double forward_euler_step() const override;
+  void limit_for_steps(double share) override;
   double growth_of_source(double t, const field& u) const override;
   bool source_depends_on_state() const override { return source_ && source_->depends_on_state(); }
 
@@ -63,12 +64,14 @@ class upwind_transport final : public transport {
   std::shared_ptr<domain> space_;
   limited_reconstruction edges_;
   const cell_unknown& unknown_;
+  double share_ = 1.0;  ///< of Δt_FE that the limiter is for
   std::unique_ptr<face_fluxes> faces_;
   std::unique_ptr<force> force_;    ///< null without
   std::unique_ptr<source> source_;  ///< null without
   struct scratch;
-  std::vector<line_speeds> speeds_;   ///< of each direction
-  std::unique_ptr<scratch> scratch_;  ///< scratch memory of loops; one loop at a time
+  std::vector<line_speeds> speeds_;    ///< of each direction
+  aligned_vector<double> capacities_;  ///< 1/κ of limited fluxes
+  std::unique_ptr<scratch> scratch_;   ///< scratch memory of loops; one loop at a time
 };
 
 }  // namespace apsis

@@ -105,7 +105,9 @@ limit_table limit_distance(const case_config& config, const std::vector<double>&
   table.method = config.time.method;
   if (has_space(find_model(config.model.name))) table.discretization = config.space.discretization;
   std::replace(table.discretization.begin(), table.discretization.end(), '-', ' ');
-  const std::vector<double> given = simulation(config).state();
+  const simulation run(config);
+  const std::vector<double> given = run.state();
+  scheme.limit_for_steps(run.limiter_share());
   const std::vector<double> equilibrium = scheme.equilibrium_of(given);
   table.off_equilibrium = relative_difference(given, equilibrium);
   const std::vector<double>& data = start == limit_start::given ? given : equilibrium;

@@ -121,6 +121,10 @@ limit_scheme::~limit_scheme() = default;
 limit_scheme::limit_scheme(limit_scheme&&) noexcept = default;
 limit_scheme& limit_scheme::operator=(limit_scheme&&) noexcept = default;
 
+void limit_scheme::limit_for_steps(double share) {
+  impl_->space.limit_for_steps(share);
+}
+
 void limit_scheme::start(std::span<const double> u) {
   impl_->state = impl_->load(u);
   if (!impl_->space.averages()) impl_->state = impl_->space.moments(impl_->state);

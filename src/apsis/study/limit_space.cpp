@@ -69,6 +69,22 @@ limit_space::limit_space(const case_config& config, const relaxation_model& equa
   averages_ = volumes && !first_order;
   if (config.space.limiter == limiter_choice::positivity && !first_order)
     (volumes ? limit_edges_ : limit_fluxes_) = true;
+  limit_for_steps(1.0);
+}
+
+void limit_space::limit_for_steps(double share) {
+  if (!has_space_) return;
+  capacities_.clear();
+  std::vector<double> rates(static_cast<std::size_t>(equation_.components()), 0.0);
+  for (int direction = 0; direction < space_.mesh().dimensions(); ++direction) {
+    const auto v = equation_.speeds(direction);
+    for (std::size_t k = 0; k < rates.size(); ++k)
+      rates[k] += std::abs(v[k]) / space_.mesh().spacing(direction);
+  }
+  const double fastest = *std::max_element(rates.begin(), rates.end());
+  for (const double rate : rates)
+    capacities_.push_back(1.0 /
+                          std::max(limiter::least_share, fastest > 0.0 ? share * (rate / fastest) : 1.0));
 }
 
 field limit_space::moments(const field& u) const {
@@ -129,7 +145,8 @@ double limit_space::limiter_coefficient(const pencil& p, int cell, std::size_t k
   const double here = p.row(cell)[k], before = p.row(upstream)[k];
   const double in = ahead ? p.right(upstream, k) : p.left(upstream, k);
   const double out = ahead ? p.right(cell, k) : p.left(cell, k);
-  return limiter::limiter_coefficient(before, here, in - before, out - here);
+  return limiter::limiter_coefficient(before, here, in - limiter::carried(before),
+                                      out - limiter::carried(here), capacities_[k]);
 }
 
 /// The upwind value of component k at the face between cells `face` − 1 and `face`.
@@ -138,8 +155,9 @@ double limit_space::face_value(const pencil& p, int face, std::size_t k, bool ah
   const double average = p.row(donor)[k];
   const double edge = ahead ? p.right(donor, k) : p.left(donor, k);
   if (limit_fluxes_) {
-    const int harmed = edge > average ? donor : receiver;
-    return average + limiter_coefficient(p, harmed, k, ahead) * (edge - average);
+    const double carried = limiter::carried(average);
+    const int harmed = edge > carried ? donor : receiver;
+    return carried + limiter_coefficient(p, harmed, k, ahead) * (edge - carried);
   }
   if (limit_edges_) {
     const double l = p.left(donor, k), r = p.right(donor, k);

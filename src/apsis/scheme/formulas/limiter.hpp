@@ -14,6 +14,7 @@ namespace apsis::APSIS_NUMBERS::limiter {
 
 using apsis::limiter::absolute_margin;
 using apsis::limiter::end_weight;
+using apsis::limiter::negligible;
 using apsis::limiter::relative_margin;
 
 /// Returns max(x, 0), and 0 for NaN.
@@ -38,22 +39,23 @@ APSIS_FORMULA N interior(N c, N l, N r) {
   return (c - end_weight * (l + r)) * (1.0 / (1.0 - 2.0 * end_weight));
 }
 
-/// Whether 0.01 u < edge < u/ŵ₁ − 0.01 u for all components, with the absolute margin. If this holds for a
-/// cell and its upstream neighbour, the corrections do no harm: A_out⁺ < (1/ŵ₁ − 1.01) u and −A_in⁻ < 0.99
-/// u_up, which is less than limiter_coefficient() allows by far more than rounding errors.
+/// Whether u > negligible and 0.01 u < edge < (capacity − 0.01) u for all components. If this holds for a
+/// cell and its upstream neighbour, the corrections do no harm: A_out⁺ < (capacity − 1.01) u and −A_in⁻ <
+/// 0.99 u_up, which is less than limiter_coefficient() allows by far more than rounding errors and margins.
 template <class N>
-APSIS_FORMULA bool is_moderate(N u, N edge) {
-  constexpr double middle = 0.5 / end_weight;
-  return all<N>(absolute(fma(N(-middle), u, edge)) < fma(N(middle - 0.01), u, N(-absolute_margin)));
+APSIS_FORMULA bool is_moderate(N u, N edge, N capacity) {
+  const N middle = N(0.5) * capacity;
+  return all<N>(absolute(fma(N(0.0) - middle, u, edge)) < fma(middle - N(0.01), u, middle * N(-negligible)));
 }
 
 /// limiter::limiter_coefficient in two parts, because the corrections of most cells need no limiting.
+/// `capacity` is 1/κ.
 template <class N>
 class harm_bound {
  public:
-  APSIS_FORMULA harm_bound(N u_up, N u, N a_in, N a_out)
-      : allowed_(maximum(fma(N((1.0 - relative_margin) * (1.0 / end_weight - 1.0)), u,
-                             fma(N(1.0 - relative_margin), u_up, N(-absolute_margin))),
+  APSIS_FORMULA harm_bound(N carried_up, N carried, N u, N a_in, N a_out, N capacity)
+      : allowed_(maximum(fma(N(1.0 - relative_margin), fma(capacity, u, -carried) + carried_up,
+                             capacity * N(-absolute_margin)),
                          N(0.0))),
         harm_(maximum(a_out, N(0.0)) - minimum(a_in, N(0.0))) {}
 

@@ -7,18 +7,15 @@
 #endif
 
 #include <apsis/exec/number.hpp>
+#include <apsis/scheme/limiter.hpp>
 
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// Values below it have edges 0: in several directions the fluxes of a cell round separately, and three
-/// subnormal numbers may round to more than their sum (docs/space.md, "Rounding").
-constexpr double negligible = 1e-270;
-
-/// Both edges of a cell in the first-order upwind scheme.
+/// /// Both edges of a cell in the first-order upwind scheme: limiter::carried(u).
 template <class N>
 APSIS_FORMULA N upwind1_edge(N u) {
-  return select(absolute(u) < N(negligible), N(0.0), u);
+  return select(absolute(u) < N(limiter::negligible), N(0.0), u);
 }
 
 /// Right edge of the cell c of five, from the quartic through their averages; the left one by mirror

@@ -1,6 +1,8 @@
 #include <apsis/semidiscrete/discretization_registry.hpp>
 #include <apsis/semidiscrete/upwind_transport.hpp>
 
+#include <utility>
+
 namespace apsis {
 namespace {
 
@@ -13,17 +15,23 @@ class finite_differences final : public discretization {
     return {unknown().points()};
   }
 
+  double limited_cfl_number(const std::string&) const override { return limits_of(true).kappa(); }
+
   std::unique_ptr<transport> make_transport(const problem_parts& of) const override {
-    using limits = limited_reconstruction::limits;
-    return std::make_unique<upwind_transport>(
-        of.equation, of.space,
-        limited_reconstruction{of.scheme, of.limited && !of.first_order() ? limits::fluxes : limits::nothing},
-        unknown());
+    limited_reconstruction edges = limits_of(of.limited && !of.first_order());
+    edges.scheme = of.scheme;
+    return std::make_unique<upwind_transport>(of.equation, of.space, std::move(edges), unknown());
   }
 
   std::unique_ptr<collision> make_collision(const problem_parts& of) const override {
     return make_pointwise_collision(of.equation, of.epsilon_at(unknown().points()), of.keeps_sign(),
                                     of.space->mesh().fluid(), of.stages);
+  }
+
+ private:
+  static limited_reconstruction limits_of(bool limited) {
+    using limits = limited_reconstruction::limits;
+    return {nullptr, limited ? limits::fluxes : limits::nothing};
   }
 };
 

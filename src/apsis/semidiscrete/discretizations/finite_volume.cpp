@@ -24,6 +24,10 @@ class finite_volumes final : public discretization {
     return {cell_averages().points(), false};
   }
 
+  double limited_cfl_number(const std::string& place) const override {
+    return limited_reconstruction{nullptr, limits_at(place)}.kappa();
+  }
+
   std::unique_ptr<transport> make_transport(const problem_parts& of) const override {
     return std::make_unique<upwind_transport>(of.equation, of.space, edges(of), unknown());
   }
@@ -42,9 +46,13 @@ class finite_volumes final : public discretization {
   }
 
  private:
+  using limits = limited_reconstruction::limits;
+  /// Gauss points need edge values that fit the average; all else needs fluxes alone.
+  static limits limits_at(const std::string& place) {
+    return place == cell_centres ? limits::fluxes : limits::edges;
+  }
   static limited_reconstruction edges(const problem_parts& of) {
-    using limits = limited_reconstruction::limits;
-    return {of.scheme, of.limited && !of.first_order() ? limits::edges : limits::nothing};
+    return {of.scheme, of.limited && !of.first_order() ? limits_at(of.collisions) : limits::nothing};
   }
 };
 

@@ -8,6 +8,7 @@
 
 #include <apsis/exec/number.hpp>
 #include <apsis/scheme/formulas/limiter.hpp>
+#include <apsis/scheme/formulas/upwind.hpp>
 
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
@@ -28,25 +29,26 @@ APSIS_FORMULA N transported(N alpha, N u, N lambda, N difference, bool fresh, co
 /// harm.
 template <class N>
 struct limited_cell {
-  N u, edge, fraction;
+  N u, carried, edge, fraction;
   bool moderate;  ///< the corrections of all components are small (limiter::is_moderate)
   bool harms;     ///< some component has a fraction below 1
 
-  APSIS_FORMULA N correction() const { return edge - u; }
+  APSIS_FORMULA N correction() const { return edge - carried; }
 };
 
 /// A cell whose corrections are not limited yet.
 template <class N>
-APSIS_FORMULA limited_cell<N> unlimited(N u, N edge) {
-  return {u, edge, N(1.0), limiter::is_moderate(u, edge), false};
+APSIS_FORMULA limited_cell<N> unlimited(N u, N edge, N capacity) {
+  return {u, upwind1_edge(u), edge, N(1.0), limiter::is_moderate(u, edge, capacity), false};
 }
 
 /// The cell downstream of another one, with the fraction that this one leaves it.
 template <class N>
-APSIS_FORMULA limited_cell<N> limited_after(const limited_cell<N>& upstream, N u, N edge) {
-  limited_cell<N> cell = unlimited(u, edge);
+APSIS_FORMULA limited_cell<N> limited_after(const limited_cell<N>& upstream, N u, N edge, N capacity) {
+  limited_cell<N> cell = unlimited(u, edge, capacity);
   if (cell.moderate && upstream.moderate) return cell;
-  const limiter::harm_bound<N> of(upstream.u, cell.u, upstream.correction(), cell.correction());
+  const limiter::harm_bound<N> of(upstream.carried, cell.carried, u, upstream.correction(), cell.correction(),
+                                  capacity);
   cell.harms = of.exceeded();
   if (cell.harms) cell.fraction = of.fraction();
   return cell;
@@ -58,7 +60,7 @@ APSIS_FORMULA N limited_flux(const limited_cell<N>& donor, const limited_cell<N>
   if (!donor.harms && !receiver.harms) return donor.edge;
   const N correction = donor.correction();
   const N fraction = select(correction > N(0.0), donor.fraction, receiver.fraction);
-  return select(fraction < N(1.0), fma(fraction, correction, donor.u), donor.edge);
+  return select(fraction < N(1.0), fma(fraction, correction, donor.carried), donor.edge);
 }
 
 }  // namespace apsis::APSIS_NUMBERS

@@ -15,9 +15,11 @@ class averages_as_they_are final : public discretization {
     return {point_values().points()};
   }
 
+  double limited_cfl_number(const std::string&) const override { return 1.0; }
+
   std::unique_ptr<transport> make_transport(const problem_parts& of) const override {
     using limits = limited_reconstruction::limits;
-    const auto limited = of.limited && !of.first_order() ? limits::edges : limits::nothing;
+    const auto limited = of.limited && !of.first_order() ? limits::fluxes : limits::nothing;
     return std::make_unique<upwind_transport>(of.equation, of.space,
                                               limited_reconstruction{of.scheme, limited}, unknown());
   }

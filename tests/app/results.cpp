@@ -353,7 +353,8 @@ TEST(results, a_checkpoint_of_another_case_or_a_damaged_one_is_refused) {
 
 TEST(results, lists_and_certificates_are_json) {
   const work_folder folder;
-  for (const std::string what : {"methods", "models", "cases", "schemes", "formulations", "families", "keys"}) {
+  for (const std::string what :
+       {"methods", "models", "cases", "schemes", "formulations", "families", "keys"}) {
     const outcome result = run_apsis(folder, {"list", what, "--json"});
     ASSERT_EQ(result.code, 0) << result.err;
     const json all = json::parse(result.out);

@@ -1,6 +1,7 @@
 // Cells in space: pencils, blocks, sizes, and what is no mesh.
-#include <apsis/core/errors.hpp>
 #include <apsis/mesh/grid.hpp>
+
+#include <apsis/core/errors.hpp>
 #include <apsis/mesh/phase_space.hpp>
 
 #include <limits>

@@ -29,6 +29,7 @@ rho = "1 + 0.2*sin(2*pi*x)*cos(2*pi*y/0.8)"
 u = ["0.3*sin(2*pi*(x + y/0.8))", "0.2*cos(2*pi*x)"]
 T = "1 + 0.1*cos(2*pi*(x - y/0.8))"
 [space]
+limiter = "none"
 cells = [9, 7]
 domain = [[0, 1], [0, 0.8]]
 [velocity]

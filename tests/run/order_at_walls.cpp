@@ -28,6 +28,7 @@ T = 1
 cells = 12
 domain = [0, 1]
 formulation = "finite-difference"
+limiter = "none"
 reconstruction = "upwind5"
 boundary = "diffuse"
 [velocity]

@@ -28,6 +28,7 @@ T = "1 + 0.1*cos(2*pi*(x - y))"
 [space]
 cells = [10, 8]
 domain = [[0, 1], [0, 1]]
+limiter = "none"
 reconstruction = "upwind5"
 [velocity]
 max = 6.5

@@ -1,6 +1,7 @@
 // Sets of velocities: what a row of components is transported with, and what is refused.
-#include <apsis/core/errors.hpp>
 #include <apsis/velocity/velocity_set.hpp>
+
+#include <apsis/core/errors.hpp>
 
 #include <limits>
 #include <numeric>

@@ -222,8 +222,11 @@ std::vector<case_key> space_keys() {
            .doc = "Reconstruction scheme."}),
       key("space.limiter", [](auto& c) -> auto& { return c.space.limiter; },
           {.scope = key_scope::space,
-           .doc = "positivity: scale the reconstruction of each cell towards its average so that nonnegative "
-                  "data stay nonnegative for steps up to the method's SSP coefficient times dx/(12 v_max)."}),
+           .doc =
+               "positivity: limit fluxes so that nonnegative data stay nonnegative for steps up to the "
+               "method's SSP coefficient times dx/v_max, at no cost in steps; cell averages with collisions "
+               "at Gauss points need their edge values limited, and steps 12 times shorter. Where not given: "
+               "positivity where f >= 0 can be kept at no cost in steps, else none."}),
       key("space.boundary", [](auto& c) -> auto& { return c.space.boundary; },
           {.scope = key_scope::space,
            .choices = names_in(boundary_entries),
@@ -314,8 +317,8 @@ std::vector<case_key> time_keys() {
            .lowest = 0.0,
            .lowest_excluded = true,
            .doc = "Step size as dt = safety * r * dt_FE with the SSP coefficient r of the method and the "
-                  "forward Euler step dt_FE of the transport; positivity is guaranteed up to 1. Without "
-                  "limiter r is at most the linear stability limit of the method with the reconstruction "
+                  "forward Euler step dt_FE of the transport; positivity is guaranteed up to 1. r dt_FE is "
+                  "at most the linear stability limit of the method with the reconstruction "
                   "(apsis check). Exactly one of dt, cfl and safety is given."}),
       key("time.startup", [](auto& c) -> auto& { return c.time.startup; },
           {.doc = "graded: the first step is split into steps that double, starting with a quarter of "

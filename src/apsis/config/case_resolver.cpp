@@ -8,6 +8,7 @@
 #include <apsis/config/force_reader.hpp>
 #include <apsis/config/gas_reader.hpp>
 #include <apsis/config/initial_reader.hpp>
+#include <apsis/config/limiter_of_case.hpp>
 #include <apsis/config/method_of_case.hpp>
 #include <apsis/config/output_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
@@ -54,7 +55,9 @@ class resolver {
     check_together();
     read_output_tables(text_, *model_, config_);
     choose_parameters();
-    return with_chosen_method(std::move(config_));
+    config_ = with_chosen_method(std::move(config_));
+    if (find("space.limiter") == nullptr) config_.space.limiter = default_limiter(config_);
+    return config_;
   }
 
  private:

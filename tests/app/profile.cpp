@@ -64,6 +64,26 @@ TEST(profile, counts_the_kernels_of_the_schedule) {
   }
 }
 
+TEST(profile, counts_walls_and_forces_where_there_are_some) {
+  const auto kernels_in = [](const char* flow) {
+    const work_folder folder;
+    const json out =
+        json::parse(run_apsis(folder, {"run", flow, "time.end=0.01", "--profile", "--json"}).out);
+    std::map<std::string, json> kernels;
+    for (const auto& kernel : out["profile"]["kernels"]) kernels[kernel["kernel"]] = kernel;
+    return kernels;
+  };
+  const auto tube = kernels_in("gas/sod"), plates = kernels_in("gas/couette"),
+             driven = kernels_in("gas/poiseuille");
+  EXPECT_EQ(tube.count("walls"), 1U);  // its ends are open
+  EXPECT_EQ(tube.count("forces"), 0U);
+  EXPECT_GT(plates.at("walls")["numbers"].get<double>(), 0.0);
+  EXPECT_EQ(plates.count("forces"), 0U);
+  // A force acts on all numbers as often as the sweeps.
+  EXPECT_DOUBLE_EQ(driven.at("forces")["numbers"].get<double>(),
+                   driven.at("fluxes")["numbers"].get<double>());
+}
+
 TEST(profile, is_a_table_after_the_summary_only_on_request) {
   work_folder folder;
   const outcome with = run_apsis(folder, {"run", "paper/bgk-mixed", "time.end=0.001", "--profile"});

@@ -1,0 +1,133 @@
+// Throughput of the flows that users run: every case of cases/gas and cases/laws beside the same gas between
+// periodic ends, and where the time goes.
+#include "../clock.hpp"
+#include "../table.hpp"
+
+#include <apsis/config/case.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::bench::flows_table {
+namespace {
+
+/// The gas of a case between periodic ends, without bodies, forces and sources.
+case_config periodic(case_config of) {
+  of.space.boundary = "periodic";
+  of.faces = {};
+  of.solids.clear();
+  of.force = {};
+  of.source_term = {};
+  of.parts = std::make_shared<case_parts>();
+  return of;
+}
+
+/// The case without an early end, with cells divided so often that a state has this many numbers.
+case_config of_size(const std::string& name, double numbers) {
+  case_config of = load_case(name);
+  of.time.steady.reset();
+  of.time.end = 1e9;
+  of.output.every = 0.0;
+  const auto dimensions = static_cast<double>(of.space.cells.size());
+  const simulation small(of);
+  const double now = static_cast<double>(small.mesh().size()) * small.setup().equation->components();
+  const int parts = std::max(1, static_cast<int>(std::ceil(std::pow(numbers / now, 1.0 / dimensions))));
+  for (int& cells : of.space.cells) cells *= parts;
+  return of;
+}
+
+double point_stages(const simulation& of) {
+  int cells = 0;
+  for (const cell_range& range : of.mesh().fluid()) cells += range.end - range.begin;
+  return static_cast<double>(cells) * of.setup().equation->components() *
+         static_cast<double>(of.setup().stages());
+}
+
+void advance(simulation& run, int steps) {
+  for (int k = 0; k < steps; ++k) run.advance();
+}
+
+/// Shares of the time of some steps: sweeps, collisions, walls, forces, monitor, the rest.
+std::array<double, 6> shares_of(simulation& run, int steps) {
+  profile::start();
+  const double start = wall_seconds();
+  advance(run, steps);
+  const double all = (wall_seconds() - start) * threads();
+  profile::stop();
+  std::array<double, 6> shares{};
+  shares.back() = 1.0;
+  for (const auto& done : profile::read()) {
+    const std::size_t group =
+        done.which == kernel::walls     ? 2
+        : done.which == kernel::forces  ? 3
+        : done.which == kernel::monitor ? 4
+        : done.which == kernel::points || done.which == kernel::equilibria || done.which == kernel::relaxation
+            ? 1
+            : 0;
+    shares[group] += done.seconds / all;
+    shares.back() -= done.seconds / all;
+  }
+  return shares;
+}
+
+void add_row(result_table& result, const std::string& name, double numbers, const settings& options) {
+  const case_config config = of_size(name, numbers);
+  simulation flow(config), twin(periodic(config));
+  advance(flow, 1);  // allocates the buffers
+  advance(twin, 1);
+  const double start = wall_seconds();
+  advance(flow, 1);
+  const int steps = std::max(1, static_cast<int>((options.quick ? 0.001 : 0.1) / (wall_seconds() - start)));
+  const auto seconds = in_turns({[&] { advance(flow, steps); }, [&] { advance(twin, steps); }},
+                                options.quick ? 1 : options.repeats);
+  const double ratio = median_ratio(seconds, 1, 0) * point_stages(flow) / point_stages(twin);
+  std::vector<nlohmann::json> row = {
+      name,
+      fmt::format("{:.2g}", static_cast<double>(flow.mesh().size()) * flow.setup().equation->components()),
+      steps * point_stages(flow) / median(seconds[0]), fmt::format("{:.2f}", ratio)};
+  for (const double share : shares_of(flow, steps)) row.emplace_back(fmt::format("{:.0f} %", 100.0 * share));
+  result.rows.push_back(std::move(row));
+}
+
+result_table measure(const settings& options) {
+  result_table result;
+  result.title = "The flows of cases/gas and cases/laws";
+  result.note =
+      "Point·stages per second of whole steps of the cases as they are shipped, and with their cells divided "
+      "until a "
+      "state has 4 million numbers, beyond the caches; one thread. The ratio is that to the same model, "
+      "velocities and "
+      "mesh between periodic ends, without bodies, forces and sources, in the same turns. The other columns "
+      "are shares "
+      "of the time of the flow: sweeps of the transport, collisions, walls and other ends, forces and "
+      "sources, checks "
+      "of every step, and all else.";
+  result.columns = {"case",       "numbers", "point·stages/s", "ratio",   "sweeps",
+                    "collisions", "walls",   "forces",         "monitor", "rest"};
+  set_threads(1);
+  std::vector<std::string> names;
+  for (const std::string& name : case_names())
+    if (name.starts_with("gas/") || name.starts_with("laws/")) names.push_back(name);
+  if (options.quick) names = {"gas/couette", "gas/sod"};
+  for (const std::string& name : names) {
+    add_row(result, name, 0.0, options);
+    if (!options.quick) add_row(result, name, 4e6, options);
+  }
+  return result;
+}
+
+const registered here({"flows", "speed of every shipped flow, and where its time goes", measure});
+
+}  // namespace
+}  // namespace apsis::bench::flows_table

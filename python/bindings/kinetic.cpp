@@ -32,6 +32,18 @@
 namespace apsis::python {
 namespace {
 
+/// Tells the limiter of a problem which steps an integration makes; other calls mean the longest ones.
+class limited_steps {
+ public:
+  limited_steps(semidiscrete_problem& of, double share) : of_(of) { of_.limit_for_steps(share); }
+  ~limited_steps() { of_.limit_for_steps(1.0); }
+  limited_steps(const limited_steps&) = delete;
+  limited_steps& operator=(const limited_steps&) = delete;
+
+ private:
+  semidiscrete_problem& of_;
+};
+
 /// A model on a mesh, by the problem_builder of the library. Threads may share the object: what its calls
 /// write is their own.
 class kinetic_problem {
@@ -224,7 +236,7 @@ class kinetic_problem {
     step_count count;
     {
       const py::gil_scoped_release others;
-      problem->limit_for_steps(limiter_share(*problem, u, m, stable));
+      const limited_steps during(*problem, limiter_share(*problem, u, m, stable));
       count = march_through(
           *problem, u, t, m, stable, true, largest_difference, [&all](const field& now) { append(now, all); },
           raise_pending_signals);

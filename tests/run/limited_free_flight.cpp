@@ -1,4 +1,4 @@
-// What f ≥ 0 costs: free flight of profiles that touch zero or fall by many powers of ten, with limited
+// The cost of f ≥ 0: free flight of profiles that touch zero or fall by many powers of ten, with limited
 // fluxes and without, by the same steps (docs/measured.md, "Limiters").
 #include "laws.hpp"
 

@@ -12,7 +12,8 @@ class construction_count {
   /// Returns the number of objects made by this process so far.
   static long so_far() { return made_; }
 
- protected:
+ private:
+  friend T;  // the only class that derives from it
   /// @cond
   construction_count() { ++made_; }
   construction_count(const construction_count&) { ++made_; }
@@ -22,7 +23,6 @@ class construction_count {
   ~construction_count() = default;
   /// @endcond
 
- private:
   inline static std::atomic<long> made_{0};
 };
 

@@ -73,7 +73,7 @@ struct velocity_lattice {
 struct unsupported_initial_data {
   std::string key,           ///< of the case, that must change; "" if all is well
       problem;               ///< message; "" if all is well
-  std::string reached = "";  ///< message where a run, not its data, reaches the state; "": the same
+  std::string reached = {};  ///< message where a run, not its data, reaches the state; "": the same
 };
 
 /// An equation u_t + Σ_k ∂_xk(v_k u) = S(u) + Q(u)/ε at one point of space, independent of mesh and time. A

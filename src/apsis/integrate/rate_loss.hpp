@@ -42,7 +42,8 @@ class probe {
 
   rate_loss<real> operator()(const rate_response& response, bool with_layer) {
     rate_loss<real> loss;
-    state base = transported(equilibrium_), moved = base;
+    const state base = transported(equilibrium_);
+    state moved = base;
     project_to_equilibrium(p_, t_ + dt_, moved);
     coefficients whole;
     whole.fill(1.0);  // Σ_k (1 − s) s^k D = (1 − s^terms) D

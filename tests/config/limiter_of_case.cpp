@@ -1,0 +1,61 @@
+// The limiter of cases that do not name one: on where f ≥ 0 can be kept at no cost in steps.
+#include <apsis/config/limiter_of_case.hpp>
+
+#include <apsis/config/case.hpp>
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace limiter_of_case_test {
+
+using apsis::limiter_choice;
+
+namespace {
+
+limiter_choice limiter_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return apsis::load_case(name, overrides).space.limiter;
+}
+
+}  // namespace
+
+TEST(default_limiter, keeps_f_nonnegative_where_it_costs_no_step) {
+  for (const char* flow :
+       {"gas/cavity", "gas/couette", "gas/poiseuille", "gas/shock", "gas/step", "gas/duct"})
+    EXPECT_EQ(limiter_of(flow), limiter_choice::positivity) << flow;
+  EXPECT_EQ(limiter_of("gas/couette", {"space.formulation=finite-volume", "space.collisions=centres"}),
+            limiter_choice::positivity);
+  EXPECT_EQ(limiter_of("gas/couette", {"time.method=auto"}), limiter_choice::positivity);
+}
+
+TEST(default_limiter, is_none_where_it_would_make_steps_shorter) {
+  EXPECT_EQ(limiter_of("gas/couette", {"space.formulation=finite-volume"}), limiter_choice::none);
+  EXPECT_EQ(limiter_of("gas/couette", {"space.formulation=finite-volume", "space.collisions=gauss"}),
+            limiter_choice::none);
+}
+
+TEST(default_limiter, is_none_where_nothing_is_to_be_kept_or_it_cannot_be_kept) {
+  EXPECT_EQ(limiter_of("gas/couette", {"space.reconstruction=upwind1"}), limiter_choice::none);
+  EXPECT_EQ(limiter_of("gas/couette", {"time.method=ars-443"}), limiter_choice::none);  // r = 0
+  EXPECT_EQ(limiter_of("gas/couette", {"model.name=shakhov"}), limiter_choice::none);  // its target is signed
+  EXPECT_EQ(limiter_of("gas/couette", {"model.name=shakhov", "model.tails=nonnegative"}),
+            limiter_choice::positivity);
+  EXPECT_EQ(limiter_of("laws/euler-sod"), limiter_choice::none);  // momentum has both signs
+  EXPECT_EQ(limiter_of("paper/ode"), limiter_choice::none);       // no space
+}
+
+TEST(default_limiter, gives_way_to_the_case) {
+  EXPECT_EQ(limiter_of("gas/couette", {"space.limiter=none"}), limiter_choice::none);
+  EXPECT_EQ(limiter_of("gas/couette", {"space.formulation=finite-volume", "space.limiter=positivity"}),
+            limiter_choice::positivity);
+  EXPECT_EQ(limiter_of("paper/bgk-accuracy"), limiter_choice::none);
+}
+
+TEST(default_limiter, of_a_file_that_is_no_method_is_left_to_the_run) {
+  apsis::case_config config = apsis::load_case("gas/couette");
+  config.time.method = "missing.toml";
+  EXPECT_EQ(apsis::default_limiter(config), limiter_choice::none);
+}
+
+}  // namespace limiter_of_case_test

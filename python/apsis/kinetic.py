@@ -48,7 +48,7 @@ class KineticProblem:
     collisions   of cell averages: at three "gauss" points of each cell (default), or at the "centres" of the cells, of fourth order in
     space with a third of the solves
     reconstruction, equilibrium   as in a case file
-    positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE, which is a twelfth for collisions of cell averages at Gauss points
+    positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE; collisions of cell averages at Gauss points make Δt_FE a twelfth
 
     Functions of the time are called by the threads of a step, one after the other; their exceptions end an integration.
 

@@ -12,7 +12,7 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// /// Both edges of a cell in the first-order upwind scheme: limiter::carried(u).
+/// Both edges of a cell in the first-order upwind scheme: limiter::carried(u).
 template <class N>
 APSIS_FORMULA N upwind1_edge(N u) {
   return select(absolute(u) < N(limiter::negligible), N(0.0), u);

@@ -29,7 +29,7 @@ class limit_scheme {
   limit_scheme(limit_scheme&&) noexcept;             ///< leaves the source empty
   limit_scheme& operator=(limit_scheme&&) noexcept;  ///< leaves the source empty
 
-  /// /// Sets the share of the longest step that the positivity limiter is for, 1 at first: that of a run is
+  /// Sets the share of the longest step that the positivity limiter is for, 1 at first: that of a run is
   /// simulation::limiter_share().
   void limit_for_steps(double share);
   /// Starts from the state u, [cells][components]; it need not be an equilibrium.

@@ -218,10 +218,10 @@ class kinetic_problem {
   /// known.
   static double limiter_share(const semidiscrete_problem& of, const field& u, const method& m,
                               const step_choice& choice) {
-    const double r = m.coefficients<double>().r;
-    if (choice.tolerance || m.kind == method_kind::explicit_only || !(r > 0.0)) return 1.0;
-    const double longest = r * of.forward_euler_step(0.0, u);
-    return std::min(1.0, choice.dt.value_or(choice.safety * longest) / longest);
+    if (choice.tolerance) return 1.0;
+    const double r = m.coefficients<double>().r, t = 0.0;
+    const double dt = choice.dt.value_or(choice.safety * (r * of.forward_euler_step(t, u)));
+    return of.share_of_longest_step(r, dt, t, u);
   }
 
   py::tuple integrate(const array& u0, const std::vector<double>& t, const method& m,

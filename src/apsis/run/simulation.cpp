@@ -136,9 +136,8 @@ struct simulation::impl {
 
   /// Steps that are known to be shorter than the longest need less of the limiter.
   void limit_for_steps() {
-    if (control || setup.integrator().needs.explicit_collision || problem->source_depends_on_state()) return;
-    const double longest = forward_euler_limit();
-    if (const double dt = limit(); dt < longest) limiter_share = dt / longest;
+    if (control) return;
+    limiter_share = problem->share_of_longest_step(setup.ssp_coefficient(), limit(), march.t(), state);
     problem->limit_for_steps(limiter_share);
   }
 

@@ -119,6 +119,13 @@ class semidiscrete_problem {
     return 1.0 / (1.0 / of_transport +
                   1.0 / (rounding_allowance * lowest([&] { return collision_->forward_euler_step(u); })));
   }
+  /// Returns dt/(r Δt_FE), at most 1: the share of the longest step for limit_for_steps() in a run of steps
+  /// dt of a method with SSP coefficient r. 1 where Δt_FE changes during a run, and for r ≤ 0.
+  double share_of_longest_step(double r, double dt, double t, const field& u) const {
+    if (explicit_collision_ || transport_->source_depends_on_state() || !(r > 0.0)) return 1.0;
+    const double longest = r * forward_euler_step(t, u);
+    return dt < longest ? dt / longest : 1.0;
+  }
   /// For steps Δt ≤ share r Δt_FE from now on, share ≤ 1: as transport::limit_for_steps().
   void limit_for_steps(double share) { transport_->limit_for_steps(share); }
   /// Required by `problem_with_exact_collision`.

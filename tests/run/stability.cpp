@@ -282,6 +282,15 @@ TEST(an_instability, that_the_weights_of_weno_bound_is_noticed_too) {
         << scheme;
 }
 
+// The limiter keeps f >= 0 up to CFL 2 = r, but it does not keep waves from growing.
+TEST(an_instability, that_the_limiter_bounds_is_noticed_too) {
+  for (const char* scheme : {"weno5-js", "weno5-z"}) {
+    case_config limited = plates("md-imex-5-2", scheme, "cfl = 2");
+    limited.space.limiter = limiter_choice::positivity;
+    EXPECT_THAT(log_of(limited), HasSubstr("the solution is unstable")) << scheme;
+  }
+}
+
 TEST(an_instability, is_not_reported_for_shocks_jets_and_walls_in_stable_steps) {
   const char* data[] = {"rho = \"x < 0.5 ? 1 : 0.01\"\nT = \"x < 0.5 ? 1 : 0.8\"",
                         "rho = 1\nu = \"x < 0.5 ? 2 : -2\"\nT = 1", "rho = \"1 + 0.9*sin(14*pi*x)\"\nT = 1"};

@@ -39,7 +39,7 @@ struct rows {
 struct pencil {
   int cells;
   rows u, left, right, source;
-  std::vector<double> forward, rate, capacity;
+  std::vector<double> forward, rate, inverse_cfl;
   bool with_source;
 
   pencil(int count, std::size_t width, random_source& random)
@@ -49,7 +49,7 @@ struct pencil {
         right(static_cast<std::size_t>(count) + 4, width, random, any_sign),
         source(static_cast<std::size_t>(count) + 4, width, random, any_sign),
         rate(drawn(width, random, [](random_source& r) { return r.uniform(0.0, 100.0); })),
-        capacity(
+        inverse_cfl(
             drawn(width, random, [](random_source& r) { return r.one_in(4) ? 1.0 : r.uniform(1.0, 30.0); })),
         with_source(random.one_in(2)) {
     // Some edges differ little from their cells: those are not limited.
@@ -62,11 +62,16 @@ struct pencil {
 
   apsis::upwind::cells run() const {
     const auto pitch = static_cast<std::ptrdiff_t>(u.width);
-    return {u.at.data() + 2, left.at[2],
-            right.at[2],     pitch,
-            cells,           static_cast<int>(u.width),
-            forward.data(),  rate.data(),
-            capacity.data(), with_source ? source.at[2] : nullptr};
+    return {u.at.data() + 2,
+            left.at[2],
+            right.at[2],
+            pitch,
+            cells,
+            static_cast<int>(u.width),
+            forward.data(),
+            rate.data(),
+            inverse_cfl.data(),
+            with_source ? source.at[2] : nullptr};
   }
   std::size_t place(int j, std::size_t k) const {
     return static_cast<std::size_t>(2 + (forward[k] > 0.5 ? j : cells - 1 - j));
@@ -81,9 +86,9 @@ template <class N>
 N flux(const pencil& p, bool limited, int j, std::size_t k) {
   if (!limited) return N(p.edge(j, k));
   const auto cell = [&](int i) {
-    const N capacity(p.capacity[k]);
-    const auto upstream = scalar::unlimited(N(p.value(i - 1, k)), N(p.edge(i - 1, k)), capacity);
-    return scalar::limited_after(upstream, N(p.value(i, k)), N(p.edge(i, k)), capacity);
+    const N inverse_cfl(p.inverse_cfl[k]);
+    const auto upstream = scalar::unlimited(N(p.value(i - 1, k)), N(p.edge(i - 1, k)), inverse_cfl);
+    return scalar::limited_after(upstream, N(p.value(i, k)), N(p.edge(i, k)), inverse_cfl);
   };
   return scalar::limited_flux(cell(j), cell(j + 1));
 }

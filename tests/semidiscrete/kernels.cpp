@@ -63,7 +63,7 @@ class plain_transport {
     rate_ = std::abs(speed) / spacing;
     double fastest = 0.0;
     for (const double v : speeds) fastest = std::max(fastest, std::abs(v));
-    capacity_ = std::min(1000.0, fastest / std::abs(speed));
+    inverse_cfl_ = std::min(1000.0, fastest / std::abs(speed));
     // Reversed for negative velocities, so that the flow is to the right below.
     for (int i = -6; i < n_ + 6; ++i) {
       const int cell = ((speed > 0.0 ? i : n_ - 1 - i) % n_ + n_) % n_;
@@ -96,22 +96,23 @@ class plain_transport {
 
   double fraction(int i) const {
     const auto correction = [this](int j) {
-      return static_cast<double>(edge_of(j) - limiter::carried(value(j)));
+      return static_cast<double>(edge_of(j) - limiter::low_order_edge(value(j)));
     };
-    return limiter::limiter_coefficient(value(i - 1), value(i), correction(i - 1), correction(i), capacity_);
+    return limiter::limiter_coefficient(value(i - 1), value(i), correction(i - 1), correction(i),
+                                        inverse_cfl_);
   }
 
   /// The face between cells i and i + 1.
   long double flux(int i) const {
     if (!discretization_.limits_fluxes()) return edge_of(i);
-    const long double carried = limiter::carried(value(i)), correction = edge_of(i) - carried;
-    return carried + fraction(correction > 0.0L ? i : i + 1) * correction;
+    const long double low_order = limiter::low_order_edge(value(i)), correction = edge_of(i) - low_order;
+    return low_order + fraction(correction > 0.0L ? i : i + 1) * correction;
   }
 
   apsis::limited_reconstruction discretization_;
   std::vector<double> u_;
   std::vector<long double> edge_;
-  double rate_ = 0.0, capacity_ = 0.0;
+  double rate_ = 0.0, inverse_cfl_ = 0.0;
   int n_ = 0;
   bool reversed_ = false;
 };

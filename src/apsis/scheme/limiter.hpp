@@ -48,27 +48,27 @@ void apply(const double* c, int width, double* left, double* right);
 inline constexpr double negligible = 1e-270;
 
 /// Returns the value at the edge of a cell in the first-order upwind scheme.
-inline double carried(double u) {
+inline double low_order_edge(double u) {
   return u < negligible && u > -negligible ? 0.0 : u;
 }
 
 /// Least κ that fluxes are limited for: slower velocities, and those of shorter steps, hardly need a limiter.
-inline constexpr double least_share = 1e-3;
+inline constexpr double least_cfl_number = 1e-3;
 
 /// Limits fluxes. The flux function of point values may be negative where the solution touches zero (near a
 /// minimum it is lower by Δx² u''/24), so edge values must not be cut off at zero. Instead the fluxes into
 /// and out of a cell are limited together, between first-order upwind and the high-order edge (as in Xu,
 /// Math. Comp. 83, 2014, or Zalesak, JCP 31, 1979). In the direction of motion, with the values u_up, u ≥ 0,
-/// the values w = carried(u) and the corrections A = edge − w of inflow and outflow, returns the fraction ϑ ∈
-/// [0, 1] of the corrections that decrease u, such that
+/// the values w = low_order_edge(u) and the corrections A = edge − w of inflow and outflow, returns the
+/// fraction ϑ ∈ [0, 1] of the corrections that decrease u, such that
 ///     u − κ (w + ϑ A_out⁺ − w_up + ϑ A_in⁻) ≥ absolute_margin
-/// if K = u − κ w + κ w_up allows it; ϑ = 0 if K is below the margin. `capacity` is 1/κ ≥ 1: an outflow of
+/// if K = u − κ w + κ w_up allows it; ϑ = 0 if K is below the margin. `inverse_cfl` is 1/κ ≥ 1: an outflow of
 /// so many times the value would empty the cell.
-inline double limiter_coefficient(double u_up, double u, double a_in, double a_out, double capacity) {
+inline double limiter_coefficient(double u_up, double u, double a_in, double a_out, double inverse_cfl) {
   // Both sides are divided by κ, because κ A may underflow to 0.
-  const double kept = capacity * u - carried(u) + carried(u_up);
+  const double kept = inverse_cfl * u - low_order_edge(u) + low_order_edge(u_up);
   const double harm = (a_out > 0.0 ? a_out : 0.0) - (a_in < 0.0 ? a_in : 0.0);
-  const double left = (1.0 - relative_margin) * kept - capacity * absolute_margin;
+  const double left = (1.0 - relative_margin) * kept - inverse_cfl * absolute_margin;
   const double allowed = left > 0.0 ? left : 0.0;
   const double fraction = harm > allowed ? allowed / harm : 1.0;
   return fraction > 0.0 ? fraction : 0.0;

@@ -38,8 +38,8 @@ std::vector<line_speeds> line_speeds::of(const model& equation, const grid& mesh
   return all;
 }
 
-aligned_vector<double> line_speeds::capacities(const std::vector<line_speeds>& speeds, double share,
-                                               double rate_of_force) {
+aligned_vector<double> line_speeds::inverse_cfl_numbers(const std::vector<line_speeds>& speeds, double share,
+                                                        double rate_of_force) {
   aligned_vector<double> rates;
   for (const auto& line : speeds) {
     rates.resize(line.per_cell.size(), rate_of_force);
@@ -48,7 +48,7 @@ aligned_vector<double> line_speeds::capacities(const std::vector<line_speeds>& s
   if (rates.empty()) return rates;
   const double fastest = *std::max_element(rates.begin(), rates.end());
   for (double& rate : rates)
-    rate = 1.0 / std::max(limiter::least_share, fastest > 0.0 ? share * (rate / fastest) : 1.0);
+    rate = 1.0 / std::max(limiter::least_cfl_number, fastest > 0.0 ? share * (rate / fastest) : 1.0);
   return rates;
 }
 
@@ -133,7 +133,7 @@ void block_sweep::record(const segment_end& end, bool upper, const place& at) {
                           width_,
                           line_->forward.data() + at.first,
                           line_->per_cell.data() + at.first,
-                          of_->capacities.data() + at.first,
+                          of_->inverse_cfl_numbers.data() + at.first,
                           nullptr};
   upwind::fluxes_of_cell(one, of_->edges.limits_fluxes(), in_.data(), out_.data());
   double* values = of_->faces.recorded(end.surface, end.place) + at.first;
@@ -220,7 +220,7 @@ void block_sweep::add(int i, const run_of_cells& run, const place& at, targets_v
                            run.joined * width_,
                            line_->forward.data() + at.first,
                            line_->per_cell.data() + at.first,
-                           of_->capacities.data() + at.first,
+                           of_->inverse_cfl_numbers.data() + at.first,
                            first && of_->equation.has_source() ? source(i, run) : nullptr};
   if (of_->edges.limits_fluxes()) {
     upwind::add_limited(some, targets_);

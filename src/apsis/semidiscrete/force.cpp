@@ -34,7 +34,7 @@ std::size_t size(int n) {
 
 /// Buffers of one thread. A "lane" is a line of the lattice: [point][lane].
 struct force::workspace {
-  aligned_vector<double> values, edges, change, forward, per_cell, capacity, in, out, sum;
+  aligned_vector<double> values, edges, change, forward, per_cell, inverse_cfl, in, out, sum;
   std::vector<const double*> rows;
   std::vector<std::array<double, 3>> a;  ///< of every cell of the block
   std::vector<upwind::row_target> target;
@@ -93,7 +93,7 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
     here.edges.resize((line + 2 * halo) * width);
     here.change.resize(line * width);
     for (auto* row : {&here.forward, &here.per_cell, &here.in, &here.out}) row->resize(width);
-    here.capacity.assign(width, 1.0 / std::max(limiter::least_share, kappa * share_));
+    here.inverse_cfl.assign(width, 1.0 / std::max(limiter::least_cfl_number, kappa * share_));
     here.sum.resize(size(together) * size(u.stride()));
     here.rows.resize(line + 2 * beyond);
     here.a.resize(size(together));
@@ -178,7 +178,7 @@ void force::add_direction(const field& u, const place& at, workspace& here) cons
                          width,
                          here.forward.data(),
                          here.per_cell.data(),
-                         here.capacity.data(),
+                         here.inverse_cfl.data(),
                          nullptr};
   };
   if (limited_) {

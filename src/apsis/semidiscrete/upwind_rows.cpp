@@ -73,25 +73,25 @@ void add(const cells& of, std::span<const row_target> targets) {
 }
 
 template <class Walk, class N = typename Walk::number>
-HWY_INLINE limited_cell<N> first_cell(const Walk& way, const cells& run, int j, N capacity) {
-  return unlimited(way.load(run.u, j), outflow(way, run, j), capacity);
+HWY_INLINE limited_cell<N> first_cell(const Walk& way, const cells& run, int j, N inverse_cfl) {
+  return unlimited(way.load(run.u, j), outflow(way, run, j), inverse_cfl);
 }
 
 template <class Walk, class N = typename Walk::number>
-HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j, N capacity,
+HWY_INLINE limited_cell<N> next_cell(const Walk& way, const cells& run, int j, N inverse_cfl,
                                      const limited_cell<N>& upstream) {
-  return limited_after(upstream, way.load(run.u, j), outflow(way, run, j), capacity);
+  return limited_after(upstream, way.load(run.u, j), outflow(way, run, j), inverse_cfl);
 }
 
 template <class Walk, class N = typename Walk::number>
-HWY_INLINE void add_limited_along(const Walk& way, N speed, N capacity, const cells& run,
+HWY_INLINE void add_limited_along(const Walk& way, N speed, N inverse_cfl, const cells& run,
                                   std::span<const row_target> targets) {
   const step_factors<N> factors(targets, speed);
-  const auto before = next_cell(way, run, -1, capacity, first_cell(way, run, -2, capacity));
-  auto here = next_cell(way, run, 0, capacity, before);
+  const auto before = next_cell(way, run, -1, inverse_cfl, first_cell(way, run, -2, inverse_cfl));
+  auto here = next_cell(way, run, 0, inverse_cfl, before);
   N in = limited_flux(before, here);
   for (int j = 0; j < run.count; ++j) {
-    const auto after = next_cell(way, run, j + 1, capacity, here);
+    const auto after = next_cell(way, run, j + 1, inverse_cfl, here);
     const N out = limited_flux(here, after);
     accumulate(way, run, targets, factors, j, here.u, in - out);
     here = after;
@@ -103,7 +103,7 @@ void add_limited(const cells& of, std::span<const row_target> targets) {
   const cells run = of;  // a copy, which the compiler knows to stay as it is when targets are stored
   for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
     using N = typename std::decay_t<decltype(way)>::number;
-    add_limited_along(way, N::load(run.per_cell + k), N::load(run.capacity + k), run, targets);
+    add_limited_along(way, N::load(run.per_cell + k), N::load(run.inverse_cfl + k), run, targets);
   });
 }
 
@@ -115,10 +115,10 @@ void fluxes_of_cell(const cells& of, bool limited, double* in, double* out) {
       way.store(outflow(way, run, -1), in, 0, 0);
       return way.store(outflow(way, run, 0), out, 0, 0);
     }
-    const N capacity = N::load(run.capacity + k);
-    const auto before = next_cell(way, run, -1, capacity, first_cell(way, run, -2, capacity));
-    const auto here = next_cell(way, run, 0, capacity, before);
-    const auto after = next_cell(way, run, 1, capacity, here);
+    const N inverse_cfl = N::load(run.inverse_cfl + k);
+    const auto before = next_cell(way, run, -1, inverse_cfl, first_cell(way, run, -2, inverse_cfl));
+    const auto here = next_cell(way, run, 0, inverse_cfl, before);
+    const auto after = next_cell(way, run, 1, inverse_cfl, here);
     way.store(limited_flux(before, here), in, 0, 0);
     way.store(limited_flux(here, after), out, 0, 0);
   });

@@ -22,7 +22,7 @@ struct cells {
       width;              ///< number of components
   const double *forward,  ///< of every component: 1 if it moves forward, else 0
       *per_cell,          ///< of every component: |v|/Δx
-      *capacity;          ///< of every component: 1/κ of add_limited(); not read by add()
+      *inverse_cfl;       ///< of every component: 1/κ of add_limited(); not read by add()
   const double* source;   ///< S(u) of cell 0 at the same pitch; null without source
 };
 

@@ -96,7 +96,7 @@ void upwind_transport::limit_for_steps(double share) {
   share_ = share;
   // Of 1/Δt_FE, in units of 1/κ.
   const double rate = force_ ? edges_.kappa() * force_->rate() : 0.0;
-  capacities_ = line_speeds::capacities(speeds_, share, rate);
+  inverse_cfl_ = line_speeds::inverse_cfl_numbers(speeds_, share, rate);
   if (force_) force_->limit_for_steps(share);
 }
 
@@ -227,7 +227,7 @@ void upwind_transport::for_segments(int direction, const cell_box& box, const Bo
 
 void upwind_transport::sweep_box(const field& u, targets_view targets, const cell_box& box, int first,
                                  int last) const {
-  const block_sweep::context all{equation_, *space_, edges_, speeds_, capacities_, *faces_};
+  const block_sweep::context all{equation_, *space_, edges_, speeds_, inverse_cfl_, *faces_};
   for (int direction = 0; direction < mesh().dimensions(); ++direction)
     for_segments(direction, box, [&](int segment, int begin, int end) {
       scratch_->sweeps.here().run(all, u, {direction, segment, begin, end, first, last}, targets);
@@ -273,7 +273,7 @@ bool upwind_transport::sweep(double t, const field& u, targets_view targets, con
     columns = std::max(columns, width / least_columns);
   if (!by_boxes) columns = static_cast<int>(std::clamp<long>(most_tasks / boxes.count(), 1, columns));
   const int widest = (width / packet_length / columns + 1) * packet_length;
-  const block_sweep::context all{equation_, *space_, edges_, speeds_, capacities_, *faces_};
+  const block_sweep::context all{equation_, *space_, edges_, speeds_, inverse_cfl_, *faces_};
   scratch_->sweeps.prepare([&](auto& sweep) {
     sweep.reserve(all, std::min(std::max({mesh().cells(0), mesh().cells(1), mesh().cells(2)}), longest),
                   std::min(width, widest + width % packet_length), targets.size());

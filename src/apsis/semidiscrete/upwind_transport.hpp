@@ -69,9 +69,9 @@ class upwind_transport final : public transport {
   std::unique_ptr<force> force_;    ///< null without
   std::unique_ptr<source> source_;  ///< null without
   struct scratch;
-  std::vector<line_speeds> speeds_;    ///< of each direction
-  aligned_vector<double> capacities_;  ///< 1/κ of limited fluxes
-  std::unique_ptr<scratch> scratch_;   ///< scratch memory of loops; one loop at a time
+  std::vector<line_speeds> speeds_;     ///< of each direction
+  aligned_vector<double> inverse_cfl_;  ///< 1/κ of limited fluxes
+  std::unique_ptr<scratch> scratch_;    ///< scratch memory of loops; one loop at a time
 };
 
 }  // namespace apsis

@@ -74,7 +74,7 @@ limit_space::limit_space(const case_config& config, const relaxation_model& equa
 
 void limit_space::limit_for_steps(double share) {
   if (!has_space_) return;
-  capacities_.clear();
+  inverse_cfl_.clear();
   std::vector<double> rates(static_cast<std::size_t>(equation_.components()), 0.0);
   for (int direction = 0; direction < space_.mesh().dimensions(); ++direction) {
     const auto v = equation_.speeds(direction);
@@ -83,8 +83,8 @@ void limit_space::limit_for_steps(double share) {
   }
   const double fastest = *std::max_element(rates.begin(), rates.end());
   for (const double rate : rates)
-    capacities_.push_back(1.0 /
-                          std::max(limiter::least_share, fastest > 0.0 ? share * (rate / fastest) : 1.0));
+    inverse_cfl_.push_back(
+        1.0 / std::max(limiter::least_cfl_number, fastest > 0.0 ? share * (rate / fastest) : 1.0));
 }
 
 field limit_space::moments(const field& u) const {
@@ -145,8 +145,8 @@ double limit_space::limiter_coefficient(const pencil& p, int cell, std::size_t k
   const double here = p.row(cell)[k], before = p.row(upstream)[k];
   const double in = ahead ? p.right(upstream, k) : p.left(upstream, k);
   const double out = ahead ? p.right(cell, k) : p.left(cell, k);
-  return limiter::limiter_coefficient(before, here, in - limiter::carried(before),
-                                      out - limiter::carried(here), capacities_[k]);
+  return limiter::limiter_coefficient(before, here, in - limiter::low_order_edge(before),
+                                      out - limiter::low_order_edge(here), inverse_cfl_[k]);
 }
 
 /// The upwind value of component k at the face between cells `face` − 1 and `face`.
@@ -155,9 +155,9 @@ double limit_space::face_value(const pencil& p, int face, std::size_t k, bool ah
   const double average = p.row(donor)[k];
   const double edge = ahead ? p.right(donor, k) : p.left(donor, k);
   if (limit_fluxes_) {
-    const double carried = limiter::carried(average);
-    const int harmed = edge > carried ? donor : receiver;
-    return carried + limiter_coefficient(p, harmed, k, ahead) * (edge - carried);
+    const double low_order = limiter::low_order_edge(average);
+    const int harmed = edge > low_order ? donor : receiver;
+    return low_order + limiter_coefficient(p, harmed, k, ahead) * (edge - low_order);
   }
   if (limit_edges_) {
     const double l = p.left(donor, k), r = p.right(donor, k);

@@ -20,7 +20,7 @@ class limit_space {
   /// unless the rows beyond every face are rows of cells (periodic, outflow).
   limit_space(const case_config& config, const relaxation_model& equation);
 
-  /// Sets the capacities of limited fluxes for steps of `share` times the longest, 1 at first: 1/κ with κ =
+  /// Sets 1/κ of limited fluxes for steps of `share` times the longest, 1 at first: κ =
   /// share Σ_k |v_k|/Δx_k, relative to the fastest component.
   void limit_for_steps(double share);
 
@@ -52,7 +52,7 @@ class limit_space {
   domain space_;
   std::shared_ptr<const reconstruction> scheme_;
   bool has_space_, averages_ = false, limit_edges_ = false, limit_fluxes_ = false;
-  std::vector<double> capacities_;  ///< 1/κ
+  std::vector<double> inverse_cfl_;  ///< 1/κ
 };
 
 }  // namespace apsis

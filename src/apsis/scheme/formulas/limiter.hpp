@@ -39,23 +39,23 @@ APSIS_FORMULA N interior(N c, N l, N r) {
   return (c - end_weight * (l + r)) * (1.0 / (1.0 - 2.0 * end_weight));
 }
 
-/// Whether u > negligible and 0.01 u < edge < (capacity − 0.01) u for all components. If this holds for a
-/// cell and its upstream neighbour, the corrections do no harm: A_out⁺ < (capacity − 1.01) u and −A_in⁻ <
+/// Whether u > negligible and 0.01 u < edge < (inverse_cfl − 0.01) u for all components. If this holds for a
+/// cell and its upstream neighbour, the corrections do no harm: A_out⁺ < (inverse_cfl − 1.01) u and −A_in⁻ <
 /// 0.99 u_up, which is less than limiter_coefficient() allows by far more than rounding errors and margins.
 template <class N>
-APSIS_FORMULA bool is_moderate(N u, N edge, N capacity) {
-  const N middle = N(0.5) * capacity;
-  return all<N>(absolute(fma(N(0.0) - middle, u, edge)) < fma(middle - N(0.01), u, middle * N(-negligible)));
+APSIS_FORMULA bool is_moderate(N u, N edge, N inverse_cfl) {
+  const N middle = N(0.5) * inverse_cfl;
+  return all<N>(absolute(fma(-middle, u, edge)) < fma(middle - N(0.01), u, middle * N(-negligible)));
 }
 
 /// limiter::limiter_coefficient in two parts, because the corrections of most cells need no limiting.
-/// `capacity` is 1/κ.
+/// `inverse_cfl` is 1/κ.
 template <class N>
 class harm_bound {
  public:
-  APSIS_FORMULA harm_bound(N carried_up, N carried, N u, N a_in, N a_out, N capacity)
-      : allowed_(maximum(fma(N(1.0 - relative_margin), fma(capacity, u, -carried) + carried_up,
-                             capacity * N(-absolute_margin)),
+  APSIS_FORMULA harm_bound(N low_order_up, N low_order, N u, N a_in, N a_out, N inverse_cfl)
+      : allowed_(maximum(fma(N(1.0 - relative_margin), fma(inverse_cfl, u, -low_order) + low_order_up,
+                             inverse_cfl * N(-absolute_margin)),
                          N(0.0))),
         harm_(maximum(a_out, N(0.0)) - minimum(a_in, N(0.0))) {}
 

@@ -29,26 +29,26 @@ APSIS_FORMULA N transported(N alpha, N u, N lambda, N difference, bool fresh, co
 /// harm.
 template <class N>
 struct limited_cell {
-  N u, carried, edge, fraction;
+  N u, low_order, edge, fraction;
   bool moderate;  ///< the corrections of all components are small (limiter::is_moderate)
   bool harms;     ///< some component has a fraction below 1
 
-  APSIS_FORMULA N correction() const { return edge - carried; }
+  APSIS_FORMULA N correction() const { return edge - low_order; }
 };
 
 /// A cell whose corrections are not limited yet.
 template <class N>
-APSIS_FORMULA limited_cell<N> unlimited(N u, N edge, N capacity) {
-  return {u, upwind1_edge(u), edge, N(1.0), limiter::is_moderate(u, edge, capacity), false};
+APSIS_FORMULA limited_cell<N> unlimited(N u, N edge, N inverse_cfl) {
+  return {u, upwind1_edge(u), edge, N(1.0), limiter::is_moderate(u, edge, inverse_cfl), false};
 }
 
 /// The cell downstream of another one, with the fraction that this one leaves it.
 template <class N>
-APSIS_FORMULA limited_cell<N> limited_after(const limited_cell<N>& upstream, N u, N edge, N capacity) {
-  limited_cell<N> cell = unlimited(u, edge, capacity);
+APSIS_FORMULA limited_cell<N> limited_after(const limited_cell<N>& upstream, N u, N edge, N inverse_cfl) {
+  limited_cell<N> cell = unlimited(u, edge, inverse_cfl);
   if (cell.moderate && upstream.moderate) return cell;
-  const limiter::harm_bound<N> of(upstream.carried, cell.carried, u, upstream.correction(), cell.correction(),
-                                  capacity);
+  const limiter::harm_bound<N> of(upstream.low_order, cell.low_order, u, upstream.correction(),
+                                  cell.correction(), inverse_cfl);
   cell.harms = of.exceeded();
   if (cell.harms) cell.fraction = of.fraction();
   return cell;
@@ -60,7 +60,7 @@ APSIS_FORMULA N limited_flux(const limited_cell<N>& donor, const limited_cell<N>
   if (!donor.harms && !receiver.harms) return donor.edge;
   const N correction = donor.correction();
   const N fraction = select(correction > N(0.0), donor.fraction, receiver.fraction);
-  return select(fraction < N(1.0), fma(fraction, correction, donor.carried), donor.edge);
+  return select(fraction < N(1.0), fma(fraction, correction, donor.low_order), donor.edge);
 }
 
 }  // namespace apsis::APSIS_NUMBERS

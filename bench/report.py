@@ -3,7 +3,7 @@
 
     bench/report.py [--results results/bench/speed.json] [--docs docs] [--readme README.md]
 
-Copies the results, if there are any, to DOCS/data/speed/PROCESSOR.json. Writes the tables of the newest file there between the
+Copies the results, if there are any, to DOCS/data/speed/PROCESSOR.json.gz. Writes the tables of the newest file there between the
 marks <!-- NAME --> and <!-- end --> of DOCS/speed.md and DOCS/scaling.md, draws DOCS/images/speed-*.png, and writes the table that compares processors
 there and its most important rows into the README.
 """
@@ -15,6 +15,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "python" / "apsis"))
+import records  # noqa: E402
 import scaling_model  # noqa: E402
 from plot.style import COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
 
@@ -330,12 +331,6 @@ def unpacked(entries):
     return [{key: value for key, value in entry.items() if key != "runs"} | dict(zip(RUN, run)) for entry in entries for run in entry["runs"]]
 
 
-def text_of(results):
-    """Formats JSON with one line per row and run, so that diffs are readable."""
-    text = json.dumps(results, ensure_ascii=False)
-    return re.sub(r"(\}|\]), (?=[\{\[\"])", "\\1,\n", text) + "\n"
-
-
 def read(path):
     try:
         return json.loads(path.read_text(encoding="utf-8"))
@@ -348,13 +343,13 @@ def keep(results, folder):
     name = re.sub(r"[^a-z0-9]+", "-", processor(any_of(results)).lower()).strip("-")
     folder.mkdir(parents=True, exist_ok=True)
     stored = {name: result | {"data": result["data"] | {"points": packed(result["data"]["points"])}} for name, result in results.items()}
-    path = folder / f"{name}.json"
-    older = read(path) if path.exists() else {}
-    path.write_text(text_of(older | stored), encoding="utf-8")
+    path = folder / f"{name}.json.gz"
+    older = records.read(path) if path.exists() else {}
+    records.write(path, older | stored)
 
 
 def newest_first(folder):
-    machines = [read(path) for path in sorted(folder.glob("*.json"))]
+    machines = [records.read(path) for path in sorted(folder.glob("*.json.gz"))]
     if not machines:
         raise ReportError(f"no results in {folder}; run make bench")
     for result in (result for machine in machines for result in machine.values()):

@@ -3,7 +3,7 @@
 
     studies/report.py [--results results/study] [--docs docs] [--apsis PROGRAM]
 
-Collects the results of studies/run.py from RESULTS in DOCS/data/study.json, which keeps its entries of studies without new results;
+Collects the results of studies/run.py from RESULTS in DOCS/data/study.json.gz, which keeps its entries of studies without new results;
 draws DOCS/images/study-*.png; and writes the tables between the marks <!-- NAME --> and <!-- end --> of DOCS/study.md.
 """
 import argparse
@@ -18,7 +18,8 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "python" / "apsis"))
+sys.path[:0] = [str(HERE.parent / "python" / "apsis"), str(HERE.parent / "bench")]
+import records  # noqa: E402
 from plot.methods import stability_function  # noqa: E402
 from plot.style import BLACK, COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
 
@@ -302,12 +303,12 @@ def main():
     given = parser.parse_args()
     with open(HERE / "methods.toml", "rb") as file:
         plan = tomllib.load(file)
-    stored = given.docs / "data" / "study.json"
-    data = gather(plan, given.results, read_json(stored) if stored.exists() else {"design": [], "work": {}})
+    stored = given.docs / "data" / "study.json.gz"
+    data = gather(plan, given.results, records.read(stored) if stored.exists() else {"design": [], "work": {}})
     images = given.docs / "images"
     for folder in (images, stored.parent):
         folder.mkdir(parents=True, exist_ok=True)
-    stored.write_text(json.dumps(data, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
+    records.write(stored, data)
     page = (given.docs / "study.md").read_text(encoding="utf-8")
     page = insert(page, "designs", design_tables(data))
     methods = plan["work"]["methods"]

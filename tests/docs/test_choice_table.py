@@ -3,11 +3,15 @@ import json
 import math
 import os
 import subprocess
+import sys
 import unittest
 from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench"))
+import records  # noqa: E402
+
 BUILD = Path(os.environ.get("APSIS_BUILD", ROOT / "build/release"))
 MIXED = ("peers-mixed-points", "peers-mixed", "peers-mixed-centres")
 SYSTEMS = ("peers-ode", "peers-prothero-robinson", "peers-kaps")
@@ -17,7 +21,7 @@ MISSING = 30.0
 
 def newest(table):
     """The table of the file that was measured last."""
-    files = [json.loads(path.read_text(encoding="utf-8")) for path in (ROOT / "docs/data/speed").glob("*.json")]
+    files = [records.read(path) for path in (ROOT / "docs/data/speed").glob("*.json.gz")]
     return max((one[table] for one in files if table in one), key=lambda one: one["machine"]["date"])
 
 

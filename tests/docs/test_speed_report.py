@@ -1,7 +1,6 @@
 """bench/report.py keeps what was measured before: a file with some tables replaces these only."""
 import copy
 import importlib.util
-import json
 import sys
 import tempfile
 import unittest
@@ -36,11 +35,11 @@ class SpeedReport(unittest.TestCase):
             before = module.newest_first(folder)[0]
             module.keep(module.compact({"plain": result([["new"]])}), folder)
             after = module.newest_first(folder)[0]
-            self.assertEqual(len(list(folder.glob("*.json"))), 1)
+            self.assertEqual(len(list(folder.glob("*.json.gz"))), 1)
             self.assertEqual(after["plain"]["rows"], [["new"]])
             self.assertEqual(after["peers-kaps"], before["peers-kaps"])
             self.assertEqual({point["error"] for point in after["peers-kaps"]["data"]["points"]}, {1e-3})
-            self.assertIn("runs", json.loads(next(folder.glob("*.json")).read_text())["peers-kaps"]["data"]["points"][0])
+            self.assertIn("runs", module.records.read(next(folder.glob("*.json.gz")))["peers-kaps"]["data"]["points"][0])
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 // Formulas of all families on a double, as kernels of a graphics processor would use them: compiled to
 // assembly only (test_formulas.py), without any library.
+#include <apsis/model/formulas/grid_sums.hpp>
 #include <apsis/model/formulas/line.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
 #include <apsis/model/formulas/target.hpp>
@@ -67,13 +68,13 @@ extern "C" void equilibria(const double* u, double* to) {
   scalar::sums_of_products<double> products;
   products.add(weights.mass, u[0], u[1]);
   scalar::sums_of_moments<double> moments;
-  moments.add(scalar::entropy_term(value), u[0], u[1]);
+  moments.add(scalar::entropy_per_mass(value, u[1], u[2]), u[0], u[1]);
   scalar::gaussian_walk<true, double> walk{scalar::gaussian_start(u[0], u[1], u[2]), u[3], u[4]};
   walk.advance();
   scalar::row_contents<double> contents(u[0], 0.0, 0.0);
   contents.add(walk.value);
   to[0] = value;
-  to[1] = powers.s3;
+  to[1] = powers.of[3];
   to[2] = products.cc;
   to[3] = moments.energy;
   to[4] = contents.lowest + contents.not_finite;

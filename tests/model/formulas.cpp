@@ -2,10 +2,12 @@
 // Sums have one chain of additions per lane; the reference adds in the same chains.
 #include <apsis/core/random_source.hpp>
 #include <apsis/exec/aligned.hpp>
+#include <apsis/model/formulas/grid_sums.hpp>
 #include <apsis/model/formulas/line.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
 #include <apsis/model/formulas/target.hpp>
 #include <apsis/model/formulas/velocity.hpp>
+#include <apsis/model/grid_sums.hpp>
 #include <apsis/model/line_sums.hpp>
 #include <apsis/model/relaxation_rows.hpp>
 #include <apsis/model/target_rows.hpp>
@@ -117,7 +119,7 @@ TEST(formulas, weighed_targets_are_those_of_single_numbers) {
       of = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     const double u = any_velocity(random);
     for (const double keep : {std::numeric_limits<double>::infinity(), 0.0, 0.3})
-      for_each_number([&](auto number, int lanes) {
+      for_each_number([&](auto number, int) {
         using N = decltype(number);
         std::vector<double> e(lines * n);
         const bool raised = apsis::target_rows::weigh(m.data(), v.data(), u, p.data(), lines, f.data(), keep,
@@ -133,24 +135,6 @@ TEST(formulas, weighed_targets_are_those_of_single_numbers) {
             RC_ASSERT(same_bits(e[at], value_of(value)));
           }
         RC_ASSERT(raised == of_any);
-
-        std::array<apsis::target_rows::powers, lines> sums{};
-        apsis::target_rows::power_sums(f.data(), v.data(), u, lines, static_cast<int>(n), sums.data());
-        for (std::size_t line = 0; line < lines; ++line) {
-          const auto width = static_cast<std::size_t>(lanes);
-          std::vector<scalar::sums_of_powers<N>> of(width);
-          std::size_t k = 0;
-          for (; k + width <= n; k += width)
-            for (std::size_t lane = 0; lane < width; ++lane)
-              of[lane].add(N(f[line * n + k + lane]), N(v[k + lane]) - N(u));
-          using powers = scalar::sums_of_powers<N>;
-          scalar::sums_of_powers<double> all{total(of, &powers::s0), total(of, &powers::s1),
-                                             total(of, &powers::s2), total(of, &powers::s3)};
-          for (; k < n; ++k) all.add_last(f[line * n + k], v[k] - u);
-          const apsis::target_rows::powers expected{all.s0, all.s1, all.s2, all.s3};
-          for (std::size_t power = 0; power < 4; ++power)
-            RC_ASSERT(same_bits(sums[line][power], expected[power]));
-        }
       });
   });
 }
@@ -225,7 +209,7 @@ double total_of_chains(const std::array<std::vector<Sums>, 2>& chains, Member me
 
 }  // namespace
 
-TEST(formulas, moments_and_entropies_are_those_of_single_numbers) {
+TEST(formulas, moments_on_a_line_are_those_of_single_numbers) {
   check_property("moments", [] {
     random_source random(*rc::gen::arbitrary<std::uint32_t>());
     const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, apsis::velocity_rows::longest_chain + 1));
@@ -243,22 +227,98 @@ TEST(formulas, moments_and_entropies_are_those_of_single_numbers) {
       for (std::size_t r = 0; r < sums.size(); ++r) {
         const auto width = static_cast<std::size_t>(lanes);
         std::array<std::vector<moments>, 2> of{std::vector<moments>(width), std::vector<moments>(width)};
-        struct entropy_sum {
-          N sum{0.0};
-        };
-        std::array<std::vector<entropy_sum>, 2> s{std::vector<entropy_sum>(width),
-                                                  std::vector<entropy_sum>(width)};
         in_two_chains(n, width, [&](std::size_t chain, std::size_t lane, std::size_t k) {
           const N value(k < n ? f[r * n + k] : 0.0);
           of[chain][lane].add(value, N(k < n ? v[k] : 0.0), N(k < n ? half[k] : 0.0));
-          s[chain][lane].sum = s[chain][lane].sum + scalar::entropy_term(value);
         });
         RC_ASSERT(same_bits(sums[r].mass, total_of_chains(of, &moments::mass)));
         RC_ASSERT(same_bits(sums[r].momentum, total_of_chains(of, &moments::momentum)));
         RC_ASSERT(same_bits(sums[r].energy, total_of_chains(of, &moments::energy)));
-        const double entropy = apsis::velocity_rows::entropy(f.data() + r * n, static_cast<int>(n));
-        RC_ASSERT(same_bits(entropy, total_of_chains(s, &entropy_sum::sum)));
       }
+    });
+  });
+}
+
+namespace {
+
+/// Chains of additions of grid_sums, point j in chain j mod 8.
+constexpr std::size_t chains = 8;
+
+/// Σ a_l f_l in chains of at most 16 lines, halves of halves.
+template <class N>
+N sum_over_lines(const double* f, std::size_t apart, const double* a, std::size_t lines) {
+  if (lines > 16) {
+    const std::size_t half = lines / 2;
+    return sum_over_lines<N>(f, apart, a, half) +
+           sum_over_lines<N>(f + half * apart, apart, a + half, lines - half);
+  }
+  N sum(0.0);
+  for (std::size_t l = 0; l < lines; ++l) sum = fma(N(a[l]), N(f[l * apart]), sum);
+  return sum;
+}
+
+}  // namespace
+
+TEST(formulas, sums_over_a_grid_are_those_of_single_numbers) {
+  check_property("grid sums", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40)),
+               lines = static_cast<std::size_t>(*rc::gen::inRange(1, 70)),
+               functions = *rc::gen::element<std::size_t>(1, 2, 3, 4, 8);
+    const auto f = drawn(n * lines, random, any_size), v = drawn(n, random, any_velocity),
+               w = drawn(n, random, any_size), a = drawn(functions * lines, random, any_velocity);
+    const double u = any_velocity(random);
+    const bool weighted = random.one_in(2);
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      std::vector<apsis::grid_sums::powers> sums(functions);
+      apsis::grid_sums::sum({static_cast<int>(n), v.data(), weighted ? w.data() : nullptr},
+                            static_cast<int>(lines), f.data(), u, a.data(), static_cast<int>(functions),
+                            sums.data());
+      for (std::size_t k = 0; k < functions; ++k) {
+        std::vector<scalar::sums_of_powers<N>> of(chains);
+        const bool single = lines * functions == 1;
+        for (std::size_t j = 0; j < n; ++j) {
+          const N sum = single ? N(f[j]) : sum_over_lines<N>(f.data() + j, n, a.data() + k * lines, lines);
+          of[j % chains].add(weighted ? N(w[j]) * sum : sum, N(v[j]) - N(u));
+        }
+        for (std::size_t p = 0; p < 4; ++p) {
+          std::vector<N> parts;
+          for (const auto& chain : of) parts.push_back(chain.of[p]);
+          RC_ASSERT(same_bits(sums[k][p], (single ? a[0] : 1.0) * sum_of_lanes(parts)));
+        }
+      }
+    });
+  });
+}
+
+TEST(formulas, products_and_entropies_over_a_grid_are_those_of_single_numbers) {
+  check_property("grid products", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40)),
+               lines = static_cast<std::size_t>(*rc::gen::inRange(1, 6));
+    const auto g = drawn(n, random, any_size), h = drawn(n, random, any_size), w = drawn(n, random, any_size),
+               a = drawn(lines, random, any_size);
+    const double degrees = random.uniform(0.0, 3.0);
+    const bool weighted = random.one_in(2), reduced = random.one_in(2);
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      std::vector<double> m(lines * n), scaled(n);
+      apsis::grid_sums::multiply(a.data(), static_cast<int>(lines), g.data(), static_cast<int>(n), m.data());
+      apsis::grid_sums::scale(a[0], g.data(), static_cast<int>(n), scaled.data());
+      for (std::size_t k = 0; k < m.size(); ++k) RC_ASSERT(same_bits(m[k], a[k / n] * g[k % n]));
+      for (std::size_t k = 0; k < n; ++k) RC_ASSERT(same_bits(scaled[k], m[k]));
+      const double entropy =
+          apsis::grid_sums::entropy(weighted ? w.data() : nullptr, g.data(), reduced ? h.data() : nullptr,
+                                    degrees, static_cast<int>(n));
+      std::vector<N> sum(chains, N(0.0));
+      for (std::size_t k = 0; k < n; ++k) {
+        const N here(g[k]);
+        const N of_mass =
+            reduced ? scalar::entropy_per_mass(here, N(h[k]), N(degrees)) : scalar::log_of_normal(here);
+        sum[k % chains] = fma(N(weighted ? w[k] : 1.0) * here, of_mass, sum[k % chains]);
+      }
+      RC_ASSERT(same_bits(entropy, sum_of_lanes(sum)));
     });
   });
 }
@@ -317,6 +377,7 @@ TEST(formulas, gaussians_are_those_of_single_numbers) {
     for (int p = 0; p < rows; ++p)
       of.push_back({random.magnitude(-40.0, 10.0), random.uniform(-20.0, 20.0), random.magnitude(-3.0, 3.0)});
     const auto n = static_cast<std::size_t>(line.n);
+    const auto places = drawn(n, random, any_velocity);
     for_each_number([&](auto number, int lanes) {
       std::vector<double> m(n * of.size());
       apsis::velocity_rows::gaussians(line, of.data(), rows, m.data(), line.n);
@@ -324,6 +385,12 @@ TEST(formulas, gaussians_are_those_of_single_numbers) {
         const auto expected = gaussian<decltype(number)>(line, of[p], lanes);
         for (std::size_t j = 0; j < n; ++j) RC_ASSERT(same_bits(m[p * n + j], expected[j]));
       }
+      using N = decltype(number);
+      std::vector<double> one(n);
+      apsis::velocity_rows::gaussian_at(places.data(), line.n, of[0], one.data());
+      for (std::size_t j = 0; j < n; ++j)
+        RC_ASSERT(same_bits(one[j], value_of(scalar::gaussian_start(N(of[0].a), N(places[j]) - N(of[0].u),
+                                                                    N(0.5 / of[0].T)))));
     });
   });
 }

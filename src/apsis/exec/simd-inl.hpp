@@ -44,6 +44,7 @@ template <class D>
 struct pack {
   hn::Vec<D> v;
 
+  pack() = default;  ///< without values
   HWY_INLINE pack(hn::Vec<D> from) : v(from) {}
   HWY_INLINE pack(double from) : v(hn::Set(D(), from)) {}
   static HWY_INLINE pack load(const double* from) { return {hn::LoadU(D(), from)}; }
@@ -164,6 +165,40 @@ HWY_INLINE bool any(Mask mask) {
 template <class N, class Mask>
 HWY_INLINE bool all(Mask mask) {
   return N::all(mask);
+}
+
+/// Largest number of doubles in a `wide` vector.
+inline constexpr int most_lanes = 8;
+
+/// The first `count` ≥ 0 numbers, all if there are more than a vector holds; zeros behind them.
+HWY_INLINE pack<wide> load_some(const double* from, int count) {
+  if (count >= static_cast<int>(hn::Lanes(wide()))) return pack<wide>::load(from);
+  // Reads no more than that where a vector is longer than two.
+  if constexpr (HWY_MAX_BYTES > 16)
+    return pack<wide>(hn::MaskedLoad(hn::FirstN(wide(), static_cast<std::size_t>(count)), wide(), from));
+  alignas(64) double all[most_lanes] = {};
+  for (int k = 0; k < count; ++k) all[k] = from[k];
+  return pack<wide>::load(all);
+}
+
+/// Stores the first `count` numbers, all if there are more than a vector holds.
+HWY_INLINE void store_some(pack<wide> x, int count, double* to) {
+  if (count >= static_cast<int>(hn::Lanes(wide()))) return x.store(to);
+  hn::BlendedStore(x.v, hn::FirstN(wide(), static_cast<std::size_t>(count)), wide(), to);
+}
+
+/// Sums that do not depend on the instruction set: number j is added in chain j mod sum_chains. A vector
+/// holds one number of some chains.
+inline constexpr int sum_chains = 8;
+inline constexpr int vectors_of_chains = sum_chains / static_cast<int>(hn::MaxLanes(wide()));
+
+/// The sum of all chains, halves of halves.
+HWY_INLINE double total_of_chains(const pack<wide>* of_vectors) {
+  pack<wide> all[vectors_of_chains];
+  for (int i = 0; i < vectors_of_chains; ++i) all[i] = of_vectors[i];
+  for (int half = vectors_of_chains / 2; half > 0; half /= 2)
+    for (int i = 0; i < half; ++i) all[i] = all[i] + all[i + half];
+  return hn::GetLane(hn::SumOfLanes(wide(), all[0].v));
 }
 
 /// Calls body(pack type, k) for k = 0 … width−1, one pack at a time and the remainder one by one.

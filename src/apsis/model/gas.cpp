@@ -1,7 +1,7 @@
 #include <apsis/model/gas.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/model/velocity_rows.hpp>
+#include <apsis/model/grid_sums.hpp>
 #include <apsis/model/velocity_support.hpp>
 #include <apsis/velocity/velocity_line_registry.hpp>
 
@@ -95,15 +95,8 @@ std::vector<model_parameter> gas::parameters() {
 void gas::moments(const double* row, std::ptrdiff_t pitch, int rows, double* omega) const {
   kinetic_moments(grid_, row, pitch, rows, omega);
   if (!reduced()) return;
-  const int d = dimensions();
-  std::array<double, static_cast<std::size_t>(most_line_states) * most_moments> of_h;  // NOLINT
-  for (int first = 0; first < rows; first += most_line_states) {
-    const int some = std::min(most_line_states, rows - first);
-    kinetic_moments(grid_, row + first * pitch + grid_.size(), pitch, some, of_h.data());
-    for (int p = 0; p < some; ++p)
-      omega[(first + p) * (d + 2) + d + 1] +=
-          0.5 * of_h[static_cast<std::size_t>(p) * static_cast<std::size_t>(d + 2)];
-  }
+  for (int p = 0; p < rows; ++p)
+    omega[p * moment_count() + dimensions() + 1] += 0.5 * kinetic_mass(grid_, row + p * pitch + grid_.size());
 }
 
 fluid_state gas::state(const double* omega) const {
@@ -135,8 +128,7 @@ double gas::moments_of_g(const double* omega, double* of_g) const {
 }
 
 void gas::fill_h(double energy, double* row) const {
-  double* h = row + grid_.size();
-  for (int j = 0; j < grid_.size(); ++j) h[j] = energy * row[j];
+  grid_sums::scale(energy, row, grid_.size(), row + grid_.size());
 }
 
 template <class State>
@@ -152,7 +144,9 @@ bool gas::is_good_enough(const double* of_g, const State& state, const double* g
 /// Exists for the moments of every g ≥ 0; where the formula is undefined (empty space, T = 0 up to rounding)
 /// it is the discrete Maxwellian.
 bool gas::equilibrium_of_g(const double* of_g, double* g) const {
-  if (choice_ != equilibrium_choice::discrete) {
+  // The moments of the formula are exact on uniform lines alone.
+  if (choice_ == equilibrium_choice::formula ||
+      (choice_ == equilibrium_choice::automatic && grid_.uniform())) {
     const fluid_state s = to_fluid_state(of_g, dimensions());
     if (s.admissible()) {
       formula_maxwellian(grid_, s, g);
@@ -163,7 +157,8 @@ bool gas::equilibrium_of_g(const double* of_g, double* g) const {
 }
 
 int gas::equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const {
-  if (dimensions() != 1 || choice_ == equilibrium_choice::discrete) {
+  if (dimensions() != 1 || choice_ == equilibrium_choice::discrete ||
+      (choice_ == equilibrium_choice::automatic && !grid_.uniform())) {
     for (int p = 0; p < rows; ++p)
       if (!equilibrium_of_g(of_g + p * moment_count(), g + p * pitch)) return p;
     return rows;
@@ -224,41 +219,18 @@ void gas::formula(const fluid_state& state, double weight, double* row) const {
 }
 
 double gas::entropy(const double* row) const {
-  if (!grid_.uniform()) return weighted_entropy(row);
-  double sum = velocity_rows::entropy(row, grid_.size());
-  if (reduced()) {
-    const double* h = row + grid_.size();
-    double coupled = 0.0;
-    // A positive g whose h has vanished by underflow counts like one with the smallest normal number.
-    for (int j = 0; j < grid_.size(); ++j)
-      if (row[j] > 0.0)
-        coupled += row[j] * std::log(row[j] / std::max(h[j], std::numeric_limits<double>::min()));
-    sum += 0.5 * (degrees_ - dimensions()) * coupled;
-  }
-  return grid_.weight() * sum;
+  const double* weights = grid_.uniform() ? nullptr : grid_.set().weights().data();
+  const double* h = reduced() ? row + grid_.size() : nullptr;
+  return grid_.weight() * grid_sums::entropy(weights, row, h, 0.5 * (degrees_ - dimensions()), grid_.size());
 }
 
-double gas::weighted_entropy(const double* row) const {
-  const auto w = grid_.set().weights();
-  const double* h = row + grid_.size();
-  double sum = 0.0;
-  for (std::size_t j = 0; j < w.size(); ++j) {
-    if (!(row[j] > 0.0)) continue;
-    double of_point = std::log(row[j]);
-    if (reduced())
-      of_point += 0.5 * (degrees_ - dimensions()) *
-                  std::log(row[j] / std::max(h[j], std::numeric_limits<double>::min()));
-    sum += w[j] * row[j] * of_point;
-  }
-  return sum;
-}
-
-/// One addition and d + 1 multiply–adds for ω; for M two multiplications per point on a line (without the
-/// first vector), or one per point of a product of lines. The moments of h are computed like those of g, and
-/// its equilibrium is a multiplication.
+/// For ω of g one addition and two multiply–adds on a line, or one multiply–add for each of d + 1 functions
+/// of the lines; one for that of h. For M two multiplications per point on a line (without the first vector),
+/// or one per point of a product of lines; one for that of h.
 double gas::operations() const {
-  const double of_moments = 1.0 + (dimensions() + 1), of_maxwellian = dimensions() == 1 ? 2.0 : 1.0;
-  return reduced() ? of_moments + 0.5 * (of_maxwellian + 1.0) : of_moments + of_maxwellian;
+  const bool on_a_line = dimensions() == 1;
+  const double of_g = on_a_line ? 3.0 + 2.0 : dimensions() + 1.0 + 1.0, of_h = 2.0;
+  return reduced() ? 0.5 * (of_g + of_h) : of_g;
 }
 
 unsupported_initial_data gas::check_supported(const double* row) const {

@@ -60,7 +60,6 @@ class gas {
 
  private:
   static constexpr int most_moments = 5;
-  double weighted_entropy(const double* row) const;
   /// of_g ← ω of g alone in the equilibrium of ω; returns h/g.
   double moments_of_g(const double* omega, double* of_g) const;
   bool equilibrium_of_g(const double* of_g, double* g) const;

@@ -101,7 +101,9 @@ double gas_model::cfl_rate(std::span<const double> spacing) const {
 double gas_model::rate(const double* omega) const {
   if (!by_viscosity_) return 1.0;
   const double T = omega[0] > 0.0 ? gas_.state(omega).T : 0.0;
-  return T > 0.0 ? prandtl_ * omega[0] * std::pow(T, exponent_) : 0.0;
+  if (!(T > 0.0)) return 0.0;
+  const double power = exponent_ == 0.5 ? std::sqrt(T) : std::pow(T, exponent_);  // hard spheres
+  return prandtl_ * omega[0] * power;
 }
 
 std::vector<std::string> gas_model::invariants() const {

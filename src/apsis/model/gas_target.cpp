@@ -1,5 +1,7 @@
 #include <apsis/model/gas_target.hpp>
 
+#include <apsis/model/grid_sums.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -147,44 +149,63 @@ void correct(const defect& found, int d, double variance, target_polynomial& p) 
   }
 }
 
+/// Functions of the other d − 1 components of c for every line: 1, c_k, c_k c_l (k ≤ l), and c_k Σ c_l², each
+/// with the weight of the line, one after the other. Returns their number.
+int central_functions(const velocity_grid& grid, const fluid_state& state, aligned_vector<double>& all) {
+  const auto outer = static_cast<std::size_t>(grid.dimensions()) - 1,
+             lines = static_cast<std::size_t>(grid.lines()),
+             count = 1 + outer + outer * (outer + 1) / 2 + outer;
+  all.resize(count * lines);
+  const double* weight = grid.functions_of_lines().data();
+  for (std::size_t line = 0; line < lines; ++line) {
+    std::array<double, 2> c{};
+    for (std::size_t k = 0; k < outer; ++k)
+      c[k] = grid.component_of_lines(static_cast<int>(k))[line] - state.u[k];
+    const double square = c[0] * c[0] + c[1] * c[1];
+    double* to = all.data() + line;
+    const auto put = [&](double value) {
+      *to = weight[line] * value;
+      to += lines;
+    };
+    put(1.0);
+    for (std::size_t k = 0; k < outer; ++k) put(c[k]);
+    for (std::size_t k = 0; k < outer; ++k)
+      for (std::size_t l = k; l < outer; ++l) put(c[k] * c[l]);
+    for (std::size_t k = 0; k < outer; ++k) put(c[k] * square);
+  }
+  return static_cast<int>(count);
+}
+
 }  // namespace
 
 central_moments compute_central_moments(const gas& of, const double* row, const fluid_state& state) {
   const velocity_grid& grid = of.grid();
-  const int d = grid.dimensions(), n = grid.last_line().points();
-  const auto last = static_cast<std::size_t>(d - 1);
+  const std::size_t last = static_cast<std::size_t>(grid.dimensions()) - 1;
+  thread_local aligned_vector<double> functions;
+  const int count = central_functions(grid, state, functions);
+  std::array<grid_sums::powers, grid_sums::most_functions> g{}, h{};
+  const grid_sums::axis axis{grid.last_line().points(), grid.last_line().v().data(), grid.weights_of_last()};
+  grid_sums::sum(axis, grid.lines(), row, state.u[last], functions.data(), count, g.data());
+  if (of.reduced())
+    grid_sums::sum(axis, grid.lines(), row + grid.size(), state.u[last], functions.data(),
+                   static_cast<int>(last) + 1, h.data());
   central_moments m;
-  thread_local aligned_vector<double> scratch_of_g, scratch_of_h;
-  const double* of_g = grid.weighted(row, scratch_of_g);
-  const double* of_h = of.reduced() ? grid.weighted(row + grid.size(), scratch_of_h) : nullptr;
-  for_lines(grid, state, [&](const line_batch& some) {
-    std::array<target_rows::powers, together> sums_of_g{}, sums_of_h{};
-    const auto sum = [&](const double* from, std::array<target_rows::powers, together>& sums) {
-      target_rows::power_sums(from + static_cast<std::ptrdiff_t>(some.first) * n, grid.last_line().v().data(),
-                              state.u[last], some.count, n, sums.data());
-    };
-    sum(of_g, sums_of_g);
-    if (of.reduced()) sum(of_h, sums_of_h);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(some.count); ++i) {
-      const auto &g = sums_of_g[i], &h = sums_of_h[i];
-      const auto& c = some.c[i];
-      double square = 0.0;
-      for (std::size_t k = 0; k < last; ++k) square += c[k] * c[k];
-      m.stress[last][last] += g[2];
-      m.heat[last] += 0.5 * (square * g[1] + g[3] + h[1]);
-      for (std::size_t k = 0; k < last; ++k) {
-        m.heat[k] += 0.5 * c[k] * (square * g[0] + g[2] + h[0]);
-        m.stress[k][last] += c[k] * g[1];
-        for (std::size_t l = 0; l < last; ++l) m.stress[k][l] += c[k] * c[l] * g[0];
-      }
+  m.stress[last][last] = g[0][2];
+  m.heat[last] = g[0][3] + h[0][1];
+  std::size_t pair = last + 1;
+  for (std::size_t k = 0; k < last; ++k) {
+    m.stress[k][last] = g[1 + k][1];
+    m.heat[k] = g[1 + k][2] + h[1 + k][0];
+    for (std::size_t l = k; l < last; ++l, ++pair) {
+      m.stress[k][l] = g[pair][0];
+      if (k == l) m.heat[last] += g[pair][1];
     }
-  });
-  for (std::size_t k = 0; k <= last; ++k) {
-    m.heat[k] *= grid.weight();
-    if (k < last) m.stress[last][k] = m.stress[k][last];
   }
-  for (auto& line : m.stress)
-    for (double& one : line) one *= grid.weight() / state.rho;
+  for (std::size_t k = 0; k < last; ++k) m.heat[k] += g[pair + k][0];
+  for (std::size_t k = 0; k <= last; ++k) {
+    m.heat[k] *= 0.5 * grid.weight();
+    for (std::size_t l = k; l <= last; ++l) m.stress[l][k] = m.stress[k][l] *= grid.weight() / state.rho;
+  }
   return m;
 }
 

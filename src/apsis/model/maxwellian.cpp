@@ -1,6 +1,7 @@
 #include <apsis/model/maxwellian.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/model/grid_sums.hpp>
 #include <apsis/model/tensor_product.hpp>
 #include <apsis/model/velocity_rows.hpp>
 
@@ -33,6 +34,10 @@ void moments_on_line(const velocity_grid& grid, const double* f, std::ptrdiff_t 
   }
 }
 
+grid_sums::axis last_axis(const velocity_grid& grid) {
+  return {grid.last_line().points(), grid.last_line().v().data(), grid.weights_of_last()};
+}
+
 }  // namespace
 
 void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
@@ -41,63 +46,22 @@ void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t 
   for (int r = 0; r < rows; ++r) kinetic_moments(grid, f + r * pitch, omega + r * (grid.dimensions() + 2));
 }
 
-namespace {
-
-/// Sums over some lines of the last direction, without the factor Δv^d.
-struct line_moments {
-  double mass = 0.0, energy = 0.0;
-  std::array<double, 3> momentum{};
-
-  void add(const line_moments& other) {
-    mass += other.mass;
-    energy += other.energy;
-    for (std::size_t k = 0; k < 3; ++k) momentum[k] += other.momentum[k];
-  }
-};
-
-/// Adds halves of halves: of a Gaussian, most terms lie far out, and added one by one to a sum that is
-/// already large they would all be rounded away, which is a loss of the same sign in every cell and step.
-line_moments sum_over_lines(const velocity_grid& grid, const double* f, int first, int lines) {
-  constexpr int few = 16;
-  line_moments sum;
-  if (lines > few) {
-    const int half = lines / 2;
-    sum = sum_over_lines(grid, f, first, half);
-    sum.add(sum_over_lines(grid, f, first + half, lines - half));
-    return sum;
-  }
-  const velocity_line& line = grid.last_line();
-  const std::ptrdiff_t n = line.points(), from = n * first;
-  std::array<velocity_rows::sums, few> rows;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-  velocity_rows::moments(f + from, n, lines, line.v().data(), line.half_square().data(), line.points(),
-                         rows.data());
-  const auto outer = static_cast<std::size_t>(grid.dimensions()) - 1;
-  for (int i = 0; i < lines; ++i) {
-    const auto& row = rows[static_cast<std::size_t>(i)];
-    double half_square = 0.0;
-    for (std::size_t k = 0; k < outer; ++k) {
-      const double v = grid.component_of_lines(static_cast<int>(k))[first + i];
-      sum.momentum[k] += v * row.mass;
-      half_square += 0.5 * v * v;
-    }
-    sum.mass += row.mass;
-    sum.momentum[outer] += row.momentum;
-    sum.energy += row.energy + half_square * row.mass;
-  }
-  return sum;
+void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) {
+  if (grid.dimensions() == 1 && grid.uniform()) return moments_on_line(grid, f, 0, 1, omega);
+  const int d = grid.dimensions(), functions = d > 1 ? d + 1 : 1;
+  std::array<grid_sums::powers, 4> sums;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  grid_sums::sum(last_axis(grid), grid.lines(), f, 0.0, grid.functions_of_lines().data(), functions,
+                 sums.data());
+  omega[0] = grid.weight() * sums[0][0];
+  for (int k = 0; k + 1 < d; ++k) omega[1 + k] = grid.weight() * sums[static_cast<std::size_t>(k) + 1][0];
+  omega[d] = grid.weight() * sums[0][1];
+  omega[d + 1] = grid.weight() * (0.5 * sums[0][2] + (d > 1 ? sums[static_cast<std::size_t>(d)][0] : 0.0));
 }
 
-}  // namespace
-
-void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) {
-  const int d = grid.dimensions();
-  thread_local aligned_vector<double> scratch;
-  const double* row = grid.weighted(f, scratch);
-  if (d == 1) return moments_on_line(grid, row, 0, 1, omega);
-  const line_moments sum = sum_over_lines(grid, row, 0, grid.lines());
-  omega[0] = grid.weight() * sum.mass;
-  for (int k = 0; k < d; ++k) omega[1 + k] = grid.weight() * sum.momentum[static_cast<std::size_t>(k)];
-  omega[1 + d] = grid.weight() * sum.energy;
+double kinetic_mass(const velocity_grid& grid, const double* f) {
+  grid_sums::powers sums;
+  grid_sums::sum(last_axis(grid), grid.lines(), f, 0.0, grid.functions_of_lines().data(), 1, &sums);
+  return grid.weight() * sums[0];
 }
 
 namespace {
@@ -126,20 +90,19 @@ double height(const fluid_state& state, int dimensions) {
 
 void tensor_product(const velocity_grid& grid, double factor, const std::array<const double*, 3>& g,
                     double* m) {
-  const int n = grid.last_line().points();
-  const auto scaled = [n](double scale, const double* line, double* to) {
-    for (int j = 0; j < n; ++j) to[j] = scale * line[j];
-  };
-  if (grid.dimensions() == 1) return scaled(factor, g[0], m);
-  for (int i = 0; i < grid.line(0).points(); ++i) {
-    const double of_first = factor * g[0][i];
-    if (grid.dimensions() == 2) {
-      scaled(of_first, g[1], m);
-      m += n;
-    } else {
-      for (int k = 0; k < grid.line(1).points(); ++k, m += n) scaled(of_first * g[1][k], g[2], m);
+  const std::size_t outer = static_cast<std::size_t>(grid.dimensions()) - 1;
+  thread_local aligned_vector<double> of_lines;
+  of_lines.assign(1, factor);
+  for (std::size_t k = 0; k < outer; ++k) {
+    const std::size_t n = static_cast<std::size_t>(grid.line(static_cast<int>(k)).points()),
+                      before = of_lines.size();
+    of_lines.resize(before * n);
+    for (std::size_t l = before; l-- > 0;) {
+      const double factor_of_line = of_lines[l];  // behind those that it is replaced by
+      for (std::size_t j = 0; j < n; ++j) of_lines[l * n + j] = factor_of_line * g[k][j];
     }
   }
+  grid_sums::multiply(of_lines.data(), grid.lines(), g[outer], grid.last_line().points(), m);
 }
 
 void gaussians_on(const velocity_line& line, const velocity_rows::gaussian* of_rows, int rows, double* m,
@@ -147,11 +110,7 @@ void gaussians_on(const velocity_line& line, const velocity_rows::gaussian* of_r
   if (line.uniform())
     return velocity_rows::gaussians({line.points(), line.spacing()}, of_rows, rows, m, pitch);
   for (int p = 0; p < rows; ++p)
-    for (std::size_t j = 0; j < line.v().size(); ++j) {
-      const double c = line.v()[j] - of_rows[p].u,
-                   value = of_rows[p].a * std::exp(-c * c / (2.0 * of_rows[p].T));
-      m[p * pitch + static_cast<std::ptrdiff_t>(j)] = value > 1e-300 ? value : 0.0;
-    }
+    velocity_rows::gaussian_at(line.v().data(), line.points(), of_rows[p], m + p * pitch);
 }
 
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m) {

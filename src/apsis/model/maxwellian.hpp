@@ -43,6 +43,9 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega);
 void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega);
 
+/// Returns the first moment, the density ρ of a row.
+double kinetic_mass(const velocity_grid& grid, const double* f);
+
 /// Compact fluid_state of one velocity dimension.
 struct line_state {
   double rho,  ///< density

@@ -28,20 +28,6 @@ bool weigh(const double* m, const double* v, double u, const target_rows::cubic*
   return raised;
 }
 
-void power_sums(const double* f, const double* v, double u, int lines, int n, target_rows::powers* of_lines) {
-  using N = pack<wide>;
-  const int length = static_cast<int>(hn::Lanes(wide()));
-  const auto total = [](N x) { return hn::GetLane(hn::SumOfLanes(wide(), x.v)); };
-  for (int line = 0; line < lines; ++line, f += n) {
-    sums_of_powers<N> packed;
-    int k = 0;
-    for (; k + length <= n; k += length) packed.add(N::load(f + k), N::load(v + k) - N(u));
-    sums_of_powers<double> sums{total(packed.s0), total(packed.s1), total(packed.s2), total(packed.s3)};
-    for (; k < n; ++k) sums.add_last(f[k], v[k] - u);
-    of_lines[line] = {sums.s0, sums.s1, sums.s2, sums.s3};
-  }
-}
-
 }  // namespace apsis::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -49,7 +35,6 @@ HWY_AFTER_NAMESPACE();
 namespace apsis {
 namespace {
 HWY_EXPORT(weigh);
-HWY_EXPORT(power_sums);
 }  // namespace
 
 namespace target_rows {
@@ -57,10 +42,6 @@ namespace target_rows {
 bool weigh(const double* m, const double* v, double u, const cubic* of_lines, int lines, const double* f,
            double keep, int n, double* e) {
   return HWY_DYNAMIC_DISPATCH(weigh)(m, v, u, of_lines, lines, f, keep, n, e);
-}
-
-void power_sums(const double* f, const double* v, double u, int lines, int n, powers* of_lines) {
-  HWY_DYNAMIC_DISPATCH(power_sums)(f, v, u, lines, n, of_lines);
 }
 
 }  // namespace target_rows

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 namespace apsis {
 
 /// Loops over lines of n points in one velocity direction, one behind the other, for targets that are a row
@@ -20,11 +18,6 @@ struct cubic {
 /// a value was raised to its bound.
 bool weigh(const double* m, const double* v, double u, const cubic* of_lines, int lines, const double* f,
            double keep, int n, double* e);
-
-/// Σ f c^k, k = 0 … 3.
-using powers = std::array<double, 4>;
-/// Those of each line.
-void power_sums(const double* f, const double* v, double u, int lines, int n, powers* of_lines);
 
 }  // namespace target_rows
 }  // namespace apsis

@@ -14,26 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
 using N = pack<wide>;
-constexpr int most_lanes = 8;
-
 HWY_INLINE double total(N x) {
   return hn::GetLane(hn::SumOfLanes(wide(), x.v));
-}
-
-/// The first `count` numbers, all if there are more than a vector holds; zeros behind them.
-HWY_INLINE N load_some(const double* from, int count) {
-  if (count >= static_cast<int>(hn::Lanes(wide()))) return N::load(from);
-  // Reads no more than that where a vector is longer than two.
-  if constexpr (HWY_MAX_BYTES > 16)
-    return N(hn::MaskedLoad(hn::FirstN(wide(), static_cast<std::size_t>(count)), wide(), from));
-  alignas(64) double all[most_lanes] = {};
-  std::copy_n(from, count, all);
-  return N::load(all);
-}
-
-HWY_INLINE void store_some(N x, int count, double* to) {
-  if (count >= static_cast<int>(hn::Lanes(wide()))) return x.store(to);
-  hn::BlendedStore(x.v, hn::FirstN(wide(), static_cast<std::size_t>(count)), wide(), to);
 }
 
 /// Several rows share the loads of v and ½v².
@@ -66,16 +48,6 @@ void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, c
   for (; r < rows; ++r) moments_of<1>(f + r * pitch, pitch, v, half_square, n, of_rows + r);
 }
 
-double entropy(const double* f, int n) {
-  const int length = static_cast<int>(hn::Lanes(wide()));
-  N sum[2] = {0.0, 0.0};
-  int j = 0;
-  for (; j + 2 * length <= n; j += 2 * length)
-    for (int half = 0; half < 2; ++half) sum[half] = sum[half] + entropy_term(N::load(f + j + half * length));
-  for (; j < n; j += length) sum[0] = sum[0] + entropy_term(load_some(f + j, n - j));
-  return total(sum[0] + sum[1]);
-}
-
 /// v − u of all points of vector k.
 HWY_INLINE N distances(const velocity_rows::points& line, double u, double k) {
   const auto length = static_cast<double>(hn::Lanes(wide()));
@@ -88,6 +60,14 @@ void gaussian_by_exponentials(const velocity_rows::points& line, const velocity_
   for (int k = 0; k < vectors; ++k) {
     const N x = distances(line, of.u, k);
     store_some(gaussian_value(N(of.a), x, N(of.T)), line.n - k * length, m + k * length);
+  }
+}
+
+void gaussian_at(const double* v, int n, const velocity_rows::gaussian& of, double* m) {
+  const int length = static_cast<int>(hn::Lanes(wide()));
+  for (int j = 0; j < n; j += length) {
+    const N x = load_some(v + j, n - j) - N(of.u);
+    store_some(gaussian_start(N(of.a), x, N(0.5 / of.T)), n - j, m + j);
   }
 }
 
@@ -180,8 +160,8 @@ HWY_AFTER_NAMESPACE();
 namespace apsis {
 namespace {
 HWY_EXPORT(moments);
-HWY_EXPORT(entropy);
 HWY_EXPORT(gaussians);
+HWY_EXPORT(gaussian_at);
 }  // namespace
 
 void velocity_rows::moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v,
@@ -204,13 +184,13 @@ void velocity_rows::moments(const double* f, std::ptrdiff_t pitch, int rows, con
   }
 }
 
-double velocity_rows::entropy(const double* f, int n) {
-  return HWY_DYNAMIC_DISPATCH(entropy)(f, n);
-}
-
 void velocity_rows::gaussians(const points& line, const gaussian* of_rows, int rows, double* m,
                               std::ptrdiff_t pitch) {
   HWY_DYNAMIC_DISPATCH(gaussians)(line, of_rows, rows, m, pitch);
+}
+
+void velocity_rows::gaussian_at(const double* v, int n, const gaussian& of, double* m) {
+  HWY_DYNAMIC_DISPATCH(gaussian_at)(v, n, of, m);
 }
 
 }  // namespace apsis

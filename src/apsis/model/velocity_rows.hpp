@@ -26,9 +26,6 @@ inline constexpr int longest_chain = 256;
 void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square,
              int n, sums* of_rows);
 
-/// Σ f log f over a row of n numbers ≥ 0, 0 log 0 = 0.
-double entropy(const double* f, int n);
-
 /// a exp(−(v − u)²/(2T)), T > 0.
 struct gaussian {
   double a,  ///< height
@@ -42,6 +39,9 @@ struct gaussian {
 /// of each; below 1e-300 values are 0. Very wide and very narrow Gaussians are exponentials. A row does not
 /// depend on the others; several share the cost of their first vectors.
 void gaussians(const points& line, const gaussian* of_rows, int rows, double* m, std::ptrdiff_t pitch);
+
+/// The values of a Gaussian at any n points v, as exponentials; below 1e-300 they are 0.
+void gaussian_at(const double* v, int n, const gaussian& of, double* m);
 
 }  // namespace velocity_rows
 }  // namespace apsis

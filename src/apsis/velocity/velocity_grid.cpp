@@ -68,6 +68,7 @@ velocity_grid::velocity_grid(std::vector<velocity_line> lines) : lines_(std::mov
   for (std::size_t k = 0; k + 1 < lines_.size(); ++k)
     for (std::size_t j = 0; j < total; j += static_cast<std::size_t>(last_line().points()))
       of_lines_[k].push_back(components[k][j]);
+  make_functions_of_lines();
   set_ = velocity_set(std::move(components), std::move(weights));
 }
 
@@ -77,12 +78,25 @@ double velocity_grid::max() const {
   return largest;
 }
 
-const double* velocity_grid::weighted(const double* f, aligned_vector<double>& row) const {
-  if (uniform_) return f;
-  row.resize(static_cast<std::size_t>(size_));
-  const auto w = set_.weights();
-  for (std::size_t j = 0; j < row.size(); ++j) row[j] = w[j] * f[j];
-  return row.data();
+void velocity_grid::make_functions_of_lines() {
+  const std::size_t outer = lines_.size() - 1, count = static_cast<std::size_t>(lines());
+  functions_of_lines_.assign((outer + (outer > 0 ? 2 : 1)) * count, 0.0);
+  for (std::size_t l = 0; l < count; ++l) {
+    double weight = 1.0, half_square = 0.0;
+    std::size_t rest = l;
+    for (std::size_t k = outer; k-- > 0;) {
+      const auto n = static_cast<std::size_t>(lines_[k].points());
+      if (!uniform_) weight *= lines_[k].weights()[rest % n];
+      rest /= n;
+    }
+    for (std::size_t k = 0; k < outer; ++k) {
+      const double v = of_lines_[k][l];
+      functions_of_lines_[(1 + k) * count + l] = weight * v;
+      half_square += 0.5 * v * v;
+    }
+    functions_of_lines_[l] = weight;
+    if (outer > 0) functions_of_lines_[(1 + outer) * count + l] = weight * half_square;
+  }
 }
 
 }  // namespace apsis

@@ -41,8 +41,12 @@ class velocity_grid {
   double weight() const { return weight_; }  ///< Δv_1 ⋯ Δv_d, or 1 if not uniform
   double max() const;                        ///< the largest of all lines
   double unit() const { return unit_; }      ///< smallest spacing of all lines, the unit of their places()
-  /// row ← w ∘ f, which sums with weight(); f itself if uniform.
-  const double* weighted(const double* f, aligned_vector<double>& row) const;
+  /// Returns a_k for every line in the last direction, one k after the other: the weight w of the line, w v_k
+  /// of the other d − 1 directions, and w ½Σ v_k² where d > 1. The weights of a line sum with those of the
+  /// last direction, and with weight(); they are 1 if uniform.
+  const aligned_vector<double>& functions_of_lines() const { return functions_of_lines_; }
+  /// Returns the weights along the last direction that sum with functions_of_lines(); nullptr: 1.
+  const double* weights_of_last() const { return uniform_ ? nullptr : last_line().weights().data(); }
   /// Returns component k of the velocity of every grid point.
   std::span<const double> component(int k) const { return set_.speeds(k); }
   /// Returns the velocities with their weights.
@@ -55,8 +59,9 @@ class velocity_grid {
   int size_ = 1;
   bool uniform_ = true;
   double weight_ = 1.0, unit_ = 0.0;
-  aligned_vector<double> half_square_;
+  aligned_vector<double> half_square_, functions_of_lines_;
   std::vector<std::vector<double>> of_lines_;
+  void make_functions_of_lines();
   velocity_set set_;
 };
 

@@ -27,31 +27,6 @@ APSIS_FORMULA bool raise(N& value, N keep, N f) {
   return raised;
 }
 
-/// Σ f c^k, k = 0 … 3.
-template <class N>
-struct sums_of_powers {
-  N s0, s1, s2, s3;
-
-  APSIS_FORMULA sums_of_powers() : s0(0.0), s1(0.0), s2(0.0), s3(0.0) {}
-  APSIS_FORMULA sums_of_powers(N zeroth, N first, N second, N third)
-      : s0(zeroth), s1(first), s2(second), s3(third) {}
-  APSIS_FORMULA void add(N f, N c) {
-    const N f1 = f * c, f2 = f1 * c;
-    s0 = s0 + f;
-    s1 = s1 + f1;
-    s2 = s2 + f2;
-    s3 = fma(f2, c, s3);
-  }
-  /// The same with a product that rounds: for points behind the last whole vector.
-  APSIS_FORMULA void add_last(N f, N c) {
-    const N f1 = f * c, f2 = f1 * c;
-    s0 = s0 + f;
-    s1 = s1 + f1;
-    s2 = s2 + f2;
-    s3 = s3 + f2 * c;
-  }
-};
-
 }  // namespace apsis::APSIS_NUMBERS
 APSIS_AFTER_FORMULAS();
 

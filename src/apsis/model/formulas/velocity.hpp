@@ -25,12 +25,6 @@ struct sums_of_moments {
   }
 };
 
-/// f log f for f ≥ 0.
-template <class N>
-APSIS_FORMULA N entropy_term(N f) {
-  return f * log_of(larger(f, N(1e-300)));
-}
-
 /// e^x, 0 below e^−690.
 template <class N>
 APSIS_FORMULA N exp_or_zero(N x) {

@@ -1,0 +1,46 @@
+// The formulas of model/grid_sums.hpp.
+#if defined(APSIS_MODEL_FORMULAS_GRID_SUMS) == defined(HWY_TARGET_TOGGLE)
+#ifdef APSIS_MODEL_FORMULAS_GRID_SUMS
+#undef APSIS_MODEL_FORMULAS_GRID_SUMS
+#else
+#define APSIS_MODEL_FORMULAS_GRID_SUMS
+#endif
+
+#include <apsis/exec/number.hpp>
+#include <apsis/model/formulas/exponential.hpp>
+
+APSIS_BEFORE_FORMULAS();
+namespace apsis::APSIS_NUMBERS {
+
+/// Σ s c^p, p = 0 … 3.
+template <class N>
+struct sums_of_powers {
+  N of[4];
+
+  APSIS_FORMULA sums_of_powers() : of{N(0.0), N(0.0), N(0.0), N(0.0)} {}
+  APSIS_FORMULA void add(N s, N c) {
+    const N s1 = s * c, s2 = s1 * c;
+    of[0] = of[0] + s;
+    of[1] = of[1] + s1;
+    of[2] = of[2] + s2;
+    of[3] = fma(s2, c, of[3]);
+  }
+};
+
+/// log x, and that of the smallest normal number below it.
+template <class N>
+APSIS_FORMULA N log_of_normal(N x) {
+  return log_of(larger(x, N(0x1p-1022)));
+}
+
+/// log g + degrees log(g/h).
+template <class N>
+APSIS_FORMULA N entropy_per_mass(N g, N h, N degrees) {
+  const N log_of_g = log_of_normal(g);
+  return fma(degrees, log_of_g - log_of_normal(h), log_of_g);
+}
+
+}  // namespace apsis::APSIS_NUMBERS
+APSIS_AFTER_FORMULAS();
+
+#endif

@@ -1,0 +1,200 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/model/grid_sums.cpp"
+#include <hwy/foreach_target.h>
+
+#include <apsis/model/grid_sums.hpp>
+
+#include <apsis/model/formulas/grid_sums.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+using N = pack<wide>;
+
+constexpr int lanes = static_cast<int>(hn::MaxLanes(wide())), vectors = vectors_of_chains;
+/// Lines that are added one after the other; more are halved. Of a Gaussian, most terms lie far out, and
+/// added one by one to a sum that is already large they would all be rounded away, which is a loss of the
+/// same sign in every cell and step.
+constexpr int longest_chain = 16;
+
+/// Consecutive points of all lines.
+struct columns {
+  const double* f;  ///< of the first line
+  int n,            ///< points of a line
+      count;        ///< points to be added
+  const double* a;  ///< functions
+  int lines,        ///< of a row
+      inside;       ///< lines before the first whose whole vectors would end behind the row
+};
+
+/// sum[k · Vectors + i] ← Σ_l a_kl f_l of vector i, over `count` lines from `first` on; any values at points
+/// behind the count.
+template <int Functions, int Vectors>
+void sum_over_lines(const columns& of, int first, int count, N* sum) {
+  constexpr int size = Functions * Vectors;
+  if (count > longest_chain) {
+    const int half = count / 2;
+    N rest[size];
+    sum_over_lines<Functions, Vectors>(of, first, half, sum);
+    sum_over_lines<Functions, Vectors>(of, first + half, count - half, rest);
+    for (int k = 0; k < size; ++k) sum[k] = sum[k] + rest[k];
+    return;
+  }
+  N own[size];  // in registers: stores to `sum` might change f
+  for (int k = 0; k < size; ++k) own[k] = N(0.0);
+  const auto add = [&](int line, const auto& load) APSIS_PACKED {
+    const double* from = of.f + static_cast<std::ptrdiff_t>(line) * of.n;
+    N value[Vectors];
+    for (int i = 0; i < Vectors; ++i) value[i] = load(from, i);
+    for (int k = 0; k < Functions; ++k) {
+      const N a(of.a[k * of.lines + line]);
+      for (int i = 0; i < Vectors; ++i) own[k * Vectors + i] = fma(a, value[i], own[k * Vectors + i]);
+    }
+  };
+  int line = first;
+  for (; line < std::min(first + count, of.inside); ++line)
+    add(line, [](const double* from, int i) APSIS_PACKED { return N::load(from + i * lanes).loaded_once(); });
+  for (; line < first + count; ++line)
+    add(line, [&](const double* from, int i)
+                  APSIS_PACKED { return load_some(from + i * lanes, std::max(of.count - i * lanes, 0)); });
+  for (int k = 0; k < size; ++k) sum[k] = own[k];
+}
+
+/// Adds the powers of some columns to those of every function and chain.
+template <int Functions, int Sets>
+HWY_INLINE void add_columns(const columns& of, const double* v, const double* w, double u,
+                            sums_of_powers<N> (&powers)[Functions][vectors]) {
+  constexpr int together = Sets * vectors;
+  N sum[Functions * together];
+  sum_over_lines<Functions, together>(of, 0, of.lines, sum);
+  for (int i = 0; i < together && i * lanes < of.count; ++i) {
+    const int count = of.count - i * lanes;
+    const auto inside = hn::FirstN(wide(), static_cast<std::size_t>(std::min(count, lanes)));
+    const N c = load_some(v + i * lanes, count) - N(u),
+            weight = w == nullptr ? N(1.0) : load_some(w + i * lanes, count);
+    for (int k = 0; k < Functions; ++k)
+      powers[k][i % vectors].add(N(hn::IfThenElseZero(inside, (weight * sum[k * together + i]).v)), c);
+  }
+}
+
+void store_totals(const sums_of_powers<N> (&of)[vectors], double factor, grid_sums::powers& sums) {
+  for (int p = 0; p < 4; ++p) {
+    N of_vectors[vectors];
+    for (int i = 0; i < vectors; ++i) of_vectors[i] = of[i].of[p];
+    sums[static_cast<std::size_t>(p)] = factor * total_of_chains(of_vectors);
+  }
+}
+
+template <int Functions>
+void sum_functions(const grid_sums::axis& last, int lines, const double* f, double u, const double* a,
+                   grid_sums::powers* sums) {
+  sums_of_powers<N> powers[Functions][vectors];
+  for (int j = 0; j < last.n; j += 2 * sum_chains) {
+    const int left = last.n - j, together = left > sum_chains ? 2 * sum_chains : sum_chains,
+              behind = last.n * lines - j - together;
+    const columns of{f + j, last.n, left, a, lines, behind < 0 ? 0 : behind / last.n + 1};
+    const double *v = last.v + j, *w = last.w == nullptr ? nullptr : last.w + j;
+    if (left > sum_chains) {
+      add_columns<Functions, 2>(of, v, w, u, powers);
+    } else {
+      add_columns<Functions, 1>(of, v, w, u, powers);
+    }
+  }
+  for (int k = 0; k < Functions; ++k) store_totals(powers[k], 1.0, sums[k]);
+}
+
+/// sum_functions() of one function and one line.
+void sum_line(const grid_sums::axis& last, const double* f, double u, double a, grid_sums::powers& sums) {
+  sums_of_powers<N> powers[vectors];
+  for (int j = 0; j < last.n; j += sum_chains)
+    for (int i = 0; i < vectors; ++i) {
+      const int k = j + i * lanes, count = std::max(last.n - k, 0);
+      const N value = load_some(f + k, count), c = load_some(last.v + k, count) - N(u);
+      powers[i].add(last.w == nullptr ? value : load_some(last.w + k, count) * value, c);
+    }
+  store_totals(powers, a, sums);
+}
+
+void sum(const grid_sums::axis& last, int lines, const double* f, double u, const double* a, int functions,
+         grid_sums::powers* sums) {
+  if (lines == 1 && functions == 1) return sum_line(last, f, u, a[0], sums[0]);
+  switch (functions) {
+    case 1:
+      return sum_functions<1>(last, lines, f, u, a, sums);
+    case 2:
+      return sum_functions<2>(last, lines, f, u, a, sums);
+    case 3:
+      return sum_functions<3>(last, lines, f, u, a, sums);
+    case 4:
+      return sum_functions<4>(last, lines, f, u, a, sums);
+    default:
+      return sum_functions<grid_sums::most_functions>(last, lines, f, u, a, sums);
+  }
+}
+
+void scale(double factor, const double* g, int n, double* h) {
+  for_packs(n, [&](auto tag, int j) APSIS_PACKED {
+    using P = pack<decltype(tag)>;
+    (P(factor) * P::load(g + j)).store(h + j);
+  });
+}
+
+void multiply(const double* a, int lines, const double* g, int n, double* m) {
+  const int rest = n % lanes, whole = n - rest;
+  const N last = load_some(g + whole, rest);
+  for (int line = 0; line < lines; ++line, m += n) {
+    const N factor(a[line]);
+    for (int j = 0; j < whole; j += lanes) (factor * N::load(g + j)).store(m + j);
+    // A whole vector changes the beginning of later lines, which are stored after it.
+    if (rest > 0) store_some(factor * last, (lines - line) * n - whole >= lanes ? lanes : rest, m + whole);
+  }
+}
+
+double entropy(const double* w, const double* g, const double* h, double degrees, int n) {
+  N sum[vectors];
+  for (int i = 0; i < vectors; ++i) sum[i] = N(0.0);
+  for (int j = 0; j < n; j += sum_chains)
+    for (int i = 0; i < vectors && j + i * lanes < n; ++i) {
+      const int k = j + i * lanes, count = n - k;
+      const N of_g = load_some(g + k, count), of_w = w == nullptr ? N(1.0) : load_some(w + k, count);
+      const N of_mass =
+          h == nullptr ? log_of_normal(of_g) : entropy_per_mass(of_g, load_some(h + k, count), N(degrees));
+      sum[i] = fma(of_w * of_g, of_mass, sum[i]);
+    }
+  return total_of_chains(sum);
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace apsis {
+namespace {
+HWY_EXPORT(sum);
+HWY_EXPORT(multiply);
+HWY_EXPORT(scale);
+HWY_EXPORT(entropy);
+}  // namespace
+
+void grid_sums::sum(const axis& last, int lines, const double* f, double u, const double* a, int functions,
+                    powers* sums) {
+  HWY_DYNAMIC_DISPATCH(sum)(last, lines, f, u, a, functions, sums);
+}
+
+void grid_sums::multiply(const double* a, int lines, const double* g, int n, double* m) {
+  HWY_DYNAMIC_DISPATCH(multiply)(a, lines, g, n, m);
+}
+
+void grid_sums::scale(double factor, const double* g, int n, double* h) {
+  HWY_DYNAMIC_DISPATCH(scale)(factor, g, n, h);
+}
+
+double grid_sums::entropy(const double* w, const double* g, const double* h, double degrees, int n) {
+  return HWY_DYNAMIC_DISPATCH(entropy)(w, g, h, degrees, n);
+}
+
+}  // namespace apsis
+#endif

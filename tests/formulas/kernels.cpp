@@ -12,6 +12,7 @@
 #include <apsis/scheme/formulas/weno5_z.hpp>
 #include <apsis/semidiscrete/formulas/centre.hpp>
 #include <apsis/semidiscrete/formulas/collision.hpp>
+#include <apsis/semidiscrete/formulas/lattice.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
 
 namespace scalar = apsis::scalar;
@@ -46,6 +47,10 @@ extern "C" void linear_edges(const double* u, double* to) {
   scalar::limiter::limit_edges(u[2], to[0], to[2]);
 }
 
+extern "C" void forces(const double* u, double* to) {
+  to[0] = scalar::with_change(to[0], u[0], u[1]);
+}
+
 extern "C" void collisions(const double* u, double* to) {
   const auto points = scalar::quartic_values<true>(u[0], u[1], u[2], u[3], u[4]);
   to[0] = scalar::collision_part(u[0], u[1], u[2], scalar::with_collision(points.g0, points.g1, points.g2));
@@ -73,9 +78,12 @@ extern "C" void equilibria(const double* u, double* to) {
   walk.advance();
   scalar::row_contents<double> contents(u[0], 0.0, 0.0);
   contents.add(walk.value);
+  scalar::sums_of_squares<double> squares;
+  squares.add(u[0], u[1]);
   to[0] = value;
   to[1] = powers.of[3];
   to[2] = products.cc;
   to[3] = moments.energy;
   to[4] = contents.lowest + contents.not_finite;
+  to[5] = squares.difference + squares.size;
 }

@@ -134,6 +134,21 @@ TEST(formulas, contents_of_a_row_are_those_of_single_numbers) {
       }
       RC_ASSERT(found.negative == static_cast<long>(value_of(of.negative)));
     });
+    const auto other = drawn(n, random, any_sign);
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      constexpr std::size_t chains = 8;  // in every instruction set
+      std::vector<scalar::sums_of_squares<N>> of(chains);
+      for (std::size_t k = 0; k < n; ++k) of[k % chains].add(N(row[k]), N(other[k]));
+      std::vector<N> difference, size;
+      for (const auto& chain : of) {
+        difference.push_back(chain.difference);
+        size.push_back(chain.size);
+      }
+      const auto found = apsis::compute_squares(row.data(), other.data(), static_cast<int>(n));
+      RC_ASSERT(same_bits(found.difference, sum_of_lanes(difference)));
+      RC_ASSERT(same_bits(found.size, sum_of_lanes(size)));
+    });
   });
 }
 

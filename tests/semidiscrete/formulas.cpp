@@ -5,9 +5,12 @@
 #include <apsis/semidiscrete/collision_rows.hpp>
 #include <apsis/semidiscrete/formulas/centre.hpp>
 #include <apsis/semidiscrete/formulas/collision.hpp>
+#include <apsis/semidiscrete/formulas/lattice.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
+#include <apsis/semidiscrete/lattice_rows.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -147,7 +150,44 @@ TEST(formulas, fluxes_of_one_cell_are_those_of_single_numbers) {
           RC_ASSERT(same_bits(in[k], value_of(flux<N>(p, limited, -1, k))));
           RC_ASSERT(same_bits(out[k], value_of(flux<N>(p, limited, 0, k))));
         }
+        auto alone = out;
+        apsis::upwind::fluxes_out_of_cell(p.run(), limited, alone.data());
+        RC_ASSERT(alone == out);
       });
+  });
+}
+
+TEST(formulas, changes_along_a_lattice_are_those_of_single_numbers) {
+  check_property("lattice", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const apsis::lattice_rows::layout at{*rc::gen::inRange(1, 5), *rc::gen::inRange(1, 14),
+                                         *rc::gen::inRange(1, 14)};
+    const auto n = static_cast<std::size_t>(at.blocks * at.block());
+    const rows row(2, n, random, any_size), out(1, at.size(), random, any_size);
+    const bool forward = random.one_in(2);
+    const double rate = random.uniform(0.0, 3.0), beta = random.magnitude(-12.0, 0.0);
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      std::vector<double> places(at.size(), -1.0), sum(row.at[0], row.at[0] + n),
+          acc(row.at[1], row.at[1] + n);
+      apsis::lattice_rows::lay_out(at, row.at[0], places.data());
+      apsis::lattice_rows::add_differences(at, out.at[0], forward, rate, sum.data());
+      apsis::lattice_rows::add(sum.data(), -beta, static_cast<int>(n), acc.data());
+      std::size_t points = 0;
+      for (int block = 0; block < at.blocks; ++block)
+        for (int k = 0; k < at.block(); ++k, ++points) {
+          const int place = at.first() + block * at.pitch() + k;
+          const auto flux = [&](int j) { return N(out.at[0][j]); };
+          const N upstream = flux(forward ? place - at.apart : place + at.apart);
+          RC_ASSERT(places[static_cast<std::size_t>(place)] == row.at[0][points]);
+          const N change = fma(N(rate), upstream - flux(place), N(row.at[0][points]));
+          RC_ASSERT(same_bits(sum[points], value_of(change)));
+          RC_ASSERT(
+              same_bits(acc[points], value_of(scalar::with_change(N(row.at[1][points]), N(-beta), change))));
+        }
+      RC_ASSERT(points == n);
+      RC_ASSERT(std::count(places.begin(), places.end(), -1.0) == static_cast<long>(at.size() - n));
+    });
   });
 }
 

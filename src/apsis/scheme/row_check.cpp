@@ -28,6 +28,23 @@ row_extremes extremes(const double* row, int n) {
           static_cast<long>(hn::GetLane(all.negative.v))};
 }
 
+row_squares squares(const double* u, const double* v, int n) {
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(wide()));
+  using N = pack<wide>;
+  sums_of_squares<N> sums[vectors_of_chains];
+  for (int k = 0; k < n; k += sum_chains)
+    for (int i = 0; i < vectors_of_chains && k + i * lanes < n; ++i) {
+      const int at = k + i * lanes;
+      sums[i].add(load_some(u + at, n - at), load_some(v + at, n - at));
+    }
+  N difference[vectors_of_chains], size[vectors_of_chains];
+  for (int i = 0; i < vectors_of_chains; ++i) {
+    difference[i] = sums[i].difference;
+    size[i] = sums[i].size;
+  }
+  return {total_of_chains(difference), total_of_chains(size)};
+}
+
 }  // namespace apsis::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -35,10 +52,15 @@ HWY_AFTER_NAMESPACE();
 namespace apsis {
 namespace {
 HWY_EXPORT(extremes);
-}
+HWY_EXPORT(squares);
+}  // namespace
 
 row_extremes compute_extremes(const double* row, int n) {
   return HWY_DYNAMIC_DISPATCH(extremes)(row, n);
+}
+
+row_squares compute_squares(const double* u, const double* v, int n) {
+  return HWY_DYNAMIC_DISPATCH(squares)(u, v, n);
 }
 
 }  // namespace apsis

@@ -11,4 +11,13 @@ struct row_extremes {
 /// Computes the extremes of a row of n ≥ 1 numbers with the instruction set of this processor.
 row_extremes compute_extremes(const double* row, int n);
 
+/// Sums of squares over a row u.
+struct row_squares {
+  double difference = 0.0,  ///< Σ (u − v)²
+      size = 0.0;           ///< Σ u²
+};
+
+/// Computes the sums for two rows of n numbers, in an order that does not depend on the processor.
+row_squares compute_squares(const double* u, const double* v, int n);
+
 }  // namespace apsis

@@ -6,6 +6,7 @@
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/acceleration.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/semidiscrete/lattice_rows.hpp>
 #include <apsis/semidiscrete/limited_reconstruction.hpp>
 
 #include <array>
@@ -47,18 +48,12 @@ class force {
 
  private:
   struct workspace;
-  struct place;
-  void add_cells(double t, const field& u, std::span<const target<field, double>> targets, int begin, int end,
-                 workspace& here) const;
-  void load_acceleration(double t, int begin, int end, workspace& here) const;
-  void add_direction(const field& u, const place& at, workspace& here) const;
-  double mass_at(int component, double value) const;
-  /// Returns what a cell is given of the invariants, and the mass that entered the last points.
-  double* sums_of(int cell) const {
-    return of_cells_.data() + static_cast<std::size_t>(cell) * (invariants_ + 1);
-  }
-  void store(const field& u, std::span<const target<field, double>> targets, int begin, int end,
-             workspace& here) const;
+  lattice_rows::layout layout_along(std::size_t direction) const;
+  std::array<double, 3> acceleration_in(double t, int cell) const;
+  void add_cell(double t, const field& u, std::span<const target<field, double>> targets, int cell,
+                workspace& here) const;
+  double add_direction(const double* row, std::size_t direction, double a, workspace& here) const;
+  double mass_into_ends(const lattice_rows::layout& at, bool forward, const double* out) const;
 
   const model& equation_;
   std::shared_ptr<domain> space_;
@@ -68,7 +63,8 @@ class force {
   double share_ = 1.0;  ///< that the limiter is for
   std::shared_ptr<const reconstruction> scheme_;
   std::size_t invariants_;
-  mutable std::vector<double> of_cells_, given_;
+  mutable std::vector<double> of_cells_;  ///< invariants given to a cell, and mass into the last points
+  mutable std::vector<double> given_;
   mutable double held_ = 0.0;
   std::unique_ptr<per_thread<workspace>> workspaces_;
 };

@@ -28,6 +28,19 @@ struct row_contents {
   }
 };
 
+/// Sums of squares of a row u beside another one.
+template <class N>
+struct sums_of_squares {
+  N difference, size;
+
+  APSIS_FORMULA sums_of_squares() : difference(0.0), size(0.0) {}
+  APSIS_FORMULA void add(N u, N v) {
+    const N d = u - v;
+    difference = fma(d, d, difference);
+    size = fma(u, u, size);
+  }
+};
+
 }  // namespace apsis::APSIS_NUMBERS
 APSIS_AFTER_FORMULAS();
 

@@ -22,7 +22,8 @@ APSIS_FORMULA N upwind1_edge(N u) {
 /// symmetry.
 template <class N>
 APSIS_FORMULA N upwind5_edge(N a, N b, N c, N d, N e) {
-  return c + (N(2.0) * (a - c) - N(13.0) * (b - c) + N(27.0) * (d - c) - N(3.0) * (e - c)) / N(60.0);
+  const N upstream = fma(N(2.0 / 60.0), a - c, N(-13.0 / 60.0) * (b - c));
+  return fma(N(27.0 / 60.0), d - c, fma(N(-3.0 / 60.0), e - c, c + upstream));
 }
 
 }  // namespace apsis::APSIS_NUMBERS

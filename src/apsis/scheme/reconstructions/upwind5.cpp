@@ -1,12 +1,54 @@
-#include <apsis/scheme/formulas/upwind.hpp>
-#include <apsis/scheme/reconstruction_registry.hpp>
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/scheme/reconstructions/upwind5.cpp"
+#include <hwy/foreach_target.h>
 
-#include <cstddef>
+#include <apsis/exec/counted.hpp>
+#include <apsis/scheme/formulas/upwind.hpp>
+#include <apsis/scheme/walk-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+template <class Walk>
+HWY_INLINE auto edge_of(const Walk& way, const double* const* rows, int j) {
+  return upwind5_edge(way.load(rows, j - 2), way.load(rows, j - 1), way.load(rows, j), way.load(rows, j + 1),
+                      way.load(rows, j + 2));
+}
+
+void outflow_edges(const double* const* rows, int count, int width, const double* forward, double* edge) {
+  for_walks(forward, count, width, [&](const auto& way, int) APSIS_PACKED {
+    for (int j = 0; j < count; ++j) way.store(edge_of(way, rows, j), edge, width, j);
+  });
+}
+
+void edges(const double* const* rows, int count, int width, double* left, double* right) {
+  for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
+    using D = decltype(lanes);
+    const walk<course::forward, D> to_right(count, k, nullptr);
+    const walk<course::backward, D> to_left(count, k, nullptr);
+    for (int j = 0; j < count; ++j) {
+      to_right.store(edge_of(to_right, rows, j), right, width, j);
+      to_left.store(edge_of(to_left, rows, j), left, width, j);
+    }
+  });
+}
+
+double operations_of_edge() {
+  const counted x(0.0);
+  return counted::operations_of([&] { upwind5_edge(x, x, x, x, x); });
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <apsis/scheme/reconstruction_registry.hpp>
 
 namespace apsis {
 namespace {
 
-using scalar::upwind5_edge;
+HWY_EXPORT(edges);
+HWY_EXPORT(outflow_edges);
 
 /// The linear scheme that WENO approaches on smooth data, without protection against oscillations. Sums of
 /// its fluxes over a line are those of the values: Σ û_{i+1/2} = Σ u_i and Σ x_{i+1/2} û_{i+1/2} = Σ x_i u_i
@@ -16,26 +58,14 @@ class upwind5 final : public reconstruction {
   int ghost_width() const override { return 2; }
   int order() const override { return 5; }
   void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
-    for (int i = 0; i < count; ++i) {
-      const double *a = rows[i - 2], *b = rows[i - 1], *c = rows[i], *d = rows[i + 1], *e = rows[i + 2];
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * width;
-#pragma omp simd
-      for (int k = 0; k < width; ++k) {
-        left[at + k] = upwind5_edge(e[k], d[k], c[k], b[k], a[k]);
-        right[at + k] = upwind5_edge(a[k], b[k], c[k], d[k], e[k]);
-      }
-    }
+    HWY_DYNAMIC_DISPATCH(edges)(rows, count, width, left, right);
   }
   void outflow_edges(const double* const* rows, int count, int width, const double* forward,
                      double* edge) const override {
-    for (int i = 0; i < count; ++i) {
-      const double *a = rows[i - 2], *b = rows[i - 1], *c = rows[i], *d = rows[i + 1], *e = rows[i + 2];
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * width;
-#pragma omp simd
-      for (int k = 0; k < width; ++k)
-        edge[at + k] = forward[k] != 0.0 ? upwind5_edge(a[k], b[k], c[k], d[k], e[k])
-                                         : upwind5_edge(e[k], d[k], c[k], b[k], a[k]);
-    }
+    HWY_DYNAMIC_DISPATCH(outflow_edges)(rows, count, width, forward, edge);
+  }
+  double operations(bool both_edges) const override {
+    return (both_edges ? 2.0 : 1.0) * HWY_NAMESPACE::operations_of_edge();
   }
 };
 
@@ -49,3 +79,4 @@ const reconstruction_entry reconstruction_upwind5 = {
     .make = []() -> std::unique_ptr<reconstruction> { return std::make_unique<upwind5>(); }};
 
 }  // namespace apsis
+#endif

@@ -1,5 +1,6 @@
 // Formulas of all families on a double, as kernels of a graphics processor would use them: compiled to
 // assembly only (test_formulas.py), without any library.
+#include <apsis/boundary/formulas/continuation.hpp>
 #include <apsis/model/formulas/grid_sums.hpp>
 #include <apsis/model/formulas/line.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
@@ -12,6 +13,7 @@
 #include <apsis/scheme/formulas/weno5_z.hpp>
 #include <apsis/semidiscrete/formulas/centre.hpp>
 #include <apsis/semidiscrete/formulas/collision.hpp>
+#include <apsis/semidiscrete/formulas/face.hpp>
 #include <apsis/semidiscrete/formulas/lattice.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
 
@@ -47,8 +49,11 @@ extern "C" void linear_edges(const double* u, double* to) {
   scalar::limiter::limit_edges(u[2], to[0], to[2]);
 }
 
-extern "C" void forces(const double* u, double* to) {
-  to[0] = scalar::with_change(to[0], u[0], u[1]);
+extern "C" void boundaries(const double* u, double* to) {
+  to[0] = scalar::continuation<double>(u[0], u[1], u[2]).average(2.0);
+  to[1] = scalar::if_entering(u[0], u[1], scalar::if_leaving(u[0], u[2]));
+  to[2] = scalar::with_entering(to[2], u[0], u[1], u[2], u[3]);
+  to[3] = scalar::with_change(to[3], u[0], u[1]);
 }
 
 extern "C" void collisions(const double* u, double* to) {

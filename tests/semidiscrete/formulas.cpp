@@ -3,8 +3,10 @@
 #include <apsis/scheme/formulas/quartic.hpp>
 #include <apsis/semidiscrete/centre_rows.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
+#include <apsis/semidiscrete/face_rows.hpp>
 #include <apsis/semidiscrete/formulas/centre.hpp>
 #include <apsis/semidiscrete/formulas/collision.hpp>
+#include <apsis/semidiscrete/formulas/face.hpp>
 #include <apsis/semidiscrete/formulas/lattice.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
 #include <apsis/semidiscrete/lattice_rows.hpp>
@@ -187,6 +189,36 @@ TEST(formulas, changes_along_a_lattice_are_those_of_single_numbers) {
         }
       RC_ASSERT(points == n);
       RC_ASSERT(std::count(places.begin(), places.end(), -1.0) == static_cast<long>(at.size() - n));
+    });
+  });
+}
+
+TEST(formulas, values_at_faces_are_those_of_single_numbers) {
+  check_property("face", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40));
+    const rows row(3, n, random, any_size);
+    auto inward = drawn(n, random, any_sign);
+    inward[n / 2] = 0.0;
+    const double beta = random.uniform(0.0, 1.0), spacing = random.uniform(0.01, 1.0);
+    const auto width = static_cast<int>(n);
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      std::vector<double> values(row.at[0], row.at[0] + n), acc(row.at[1], row.at[1] + n);
+      apsis::face_rows::keep_leaving(inward.data(), width, values.data());
+      for (std::size_t k = 0; k < n; ++k)
+        RC_ASSERT(same_bits(values[k], value_of(scalar::if_leaving(N(inward[k]), N(row.at[0][k])))));
+      auto both = values, fluxes = values;
+      apsis::face_rows::take_entering(inward.data(), row.at[2], width, both.data());
+      apsis::face_rows::add_entering(inward.data(), both.data(), beta, spacing, width, acc.data());
+      apsis::face_rows::multiply(inward.data(), width, fluxes.data());
+      for (std::size_t k = 0; k < n; ++k) {
+        const N v(inward[k]), value = scalar::if_entering(v, N(row.at[2][k]), N(values[k]));
+        RC_ASSERT(same_bits(both[k], value_of(value)));
+        RC_ASSERT(same_bits(acc[k],
+                            value_of(scalar::with_entering(N(row.at[1][k]), N(beta), v, N(spacing), value))));
+        RC_ASSERT(same_bits(fluxes[k], inward[k] * values[k]));
+      }
     });
   });
 }

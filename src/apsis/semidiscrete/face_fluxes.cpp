@@ -1,5 +1,7 @@
 #include <apsis/semidiscrete/face_fluxes.hpp>
 
+#include <apsis/semidiscrete/face_rows.hpp>
+
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -41,25 +43,21 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
   const grid& mesh = space_->mesh();
   const face where = space_->surfaces()[index(surface)].where;
   double* values = here.values.row(place);
+  const int width = equation_.components();
   if (prescribes(surface)) {
-    for (std::size_t k = 0; k < here.inward.size(); ++k)
-      if (!(here.inward[k] < 0.0)) values[k] = 0.0;
+    face_rows::keep_leaving(here.inward.data(), width, values);
     double* incoming = here.incoming.row(place);
     space_->side(surface)->incoming_given_outgoing(where, t, space_->meeting_point(surface, place), values,
                                                    space_->ghost_rows(surface, place), incoming);
     const int cell = space_->cell_at(surface, place);
-    for (std::size_t k = 0; k < here.inward.size(); ++k)
-      if (here.inward[k] > 0.0) values[k] = incoming[k];
-    for (const auto& to : targets) {
-      double* acc = to.acc->row(cell);
-      for (std::size_t k = 0; k < here.inward.size(); ++k)
-        if (here.inward[k] > 0.0)
-          acc[k] += (to.beta * (here.inward[k] / mesh.spacing(where.direction))) * values[k];
-    }
+    face_rows::take_entering(here.inward.data(), incoming, width, values);
+    for (const auto& to : targets)
+      face_rows::add_entering(here.inward.data(), values, to.beta, mesh.spacing(where.direction), width,
+                              to.acc->row(cell));
   }
   if (observed_) compute_densities(surface, place);
   // The row becomes that of the fluxes; invariants are linear functions of a row.
-  for (std::size_t k = 0; k < here.inward.size(); ++k) values[k] *= here.inward[k];
+  face_rows::multiply(here.inward.data(), width, values);
   double* received = rates_.data() + (here.first + index(place)) * invariants_;
   equation_.invariant_densities(values, received);
   const double area = mesh.cell_volume() / mesh.spacing(where.direction);

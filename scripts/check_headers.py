@@ -10,6 +10,7 @@ import argparse
 import concurrent.futures
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -36,6 +37,17 @@ def flags_of(command: str) -> list[str]:
     return flags
 
 
+def commands_of(build: Path) -> dict[Path, str]:
+    """Returns the command of every source, which a unity build gives for the file that includes it."""
+    commands = {}
+    for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+        file = Path(entry["file"])
+        unity = file.parent.name == "Unity" and file.is_file()
+        included = re.findall(r'^#include "(.+)"', file.read_text(encoding="utf-8"), re.M) if unity else []
+        commands |= {Path(source): entry["command"] for source in included or [file]}
+    return commands
+
+
 def nearest(header: Path, sources: list[Path]) -> Path:
     return max(sources, key=lambda source: len(os.path.commonpath([header, source])))
 
@@ -48,8 +60,7 @@ def problem_of(header: Path, command: list[str]) -> str:
 
 def problems(build: Path, folders: list[Path], jobs: int) -> tuple[int, list[str]]:
     """Returns the number of headers and their problems."""
-    entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-    commands = {Path(entry["file"]): entry["command"] for entry in entries}
+    commands = commands_of(build)
     sources = [file for file in commands if file.is_relative_to(ROOT) and not file.is_relative_to(build)]
     headers = sorted(header for folder in folders for header in folder.rglob("*.hpp"))
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:

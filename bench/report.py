@@ -45,10 +45,15 @@ def processor(result):
     return " ".join(re.sub(r"\([^)]*\)|Processor|@.*", " ", result["machine"]["processor"]).split())
 
 
-def measured_on(result):
-    machine = result["machine"]
-    return (f"{machine['date'][:10]}, {processor(result)}, {machine['cores']} cores, kernels {machine['kernels']}, "
-            f"{machine['compiler']}, median of {result['repeats']}")
+def extent(values):
+    return " to ".join(str(value) for value in sorted({min(values), max(values)}))
+
+
+def measured_on(*results):
+    """States when and how some tables of one machine were measured."""
+    machine = results[0]["machine"]
+    return (f"{extent([date_of(result)[:10] for result in results])}, {processor(results[0])}, {machine['cores']} cores, "
+            f"kernels {machine['kernels']}, {machine['compiler']}, median of {extent([result['repeats'] for result in results])}")
 
 
 def section(result):
@@ -62,6 +67,10 @@ def replace(path, name, text):
     if not pattern.search(before):
         raise ReportError(f"{path} has no place <!-- {name} -->")
     path.write_text(pattern.sub(lambda found: found.group(1) + "\n" + text + "\n\n" + found.group(2), before), encoding="utf-8")
+
+
+def date_of(result):
+    return result["machine"]["date"]
 
 
 def rows_where(result, **wanted):
@@ -135,6 +144,10 @@ def summary(results):
             for row in found:
                 rows.append((f"{formulation.replace('-', ' ')}s, second-order step with limiter, 1000 × 150, one core",
                              f"{row['point·stages/s']:.2g} point·stages/s, {row['of the binding ceiling']} of the binding ceiling"))
+    if "flows" in results:
+        rows += [(f"flow `{row['case']}` as shipped, one core",
+                  f"{row['point·stages/s']:.2g} point·stages/s, {row['ratio']} times those of the gas between periodic ends")
+                 for case in FLOWS for row in rows_where(results["flows"], case=case)[:1]]
     if "threads" in results:
         found = rows_where(results["threads"], N=400)
         rows.append(("speedup by two threads, N = 400 (multiply–adds in registers with as many barriers)",
@@ -160,7 +173,9 @@ def summary(results):
 
 
 # Measures in the README; docs/speed.md has all of them.
-FRONT_PAGE = ("finite", "mixed-regime", "ODE model, ε = 0.01")
+FRONT_PAGE = ("flow", "mixed-regime", "ODE model, ε = 0.01")
+# Flows of the table that compares processors.
+FLOWS = ("gas/sod", "gas/couette", "gas/poiseuille", "gas/cavity", "gas/step", "gas/duct")
 
 
 def any_of(results):
@@ -174,7 +189,7 @@ def comparison(machines, selection=("",)):
                 if measure.startswith(selection)]
     table = markdown(("measure", *(processor(any_of(results)) for results in machines)),
                      [(measure, *(column.get(measure) for column in columns)) for measure in measures])
-    return table + "\n\n" + "<br>\n".join(f"*{measured_on(any_of(results))}*" for results in machines)
+    return table + "\n\n" + "<br>\n".join(f"*{measured_on(*results.values())}*" for results in machines)
 
 
 # --- pictures --------------------------------------------------------------------------------------------------------------------
@@ -354,19 +369,28 @@ def newest_first(folder):
         raise ReportError(f"no results in {folder}; run make bench")
     for result in (result for machine in machines for result in machine.values()):
         result["data"]["points"] = unpacked(result["data"]["points"])
-    return sorted(machines, key=lambda results: any_of(results)["machine"]["date"], reverse=True)
+    return sorted(machines, key=lambda results: max(date_of(result) for result in results.values()), reverse=True)
+
+
+def newest_tables(machines):
+    """Returns each table as it was measured last, on any machine."""
+    newest = {}
+    for machine in machines:
+        for name, result in machine.items():
+            if name not in newest or date_of(newest[name]) < date_of(result):
+                newest[name] = result
+    return newest
 
 
 def forget_superseded(machines, folder):
-    """Removes the runs of contests that a newer file has: pictures show the newest, pages of older machines only rows."""
-    newer = set()
+    """Removes the runs of contests that were measured again on another machine: pages of older ones have only rows."""
+    newest = newest_tables(machines)
     for machine in machines:
-        superseded = [result for name, result in machine.items() if name in newer and result["data"]["points"]]
+        superseded = [result for name, result in machine.items() if result is not newest[name] and result["data"]["points"]]
         for result in superseded:
             result["data"] = {"points": []}
         if superseded:
             keep(machine, folder)
-        newer |= set(machine)
 
 
 def main():
@@ -380,9 +404,7 @@ def main():
         keep(compact(read(given.results)), folder)
     machines = newest_first(folder)
     forget_superseded(machines, folder)
-    results = {}
-    for measured in reversed(machines):  # a table that the newest file lacks is that of an older one
-        results.update(measured)
+    results = newest_tables(machines)
     for name, result in results.items():
         replace(given.docs / PAGES.get(name, "speed.md"), name, section(result))
     if "processes" in results:

@@ -19,7 +19,8 @@ def report():
 
 def result(rows, points=()):
     return {"title": "", "note": "", "columns": ["method"], "rows": rows, "repeats": 1,
-            "machine": {"date": "2026-11-26T00:00:00Z", "processor": "Test 1"}, "data": {"points": list(points)}}
+            "machine": {"date": "2026-11-26T00:00:00Z", "processor": "Test 1", "cores": 1, "kernels": "AVX2", "compiler": "GNU"},
+            "data": {"points": list(points)}}
 
 
 RUN = {"contestant": "a", "epsilon": 1.0, "error": 1e-3, "seconds": 0.5, "smallest": 0.25, "league": "ssp", "ours": True,
@@ -40,6 +41,24 @@ class SpeedReport(unittest.TestCase):
             self.assertEqual(after["peers-kaps"], before["peers-kaps"])
             self.assertEqual({point["error"] for point in after["peers-kaps"]["data"]["points"]}, {1e-3})
             self.assertIn("runs", module.records.read(next(folder.glob("*.json.gz")))["peers-kaps"]["data"]["points"][0])
+
+    def test_a_table_is_that_of_the_machine_that_measured_it_last(self):
+        module = report()
+        first, second = result([["old"]], [copy.deepcopy(RUN)]), result([["new"]], [copy.deepcopy(RUN)])
+        second["machine"] = second["machine"] | {"date": "2026-11-27T00:00:00Z", "processor": "Test 2"}
+        later = result([["later"]], [copy.deepcopy(RUN)])
+        later["machine"] = later["machine"] | {"date": "2026-11-28T00:00:00Z"}
+        with tempfile.TemporaryDirectory() as folder:
+            folder = Path(folder)
+            module.keep(module.compact({"plain": first, "peers-kaps": later}), folder)
+            module.keep(module.compact({"plain": second, "peers-kaps": copy.deepcopy(second)}), folder)
+            module.forget_superseded(module.newest_first(folder), folder)
+            machines = module.newest_first(folder)
+            newest = module.newest_tables(machines)
+            self.assertEqual([newest["plain"]["rows"], newest["peers-kaps"]["rows"]], [[["new"]], [["later"]]])
+            self.assertEqual([bool(machine["plain"]["data"]["points"]) for machine in machines], [False, True])  # newest machine first
+            self.assertEqual([bool(machine["peers-kaps"]["data"]["points"]) for machine in machines], [True, False])
+            self.assertIn("2026-11-26 to 2026-11-28, Test 1", module.measured_on(*machines[0].values()))
 
 
 if __name__ == "__main__":

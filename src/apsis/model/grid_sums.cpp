@@ -155,7 +155,7 @@ void multiply(const double* a, int lines, const double* g, int n, double* m) {
 
 double entropy(const double* w, const double* g, const double* h, double degrees, int n) {
   N sum[vectors];
-  for (int i = 0; i < vectors; ++i) sum[i] = N(0.0);
+  for (N& one : sum) one = N(0.0);
   for (int j = 0; j < n; j += sum_chains)
     for (int i = 0; i < vectors && j + i * lanes < n; ++i) {
       const int k = j + i * lanes, count = n - k;

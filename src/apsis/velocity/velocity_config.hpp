@@ -10,7 +10,7 @@ namespace apsis {
 
 /// How a kinetic model computes its discrete equilibrium.
 enum class equilibrium_choice {
-  automatic,  ///< the formula where its discrete moments are exact, else `discrete`
+  automatic,  ///< the formula where its discrete moments are exact on uniform lines, else `discrete`
   formula,    ///< the Maxwellian at the grid points
   discrete    ///< the minimizer of the entropy with the discrete moments
 };

@@ -13,17 +13,19 @@ namespace apsis::HWY_NAMESPACE {
 
 bool weigh(const double* m, const double* v, double u, const target_rows::cubic* of_lines, int lines,
            const double* f, double keep, int n, double* e) {
+  using N = pack<wide>;
+  const int length = static_cast<int>(hn::Lanes(wide()));
   bool raised = false;
   const bool bounded = keep < std::numeric_limits<double>::infinity();  // ∞ · 0 is NaN
   for (int line = 0; line < lines; ++line, m += n, f += n, e += n) {
     const target_rows::cubic p = of_lines[line];
-    for_packs(n, [&](auto lanes, int k) APSIS_PACKED {
-      using N = pack<decltype(lanes)>;
-      const cubic_polynomial<N> of{N(p.k0), N(p.k1), N(p.k2), N(p.k3)};
-      N value = N::load(m + k) * of(N::load(v + k) - N(u));
-      if (bounded) raised |= raise(value, N(keep), N::load(f + k));
-      value.store(e + k);
-    });
+    const cubic_polynomial<N> of{N(p.k0), N(p.k1), N(p.k2), N(p.k3)};
+    for (int k = 0; k < n; k += length) {
+      const int count = n - k;
+      N value = load_some(m + k, count) * of(load_some(v + k, count) - N(u));
+      if (bounded) raised |= raise(value, N(keep), load_some(f + k, count));
+      store_some(value, count, e + k);
+    }
   }
   return raised;
 }

@@ -189,7 +189,7 @@ def comparison(machines, selection=("",)):
                 if measure.startswith(selection)]
     table = markdown(("measure", *(processor(any_of(results)) for results in machines)),
                      [(measure, *(column.get(measure) for column in columns)) for measure in measures])
-    return table + "\n\n" + "<br>\n".join(f"*{measured_on(*results.values())}*" for results in machines)
+    return table + "\n\n" + "<br>\n".join(f"*{measured_on(*results.values())}.*" for results in machines)
 
 
 # --- pictures --------------------------------------------------------------------------------------------------------------------

@@ -141,12 +141,16 @@ bool gas::is_good_enough(const double* of_g, const State& state, const double* g
   return moment_defect(grid_, g, of_g, to_fluid_state(of_g, dimensions())) <= round_off;
 }
 
+/// The moments of the formula are exact on uniform lines alone.
+bool gas::tries_formula() const {
+  return choice_ == equilibrium_choice::formula ||
+         (choice_ == equilibrium_choice::automatic && grid_.uniform());
+}
+
 /// Exists for the moments of every g ≥ 0; where the formula is undefined (empty space, T = 0 up to rounding)
 /// it is the discrete Maxwellian.
 bool gas::equilibrium_of_g(const double* of_g, double* g) const {
-  // The moments of the formula are exact on uniform lines alone.
-  if (choice_ == equilibrium_choice::formula ||
-      (choice_ == equilibrium_choice::automatic && grid_.uniform())) {
+  if (tries_formula()) {
     const fluid_state s = to_fluid_state(of_g, dimensions());
     if (s.admissible()) {
       formula_maxwellian(grid_, s, g);
@@ -157,8 +161,7 @@ bool gas::equilibrium_of_g(const double* of_g, double* g) const {
 }
 
 int gas::equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const {
-  if (dimensions() != 1 || choice_ == equilibrium_choice::discrete ||
-      (choice_ == equilibrium_choice::automatic && !grid_.uniform())) {
+  if (dimensions() != 1 || !tries_formula()) {
     for (int p = 0; p < rows; ++p)
       if (!equilibrium_of_g(of_g + p * moment_count(), g + p * pitch)) return p;
     return rows;

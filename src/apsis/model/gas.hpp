@@ -62,6 +62,7 @@ class gas {
   static constexpr int most_moments = 5;
   /// of_g ← ω of g alone in the equilibrium of ω; returns h/g.
   double moments_of_g(const double* omega, double* of_g) const;
+  bool tries_formula() const;
   bool equilibrium_of_g(const double* of_g, double* g) const;
   int equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const;
   void fill_h(double energy, double* row) const;

@@ -184,7 +184,7 @@ central_moments compute_central_moments(const gas& of, const double* row, const 
   thread_local aligned_vector<double> functions;
   const int count = central_functions(grid, state, functions);
   std::array<grid_sums::powers, grid_sums::most_functions> g{}, h{};
-  const grid_sums::axis axis{grid.last_line().points(), grid.last_line().v().data(), grid.weights_of_last()};
+  const grid_sums::axis axis = last_axis(grid);
   grid_sums::sum(axis, grid.lines(), row, state.u[last], functions.data(), count, g.data());
   if (of.reduced())
     grid_sums::sum(axis, grid.lines(), row + grid.size(), state.u[last], functions.data(),

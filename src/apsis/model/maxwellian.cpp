@@ -34,11 +34,11 @@ void moments_on_line(const velocity_grid& grid, const double* f, std::ptrdiff_t 
   }
 }
 
+}  // namespace
+
 grid_sums::axis last_axis(const velocity_grid& grid) {
   return {grid.last_line().points(), grid.last_line().v().data(), grid.weights_of_last()};
 }
-
-}  // namespace
 
 void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega) {

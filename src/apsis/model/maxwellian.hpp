@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/exec/aligned.hpp>
+#include <apsis/model/grid_sums.hpp>
 #include <apsis/model/velocity_rows.hpp>
 #include <apsis/velocity/velocity_grid.hpp>
 
@@ -43,6 +44,8 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega);
 void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega);
 
+/// Returns the last direction of a grid with the weights that sum with functions_of_lines().
+grid_sums::axis last_axis(const velocity_grid& grid);
 /// Returns the first moment, the density ρ of a row.
 double kinetic_mass(const velocity_grid& grid, const double* f);
 

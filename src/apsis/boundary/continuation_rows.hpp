@@ -8,9 +8,9 @@ namespace apsis {
 /// The continuation of a solution beyond a face, for the instruction set of this processor.
 namespace continuation_rows {
 
-/// Fills the rows of ghost cells 1, 2, … beyond a face from those of the three cells inside, the nearest one
-/// first, all of `width` components: a parabola through the three averages, less steep where they are not
-/// smooth.
+/// Fills the rows of ghost cells 1, 2, … beyond a face, `width` components each. `inside` are the three cells
+/// inside, the nearest one first. The continuation is a parabola through their averages, less steep where
+/// they are not smooth.
 void fill(const std::array<const double*, 3>& inside, int width, std::span<double* const> ghosts);
 
 }  // namespace continuation_rows

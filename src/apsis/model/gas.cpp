@@ -227,9 +227,9 @@ double gas::entropy(const double* row) const {
   return grid_.weight() * grid_sums::entropy(weights, row, h, 0.5 * (degrees_ - dimensions()), grid_.size());
 }
 
-/// For ω of g one addition and two multiply–adds on a line, or one multiply–add for each of d + 1 functions
-/// of the lines; one for that of h. For M two multiplications per point on a line (without the first vector),
-/// or one per point of a product of lines; one for that of h.
+/// For ω of g one addition and two multiply–adds on a line. In a product of lines it is one multiply–add for
+/// each of d + 1 functions of the lines. For M two multiplications per point on a line (without the first
+/// vector), or one per point of a product. For h one operation each.
 double gas::operations() const {
   const bool on_a_line = dimensions() == 1;
   const double of_g = on_a_line ? 3.0 + 2.0 : dimensions() + 1.0 + 1.0, of_h = 2.0;

@@ -15,9 +15,8 @@ namespace apsis::HWY_NAMESPACE {
 using N = pack<wide>;
 
 constexpr int lanes = static_cast<int>(hn::MaxLanes(wide())), vectors = vectors_of_chains;
-/// Lines that are added one after the other; more are halved. Of a Gaussian, most terms lie far out, and
-/// added one by one to a sum that is already large they would all be rounded away, which is a loss of the
-/// same sign in every cell and step.
+/// Lines that are added one after the other; more are halved. Most terms of a Gaussian lie far out. Added one
+/// by one to a large sum they would all be rounded away: a loss of the same sign in every cell and step.
 constexpr int longest_chain = 16;
 
 /// Consecutive points of all lines.

@@ -32,8 +32,9 @@ void multiply(const double* a, int lines, const double* g, int n, double* m);
 /// h_j ← factor g_j, j = 0 … n−1.
 void scale(double factor, const double* g, int n, double* h);
 
-/// Returns Σ_j w_j g_j (log g_j + degrees log(g_j/h_j)) for g, h ≥ 0, 0 log 0 = 0; logarithms are those of
-/// the smallest normal number below it. w = nullptr: all weights are 1; h = nullptr: Σ w g log g.
+/// Returns Σ_j w_j g_j (log g_j + degrees log(g_j/h_j)) for g, h ≥ 0 with 0 log 0 = 0. Below the smallest
+/// normal number a logarithm is that of this number. w = nullptr: all weights are 1; h = nullptr: Σ w g log
+/// g.
 double entropy(const double* w, const double* g, const double* h, double degrees, int n);
 
 }  // namespace grid_sums

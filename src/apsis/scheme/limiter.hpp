@@ -58,11 +58,12 @@ inline constexpr double least_cfl_number = 1e-3;
 /// Limits fluxes. The flux function of point values may be negative where the solution touches zero (near a
 /// minimum it is lower by Δx² u''/24), so edge values must not be cut off at zero. Instead the fluxes into
 /// and out of a cell are limited together, between first-order upwind and the high-order edge (as in Xu,
-/// Math. Comp. 83, 2014, or Zalesak, JCP 31, 1979). In the direction of motion, with the values u_up, u ≥ 0,
-/// the values w = low_order_edge(u) and the corrections A = edge − w of inflow and outflow, returns the
-/// fraction ϑ ∈ [0, 1] of the corrections that decrease u, such that
+/// Math. Comp. 83, 2014, or Zalesak, JCP 31, 1979).
+/// Let u_up, u ≥ 0 be values in the direction of motion, w = low_order_edge(u), and A = edge − w the
+/// corrections of inflow and outflow. Returns the fraction ϑ ∈ [0, 1] of the corrections that decrease u,
+/// such that
 ///     u − κ (w + ϑ A_out⁺ − w_up + ϑ A_in⁻) ≥ absolute_margin
-/// if K = u − κ w + κ w_up allows it; ϑ = 0 if K is below the margin. `inverse_cfl` is 1/κ ≥ 1: an outflow of
+/// if K = u − κ w + κ w_up allows it. ϑ = 0 if K is below the margin. `inverse_cfl` is 1/κ ≥ 1: an outflow of
 /// so many times the value would empty the cell.
 inline double limiter_coefficient(double u_up, double u, double a_in, double a_out, double inverse_cfl) {
   // Both sides are divided by κ, because κ A may underflow to 0.

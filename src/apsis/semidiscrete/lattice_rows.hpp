@@ -39,8 +39,8 @@ void clear_gaps(const layout& at, double* places);
 /// Sets the numbers of the last points to 0, the first ones of lines where motion is not `forward`.
 void clear_ends(const layout& at, bool forward, double* places);
 
-/// sum ← sum + rate (out of the point upstream − out) at all points of a row, `out` being fluxes out of
-/// points with this layout, and `forward` the direction of motion.
+/// sum ← sum + rate (out of the point upstream − out) at all points of a row. `out` are fluxes out of points
+/// with this layout; `forward` is the direction of motion.
 void add_differences(const layout& at, const double* out, bool forward, double rate, double* sum);
 
 /// acc ← acc + β change for n numbers, and 0 where two roundings of subnormal numbers exceed the value.

@@ -8,6 +8,7 @@
 #include <apsis/model/formulas/target.hpp>
 #include <apsis/model/formulas/velocity.hpp>
 #include <apsis/model/grid_sums.hpp>
+#include <apsis/model/line_powers.hpp>
 #include <apsis/model/line_sums.hpp>
 #include <apsis/model/relaxation_rows.hpp>
 #include <apsis/model/target_rows.hpp>
@@ -57,6 +58,10 @@ TEST(formulas, exponential_and_logarithm_are_accurate_to_two_units_in_the_last_p
       // Without a fused product the reduced argument has another rounding.
       RC_ASSERT(std::abs(scalar::exp_of(x) - e) <= 2.3e-16L * e);
       RC_ASSERT(std::abs(value_of(scalar::exp_of(unfused(x))) - e) <= 4.5e-16L * e);
+      const double small = random.uniform(-scalar::small_exponent, scalar::small_exponent);
+      const long double of_small = std::exp(static_cast<long double>(small));
+      RC_ASSERT(std::abs(scalar::exp_of_small(small) - of_small) <= 2.3e-16L * of_small);
+      RC_ASSERT(std::abs(value_of(scalar::exp_of_small(unfused(small))) - of_small) <= 2.3e-16L * of_small);
       RC_ASSERT(std::abs(scalar::log_of(y) - l) <= 2.3e-16L * std::abs(l));
       RC_ASSERT(std::abs(value_of(scalar::log_of(unfused(y))) - l) <= 4.5e-16L * std::abs(l));
     }
@@ -258,6 +263,41 @@ N sum_over_lines(const double* f, std::size_t apart, const double* a, std::size_
 }
 
 }  // namespace
+
+TEST(formulas, powers_on_a_line_and_their_changes_are_those_of_single_numbers) {
+  check_property("line powers", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40));
+    const auto w = drawn(n, random, any_size), v = drawn(n, random, any_velocity),
+               b = drawn(n, random, any_size);
+    const double u = any_velocity(random), beta = random.uniform(-2e-4, 2e-4),
+                 gamma = random.uniform(-1e-5, 1e-5);
+    const bool weighted = random.one_in(2);
+    const apsis::line_powers::points line{static_cast<int>(n), v.data(), weighted ? b.data() : nullptr};
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      auto changed = w;
+      const auto before = apsis::line_powers::sum(line, u, w.data()),
+                 after = apsis::line_powers::change(line, u, beta, gamma, changed.data());
+      std::vector<scalar::sums_of_six_powers<N>> of(chains), of_changed(chains);
+      for (std::size_t j = 0; j < n; ++j) {
+        const N c = N(v[j]) - N(u), here(w[j]), there = scalar::changed_weight(here, c, N(beta), N(gamma));
+        RC_ASSERT(same_bits(changed[j], value_of(there)));
+        of[j % chains].add(weighted ? here * N(b[j]) : here, c);
+        of_changed[j % chains].add(weighted ? there * N(b[j]) : there, c);
+      }
+      for (std::size_t p = 0; p < before.size(); ++p) {
+        std::vector<N> parts, parts_after;
+        for (std::size_t i = 0; i < chains; ++i) {
+          parts.push_back(of[i].of[p]);
+          parts_after.push_back(of_changed[i].of[p]);
+        }
+        RC_ASSERT(same_bits(before[p], sum_of_lanes(parts)));
+        RC_ASSERT(same_bits(after[p], sum_of_lanes(parts_after)));
+      }
+    });
+  });
+}
 
 TEST(formulas, sums_over_a_grid_are_those_of_single_numbers) {
   check_property("grid sums", [] {

@@ -1,5 +1,6 @@
 #include <apsis/model/line_family.hpp>
 #include <apsis/model/maxwellian.hpp>
+#include <apsis/model/nearby_maxwellian.hpp>
 #include <apsis/model/realizable_moments.hpp>
 #include <apsis/model/tensor_product.hpp>
 
@@ -202,7 +203,13 @@ class entropy_dual {
 
 }  // namespace
 
-bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m) {
+bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m, line_moments* of_m) {
+  const fluid_state state = to_fluid_state(omega, grid.dimensions());
+  return (state.admissible() && nearby_maxwellian(grid, state, m, of_m)) ||
+         general_maxwellian(grid, omega, m);
+}
+
+bool general_maxwellian(const velocity_grid& grid, const double* omega, double* m) {
   const auto moments = compute_realizable(grid, omega);
   if (!moments) return false;
   if (!(moments->rho > 0.0)) {

@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/model/grid_sums.hpp>
+#include <apsis/model/nearby_maxwellian.hpp>
 #include <apsis/model/velocity_support.hpp>
 #include <apsis/velocity/velocity_line_registry.hpp>
 
@@ -131,37 +132,25 @@ void gas::fill_h(double energy, double* row) const {
   grid_sums::scale(energy, row, grid_.size(), row + grid_.size());
 }
 
+/// Elsewhere the moments of the formula have errors of one sign, which add up from step to step.
 template <class State>
-bool gas::is_good_enough(const double* of_g, const State& state, const double* g) const {
-  // Four roundings, the contribution of an equilibrium to the rounding_bound of a step. A larger defect would
-  // have the same sign in every step; Newton's method reduces it.
-  constexpr double round_off = 4.5e-16;
-  if (choice_ == equilibrium_choice::formula || formula_has_exact_moments(grid_, state)) return true;
-  // The midpoint rule is spectrally accurate: either the defect is round-off or the grid is too coarse.
-  return moment_defect(grid_, g, of_g, to_fluid_state(of_g, dimensions())) <= round_off;
-}
-
-/// The moments of the formula are exact on uniform lines alone.
-bool gas::tries_formula() const {
+bool gas::keeps_formula(const State& state) const {
   return choice_ == equilibrium_choice::formula ||
-         (choice_ == equilibrium_choice::automatic && grid_.uniform());
+         (choice_ == equilibrium_choice::automatic && formula_has_exact_moments(grid_, state));
 }
 
 /// Exists for the moments of every g ≥ 0; where the formula is undefined (empty space, T = 0 up to rounding)
 /// it is the discrete Maxwellian.
-bool gas::equilibrium_of_g(const double* of_g, double* g) const {
-  if (tries_formula()) {
-    const fluid_state s = to_fluid_state(of_g, dimensions());
-    if (s.admissible()) {
-      formula_maxwellian(grid_, s, g);
-      if (is_good_enough(of_g, s, g)) return true;
-    }
-  }
-  return discrete_maxwellian(grid_, of_g, g);
+bool gas::equilibrium_of_g(const double* of_g, double* g, line_moments* of_row) const {
+  const fluid_state s = to_fluid_state(of_g, dimensions());
+  if (!s.admissible() || !keeps_formula(s)) return discrete_maxwellian(grid_, of_g, g, of_row);
+  formula_maxwellian(grid_, s, g);
+  if (of_row != nullptr && formula_has_exact_moments(grid_, s)) of_row->set_gaussian(s.T);
+  return true;
 }
 
 int gas::equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const {
-  if (dimensions() != 1 || !tries_formula()) {
+  if (dimensions() != 1) {
     for (int p = 0; p < rows; ++p)
       if (!equilibrium_of_g(of_g + p * moment_count(), g + p * pitch)) return p;
     return rows;
@@ -172,10 +161,12 @@ int gas::equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t
     const double* of = of_g + first * 3;
     double* to = g + first * pitch;
     const int found = formula_maxwellians_on_line(grid_, of, some, to, pitch, states.data());
-    for (int p = 0; p < found; ++p)
-      if (!is_good_enough(of + p * 3, states[static_cast<std::size_t>(p)], to + p * pitch) &&
-          !discrete_maxwellian(grid_, of + p * 3, to + p * pitch))
+    for (int p = 0; p < found; ++p) {
+      const line_state& state = states[static_cast<std::size_t>(p)];
+      if (!keeps_formula(state) && !nearby_maxwellian_on_line(grid_, state, to + p * pitch) &&
+          !general_maxwellian(grid_, of + p * 3, to + p * pitch))
         return first + p;
+    }
     first += found;
     if (found == some) continue;
     if (!equilibrium_of_g(of_g + first * 3, g + first * pitch)) return first;
@@ -186,6 +177,16 @@ int gas::equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t
 
 bool gas::equilibrium(const double* omega, double* row) const {
   return equilibria(omega, 1, row, 0) == 1;
+}
+
+bool gas::equilibrium(const double* omega, double* row, line_moments& of_row) const {
+  of_row.known = false;
+  if (!reduced()) return equilibrium_of_g(omega, row, &of_row);
+  std::array<double, most_moments> of_g;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  of_row.others = moments_of_g(omega, of_g.data());
+  if (!equilibrium_of_g(of_g.data(), row, &of_row)) return false;
+  fill_h(of_row.others, row);
+  return true;
 }
 
 int gas::equilibria(const double* omega, int rows, double* row, std::ptrdiff_t pitch) const {

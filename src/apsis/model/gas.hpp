@@ -39,6 +39,8 @@ class gas {
   /// row ← the equilibrium of ω. Returns false without one on the grid, which moments of rows f ≥ 0 have
   /// always.
   bool equilibrium(const double* omega, double* row) const;
+  /// equilibrium() with its moments, which may stay unknown.
+  bool equilibrium(const double* omega, double* row, line_moments& of_row) const;
   /// equilibrium() of several rows, `pitch` apart; returns the number of rows before the first without one.
   int equilibria(const double* omega, int rows, double* row, std::ptrdiff_t pitch) const;
   /// Returns why ω has no equilibrium, for messages.
@@ -62,12 +64,11 @@ class gas {
   static constexpr int most_moments = 5;
   /// of_g ← ω of g alone in the equilibrium of ω; returns h/g.
   double moments_of_g(const double* omega, double* of_g) const;
-  bool tries_formula() const;
-  bool equilibrium_of_g(const double* of_g, double* g) const;
+  bool equilibrium_of_g(const double* of_g, double* g, line_moments* of_row = nullptr) const;
   int equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const;
   void fill_h(double energy, double* row) const;
   template <class State>
-  bool is_good_enough(const double* of_g, const State& state, const double* g) const;
+  bool keeps_formula(const State& state) const;
   std::string row_of(std::span<const double> given, std::span<double> row) const;
 
   velocity_grid grid_;

@@ -2,6 +2,7 @@
 
 #include <apsis/exec/aligned.hpp>
 #include <apsis/model/grid_sums.hpp>
+#include <apsis/model/line_moments.hpp>
 #include <apsis/model/velocity_rows.hpp>
 #include <apsis/velocity/velocity_grid.hpp>
 
@@ -83,8 +84,10 @@ bool formula_has_exact_moments(const velocity_grid& grid, const line_state& stat
 /// discrete Maxwellian exp(α + β·v + γ|v|²) (Mieussens, M3AS 10, 2000), and where ω lies on the boundary of
 /// what m ≥ 0 can have, its limit, which is 0 at some points (docs/space.md). Exists for the moments of every
 /// f ≥ 0, a row of zeros included; ω may miss the boundary by the rounding of sums. False for other ω, for
-/// which why_unrealizable() has the reason.
-bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m);
+/// which why_unrealizable() has the reason. Sets `of_m`, if given, to the moments of m, or leaves them
+/// unknown.
+bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m,
+                         line_moments* of_m = nullptr);
 /// The discrete Maxwellian with the moments of a state.
 bool discrete_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
 /// Returns the reason why no row f ≥ 0 has the moments ω, for messages: "temperature -0.3 is not positive";

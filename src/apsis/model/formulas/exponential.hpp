@@ -37,6 +37,18 @@ APSIS_FORMULA N exp_of(N x) {
   return select(x > N(-1000.0), y, N(0.0));
 }
 
+/// Largest |x| of exp_of_small().
+inline constexpr double small_exponent = 0x1p-6;
+
+/// e^x to about one unit in the last place for |x| ≤ small_exponent: its Taylor polynomial, whose first
+/// omitted term is x⁷/5040 < 5e-17.
+template <class N>
+APSIS_FORMULA N exp_of_small(N x) {
+  const N x2 = x * x;
+  const N p01 = fma(N(1.0 / 6.0), x, N(0.5)), p23 = fma(N(1.0 / 120.0), x, N(1.0 / 24.0));
+  return fma(fma(fma(N(1.0 / 720.0), x2, p23), x2, p01), x2, x) + N(1.0);
+}
+
 /// log x to about one unit in the last place, for x normal and positive. With x = 2^e y, √½ ≤ y < √2, and
 /// z = (y − 1)/(y + 1), it is e log 2 + 2 artanh z; polynomial as in log() of musl, in the order of
 /// Highway 1.0.

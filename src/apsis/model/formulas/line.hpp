@@ -1,4 +1,4 @@
-// The formulas of model/line_sums.hpp.
+// The formulas of model/line_sums.hpp and model/line_powers.hpp.
 #if defined(APSIS_MODEL_FORMULAS_LINE) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_MODEL_FORMULAS_LINE
 #undef APSIS_MODEL_FORMULAS_LINE
@@ -48,6 +48,29 @@ struct sums_of_products {
     below_x = fma(down, x, below_x);
     below_c = fma(down, c, below_c);
     cc = fma(weight * c, c, cc);
+  }
+};
+
+/// w e^(βc + γc²), small exponents.
+template <class N>
+APSIS_FORMULA N changed_weight(N w, N c, N beta, N gamma) {
+  return w * exp_of_small(fma(gamma, c, beta) * c);
+}
+
+/// Σ w c^p, p = 0 … 5.
+template <class N>
+struct sums_of_six_powers {
+  N of[6];
+
+  APSIS_FORMULA sums_of_six_powers() : of{N(0.0), N(0.0), N(0.0), N(0.0), N(0.0), N(0.0)} {}
+  APSIS_FORMULA void add(N w, N c) {
+    const N c2 = c * c, w2 = w * c2;
+    of[0] = of[0] + w;
+    of[1] = fma(w, c, of[1]);
+    of[2] = of[2] + w2;
+    of[3] = fma(w2, c, of[3]);
+    of[4] = fma(w2, c2, of[4]);
+    of[5] = fma(w2 * c2, c, of[5]);
   }
 };
 

@@ -1,6 +1,7 @@
 #include <apsis/model/gas_target.hpp>
 
 #include <apsis/model/grid_sums.hpp>
+#include <apsis/model/internal/target_moments.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -81,9 +82,8 @@ bool weigh(const velocity_grid& grid, const fluid_state& state, const target_pol
   }
 }
 
-/// Relative size of a defect that counts as rounding, and the largest bound on an energy that is a difference
-/// of large numbers.
-constexpr double rounding = 4.5e-16, largest_bound = 1e-12;
+/// The largest bound on an energy that is a difference of large numbers.
+constexpr double largest_bound = 1e-12;
 /// Smallest variance of a base in units of Δv²: below it, a Gaussian at points has other moments.
 constexpr double narrowest = 0.25;
 
@@ -99,19 +99,9 @@ double widest_gap(const velocity_grid& grid, const fluid_state& state) {
   return widest * widest;
 }
 
-/// The differences of moments about the bulk velocity, each relative to its scale.
-struct defect {
-  double mass = 0.0, energy = 0.0;
-  std::array<double, 3> momentum{};
-
-  double size() const { return std::max({std::abs(mass), std::abs(energy), largest_momentum()}); }
-  double largest_momentum() const {
-    return std::max({std::abs(momentum[0]), std::abs(momentum[1]), std::abs(momentum[2])});
-  }
-};
-
-defect defect_of(const double* after, const double* omega, const fluid_state& state, int d, double variance) {
-  defect found;
+target_defect defect_of(const double* after, const double* omega, const fluid_state& state, int d,
+                        double variance) {
+  target_defect found;
   const double speed = std::sqrt(variance);
   const double mass = after[0] - omega[0];
   double energy = after[d + 1] - omega[d + 1];
@@ -132,21 +122,10 @@ double energy_ratio(const double* omega, int d, double variance) {
 }
 
 /// Whether the moments have the accuracy of targets, relative to those at rest.
-bool is_accurate(const defect& found, double ratio) {
+bool is_accurate(const target_defect& found, double ratio) {
   return std::abs(found.mass) <= target_accuracy &&
          found.largest_momentum() <= std::min(target_accuracy * std::sqrt(ratio), largest_bound) &&
          std::abs(found.energy) <= std::min(target_accuracy * ratio, largest_bound);
-}
-
-/// Subtracts the defect, with the moments of a Gaussian of this variance.
-void correct(const defect& found, int d, double variance, target_polynomial& p) {
-  const double speed = std::sqrt(variance);
-  const double gamma = -(found.energy - 0.5 * d * found.mass) / (d * variance);
-  p.k += -found.mass - gamma * d * variance;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) {
-    p.l[k] -= found.momentum[k] / speed;
-    p.a[k][k] += gamma;
-  }
 }
 
 /// Functions of the other d − 1 components of c for every line: 1, c_k, c_k c_l (k ≤ l), and c_k Σ c_l², each
@@ -209,25 +188,32 @@ central_moments compute_central_moments(const gas& of, const double* row, const 
   return m;
 }
 
-bool conservative_target(const gas& of, const double* omega, const double* base, const target_shape& given,
-                         const double* f, double keep, double* e, bool& raised) {
+bool conservative_target(const gas& of, const double* omega, const target_base& base,
+                         const target_shape& given, const double* f, double keep, double* e, bool& raised) {
   const velocity_grid& grid = of.grid();
   const int d = grid.dimensions();
   const fluid_state state = of.state(omega);
   target_shape shape = given;
   if (!(shape.variance >= narrowest * widest_gap(grid, state))) return false;
+  const auto weigh_all = [&](bool with_h) {
+    bool some = weigh(grid, state, shape.of_g, base.row, f, keep, e);
+    if (of.reduced() && with_h)
+      some |= weigh(grid, state, shape.of_h, base.row + grid.size(), f + grid.size(), keep, e + grid.size());
+    raised |= some;
+    return some;
+  };
+  if (base.moments.known && moments_of_product(base.moments, d).correct(shape) && !weigh_all(true))
+    return true;
   // Where corrections no longer reduce a defect, target_accuracy is enough.
   const double ratio = energy_ratio(omega, d, shape.variance),
-               enough = std::min(rounding * ratio, largest_bound);
+               enough = std::min(target_rounding * ratio, largest_bound);
   double best = 1e300;
   constexpr int most_corrections = 12;
   for (int iteration = 0; iteration < most_corrections; ++iteration) {
-    raised |= weigh(grid, state, shape.of_g, base, f, keep, e);
-    if (of.reduced() && iteration == 0)
-      raised |= weigh(grid, state, shape.of_h, base + grid.size(), f + grid.size(), keep, e + grid.size());
+    weigh_all(iteration == 0);
     std::array<double, 5> after{};
     of.moments(e, 0, 1, after.data());
-    const defect found = defect_of(after.data(), omega, state, d, shape.variance);
+    const target_defect found = defect_of(after.data(), omega, state, d, shape.variance);
     const double size = found.size();
     if (size <= enough) return true;
     // Corrections contract as long as little of the row is cut off. A defect that is rounding already varies
@@ -238,7 +224,7 @@ bool conservative_target(const gas& of, const double* omega, const double* base,
     }
     if (iteration + 1 == most_corrections) return is_accurate(found, ratio);
     best = size;
-    correct(found, d, shape.variance, shape.of_g);
+    correction_of(found, d, shape.variance).add_to(shape.of_g, d);
   }
   return false;
 }

@@ -33,11 +33,17 @@ struct target_shape {
 /// Largest relative difference of the moments of conservative_target() from ω.
 inline constexpr double target_accuracy = 1e-14;
 
+/// The row that a target is a polynomial times.
+struct target_base {
+  const double* row;     ///< g, or (g, h)
+  line_moments moments;  ///< those of the row, if known
+};
+
 /// e ← max(base · P, −keep f) for a row f ≥ 0, where P is corrected by α + β·c + γ|c|² in g until e has the
 /// moments ω: a combination of f and e stays nonnegative and conservative, also where P is negative in the
 /// tails. Sets `raised` where a value was raised to its bound. Returns false if e is not found; it is then
 /// undefined.
-bool conservative_target(const gas& of, const double* omega, const double* base, const target_shape& shape,
-                         const double* f, double keep, double* e, bool& raised);
+bool conservative_target(const gas& of, const double* omega, const target_base& base,
+                         const target_shape& shape, const double* f, double keep, double* e, bool& raised);
 
 }  // namespace apsis

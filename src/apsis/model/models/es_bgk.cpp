@@ -118,7 +118,7 @@ class es_bgk_model final : public gas_model {
         target.of_g.a[k][l] = target.of_h.a[k][l] =
             quadratic(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
     target.of_h.k += derivative * change_of_others / shape.others;
-    return conservative_target(g, omega, base.data(), target, f, keep, e, raised);
+    return conservative_target(g, omega, {base.data(), {}}, target, f, keep, e, raised);
   }
 
   /// row ← G.

@@ -59,7 +59,8 @@ class shakhov_model final : public gas_model {
     const int d = g.dimensions();
     thread_local std::vector<double> base;
     base.resize(static_cast<std::size_t>(components()));
-    if (!g.equilibrium(omega, base.data())) return false;
+    target_base of{base.data(), {}};
+    if (!g.equilibrium(omega, base.data(), of.moments)) return false;
     const fluid_state state = g.state(omega);
     if (!state.admissible()) {
       std::copy(base.begin(), base.end(), e);
@@ -76,7 +77,7 @@ class shakhov_model final : public gas_model {
         shape.of_h.l[i] = -static_cast<double>(d) * along;
         shape.of_g.w[i] = shape.of_h.w[i] = along / state.T;
       }
-      return conservative_target(g, omega, base.data(), shape, f, bound, row, raised);
+      return conservative_target(g, omega, of, shape, f, bound, row, raised);
     };
     return find_target(omega, s, rate_of_stage(prandtl_, s[d]), keep, e, cut, with_part);
   }

@@ -1,0 +1,97 @@
+#include <apsis/model/internal/target_moments.hpp>
+
+namespace apsis {
+
+target_correction correction_of(const target_defect& found, int d, double variance) {
+  target_correction by{};
+  by.a = -(found.energy - 0.5 * d * found.mass) / (d * variance);
+  by.k = -found.mass - by.a * d * variance;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(d); ++i)
+    by.l[i] = -found.momentum[i] / std::sqrt(variance);
+  return by;
+}
+
+moments_of_product::moments_of_product(const line_moments& lines, int dimensions)
+    : lines_(lines), d_(static_cast<std::size_t>(dimensions)) {
+  for (std::size_t k = 0; k < d_; ++k) square_ += lines.of[k][2];
+  for (std::size_t k = 0; k < d_; ++k) {
+    const auto& of = lines.of[k];
+    of_square_[k] = of[3] + of[1] * (square_ - of[2]);
+    fourth_ += of[4] + of[2] * (square_ - of[2]);
+  }
+}
+
+bool moments_of_product::correct(target_shape& shape) const {
+  target_defect found = defect_of(shape);
+  double best = 1e300;
+  for (int iteration = 0; iteration < 12; ++iteration) {
+    const double size = found.size();
+    if (size <= target_rounding) return true;
+    if (!(size < 0.7 * best)) return size <= target_accuracy;
+    best = size;
+    const target_correction by = correction_of(found, static_cast<int>(d_), shape.variance);
+    by.add_to(shape.of_g, static_cast<int>(d_));
+    add(by, shape.variance, found);
+  }
+  return false;
+}
+
+/// ⟨Π c_k^p_k⟩.
+double moments_of_product::mean(const powers& p) const {
+  double product = 1.0;
+  for (std::size_t k = 0; k < d_; ++k) product *= lines_.of[k][p[k]];
+  return product;
+}
+
+/// ⟨P Π c_k^p_k⟩.
+double moments_of_product::mean(const target_polynomial& polynomial, const powers& p) const {
+  double sum = polynomial.k * mean(p);
+  for (std::size_t k = 0; k < d_; ++k) {
+    powers with = p;
+    ++with[k];
+    sum += polynomial.l[k] * mean(with);
+    for (std::size_t l = 0; l < d_; ++l) {
+      powers pair = with;
+      ++pair[l];
+      sum += polynomial.a[k][l] * mean(pair);
+      ++pair[l];
+      sum += polynomial.w[k] * mean(pair);
+    }
+  }
+  return sum;
+}
+
+target_defect moments_of_product::defect_of(const target_shape& shape) const {
+  target_defect found;
+  found.mass = mean(shape.of_g, {}) - 1.0;
+  double energy = lines_.others > 0.0 ? lines_.others * (mean(shape.of_h, {}) - 1.0) : 0.0;
+  for (std::size_t k = 0; k < d_; ++k) {
+    powers p{};
+    p[k] = 1;
+    found.momentum[k] = mean(shape.of_g, p) / std::sqrt(shape.variance);
+    p[k] = 2;
+    energy += mean(shape.of_g, p) - mean(p);
+  }
+  found.energy = 0.5 * energy / shape.variance;
+  return found;
+}
+
+/// Adds the moments of a correction.
+void moments_of_product::add(const target_correction& by, double variance, target_defect& found) const {
+  const double speed = std::sqrt(variance);
+  double mean = 0.0, energy = by.k * square_ + by.a * fourth_;
+  for (std::size_t k = 0; k < d_; ++k) {
+    mean += by.l[k] * lines_.of[k][1];
+    energy += by.l[k] * of_square_[k];
+  }
+  for (std::size_t k = 0; k < d_; ++k) {
+    const auto& of = lines_.of[k];
+    // ⟨c_k β·c⟩
+    const double with_mean = of[1] * (by.k + mean - by.l[k] * of[1]) + by.l[k] * of[2];
+    found.momentum[k] += (with_mean + by.a * of_square_[k]) / speed;
+  }
+  found.mass += by.k + mean + by.a * square_;
+  found.energy += 0.5 * energy / variance;
+}
+
+}  // namespace apsis

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <apsis/model/gas_target.hpp>
+#include <apsis/model/line_moments.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace apsis {
+
+/// Relative size of a defect that counts as rounding.
+inline constexpr double target_rounding = 4.5e-16;
+
+/// The differences of moments about the bulk velocity, each relative to its scale.
+struct target_defect {
+  double mass = 0.0, energy = 0.0;
+  std::array<double, 3> momentum{};
+
+  double size() const { return std::max({std::abs(mass), std::abs(energy), largest_momentum()}); }
+  double largest_momentum() const {
+    return std::max({std::abs(momentum[0]), std::abs(momentum[1]), std::abs(momentum[2])});
+  }
+};
+
+/// The polynomial α + β·c + γ|c|².
+struct target_correction {
+  double k;                   ///< α
+  std::array<double, 3> l{};  ///< β
+  double a;                   ///< γ
+
+  void add_to(target_polynomial& p, int d) const {
+    p.k += k;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(d); ++i) {
+      p.l[i] += l[i];
+      p.a[i][i] += a;
+    }
+  }
+};
+
+/// Returns what takes a defect away, with the moments of a Gaussian of this variance in d directions.
+target_correction correction_of(const target_defect& found, int d, double variance);
+
+/// Moments of polynomials times a product of lines, with which the moments of a target are restored without a
+/// pass over its row.
+class moments_of_product {
+ public:
+  moments_of_product(const line_moments& lines, int dimensions);
+
+  /// Corrects the shape so that the moments of the target are those of its base. Returns false where that
+  /// does not contract.
+  bool correct(target_shape& shape) const;
+
+ private:
+  using powers = std::array<std::size_t, 3>;
+  double mean(const powers& p) const;
+  double mean(const target_polynomial& polynomial, const powers& p) const;
+  target_defect defect_of(const target_shape& shape) const;
+  void add(const target_correction& by, double variance, target_defect& found) const;
+
+  const line_moments& lines_;
+  std::size_t d_;
+  double square_ = 0.0, fourth_ = 0.0;  // ⟨|c|²⟩, ⟨|c|⁴⟩
+  std::array<double, 3> of_square_{};   // ⟨c_k |c|²⟩
+};
+
+}  // namespace apsis

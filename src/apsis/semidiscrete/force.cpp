@@ -3,10 +3,9 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/first_error.hpp>
 #include <apsis/exec/profile.hpp>
-#include <apsis/scheme/reconstruction_registry.hpp>
+#include <apsis/scheme/limiter.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/global_integrals.hpp>
-#include <apsis/semidiscrete/upwind_rows.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +21,7 @@ namespace {
 constexpr int least_points = 5;       // on which an edge depends
 constexpr double kappa = 1.0 / 12.0;  // of limited fluxes along velocities
 constexpr int cells_of_task = 16;
+constexpr int places_together = 512;  // whose arrays fit the first-level cache
 
 std::size_t size(int n) {
   return static_cast<std::size_t>(n);
@@ -31,10 +31,16 @@ std::size_t size(int n) {
 
 /// Buffers of one thread, of the longest layout.
 struct force::workspace {
-  aligned_vector<double> values, edges, out;                ///< [place]
-  aligned_vector<double> still, moving, rate, inverse_cfl;  ///< [place]: 0, 1, a number of upwind::cells, 1/κ
-  aligned_vector<double> sum;                               ///< change of the row of a cell
-  lattice_rows::layout laid_out{};                          ///< of the values, whose gaps are 0
+  std::array<aligned_vector<double>, 5> places;  ///< of lattice_rows::places
+  aligned_vector<double> sum;                    ///< change of the row of a cell
+  lattice_rows::layout laid_out{};               ///< whose gaps are empty
+
+  lattice_rows::places places_for(const lattice_rows::layout& at) {
+    if (!(at == laid_out))
+      for (auto& one : places) std::fill(one.begin(), one.end(), 0.0);
+    laid_out = at;
+    return {places[0].data(), places[1].data(), places[2].data(), places[3].data(), places[4].data()};
+  }
 };
 
 force::~force() = default;
@@ -47,7 +53,7 @@ force::force(const model& equation, std::shared_ptr<domain> space, acceleration 
       lattice_(equation.lattice()),
       acceleration_(std::move(of)),
       limited_(edges.keeps_sign()),
-      scheme_(find_reconstruction(edges.scheme->order() == 1 ? "upwind1" : "upwind5").make()),
+      fifth_order_(edges.scheme->order() > 1),
       invariants_(equation.invariants().size()),
       workspaces_(std::make_unique<per_thread<workspace>>()) {
   if (lattice_.points.empty())
@@ -87,13 +93,8 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
   for (std::size_t k = 0; k < lattice_.points.size(); ++k)
     longest = std::max(longest, layout_along(k).size());
   workspaces_->prepare([&](workspace& here) {
-    if (here.values.size() != longest) {
-      for (auto* zeros : {&here.values, &here.edges, &here.out, &here.still, &here.rate})
-        zeros->assign(longest, 0.0);
-      here.moving.assign(longest, 1.0);
-      here.sum.resize(size(u.stride()));
-    }
-    here.inverse_cfl.assign(longest, 1.0 / std::max(limiter::least_cfl_number, kappa * share_));
+    for (auto& places : here.places) places.resize(longest);
+    here.sum.resize(size(u.stride()));
   });
   first_error failure;
   failure.run([&] {
@@ -127,53 +128,55 @@ void force::add_cell(double t, const field& u, std::span<const target<field, dou
                      workspace& here) const {
   const auto a = acceleration_in(t, cell);
   double* sums = of_cells_.data() + static_cast<std::size_t>(cell) * (invariants_ + 1);
-  std::fill(here.sum.begin(), here.sum.end(), 0.0);
   double held = 0.0;
-  for (std::size_t direction = 0; direction < lattice_.points.size(); ++direction)
-    if (a[direction] != 0.0) held += add_direction(u.row(cell), direction, a[direction], here);
+  bool fresh = true;
+  for (std::size_t direction = 0; direction < lattice_.points.size(); ++direction) {
+    if (a[direction] == 0.0) continue;
+    held += add_direction(u.row(cell), direction, a[direction], fresh, here);
+    fresh = false;
+  }
+  if (fresh) {
+    std::fill_n(sums, invariants_ + 1, 0.0);
+    return;
+  }
   equation_.invariant_densities(here.sum.data(), sums);
   sums[invariants_] = held;
   for (const auto& to : targets)
     lattice_rows::add(here.sum.data(), to.beta, u.components(), to.acc->row(cell));
 }
 
-/// Adds −a ∂f/∂v along one direction to the sum; returns the mass that enters the last points.
-double force::add_direction(const double* row, std::size_t direction, double a, workspace& here) const {
-  const lattice_rows::layout at = layout_along(direction);
-  const bool forward = a > 0.0;
+/// Adds −a ∂f/∂v along one direction to the sum, or sets it; returns the mass that enters the last points.
+double force::add_direction(const double* row, std::size_t direction, double a, bool fresh,
+                            workspace& here) const {
+  const lattice_rows::layout of_row = layout_along(direction);
+  lattice_rows::layout at = of_row;
+  at.blocks = std::clamp(places_together / at.pitch(), 1, of_row.blocks);
+  const lattice_rows::places places = here.places_for(at);
+  const lattice_rows::flux_rule rule{fifth_order_, limited_, a > 0.0,
+                                     1.0 / std::max(limiter::least_cfl_number, kappa * share_)};
   const double rate = std::abs(a) / lattice_.spacing[direction];
-  // Nothing enters through the ends: the gaps are empty, and have no edges.
-  if (!(at == here.laid_out)) {
-    for (auto* places : {&here.values, &here.edges, &here.out})
-      std::fill(places->begin(), places->end(), 0.0);
-    here.laid_out = at;
+  double held = 0.0;
+  for (int block = 0; block < of_row.blocks; block += at.blocks) {
+    lattice_rows::layout some = at;
+    some.blocks = std::min(at.blocks, of_row.blocks - block);
+    const int first = block * at.block();
+    lattice_rows::find_fluxes(some, rule, row + first, places);
+    const double* out = places.fluxes(rule);
+    lattice_rows::add_differences(some, out, rule.forward, rate, fresh, here.sum.data() + first);
+    held += mass_into_ends(some, first, rule.forward, out);
   }
-  lattice_rows::lay_out(at, row, here.values.data());
-  const double* first = here.values.data() + at.first();
-  std::array<const double*, 2 * 2 + 1> neighbours{};
-  for (int i = -2; i <= 2; ++i) neighbours[size(i + 2)] = first + i * at.apart;
-  const double* const* rows = neighbours.data() + 2;
-  const double* motion = (forward ? here.moving : here.still).data();
-  scheme_->outflow_edges(rows, 1, at.lanes(), motion, here.edges.data() + at.first());
-  lattice_rows::clear_gaps(at, here.edges.data());
-  const double* edges = here.edges.data() + at.first();
-  const upwind::cells all{
-      rows,   edges, edges, at.apart, 1, at.lanes(), motion, here.rate.data(), here.inverse_cfl.data(),
-      nullptr};
-  upwind::fluxes_out_of_cell(all, limited_, here.out.data() + at.first());
-  lattice_rows::clear_ends(at, forward, here.out.data());
-  lattice_rows::add_differences(at, here.out.data(), forward, rate, here.sum.data());
-  return rate * mass_into_ends(at, forward, here.out.data());
+  return rate * held;
 }
 
 /// Of the functions on the velocities, the first is the density of the mass.
-double force::mass_into_ends(const lattice_rows::layout& at, bool forward, const double* out) const {
+double force::mass_into_ends(const lattice_rows::layout& at, int first, bool forward,
+                             const double* out) const {
   const auto weights = equation_.velocities().weights();
   const int last = forward ? at.block() - at.apart : 0, upstream = forward ? -at.apart : at.apart;
   double mass = 0.0;
   for (int block = 0; block < at.blocks; ++block)
     for (int k = 0; k < at.apart; ++k) {
-      const int component = block * at.block() + last + k;
+      const int component = first + block * at.block() + last + k;
       if (component >= equation_.velocities().size()) return mass;
       mass += weights[size(component)] * out[at.first() + block * at.pitch() + last + k + upstream];
     }

@@ -52,8 +52,8 @@ class force {
   std::array<double, 3> acceleration_in(double t, int cell) const;
   void add_cell(double t, const field& u, std::span<const target<field, double>> targets, int cell,
                 workspace& here) const;
-  double add_direction(const double* row, std::size_t direction, double a, workspace& here) const;
-  double mass_into_ends(const lattice_rows::layout& at, bool forward, const double* out) const;
+  double add_direction(const double* row, std::size_t direction, double a, bool fresh, workspace& here) const;
+  double mass_into_ends(const lattice_rows::layout& at, int first, bool forward, const double* out) const;
 
   const model& equation_;
   std::shared_ptr<domain> space_;
@@ -61,7 +61,7 @@ class force {
   acceleration acceleration_;
   bool limited_;
   double share_ = 1.0;  ///< that the limiter is for
-  std::shared_ptr<const reconstruction> scheme_;
+  bool fifth_order_;
   std::size_t invariants_;
   mutable std::vector<double> of_cells_;  ///< invariants given to a cell, and mass into the last points
   mutable std::vector<double> given_;

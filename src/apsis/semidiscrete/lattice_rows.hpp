@@ -1,7 +1,5 @@
 #pragma once
 
-#include <apsis/semidiscrete/upwind_rows.hpp>
-
 #include <cstddef>
 
 namespace apsis {
@@ -25,23 +23,39 @@ struct layout {
   int lanes() const { return blocks * pitch(); }        ///< places of blocks and the gaps behind them
   bool operator==(const layout&) const = default;       ///< equal numbers
   int first() const { return gap * apart; }             ///< place of the first point
-  std::size_t size() const {                            ///< numbers of an array with this layout
-    return static_cast<std::size_t>(lanes()) + 2 * static_cast<std::size_t>(first());
+  std::size_t size() const {  ///< numbers of an array with this layout, for whole vectors of up to 8
+    return static_cast<std::size_t>(lanes()) + 2 * static_cast<std::size_t>(first()) + 8;
   }
 };
 
-/// Copies a row to the places of its points; gaps stay as they are.
-void lay_out(const layout& at, const double* row, double* places);
+/// How the fluxes along a line are found.
+struct flux_rule {
+  bool fifth_order,    ///< by the linear reconstruction of fifth order, else of first order
+      limited,         ///< as upwind::add_limited() does
+      forward;         ///< direction of motion
+  double inverse_cfl;  ///< 1/κ of the limiter
+};
 
-/// Sets the numbers of the gaps behind blocks to 0.
-void clear_gaps(const layout& at, double* places);
+/// Arrays of places. Between lines, before the first and behind the last one numbers are 0; find_fluxes()
+/// needs that before the first line, and keeps it.
+struct places {
+  double *values,    ///< of the row
+      *edges,        ///< downstream of each point
+      *low_order,    ///< edges of first order
+      *fractions,    ///< that the limiter leaves of corrections
+      *limited_out;  ///< limited fluxes
 
-/// Sets the numbers of the last points to 0, the first ones of lines where motion is not `forward`.
-void clear_ends(const layout& at, bool forward, double* places);
+  /// Returns the fluxes out of each point, none out of the last one.
+  double* fluxes(const flux_rule& rule) const { return rule.limited ? limited_out : edges; }
+};
 
-/// sum ← sum + rate (out of the point upstream − out) at all points of a row. `out` are fluxes out of points
-/// with this layout; `forward` is the direction of motion.
-void add_differences(const layout& at, const double* out, bool forward, double rate, double* sum);
+/// Finds the fluxes of a row. An edge depends on the values at two points to either side, beyond the ends of
+/// lines on vacuum.
+void find_fluxes(const layout& at, const flux_rule& rule, const double* row, const places& to);
+
+/// sum ← (fresh ? 0 : sum) + rate (out of the point upstream − out) at all points of a row. `out` are fluxes
+/// out of points with this layout; `forward` is the direction of motion.
+void add_differences(const layout& at, const double* out, bool forward, double rate, bool fresh, double* sum);
 
 /// acc ← acc + β change for n numbers, and 0 where two roundings of subnormal numbers exceed the value.
 void add(const double* change, double beta, int n, double* acc);

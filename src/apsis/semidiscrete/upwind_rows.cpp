@@ -124,17 +124,6 @@ void fluxes_of_cell(const cells& of, bool limited, double* in, double* out) {
   });
 }
 
-void fluxes_out_of_cell(const cells& of, bool limited, double* out) {
-  const cells run = of;
-  for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
-    using N = typename std::decay_t<decltype(way)>::number;
-    if (!limited) return way.store(outflow(way, run, 0), out, 0, 0);
-    const N inverse_cfl = N::load(run.inverse_cfl + k);
-    const auto here = next_cell(way, run, 0, inverse_cfl, first_cell(way, run, -1, inverse_cfl));
-    way.store(limited_flux(here, next_cell(way, run, 1, inverse_cfl, here)), out, 0, 0);
-  });
-}
-
 /// Operations on a component of a run of cells.
 double operations_of_run(bool limited, int cells_in_run) {
   cells run{};
@@ -169,7 +158,6 @@ HWY_EXPORT(add);
 HWY_EXPORT(add_limited);
 HWY_EXPORT(add_weights);
 HWY_EXPORT(fluxes_of_cell);
-HWY_EXPORT(fluxes_out_of_cell);
 }  // namespace
 
 namespace upwind {
@@ -201,10 +189,6 @@ void add_weights(const double* u, int width, std::span<const row_target> targets
 
 void fluxes_of_cell(const cells& run, bool limited, double* in, double* out) {
   HWY_DYNAMIC_DISPATCH(fluxes_of_cell)(run, limited, in, out);
-}
-
-void fluxes_out_of_cell(const cells& run, bool limited, double* out) {
-  HWY_DYNAMIC_DISPATCH(fluxes_out_of_cell)(run, limited, out);
 }
 
 }  // namespace upwind

@@ -63,9 +63,6 @@ void add_limited(const cells& run, std::span<const row_target> targets);
 /// add() uses them or, if `limited`, add_limited(); one row each.
 void fluxes_of_cell(const cells& run, bool limited, double* in, double* out);
 
-/// out ← the upwind values in the fluxes out of the only cell of a run, as fluxes_of_cell() has them.
-void fluxes_out_of_cell(const cells& run, bool limited, double* out);
-
 /// Returns the operation count per number of add() or add_limited() without targets, for runs of so many
 /// cells (exec/counted.hpp): the limiter repeats its work in a cell beyond either end.
 double operations(bool limited, int cells);

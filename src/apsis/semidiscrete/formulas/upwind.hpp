@@ -54,13 +54,27 @@ APSIS_FORMULA limited_cell<N> limited_after(const limited_cell<N>& upstream, N u
   return cell;
 }
 
+/// The flux out of a cell from its edge and the fractions that it and the next cell leave of the correction.
+template <class N>
+APSIS_FORMULA N limited_edge(N low_order, N edge, N of_donor, N of_receiver) {
+  const N correction = edge - low_order;
+  const N fraction = select(correction > N(0.0), of_donor, of_receiver);
+  return select(fraction < N(1.0), fma(fraction, correction, low_order), edge);
+}
+
 /// The flux from `donor` to `receiver`.
 template <class N>
 APSIS_FORMULA N limited_flux(const limited_cell<N>& donor, const limited_cell<N>& receiver) {
   if (!donor.harms && !receiver.harms) return donor.edge;
-  const N correction = donor.correction();
-  const N fraction = select(correction > N(0.0), donor.fraction, receiver.fraction);
-  return select(fraction < N(1.0), fma(fraction, correction, donor.low_order), donor.edge);
+  return limited_edge(donor.low_order, donor.edge, donor.fraction, receiver.fraction);
+}
+
+/// The fraction of limited_after() from low-order edges and corrections, without asking whether these are
+/// moderate.
+template <class N>
+APSIS_FORMULA N limited_fraction(N low_order_up, N low_order, N u, N a_in, N a_out, N inverse_cfl) {
+  const limiter::harm_bound<N> of(low_order_up, low_order, u, a_in, a_out, inverse_cfl);
+  return of.exceeded() ? of.fraction() : N(1.0);
 }
 
 }  // namespace apsis::APSIS_NUMBERS

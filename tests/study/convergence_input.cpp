@@ -97,6 +97,10 @@ TEST(settings, have_numbers) {
   EXPECT_TRUE(std::isnan(number_of(c, "time.method")));
   EXPECT_TRUE(std::isnan(number_of(load_case("paper/bgk-mixed"), "model.epsilon")));
   EXPECT_EQ(number_of(load_case("paper/decay"), "model.u0"), 10.0);
+  // Formulas know the constants of their case, and a rarefaction is a formula that is converted.
+  EXPECT_EQ(number_of(load_case("gas/sod"), "model.epsilon"), 1e-4);
+  const auto couette = load_case("gas/couette");
+  EXPECT_EQ(number_of(couette, "model.epsilon"), make_epsilon(couette, 1).evaluate(apsis::position{}));
 }
 
 namespace {

@@ -60,7 +60,10 @@ double number_of(const case_config& config, const std::string& key) {
     if (const auto* list = std::get_if<std::vector<long>>(&value))
       return list->size() == 1 ? static_cast<double>(list->front()) : not_a_number;
     if (entry.type != key_type::formula) break;
-    const expression formula(std::get<std::string>(value), {}, formula_of_position(3));
+    const expression formula =
+        key == "model.epsilon"
+            ? make_epsilon(config, 3)
+            : expression(std::get<std::string>(value), {}, formula_of_position(3, true, config.constants));
     return !formula.is_constant() ? not_a_number : formula.evaluate(position{});
   }
   return not_a_number;

@@ -15,7 +15,7 @@ namespace apsis::HWY_NAMESPACE {
 using N = pack<wide>;
 constexpr int lanes = static_cast<int>(hn::MaxLanes(wide())), vectors = vectors_of_chains;
 
-/// Adds the weights next(k, count, c) of vector k, of which `count` numbers belong to the line.
+/// Adds the weights next(k, count, c) of vector k; `count` of its numbers belong to the line.
 template <class Next>
 HWY_INLINE line_powers::sums sum_of(const line_powers::points& line, double u, const Next& next) {
   sums_of_six_powers<N> powers[vectors];

@@ -78,7 +78,7 @@ void find_fluxes(const lattice_rows::layout& at, const lattice_rows::flux_rule& 
     store_some(load_some(row + component, count), count, to.values + place);
   });
   find_edges(at, rule, to);
-  clear(at, at.block(), at.first(), to.edges);  // edges of points that are none
+  clear(at, at.block(), at.first(), to.edges);  // gaps have no points
   if (rule.limited) limit_edges_along(at, rule, to);
   clear(at, rule.forward ? at.block() - at.apart : 0, at.apart, to.fluxes(rule));
 }

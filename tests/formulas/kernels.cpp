@@ -8,6 +8,7 @@
 #include <apsis/model/formulas/velocity.hpp>
 #include <apsis/scheme/formulas/quartic.hpp>
 #include <apsis/scheme/formulas/row.hpp>
+#include <apsis/scheme/formulas/teno5.hpp>
 #include <apsis/scheme/formulas/upwind.hpp>
 #include <apsis/scheme/formulas/weno5_js.hpp>
 #include <apsis/scheme/formulas/weno5_z.hpp>
@@ -44,7 +45,7 @@ extern "C" void transport_z(const double* u, double* acc) {
 
 extern "C" void linear_edges(const double* u, double* to) {
   to[0] = outflow_edge<scalar::weights_js>(u);
-  to[1] = scalar::upwind1_edge(u[0]);
+  to[1] = scalar::upwind1_edge(u[0]) + outflow_edge<scalar::weights_teno>(u);
   to[2] = scalar::upwind5_edge(u[0], u[1], u[2], u[3], u[4]);
   scalar::limiter::limit_edges(u[2], to[0], to[2]);
 }
@@ -54,6 +55,8 @@ extern "C" void boundaries(const double* u, double* to) {
   to[1] = scalar::if_entering(u[0], u[1], scalar::if_leaving(u[0], u[2]));
   to[2] = scalar::with_entering(to[2], u[0], u[1], u[2], u[3]);
   to[3] = scalar::with_change(to[3], u[0], u[1]);
+  to[4] =
+      scalar::limited_edge(u[0], u[1], scalar::limited_fraction(u[0], u[1], u[2], u[3], u[4], u[5]), u[6]);
 }
 
 extern "C" void collisions(const double* u, double* to) {
@@ -77,6 +80,8 @@ extern "C" void equilibria(const double* u, double* to) {
   weights.add(scalar::line_weight(u[0], u[1], u[2], u[3], u[4]), u[0], u[1]);
   scalar::sums_of_products<double> products;
   products.add(weights.mass, u[0], u[1]);
+  scalar::sums_of_six_powers<double> six;
+  six.add(scalar::changed_weight(products.cc, u[0], u[1], u[2]), u[3]);
   scalar::sums_of_moments<double> moments;
   moments.add(scalar::entropy_per_mass(value, u[1], u[2]), u[0], u[1]);
   scalar::gaussian_walk<true, double> walk{scalar::gaussian_start(u[0], u[1], u[2]), u[3], u[4]};
@@ -87,7 +92,7 @@ extern "C" void equilibria(const double* u, double* to) {
   squares.add(u[0], u[1]);
   to[0] = value;
   to[1] = powers.of[3];
-  to[2] = products.cc;
+  to[2] = products.cc + six.of[5];
   to[3] = moments.energy;
   to[4] = contents.lowest + contents.not_finite;
   to[5] = squares.difference + squares.size;

@@ -41,7 +41,7 @@ class generator {
     text += fmt::format(
         "[space]\ncells = {}\nformulation = \"{}\"\nlimiter = \"positivity\"\nreconstruction = \"{}\"\n",
         d == 1 ? 10 + below(40) : 8 + below(12), pick({"finite-volume", "finite-difference"}),
-        pick({"weno5-z", "weno5-js", "upwind1", "upwind5"}));
+        pick({"weno5-z", "weno5-js", "teno5", "upwind1", "upwind5"}));
     for (const char* side : {"left", "right"}) text += boundary(side, d, degrees);
     text += fmt::format("[velocity]\nset = \"{}\"\npoints = {}\nmax = 9\n", pick({"uniform", "graded"}),
                         d == 1 ? 40 : 24);

@@ -2,6 +2,7 @@
 #include <apsis/core/random_source.hpp>
 #include <apsis/scheme/formulas/limiter.hpp>
 #include <apsis/scheme/formulas/row.hpp>
+#include <apsis/scheme/formulas/teno5.hpp>
 #include <apsis/scheme/formulas/upwind.hpp>
 #include <apsis/scheme/formulas/weno5_js.hpp>
 #include <apsis/scheme/formulas/weno5_z.hpp>
@@ -52,6 +53,7 @@ edges weno5_edges(const stencil5& u, bool forward) {
 
 template <class N>
 edges edges_of(const std::string& scheme, const stencil5& u, bool forward) {
+  if (scheme == "teno5") return weno5_edges<scalar::weights_teno, N>(u, forward);
   if (scheme == "weno5-z") return weno5_edges<scalar::weights_z, N>(u, forward);
   if (scheme == "weno5-js") return weno5_edges<scalar::weights_js, N>(u, forward);
   edges of{};

@@ -65,6 +65,24 @@ expected borges(const stencil5& u) {
   return {static_cast<double>(with(tau)), static_cast<double>(std::abs(with(tau + lost) - with(tau)))};
 }
 
+/// Fu, Hu & Adams 2016, (9) to (13), with C_T = 1e-5 and q = 6. A candidate at the cutoff may be kept or not.
+expected fu_hu_adams(const stencil5& u) {
+  const auto beta = indicators(u);
+  const long double delta = 1e-200L + 1e-6L * u[2] * u[2];
+  const auto with = [&](long double tau, long double cutoff) {
+    std::array<long double, 3> gamma{};
+    for (std::size_t k = 0; k < 3; ++k) gamma[k] = std::pow(1 + tau / (beta[k] + delta), 6.0L);
+    const long double sum = gamma[0] + gamma[1] + gamma[2];
+    return right_edge(u, [&](std::size_t k) { return gamma[k] < cutoff * sum ? 0.0L : 1.0L; });
+  };
+  const long double tau = std::abs(beta[0] - beta[2]), lost = 1e-15L * (beta[0] + beta[2]);
+  const long double value = with(tau, 1e-5L);
+  long double uncertainty = 0.0L;
+  for (const long double by : {1 - 1e-9L, 1 + 1e-9L})
+    uncertainty = std::max(uncertainty, std::abs(with(tau + (by - 1) * 1e9L * lost, by * 1e-5L) - value));
+  return {static_cast<double>(value), static_cast<double>(uncertainty)};
+}
+
 /// Rows of a velocity distribution with tails below 1e-150, perturbed, with zeros and isolated spikes of the
 /// height `spike`.
 struct pencil {
@@ -168,6 +186,7 @@ TEST(kernels, edges_agree_with_the_literature_for_every_instruction_set) {
       for (const double spike : {1e3, 1e37, 1e60}) {
         expect_edges("weno5-z", borges, width, spike);
         expect_edges("weno5-js", jiang_shu, width, spike);
+        expect_edges("teno5", fu_hu_adams, width, spike);
       }
   });
 }
@@ -175,7 +194,7 @@ TEST(kernels, edges_agree_with_the_literature_for_every_instruction_set) {
 TEST(kernels, edges_depend_on_their_own_stencil_alone_whatever_the_size_of_other_data) {
   // Otherwise results would depend on the partition into pencils, that is on the number of threads.
   for_each_instruction_set([] {
-    for (const char* name : {"weno5-z", "weno5-js"})
+    for (const char* name : {"weno5-z", "weno5-js", "teno5"})
       for (const int width : {1, 3, 8, 40})
         for (const double spike : {1e3, 1e20, 1e60}) {
           const auto scheme = apsis::find_reconstruction(name).make();

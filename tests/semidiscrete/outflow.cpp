@@ -23,7 +23,8 @@ struct choice {
 constexpr choice choices[] = {{"upwind1", limits::nothing},
                               {"weno5-z", limits::edges},
                               {"weno5-z", limits::fluxes},
-                              {"weno5-js", limits::edges}};
+                              {"weno5-js", limits::edges},
+                              {"teno5", limits::fluxes}};
 
 }  // namespace
 

@@ -85,7 +85,7 @@ void expect_nonnegative_steps(const std::string& name, limits kind, int dimensio
 
 TEST(subnormal, the_largest_step_keeps_every_value_nonnegative_in_every_instruction_set) {
   for_each_instruction_set([] {
-    for (const auto* const name : {"weno5-z", "weno5-js"})
+    for (const auto* const name : {"weno5-z", "weno5-js", "teno5"})
       for (const auto kind : {limits::edges, limits::fluxes}) expect_nonnegative_steps(name, kind, 1, 400);
     expect_nonnegative_steps("upwind1", limits::nothing, 1, 400);
   });

@@ -41,7 +41,7 @@ double transport_error(const apsis::relaxation_model& m, const std::string& name
 
 TEST(transport, fifth_order_in_both_formulations_with_and_without_limiter) {
   const auto m = small_bgk(8);
-  for (const char* name : {"weno5-z", "weno5-js"}) {
+  for (const char* name : {"weno5-z", "weno5-js", "teno5"}) {
     for (const bool limited : {false, true}) {
       for (const bool averages : {true, false}) {
         const limits cut = averages ? limits::edges : limits::fluxes;

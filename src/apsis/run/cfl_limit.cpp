@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -142,12 +143,10 @@ std::vector<std::pair<std::string, double>> cfl_limits(const amplification& grow
 
 std::string cfl_text(const std::vector<std::pair<std::string, double>>& limits) {
   std::vector<std::string> texts;
-  for (std::size_t k = 0; k < limits.size();) {
-    std::vector<std::string> names;
-    const double limit = limits[k].second;
-    for (; k < limits.size() && limits[k].second == limit; ++k) names.push_back(limits[k].first);
-    texts.push_back(fmt::format("{:.4g} with {}", limit, fmt::join(names, ", ")));
-  }
+  std::map<double, std::vector<std::string>, std::greater<>> names;
+  for (const auto& [name, limit] : limits) names[limit].push_back(name);
+  for (const auto& [limit, with] : names)
+    texts.push_back(fmt::format("{:.4g} with {}", limit, fmt::join(with, ", ")));
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 

@@ -12,17 +12,16 @@ APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
 /// g_k = 1, or 0 where γ_k = ((β_k + δ + τ)/(β_k + δ))⁶, τ = |β₀ − β₂|, is less than 1e-5 of the sum of all
-/// three: a candidate counts with its linear weight or not at all, so that smooth data have the linear scheme
-/// and its dispersion (Fu, Hu & Adams, JCP 305, 2016, with C_T = 1e-5 and q = 6).
+/// three. A candidate has its linear weight or none. Smooth data therefore have the linear scheme and its
+/// dispersion (Fu, Hu & Adams, JCP 305, 2016, with C_T = 1e-5 and q = 6).
 struct weights_teno {
   static constexpr double added = 0.0;
   static constexpr bool of_any_size = true;
   static constexpr double cutoff = 1e-5;
 
-  /// δ as in weights_z.
   template <class N>
   static APSIS_FORMULA weno5::smoothness<N> smoothness(const weno5::window<weights_teno, N>& u) {
-    return scale(indicators(u), fma(1e-6 * u.here, u.here, N(1e-200)));
+    return weno5::relative_to_data(u);
   }
   /// Of bases over a common denominator and relative to their sum: no power overflows, and one that
   /// underflows is far below the cutoff. The largest base is at least a third, its power more than the

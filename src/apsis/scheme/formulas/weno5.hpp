@@ -97,7 +97,14 @@ APSIS_FORMULA smoothness<N> scale(const smoothness<N>& s, N delta) {
   return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least)};
 }
 
-/// Factors g_k > 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over
+/// Indicators scaled with a δ relative to the data, so that a scheme is scale-invariant: variations below a
+/// thousandth of the value count as smooth, even where the first two derivatives vanish together.
+template <class Weights, class N>
+APSIS_FORMULA smoothness<N> relative_to_data(const window<Weights, N>& u) {
+  return scale(indicators(u), fma(1e-6 * u.here, u.here, N(1e-200)));
+}
+
+/// Factors g_k ≥ 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over
 /// a common denominator.
 template <class N>
 struct factors {

@@ -17,11 +17,9 @@ struct weights_z {
   static constexpr double added = 0.0;
   static constexpr bool of_any_size = true;
 
-  /// δ is relative to the data, so that the scheme is scale-invariant: variations below a thousandth of the
-  /// value count as smooth, even where the first two derivatives vanish together.
   template <class N>
   static APSIS_FORMULA weno5::smoothness<N> smoothness(const weno5::window<weights_z, N>& u) {
-    return scale(indicators(u), fma(1e-6 * u.here, u.here, N(1e-200)));
+    return weno5::relative_to_data(u);
   }
   template <class N>
   static APSIS_FORMULA weno5::factors<N> factors(const weno5::smoothness<N>& y) {

@@ -5,8 +5,8 @@
 
 namespace apsis {
 
-/// Central moments of an equilibrium g = ρ Π_k g_k(v_k), h = θ g, by direction, for targets that are a
-/// polynomial times it.
+/// Central moments, by direction, of an equilibrium g = ρ Π_k g_k(v_k), h = θ g. They give the moments of
+/// polynomials times it.
 struct line_moments {
   static constexpr std::size_t powers = 6;  ///< p = 0 … 5
 

@@ -6,9 +6,9 @@
 
 namespace apsis {
 
-/// Central moments of weights on one direction of a velocity grid, and their change to those of another
-/// exponential of a parabola, for the instruction set of this processor. The order of sums does not depend on
-/// it. c = v − u.
+/// Central moments of weights along one direction of a velocity grid, and products of the weights with
+/// exponentials of parabolas. Loops are for the instruction set of this processor; the order of sums does not
+/// depend on it. c = v − u.
 namespace line_powers {
 
 /// Points of a line.

@@ -5,15 +5,15 @@
 
 namespace apsis {
 
-/// m ← the discrete Maxwellian of an admissible state, found from the Gaussian with its temperature by
-/// Newton's method. The steps multiply weights by exponentials of small numbers, which need no reduction of
+/// m ← the discrete Maxwellian of an admissible state. Newton's method starts from the Gaussian of the state.
+/// The steps multiply weights by exponentials of small numbers, which need no reduction of
 /// their argument. Returns false, with m undefined, where a step is not small: on coarse grids, near their
 /// ends and in nearly empty space. `moments`, if given, are those of m.
 bool nearby_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m,
                        line_moments* moments = nullptr);
 
-/// The discrete Maxwellian by the method for all moments that a row f ≥ 0 has (discrete_maxwellian()), with
-/// the rounding of nearby_maxwellian() where both find it.
+/// m ← the discrete Maxwellian of all moments ω that a row f ≥ 0 has, as discrete_maxwellian() describes it.
+/// Takes longer than nearby_maxwellian(), and finds the same row to rounding.
 bool general_maxwellian(const velocity_grid& grid, const double* omega, double* m);
 
 /// nearby_maxwellian() on a line, from the row m of the Gaussian.

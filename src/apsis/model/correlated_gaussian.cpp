@@ -9,46 +9,44 @@
 #include <numbers>
 #include <vector>
 
-#include <Eigen/Dense>
-
 namespace apsis {
 namespace {
-
-using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
-using whole_matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-matrix resolved(const direction_matrix& of, int dimensions) {
-  return Eigen::Map<const whole_matrix>(of.front().data()).topLeftCorner(dimensions, dimensions);
-}
 
 /// The Gaussian in its last component c: a(c') exp(−(c − s·c')²/(2V)), where c' are the other components, a
 /// is a Gaussian in them, s the slopes of the mean and V its variance.
 struct conditional {
-  conditional(const velocity_grid& grid, const fluid_state& state, const matrix& covariance,
-              const matrix& inverse)
-      : last(grid.dimensions() - 1),
-        variance(1.0 / inverse(last, last)),
-        height(state.rho /
-               std::sqrt(std::pow(2.0 * std::numbers::pi, last + 1.0) * covariance.determinant())) {
-    if (last > 0) outer = covariance.topLeftCorner(last, last).inverse();
-    for (int k = 0; k < last; ++k) slope[static_cast<std::size_t>(k)] = -inverse(last, k) * variance;
+  conditional(const velocity_grid& grid, const fluid_state& state, const direction_matrix& covariance,
+              const direction_matrix& inverse)
+      : last(grid.dimensions() - 1), variance(1.0 / inverse[at(last)][at(last)]) {
+    const auto& of = covariance;
+    double determinant = variance * 2.0 * std::numbers::pi;
+    if (last == 1) {
+      outer[0][0] = 1.0 / of[0][0];
+      determinant *= of[0][0] * 2.0 * std::numbers::pi;
+    } else if (last == 2) {
+      const double of_others = of[0][0] * of[1][1] - of[0][1] * of[1][0];
+      outer = {
+          {{of[1][1] / of_others, -of[0][1] / of_others}, {-of[1][0] / of_others, of[0][0] / of_others}}};
+      determinant *= of_others * (2.0 * std::numbers::pi) * (2.0 * std::numbers::pi);
+    }
+    height = state.rho / std::sqrt(determinant);
+    for (int k = 0; k < last; ++k) slope[at(k)] = -inverse[at(last)][at(k)] * variance;
   }
 
   /// −½ c'ᵀ(outer)c'.
   double exponent(const std::array<double, 2>& c) const {
-    double sum = 0.0;
-    for (int k = 0; k < last; ++k)
-      for (int l = 0; l < last; ++l)
-        sum -= 0.5 * c[static_cast<std::size_t>(k)] * outer(k, l) * c[static_cast<std::size_t>(l)];
-    return sum;
+    return -0.5 * (outer[0][0] * c[0] * c[0] + 2.0 * outer[0][1] * c[0] * c[1] + outer[1][1] * c[1] * c[1]);
   }
   /// s·c'.
   double shift(const std::array<double, 2>& c) const { return slope[0] * c[0] + slope[1] * c[1]; }
 
   int last;
-  double variance, height;
-  matrix outer;
+  double variance, height = 0.0;
+  std::array<std::array<double, 2>, 2> outer{};  ///< inverse of the covariance of c'
   std::array<double, 2> slope{};
+
+ private:
+  static std::size_t at(int k) { return static_cast<std::size_t>(k); }
 };
 
 /// The components c' of a line.
@@ -75,68 +73,104 @@ void fill_lines(const velocity_grid& grid, const fluid_state& state, const condi
   }
 }
 
-/// The velocities of a direction relative to u.
-std::vector<double> distances(const velocity_grid& grid, const fluid_state& state, int k) {
-  std::vector<double> c;
-  for (const double v : grid.line(k).v()) c.push_back(v - state.u[k]);
-  return c;
-}
-
 /// Largest sum of the exponents below: all values and factors are normal numbers.
 constexpr double most = 600.0;
 
-/// Whether the factors of fill_product() are normal numbers.
-bool fits_product(const velocity_grid& grid, const fluid_state& state, const conditional& of) {
-  std::array<double, 2> c{};
-  double farthest = 0.0, square = 0.0;
-  for (int k = 0; k < 3; ++k) {
-    const auto& v = grid.line(k).v();
-    const double end = std::max(std::abs(v.front() - state.u[k]), std::abs(v.back() - state.u[k]));
-    if (k == of.last) {
-      farthest = end;
-    } else {
-      c[static_cast<std::size_t>(k)] = end;
-      square += end * end;
-    }
+/// A Gaussian of three components, which differs from a product of lines by few factors: with s·c' = s₁c₁ +
+/// s₂c₂ it is
+///   a(c') exp((s₁c₁ − s₂c₂)²/(2V)) · exp(−(c − 2s₁c₁)²/(4V)) · exp(−(c − 2s₂c₂)²/(4V)),
+/// which is a table in c₁ and c₂ and two in c, each of Gaussians on lines.
+class tables {
+ public:
+  tables(const velocity_grid& grid, const fluid_state& state, const conditional& of)
+      : grid_(grid), state_(state), of_(of) {
+    const double per_variance = 1.0 / of.variance;
+    outer_ = of.outer;
+    outer_[0][0] -= of.slope[0] * of.slope[0] * per_variance;
+    outer_[1][1] -= of.slope[1] * of.slope[1] * per_variance;
+    outer_[0][1] += of.slope[0] * of.slope[1] * per_variance;
   }
-  const double shift = std::abs(of.slope[0]) * c[0] + std::abs(of.slope[1]) * c[1];
-  return 0.5 * of.outer.norm() * square + 0.5 * (farthest + shift) * (farthest + shift) / of.variance <
-             most &&
-         of.height > 1e-30 && of.height < 1e30;
-}
 
-/// Three directions: with c'·s = s₁c₁ + s₂c₂ the Gaussian is
-///   a exp(−(s·c')²/(2V)) · exp(−c²/(2V) + s₁c₁c/V) · exp(s₂c₂c/V),
-/// a number for each line and two tables, which take fewer exponentials than lines do.
-void fill_product(const velocity_grid& grid, const fluid_state& state, const conditional& of, double* m) {
-  const auto c0 = distances(grid, state, 0), c1 = distances(grid, state, 1), c = distances(grid, state, 2);
-  const std::size_t n = c.size();
-  thread_local std::vector<double> of_first, of_second;
-  of_first.clear();
-  of_second.clear();
-  for (const double at : c0)
-    for (const double one : c)
-      of_first.push_back(std::exp((of.slope[0] * at - 0.5 * one) * one / of.variance));
-  for (const double at : c1)
-    for (const double one : c) of_second.push_back(std::exp(of.slope[1] * at * one / of.variance));
-  for (std::size_t i = 0; i < c0.size(); ++i)
-    for (std::size_t j = 0; j < c1.size(); ++j, m += n) {
-      const std::array<double, 2> at = {c0[i], c1[j]};
-      const double shift = of.shift(at),
-                   factor = of.height * std::exp(of.exponent(at) - 0.5 * shift * shift / of.variance);
-      const double *first = of_first.data() + i * n, *second = of_second.data() + j * n;
-#pragma omp simd
-      for (std::size_t k = 0; k < n; ++k) m[k] = factor * first[k] * second[k];
+  /// Whether their values are normal numbers.
+  bool fit() const {
+    const bool bounded = outer_[1][1] > 0.0 && outer_[0][0] * outer_[1][1] > outer_[0][1] * outer_[0][1];
+    if (!(bounded && of_.height > 1e-30 && of_.height < 1e30)) return false;
+    std::array<double, 3> end{};
+    for (int k = 0; k < 3; ++k) {
+      const auto& v = grid_.line(k).v();
+      end[static_cast<std::size_t>(k)] =
+          std::max(std::abs(v.front() - state_.u[k]), std::abs(v.back() - state_.u[k]));
     }
-}
+    double sum = std::abs(outer_[0][1]) * end[0] * end[1];
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double farthest = end[2] + 2.0 * std::abs(of_.slope[k]) * end[k];
+      sum += 0.5 * outer_[k][k] * end[k] * end[k] + 0.25 * farthest * farthest / of_.variance;
+    }
+    return sum < most;
+  }
+
+  void fill(double* m) const {
+    thread_local std::array<aligned_vector<double>, 3> of_lines;
+    find_outer(of_lines[0]);
+    find_along(0, of_lines[1]);
+    find_along(1, of_lines[2]);
+    const auto n = static_cast<std::size_t>(grid_.line(2).points()),
+               rows = static_cast<std::size_t>(grid_.line(0).points()),
+               lines = static_cast<std::size_t>(grid_.line(1).points());
+    for (std::size_t i = 0; i < rows; ++i)
+      for (std::size_t j = 0; j < lines; ++j, m += n) {
+        const double factor = of_lines[0][i * lines + j];
+        const double *first = of_lines[1].data() + i * n, *second = of_lines[2].data() + j * n;
+#pragma omp simd
+        for (std::size_t k = 0; k < n; ++k) m[k] = factor * first[k] * second[k];
+      }
+  }
+
+ private:
+  /// rows[i] ← Gaussians along the direction `along`, one for each velocity of direction k.
+  template <class Curve>
+  void find_rows(int k, int along, const Curve& curve, aligned_vector<double>& rows) const {
+    const auto& v = grid_.line(k).v();
+    const int n = grid_.line(along).points();
+    rows.resize(v.size() * static_cast<std::size_t>(n));
+    thread_local std::vector<velocity_rows::gaussian> curves;
+    curves.clear();
+    for (const double at : v) curves.push_back(curve(at - state_.u[k]));
+    gaussians_on(grid_.line(along), curves.data(), static_cast<int>(curves.size()), rows.data(), n);
+  }
+  /// a(c') exp((s₁c₁ − s₂c₂)²/(2V)).
+  void find_outer(aligned_vector<double>& rows) const {
+    const double shift = -outer_[0][1] / outer_[1][1], rest = outer_[0][0] + outer_[0][1] * shift;
+    find_rows(
+        0, 1,
+        [&](double c) {
+          return velocity_rows::gaussian{of_.height * std::exp(-0.5 * rest * c * c), state_.u[1] + shift * c,
+                                         1.0 / outer_[1][1]};
+        },
+        rows);
+  }
+  /// exp(−(c − 2s_k c_k)²/(4V)).
+  void find_along(int k, aligned_vector<double>& rows) const {
+    const double slope = 2.0 * of_.slope[static_cast<std::size_t>(k)];
+    find_rows(
+        k, 2,
+        [&](double c) { return velocity_rows::gaussian{1.0, state_.u[2] + slope * c, 2.0 * of_.variance}; },
+        rows);
+  }
+
+  const velocity_grid& grid_;
+  const fluid_state& state_;
+  const conditional& of_;
+  std::array<std::array<double, 2>, 2> outer_{};  // of the first table; [1][0] is not used
+};
 
 }  // namespace
 
 void correlated_gaussian(const velocity_grid& grid, const fluid_state& state,
                          const direction_matrix& covariance, const direction_matrix& inverse, double* m) {
-  const int d = grid.dimensions();
-  const conditional of(grid, state, resolved(covariance, d), resolved(inverse, d));
-  if (d == 3 && fits_product(grid, state, of)) return fill_product(grid, state, of, m);
+  const conditional of(grid, state, covariance, inverse);
+  if (grid.dimensions() == 3)
+    if (const tables product(grid, state, of); product.fit()) return product.fill(m);
   fill_lines(grid, state, of, m);
 }
 

@@ -47,6 +47,8 @@ class gas {
   std::string why_inadmissible(const double* omega) const;
   /// row ← `weight` times the Maxwellian of a state by its formula.
   void formula(const fluid_state& state, double weight, double* row) const;
+  /// h ← energy · g in a row (g, h).
+  void fill_h(double energy, double* row) const;
   /// Returns Σ_j [g log g + ½(D − d) g log(g/h)] Δv^d with 0 log 0 = 0, convex in (g, h) and minimal in
   /// equilibrium; for D = d it is Σ f log f Δv^d.
   double entropy(const double* row) const;
@@ -66,7 +68,6 @@ class gas {
   double moments_of_g(const double* omega, double* of_g) const;
   bool equilibrium_of_g(const double* of_g, double* g, line_moments* of_row = nullptr) const;
   int equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const;
-  void fill_h(double energy, double* row) const;
   template <class State>
   bool keeps_formula(const State& state) const;
   std::string row_of(std::span<const double> given, std::span<double> row) const;

@@ -1,6 +1,6 @@
 #include <apsis/model/gas_target.hpp>
 
-#include <apsis/model/grid_sums.hpp>
+#include <apsis/model/central_sums.hpp>
 #include <apsis/model/internal/target_moments.hpp>
 
 #include <algorithm>
@@ -128,64 +128,39 @@ bool is_accurate(const target_defect& found, double ratio) {
          std::abs(found.energy) <= std::min(target_accuracy * ratio, largest_bound);
 }
 
-/// Functions of the other d − 1 components of c for every line: 1, c_k, c_k c_l (k ≤ l), and c_k Σ c_l², each
-/// with the weight of the line, one after the other. Returns their number.
-int central_functions(const velocity_grid& grid, const fluid_state& state, aligned_vector<double>& all) {
-  const auto outer = static_cast<std::size_t>(grid.dimensions()) - 1,
-             lines = static_cast<std::size_t>(grid.lines()),
-             count = 1 + outer + outer * (outer + 1) / 2 + outer;
-  all.resize(count * lines);
-  const double* weight = grid.functions_of_lines().data();
-  for (std::size_t line = 0; line < lines; ++line) {
-    std::array<double, 2> c{};
-    for (std::size_t k = 0; k < outer; ++k)
-      c[k] = grid.component_of_lines(static_cast<int>(k))[line] - state.u[k];
-    const double square = c[0] * c[0] + c[1] * c[1];
-    double* to = all.data() + line;
-    const auto put = [&](double value) {
-      *to = weight[line] * value;
-      to += lines;
-    };
-    put(1.0);
-    for (std::size_t k = 0; k < outer; ++k) put(c[k]);
-    for (std::size_t k = 0; k < outer; ++k)
-      for (std::size_t l = k; l < outer; ++l) put(c[k] * c[l]);
-    for (std::size_t k = 0; k < outer; ++k) put(c[k] * square);
-  }
-  return static_cast<int>(count);
+/// Whether P has no term of third degree.
+bool is_quadratic(const target_polynomial& p) {
+  return p.w[0] == 0.0 && p.w[1] == 0.0 && p.w[2] == 0.0;
+}
+
+/// Corrects the shape by moments of the base, without a pass over the target. Returns false where that is
+/// not possible.
+bool correct_by_moments(const gas& of, const fluid_state& state, const target_base& base,
+                        target_shape& shape) {
+  const int d = of.dimensions();
+  if (base.moments.known) return moments_of_product(base.moments, d).correct(shape);
+  if (!is_quadratic(shape.of_g) || !is_quadratic(shape.of_h) || (of.reduced() && !(base.others > 0.0)))
+    return false;
+  const central_sums sums(of.grid(), base.row, state.u, central_sums::highest_degree);
+  return moments_of_row(sums, d, {state.rho, base.others, of.degrees_of_freedom() * state.T}).correct(shape);
 }
 
 }  // namespace
 
 central_moments compute_central_moments(const gas& of, const double* row, const fluid_state& state) {
   const velocity_grid& grid = of.grid();
-  const std::size_t last = static_cast<std::size_t>(grid.dimensions()) - 1;
-  thread_local aligned_vector<double> functions;
-  const int count = central_functions(grid, state, functions);
-  std::array<grid_sums::powers, grid_sums::most_functions> g{}, h{};
-  const grid_sums::axis axis = last_axis(grid);
-  grid_sums::sum(axis, grid.lines(), row, state.u[last], functions.data(), count, g.data());
-  if (of.reduced())
-    grid_sums::sum(axis, grid.lines(), row + grid.size(), state.u[last], functions.data(),
-                   static_cast<int>(last) + 1, h.data());
-  central_moments m;
-  m.stress[last][last] = g[0][2];
-  m.heat[last] = g[0][3] + h[0][1];
-  std::size_t pair = last + 1;
-  for (std::size_t k = 0; k < last; ++k) {
-    m.stress[k][last] = g[1 + k][1];
-    m.heat[k] = g[1 + k][2] + h[1 + k][0];
-    for (std::size_t l = k; l < last; ++l, ++pair) {
-      m.stress[k][l] = g[pair][0];
-      if (k == l) m.heat[last] += g[pair][1];
+  const auto d = static_cast<std::size_t>(grid.dimensions());
+  const central_sums g(grid, row, state.u, 3);
+  central_moments all;
+  for (std::size_t k = 0; k < d; ++k)
+    for (std::size_t l = 0; l < d; ++l) {
+      all.stress[k][l] = g.along({k, l}) / state.rho;
+      all.heat[k] += 0.5 * g.along({k, l, l});
     }
-  }
-  for (std::size_t k = 0; k < last; ++k) m.heat[k] += g[pair + k][0];
-  for (std::size_t k = 0; k <= last; ++k) {
-    m.heat[k] *= 0.5 * grid.weight();
-    for (std::size_t l = k; l <= last; ++l) m.stress[l][k] = m.stress[k][l] *= grid.weight() / state.rho;
-  }
-  return m;
+  if (!of.reduced()) return all;
+  const central_sums h(grid, row + grid.size(), state.u, 1);
+  for (std::size_t k = 0; k < d; ++k) all.heat[k] += 0.5 * h.along({k});
+  return all;
 }
 
 bool conservative_target(const gas& of, const double* omega, const target_base& base,
@@ -202,8 +177,7 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
     raised |= some;
     return some;
   };
-  if (base.moments.known && moments_of_product(base.moments, d).correct(shape) && !weigh_all(true))
-    return true;
+  if (correct_by_moments(of, state, base, shape) && !weigh_all(true)) return true;
   // Where corrections no longer reduce a defect, target_accuracy is enough.
   const double ratio = energy_ratio(omega, d, shape.variance),
                enough = std::min(target_rounding * ratio, largest_bound);

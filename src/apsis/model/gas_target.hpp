@@ -37,6 +37,7 @@ inline constexpr double target_accuracy = 1e-14;
 struct target_base {
   const double* row;     ///< g, or (g, h)
   line_moments moments;  ///< those of the row, if known
+  double others = 0.0;   ///< h/g, if the moments are unknown and h/g is a known constant; else 0
 };
 
 /// e ← max(base · P, −keep f) for a row f ≥ 0, where P is corrected by α + β·c + γ|c|² in g until e has the

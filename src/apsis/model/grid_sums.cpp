@@ -5,9 +5,11 @@
 #include <apsis/model/grid_sums.hpp>
 
 #include <apsis/model/formulas/grid_sums.hpp>
+#include <apsis/model/formulas/line.hpp>
 
 #include <algorithm>
 #include <cstddef>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
@@ -63,9 +65,9 @@ void sum_over_lines(const columns& of, int first, int count, N* sum) {
 }
 
 /// Adds the powers of some columns to those of every function and chain.
-template <int Functions, int Sets>
+template <int Functions, int Sets, class Powers>
 HWY_INLINE void add_columns(const columns& of, const double* v, const double* w, double u,
-                            sums_of_powers<N> (&powers)[Functions][vectors]) {
+                            Powers (&powers)[Functions][vectors]) {
   constexpr int together = Sets * vectors;
   N sum[Functions * together];
   sum_over_lines<Functions, together>(of, 0, of.lines, sum);
@@ -79,22 +81,34 @@ HWY_INLINE void add_columns(const columns& of, const double* v, const double* w,
   }
 }
 
-void store_totals(const sums_of_powers<N> (&of)[vectors], double factor, grid_sums::powers& sums) {
-  for (int p = 0; p < 4; ++p) {
+/// The accumulator of powers.
+sums_of_powers<N> accumulator_of(const grid_sums::powers*);
+sums_of_six_powers<N> accumulator_of(const grid_sums::six_powers*);
+template <class Powers>
+using accumulator = decltype(accumulator_of(static_cast<const Powers*>(nullptr)));
+
+template <class Powers>
+void store_totals(const accumulator<Powers> (&of)[vectors], double factor, Powers& sums) {
+  for (std::size_t p = 0; p < sums.size(); ++p) {
     N of_vectors[vectors];
     for (int i = 0; i < vectors; ++i) of_vectors[i] = of[i].of[p];
-    sums[static_cast<std::size_t>(p)] = factor * total_of_chains(of_vectors);
+    sums[p] = factor * total_of_chains(of_vectors);
   }
 }
 
-template <int Functions>
+/// The columns from j on, in sets of `together` points.
+columns columns_from(int j, int together, int n, int lines, const double* f, const double* a) {
+  const int behind = n * lines - j - together;
+  return {f + j, n, n - j, a, lines, behind < 0 ? 0 : behind / n + 1};
+}
+
+template <int Functions, class Powers>
 void sum_functions(const grid_sums::axis& last, int lines, const double* f, double u, const double* a,
-                   grid_sums::powers* sums) {
-  sums_of_powers<N> powers[Functions][vectors];
+                   Powers* sums) {
+  accumulator<Powers> powers[Functions][vectors];
   for (int j = 0; j < last.n; j += 2 * sum_chains) {
-    const int left = last.n - j, together = left > sum_chains ? 2 * sum_chains : sum_chains,
-              behind = last.n * lines - j - together;
-    const columns of{f + j, last.n, left, a, lines, behind < 0 ? 0 : behind / last.n + 1};
+    const int left = last.n - j, together = left > sum_chains ? 2 * sum_chains : sum_chains;
+    const columns of = columns_from(j, together, last.n, lines, f, a);
     const double *v = last.v + j, *w = last.w == nullptr ? nullptr : last.w + j;
     if (left > sum_chains) {
       add_columns<Functions, 2>(of, v, w, u, powers);
@@ -106,8 +120,9 @@ void sum_functions(const grid_sums::axis& last, int lines, const double* f, doub
 }
 
 /// sum_functions() of one function and one line.
-void sum_line(const grid_sums::axis& last, const double* f, double u, double a, grid_sums::powers& sums) {
-  sums_of_powers<N> powers[vectors];
+template <class Powers>
+void sum_line(const grid_sums::axis& last, const double* f, double u, double a, Powers& sums) {
+  accumulator<Powers> powers[vectors];
   for (int j = 0; j < last.n; j += sum_chains)
     for (int i = 0; i < vectors; ++i) {
       const int k = j + i * lanes, count = std::max(last.n - k, 0);
@@ -117,21 +132,61 @@ void sum_line(const grid_sums::axis& last, const double* f, double u, double a, 
   store_totals(powers, a, sums);
 }
 
-void sum(const grid_sums::axis& last, int lines, const double* f, double u, const double* a, int functions,
-         grid_sums::powers* sums) {
-  if (lines == 1 && functions == 1) return sum_line(last, f, u, a[0], sums[0]);
+/// Calls body(constant) with the number of functions, at most most_functions.
+template <class Body>
+void with_functions(int functions, const Body& body) {
   switch (functions) {
     case 1:
-      return sum_functions<1>(last, lines, f, u, a, sums);
+      return body(std::integral_constant<int, 1>());
     case 2:
-      return sum_functions<2>(last, lines, f, u, a, sums);
+      return body(std::integral_constant<int, 2>());
     case 3:
-      return sum_functions<3>(last, lines, f, u, a, sums);
+      return body(std::integral_constant<int, 3>());
     case 4:
-      return sum_functions<4>(last, lines, f, u, a, sums);
+      return body(std::integral_constant<int, 4>());
     default:
-      return sum_functions<grid_sums::most_functions>(last, lines, f, u, a, sums);
+      return body(std::integral_constant<int, grid_sums::most_functions>());
   }
+}
+
+template <class Powers>
+void sum_with(const grid_sums::axis& last, int lines, const double* f, double u, const double* a,
+              int functions, Powers* sums) {
+  if (lines == 1 && functions == 1) return sum_line(last, f, u, a[0], sums[0]);
+  with_functions(functions,
+                 [&](auto count) APSIS_PACKED { sum_functions<count>(last, lines, f, u, a, sums); });
+}
+
+void sum(const grid_sums::axis& last, int lines, const double* f, double u, const double* a, int functions,
+         grid_sums::powers* sums) {
+  sum_with(last, lines, f, u, a, functions, sums);
+}
+
+void sum_six(const grid_sums::axis& last, int lines, const double* f, double u, const double* a,
+             int functions, grid_sums::six_powers* sums) {
+  sum_with(last, lines, f, u, a, functions, sums);
+}
+
+template <int Functions, int Sets>
+void sum_columns(const columns& of, double* s, std::ptrdiff_t pitch) {
+  constexpr int together = Sets * vectors;
+  N sum[Functions * together];
+  sum_over_lines<Functions, together>(of, 0, of.lines, sum);
+  for (int k = 0; k < Functions; ++k)
+    for (int i = 0; i < together && i * lanes < of.count; ++i)
+      store_some(sum[k * together + i], of.count - i * lanes, s + k * pitch + i * lanes);
+}
+
+void sum_lines(const double* f, int lines, int n, const double* a, int functions, double* s) {
+  with_functions(functions, [&](auto count) APSIS_PACKED {
+    for (int j = 0; j < n; j += 2 * sum_chains) {
+      if (n - j > sum_chains) {
+        sum_columns<count, 2>(columns_from(j, 2 * sum_chains, n, lines, f, a), s + j, n);
+      } else {
+        sum_columns<count, 1>(columns_from(j, sum_chains, n, lines, f, a), s + j, n);
+      }
+    }
+  });
 }
 
 void scale(double factor, const double* g, int n, double* h) {
@@ -173,6 +228,8 @@ HWY_AFTER_NAMESPACE();
 namespace apsis {
 namespace {
 HWY_EXPORT(sum);
+HWY_EXPORT(sum_six);
+HWY_EXPORT(sum_lines);
 HWY_EXPORT(multiply);
 HWY_EXPORT(scale);
 HWY_EXPORT(entropy);
@@ -181,6 +238,15 @@ HWY_EXPORT(entropy);
 void grid_sums::sum(const axis& last, int lines, const double* f, double u, const double* a, int functions,
                     powers* sums) {
   HWY_DYNAMIC_DISPATCH(sum)(last, lines, f, u, a, functions, sums);
+}
+
+void grid_sums::sum(const axis& last, int lines, const double* f, double u, const double* a, int functions,
+                    six_powers* sums) {
+  HWY_DYNAMIC_DISPATCH(sum_six)(last, lines, f, u, a, functions, sums);
+}
+
+void grid_sums::sum_lines(const double* f, int lines, int n, const double* a, int functions, double* s) {
+  HWY_DYNAMIC_DISPATCH(sum_lines)(f, lines, n, a, functions, s);
 }
 
 void grid_sums::multiply(const double* a, int lines, const double* g, int n, double* m) {

@@ -17,14 +17,21 @@ struct axis {
 
 /// Σ_j w_j c_j^p s_j, p = 0 … 3, c = v − u.
 using powers = std::array<double, 4>;
+/// The same, p = 0 … 5.
+using six_powers = std::array<double, 6>;
 
-/// Largest number of functions of sum().
-inline constexpr int most_functions = 8;
+/// Largest number of functions.
+inline constexpr int most_functions = 5;
 
 /// sums[k] ← the powers of s_j = Σ_l a_kl f_lj for functions a_k of `lines` lines of the row f; a_kl is
-/// a[k · lines + l]. There are 1, 2, 3, 4 or most_functions of them.
+/// a[k · lines + l].
 void sum(const axis& last, int lines, const double* f, double u, const double* a, int functions,
          powers* sums);
+void sum(const axis& last, int lines, const double* f, double u, const double* a, int functions,
+         six_powers* sums);
+
+/// s_kj ← Σ_l a_kl f_lj, rows of n sums one after the other.
+void sum_lines(const double* f, int lines, int n, const double* a, int functions, double* s);
 
 /// m_lj ← a_l g_j for `lines` lines of n points.
 void multiply(const double* a, int lines, const double* g, int n, double* m);

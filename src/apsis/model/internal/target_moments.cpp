@@ -1,5 +1,7 @@
 #include <apsis/model/internal/target_moments.hpp>
 
+#include <Eigen/Dense>
+
 namespace apsis {
 
 target_correction correction_of(const target_defect& found, int d, double variance) {
@@ -92,6 +94,91 @@ void moments_of_product::add(const target_correction& by, double variance, targe
   }
   found.mass += by.k + mean + by.a * square_;
   found.energy += 0.5 * energy / variance;
+}
+
+double moments_of_row::mean(const target_polynomial& polynomial,
+                            std::initializer_list<std::size_t> directions) const {
+  central_sums::exponents p{};
+  for (const std::size_t k : directions) ++p[k];
+  double sum = polynomial.k * sums_[p];
+  for (std::size_t k = 0; k < d_; ++k) {
+    central_sums::exponents with = p;
+    ++with[k];
+    sum += polynomial.l[k] * sums_[with];
+    for (std::size_t l = 0; l < d_; ++l) {
+      central_sums::exponents pair = with;
+      ++pair[l];
+      sum += polynomial.a[k][l] * sums_[pair];
+    }
+  }
+  return sum / contents_.rho;
+}
+
+target_defect moments_of_row::defect_of(const target_shape& shape) const {
+  target_defect found;
+  found.mass = mean(shape.of_g, {}) - 1.0;
+  double energy = contents_.others * mean(shape.of_h, {}) - contents_.energy;
+  for (std::size_t k = 0; k < d_; ++k) {
+    found.momentum[k] = mean(shape.of_g, {k}) / std::sqrt(shape.variance);
+    energy += mean(shape.of_g, {k, k});
+  }
+  found.energy = 0.5 * energy / shape.variance;
+  return found;
+}
+
+/// The moments of functions φ = (1, c_k/√V, ½|c|²/V) times each other give the correction Σ y_i φ_i.
+template <int size>
+target_correction moments_of_row::correction_of_row(const target_defect& found, double variance) const {
+  using matrix = Eigen::Matrix<double, size, size>;
+  using vector = Eigen::Matrix<double, size, 1>;
+  constexpr int energy = size - 1;
+  const double speed = std::sqrt(variance);
+  matrix products = matrix::Zero();
+  vector defect;
+  products(0, 0) = sums_.along({});
+  defect[0] = found.mass;
+  defect[energy] = found.energy;
+  for (std::size_t k = 0; k < d_; ++k) {
+    const auto row = static_cast<Eigen::Index>(k) + 1;
+    defect[row] = found.momentum[k];
+    products(row, 0) = sums_.along({k}) / speed;
+    products(energy, 0) += 0.5 * sums_.along({k, k}) / variance;
+    for (std::size_t l = 0; l < d_; ++l) {
+      products(row, static_cast<Eigen::Index>(l) + 1) = sums_.along({k, l}) / variance;
+      products(energy, row) += 0.5 * sums_.along({k, l, l}) / (variance * speed);
+      products(energy, energy) += 0.25 * sums_.along({k, k, l, l}) / (variance * variance);
+    }
+  }
+  const vector y = -contents_.rho * products.template selfadjointView<Eigen::Lower>().llt().solve(defect);
+  target_correction by{};
+  by.k = y[0];
+  for (std::size_t k = 0; k < d_; ++k) by.l[k] = y[static_cast<Eigen::Index>(k) + 1] / speed;
+  by.a = 0.5 * y[energy] / variance;
+  return by;
+}
+
+/// The equations are linear: the correction of a small defect is exact to rounding.
+template <int size>
+bool moments_of_row::correct_by(target_shape& shape) const {
+  constexpr double small = 1e-2;
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    const target_defect found = defect_of(shape);
+    if (found.size() <= target_rounding) return true;
+    correction_of_row<size>(found, shape.variance).add_to(shape.of_g, static_cast<int>(d_));
+    if (found.size() < small) return true;
+  }
+  return false;
+}
+
+bool moments_of_row::correct(target_shape& shape) const {
+  switch (d_) {
+    case 1:
+      return correct_by<3>(shape);
+    case 2:
+      return correct_by<4>(shape);
+    default:
+      return correct_by<5>(shape);
+  }
 }
 
 }  // namespace apsis

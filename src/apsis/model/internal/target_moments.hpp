@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/model/central_sums.hpp>
 #include <apsis/model/gas_target.hpp>
 #include <apsis/model/line_moments.hpp>
 
@@ -7,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 
 namespace apsis {
 
@@ -63,6 +65,37 @@ class moments_of_product {
   std::size_t d_;
   double square_ = 0.0, fourth_ = 0.0;  // ⟨|c|²⟩, ⟨|c|⁴⟩
   std::array<double, 3> of_square_{};   // ⟨c_k |c|²⟩
+};
+
+/// What a base (g, θ g) has, and what its target is to have.
+struct base_contents {
+  double rho,  ///< density ρ
+      others,  ///< θ
+      energy;  ///< Σ (|c|² e_g + e_h)/ρ, twice the internal energy of the target per density
+};
+
+/// The same for a row g of any form by its central moments up to degree 4, and polynomials of degree 2.
+class moments_of_row {
+ public:
+  moments_of_row(const central_sums& sums, int dimensions, const base_contents& contents)
+      : sums_(sums), d_(static_cast<std::size_t>(dimensions)), contents_(contents) {}
+
+  /// Corrects the shape so that the target has the density and energy of the contents, and no momentum.
+  /// Returns false where rounding does not let it.
+  bool correct(target_shape& shape) const;
+
+ private:
+  template <int size>
+  bool correct_by(target_shape& shape) const;
+  template <int size>
+  target_correction correction_of_row(const target_defect& found, double variance) const;
+  /// ⟨P Π c_k⟩ for some directions k.
+  double mean(const target_polynomial& polynomial, std::initializer_list<std::size_t> directions) const;
+  target_defect defect_of(const target_shape& shape) const;
+
+  const central_sums& sums_;
+  std::size_t d_;
+  base_contents contents_;
 };
 
 }  // namespace apsis

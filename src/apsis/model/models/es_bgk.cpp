@@ -1,31 +1,27 @@
 #include <apsis/core/errors.hpp>
+#include <apsis/exec/aligned.hpp>
 #include <apsis/model/correlated_gaussian.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/model/gas_target.hpp>
 
 #include <algorithm>
-#include <vector>
+#include <cstddef>
 
 #include <Eigen/Dense>
 
 namespace apsis {
 namespace {
 
-using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+template <int d>
+using matrix = Eigen::Matrix<double, d, d>;
 
-direction_matrix plain(const matrix& of) {
+template <int d>
+direction_matrix plain(const matrix<d>& of) {
   direction_matrix same{};
-  for (Eigen::Index k = 0; k < of.rows(); ++k)
-    for (Eigen::Index l = 0; l < of.cols(); ++l)
-      same[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] = of(k, l);
+  for (int k = 0; k < d; ++k)
+    for (int l = 0; l < d; ++l) same[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] = of(k, l);
   return same;
 }
-
-/// The Gaussian of covariance Θ̂ in the resolved directions and T̂ in each of the others.
-struct gaussian_shape {
-  matrix covariance, inverse;
-  double others = 1.0;  ///< T̂
-};
 
 /// The ellipsoidal statistical model (Holway, Phys. Fluids 9, 1966) of a monatomic gas: Q = C (G − f) with
 /// the Gaussian G of covariance T I + (1 − 1/Pr)(Θ − T I), Θ the stress per density. The stress relaxes with
@@ -76,7 +72,14 @@ class es_bgk_model final : public gas_model {
     const fluid_state state = molecules().state(omega);
     if (!state.admissible()) return molecules().equilibrium(omega, e);
     const auto with_part = [&](double part, double bound, double* row, bool& raised) {
-      return gaussian_target(omega, state, s, part, f, bound, row, raised);
+      switch (molecules().dimensions()) {
+        case 1:
+          return gaussian_target<1>(omega, state, s, part, f, bound, row, raised);
+        case 2:
+          return gaussian_target<2>(omega, state, s, part, f, bound, row, raised);
+        default:
+          return gaussian_target<3>(omega, state, s, part, f, bound, row, raised);
+      }
     };
     return find_target(omega, s, rate_of_stage(rate_of_stress_, s[pairs()]), keep, e, cut, with_part);
   }
@@ -85,50 +88,35 @@ class es_bgk_model final : public gas_model {
   std::size_t size() const { return static_cast<std::size_t>(molecules().dimensions()); }
   int pairs() const { return molecules().dimensions() * (molecules().dimensions() + 1) / 2; }
 
-  /// The target with `part` of the deviation of the stress.
+  /// The target with `part` of the deviation of the stress, in d velocity dimensions.
+  template <int d>
   bool gaussian_target(const double* omega, const fluid_state& state, const double* s, double part,
                        const double* f, double keep, double* e, bool& raised) const {
     const gas& g = molecules();
-    const auto d = static_cast<Eigen::Index>(size());
-    matrix change = matrix::Zero(d, d);  // (1 − 1/Pr) σ
-    const double* next = s;
-    for (Eigen::Index k = 0; k < d; ++k)
-      for (Eigen::Index l = k; l < d; ++l)
-        change(k, l) = change(l, k) = part * (1.0 - rate_of_stress_) * *next++;
-    const double derivative = *next;
-    const int unresolved = g.degrees_of_freedom() - g.dimensions();
+    matrix<d> change;  // (1 − 1/Pr) σ
+    for (int k = 0; k < d; ++k)
+      for (int l = k; l < d; ++l) change(k, l) = change(l, k) = part * (1.0 - rate_of_stress_) * *s++;
+    const double derivative = *s;
+    const int unresolved = g.degrees_of_freedom() - d;
     const double change_of_others = unresolved > 0 ? -change.trace() / unresolved : 0.0;
-    gaussian_shape shape;
-    shape.covariance = state.T * matrix::Identity(d, d) + change;
-    shape.others = state.T + change_of_others;
-    const Eigen::LLT<matrix> factors(shape.covariance);
-    if (factors.info() != Eigen::Success || !(shape.others > 0.0)) return false;
-    shape.inverse = factors.solve(matrix::Identity(d, d));
-    thread_local std::vector<double> base;
+    // The Gaussian has the covariance Θ̂ in the resolved directions, and T̂ in each of the others.
+    const matrix<d> covariance = state.T * matrix<d>::Identity() + change;
+    const double others = state.T + change_of_others;
+    if (covariance.llt().info() != Eigen::Success || !(others > 0.0)) return false;
+    const matrix<d> inverse = covariance.inverse();
+    thread_local aligned_vector<double> base;
     base.resize(static_cast<std::size_t>(components()));
-    fill(state, shape, base.data());
+    correlated_gaussian(g.grid(), state, plain<d>(covariance), plain<d>(inverse), base.data());
+    if (g.reduced()) g.fill_h(unresolved * others, base.data());
 
     target_shape target;
-    target.variance = shape.covariance.trace() / static_cast<double>(d);
-    const matrix quadratic = 0.5 * derivative * shape.inverse * change * shape.inverse;
-    const double trace = 0.5 * derivative * (shape.inverse * change).trace();
+    target.variance = covariance.trace() / d;
+    const matrix<d> quadratic = 0.5 * derivative * inverse * change * inverse;
+    const double trace = 0.5 * derivative * (inverse * change).trace();
     target.of_g.k = target.of_h.k = 1.0 - trace;
-    for (std::size_t k = 0; k < size(); ++k)
-      for (std::size_t l = 0; l < size(); ++l)
-        target.of_g.a[k][l] = target.of_h.a[k][l] =
-            quadratic(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
-    target.of_h.k += derivative * change_of_others / shape.others;
-    return conservative_target(g, omega, {base.data(), {}}, target, f, keep, e, raised);
-  }
-
-  /// row ← G.
-  void fill(const fluid_state& state, const gaussian_shape& shape, double* row) const {
-    const gas& g = molecules();
-    const int points = g.grid().size();
-    correlated_gaussian(g.grid(), state, plain(shape.covariance), plain(shape.inverse), row);
-    if (!g.reduced()) return;
-    const double energy = (g.degrees_of_freedom() - g.dimensions()) * shape.others;
-    for (int j = 0; j < points; ++j) row[points + j] = energy * row[j];
+    target.of_g.a = target.of_h.a = plain<d>(quadratic);
+    target.of_h.k += derivative * change_of_others / others;
+    return conservative_target(g, omega, {base.data(), {}, unresolved * others}, target, f, keep, e, raised);
   }
 
   double rate_of_stress_;  ///< λ = 1/Pr

@@ -1,0 +1,64 @@
+#include <apsis/model/central_sums.hpp>
+
+#include <apsis/exec/aligned.hpp>
+#include <apsis/model/grid_sums.hpp>
+#include <apsis/model/maxwellian.hpp>
+
+#include <tuple>
+
+namespace apsis {
+namespace {
+
+/// all ← the weights of a direction times c^p, p = 0 … degree, one p after the other.
+void find_powers(const velocity_grid& grid, int k, double u, int degree, aligned_vector<double>& all) {
+  const velocity_line& line = grid.line(k);
+  const auto n = static_cast<std::size_t>(line.points()), count = static_cast<std::size_t>(degree) + 1;
+  all.resize(count * n);
+  for (std::size_t j = 0; j < n; ++j) {
+    const double c = line.v()[j] - u;
+    double power = grid.uniform() ? 1.0 : line.weights()[j];
+    for (std::size_t p = 0; p < count; ++p, power *= c) all[p * n + j] = power;
+  }
+}
+
+}  // namespace
+
+central_sums::central_sums(const velocity_grid& grid, const double* g, const double* u, int degree) {
+  if (degree < static_cast<int>(std::tuple_size_v<grid_sums::powers>)) {
+    add<grid_sums::powers>(grid, g, u, degree);
+  } else {
+    add<grid_sums::six_powers>(grid, g, u, degree);
+  }
+}
+
+template <class Powers>
+void central_sums::add(const velocity_grid& grid, const double* g, const double* u, int degree) {
+  thread_local aligned_vector<double> first, second, planes;
+  std::array<Powers, grid_sums::most_functions> sums;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  const auto most = static_cast<std::size_t>(degree);
+  if (grid.dimensions() == 1) {
+    constexpr double one = 1.0;
+    grid_sums::sum(last_axis(grid), 1, g, u[0], &one, 1, sums.data());
+    for (std::size_t p = 0; p <= most; ++p) of_[p][0][0] = grid.weight() * sums[0][p];
+    return;
+  }
+  find_powers(grid, 0, u[0], degree, first);
+  if (grid.dimensions() == 2) {
+    grid_sums::sum(last_axis(grid), grid.lines(), g, u[1], first.data(), degree + 1, sums.data());
+    for (std::size_t p = 0; p <= most; ++p)
+      for (std::size_t q = 0; p + q <= most; ++q) of_[p][q][0] = grid.weight() * sums[p][q];
+    return;
+  }
+  const int rows = grid.line(0).points(), lines = grid.line(1).points(), plane = grid.size() / rows;
+  planes.resize((most + 1) * static_cast<std::size_t>(plane));
+  grid_sums::sum_lines(g, rows, plane, first.data(), degree + 1, planes.data());
+  find_powers(grid, 1, u[1], degree, second);
+  for (std::size_t p = 0; p <= most; ++p) {
+    grid_sums::sum(last_axis(grid), lines, planes.data() + p * static_cast<std::size_t>(plane), u[2],
+                   second.data(), static_cast<int>(most - p) + 1, sums.data());
+    for (std::size_t q = 0; p + q <= most; ++q)
+      for (std::size_t r = 0; p + q + r <= most; ++r) of_[p][q][r] = grid.weight() * sums[q][r];
+  }
+}
+
+}  // namespace apsis

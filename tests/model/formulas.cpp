@@ -299,34 +299,58 @@ TEST(formulas, powers_on_a_line_and_their_changes_are_those_of_single_numbers) {
   });
 }
 
+namespace {
+
+/// Powers of the sums over lines of one function, by formulas on single numbers, chain by chain.
+template <class Powers, class N>
+void expect_powers(const Powers& sums, const std::vector<N>& of_columns, const std::vector<N>& c,
+                   double factor) {
+  using formula = std::conditional_t<std::tuple_size_v<Powers> == 4, scalar::sums_of_powers<N>,
+                                     scalar::sums_of_six_powers<N>>;
+  std::vector<formula> of(chains);
+  for (std::size_t j = 0; j < c.size(); ++j) of[j % chains].add(of_columns[j], c[j]);
+  for (std::size_t p = 0; p < sums.size(); ++p) {
+    std::vector<N> parts;
+    for (const auto& chain : of) parts.push_back(chain.of[p]);
+    RC_ASSERT(same_bits(sums[p], factor * sum_of_lanes(parts)));
+  }
+}
+
+}  // namespace
+
 TEST(formulas, sums_over_a_grid_are_those_of_single_numbers) {
   check_property("grid sums", [] {
     random_source random(*rc::gen::arbitrary<std::uint32_t>());
     const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40)),
                lines = static_cast<std::size_t>(*rc::gen::inRange(1, 70)),
-               functions = *rc::gen::element<std::size_t>(1, 2, 3, 4, 8);
+               functions = *rc::gen::inRange<std::size_t>(1, apsis::grid_sums::most_functions + 1);
     const auto f = drawn(n * lines, random, any_size), v = drawn(n, random, any_velocity),
                w = drawn(n, random, any_size), a = drawn(functions * lines, random, any_velocity);
     const double u = any_velocity(random);
     const bool weighted = random.one_in(2);
+    const apsis::grid_sums::axis last{static_cast<int>(n), v.data(), weighted ? w.data() : nullptr};
+    const int line_count = static_cast<int>(lines), count = static_cast<int>(functions);
     for_each_number([&](auto number, int) {
       using N = decltype(number);
       std::vector<apsis::grid_sums::powers> sums(functions);
-      apsis::grid_sums::sum({static_cast<int>(n), v.data(), weighted ? w.data() : nullptr},
-                            static_cast<int>(lines), f.data(), u, a.data(), static_cast<int>(functions),
-                            sums.data());
+      std::vector<apsis::grid_sums::six_powers> more(functions);
+      std::vector<double> rows(functions * n + 1, -7.0);
+      apsis::grid_sums::sum(last, line_count, f.data(), u, a.data(), count, sums.data());
+      apsis::grid_sums::sum(last, line_count, f.data(), u, a.data(), count, more.data());
+      apsis::grid_sums::sum_lines(f.data(), line_count, last.n, a.data(), count, rows.data());
+      RC_ASSERT(rows.back() == -7.0);
+      const bool single = lines * functions == 1;
       for (std::size_t k = 0; k < functions; ++k) {
-        std::vector<scalar::sums_of_powers<N>> of(chains);
-        const bool single = lines * functions == 1;
+        std::vector<N> of_columns, c;
         for (std::size_t j = 0; j < n; ++j) {
-          const N sum = single ? N(f[j]) : sum_over_lines<N>(f.data() + j, n, a.data() + k * lines, lines);
-          of[j % chains].add(weighted ? N(w[j]) * sum : sum, N(v[j]) - N(u));
+          const N sum = sum_over_lines<N>(f.data() + j, n, a.data() + k * lines, lines);
+          RC_ASSERT(same_bits(rows[k * n + j], value_of(sum)));
+          const N here = single ? N(f[j]) : sum;
+          of_columns.push_back(weighted ? N(w[j]) * here : here);
+          c.push_back(N(v[j]) - N(u));
         }
-        for (std::size_t p = 0; p < 4; ++p) {
-          std::vector<N> parts;
-          for (const auto& chain : of) parts.push_back(chain.of[p]);
-          RC_ASSERT(same_bits(sums[k][p], (single ? a[0] : 1.0) * sum_of_lanes(parts)));
-        }
+        expect_powers(sums[k], of_columns, c, single ? a[0] : 1.0);
+        expect_powers(more[k], of_columns, c, single ? a[0] : 1.0);
       }
     });
   });
@@ -377,8 +401,8 @@ std::vector<double> gaussian(const apsis::velocity_rows::points& line,
   const auto put = [&](int j, N value) {
     if (j < n) m[static_cast<std::size_t>(j)] = value_of(value);
   };
-  if (!scalar::gaussian_recurs(jump * jump * value_of(per))) {
-    for (int j = 0; j < n; ++j) put(j, scalar::gaussian_value(N(of.a), x(j), N(of.T)));
+  if (!scalar::gaussian_recurs(jump * jump * value_of(per), vectors)) {
+    for (int j = 0; j < n; ++j) put(j, scalar::gaussian_start(N(of.a), x(j), per));
     return m;
   }
   const double farthest = 0.5 * line.spacing * n + jump + std::abs(of.u);

@@ -14,6 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
 using N = pack<wide>;
+constexpr int lanes = static_cast<int>(hn::MaxLanes(wide()));
+
 HWY_INLINE double total(N x) {
   return hn::GetLane(hn::SumOfLanes(wide(), x.v));
 }
@@ -57,10 +59,9 @@ HWY_INLINE N distances(const velocity_rows::points& line, double u, double k) {
 void gaussian_by_exponentials(const velocity_rows::points& line, const velocity_rows::gaussian& of,
                               double* m) {
   const int length = static_cast<int>(hn::Lanes(wide())), vectors = (line.n + length - 1) / length;
-  for (int k = 0; k < vectors; ++k) {
-    const N x = distances(line, of.u, k);
-    store_some(gaussian_value(N(of.a), x, N(of.T)), line.n - k * length, m + k * length);
-  }
+  const N a(of.a), per(0.5 / of.T);
+  for (int k = 0; k < vectors; ++k)
+    store_some(gaussian_start(a, distances(line, of.u, k), per), line.n - k * length, m + k * length);
 }
 
 void gaussian_at(const double* v, int n, const velocity_rows::gaussian& of, double* m) {
@@ -94,6 +95,16 @@ HWY_INLINE void fill(const outwards& from, int centre, int n, double* m) {
   }
 }
 
+/// Returns the number of vectors of a line.
+int vectors_of(const velocity_rows::points& line) {
+  return (line.n + lanes - 1) / lanes;
+}
+
+bool recurs(const velocity_rows::points& line, const velocity_rows::gaussian& of) {
+  const double jump = line.spacing * lanes;
+  return gaussian_recurs(jump * jump * (0.5 / of.T), vectors_of(line));
+}
+
 /// The first vectors of as many Gaussians as a vector has numbers. The change of `right` is one number for a
 /// Gaussian, so that those of all of them are one exponential. The others could be made from a few numbers as
 /// well, but then all their numbers would err to the same side, and so would the moments.
@@ -101,8 +112,8 @@ class first_vectors {
  public:
   first_vectors(const velocity_rows::points& line, const velocity_rows::gaussian* of, int rows)
       : line_(line) {
-    const int vectors = (line.n + length - 1) / length;
-    gaussian_vector(gathered(&of->u, rows), N(line.spacing), N(line.n), N(length), N(vectors)).store(centre_);
+    gaussian_vector(gathered(&of->u, rows), N(line.spacing), N(line.n), N(length), N(vectors_of(line)))
+        .store(centre_);
     const N per = N(0.5) / gathered(&of->T, rows);
     per.store(per_);
     // All of them before the first row is filled: exponentials are long chains, which then overlap.
@@ -115,7 +126,7 @@ class first_vectors {
   }
 
   void fill_row(int p, const velocity_rows::gaussian& of, double* m) const {
-    if (!gaussian_recurs(jump() * jump() * per_[p])) return gaussian_by_exponentials(line_, of, m);
+    if (!recurs(line_, of)) return gaussian_by_exponentials(line_, of, m);
     const N right = N::load(right_[p]), change(change_[p]);
     const outwards from{N::load(values_[p]), right, change / right, change};
     const int centre = static_cast<int>(centre_[p]);
@@ -148,8 +159,14 @@ void gaussians(const velocity_rows::points& line, const velocity_rows::gaussian*
   const int length = static_cast<int>(hn::Lanes(wide()));
   for (int first = 0; first < rows; first += length) {
     const int some = std::min(length, rows - first);
-    const first_vectors of(line, of_rows + first, some);
-    for (int p = 0; p < some; ++p) of.fill_row(p, of_rows[first + p], m + (first + p) * pitch);
+    const auto* const group = of_rows + first;
+    double* const to = m + first * pitch;
+    if (std::none_of(group, group + some, [&](const auto& one) { return recurs(line, one); })) {
+      for (int p = 0; p < some; ++p) gaussian_by_exponentials(line, group[p], to + p * pitch);
+    } else {
+      const first_vectors of(line, group, some);
+      for (int p = 0; p < some; ++p) of.fill_row(p, group[p], to + p * pitch);
+    }
   }
 }
 

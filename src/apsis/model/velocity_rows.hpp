@@ -36,8 +36,8 @@ struct gaussian {
 /// The values of some Gaussians at all points, rows `pitch` apart, in about two multiplications a point: from
 /// one vector of points to the next a Gaussian changes by a factor, and that by a constant. It starts where
 /// v ≈ u and goes outwards, so that errors stay within some roundings of the largest value, and within 1e-12
-/// of each; below 1e-300 values are 0. Very wide and very narrow Gaussians are exponentials. A row does not
-/// depend on the others; several share the cost of their first vectors.
+/// of each; below 1e-300 values are 0. Very wide and very narrow Gaussians, and those of a few points, are
+/// exponentials. A row does not depend on the others; several share the cost of their first vectors.
 void gaussians(const points& line, const gaussian* of_rows, int rows, double* m, std::ptrdiff_t pitch);
 
 /// The values of a Gaussian at any n points v, as exponentials; below 1e-300 they are 0.

@@ -38,12 +38,6 @@ APSIS_FORMULA N distance_to(N u, N spacing, N j) {
   return spacing * j - u;
 }
 
-/// a exp(−x²/(2T)), where no recursion is used.
-template <class N>
-APSIS_FORMULA N gaussian_value(N a, N x, N T) {
-  return a * exp_or_zero(-(x * x) / (N(2.0) * T));
-}
-
 /// A Gaussian by a recursion. It takes vectors of points, J = jump apart. With x the distances of one vector,
 /// the next one has exp(−(x + J)²/(2T)) = exp(−x²/(2T)) × right, right = exp(−(2xJ + J²)/(2T)), and right
 /// changes by change = exp(−J²/T) from vector to vector; per = 1/(2T).
@@ -69,11 +63,12 @@ APSIS_FORMULA N gaussian_vector(N u, N spacing, N n, N length, N vectors) {
   return truncated(smaller(larger(at, N(0.0)), vectors - N(1.0)));
 }
 
-/// Whether the recursion is accurate. The factors are exponentials of up to three times `decay` = J²/(2T),
-/// whose rounding they have; and k vectors away a value has k²/2 roundings of `change`, which may be many
-/// where the Gaussian is still large: at most one in 5 times this.
-APSIS_FORMULA bool gaussian_recurs(double decay) {
-  return decay > 0.02 && decay < 8.0;
+/// Whether the recursion is accurate, and saves exponentials: it takes those of two vectors. The factors are
+/// exponentials of up to three times `decay` = J²/(2T), whose rounding they have; and k vectors away a value
+/// has k²/2 roundings of `change`, which may be many where the Gaussian is still large: at most one in 5
+/// times this.
+APSIS_FORMULA bool gaussian_recurs(double decay, int vectors) {
+  return vectors > 2 && decay > 0.02 && decay < 8.0;
 }
 
 /// Whether some values may leave the range of normal numbers; `farthest` is a bound of |x| + J.

@@ -197,7 +197,8 @@ json keys() {
 json choices() {
   json all = json::array();
   for (const choice_row& row : choice_table()) {
-    const std::string steps = !row.tolerance_from ? "equal steps"
+    const std::string steps = row.longest_steps     ? "longest steps"
+                              : !row.tolerance_from ? "equal steps"
                               : *row.tolerance_from > 0.0
                                   ? fmt::format("tolerance >= {:g}", *row.tolerance_from)
                                   : "any tolerance";
@@ -210,6 +211,7 @@ json choices() {
                    {"problem", row.problem},
                    {"signs", row.signs ? json(*row.signs) : json(nullptr)},
                    {"explicit", row.explicit_method},
+                   {"longest_steps", row.longest_steps},
                    {"tolerance_from", row.tolerance_from ? json(*row.tolerance_from) : json(nullptr)},
                    {"origin", row.origin}});
   }

@@ -124,7 +124,12 @@ py::dict certificate_of(const method& m) {
 void bind_methods(py::module_& m) {
   m.def("choose_method", [](bool space, bool signs, bool graded, std::optional<double> tolerance,
                             std::optional<double> ratio) {
-    const method_choice chosen = choose_method({space, signs, graded, tolerance, ratio, ratio});
+    const method_choice chosen = choose_method({.space = space,
+                                                .signs = signs,
+                                                .graded_start = graded,
+                                                .tolerance = tolerance,
+                                                .lowest_ratio = ratio,
+                                                .highest_ratio = ratio});
     return py::make_tuple(chosen.method, chosen.reason);
   });
   py::class_<method>(m, "Method")

@@ -19,6 +19,7 @@ TEST(narrow_bands, are_as_documented) {
   EXPECT_NEAR(find_certificate("md-imex-8-3-narrow").band.error, 0.00013, 5e-6);
   EXPECT_NEAR(find_certificate("md-imex-9-3-narrow").band.error, 0.00048, 5e-6);
   EXPECT_NEAR(find_certificate("md-imex-10-3-mixed").band.error, 0.0029, 5e-5);
+  EXPECT_NEAR(find_certificate("md-imex-10-3-long").band.error, 0.0024, 5e-5);
   EXPECT_NEAR(certify_two_step(*find_integrator("two-step-8-3-narrow").file()).band.error, 0.000022, 5e-7);
   EXPECT_NEAR(certify_two_step(*find_integrator("two-step-10-3-mixed").file()).band.error, 0.00077, 5e-6);
 }

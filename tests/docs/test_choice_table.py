@@ -87,9 +87,9 @@ class ChoiceTable(unittest.TestCase):
         text = subprocess.run([BUILD / "app/apsis", "list", "choices", "--json"], capture_output=True, text=True, check=True).stdout
         cls.rows = json.loads(text)
 
-    def chosen(self, problem, signs, tolerance_from=None, explicit=False):
+    def chosen(self, problem, signs, tolerance_from=None, explicit=False, longest=False):
         found = [row["name"] for row in self.rows if row["problem"] in (problem, "any") and row["signs"] in (signs, None)
-                 and row["tolerance_from"] == tolerance_from and row["explicit"] == explicit]
+                 and row["tolerance_from"] == tolerance_from and row["explicit"] == explicit and row["longest_steps"] == longest]
         self.assertEqual(len(found), 1, (problem, signs, tolerance_from))
         return found[0]
 
@@ -97,6 +97,11 @@ class ChoiceTable(unittest.TestCase):
         best = best_on_meshes(("0.001", "0.0003", "0.0001", "1e-05"), lambda name: is_ssp(name) and "adaptive" not in name)
         self.assertEqual(self.chosen("space", True), best)
         self.assertEqual(self.chosen("space", False), best)
+
+    def test_longest_steps_on_meshes_are_those_of_the_method_with_the_least_time(self):
+        table = newest("transit")
+        method, mean = table["columns"].index("method"), table["columns"].index("mean")
+        self.assertEqual(self.chosen("space", None, longest=True), min(table["rows"], key=lambda row: float(row[mean]))[method])
 
     def test_steps_by_tolerance_on_meshes(self):
         def adaptive(name):

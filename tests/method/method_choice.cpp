@@ -28,7 +28,8 @@ std::vector<apsis::method_request> all_requests() {
           for (const std::optional<double> ratio :
                {std::optional<double>(), std::optional(1e-3), std::optional(0.5), std::optional(30.0),
                 std::optional(inf)})
-            all.push_back({space, signs, graded, tolerance, ratio, ratio});
+            for (const bool longest : {false, true})
+              all.push_back({space, signs, graded, longest, tolerance, ratio, ratio});
   return all;
 }
 
@@ -39,7 +40,7 @@ TEST(choice, is_a_method_that_can_do_what_is_asked) {
     const auto chosen = apsis::choose_method(wanted);
     const apsis::method& m = apsis::find_method(chosen.method);
     EXPECT_FALSE(chosen.reason.empty());
-    if (wanted.signs) {
+    if (wanted.signs || (wanted.space && wanted.longest_steps && !wanted.tolerance)) {
       EXPECT_GT(static_cast<double>(apsis::certify(m).ssp_coefficient), 0.0) << m.name;
     }
     if (wanted.tolerance) {
@@ -63,6 +64,8 @@ TEST(choice, is_a_method_that_can_do_what_is_asked) {
 TEST(choice, depends_on_bounds_tolerance_and_kind_of_problem) {
   const auto name = [](const apsis::method_request& wanted) { return apsis::choose_method(wanted).method; };
   EXPECT_EQ(name({.space = true, .signs = true}), "md-imex-8-3-mixed");
+  EXPECT_EQ(name({.space = true, .signs = true, .longest_steps = true}), "md-imex-10-3-long");
+  EXPECT_EQ(name({.space = true, .longest_steps = true}), "md-imex-10-3-long");
   EXPECT_EQ(name({.space = true, .signs = true, .tolerance = 1e-4}), "md-imex-10-3-mixed");
   EXPECT_EQ(name({.space = true, .tolerance = 1e-3}), "extrapolated-euler-3");
   EXPECT_EQ(name({.space = true, .tolerance = 1e-6}), "extrapolated-euler-4");

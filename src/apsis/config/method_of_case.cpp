@@ -98,6 +98,7 @@ method_request request_of(const case_config& config) {
   wanted.space = equation->space_dimensions() > 0;
   wanted.graded_start = config.time.startup == startup_choice::graded;
   wanted.tolerance = config.time.tolerance;
+  wanted.longest_steps = wanted.space && !config.time.dt && !config.time.cfl && !config.time.tolerance;
   // time.safety is a fraction of the step that an SSP coefficient bounds.
   wanted.signs = config.time.safety.has_value() || config.space.limiter == limiter_choice::positivity ||
                  (wanted.space && equation->positive() && first_order(config.space.reconstruction));

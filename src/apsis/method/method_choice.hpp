@@ -15,6 +15,7 @@ struct method_request {
   bool space = false;                        ///< the problem is discretized in space
   bool signs = false;                        ///< bounds of the solution, such as f ≥ 0, must be preserved
   bool graded_start = false;                 ///< the first steps resolve the initial layer
+  bool longest_steps = false;                ///< steps are a fraction of the longest that the method allows
   std::optional<double> tolerance = {};      ///< of a step; without it steps are equal
   std::optional<double> lowest_ratio = {};   ///< smallest CΔt/ε over the domain; nothing if unknown
   std::optional<double> highest_ratio = {};  ///< the largest
@@ -26,6 +27,7 @@ struct choice_row {
   std::optional<bool> signs;             ///< nothing: with and without
   bool explicit_method = false;          ///< the method resolves ε/C: only where CΔt/ε ≤ resolved_ratio
   std::optional<double> tolerance_from;  ///< smallest tolerance of the row; nothing: equal steps
+  bool longest_steps = false;            ///< only where the method determines the length of steps
   std::string method;                    ///< name of the method
   std::string why;                       ///< the property that won, for the log
   std::string origin;                    ///< the measurement that decides

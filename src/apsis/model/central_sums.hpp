@@ -9,15 +9,16 @@
 namespace apsis {
 
 /// Central moments Σ_j w_j g_j Π_k c_jk^p_k, c = v − u, of a row g on a velocity grid, Σ_k p_k ≤ degree. The
-/// directions are summed one after the other. Their order does not depend on the instruction set.
+/// directions are summed one after the other. The order of sums does not depend on the instruction set.
 class central_sums {
  public:
-  static constexpr int highest_degree = 4;
+  static constexpr int highest_degree = 4;       ///< of all moments
   using exponents = std::array<std::size_t, 3>;  ///< p_k, 0 from the dimensions of the grid on
 
   /// Computes those up to a degree of at most highest_degree.
   central_sums(const velocity_grid& grid, const double* g, const double* u, int degree);
 
+  /// Returns the moment with some exponents.
   double operator[](const exponents& p) const { return of_[p[0]][p[1]][p[2]]; }
   /// Returns the moment of the product of c_k for some directions k.
   double along(std::initializer_list<std::size_t> directions) const {

@@ -27,6 +27,7 @@ inline constexpr int most_functions = 5;
 /// a[k · lines + l].
 void sum(const axis& last, int lines, const double* f, double u, const double* a, int functions,
          powers* sums);
+/// The same with six powers.
 void sum(const axis& last, int lines, const double* f, double u, const double* a, int functions,
          six_powers* sums);
 

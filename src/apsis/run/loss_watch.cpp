@@ -99,7 +99,7 @@ std::string loss_watch::remedy(double t, const field& u, double dt, bool layer) 
   // Given steps need methods with a step bound on a mesh: those of the rows that preserve bounds.
   std::vector<std::string> names = {choose_method(request_of(setup_.config())).method};
   for (const choice_row& row : choice_table())
-    if (row.signs.value_or(true) || (!setup_.has_space() && !row.explicit_method))
+    if (!row.longest_steps && (row.signs.value_or(true) || (!setup_.has_space() && !row.explicit_method)))
       names.push_back(row.method);
   std::string best;
   double least = expected_ / 10.0;  // another method is worth its name where it loses ten times less

@@ -67,14 +67,14 @@ class moments_of_product {
   std::array<double, 3> of_square_{};   // ⟨c_k |c|²⟩
 };
 
-/// What a base (g, θ g) has, and what its target is to have.
+/// Moments of a base (g, θ g) and of its target.
 struct base_contents {
   double rho,  ///< density ρ
       others,  ///< θ
       energy;  ///< Σ (|c|² e_g + e_h)/ρ, twice the internal energy of the target per density
 };
 
-/// The same for a row g of any form by its central moments up to degree 4, and polynomials of degree 2.
+/// Moments of polynomials of degree 2 times a row g of any form, by its central moments up to degree 4.
 class moments_of_row {
  public:
   moments_of_row(const central_sums& sums, int dimensions, const base_contents& contents)

@@ -127,7 +127,7 @@ const std::string& one_of(const quantity_values& parameters, const std::string& 
 }
 
 double steady_safety(double delta) {
-  return std::min(1.0, 25.0 / delta);
+  return std::min(1.0, 12.0 / delta);
 }
 
 double steady_time(double delta) {

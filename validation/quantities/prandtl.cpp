@@ -2,6 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <fmt/format.h>
 #include <validation/quantity.hpp>
 
 namespace apsis::validation {
@@ -16,9 +17,11 @@ double field_at(const field_table& fields, const std::string& name, std::size_t 
 
 /// In a gas between plates of different temperature, far from both: Pr = (5/2) μ (−T_x)/q with μ = ε T^s.
 double compute(const quantity_values& parameters, const quantity_run& make) {
+  const double delta = positive_number(parameters, "delta");
   const simulation run =
-      make("gas/fourier", {"parameters.delta=" + parameters.at("delta"),
-                           "model.name=" + parameters.at("model"), "output.fields=[\"T\", \"heat_flux\"]"});
+      make("gas/fourier",
+           {"parameters.delta=" + parameters.at("delta"), "model.name=" + parameters.at("model"),
+            fmt::format("time.safety={}", steady_safety(delta)), "output.fields=[\"T\", \"heat_flux\"]"});
   const field_table fields = run.fields();
   const std::size_t middle = fields.x.size() / 2;
   double slope = 0.0, heat = 0.0, T = 0.0;
@@ -29,7 +32,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
     heat += 0.25 * field_at(fields, "heat_flux", cell);
     T += 0.25 * field_at(fields, "T", cell);
   }
-  const double epsilon = 1.0 / (std::sqrt(2.0) * positive_number(parameters, "delta"));
+  const double epsilon = 1.0 / (std::sqrt(2.0) * delta);
   const double viscosity = epsilon * std::pow(T, run.config().model.parameters.at("viscosity_exponent"));
   return 2.5 * viscosity * -slope / heat;
 }

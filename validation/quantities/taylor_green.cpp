@@ -17,7 +17,7 @@ constexpr double wave_number = 2.0 * std::numbers::pi;
 /// The amplitude of sin(kx) cos(ky) in u_x at time t.
 double amplitude_at(double t, const std::string& epsilon, const quantity_run& make) {
   // Steps of at most a quarter of ε: the error of the viscosity grows with Δt/ε.
-  const double safety = std::min(1.0, 60.0 * std::stod(epsilon));
+  const double safety = std::min(1.0, 29.0 * std::stod(epsilon));
   const simulation run =
       make("gas/taylor-green", {"parameters.Kn=" + epsilon, "space.cells=[32,32]", "output.every=0",
                                 fmt::format("time.safety={}", safety), fmt::format("time.end={}", t)});

@@ -79,7 +79,7 @@ constexpr double most = 600.0;
 /// A Gaussian of three components, which differs from a product of lines by few factors: with s·c' = s₁c₁ +
 /// s₂c₂ it is
 ///   a(c') exp((s₁c₁ − s₂c₂)²/(2V)) · exp(−(c − 2s₁c₁)²/(4V)) · exp(−(c − 2s₂c₂)²/(4V)),
-/// which is a table in c₁ and c₂ and two in c, each of Gaussians on lines.
+/// one table in c₁ and c₂ and two in c. Each consists of Gaussians on lines.
 class tables {
  public:
   tables(const velocity_grid& grid, const fluid_state& state, const conditional& of)

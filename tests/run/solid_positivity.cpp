@@ -55,7 +55,7 @@ void expect_nonnegative(const std::vector<std::string>& models, int dimensions, 
             static_cast<double>(apsis::find_method(method).stages());
   }
   // The first molecules that cross an empty cell in one long step are hot and fast there.
-  EXPECT_LE(ended, 2 * runs);
+  EXPECT_LE(ended, 1 + runs / 2);
   std::printf(
       "%d dimensions: %d runs and %d that the velocities ended, %.3g point stages, 0 negative values, "
       "conservation defect %.2g\n",
@@ -84,7 +84,7 @@ TEST(solid_positivity, quick_in_the_plane) {
 }
 
 TEST(solid_positivity, quick_in_space) {
-  expect_nonnegative({"bgk", "shakhov", "es-bgk"}, 3, 4, 4e7, 1);
+  expect_nonnegative({"bgk", "shakhov", "es-bgk"}, 3, 4, 2e7, 2);
 }
 
 TEST(SLOW_solid_positivity, holds_for_1e9_point_stages_in_the_plane_and_in_space) {

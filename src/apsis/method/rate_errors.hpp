@@ -27,7 +27,7 @@ rate_errors rate_errors_at(const method& m, double z);
 /// the z of that point:
 ///   flux(z) − 1 ≈ (1 − s) Σ_k flux_k s^k,    last likewise,    layer ≈ Σ_k layer_k s^k.
 struct rate_response {
-  static constexpr std::size_t terms = 7;  ///< number of coefficients
+  static constexpr std::size_t terms = 9;  ///< number of coefficients
   std::array<double, terms> flux{};        ///< flux_k
   std::array<double, terms> last{};        ///< last_k
   std::array<double, terms> layer{};       ///< layer_k

@@ -14,15 +14,9 @@ namespace apsis::APSIS_NUMBERS {
 /// g_k = 1, or 0 where γ_k = ((β_k + δ + τ)/(β_k + δ))⁶, τ = |β₀ − β₂|, is less than 1e-5 of the sum of all
 /// three. A candidate has its linear weight or none. Smooth data therefore have the linear scheme and its
 /// dispersion (Fu, Hu & Adams, JCP 305, 2016, with C_T = 1e-5 and q = 6).
-struct weights_teno {
-  static constexpr double added = 0.0;
-  static constexpr bool of_any_size = true;
+struct weights_teno : weno5::weights_relative_to_data {
   static constexpr double cutoff = 1e-5;
 
-  template <class N>
-  static APSIS_FORMULA weno5::smoothness<N> smoothness(const weno5::window<weights_teno, N>& u) {
-    return weno5::relative_to_data(u);
-  }
   /// Of bases over a common denominator and relative to their sum: no power overflows, and one that
   /// underflows is far below the cutoff. The largest base is at least a third, its power more than the
   /// cutoff.

@@ -104,6 +104,17 @@ APSIS_FORMULA smoothness<N> relative_to_data(const window<Weights, N>& u) {
   return scale(indicators(u), fma(1e-6 * u.here, u.here, N(1e-200)));
 }
 
+/// Base of weights with these indicators. They are correct for data of any size.
+struct weights_relative_to_data {
+  static constexpr double added = 0.0;
+  static constexpr bool of_any_size = true;
+
+  template <class Window>
+  static APSIS_FORMULA auto smoothness(const Window& u) {
+    return relative_to_data(u);
+  }
+};
+
 /// Factors g_k ≥ 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over
 /// a common denominator.
 template <class N>

@@ -13,14 +13,7 @@ namespace apsis::APSIS_NUMBERS {
 
 /// g_k = 1 + (τ/(β_k + δ))², τ = |β₀ − β₂| (Borges, Carmona, Costa & Don, JCP 227, 2008, with power 2, which
 /// preserves fifth order at smooth extrema).
-struct weights_z {
-  static constexpr double added = 0.0;
-  static constexpr bool of_any_size = true;
-
-  template <class N>
-  static APSIS_FORMULA weno5::smoothness<N> smoothness(const weno5::window<weights_z, N>& u) {
-    return weno5::relative_to_data(u);
-  }
+struct weights_z : weno5::weights_relative_to_data {
   template <class N>
   static APSIS_FORMULA weno5::factors<N> factors(const weno5::smoothness<N>& y) {
     const N tau = y.s0 - y.s2, t = tau * tau;

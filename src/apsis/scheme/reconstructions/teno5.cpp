@@ -21,6 +21,7 @@ void outflow_teno(const double* const* rows, int count, int width, const double*
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <apsis/scheme/fifth_order.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 namespace apsis {
@@ -29,22 +30,6 @@ namespace {
 HWY_EXPORT(edges_teno);
 HWY_EXPORT(outflow_teno);
 
-class teno5 final : public reconstruction {
- public:
-  int ghost_width() const override { return 2; }
-  int order() const override { return 5; }
-  void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
-    HWY_DYNAMIC_DISPATCH(edges_teno)(rows, count, width, left, right);
-  }
-  void outflow_edges(const double* const* rows, int count, int width, const double* forward,
-                     double* edge) const override {
-    HWY_DYNAMIC_DISPATCH(outflow_teno)(rows, count, width, forward, edge);
-  }
-  double operations(bool both_edges) const override {
-    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_teno>(both_edges);
-  }
-};
-
 }  // namespace
 
 extern const reconstruction_entry reconstruction_teno5;
@@ -52,7 +37,11 @@ const reconstruction_entry reconstruction_teno5 = {
     .name = "teno5",
     .description = "fifth-order TENO: linear where data are smooth, sharper at jumps",
     .source = "Fu, Hu, Adams, JCP 305 (2016) 333-359",
-    .make = []() -> std::unique_ptr<reconstruction> { return std::make_unique<teno5>(); }};
+    .make = [] {
+      return make_fifth_order({.edges = [](auto... of) { HWY_DYNAMIC_DISPATCH(edges_teno)(of...); },
+                               .outflow_edges = [](auto... of) { HWY_DYNAMIC_DISPATCH(outflow_teno)(of...); },
+                               .operations = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_teno>});
+    }};
 
 }  // namespace apsis
 #endif

@@ -42,6 +42,7 @@ double operations_of_edge() {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <apsis/scheme/fifth_order.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 namespace apsis {
@@ -50,33 +51,25 @@ namespace {
 HWY_EXPORT(edges);
 HWY_EXPORT(outflow_edges);
 
+}  // namespace
+
 /// The linear scheme that WENO approaches on smooth data, without protection against oscillations. Sums of
 /// its fluxes over a line are those of the values: Σ û_{i+1/2} = Σ u_i and Σ x_{i+1/2} û_{i+1/2} = Σ x_i u_i
 /// for data that vanish at the ends, since each û reproduces linear functions.
-class upwind5 final : public reconstruction {
- public:
-  int ghost_width() const override { return 2; }
-  int order() const override { return 5; }
-  void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
-    HWY_DYNAMIC_DISPATCH(edges)(rows, count, width, left, right);
-  }
-  void outflow_edges(const double* const* rows, int count, int width, const double* forward,
-                     double* edge) const override {
-    HWY_DYNAMIC_DISPATCH(outflow_edges)(rows, count, width, forward, edge);
-  }
-  double operations(bool both_edges) const override {
-    return (both_edges ? 2.0 : 1.0) * HWY_NAMESPACE::operations_of_edge();
-  }
-};
-
-}  // namespace
-
 extern const reconstruction_entry reconstruction_upwind5;
 const reconstruction_entry reconstruction_upwind5 = {
     .name = "upwind5",
     .description = "fifth-order linear upwind: for smooth solutions, without protection against oscillations",
     .source = "the linear weights of Jiang, Shu, JCP 126 (1996)",
-    .make = []() -> std::unique_ptr<reconstruction> { return std::make_unique<upwind5>(); }};
+    .make = [] {
+      return make_fifth_order(
+          {.edges = [](auto... of) { HWY_DYNAMIC_DISPATCH(edges)(of...); },
+           .outflow_edges = [](auto... of) { HWY_DYNAMIC_DISPATCH(outflow_edges)(of...); },
+           .operations =
+               [](bool both_edges) {
+                 return (both_edges ? 2.0 : 1.0) * HWY_NAMESPACE::operations_of_edge();
+               }});
+    }};
 
 }  // namespace apsis
 #endif

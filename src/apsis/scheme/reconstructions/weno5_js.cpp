@@ -21,6 +21,7 @@ void outflow_js(const double* const* rows, int count, int width, const double* f
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <apsis/scheme/fifth_order.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 namespace apsis {
@@ -29,22 +30,6 @@ namespace {
 HWY_EXPORT(edges_js);
 HWY_EXPORT(outflow_js);
 
-class weno5_js final : public reconstruction {
- public:
-  int ghost_width() const override { return 2; }
-  int order() const override { return 5; }
-  void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
-    HWY_DYNAMIC_DISPATCH(edges_js)(rows, count, width, left, right);
-  }
-  void outflow_edges(const double* const* rows, int count, int width, const double* forward,
-                     double* edge) const override {
-    HWY_DYNAMIC_DISPATCH(outflow_js)(rows, count, width, forward, edge);
-  }
-  double operations(bool both_edges) const override {
-    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>(both_edges);
-  }
-};
-
 }  // namespace
 
 extern const reconstruction_entry reconstruction_weno5_js;
@@ -52,7 +37,11 @@ const reconstruction_entry reconstruction_weno5_js = {
     .name = "weno5-js",
     .description = "fifth-order WENO with the weights of Jiang and Shu",
     .source = "Jiang, Shu, JCP 126 (1996) 202-228",
-    .make = []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_js>(); }};
+    .make = [] {
+      return make_fifth_order({.edges = [](auto... of) { HWY_DYNAMIC_DISPATCH(edges_js)(of...); },
+                               .outflow_edges = [](auto... of) { HWY_DYNAMIC_DISPATCH(outflow_js)(of...); },
+                               .operations = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_js>});
+    }};
 
 }  // namespace apsis
 #endif

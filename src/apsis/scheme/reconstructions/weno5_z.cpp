@@ -21,6 +21,7 @@ void outflow_z(const double* const* rows, int count, int width, const double* fo
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <apsis/scheme/fifth_order.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 namespace apsis {
@@ -29,22 +30,6 @@ namespace {
 HWY_EXPORT(edges_z);
 HWY_EXPORT(outflow_z);
 
-class weno5_z final : public reconstruction {
- public:
-  int ghost_width() const override { return 2; }
-  int order() const override { return 5; }
-  void edges(const double* const* rows, int count, int width, double* left, double* right) const override {
-    HWY_DYNAMIC_DISPATCH(edges_z)(rows, count, width, left, right);
-  }
-  void outflow_edges(const double* const* rows, int count, int width, const double* forward,
-                     double* edge) const override {
-    HWY_DYNAMIC_DISPATCH(outflow_z)(rows, count, width, forward, edge);
-  }
-  double operations(bool both_edges) const override {
-    return HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_z>(both_edges);
-  }
-};
-
 }  // namespace
 
 extern const reconstruction_entry reconstruction_weno5_z;
@@ -52,7 +37,11 @@ const reconstruction_entry reconstruction_weno5_z = {
     .name = "weno5-z",
     .description = "fifth-order WENO with Z weights: full order at smooth extrema",
     .source = "Borges, Carmona, Costa, Don, JCP 227 (2008) 3191-3211",
-    .make = []() -> std::unique_ptr<reconstruction> { return std::make_unique<weno5_z>(); }};
+    .make = [] {
+      return make_fifth_order({.edges = [](auto... of) { HWY_DYNAMIC_DISPATCH(edges_z)(of...); },
+                               .outflow_edges = [](auto... of) { HWY_DYNAMIC_DISPATCH(outflow_z)(of...); },
+                               .operations = HWY_NAMESPACE::weno5::operations<HWY_NAMESPACE::weights_z>});
+    }};
 
 }  // namespace apsis
 #endif

@@ -121,6 +121,12 @@ double gas::moments_of_g(const double* omega, double* of_g) const {
     greatest += farthest;
   }
   least = std::min(least, greatest);
+  // Colder than any row f ≥ 0 of this mean, by more than the rounding of sums.
+  constexpr double rounding = 1e-12;
+  if (omega[0] > 0.0 && !(degrees_ * s.T >= least - rounding * (square + greatest))) {
+    of_g[d + 1] = 0.5 * s.rho * (square + d * s.T);
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   const double variance = std::min(std::max(d * s.T, least), least + (greatest - least) / 3.0);
   const bool usual = !(omega[0] > 0.0) || variance == d * s.T;
   of_g[d + 1] = omega[0] == 0.0 ? omega[d + 1] : 0.5 * s.rho * (square + (usual ? d * s.T : variance));
@@ -184,7 +190,7 @@ bool gas::equilibrium(const double* omega, double* row, line_moments& of_row) co
   if (!reduced()) return equilibrium_of_g(omega, row, &of_row);
   std::array<double, most_moments> of_g;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   of_row.others = moments_of_g(omega, of_g.data());
-  if (!equilibrium_of_g(of_g.data(), row, &of_row)) return false;
+  if (std::isnan(of_row.others) || !equilibrium_of_g(of_g.data(), row, &of_row)) return false;
   fill_h(of_row.others, row);
   return true;
 }
@@ -198,9 +204,13 @@ int gas::equilibria(const double* omega, int rows, double* row, std::ptrdiff_t p
     const int some = std::min(most_line_states, rows - first);
     const double* of = omega + first * count;
     double* to = row + first * pitch;
-    for (int p = 0; p < some; ++p)
-      of_h[static_cast<std::size_t>(p)] = moments_of_g(of + p * count, of_g.data() + p * count);
-    const int found = equilibria_of_g(of_g.data(), some, to, pitch);
+    int possible = 0;
+    for (; possible < some; ++possible) {
+      const double energy = moments_of_g(of + possible * count, of_g.data() + possible * count);
+      if (std::isnan(energy)) break;
+      of_h[static_cast<std::size_t>(possible)] = energy;
+    }
+    const int found = equilibria_of_g(of_g.data(), possible, to, pitch);
     for (int p = 0; p < found; ++p) fill_h(of_h[static_cast<std::size_t>(p)], to + p * pitch);
     if (found < some) return first + found;
   }

@@ -45,7 +45,7 @@ std::vector<std::string> boundary_variables(const std::string& kind, const model
 }
 
 source_place place_of_emitter(const case_config& config, const std::string& path) {
-  const source_place table = place_of(config, path);
+  source_place table = place_of(config, path);
   if (!table.file.empty()) return table;
   if (config.places.contains(path + ".kind")) return place_of(config, path + ".kind");
   const auto key = config.places.lower_bound(path + ".");

@@ -111,6 +111,8 @@ class problem_builder {
   double cfl_number() const {
     return limited_ && has_space() && !first_order() ? of_space().limited_cfl_number(collisions_) : 1.0;
   }
+  /// Returns the force; nothing without one.
+  const std::optional<acceleration>& force() const { return force_; }
   /// Returns the discretization of space; that of a point without space.
   const discretization& of_space() const;
   /// Returns where cells collide. Requires a reconstruction if the model has space.

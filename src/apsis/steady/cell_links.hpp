@@ -1,0 +1,54 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/core/index.hpp>
+#include <apsis/velocity/position.hpp>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace apsis {
+
+/// Cells from which a thread takes the next ones in loops over rows.
+inline constexpr int cells_of_a_block = 16;
+
+/// An end of a segment at a surface, with the cell in front of it.
+struct gas_end_of_segment {
+  face where;                  ///< upper if segments have their upper end here
+  const boundary* side;        ///< of the surface
+  position at;                 ///< where the segment meets the surface
+  std::array<int, 3> cells{};  ///< of the segment, counted inwards; the last one repeated where it is shorter
+};
+
+/// Neighbours of the cells of a domain of one process, along every direction.
+class cell_links {
+ public:
+  explicit cell_links(const domain& space);
+
+  /// Returns the next cell of the segment; −1 at its end.
+  int next(int direction, bool upper, int cell) const { return next_[index(direction, upper)][at(cell)]; }
+  /// Returns the next cell, also across periodic faces; −1 where the gas ends.
+  int next_or_image(int direction, bool upper, int cell) const {
+    return image_[index(direction, upper)][at(cell)];
+  }
+  /// Returns the end at the surface next to a cell; −1 where there is none.
+  int end_next_to(int direction, bool upper, int cell) const {
+    return end_at_[index(direction, upper)][at(cell)];
+  }
+  const std::vector<gas_end_of_segment>& ends() const { return ends_; }  ///< all ends at surfaces
+  const std::vector<int>& cells() const { return cells_; }               ///< the cells of the gas, in order
+  int directions() const { return directions_; }                         ///< of the mesh
+
+ private:
+  static std::size_t index(int direction, bool upper) { return face{direction, upper}.index(); }
+  void link(const domain& space, int direction);
+  void add_end(const domain& space, int direction, const segment& one, bool upper);
+
+  int directions_;
+  std::vector<int> cells_;
+  std::array<std::vector<int>, 6> next_, image_, end_at_;
+  std::vector<gas_end_of_segment> ends_;
+};
+
+}  // namespace apsis

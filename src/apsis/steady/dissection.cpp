@@ -1,0 +1,72 @@
+#include <apsis/steady/dissection.hpp>
+
+#include <apsis/core/index.hpp>
+
+#include <utility>
+
+namespace apsis {
+namespace {
+
+constexpr int reach = 2;
+/// Boxes of at most so many cells are not divided.
+constexpr int smallest = 8;
+
+class dissection {
+ public:
+  explicit dissection(const grid& mesh) : mesh_(mesh) {}
+
+  void divide(std::array<int, 3> begin, std::array<int, 3> end) {
+    int longest = 0, cells = 1;
+    for (int d = 0; d < 3; ++d) {
+      cells *= end[at(d)] - begin[at(d)];
+      if (end[at(d)] - begin[at(d)] > end[at(longest)] - begin[at(longest)]) longest = d;
+    }
+    const std::size_t k = at(longest);
+    if (cells <= smallest || end[k] - begin[k] <= 2 * reach) return append(begin, end);
+    const int middle = (begin[k] + end[k] - reach) / 2;
+    std::array<int, 3> first = end, second = begin, from = begin, to = end;
+    first[k] = from[k] = middle;
+    second[k] = to[k] = middle + reach;
+    divide(begin, first);
+    divide(second, end);
+    append(from, to);
+  }
+
+  void append(std::array<int, 3> begin, std::array<int, 3> end) {
+    for (int x = begin[0]; x < end[0]; ++x)
+      for (int y = begin[1]; y < end[1]; ++y)
+        for (int z = begin[2]; z < end[2]; ++z) {
+          const int cell = x * mesh_.stride(0) + y * mesh_.stride(1) + z * mesh_.stride(2);
+          if (mesh_.solid(cell) < 0) order_.push_back(cell);
+        }
+  }
+
+  std::vector<int> take() { return std::move(order_); }
+
+ private:
+  const grid& mesh_;
+  std::vector<int> order_;
+};
+
+}  // namespace
+
+std::vector<int> dissected_cells(const grid& mesh, const std::array<bool, 3>& periodic) {
+  std::array<int, 3> begin{}, end{};
+  for (int d = 0; d < 3; ++d) end[at(d)] = mesh.cells(d);
+  dissection parts(mesh);
+  // A slab at the lower end cuts a ring open; slabs of other directions end at it.
+  std::array<int, 3> inside = begin;
+  for (int d = 0; d < 3; ++d)
+    if (periodic[at(d)] && mesh.cells(d) > 2 * reach) inside[at(d)] = reach;
+  parts.divide(inside, end);
+  for (int d = 0; d < 3; ++d) {
+    if (inside[at(d)] == 0) continue;
+    std::array<int, 3> from = begin, to = end;
+    for (int before = 0; before < d; ++before) from[at(before)] = inside[at(before)];
+    to[at(d)] = reach;
+    parts.append(from, to);
+  }
+  return parts.take();
+}
+
+}  // namespace apsis

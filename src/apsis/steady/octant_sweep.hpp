@@ -1,0 +1,55 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/steady/cell_links.hpp>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace apsis {
+
+/// An implicit step of upwind transport and relaxation, solved exactly by one pass in the direction of flight
+/// of every component: (L + σ) δ = r with L δ = Σ_k v_k ∂_k δ, whose value at the downstream edge of cell i
+/// is δ_i + ¼ (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
+/// equal signs form an octant; one octant follows another, and what leaves at an end of the gas in one of
+/// them enters, by the boundary condition, in those that follow. Across periodic faces nothing enters.
+class octant_sweep {
+ public:
+  /// All arguments must outlive the object.
+  octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links);
+  ~octant_sweep();
+  octant_sweep(const octant_sweep&) = delete;
+  octant_sweep& operator=(const octant_sweep&) = delete;
+
+  /// r ← δ; `f`: the state in front of the ends, about which boundary conditions are linear enough; `rates`:
+  /// σ of every cell.
+  void solve(const field& f, const std::vector<double>& rates, field& r);
+
+ private:
+  /// Consecutive components of one octant.
+  struct strip {
+    int begin = 0, end = 0;
+  };
+  struct octant {
+    std::array<bool, 3> up{};  ///< whether the velocity is positive along each direction
+    std::vector<strip> strips;
+    std::vector<int> order;  ///< of the cells
+  };
+  struct scratch;
+
+  void set_order(octant& of) const;
+  void respond(const octant& of, const field& f, const field& delta);
+  void pass(const octant& of, const strip& components, const std::vector<double>& rates, field& r) const;
+
+  const relaxation_model& equation_;
+  const domain& space_;
+  const cell_links& links_;
+  std::vector<octant> octants_;
+  std::array<aligned_vector<double>, 3> per_cell_;  ///< |v_k|/Δx_k of every component
+  field entering_;                                  ///< [end], δ of the components that enter
+  std::unique_ptr<scratch> scratch_;
+};
+
+}  // namespace apsis

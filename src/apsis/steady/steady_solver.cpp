@@ -1,0 +1,366 @@
+#include <apsis/steady/steady_solver.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/exact_sum.hpp>
+#include <apsis/core/index.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/model/gas_model.hpp>
+#include <apsis/steady/anderson.hpp>
+#include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/macroscopic_system.hpp>
+#include <apsis/steady/octant_sweep.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+/// J is built anew in every iteration until the residual is this share of that of the start, and then kept.
+constexpr double share_to_keep_system = 0.01;
+/// A residual that has grown by this factor since J was built calls for a new one.
+constexpr double growth_for_new_system = 10.0;
+/// In a dense gas images mislead the mixture until the residual is this share of that of the start.
+constexpr double share_to_mix = 0.05;
+/// Rarefaction parameter √π/2 · L/λ below which a gas is rare, so that mixing pays from the first iteration
+/// on.
+constexpr double rare = 5.0;
+/// Largest relative change of density and energy in one iteration.
+constexpr double largest_change = 0.3;
+/// Where corrections are larger than that, J has this multiple of the rate of flight through the domain and
+/// of the relative residual on its diagonal. It costs iterations where corrections are small.
+constexpr double pseudo_share = 0.3;
+/// A residual of this multiple of the start does not come back.
+constexpr double hopeless = 1e6;
+/// Iterations without progress after which there will be none.
+constexpr int patience = 100;
+
+void check(const problem_builder& space) {
+  if (!space.processes().is_single())
+    throw input_error(
+        "the steady solver runs on one process (its moment equations are those of one "
+        "process); start it without mpirun, with --threads for more processors");
+  if (!space.has_space())
+    throw input_error("the model has no space, so that its steady state is an equilibrium; run it in time");
+  for (const double epsilon : space.epsilon_at_centres())
+    if (!(epsilon > 0.0))
+      throw input_error("epsilon is 0 in some cell (the steady solver divides by it); give a positive one");
+}
+
+}  // namespace
+
+struct steady_solver::impl {
+  impl(const relaxation_model& of, const problem_builder& space, semidiscrete_problem& operators,
+       const field& start, const steady_options& given)
+      : equation(of),
+        builder(space),
+        options(given),
+        epsilon((check(space), space.epsilon_at_centres())),
+        problem(operators),
+        links(builder.space()),
+        count(equation.moment_count()),
+        system(equation, builder.space(), links, builder.force(), builder.first_order()),
+        sweep(equation, builder.space(), links),
+        mixture(given.depth),
+        r(start.cells(), start.components()),
+        omega(at(start.cells() * count)),
+        of_transport(omega.size()),
+        changes_of_moments(omega.size()),
+        rates(at(start.cells())) {
+    moments_of(start, omega);
+    totals = sums(omega);
+    scales = largest_scales();
+  }
+
+  void moments_of(const field& u, std::vector<double>& to) const {
+    parallel_blocks(u.cells(), cells_of_a_block, [&](int begin, int end) {
+      equation.moments_of_rows(u.row(begin), u.stride(), end - begin, to.data() + at(begin * count));
+    });
+  }
+  std::vector<double> sums(const std::vector<double>& of) const {
+    std::vector<double> all;
+    for (std::size_t i = 0; i < at(count); ++i) {
+      exact_sum sum;
+      for (const int cell : links.cells()) sum.add(of[at(cell * count) + i]);
+      all.push_back(sum.value());
+    }
+    return all;
+  }
+  /// Scales of the moments of a cell, or their absolute values where the model has other invariants.
+  std::vector<double> scales_of(const double* moments) const {
+    std::vector<double> found(moments, moments + count);
+    if (equation.invariants().size() == at(count)) {
+      equation.invariant_scales({moments, at(count)}, found.data());
+    } else {
+      for (double& x : found) x = std::abs(x);
+    }
+    return found;
+  }
+  std::vector<double> largest_scales() const {
+    std::vector<double> largest(at(count), std::numeric_limits<double>::min());
+    for (const int cell : links.cells()) {
+      const auto here = scales_of(omega.data() + at(cell * count));
+      for (std::size_t i = 0; i < largest.size(); ++i) largest[i] = std::max(largest[i], here[i]);
+    }
+    return largest;
+  }
+
+  /// r ← T(f) + Q(f)/ε, with the moments of f and of T(f), and the rates.
+  void compute_residual(const field& f) {
+    const std::array<target<field, double>, 1> fresh = {{{&r, 0.0, 1.0, true}}};
+    problem.add_transport(0.0, f, fresh);
+    moments_of(f, omega);
+    moments_of(r, of_transport);
+    const std::array<target<field, double>, 1> added = {{{&r, 0.0, 1.0, false}}};
+    problem.add_collision(0.0, f, added);
+    for (const int cell : links.cells())
+      rates[at(cell)] = equation.rate(omega.data() + at(cell * count)) / epsilon[at(cell)];
+  }
+
+  /// {‖r‖, ‖σ f‖}.
+  std::array<double, 2> norms(const field& f) const {
+    std::vector<std::array<double, 2>> of_cells(links.cells().size());
+    parallel_blocks(static_cast<int>(links.cells().size()), cells_of_a_block, [&](int begin, int end) {
+      for (int n = begin; n < end; ++n) {
+        const int cell = links.cells()[at(n)];
+        double residual = 0.0, collisions = 0.0;
+        for (int k = 0; k < f.components(); ++k) {
+          const double x = r.row(cell)[k], y = rates[at(cell)] * f.row(cell)[k];
+          residual += x * x;
+          collisions += y * y;
+        }
+        of_cells[at(n)] = {residual, collisions};
+      }
+    });
+    exact_sum residual, collisions;
+    for (const auto& [x, y] : of_cells) {
+      residual.add(x);
+      collisions.add(y);
+    }
+    return {std::sqrt(residual.value()), std::sqrt(collisions.value())};
+  }
+
+  /// The shortest extent L of the domain.
+  double extent() const {
+    const grid& mesh = builder.mesh();
+    double shortest = std::numeric_limits<double>::infinity();
+    for (int d = 0; d < mesh.dimensions(); ++d)
+      shortest = std::min(shortest, mesh.spacing(d) * mesh.cells(d));
+    return shortest;
+  }
+  /// √T of the first cell of a gas; the largest speed of other models.
+  double thermal_speed() const {
+    if (const gas_model* gas = equation.as_gas())
+      return std::sqrt(gas->molecules().state(omega.data() + at(links.cells().front() * count)).T);
+    double speed = 0.0;
+    for (int d = 0; d < builder.mesh().dimensions(); ++d)
+      for (const double v : equation.speeds(d)) speed = std::max(speed, std::abs(v));
+    return speed;
+  }
+  /// √π/2 · L/λ with the mean rate of collisions.
+  double rarefaction_parameter() const {
+    double rate = 0.0;
+    for (const int cell : links.cells()) rate += rates[at(cell)];
+    return rate / static_cast<double>(links.cells().size()) / (std::sqrt(2.0) * flight_rate);
+  }
+
+  void build_system_if_due(double relative) {
+    const bool due = !built || relative > share_to_keep_system || relative > growth_for_new_system * lowest;
+    lowest = due ? relative : std::min(lowest, relative);
+    if (!due) return;
+    system.build(omega, rates, strong ? pseudo_share * flight_rate * std::min(relative, 1.0) : 0.0);
+    if (built && relative <= share_to_keep_system) mixture.clear();
+    built = true;
+  }
+
+  /// Returns the largest change of a moment relative to its scale.
+  double largest_relative_change() const {
+    double largest = 0.0;
+    for (const int cell : links.cells()) {
+      const auto here = scales_of(omega.data() + at(cell * count));
+      for (std::size_t i = 0; i < at(count); ++i) {
+        const double change = std::abs(changes_of_moments[at(cell * count) + i]);
+        const double relative = change / std::max(here[i], std::numeric_limits<double>::min());
+        if (!(relative <= largest)) largest = relative;
+      }
+    }
+    return largest;
+  }
+
+  /// Returns the share of the correction that changes density and energy of no cell too much.
+  double share_of_correction() const {
+    double share = 1.0;
+    if (equation.as_gas() == nullptr) return share;
+    for (const int cell : links.cells())
+      for (const std::size_t i : {std::size_t{0}, at(count - 1)}) {
+        const std::size_t k = at(cell * count) + i;
+        share =
+            std::min(share, largest_change * omega[k] / std::max(std::abs(changes_of_moments[k]), 1e-300));
+      }
+    return share;
+  }
+
+  /// r ← r + σ (E(ω + δω) − E(ω)); less of δω where that has no equilibrium.
+  void add_correction() {
+    const double share = share_of_correction();
+    parallel_blocks(static_cast<int>(links.cells().size()), cells_of_a_block, [&](int begin, int end) {
+      aligned_vector<double> before(at(r.components())), after(at(r.components()));
+      std::vector<double> moved(at(count));
+      for (int n = begin; n < end; ++n) {
+        const int cell = links.cells()[at(n)];
+        const double *here = omega.data() + at(cell * count),
+                     *change = changes_of_moments.data() + at(cell * count);
+        if (!equation.equilibrium(here, before.data()))
+          throw numerical_error(equation.why_inadmissible(here), {.cell = cell, .value = here[0]});
+        for (double part = share; part > 1e-3 * share; part *= 0.5) {
+          for (std::size_t i = 0; i < at(count); ++i) moved[i] = here[i] + part * change[i];
+          if (!equation.equilibrium(moved.data(), after.data())) continue;
+          for (std::size_t k = 0; k < after.size(); ++k)
+            r.row(cell)[k] += rates[at(cell)] * (after[k] - before[k]);
+          break;
+        }
+      }
+    });
+  }
+
+  /// f ← f + δ, mixed with earlier images, with the total mass of the start where walls enclose it.
+  void update(field& f, bool mix) {
+    std::vector<double> of_change(omega.size());
+    moments_of(r, of_change);
+    parallel_blocks(f.cells(), cells_of_a_block, [&](int begin, int end) {
+      double* u = f.row(begin);
+      const double* delta = r.row(begin);
+      for (std::size_t k = 0; k < at((end - begin) * f.stride()); ++k) u[k] += delta[k];
+    });
+    if (mix) {
+      for (std::size_t k = 0; k < of_change.size(); ++k) of_change[k] /= scales[k % at(count)];
+      mixture.mix(of_change, f);
+    }
+    if (equation.as_gas() == nullptr || !system.conserved()[0]) return;
+    moments_of(f, omega);
+    const double factor = totals[0] / sums(omega)[0];
+    parallel_blocks(f.cells(), cells_of_a_block, [&](int begin, int end) {
+      double* u = f.row(begin);
+      for (std::size_t k = 0; k < at((end - begin) * f.stride()); ++k) u[k] *= factor;
+    });
+  }
+
+  /// Throws where the residual no longer falls. One that falls by a tenth counts as progress.
+  void note_progress(double residual) {
+    if (residual < 0.9 * best) {
+      best = residual;
+      best_number = number;
+    }
+    if (number - best_number > patience)
+      throw numerical_error(
+          fmt::format("no steady state is found: the residual stays at {:.2g} of that of the start for {} "
+                      "iterations (nonlinear weights of a reconstruction may never settle, nor flows without "
+                      "a steady state); use upwind5, or march in time",
+                      best, patience));
+  }
+
+  /// Sets δω and its size.
+  void correct_moments(steady_iteration& now) {
+    build_system_if_due(now.residual);
+    std::vector<double> missing = sums(omega);
+    for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = totals[i] - missing[i];
+    changes_of_moments = system.solve(of_transport, missing);
+    now.change = largest_relative_change();
+  }
+
+  steady_iteration iterate(field& f) {
+    compute_residual(f);
+    const auto [residual, collisions] = norms(f);
+    if (number == 0) {
+      flight_rate = thermal_speed() / extent();
+      mixes_at_once = rarefaction_parameter() < rare;
+    }
+    if (std::isnan(reference)) reference = residual;
+    steady_iteration now;
+    now.number = number++;
+    now.residual = reference > 0.0 ? residual / reference : 0.0;
+    if (!(now.residual < hopeless))
+      throw numerical_error(
+          fmt::format("the iteration to the steady state diverges: its residual is {:.3g} "
+                      "times that of the start",
+                      now.residual));
+    note_progress(now.residual);
+    // Each term of a residual is rounded relative to σf.
+    now.rounding = residual <= 4.0 * std::numeric_limits<double>::epsilon() * collisions;
+    correct_moments(now);
+    if (!strong && now.change > largest_change) {
+      strong = true;
+      built = false;
+      correct_moments(now);
+    }
+    if (!std::isfinite(now.change))
+      throw numerical_error(
+          "the correction of the moments is not finite: the iteration to the steady state "
+          "diverges");
+    now.converged = (now.residual <= options.tolerance || now.rounding) && now.change <= options.tolerance;
+    if (now.converged) return now;
+    add_correction();
+    sweep.solve(f, rates, r);
+    update(f, mixes_at_once || now.residual < share_to_mix);
+    return now;
+  }
+
+  const relaxation_model& equation;
+  problem_builder builder;
+  steady_options options;
+  std::vector<double> epsilon;
+  semidiscrete_problem& problem;
+  cell_links links;
+  int count;
+  macroscopic_system system;
+  octant_sweep sweep;
+  anderson mixture;
+  field r;
+  std::vector<double> omega, of_transport, changes_of_moments, rates, totals, scales;
+  double reference = std::numeric_limits<double>::quiet_NaN();
+  double lowest = 0.0;  ///< residual since J was built
+  double best = std::numeric_limits<double>::infinity();
+  double flight_rate = 0.0;  ///< thermal speed over the extent of the domain
+  bool built = false, mixes_at_once = false;
+  bool strong = false;  ///< whether a correction was larger than largest_change
+  int number = 0, best_number = 0;
+};
+
+steady_solver::steady_solver(const relaxation_model& equation, const problem_builder& space,
+                             semidiscrete_problem& problem, const field& start, const steady_options& options)
+    : impl_(std::make_unique<impl>(equation, space, problem, start, options)) {}
+
+steady_solver::~steady_solver() = default;
+
+steady_iteration steady_solver::iterate(field& f) {
+  return impl_->iterate(f);
+}
+
+double steady_solver::reference() const {
+  return impl_->reference;
+}
+
+void steady_solver::set_reference(double residual) {
+  impl_->reference = residual;
+}
+
+steady_iteration steady_solver::solve(field& f, const std::function<void(const steady_iteration&)>& watch) {
+  for (;;) {
+    const steady_iteration now = iterate(f);
+    if (watch) watch(now);
+    if (now.converged) return now;
+    if (now.number + 1 >= impl_->options.iterations)
+      throw numerical_error(
+          fmt::format("no steady state in {} iterations (the residual is {:.3g} of that of "
+                      "the start, the last change {:.3g}); give more, or march in time",
+                      impl_->options.iterations, now.residual, now.change));
+  }
+}
+
+}  // namespace apsis

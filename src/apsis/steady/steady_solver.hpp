@@ -1,0 +1,69 @@
+#pragma once
+
+#include <apsis/mesh/field.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/semidiscrete/problem_builder.hpp>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace apsis {
+
+/// How a steady state is found.
+struct steady_options {
+  double tolerance = 1e-8;  ///< of the residual and of the change of the moments
+  int iterations = 200;     ///< at most
+  int depth = 3;            ///< images that Anderson's mixture remembers
+};
+
+/// One iteration of steady_solver. Dimensionless.
+struct steady_iteration {
+  int number = 0;         ///< iterations before
+  double residual = 0.0;  ///< ‖T(f) + Q(f)/ε‖₂ relative to that of the start
+  /// Largest change δω_i of a moment in the correction of this iteration, relative to its scale
+  /// (model::invariant_scales()).
+  double change = 0.0;
+  bool rounding = false;   ///< whether the residual is that of rounding
+  bool converged = false;  ///< whether f was left as it is: it has the tolerance
+};
+
+/// Solves T(f) + Q(f)/ε = 0 for the discretization of a problem, without steps in time. Each iteration
+/// evaluates the residual R, corrects the moments by the linearised moment equations J δω = ℛT
+/// (macroscopic_system), solves (L + σ) δf = R + σ (E(ω + δω) − E(ω)) by an upwind sweep (octant_sweep), and
+/// mixes images by Anderson's method. Fixed points are exactly R = 0: J and L decide on the speed alone.
+/// Moments that nothing changes, such as the mass between walls, keep their sums.
+///
+/// Reference: Su, Zhu, Wang, Zhang & Wu (J. Comput. Phys. 407, 2020) for the macroscopic correction of a
+/// kinetic sweep. Here J has no terms of Navier–Stokes form: its fluxes are sums over the velocities.
+class steady_solver {
+ public:
+  /// `problem`: built by `space`; its boundary conditions, forces and sources are taken at t = 0. `start`:
+  /// the sums of its conserved moments are those of the solution, and its residual is the unit of residuals.
+  /// `equation` and `problem` must outlive the solver. Throws input_error without space, if ε is 0 somewhere,
+  /// or on several processes.
+  steady_solver(const relaxation_model& equation, const problem_builder& space, semidiscrete_problem& problem,
+                const field& start, const steady_options& options = {});
+  ~steady_solver();
+  steady_solver(const steady_solver&) = delete;
+  steady_solver& operator=(const steady_solver&) = delete;
+
+  /// Moves f nearer to the steady state. Throws numerical_error where f has no equilibrium, if the residual
+  /// has become a million times that of the start, or if it has not fallen for a hundred iterations.
+  steady_iteration iterate(field& f);
+
+  /// Returns ‖T(f) + Q(f)/ε‖₂ of the first iteration, the unit of residuals; NaN before it.
+  double reference() const;
+  /// Continues iterations with a unit of residuals that another solver had.
+  void set_reference(double residual);
+
+  /// Iterates until convergence, calling `watch` after every iteration. Throws numerical_error as iterate(),
+  /// and after the last of options.iterations.
+  steady_iteration solve(field& f, const std::function<void(const steady_iteration&)>& watch = {});
+
+ private:
+  struct impl;
+  std::unique_ptr<impl> impl_;
+};
+
+}  // namespace apsis

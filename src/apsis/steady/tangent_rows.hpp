@@ -1,0 +1,52 @@
+#pragma once
+
+#include <apsis/core/index.hpp>
+#include <apsis/exec/aligned.hpp>
+#include <apsis/model/model.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// The equilibrium E(ω) of one cell and its derivatives ∂E/∂ω_j, as differences of rows, with the matrices of
+/// the moment equations. An error of a difference affects the speed of the iteration alone. Matrices have m²
+/// numbers, row by row, m = relaxation_model::moment_count().
+class tangent_rows {
+ public:
+  /// `equation` must outlive the object.
+  explicit tangent_rows(const relaxation_model& equation);
+
+  /// Moves to other moments. Returns false if they have no equilibrium, or no neighbour has one.
+  bool move_to(const double* omega);
+
+  const double* equilibrium() const { return equilibrium_.data(); }  ///< E(ω)
+  /// Returns E(ω + step(j) e_j).
+  const double* changed(int j) const { return changed_[at(j)].data(); }
+  double step(int j) const { return steps_[at(j)]; }  ///< of ω_j
+
+  /// matrix ← ℛ(factor ∘ ∂E/∂ω) with one factor for each component.
+  void moments_of_weighted(std::span<const double> factors, double* matrix);
+  /// matrix ← ℛ(v ∘ G) with the deviation G that the gradient v ∘ ∂E/∂ω causes, in units of the mean time
+  /// between collisions: (v ∘ ∂E/∂ω) itself, and the moments s of it that relax with another rate λ divided
+  /// by λ (Chapman & Enskog).
+  void moments_of_deviation(std::span<const double> speeds, double* matrix);
+
+ private:
+  void difference(int j, std::span<const double> factors);
+  void set_relaxation();
+  bool set_tail(const std::vector<double>& s, double size);
+  void add_slow_part();
+
+  const relaxation_model& equation_;
+  int count_, relaxing_;
+  std::vector<double> omega_, scales_, steps_;
+  aligned_vector<double> equilibrium_, row_, tail_, target_;
+  std::vector<aligned_vector<double>> changed_;
+  std::vector<double> column_;
+  // Moments s that relax: those of the equilibrium, the sizes of their changes, and 𝒮E_s.
+  std::vector<double> s_, s_of_row_, sizes_, response_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,89 @@
+// Derivatives of equilibria and what collisions leave of a gradient, against kinetic theory.
+#include <apsis/steady/tangent_rows.hpp>
+
+#include "gas_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace tangent_rows_test {
+namespace {
+
+// Differences of rows have half the digits.
+constexpr double accuracy = 3e-6;
+constexpr double T = 1.1, rho = 0.8;
+
+/// A gas at rest with three velocity dimensions, and its tangents.
+struct gas_at_rest {
+  std::shared_ptr<const apsis::relaxation_model> equation;
+  std::vector<double> omega = {rho, 0.0, 0.0, 0.0, 1.5 * rho* T};
+  apsis::tangent_rows tangents;
+
+  explicit gas_at_rest(const std::string& model)
+      : equation(make_gas(model, 1, {6.5, 16}, 3)), tangents(*equation) {
+    EXPECT_TRUE(tangents.move_to(omega.data()));
+  }
+  std::vector<double> deviation(int direction) {
+    std::vector<double> matrix(25);
+    tangents.moments_of_deviation(equation->speeds(direction), matrix.data());
+    return matrix;
+  }
+};
+
+}  // namespace
+
+TEST(tangent_rows, have_the_moments_that_were_changed) {
+  for (const char* model : {"bgk", "shakhov", "es-bgk"}) {
+    gas_at_rest gas(model);
+    const std::vector<double> ones(static_cast<std::size_t>(gas.equation->components()), 1.0);
+    std::vector<double> matrix(25);
+    gas.tangents.moments_of_weighted(ones, matrix.data());
+    for (int i = 0; i < 5; ++i)
+      for (int j = 0; j < 5; ++j)
+        EXPECT_NEAR(matrix[static_cast<std::size_t>(5 * i + j)], i == j ? 1.0 : 0.0, accuracy)
+            << model << i << j;
+  }
+}
+
+TEST(tangent_rows, carry_the_fluxes_of_the_euler_equations) {
+  gas_at_rest gas("bgk");
+  std::vector<double> matrix(25);
+  gas.tangents.moments_of_weighted(gas.equation->speeds(0), matrix.data());
+  // At rest: the flux of mass is the momentum, that of momentum p = 2/3 of the energy, that of energy 5/2 T
+  // times the momentum.
+  EXPECT_NEAR(matrix[1], 1.0, accuracy);
+  EXPECT_NEAR(matrix[5 + 4], 2.0 / 3.0, accuracy);
+  EXPECT_NEAR(matrix[20 + 1], 2.5 * T, accuracy);
+  for (const int k : {0, 2, 3, 4}) EXPECT_NEAR(matrix[static_cast<std::size_t>(k)], 0.0, accuracy);
+}
+
+TEST(tangent_rows, have_the_viscosity_of_the_model) {
+  // The stress of BGK and Shakhov relaxes with the rate C, that of the ellipsoidal model with C/Pr.
+  for (const auto& [model, of_stress] : {std::pair{"bgk", 1.0}, {"shakhov", 1.0}, {"es-bgk", 2.0 / 3.0}}) {
+    gas_at_rest gas(model);
+    EXPECT_NEAR(gas.deviation(0)[10 + 2], of_stress * T, accuracy) << model;
+    EXPECT_NEAR(gas.deviation(1)[5 + 1], of_stress * T, accuracy) << model;
+  }
+}
+
+TEST(tangent_rows, have_the_conductivity_of_the_model) {
+  // At constant pressure dρ = −ρ dT/T and dE = 0, and the flux of energy is 5/2 ρT dT/Pr in units of the rate
+  // at which the stress relaxes.
+  for (const auto& [model, of_heat] : {std::pair{"bgk", 1.0}, {"shakhov", 1.5}, {"es-bgk", 1.0}}) {
+    gas_at_rest gas(model);
+    for (int direction = 0; direction < 3; ++direction)
+      EXPECT_NEAR(gas.deviation(direction)[20] * (-rho / T), 2.5 * rho * T * of_heat, 2e-5)
+          << model << direction;
+  }
+}
+
+TEST(tangent_rows, refuse_moments_without_equilibrium) {
+  gas_at_rest gas("bgk");
+  const std::vector<double> cold = {1.0, 0.0, 0.0, 0.0, -0.1};
+  EXPECT_FALSE(gas.tangents.move_to(cold.data()));
+}
+
+}  // namespace tangent_rows_test

@@ -44,10 +44,20 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
     out += fmt::format("  {:<22}{}\n", name, value);
   };
   const result_units units(c);
-  const double time = units.factor(dimensions::time);
-  const std::string of_time = units.suffix(dimensions::time);
-  line("state", fmt::format("{} at t = {:.10g}{} after {} steps of {}", to_string(end), s.t * time, of_time,
-                            s.steps, c.time.method));
+  const double time = units.factor(units.of_time());
+  const std::string of_time = units.suffix(units.of_time());
+  const bool iterates = c.steady.tolerance.has_value();
+  if (iterates) {
+    line("state", fmt::format("{} after {} iterations", to_string(end), s.steps));
+    line(
+        "steady state",
+        fmt::format("{} (residual {:.2g} of that of the start, change of the moments {:.2g}, tolerance {:g})",
+                    run.finished() ? "found" : "not found", run.last().residual.front(), run.last().change,
+                    *c.steady.tolerance));
+  } else {
+    line("state", fmt::format("{} at t = {:.10g}{} after {} steps of {}", to_string(end), s.t * time, of_time,
+                              s.steps, c.time.method));
+  }
   if (s.startup_steps > 0)
     line("start-up", s.startup_steps == 1 ? "not needed (no layer is thinner than the first step)"
                                           : fmt::format("{} steps instead of 1", s.startup_steps));
@@ -57,10 +67,11 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
     line("steady state", fmt::format("time.steady = {:g} {} ({})", *c.time.steady / time,
                                      run.last().change <= *c.time.steady ? "reached" : "not reached",
                                      to_text(estimate_steady_state(records.history()), time, of_time)));
-  line("largest step", fmt::format("{:.6g}{}", s.dt * time, of_time));
+  if (!iterates) line("largest step", fmt::format("{:.6g}{}", s.dt * time, of_time));
   line("smallest value", fmt::format("{:.6g} ({} negative)", s.min_value, s.negative_values));
   if (!run.setup().equation->invariants().empty())
-    line("conservation defect", fmt::format("{:.2e} (relative)", s.conservation_defect));
+    line(iterates ? "net rates" : "conservation defect",
+         fmt::format("{:.2e} (relative)", s.conservation_defect));
   const auto faces = run.setup().open_faces(), names = run.setup().equation->invariants();
   const auto densities = run.setup().equation->invariant_dimensions();
   for (std::size_t f = 0; f < faces.size() && !names.empty(); ++f) {
@@ -75,7 +86,7 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
                                                      : fmt::format("flux through {}", faces[f]),
          fmt::format("{}", fmt::join(amounts, ", ")));
   }
-  if (!std::isnan(run.initial_record().entropy))
+  if (!iterates && !std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));
   if (std::isfinite(s.velocity_room)) line("velocities", velocities_text(s, c));
   if (std::string moment = run.setup().equation->cut_moment(); !moment.empty()) {

@@ -19,6 +19,7 @@
 #include <apsis/output/provenance.hpp>
 #include <apsis/run/session.hpp>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,8 +43,19 @@ struct run_options {
 
 /// "step 1234/2900  t = 0.21  min 1.20e-31"
 std::string step_text(const simulation& now) {
+  if (now.config().steady.tolerance)
+    return fmt::format("iteration {}  residual {:.2e}  change {:.2e}  min {:.2e}", now.step(),
+                       now.last().residual.front(), now.last().change, now.last().min_value);
   return fmt::format("step {}/{}  t = {:.4g}  min {:.2e}", now.step(), now.steps_total(), now.t(),
                      now.last().min_value);
+}
+
+/// The share of the work that is done; of an iteration, the digits of its residual.
+double share_done(const simulation& now) {
+  const auto& tolerance = now.config().steady.tolerance;
+  if (!tolerance) return now.t() / now.config().time.end;
+  const double residual = now.last().residual.front();
+  return residual > 0.0 && residual < 1.0 ? std::log(residual) / std::log(*tolerance) : 0.0;
 }
 
 int code_of(run_end end) {
@@ -63,8 +75,8 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
   options.session.command = command_line();
   options.session.stop = interrupted;
   if (processes->is_root())
-    options.session.watch = [&bar, end = config.time.end](const simulation& now) {
-      if (bar.due()) bar.update(now.t() / end, step_text(now));
+    options.session.watch = [&bar](const simulation& now) {
+      if (bar.due()) bar.update(share_done(now), step_text(now));
     };
   options.session.stepped = [&bar] { bar.finish(); };
   std::optional<run_session> prepared;

@@ -42,9 +42,13 @@ def summary(result: RunResult) -> str:
     manifest, numbers = result.manifest, result.manifest["result"]
     good = manifest["state"] == "complete"
     units = "Quantities with a unit in their label are in SI units." if "units" in manifest else "All quantities are dimensionless."
-    out = (f'<p>{verdict(good, (manifest["state"], manifest["state"]))} at t = {end_of(result):.10g} after {text(numbers["steps"])} steps of '
-           f'<code>{text(manifest["method"])}</code> of length {number(numbers["dt"])} or less; '
-           f'{numbers["wall_s"]:.2f} s of computing. {units}</p>\n')
+    state = verdict(good, (manifest["state"], manifest["state"]))
+    if "iterations" in numbers.get("steady", {}):
+        out = f'<p>{state} after {text(numbers["steps"])} iterations; '
+    else:
+        out = (f'<p>{state} at t = {end_of(result):.10g} after {text(numbers["steps"])} steps of '
+               f'<code>{text(manifest["method"])}</code> of length {number(numbers["dt"])} or less; ')
+    out += f'{numbers["wall_s"]:.2f} s of computing. {units}</p>\n'
     if "steady" in numbers:
         out += f"<p>{steady_state(numbers['steady'])}</p>\n"
     if manifest.get("message"):
@@ -72,7 +76,11 @@ def velocities(manifest: dict[str, Any]) -> str:
 
 
 def steady_state(found: dict[str, Any]) -> str:
-    """Rate of change that time.steady bounds, and the distance from the steady state if the rate decays."""
+    """How far iterations came, or the rate that time.steady bounds and the distance from the steady state if it decays."""
+    if "iterations" in found:
+        state = "The steady state is found" if found["reached"] else "The steady state is not found"
+        return (f"{state} after {found['iterations']} iterations: residual {number(found['residual'])} of that of the start, "
+                f"change of the moments {number(found['change'])}, tolerance {number(found['tolerance'])}.")
     reached = "time.steady is reached" if found["reached"] else "time.steady is not reached"
     change = "" if found["change"] is None else f": the state changes by {number(found['change'])} per unit of time, relative"
     if found["distance"] is None:

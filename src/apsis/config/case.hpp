@@ -24,6 +24,9 @@
 
 namespace apsis {
 
+/// steady.tolerance of a case with a table [steady] that gives none.
+inline constexpr double usual_steady_tolerance = 1e-8;
+
 /// A resolved case: every key has a value, every name exists. Keys are documented in case_keys.cpp (`apsis
 /// show case`).
 struct case_config {
@@ -88,6 +91,13 @@ struct case_config {
     std::optional<double> tolerance;      ///< of a step; dt, cfl or safety then says how long one may be
     std::optional<double> steady;         ///< change of the state per time at which the run ends
   } time;
+  /// Table [steady]: the run finds the steady state in place of marching. Iterations then count as time: the
+  /// table [time] of the case is not used, and time.end is `iterations`, time.dt 1.
+  struct {
+    std::optional<double> tolerance;  ///< of residual and change of moments; without it the run marches
+    int iterations = 200;             ///< at most
+    int images = 3;                   ///< that the mixture remembers
+  } steady;
   /// Table [output].
   struct {
     double every = 0.0;                                ///< time between snapshots; 0: only the end

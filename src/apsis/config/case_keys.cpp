@@ -285,6 +285,44 @@ std::vector<case_key> face_keys() {
   return all;
 }
 
+/// Whether the run finds the steady state.
+bool is_steady(const case_config& c) {
+  return c.steady.tolerance.has_value();
+}
+
+/// The key, which only a case with a table [steady] has.
+case_key if_steady(case_key of) {
+  of.load = [load = std::move(of.load)](const case_config& c) -> case_value {
+    return is_steady(c) ? load(c) : case_value{};
+  };
+  return of;
+}
+
+std::vector<case_key> steady_keys() {
+  return {
+      if_steady(key(
+          "steady.tolerance", [](auto& c) -> auto& { return c.steady.tolerance; },
+          {.scope = key_scope::space,
+           .lowest = 1e-14,
+           .highest = 1e-2,
+           .doc = "The run finds the steady state by iterations in place of steps in time, up to this "
+                  "residual relative to that of the initial data, and this relative change of the moments. "
+                  "Initial data give the start and the mass between walls. The table [time] is not used: t "
+                  "counts iterations."})),
+      if_steady(key("steady.iterations", [](auto& c) -> auto& { return c.steady.iterations; },
+                    {.scope = key_scope::space,
+                     .lowest = 1,
+                     .highest = 1'000'000,
+                     .doc = "Most iterations; a run that needs more ends with exit code 3."})),
+      if_steady(key(
+          "steady.images", [](auto& c) -> auto& { return c.steady.images; },
+          {.scope = key_scope::space,
+           .lowest = 0,
+           .highest = 20,
+           .doc = "Earlier iterates from which each one is mixed (Anderson), one copy of the state each and "
+                  "one more; 0: none."}))};
+}
+
 std::vector<case_key> time_keys() {
   return {
       key("time.method", [](auto& c) -> auto& { return c.time.method; },
@@ -297,6 +335,7 @@ std::vector<case_key> time_keys() {
            .also = check_method_outside_catalogue}),
       key("time.end", [](auto& c) -> auto& { return c.time.end; },
           {.required = true,
+           .optional = is_steady,
            .dimension = dimensions::time,
            .lowest = 0.0,
            .doc = "Final time; the start is t = 0."}),
@@ -414,7 +453,7 @@ std::vector<case_key> output_keys() {
 const std::vector<case_key>& case_schema() {
   static const std::vector<case_key> schema = [] {
     std::vector<case_key> all;
-    for (auto* group : {model_keys, gas_keys, space_keys, face_keys, time_keys, output_keys})
+    for (auto* group : {model_keys, gas_keys, space_keys, face_keys, steady_keys, time_keys, output_keys})
       for (case_key& one : group()) all.push_back(std::move(one));
     return all;
   }();

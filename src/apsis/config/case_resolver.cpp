@@ -14,6 +14,7 @@
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/config/solid_reader.hpp>
 #include <apsis/config/source_reader.hpp>
+#include <apsis/config/steady_of_case.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/model/expression.hpp>
 
@@ -43,7 +44,9 @@ class resolver {
     take_constants();
     const auto derived = derive_epsilon(text_, *model_, config_);
     note_places();  // of derived keys too
+    if (is_given("steady")) config_.steady.tolerance = usual_steady_tolerance;
     for (const case_key& key : case_schema()) take(key);
+    count_iterations();
     if (derived) config_.model.epsilon = *derived;
     complete_space();
     take_parameters();
@@ -64,6 +67,13 @@ class resolver {
   const raw_value* find(const std::string& path) const {
     const auto found = text_.values.find(path);
     return found == text_.values.end() ? nullptr : &found->second;
+  }
+
+  /// Whether the case has a table, or an override a key of it.
+  bool is_given(const std::string& table) const {
+    return text_.tables.contains(table) ||
+           std::any_of(text_.values.begin(), text_.values.end(),
+                       [&](const auto& one) { return is_in(one.first, table); });
   }
 
   // Returns the place for a missing key: the head of its table, or the first line.
@@ -132,7 +142,7 @@ class resolver {
 
   void check_tables() const {
     std::vector<std::string> names = {"parameters", "gas",    "model",    "initial", "space", "boundary",
-                                      "force",      "source", "velocity", "time",    "output"};
+                                      "force",      "source", "velocity", "steady",  "time",  "output"};
     for (const auto& [name, place] : text_.tables)
       if (std::find(names.begin(), names.end(), name.substr(0, name.find('.'))) == names.end())
         throw input_error(place, fmt::format("unknown table [{}] (a case has no such table); {}", shown(name),
@@ -237,6 +247,9 @@ class resolver {
       config_.space.domain.assign(dimensions, config_.space.domain.front());
     if (find(discretization_key) == nullptr)
       config_.space.discretization = default_discretization(static_cast<int>(dimensions)).name;
+    // Where f jumps along rays, nonlinear weights may never settle.
+    if (config_.steady.tolerance && find("space.reconstruction") == nullptr)
+      config_.space.reconstruction = "upwind5";
   }
 
   /// The table [parameters].
@@ -310,6 +323,7 @@ class resolver {
 
   void check_together() const {
     check_step_rule();
+    if (config_.steady.tolerance) check_steady(config_, *checked_model());
     if (has_space(*model_)) check_mesh();
     check_epsilon();
     check_fields();
@@ -323,7 +337,16 @@ class resolver {
              fmt::format("that makes {:.3g} snapshots, at most 100000", snapshots), "give a longer interval");
   }
 
+  /// Iterations to a steady state count as time.
+  void count_iterations() {
+    if (!config_.steady.tolerance) return;
+    config_.time = {};
+    config_.time.end = config_.steady.iterations;
+    config_.time.dt = 1.0;
+  }
+
   void check_step_rule() const {
+    if (config_.steady.tolerance) return;
     std::vector<std::string> given, valid;
     for (const auto& key : step_keys()) {
       if (find(key) != nullptr) given.push_back(key);

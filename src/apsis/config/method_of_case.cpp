@@ -112,6 +112,11 @@ method_request request_of(const case_config& config) {
 
 case_config with_chosen_method(case_config config) {
   if (config.time.method != automatic_method) return config;
+  if (config.steady.tolerance) {
+    config.time.method = "md-imex-3-2";
+    config.time.method_reason = "a steady state needs no steps";
+    return config;
+  }
   method_choice chosen = choose_method(request_of(config));
   config.time.method = std::move(chosen.method);
   config.time.method_reason = std::move(chosen.reason);

@@ -35,12 +35,24 @@ json numbers(const simulation& run) {
   json out;
   run_summary::visit_members(s, [&out](const char* name, const auto& x) { out[name] = x; });
   const result_units units(run.config());
-  for (const char* time : {"t", "dt"}) out[time] = out[time].get<double>() * units.factor(dimensions::time);
+  for (const char* time : {"t", "dt"}) out[time] = out[time].get<double>() * units.factor(units.of_time());
   out["velocity_needed"] = s.velocity_needed * units.factor(dimensions::velocity);
   if (std::isnan(run.initial_record().entropy)) out["max_entropy_increase"] = nullptr;
   if (run.initial_record().cut.empty()) out["largest_cut"] = nullptr;
   if (!has_space(find_model(run.config().model.name))) out["state"] = run.state();
   return out;
+}
+
+/// Adds how far the iteration to a steady state came, in a case with a table [steady].
+void add_iterations(json& out, const simulation& run) {
+  const auto& tolerance = run.config().steady.tolerance;
+  if (!tolerance || run.last().residual.empty()) return;
+  const auto number = [](double x) { return std::isfinite(x) ? json(x) : json(nullptr); };
+  out["steady"] = {{"reached", run.finished()},
+                   {"tolerance", *tolerance},
+                   {"iterations", run.step()},
+                   {"residual", number(run.last().residual.front())},
+                   {"change", number(run.last().change)}};
 }
 
 /// Adds the estimate of the distance from the steady state, in a case with time.steady.
@@ -102,6 +114,7 @@ json to_json(const simulation& run, const run_records& records) {
   out.update(numbers(run));
   out["expected_plateau"] = run.expected_plateau();
   out["expected_loss"] = run.expected_loss();
+  add_iterations(out, run);
   add_steady(out, run, estimate_steady_state(records.history()));
   json fields = json::object();
   const field_series series = result_units(run.config()).convert(records.fields());
@@ -130,6 +143,7 @@ json manifest(const simulation& run, const session_record& session) {
                      {"entropy", run.promises().entropy}};
   if (!run.promises().condition.empty()) out["promises"][run.promises().condition] = true;
   out["result"] = numbers(run);
+  add_iterations(out["result"], run);
   add_steady(out["result"], run, session.steady);
   add_units(out, run);
   out["build"] = build_info();

@@ -16,7 +16,13 @@ namespace {
 
 constexpr int fewest_points = 4;  ///< of velocity.points
 
+/// Fields of a steady_solver: state, residual, the images of the mixture, and a temporary one.
+int buffers_of_iterations(const case_config& config) {
+  return 3 + (config.steady.images > 0 ? config.steady.images + 1 : 0);
+}
+
 int buffers_of(const run_setup& setup) {
+  if (setup.config().steady.tolerance) return buffers_of_iterations(setup.config());
   const method& m = setup.integrator().starter();
   const bool compares = setup.has_tolerance() && m.embedded.has_value();
   // A doubled step keeps the results of the single step and of the first half.

@@ -30,6 +30,7 @@ struct row_writer {
 struct column_writer {
   const std::vector<std::string>&invariants, &faces;
   const std::string cut_moment;
+  const bool steady;
   std::vector<std::string>& columns;
 
   template <class Number>
@@ -40,6 +41,10 @@ struct column_writer {
     const std::string head = name;
     if (head == "cut") {
       if (!cut_moment.empty()) columns.push_back("cut_" + cut_moment);
+      return;
+    }
+    if (head == "residual") {
+      if (steady) columns.emplace_back("residual_relative");
       return;
     }
     if (head == "conservation" || head == "total") return add(head);
@@ -127,7 +132,8 @@ std::vector<std::string> history_columns(const simulation& run) {
                                  faces = run.setup().open_faces();
   std::vector<std::string> columns;
   step_record::visit_members(run.initial_record(),
-                             column_writer{invariants, faces, run.setup().equation->cut_moment(), columns});
+                             column_writer{invariants, faces, run.setup().equation->cut_moment(),
+                                           run.config().steady.tolerance.has_value(), columns});
   return columns;
 }
 
@@ -215,6 +221,7 @@ run_state to_run_state(const checkpoint& c) {
   saved.unknowns = c.state;
   saved.budget = c.budget;
   for (const earlier_value& value : c.earlier) saved.kept.push_back({value.state, value.budget});
+  if (c.numbers.contains(std::string(steady_group) + ".reference")) saved.steady.emplace();
   if (c.numbers.contains("control.proposed")) saved.control.emplace();  // of a run with a tolerance
   if (c.numbers.contains(std::string(history_group) + ".known")) saved.history.emplace();
   run_state::visit_records(saved, [&c](const char* group, auto& record) {
@@ -232,7 +239,7 @@ solution make_solution(const simulation& run, const run_records& records) {
   s.case_text = to_toml(run.config());
   s.title = run.config().title;
   const result_units units(run.config());
-  s.t = run.t() * units.factor(dimensions::time);
+  s.t = run.t() * units.factor(units.of_time());
   s.step = run.step();
   s.components = static_cast<std::uint64_t>(run.setup().equation->components());
   const auto& output = run.config().output;

@@ -21,7 +21,8 @@ void multiply(std::vector<double>& values, double factor) {
 }  // namespace
 
 result_units::result_units(const case_config& config)
-    : scales_(config.output.units == units_choice::si ? config.scales : std::nullopt) {}
+    : scales_(config.output.units == units_choice::si ? config.scales : std::nullopt),
+      of_time_(config.steady.tolerance ? dimensions::none : dimensions::time) {}
 
 std::string result_units::suffix(const dimension& dims) const {
   return are_si() && dims != dimensions::none ? " " + unit_of(dims) : "";
@@ -31,7 +32,7 @@ field_series result_units::convert(field_series fields) const {
   if (!are_si()) return fields;
   for (auto& axis : fields.axes) multiply(axis.centres, factor(dimensions::length));
   fields.unit_of_x = unit_of(dimensions::length);
-  fields.unit_of_t = unit_of(dimensions::time);
+  if (of_time_ != dimensions::none) fields.unit_of_t = unit_of(of_time_);
   fields.units.clear();
   for (std::size_t k = 0; k < fields.names.size(); ++k) {
     const dimension& dims = fields.dimensions[k];
@@ -39,7 +40,7 @@ field_series result_units::convert(field_series fields) const {
     fields.labels[k] = with_unit(fields.labels[k], fields.units[k]);
     for (auto& snapshot : fields.snapshots) multiply(snapshot.values[k], factor(dims));
   }
-  for (auto& snapshot : fields.snapshots) snapshot.t *= factor(dimensions::time);
+  for (auto& snapshot : fields.snapshots) snapshot.t *= factor(of_time_);
   return fields;
 }
 
@@ -64,8 +65,8 @@ numeric_table result_units::convert(numeric_table history, const simulation& run
 
 std::vector<std::pair<std::string, dimension>> history_dimensions(const simulation& run) {
   using dimensions::length, dimensions::time;
-  std::vector<std::pair<std::string, dimension>> all = {
-      {"t", time}, {"dt", time}, {"change", dimensions::none / time}};
+  std::vector<std::pair<std::string, dimension>> all;
+  if (!run.config().steady.tolerance) all = {{"t", time}, {"dt", time}, {"change", dimensions::none / time}};
   const auto names = run.setup().equation->invariants();
   const auto densities = run.setup().equation->invariant_dimensions();
   for (std::size_t k = 0; k < names.size(); ++k) {

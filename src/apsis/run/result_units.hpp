@@ -21,6 +21,8 @@ class result_units {
   bool are_si() const { return scales_.has_value(); }
   /// Returns the factor of dimensionless quantities of a dimension; 1 if results are dimensionless.
   double factor(const dimension& dims) const { return scales_ ? scales_->unit(dims) : 1.0; }
+  /// Returns the dimension of t: time, or none where iterations to a steady state count as time.
+  dimension of_time() const { return of_time_; }
   /// Returns " Pa" with a leading space for reports; "" if there is no unit.
   std::string suffix(const dimension& dims) const;
 
@@ -33,6 +35,7 @@ class result_units {
 
  private:
   std::optional<gas_scales> scales_;
+  dimension of_time_;
 };
 
 /// Returns the dimensions of the columns of the history that have one, in units of a gas: times, and what is

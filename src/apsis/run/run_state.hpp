@@ -38,6 +38,10 @@ struct step_record {
   /// The largest relative change of the rate at which model::cut_moment() relaxes, over cells and stages of
   /// the step; empty if the model has no such moment.
   std::vector<double> cut;
+  /// steady_iteration::residual of an iteration to a steady state, which then has its `change` in place of
+  /// that of a step, and as defects of conservation the net rates at which the gas receives the invariants;
+  /// empty in a run in time.
+  std::vector<double> residual;
   std::vector<double> total;  ///< I, the sum of the densities of each invariant over the domain
   /// Amounts of the invariants that the gas received through each face since the start, [face][invariant];
   /// on a line per area, in the plane per length.
@@ -65,6 +69,7 @@ struct step_record {
     visit("entropy_change", self.entropy_change);
     visit("change", self.change);
     visit("cut", self.cut);
+    visit("residual", self.residual);
     visit("total", self.total);
     visit("received", self.received);
     visit("flux", self.flux);
@@ -131,6 +136,19 @@ struct kept_value {
 
 /// Group of the position in the history in a checkpoint.
 inline constexpr const char* history_group = "multistep";
+/// Group of the iteration to a steady state in a checkpoint.
+inline constexpr const char* steady_group = "steady";
+
+/// The iteration to a steady state between two iterations. Images of earlier ones are not kept.
+struct steady_progress {
+  double reference = std::numeric_limits<double>::quiet_NaN();  ///< steady_solver::reference()
+
+  /// Calls visit(name, member) for every member of `self`.
+  template <class Self, class Visitor>
+  static void visit_members(Self& self, Visitor&& visit) {
+    visit("reference", self.reference);
+  }
+};
 
 /// A run between two steps: what a checkpoint saves and a restart continues from. A number that is added to
 /// one of the records, and to its visit_members(), is saved, restored, reported in the manifest and, of
@@ -140,6 +158,7 @@ struct run_state {
   time_marcher<double>::progress march;                      ///< position in time
   std::optional<step_controller<double>::progress> control;  ///< step control; nothing without tolerance
   std::optional<history_position<double>> history;           ///< nothing if steps need u alone
+  std::optional<steady_progress> steady = {};                ///< nothing in a run in time
   run_summary totals;                                        ///< of all steps so far
   step_record initial,                                       ///< record of the initial state
       last;                                                  ///< record of the last step
@@ -153,6 +172,7 @@ struct run_state {
     visit("march", self.march);
     if (self.control) visit("control", *self.control);
     if (self.history) visit(history_group, *self.history);
+    if (self.steady) visit(steady_group, *self.steady);
     visit("totals", self.totals);
   }
 };

@@ -81,7 +81,7 @@ case_config with_method_of_restart(case_config config, const session_options& op
 std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& configured,
                                                        const session_options& options) {
   const case_config config = with_method_of_restart(with_chosen_method(configured), options);
-  if (!config.time.method_reason.empty())
+  if (!config.time.method_reason.empty() && !config.steady.tolerance)
     log::info(fmt::format("{}: time.method = \"{}\" is {} ({})", config.source, automatic_method,
                           config.time.method, config.time.method_reason));
   std::unique_ptr<run_setup> setup;
@@ -189,6 +189,7 @@ std::string essential_text(case_config config) {
   config.output = {};
   config.time.end = 1.0;
   config.space.blocks.reset();
+  if (config.steady.tolerance) config.steady = {.tolerance = usual_steady_tolerance};
   return to_toml(config);
 }
 
@@ -242,9 +243,14 @@ run_session::run_session(const case_config& configured, session_options options)
         "give both");
   const long steps = simulation_.steps_total();
   const int ranks = processes().size();
-  log::info(fmt::format("{}: about {} steps of {} on {}{} thread{}; {}", config.source, steps,
-                        config.time.method, ranks == 1 ? "" : fmt::format("{} processes of ", ranks),
-                        threads(), threads() == 1 ? "" : "s", simulation_.promises().text()));
+  const std::string work = config.steady.tolerance
+                               ? fmt::format("at most {} iterations to the steady state", steps)
+                               : fmt::format("about {} steps of {}", steps, config.time.method);
+  const std::string promised =
+      config.steady.tolerance ? "nothing is promised between iterations" : simulation_.promises().text();
+  log::info(fmt::format("{}: {} on {}{} thread{}; {}", config.source, work,
+                        ranks == 1 ? "" : fmt::format("{} processes of ", ranks), threads(),
+                        threads() == 1 ? "" : "s", promised));
   if (steps - simulation_.step() >= many_steps) warn_at_step_ = simulation_.step() + 1000;
 }
 
@@ -256,6 +262,9 @@ void run_session::resume(const std::string& path) {
       saved.components != static_cast<std::uint64_t>(simulation_.setup().equation->components()))
     refuse_size(path, saved, simulation_.mesh().size(), simulation_.setup().equation->components());
   const run_state state = to_run_state(saved);
+  if (!(state.march.t < simulation_.config().time.end) && simulation_.config().steady.tolerance)
+    throw input_error(fmt::format("'{}' is already after {} iterations (steady.iterations is {}); give more",
+                                  path, state.march.t, simulation_.config().steady.iterations));
   if (!(state.march.t < simulation_.config().time.end))
     throw input_error(fmt::format("'{}' is already at t = {} (time.end is {}); give a later time.end", path,
                                   state.march.t, simulation_.config().time.end));
@@ -291,6 +300,12 @@ void run_session::finish_records() {
                     units.suffix(dimensions::time),
                     to_text(estimate_steady_state(shown_->history()), time, units.suffix(dimensions::time))));
   }
+  if (simulation_.config().steady.tolerance && end_ == run_end::complete &&
+      !simulation_.last().residual.empty())
+    log::info(
+        fmt::format("the steady state is found after {} iterations: residual {:.2g}, change of the "
+                    "moments {:.2g}",
+                    simulation_.step(), simulation_.last().residual.front(), simulation_.last().change));
   const auto& taken = shown_->fields().snapshots;
   if (taken.empty() || taken.back().t != simulation_.t()) shown_->add_snapshot(simulation_);
 }
@@ -427,7 +442,7 @@ void run_session::write_tables(result_folder& folder, const solution& final_stat
   write_probes(simulation_.config(), final_state.fields, units.factor(dimensions::length), folder);
   write_surfaces(walls, simulation_.config(), folder);
   folder.prepare_text("solution.xdmf",
-                      solution_xdmf(final_state, distribution_files(folder, units.factor(dimensions::time))));
+                      solution_xdmf(final_state, distribution_files(folder, units.factor(units.of_time()))));
 }
 
 void run_session::save_failure(const std::string& message) {

@@ -22,6 +22,7 @@
 #include <apsis/run/state_distance.hpp>
 #include <apsis/run/step_plan.hpp>
 #include <apsis/run/whole_budget.hpp>
+#include <apsis/steady/steady_solver.hpp>
 
 #include <algorithm>
 #include <array>
@@ -29,7 +30,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace apsis {
 
@@ -74,13 +78,14 @@ struct simulation::impl {
       control.emplace(*config.time.tolerance, estimate_of(setup.integrator().starter()).order);
       estimate.emplace(of_one_step.weight_of_estimate(), of_one_step.resolves_collisions());
     }
-    limit_for_steps();
+    if (!finds_steady_state()) limit_for_steps();
     first = last = watch.start(state);
     totals.min_value = first.min_value;
     totals.negative_values = first.negative_values;
     watch.watch_velocities(state, first, totals);
     totals.phase_points = static_cast<long>(setup.whole_mesh().size()) * state.components();
-    if (march.done()) return;
+    if (finds_steady_state()) start_iterations();
+    if (finds_steady_state() || march.done()) return;
     warn_of_dense_stages(setup);
     const double relaxation = problem->relaxation_time(march.t(), state);
     warn_of_stiff_collision(setup, relaxation, next_dt());
@@ -93,6 +98,63 @@ struct simulation::impl {
     start_steps(relaxation);
     start_watch();
     problem->take_cut();  // of steps that were only tried
+  }
+
+  bool finds_steady_state() const { return config.steady.tolerance.has_value(); }
+
+  void start_iterations() {
+    first.residual = last.residual = {std::numeric_limits<double>::quiet_NaN()};
+    const auto& [tolerance, iterations, images] = config.steady;
+    run_collectively(setup.processes(), [&] {
+      iteration.emplace(*setup.equation->as_relaxation(), setup.builder(), *problem, state,
+                        steady_options{*tolerance, iterations, images});
+    });
+    warn_of_rays(setup, problem->relaxation_time(0.0, state));
+    problem->take_cut();
+  }
+
+  /// An iteration to the steady state in place of a step. Fluxes are those of the last residual; what the gas
+  /// received since the start is nothing, and defects of conservation are the net rates.
+  void iterate() {
+    const steady_iteration done = iteration->iterate(state);
+    march.advance(1.0);
+    const std::span<const double> rates = problem->budget_rates();
+    now.budget = boundary_budget({rates.begin(), rates.end()});
+    budget = now.budget.amounts();
+    last = watch.check(now, 1.0, last, problem->take_cut());
+    found = done.converged;
+    last.step = march.step();
+    last.t = march.t();
+    last.dt = 1.0;
+    last.change = done.change;
+    last.residual = {done.residual};
+    last.received = first.received;
+    last.entropy_change = std::numeric_limits<double>::quiet_NaN();
+    set_net_rates();
+    totals.steps = march.step();
+    totals.dt = 1.0;
+    totals.min_value = last.min_value;
+    totals.negative_values = last.negative_values;
+    totals.conservation_defect =
+        *std::max_element(last.conservation_defect.begin(), last.conservation_defect.end());
+    for (const double cut : last.cut) totals.largest_cut = cut;
+    if (!found && march.done())
+      throw numerical_error(
+          fmt::format("no steady state in {} iterations (residual {:.2g}, change of the "
+                      "moments {:.2g}); give a larger steady.iterations, or march in time",
+                      config.steady.iterations, done.residual, done.change));
+  }
+
+  void set_net_rates() {
+    const std::size_t count = last.total.size();
+    std::vector<double> scales(count);
+    setup.equation->invariant_scales(last.total, scales.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      double net = 0.0;
+      for (std::size_t n = k; n < last.flux.size(); n += count) net += last.flux[n];
+      last.conservation_defect[k] = scales[k] > 0.0 ? std::abs(net) / scales[k] : std::abs(net);
+    }
+    last.defect_of_step = last.conservation_defect;
   }
 
   /// ‖u − v‖₂/‖u‖₂, after the errors that processes met while they computed u and v.
@@ -233,6 +295,8 @@ struct simulation::impl {
   std::optional<step_controller<double>> control;
   std::optional<error_estimate<budgeted_problem>> estimate;  ///< with a tolerance
   std::optional<tolerance_forecast<double>> expected;
+  std::optional<steady_solver> iteration;  ///< to the steady state, in place of steps
+  bool found = false;                      ///< the steady state
   loss_watch losses;
   run_promises promises;
   step_record first, last;
@@ -308,6 +372,7 @@ long simulation::snapshot_times_passed() const {
 bool simulation::next_step_depends_on_end() const {
   // Far from the end the answer is no without evaluating Δt_FE: no rule makes steps 32 times longer.
   constexpr double longest = 32.0 * time_marcher<double>::shared_steps;
+  if (impl_->iteration) return false;
   const bool far = step() > 0 && !impl_->march.starting() && config().time.end - t() > longest * last().dt;
   if (far || finished()) return false;
   return impl_->march.shaped_by_end(impl_->proposed());
@@ -323,7 +388,7 @@ double simulation::expected_plateau() const {
   return impl_->expected ? impl_->expected->error : 0.0;
 }
 bool simulation::finished() const {
-  return impl_->march.done() || impl_->steady();
+  return impl_->march.done() || impl_->steady() || impl_->found;
 }
 
 const step_record& simulation::advance() {
@@ -332,16 +397,23 @@ const step_record& simulation::advance() {
   impl& run = *impl_;
   run.inside_step = true;
   try {
-    run.record_step(run.step());
+    if (run.iteration)
+      run.iterate();
+    else
+      run.record_step(run.step());
     run.inside_step = false;
   } catch (const numerical_error& failure) {
     const numerical_error here =
         failure.site().step >= 0 ? failure : failure.at(run.march.step() + 1, run.march.t());
-    if (run.control) throw here;
+    if (run.control || run.iteration) throw here;
     throw naming_instability(here, run.setup, run.next_dt());
   }
   run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.totals.cpu_s += thread_seconds() - cpu;
+  if (run.iteration) {
+    run.watch.watch_velocities(run.state, run.last, run.totals);
+    return run.last;
+  }
   // An instability is the cause of the promises that it breaks.
   try {
     run.stability.add(run.last);
@@ -366,7 +438,7 @@ run_summary simulation::summary() const {
   summary.rejected_steps = control ? control->rejected() : 0;
   const double work = static_cast<double>(summary.phase_points) *
                       static_cast<double>(summary.steps + summary.rejected_steps) *
-                      static_cast<double>(impl_->setup.stages_of_step());
+                      (impl_->iteration ? 1.0 : static_cast<double>(impl_->setup.stages_of_step()));
   summary.t = t();
   summary.startup_steps = impl_->march.startup_steps();
   summary.point_stages_per_s = summary.wall_s > 0.0 ? work / summary.wall_s : 0.0;
@@ -418,6 +490,7 @@ run_state simulation::save() const {
   saved.unknowns = state();
   saved.march = impl_->march.save();
   if (impl_->control) saved.control = impl_->control->save();
+  if (impl_->iteration) saved.steady = steady_progress{impl_->iteration->reference()};
   saved.history = impl_->integrator->save();
   impl_->integrator->visit_kept([&](const budgeted_state& kept, double) {
     saved.kept.push_back({without_padding(kept.unknowns), whole_budget(impl_->setup, kept.budget.amounts())});
@@ -443,6 +516,7 @@ void simulation::restore(const run_state& saved) {
   // Before the first step the marcher is that of the case.
   if (saved.march.step > 0) impl_->march.resume(saved.march);
   if (impl_->control && saved.control) impl_->control->resume(*saved.control);
+  if (impl_->iteration && saved.steady) impl_->iteration->set_reference(saved.steady->reference);
   if (saved.history) {
     impl_->integrator->restore(*saved.history, impl_->now);
     std::size_t k = 0;

@@ -23,7 +23,8 @@ class run_setup;
 /// Returns the state from which a run starts in place of the initial data of its case.
 using state_source = std::function<field(const run_setup& setup)>;
 
-/// One run of a case. The constructor checks everything that can be checked before the first step.
+/// One run of a case. The constructor checks everything that can be checked before the first step. In a case
+/// with a table [steady], steps are iterations to the steady state, t counts them, and nothing is promised.
 class simulation {
  public:
   /// Throws input_error (for example: v_max too small for the data, mesh smaller than the stencil).
@@ -45,7 +46,7 @@ class simulation {
   double dt() const;                     ///< length of the next step
   long step() const;                     ///< steps taken
   long steps_total() const;              ///< estimate of the total number of steps
-  bool finished() const;                 ///< whether t() is time.end, or the state is steady
+  bool finished() const;  ///< whether t() is time.end, or the state is steady, or the steady state is found
   /// Returns the forecast of the relative error from terms of size ε in a run with time.tolerance; a warning
   /// is given if it exceeds the tolerance. 0 if the steps resolve the relaxation, or without tolerance.
   double expected_plateau() const;

@@ -1,0 +1,156 @@
+// Cases with a table [steady]: the same flows as in time, in tens of iterations.
+#include <apsis/config/case.hpp>
+#include <apsis/config/case_schema.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/run/records.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace steady_runs_test {
+namespace {
+
+using apsis::simulation;
+using testing::HasSubstr;
+using keys = std::vector<std::string>;
+
+simulation found(const std::string& name, keys more) {
+  more.emplace_back("steady.tolerance=1e-8");
+  simulation run(apsis::load_case(name, more));
+  while (!run.finished()) run.advance();
+  return run;
+}
+
+std::string failure_of(const std::string& name, const keys& more) {
+  try {
+    simulation run(apsis::load_case(name, more));
+    while (!run.finished()) run.advance();
+  } catch (const apsis::error& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+/// A flow of cases/gas and the most iterations it may take; of those in the plane and in space small
+/// versions.
+struct flow {
+  const char* name;
+  keys more;
+  long most;
+};
+void PrintTo(const flow& of, std::ostream* out) {
+  *out << of.name << " " << testing::PrintToString(of.more);
+}
+
+class shipped_flows : public testing::TestWithParam<flow> {};
+
+std::vector<flow> all_flows() {
+  std::vector<flow> all;
+  for (const char* line : {"gas/couette", "gas/fourier", "gas/poiseuille"})
+    for (const char* delta : {"0.01", "0.1", "1", "10", "100", "1000"})
+      all.push_back({line, {std::string("parameters.delta=") + delta}, 60});
+  all.push_back({"gas/kramers", {}, 60});
+  all.push_back({"gas/micro-channel", {}, 60});
+  all.push_back({"gas/evaporation", {}, 60});
+  const keys small = {"space.cells=[12, 12]", "velocity.points=10"};
+  for (const char* delta : {"0.1", "1", "10", "100", "1000"}) {
+    keys more = small;
+    more.push_back(std::string("parameters.delta=") + delta);
+    all.push_back({"gas/cavity", more, 120});
+    all.push_back({"gas/thermal-cavity", more, 120});
+  }
+  all.push_back({"gas/enclosure", {"space.cells=[8, 12]", "velocity.points=12"}, 120});
+  all.push_back({"gas/transpiration", {"space.cells=[20, 8]", "velocity.points=12"}, 120});
+  all.push_back({"gas/duct", {"space.cells=[6, 6]", "velocity.points=[8, 8, 8]"}, 120});
+  return all;
+}
+
+}  // namespace
+
+TEST_P(shipped_flows, settle_in_tens_of_iterations) {
+  const auto& [name, more, most] = GetParam();
+  const simulation run = found(name, more);
+  EXPECT_LE(run.step(), most);
+  EXPECT_LE(run.last().residual.front(), 1e-8);
+  EXPECT_LE(run.last().change, 1e-8);
+  // The gas loses as much as it receives, in units of its content and the crossing time of a molecule.
+  for (const double rate : run.last().conservation_defect) EXPECT_LT(rate, 1e-7);
+}
+
+INSTANTIATE_TEST_SUITE_P(gases, shipped_flows, testing::ValuesIn(all_flows()));
+
+TEST(steady_run, counts_iterations_in_its_history) {
+  const simulation run = found("gas/couette", {"space.cells=8"});
+  EXPECT_EQ(run.t(), static_cast<double>(run.step()));
+  EXPECT_EQ(run.summary().steps, run.step());
+  EXPECT_TRUE(std::isnan(run.initial_record().residual.front()));
+  const apsis::run_records records(run);
+  EXPECT_THAT(records.history().columns, testing::Contains("residual_relative"));
+  const simulation in_time(apsis::load_case("gas/couette", {"space.cells=8"}));
+  EXPECT_THAT(apsis::run_records(in_time).history().columns,
+              testing::Not(testing::Contains("residual_relative")));
+}
+
+TEST(steady_run, has_the_fluxes_of_its_state) {
+  const simulation run = found("gas/fourier", {"space.cells=10"});
+  const auto& flux = run.last().flux;  // left mass, momentum, energy; right
+  EXPECT_GT(std::abs(flux[2]), 5e-4);
+  EXPECT_NEAR(flux[2], -flux[5], 1e-8 * std::abs(flux[2]) + 1e-12);
+  EXPECT_NEAR(flux[0], 0.0, 1e-14);
+}
+
+TEST(steady_run, continues_after_a_checkpoint_with_the_same_unit_of_residuals) {
+  const auto config = apsis::load_case("gas/couette", {"space.cells=8", "steady.tolerance=1e-10"});
+  simulation whole(config);
+  while (!whole.finished()) whole.advance();
+  simulation first(config);
+  for (int n = 0; n < 6; ++n) first.advance();
+  simulation second(config);
+  second.restore(first.save());
+  while (!second.finished()) second.advance();
+  EXPECT_LE(second.last().residual.front(), 1e-10);
+  EXPECT_LE(second.step(), whole.step() + 8);  // the mixture forgets its images
+  const auto a = whole.state(), b = second.state();
+  for (std::size_t k = 0; k < a.size(); ++k) ASSERT_NEAR(a[k], b[k], 1e-9);
+}
+
+TEST(steady_run, is_written_and_read_as_a_case) {
+  const auto config = apsis::load_case("gas/cavity", {"steady.iterations=90"});
+  EXPECT_EQ(config.steady.tolerance, apsis::usual_steady_tolerance);
+  EXPECT_EQ(config.space.reconstruction, "upwind5");
+  EXPECT_EQ(config.space.limiter, apsis::limiter_choice::none);
+  const auto again = apsis::parse_case(to_toml(config), "written.toml");
+  EXPECT_EQ(to_toml(again), to_toml(config));
+  EXPECT_EQ(again.steady.iterations, 90);
+  EXPECT_FALSE(apsis::parse_case(to_toml(apsis::load_case("gas/cavity")), "written.toml").steady.tolerance);
+}
+
+TEST(steady_run, needs_no_table_of_time) {
+  const std::string text =
+      "[model]\nname = \"bgk\"\nepsilon = \"0.02 + 0.2*x\"\n[initial]\nrho = 1\nu = 0\nT = 1\n[space]\ncells "
+      "= 12\n"
+      "formulation = \"finite-difference\"\n[boundary.left]\nkind = \"diffuse\"\nT = 1.2\n[boundary.right]\n"
+      "kind = \"diffuse\"\n[velocity]\nmax = 7\npoints = 24\n[steady]\n";
+  simulation run(apsis::parse_case(text, "gas.toml"));
+  while (!run.finished()) run.advance();
+  EXPECT_LE(run.step(), 60);
+}
+
+TEST(steady_run, says_that_the_iterations_are_over_or_lead_nowhere) {
+  EXPECT_THAT(failure_of("gas/couette", {"steady.iterations=3"}),
+              HasSubstr("no steady state in 3 iterations"));
+  // f jumps along rays from the ends of the lid, where the weights of WENO never settle.
+  EXPECT_THAT(
+      failure_of("gas/cavity", {"steady.iterations=1000", "space.cells=[16, 16]", "velocity.points=12",
+                                "parameters.delta=1", "space.reconstruction=weno5-z"}),
+      HasSubstr("use upwind5"));
+}
+
+}  // namespace steady_runs_test

@@ -4,6 +4,7 @@
     apsis.open("results/layer").plot()                   a stored run
     apsis.method("md-imex-6-3").certificate.order        methods and what can be said of them
     apsis.integrate(problem, u0, t, method=…, dt=…)      a problem of your own, or a KineticProblem on a mesh
+    apsis.solve_steady(problem, u0).u                    the steady state of a KineticProblem, without steps in time
 
 All quantities are dimensionless.
 """
@@ -15,10 +16,11 @@ from .kinetic import KineticProblem
 from .methods import Certificate, Method, OrderCondition, method, methods, order_conditions, read_method
 from .problems import RelaxationProblem, Solution, integrate
 from .runs import Case, Result, cases, run
+from .steady import SteadyState, solve_steady
 from .stored import open
 
 __version__: str = _version()
 
 __all__ = ["Case", "Certificate", "ClaimError", "CostWarning", "Error", "FileError", "GeneralProblem", "InputError", "KineticProblem", "Method", "NumericalError",
-           "OrderCondition", "RelaxationProblem", "Result", "Solution", "cases", "integrate", "method", "methods", "models",
-           "open", "order_conditions", "read_method", "run"]
+           "OrderCondition", "RelaxationProblem", "Result", "Solution", "SteadyState", "cases", "integrate", "method", "methods", "models",
+           "open", "order_conditions", "read_method", "run", "solve_steady"]

@@ -17,6 +17,7 @@
 #include <apsis/run/cfl_limit.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
+#include <apsis/steady/steady_solver.hpp>
 
 #include <algorithm>
 #include <array>
@@ -247,6 +248,28 @@ class kinetic_problem {
         count.rejected);
   }
 
+  py::tuple solve_steady(const array& u0, const steady_options& options, std::optional<int> threads) {
+    const relaxation_model* relaxes = equation_->as_relaxation();
+    if (relaxes == nullptr)
+      throw input_error(
+          "the model has no steady solver (it does not relax to an equilibrium of its moments); march in "
+          "time with integrate");
+    field u = to_field(u0);
+    const library_call own(threads.value_or(threads_for(u)));
+    const auto problem = implicit_.take();
+    std::vector<double> residuals, changes;
+    {
+      const py::gil_scoped_release others;
+      steady_solver solver(*relaxes, builder_, *problem, u, options);
+      solver.solve(u, [&](const steady_iteration& now) {
+        residuals.push_back(now.residual);
+        changes.push_back(now.change);
+        raise_pending_signals();
+      });
+    }
+    return py::make_tuple(from_field(u), to_array(std::move(residuals)), to_array(std::move(changes)));
+  }
+
  private:
   /// The problems with the collisions that methods of a kind need.
   problem_pool& problems_for(method_kind kind) {
@@ -387,6 +410,11 @@ void bind_kinetic(py::module_& m) {
       .def("solve_collision", &kinetic_problem::solve_collision)
       .def("project_to_equilibrium", &kinetic_problem::project_to_equilibrium)
       .def("forward_euler_step", &kinetic_problem::forward_euler_step)
+      .def("solve_steady",
+           [](kinetic_problem& problem, const array& u0, double tolerance, int iterations, int images,
+              std::optional<int> threads) {
+             return problem.solve_steady(u0, {tolerance, iterations, images}, threads);
+           })
       .def("integrate",
            [](kinetic_problem& problem, const array& u0, const std::vector<double>& t,
               const apsis::method& by, std::optional<double> dt, double safety, std::optional<int> growth,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <string>
+#include <vector>
 
 namespace apsis::validation {
 
@@ -26,5 +28,13 @@ class graded_plates {
  private:
   double b_;
 };
+
+/// The cells between plates of every quantity: their velocity and temperature have the term x log x at a
+/// plate.
+inline const graded_plates plate_cells(0.05);
+
+/// Returns the keys that the steady flows between plates share: rarefaction, model, 160 of these cells, and a
+/// steady state without error of time. `parameters`: delta and model.
+std::vector<std::string> between_plates(const std::map<std::string, std::string>& parameters);
 
 }  // namespace apsis::validation

@@ -126,14 +126,6 @@ const std::string& one_of(const quantity_values& parameters, const std::string& 
   return text;
 }
 
-double steady_safety(double delta) {
-  return std::min(1.0, 12.0 / delta);
-}
-
-double steady_time(double delta) {
-  return 12.0 + delta;
-}
-
 std::vector<double> field_values(const simulation& run, const std::string& name) {
   const field_table fields = run.fields();
   return fields.values.at(place_in(fields.names, name));

@@ -90,13 +90,8 @@ double number_between(const quantity_values& parameters, const std::string& name
 const std::string& one_of(const quantity_values& parameters, const std::string& name,
                           const std::vector<std::string>& words);
 
-/// Returns the part of r Δt_FE with which a steady state is accurate to 2e-4 at rarefaction δ: it depends on
-/// Δt/ε where that is of order 1 (docs/validation.md).
-double steady_safety(double delta);
-
-/// Returns the time after which a gas between walls at a distance of 1 is steady to 1e-3 in its fluxes: some
-/// crossings of slow molecules if it is rare, and of shear waves, L²/μ, if it is dense.
-double steady_time(double delta);
+/// The key of runs that find a steady state (docs/steady.md).
+inline const std::string steady_state = "steady.tolerance=1e-9";
 
 /// Returns the mean over the domain of a smooth function from its values at the cell centres, of fourth
 /// order. `shape`: number of cells along x, y, z, the last the fastest; at least 3 each.

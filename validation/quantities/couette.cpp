@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <validation/graded_plates.hpp>
 #include <validation/quantity.hpp>
 
 namespace apsis::validation {
@@ -12,11 +13,9 @@ namespace {
 constexpr double plate_speed = 0.01;
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
-  const double safety = steady_safety(positive_number(parameters, "delta"));
-  std::vector<std::string> deck = {
-      "parameters.delta=" + parameters.at("delta"), fmt::format("parameters.U={}", plate_speed),
-      "model.name=" + parameters.at("model"), fmt::format("time.safety={}", safety)};
-  if (one_of(parameters, "deck", {"default", "fine"}) == "fine") deck.push_back("space.cells=80");
+  static_cast<void>(positive_number(parameters, "delta"));
+  std::vector<std::string> deck = between_plates(parameters);
+  deck.push_back(fmt::format("parameters.U={}", plate_speed));
   const simulation run = make("gas/couette", deck);
   const double stress = 0.5 * (last_flux(run, "right", "momentum_y") - last_flux(run, "left", "momentum_y"));
   // ρ (2U) √(T/(2π)): half Maxwellians with the velocities of the plates.
@@ -33,8 +32,7 @@ const quantity_entry quantity_couette = {
     .description = "shear stress between moving plates over its free-molecular value, linear, diffuse walls",
     .source = "Willis, Phys. Fluids 5 (1962), and Loyalka; BGK",
     .parameters = {{"delta", "1", "rarefaction p L/(mu v0), v0 = sqrt(2 R T)"},
-                   {"model", "bgk", "bgk, shakhov or es-bgk"},
-                   {"deck", "default", "default or fine (docs/validation.md)"}},
+                   {"model", "bgk", "bgk, shakhov or es-bgk"}},
     .references = {published({{"delta", "0.01"}}, 0.9914), published({{"delta", "0.1"}}, 0.9258),
                    published({{"delta", "1"}}, 0.6007), published({{"delta", "2"}}, 0.4436),
                    published({{"delta", "5"}}, 0.2522), published({{"delta", "10"}}, 0.1473),

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <validation/graded_plates.hpp>
 #include <validation/quantity.hpp>
 
 namespace apsis::validation {
@@ -12,10 +13,10 @@ namespace {
 constexpr double heat = 0.01;
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
-  const double safety = steady_safety(positive_number(parameters, "delta"));
-  const simulation run = make(
-      "gas/fourier", {"parameters.delta=" + parameters.at("delta"), fmt::format("parameters.heat={}", heat),
-                      "model.name=" + parameters.at("model"), fmt::format("time.safety={}", safety)});
+  static_cast<void>(positive_number(parameters, "delta"));
+  std::vector<std::string> deck = between_plates(parameters);
+  deck.push_back(fmt::format("parameters.heat={}", heat));
+  const simulation run = make("gas/fourier", deck);
   const double flux = 0.5 * (last_flux(run, "left", "energy") - last_flux(run, "right", "energy"));
   // Half Maxwellians of both temperatures that carry equal masses: ρ √(2T/π) for each unit of the difference.
   const double free_molecular = 2.0 * heat * std::sqrt(2.0 / std::numbers::pi);

@@ -31,10 +31,8 @@ double interpolated(const std::vector<double>& y, const std::vector<double>& val
 double compute(const quantity_values& parameters, const quantity_run& make) {
   const std::string& value = one_of(parameters, "value", {"slip", "layer"});
   const double distance = number_between(parameters, "distance", 0.0, 5.0);
-  // The layer is a small difference of velocities: errors of size Δt/ε, and those of a state that is not yet
-  // steady, are large relative to it.
-  const simulation run = make("gas/kramers", {"model.name=" + parameters.at("model"), "time.safety=0.25",
-                                              "time.steady=1e-9", "output.fields=[\"u_y\"]"});
+  const simulation run = make("gas/kramers", {"model.name=" + parameters.at("model"), "space.cells=560",
+                                              steady_state, "output.fields=[\"u_y\"]"});
   const auto& constants = run.config().constants;
   const double U = constants.at("U"), separation = constants.at("delta");
   const graded_plates cells(constants.at("thin"));

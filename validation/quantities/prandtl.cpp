@@ -18,10 +18,9 @@ double field_at(const field_table& fields, const std::string& name, std::size_t 
 /// In a gas between plates of different temperature, far from both: Pr = (5/2) μ (−T_x)/q with μ = ε T^s.
 double compute(const quantity_values& parameters, const quantity_run& make) {
   const double delta = positive_number(parameters, "delta");
-  const simulation run =
-      make("gas/fourier",
-           {"parameters.delta=" + parameters.at("delta"), "model.name=" + parameters.at("model"),
-            fmt::format("time.safety={}", steady_safety(delta)), "output.fields=[\"T\", \"heat_flux\"]"});
+  const simulation run = make(
+      "gas/fourier", {"parameters.delta=" + parameters.at("delta"), "model.name=" + parameters.at("model"),
+                      steady_state, "output.fields=[\"T\", \"heat_flux\"]"});
   const field_table fields = run.fields();
   const std::size_t middle = fields.x.size() / 2;
   double slope = 0.0, heat = 0.0, T = 0.0;

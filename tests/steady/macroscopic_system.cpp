@@ -29,7 +29,7 @@ struct line {
       : gas(std::move(given)),
         force(std::move(of)),
         links(gas.space->space()),
-        system(*gas.equation, gas.space->space(), links, force, false) {
+        system(*gas.equation, gas.space->space(), links, {force, {}}, false) {
     const apsis::field f = gas.at_rest();
     for (int cell = 0; cell < f.cells(); ++cell) {
       std::vector<double> here(static_cast<std::size_t>(gas.equation->moment_count()));

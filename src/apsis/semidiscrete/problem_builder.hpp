@@ -113,6 +113,8 @@ class problem_builder {
   }
   /// Returns the force; nothing without one.
   const std::optional<acceleration>& force() const { return force_; }
+  /// Returns the source of with_source(); nothing without one.
+  const std::optional<source_rate>& source() const { return source_; }
   /// Returns the discretization of space; that of a point without space.
   const discretization& of_space() const;
   /// Returns where cells collide. Requires a reconstruction if the model has space.

@@ -73,7 +73,7 @@ weighted_cells edge_of(const cell_links& links, int direction, bool upper, int c
 
 /// J_of_cell[direction] = {A⁺, A⁻, D}; J of an end: the derivative of the flux towards larger coordinates.
 struct macroscopic_system::matrices {
-  std::vector<double> of_cells, of_ends;
+  std::vector<double> of_cells, of_ends, of_sources;
   /// The order of the cells is one of little fill already.
   Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>> factors;
 };
@@ -92,12 +92,11 @@ struct macroscopic_system::assembly {
 };
 
 macroscopic_system::macroscopic_system(const relaxation_model& equation, const domain& space,
-                                       const cell_links& links, const std::optional<acceleration>& force,
-                                       bool first_order)
+                                       const cell_links& links, inside acts, bool first_order)
     : equation_(equation),
       space_(space),
       links_(links),
-      force_(force),
+      acts_(std::move(acts)),
       first_order_(first_order),
       count_(equation.moment_count()),
       number_(at(space.mesh().size()), -1),
@@ -162,6 +161,7 @@ void macroscopic_system::build(const moments& omega, const std::vector<double>& 
   const int directions = links_.directions(), square = count_ * count_, per_cell = 3 * directions * square;
   matrices_->of_cells.resize(at(space_.mesh().size()) * at(per_cell));
   matrices_->of_ends.resize(links_.ends().size() * at(square));
+  if (has_source_of_state()) matrices_->of_sources.resize(at(space_.mesh().size()) * at(square));
   const half_speeds halves(equation_, directions);
   per_thread<std::unique_ptr<scratch_of_cells>> scratch;
   scratch.prepare([&](auto& own) { own = std::make_unique<scratch_of_cells>(equation_, space_); });
@@ -172,6 +172,8 @@ void macroscopic_system::build(const moments& omega, const std::vector<double>& 
       const double* here = omega.data() + at(cell) * at(count_);
       if (!own.tangents.move_to(here))
         throw numerical_error(equation_.why_inadmissible(here), {.cell = cell, .value = here[0]});
+      if (has_source_of_state())
+        differentiate_source(cell, own.tangents, matrices_->of_sources.data() + at(cell) * at(square));
       double* to = matrices_->of_cells.data() + at(cell) * at(per_cell);
       for (int d = 0; d < directions; ++d, to += 3 * square) {
         own.tangents.moments_of_weighted(halves.up[at(d)], to);
@@ -188,6 +190,10 @@ void macroscopic_system::build(const moments& omega, const std::vector<double>& 
   assembly all{count_};
   for (int d = 0; d < directions; ++d) add_faces(all, d);
   add_forces(all);
+  for (const int cell : links_.cells())
+    if (has_source_of_state())
+      all.add(number_[at(cell)], number_[at(cell)], -1.0,
+              matrices_->of_sources.data() + at(cell) * at(square));
   const int unknowns = static_cast<int>(links_.cells().size()) * count_;
   add_constraints(all);
   if (pseudo_rate > 0.0)
@@ -242,16 +248,41 @@ void macroscopic_system::add_faces(assembly& to, int direction) const {
 /// A force a gives the momentum ρa and the energy ρu·a per unit of time.
 void macroscopic_system::add_forces(assembly& to) const {
   const gas_model* gas = equation_.as_gas();
-  if (!force_ || gas == nullptr) return;
+  if (!acts_.force || gas == nullptr) return;
   const int energy = count_ - 1;
   for (const int cell : links_.cells()) {
-    const auto a = force_->value(0.0, space_.mesh().centre(cell));
+    const auto a = acts_.force->value(0.0, space_.mesh().centre(cell));
     const int first = number_[at(cell)] * count_;
     for (int k = 0; k < gas->molecules().dimensions(); ++k) {
       if (a[at(k)] == 0.0) continue;
       to.terms.emplace_back(first + 1 + k, first, -a[at(k)]);
       to.terms.emplace_back(first + energy, first + 1 + k, -a[at(k)]);
     }
+  }
+}
+
+bool macroscopic_system::has_source_of_state() const {
+  return equation_.has_source() || (acts_.source && acts_.source->growth);
+}
+
+/// matrix ← ℛ ∂S/∂ω of equilibrium.
+void macroscopic_system::differentiate_source(int cell, tangent_rows& tangents, double* matrix) const {
+  const auto components = at(equation_.components());
+  std::vector<double> base(components), changed(components), own(components), column(at(count_));
+  const auto evaluate = [&](const double* row, std::vector<double>& to) {
+    std::fill(to.begin(), to.end(), 0.0);
+    if (acts_.source && acts_.source->growth)
+      acts_.source->value(0.0, space_.mesh().centre(cell), {row, components}, to);
+    if (!equation_.has_source()) return;
+    equation_.source(row, own.data());
+    for (std::size_t k = 0; k < components; ++k) to[k] += own[k];
+  };
+  evaluate(tangents.equilibrium(), base);
+  for (int j = 0; j < count_; ++j) {
+    evaluate(tangents.changed(j), changed);
+    for (std::size_t k = 0; k < components; ++k) changed[k] = (changed[k] - base[k]) / tangents.step(j);
+    equation_.moments(changed.data(), column.data());
+    for (int i = 0; i < count_; ++i) matrix[i * count_ + j] = column[at(i)];
   }
 }
 

@@ -3,6 +3,7 @@
 #include <apsis/boundary/domain.hpp>
 #include <apsis/model/acceleration.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/model/source_rate.hpp>
 #include <apsis/steady/cell_links.hpp>
 
 #include <cstddef>
@@ -11,6 +12,8 @@
 #include <vector>
 
 namespace apsis {
+
+class tangent_rows;
 
 /// The linearised moment equations J δω = r of a steady state near equilibrium, ω = ℛf, on the mesh of the
 /// kinetic equation. Fluxes are those of ∂E/∂ω by sums over half the velocities with third-order upwind
@@ -23,9 +26,15 @@ class macroscopic_system {
   /// Right-hand sides and changes: [cells][moment_count].
   using moments = std::vector<double>;
 
-  /// All arguments must outlive the object. `force`: null without.
+  /// What acts on the gas inside, beside that of the model.
+  struct inside {
+    std::optional<acceleration> force = {};
+    std::optional<source_rate> source = {};
+  };
+
+  /// `equation`, `space` and `links` must outlive the object.
   macroscopic_system(const relaxation_model& equation, const domain& space, const cell_links& links,
-                     const std::optional<acceleration>& force, bool first_order);
+                     inside acts, bool first_order);
   ~macroscopic_system();
   macroscopic_system(const macroscopic_system&) = delete;
   macroscopic_system& operator=(const macroscopic_system&) = delete;
@@ -45,12 +54,14 @@ class macroscopic_system {
   struct assembly;
   void add_faces(assembly& to, int direction) const;
   void add_forces(assembly& to) const;
+  bool has_source_of_state() const;
+  void differentiate_source(int cell, tangent_rows& tangents, double* matrix) const;
   void add_constraints(assembly& to);
 
   const relaxation_model& equation_;
   const domain& space_;
   const cell_links& links_;
-  const std::optional<acceleration>& force_;
+  inside acts_;
   bool first_order_;
   int count_;
   std::vector<int> number_;  ///< of a cell among those of the gas

@@ -65,7 +65,7 @@ struct steady_solver::impl {
         problem(operators),
         links(builder.space()),
         count(equation.moment_count()),
-        system(equation, builder.space(), links, builder.force(), builder.first_order()),
+        system(equation, builder.space(), links, {builder.force(), builder.source()}, builder.first_order()),
         sweep(equation, builder.space(), links),
         mixture(given.depth),
         r(start.cells(), start.components()),

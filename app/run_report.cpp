@@ -46,14 +46,14 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
   const result_units units(c);
   const double time = units.factor(units.of_time());
   const std::string of_time = units.suffix(units.of_time());
-  const bool iterates = c.steady.tolerance.has_value();
+  const bool iterates = c.steady_state.tolerance.has_value();
   if (iterates) {
     line("state", fmt::format("{} after {} iterations", to_string(end), s.steps));
     line(
         "steady state",
         fmt::format("{} (residual {:.2g} of that of the start, change of the moments {:.2g}, tolerance {:g})",
                     run.finished() ? "found" : "not found", run.last().residual.front(), run.last().change,
-                    *c.steady.tolerance));
+                    *c.steady_state.tolerance));
   } else {
     line("state", fmt::format("{} at t = {:.10g}{} after {} steps of {}", to_string(end), s.t * time, of_time,
                               s.steps, c.time.method));

@@ -43,7 +43,7 @@ struct run_options {
 
 /// "step 1234/2900  t = 0.21  min 1.20e-31"
 std::string step_text(const simulation& now) {
-  if (now.config().steady.tolerance)
+  if (now.config().steady_state.tolerance)
     return fmt::format("iteration {}  residual {:.2e}  change {:.2e}  min {:.2e}", now.step(),
                        now.last().residual.front(), now.last().change, now.last().min_value);
   return fmt::format("step {}/{}  t = {:.4g}  min {:.2e}", now.step(), now.steps_total(), now.t(),
@@ -52,7 +52,7 @@ std::string step_text(const simulation& now) {
 
 /// The share of the work that is done; of an iteration, the digits of its residual.
 double share_done(const simulation& now) {
-  const auto& tolerance = now.config().steady.tolerance;
+  const auto& tolerance = now.config().steady_state.tolerance;
   if (!tolerance) return now.t() / now.config().time.end;
   const double residual = now.last().residual.front();
   return residual > 0.0 && residual < 1.0 ? std::log(residual) / std::log(*tolerance) : 0.0;

@@ -123,13 +123,14 @@ TEST(steady_run, continues_after_a_checkpoint_with_the_same_unit_of_residuals) {
 
 TEST(steady_run, is_written_and_read_as_a_case) {
   const auto config = apsis::load_case("gas/cavity", {"steady.iterations=90"});
-  EXPECT_EQ(config.steady.tolerance, apsis::usual_steady_tolerance);
+  EXPECT_EQ(config.steady_state.tolerance, apsis::usual_steady_tolerance);
   EXPECT_EQ(config.space.reconstruction, "upwind5");
   EXPECT_EQ(config.space.limiter, apsis::limiter_choice::none);
   const auto again = apsis::parse_case(to_toml(config), "written.toml");
   EXPECT_EQ(to_toml(again), to_toml(config));
-  EXPECT_EQ(again.steady.iterations, 90);
-  EXPECT_FALSE(apsis::parse_case(to_toml(apsis::load_case("gas/cavity")), "written.toml").steady.tolerance);
+  EXPECT_EQ(again.steady_state.iterations, 90);
+  EXPECT_FALSE(
+      apsis::parse_case(to_toml(apsis::load_case("gas/cavity")), "written.toml").steady_state.tolerance);
 }
 
 TEST(steady_run, needs_no_table_of_time) {

@@ -97,7 +97,7 @@ struct case_config {
     std::optional<double> tolerance;  ///< of residual and change of moments; without it the run marches
     int iterations = 200;             ///< at most
     int images = 3;                   ///< that the mixture remembers
-  } steady;
+  } steady_state;
   /// Table [output].
   struct {
     double every = 0.0;                                ///< time between snapshots; 0: only the end

@@ -287,7 +287,7 @@ std::vector<case_key> face_keys() {
 
 /// Whether the run finds the steady state.
 bool is_steady(const case_config& c) {
-  return c.steady.tolerance.has_value();
+  return c.steady_state.tolerance.has_value();
 }
 
 /// The key, which only a case with a table [steady] has.
@@ -301,7 +301,7 @@ case_key if_steady(case_key of) {
 std::vector<case_key> steady_keys() {
   return {
       if_steady(key(
-          "steady.tolerance", [](auto& c) -> auto& { return c.steady.tolerance; },
+          "steady.tolerance", [](auto& c) -> auto& { return c.steady_state.tolerance; },
           {.scope = key_scope::space,
            .lowest = 1e-14,
            .highest = 1e-2,
@@ -309,13 +309,13 @@ std::vector<case_key> steady_keys() {
                   "residual relative to that of the initial data, and this relative change of the moments. "
                   "Initial data give the start and the mass between walls. The table [time] is not used: t "
                   "counts iterations."})),
-      if_steady(key("steady.iterations", [](auto& c) -> auto& { return c.steady.iterations; },
+      if_steady(key("steady.iterations", [](auto& c) -> auto& { return c.steady_state.iterations; },
                     {.scope = key_scope::space,
                      .lowest = 1,
                      .highest = 1'000'000,
                      .doc = "Most iterations; a run that needs more ends with exit code 3."})),
       if_steady(key(
-          "steady.images", [](auto& c) -> auto& { return c.steady.images; },
+          "steady.images", [](auto& c) -> auto& { return c.steady_state.images; },
           {.scope = key_scope::space,
            .lowest = 0,
            .highest = 20,

@@ -44,7 +44,7 @@ class resolver {
     take_constants();
     const auto derived = derive_epsilon(text_, *model_, config_);
     note_places();  // of derived keys too
-    if (is_given("steady")) config_.steady.tolerance = usual_steady_tolerance;
+    if (is_given("steady")) config_.steady_state.tolerance = usual_steady_tolerance;
     for (const case_key& key : case_schema()) take(key);
     count_iterations();
     if (derived) config_.model.epsilon = *derived;
@@ -248,7 +248,7 @@ class resolver {
     if (find(discretization_key) == nullptr)
       config_.space.discretization = default_discretization(static_cast<int>(dimensions)).name;
     // Where f jumps along rays, nonlinear weights may never settle.
-    if (config_.steady.tolerance && find("space.reconstruction") == nullptr)
+    if (config_.steady_state.tolerance && find("space.reconstruction") == nullptr)
       config_.space.reconstruction = "upwind5";
   }
 
@@ -323,7 +323,7 @@ class resolver {
 
   void check_together() const {
     check_step_rule();
-    if (config_.steady.tolerance) check_steady(config_, *checked_model());
+    if (config_.steady_state.tolerance) check_steady(config_, *checked_model());
     if (has_space(*model_)) check_mesh();
     check_epsilon();
     check_fields();
@@ -339,14 +339,14 @@ class resolver {
 
   /// Iterations to a steady state count as time.
   void count_iterations() {
-    if (!config_.steady.tolerance) return;
+    if (!config_.steady_state.tolerance) return;
     config_.time = {};
-    config_.time.end = config_.steady.iterations;
+    config_.time.end = config_.steady_state.iterations;
     config_.time.dt = 1.0;
   }
 
   void check_step_rule() const {
-    if (config_.steady.tolerance) return;
+    if (config_.steady_state.tolerance) return;
     std::vector<std::string> given, valid;
     for (const auto& key : step_keys()) {
       if (find(key) != nullptr) given.push_back(key);

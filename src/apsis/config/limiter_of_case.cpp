@@ -20,7 +20,7 @@ bool has_ssp_coefficient(const std::string& method) {
 }  // namespace
 
 limiter_choice default_limiter(const case_config& config) {
-  if (config.steady.tolerance) return limiter_choice::none;
+  if (config.steady_state.tolerance) return limiter_choice::none;
   const auto equation = make_model(config);
   if (equation->space_dimensions() == 0 || !equation->positive() || !equation->collisions_keep_sign() ||
       !equation->why_signed().empty())

@@ -112,7 +112,7 @@ method_request request_of(const case_config& config) {
 
 case_config with_chosen_method(case_config config) {
   if (config.time.method != automatic_method) return config;
-  if (config.steady.tolerance) {
+  if (config.steady_state.tolerance) {
     config.time.method = "md-imex-3-2";
     config.time.method_reason = "a steady state needs no steps";
     return config;

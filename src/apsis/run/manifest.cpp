@@ -45,7 +45,7 @@ json numbers(const simulation& run) {
 
 /// Adds how far the iteration to a steady state came, in a case with a table [steady].
 void add_iterations(json& out, const simulation& run) {
-  const auto& tolerance = run.config().steady.tolerance;
+  const auto& tolerance = run.config().steady_state.tolerance;
   if (!tolerance || run.last().residual.empty()) return;
   const auto number = [](double x) { return std::isfinite(x) ? json(x) : json(nullptr); };
   out["steady"] = {{"reached", run.finished()},

@@ -18,11 +18,11 @@ constexpr int fewest_points = 4;  ///< of velocity.points
 
 /// Fields of a steady_solver: state, residual, the images of the mixture, and a temporary one.
 int buffers_of_iterations(const case_config& config) {
-  return 3 + (config.steady.images > 0 ? config.steady.images + 1 : 0);
+  return 3 + (config.steady_state.images > 0 ? config.steady_state.images + 1 : 0);
 }
 
 int buffers_of(const run_setup& setup) {
-  if (setup.config().steady.tolerance) return buffers_of_iterations(setup.config());
+  if (setup.config().steady_state.tolerance) return buffers_of_iterations(setup.config());
   const method& m = setup.integrator().starter();
   const bool compares = setup.has_tolerance() && m.embedded.has_value();
   // A doubled step keeps the results of the single step and of the first half.

@@ -133,7 +133,7 @@ std::vector<std::string> history_columns(const simulation& run) {
   std::vector<std::string> columns;
   step_record::visit_members(run.initial_record(),
                              column_writer{invariants, faces, run.setup().equation->cut_moment(),
-                                           run.config().steady.tolerance.has_value(), columns});
+                                           run.config().steady_state.tolerance.has_value(), columns});
   return columns;
 }
 

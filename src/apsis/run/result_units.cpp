@@ -22,7 +22,7 @@ void multiply(std::vector<double>& values, double factor) {
 
 result_units::result_units(const case_config& config)
     : scales_(config.output.units == units_choice::si ? config.scales : std::nullopt),
-      of_time_(config.steady.tolerance ? dimensions::none : dimensions::time) {}
+      of_time_(config.steady_state.tolerance ? dimensions::none : dimensions::time) {}
 
 std::string result_units::suffix(const dimension& dims) const {
   return are_si() && dims != dimensions::none ? " " + unit_of(dims) : "";
@@ -66,7 +66,8 @@ numeric_table result_units::convert(numeric_table history, const simulation& run
 std::vector<std::pair<std::string, dimension>> history_dimensions(const simulation& run) {
   using dimensions::length, dimensions::time;
   std::vector<std::pair<std::string, dimension>> all;
-  if (!run.config().steady.tolerance) all = {{"t", time}, {"dt", time}, {"change", dimensions::none / time}};
+  if (!run.config().steady_state.tolerance)
+    all = {{"t", time}, {"dt", time}, {"change", dimensions::none / time}};
   const auto names = run.setup().equation->invariants();
   const auto densities = run.setup().equation->invariant_dimensions();
   for (std::size_t k = 0; k < names.size(); ++k) {

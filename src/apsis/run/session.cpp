@@ -81,7 +81,7 @@ case_config with_method_of_restart(case_config config, const session_options& op
 std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& configured,
                                                        const session_options& options) {
   const case_config config = with_method_of_restart(with_chosen_method(configured), options);
-  if (!config.time.method_reason.empty() && !config.steady.tolerance)
+  if (!config.time.method_reason.empty() && !config.steady_state.tolerance)
     log::info(fmt::format("{}: time.method = \"{}\" is {} ({})", config.source, automatic_method,
                           config.time.method, config.time.method_reason));
   std::unique_ptr<run_setup> setup;
@@ -189,7 +189,7 @@ std::string essential_text(case_config config) {
   config.output = {};
   config.time.end = 1.0;
   config.space.blocks.reset();
-  if (config.steady.tolerance) config.steady = {.tolerance = usual_steady_tolerance};
+  if (config.steady_state.tolerance) config.steady_state = {.tolerance = usual_steady_tolerance};
   return to_toml(config);
 }
 
@@ -243,11 +243,11 @@ run_session::run_session(const case_config& configured, session_options options)
         "give both");
   const long steps = simulation_.steps_total();
   const int ranks = processes().size();
-  const std::string work = config.steady.tolerance
+  const std::string work = config.steady_state.tolerance
                                ? fmt::format("at most {} iterations to the steady state", steps)
                                : fmt::format("about {} steps of {}", steps, config.time.method);
-  const std::string promised =
-      config.steady.tolerance ? "nothing is promised between iterations" : simulation_.promises().text();
+  const std::string promised = config.steady_state.tolerance ? "nothing is promised between iterations"
+                                                             : simulation_.promises().text();
   log::info(fmt::format("{}: {} on {}{} thread{}; {}", config.source, work,
                         ranks == 1 ? "" : fmt::format("{} processes of ", ranks), threads(),
                         threads() == 1 ? "" : "s", promised));
@@ -262,9 +262,9 @@ void run_session::resume(const std::string& path) {
       saved.components != static_cast<std::uint64_t>(simulation_.setup().equation->components()))
     refuse_size(path, saved, simulation_.mesh().size(), simulation_.setup().equation->components());
   const run_state state = to_run_state(saved);
-  if (!(state.march.t < simulation_.config().time.end) && simulation_.config().steady.tolerance)
+  if (!(state.march.t < simulation_.config().time.end) && simulation_.config().steady_state.tolerance)
     throw input_error(fmt::format("'{}' is already after {} iterations (steady.iterations is {}); give more",
-                                  path, state.march.t, simulation_.config().steady.iterations));
+                                  path, state.march.t, simulation_.config().steady_state.iterations));
   if (!(state.march.t < simulation_.config().time.end))
     throw input_error(fmt::format("'{}' is already at t = {} (time.end is {}); give a later time.end", path,
                                   state.march.t, simulation_.config().time.end));
@@ -300,7 +300,7 @@ void run_session::finish_records() {
                     units.suffix(dimensions::time),
                     to_text(estimate_steady_state(shown_->history()), time, units.suffix(dimensions::time))));
   }
-  if (simulation_.config().steady.tolerance && end_ == run_end::complete &&
+  if (simulation_.config().steady_state.tolerance && end_ == run_end::complete &&
       !simulation_.last().residual.empty())
     log::info(
         fmt::format("the steady state is found after {} iterations: residual {:.2g}, change of the "

@@ -100,11 +100,11 @@ struct simulation::impl {
     problem->take_cut();  // of steps that were only tried
   }
 
-  bool finds_steady_state() const { return config.steady.tolerance.has_value(); }
+  bool finds_steady_state() const { return config.steady_state.tolerance.has_value(); }
 
   void start_iterations() {
     first.residual = last.residual = {std::numeric_limits<double>::quiet_NaN()};
-    const auto& [tolerance, iterations, images] = config.steady;
+    const auto& [tolerance, iterations, images] = config.steady_state;
     run_collectively(setup.processes(), [&] {
       iteration.emplace(*setup.equation->as_relaxation(), setup.builder(), *problem, state,
                         steady_options{*tolerance, iterations, images});
@@ -142,7 +142,7 @@ struct simulation::impl {
       throw numerical_error(
           fmt::format("no steady state in {} iterations (residual {:.2g}, change of the "
                       "moments {:.2g}); give a larger steady.iterations, or march in time",
-                      config.steady.iterations, done.residual, done.change));
+                      config.steady_state.iterations, done.residual, done.change));
   }
 
   void set_net_rates() {

@@ -6,11 +6,19 @@
 
 namespace apsis {
 
-/// Loops of a reconstruction over a pencil; see the members of `reconstruction` of the same names.
+/// Loops of a reconstruction over a pencil.
 struct pencil_loops {
-  void (*edges)(const double* const* rows, int count, int width, double* left, double* right);
-  void (*outflow_edges)(const double* const* rows, int count, int width, const double* forward, double* edge);
-  double (*operations)(bool both_edges);
+  /// Computes both edges; see reconstruction::edges().
+  using edge_loop = void (*)(const double* const* rows, int count, int width, double* left, double* right);
+  /// Computes outflow edges; see reconstruction::outflow_edges().
+  using outflow_loop = void (*)(const double* const* rows, int count, int width, const double* forward,
+                                double* edge);
+  /// Counts operations; see reconstruction::operations().
+  using operation_count = double (*)(bool both_edges);
+
+  edge_loop edges;             ///< of both edges
+  outflow_loop outflow_edges;  ///< of outflow edges alone
+  operation_count operations;  ///< per number
 };
 
 /// Makes a scheme of fifth order, which needs the two neighbours on either side.

@@ -24,6 +24,7 @@ struct gas_end_of_segment {
 /// Neighbours of the cells of a domain of one process, along every direction.
 class cell_links {
  public:
+  /// Looks at all segments of the domain once.
   explicit cell_links(const domain& space);
 
   /// Returns the next cell of the segment; −1 at its end.

@@ -51,7 +51,8 @@ class dissection {
 }  // namespace
 
 std::vector<int> dissected_cells(const grid& mesh, const std::array<bool, 3>& periodic) {
-  std::array<int, 3> begin{}, end{};
+  const std::array<int, 3> begin{};
+  std::array<int, 3> end{};
   for (int d = 0; d < 3; ++d) end[at(d)] = mesh.cells(d);
   dissection parts(mesh);
   // A slab at the lower end cuts a ring open; slabs of other directions end at it.

@@ -28,8 +28,8 @@ class macroscopic_system {
 
   /// What acts on the gas inside, beside that of the model.
   struct inside {
-    std::optional<acceleration> force = {};
-    std::optional<source_rate> source = {};
+    std::optional<acceleration> force = {};  ///< of a gas
+    std::optional<source_rate> source = {};  ///< of any model
   };
 
   /// `equation`, `space` and `links` must outlive the object.

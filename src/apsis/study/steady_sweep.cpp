@@ -111,7 +111,7 @@ class sweep {
     std::vector<std::string> keys = overrides_;
     keys.push_back(varied_.key + "=" + value);
     case_config found = load_case(case_name_, keys);
-    if (found.steady.tolerance) return found;
+    if (found.steady_state.tolerance) return found;
     keys.push_back(fmt::format("steady.tolerance={}", usual_steady_tolerance));
     return load_case(case_name_, keys);
   }

@@ -5,6 +5,7 @@
 #include <apsis/core/errors.hpp>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -52,12 +53,9 @@ std::vector<double> omega_of(const gas& of, const std::vector<double>& row) {
 
 }  // namespace
 
-RC_GTEST_PROP(gas, has_no_equilibrium_colder_than_its_velocities, ()) {
-  // With h = 0 and g at the two points about u, D T is Σ_k (v₊ − u_k)(u_k − v₋), here at u = 0 a quarter of
-  // the square of the spacing in each direction.
+RC_GTEST_PROP(gas, has_no_equilibrium_at_negative_temperatures, ()) {
   const int d = *rc::gen::inRange(1, 4), degrees = d + *rc::gen::inRange(1, 4);
   const gas of = make_gas(d, degrees, 24, 9.0);
-  const double spacing = 18.0 / 24.0, coldest = 0.25 * d * spacing * spacing / degrees;
   std::vector<double> row(static_cast<std::size_t>(of.velocities().components()));
   std::vector<double> omega(static_cast<std::size_t>(of.moment_count()), 0.0);
   omega[0] = *rc::gen::element(1e-12, 1.0, 1e12);
@@ -65,11 +63,12 @@ RC_GTEST_PROP(gas, has_no_equilibrium_colder_than_its_velocities, ()) {
     omega.back() = 0.5 * degrees * omega[0] * T;
     return of.equilibrium(omega.data(), row.data());
   };
-  for (const double T : {-1.0, -1e-12, 0.0, 0.5 * coldest, 0.999 * coldest}) {
+  for (const double T : {-1.0, -1e-6, std::numeric_limits<double>::quiet_NaN()}) {
     RC_ASSERT(!exists(T));
-    RC_ASSERT(of.why_inadmissible(omega.data()).find("temperature") != std::string::npos);
+    RC_ASSERT(!of.why_inadmissible(omega.data()).empty());
   }
-  RC_ASSERT(exists(1.001 * coldest));
+  RC_ASSERT(exists(0.0));  // the moments of molecules with one velocity
+  RC_ASSERT(exists(1.0));
   const auto again = omega_of(of, row);
   RC_ASSERT(std::abs(again.back() - omega.back()) <= 1e-12 * omega.back());
 }

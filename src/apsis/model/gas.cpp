@@ -121,9 +121,9 @@ double gas::moments_of_g(const double* omega, double* of_g) const {
     greatest += farthest;
   }
   least = std::min(least, greatest);
-  // Colder than any row f ≥ 0 of this mean, by more than the rounding of sums.
+  // All of f ≥ 0 may have one velocity: T is 0, up to the rounding of sums.
   constexpr double rounding = 1e-12;
-  if (omega[0] > 0.0 && !(degrees_ * s.T >= least - rounding * (square + greatest))) {
+  if (omega[0] > 0.0 && !(degrees_ * s.T >= -rounding * (square + greatest))) {
     of_g[d + 1] = 0.5 * s.rho * (square + d * s.T);
     return std::numeric_limits<double>::quiet_NaN();
   }

@@ -64,7 +64,7 @@ class gas {
 
  private:
   static constexpr int most_moments = 5;
-  /// of_g ← ω of g alone in the equilibrium of ω; returns h/g, NaN where ω is colder than any row f ≥ 0.
+  /// of_g ← ω of g alone in the equilibrium of ω; returns h/g, NaN for T < 0.
   double moments_of_g(const double* omega, double* of_g) const;
   bool equilibrium_of_g(const double* of_g, double* g, line_moments* of_row = nullptr) const;
   int equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const;

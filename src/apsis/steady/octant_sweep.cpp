@@ -87,8 +87,7 @@ void octant_sweep::solve(const field& f, const std::vector<double>& rates, field
     own.response = std::make_unique<end_response>(space_.space(), stride);
     for (auto* row : {&own.state, &own.base, &own.changed}) row->assign(at(stride), 0.0);
   });
-  for (std::size_t n = 0; n < octants_.size(); ++n) {
-    const octant& of = octants_[n];
+  for (const octant& of : octants_) {
     respond(of, f, r);
     parallel_for(static_cast<int>(of.strips.size()), [&](int k) { pass(of, of.strips[at(k)], rates, r); });
   }

@@ -34,7 +34,8 @@ void check_formulas(const case_config& config, const std::string& path,
 }
 
 void check_values(const case_config& config, const std::string& table, const state_formulas& values) {
-  for (const auto& [name, formulas] : values) check_formulas(config, table + "." + name, formulas);
+  for (const auto& [name, formulas] : values)
+    check_formulas(config, fmt::format("{}.{}", table, name), formulas);
 }
 
 }  // namespace

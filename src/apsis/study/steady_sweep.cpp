@@ -151,7 +151,7 @@ class sweep {
     if (!table_.fluxes.empty()) return;
     for (const std::string& face : run.setup().open_faces())
       for (const std::string& invariant : run.setup().equation->invariants())
-        table_.fluxes.push_back(face + "_" + invariant);
+        table_.fluxes.push_back(fmt::format("{}_{}", face, invariant));
   }
 
   std::string case_name_;

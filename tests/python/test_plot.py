@@ -85,6 +85,14 @@ def test_without_space_unknowns_are_drawn_over_time(tmp_path):
     np.testing.assert_array_equal(figure.axes[0].lines[0].get_xdata(), computed.t)
 
 
+def test_history_of_a_steady_state_shows_its_iterations(tmp_path):
+    computed = apsis.run("gas/couette", "space.cells=8", "steady.tolerance=1e-8", out=tmp_path / "a")
+    residual, rates, smallest = history_figure(read_result(tmp_path / "a")).axes
+    assert residual.get_xlabel() == "iteration" and residual.get_yscale() == "log"
+    np.testing.assert_array_equal(residual.lines[0].get_ydata(), computed.history["residual_relative"])
+    assert rates.get_ylabel() == "relative net rate of the gas"
+
+
 def test_history_shows_the_checks_and_varying_steps(tmp_path):
     # No snapshot between start and end: constant steps have no panel.
     computed = run(tmp_path / "a", "paper/bgk-mixed", *SMALL_BGK[:-1], "output.every=0.01")

@@ -96,7 +96,7 @@ TEST(steady_sweep, retains_what_was_found_before_an_interruption) {
 TEST(steady_sweep, draws_fluxes_that_matter) {
   const auto table = run_sweep("gas/fourier", {"space.cells=8"}, parse_sweep("delta=1..10", 3));
   const auto drawn = apsis::to_picture(table);
-  ASSERT_EQ(drawn.panels.size(), 2U);
+  ASSERT_EQ(drawn.panels.size(), 3U);                             // momentum, energy, iterations
   EXPECT_LT(drawn.panels[0].curves.size(), table.fluxes.size());  // no mass crosses the walls
   EXPECT_TRUE(drawn.panels[0].log_x);
   EXPECT_TRUE(

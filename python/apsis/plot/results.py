@@ -124,10 +124,12 @@ def distribution_figure(result: RunResult) -> Any:
 
 def history_figure(result: RunResult) -> Any:
     """Draws the checks of every step: smallest value, conservation defects, entropy, and a step size that varies. None after
-    no step."""
+    no step. Of iterations to a steady state it draws residual, net rates and smallest value."""
     history = result.history
     if len(history["t"]) < 2:
         return None
+    if "residual_relative" in history:
+        return iterations_figure(result)
     defects = [name for name in history if name.startswith("conservation")]
     with_entropy = "entropy" in history and bool(np.isfinite(history["entropy"]).any())
     # The last two steps end at time.end, which is not a change of the step size.
@@ -148,6 +150,25 @@ def history_figure(result: RunResult) -> Any:
         panel.set_ylabel(f"Δt ({result.unit('dt')})")
     for panel in axes:
         panel.set_xlabel(f"t ({result.unit('t')})")
+    figure.suptitle(title_of(result))
+    return figure
+
+
+def iterations_figure(result: RunResult) -> Any:
+    """Draws how iterations approach a steady state."""
+    history = result.history
+    defects = [name for name in history if name.startswith("conservation")]
+    figure, axes = panels(2 + bool(defects), height=3.4)
+    axes[0].semilogy(history["t"], history["residual_relative"], color=BLUE, label="residual")
+    axes[0].semilogy(history["t"], np.maximum(history["change"], 1e-18), color=GREY, label="change of the moments")
+    axes[0].set_ylabel("relative to the start, or the scale")
+    axes[0].legend(fontsize=8)
+    if defects:
+        draw_defects(axes[1], history, defects)
+        axes[1].set_ylabel("relative net rate of the gas")
+    draw_smallest(axes[-1], history)
+    for panel in axes:
+        panel.set_xlabel("iteration")
     figure.suptitle(title_of(result))
     return figure
 

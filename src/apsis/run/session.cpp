@@ -300,8 +300,7 @@ void run_session::finish_records() {
                     units.suffix(dimensions::time),
                     to_text(estimate_steady_state(shown_->history()), time, units.suffix(dimensions::time))));
   }
-  if (simulation_.config().steady_state.tolerance && end_ == run_end::complete &&
-      !simulation_.last().residual.empty())
+  if (simulation_.config().steady_state.tolerance && simulation_.finished())
     log::info(
         fmt::format("the steady state is found after {} iterations: residual {:.2g}, change of the "
                     "moments {:.2g}",

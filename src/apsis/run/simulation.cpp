@@ -139,10 +139,10 @@ struct simulation::impl {
         *std::max_element(last.conservation_defect.begin(), last.conservation_defect.end());
     for (const double cut : last.cut) totals.largest_cut = cut;
     if (!found && march.done())
-      throw numerical_error(
-          fmt::format("no steady state in {} iterations (residual {:.2g}, change of the "
-                      "moments {:.2g}); give a larger steady.iterations, or march in time",
-                      config.steady_state.iterations, done.residual, done.change));
+      throw numerical_error(fmt::format("no steady state in {} iterations (residual {:.2g}, change of the "
+                                        "moments {:.2g}); give a larger steady.iterations, or march in time",
+                                        config.steady_state.iterations, done.residual, done.change),
+                            {last.step, last.t});
   }
 
   void set_net_rates() {
@@ -388,7 +388,7 @@ double simulation::expected_plateau() const {
   return impl_->expected ? impl_->expected->error : 0.0;
 }
 bool simulation::finished() const {
-  return impl_->march.done() || impl_->steady() || impl_->found;
+  return impl_->iteration ? impl_->found : impl_->march.done() || impl_->steady();
 }
 
 const step_record& simulation::advance() {

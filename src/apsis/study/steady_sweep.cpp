@@ -149,6 +149,7 @@ class sweep {
 
   void name_fluxes(const simulation& run) {
     if (!table_.fluxes.empty()) return;
+    table_.invariants = run.setup().equation->invariants();
     for (const std::string& face : run.setup().open_faces())
       for (const std::string& invariant : run.setup().equation->invariants())
         table_.fluxes.push_back(fmt::format("{}_{}", face, invariant));
@@ -221,6 +222,23 @@ nlohmann::ordered_json to_json(const sweep_table& table) {
   return rows;
 }
 
+namespace {
+
+/// Invariants with a flux that matters, in their order.
+std::vector<std::string> invariants_in(const sweep_table& table) {
+  std::vector<std::string> found;
+  for (const std::size_t k : visible_fluxes(table)) {
+    const std::string& name = table.fluxes[k];
+    const auto of_face = std::find_if(table.invariants.begin(), table.invariants.end(),
+                                      [&](const auto& one) { return name.ends_with("_" + one); });
+    if (of_face != table.invariants.end() && std::find(found.begin(), found.end(), *of_face) == found.end())
+      found.push_back(*of_face);
+  }
+  return found;
+}
+
+}  // namespace
+
 picture to_picture(const sweep_table& table) {
   picture drawn{"sweep", table.title, fmt::format("Steady states for values of {}.", table.key), {}};
   std::vector<double> x;
@@ -231,17 +249,23 @@ picture to_picture(const sweep_table& table) {
   }
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
   const bool logarithmic = *least > 0.0 && *most >= 10.0 * *least;
-  panel fluxes{"", table.key, "flux into the gas (dimensionless)", logarithmic, false, {}, {}, {}};
-  for (const std::size_t k : visible_fluxes(table)) {
-    curve of{table.fluxes[k], x, {}};
-    for (const sweep_row& row : table.rows)
-      of.y.push_back(row.found ? row.flux[k] : std::numeric_limits<double>::quiet_NaN());
-    fluxes.curves.push_back(std::move(of));
+  for (const std::string& invariant : invariants_in(table)) {
+    panel fluxes{"",          table.key, fmt::format("{} into the gas (dimensionless)", invariant),
+                 logarithmic, false,     {},
+                 {},          {}};
+    for (const std::size_t k : visible_fluxes(table)) {
+      if (!table.fluxes[k].ends_with("_" + invariant)) continue;
+      curve of{table.fluxes[k].substr(0, table.fluxes[k].size() - invariant.size() - 1), x, {}};
+      for (const sweep_row& row : table.rows)
+        of.y.push_back(row.found ? row.flux[k] : std::numeric_limits<double>::quiet_NaN());
+      fluxes.curves.push_back(std::move(of));
+    }
+    drawn.panels.push_back(std::move(fluxes));
   }
   panel iterations{"", table.key, "iterations", logarithmic, false, {{"", x, {}}}, {}, {}};
   for (const sweep_row& row : table.rows)
     iterations.curves.front().y.push_back(static_cast<double>(row.iterations));
-  drawn.panels = {std::move(fluxes), std::move(iterations)};
+  drawn.panels.push_back(std::move(iterations));
   return drawn;
 }
 

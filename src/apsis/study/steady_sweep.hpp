@@ -30,8 +30,9 @@ struct sweep_table {
   std::string title;                ///< of the case
   std::string key;                  ///< that varies
   std::vector<std::string> fluxes;  ///< "right_energy": what the gas receives through faces per unit of time
-  std::vector<sweep_row> rows;      ///< in the order of the values
-  bool complete = true;             ///< false after an interruption, with the rows before it
+  std::vector<std::string> invariants;  ///< of the model
+  std::vector<sweep_row> rows;          ///< in the order of the values
+  bool complete = true;                 ///< false after an interruption, with the rows before it
 };
 
 /// From "key=values" as parse_vary(), where "a..b" stands for `points` values from a to b, in constant ratios
@@ -51,7 +52,8 @@ sweep_table run_sweep(const std::string& case_name, const std::vector<std::strin
 numeric_table to_table(const sweep_table& table);
 /// Returns the rows as an array of objects.
 nlohmann::ordered_json to_json(const sweep_table& table);
-/// Returns iterations and fluxes over the values; without panels if the values are no numbers.
+/// Returns a panel of fluxes for every invariant that has one, and iterations, over the values; without
+/// panels if the values are no numbers.
 picture to_picture(const sweep_table& table);
 /// Returns the indices of the fluxes that matter: above 1e-8 of the largest.
 std::vector<std::size_t> visible_fluxes(const sweep_table& table);

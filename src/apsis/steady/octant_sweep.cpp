@@ -22,6 +22,28 @@ struct upstream {
   const double *one = nullptr, *two = nullptr;
 };
 
+/// row ← δ of a cell, for components begin … end−1.
+template <std::size_t directions>
+void advance_row(const std::array<upstream, 3>& terms, const std::array<const double*, 3>& speeds,
+                 double rate, int begin, int end, double* row) {
+  // Copies of what does not change: the compiler cannot know that the row is not among them.
+  std::array<upstream, directions> from;
+  std::array<const double*, directions> speed;
+  for (std::size_t d = 0; d < directions; ++d) {
+    from[d] = terms[d];
+    speed[d] = speeds[d];
+  }
+#pragma omp simd
+  for (int k = begin; k < end; ++k) {
+    double sum = row[k], factor = rate;
+    for (std::size_t d = 0; d < directions; ++d) {
+      sum += speed[d][k] * (from[d].first * from[d].one[k] + from[d].second * from[d].two[k]);
+      factor += speed[d][k] * from[d].here;
+    }
+    row[k] = sum / factor;
+  }
+}
+
 }  // namespace
 
 struct octant_sweep::scratch {
@@ -126,6 +148,8 @@ void octant_sweep::respond(const octant& of, const field& f, const field& delta)
 void octant_sweep::pass(const octant& of, const strip& components, const std::vector<double>& rates,
                         field& r) const {
   const int directions = links_.directions();
+  std::array<const double*, 3> speeds{};
+  for (int d = 0; d < directions; ++d) speeds[at(d)] = per_cell_[at(d)].data();
   for (const int cell : of.order) {
     std::array<upstream, 3> terms;
     double* row = r.row(cell);
@@ -147,17 +171,10 @@ void octant_sweep::pass(const octant& of, const strip& components, const std::ve
       from.two = two < 0 ? from.one : r.row(two);
       from.second = two < 0 ? 0.0 : -slope;
     }
-    const double rate = rates[at(cell)];
-    for (int k = components.begin; k < components.end; ++k) {
-      double sum = row[k], factor = rate;
-      for (int d = 0; d < directions; ++d) {
-        const upstream& from = terms[at(d)];
-        const double speed = per_cell_[at(d)][at(k)];
-        sum += speed * (from.first * from.one[k] + from.second * from.two[k]);
-        factor += speed * from.here;
-      }
-      row[k] = sum / factor;
-    }
+    const auto advance = directions == 1   ? &advance_row<1>
+                         : directions == 2 ? &advance_row<2>
+                                           : &advance_row<3>;
+    advance(terms, speeds, rates[at(cell)], components.begin, components.end, row);
   }
 }
 

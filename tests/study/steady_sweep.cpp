@@ -51,11 +51,11 @@ TEST(steady_sweep, finds_the_states_of_single_runs_in_fewer_iterations) {
 }
 
 TEST(steady_sweep, keeps_the_mass_of_each_case) {
-  // The pressure at the walls, which hold twice the gas in the second case.
+  // The pressure at the walls, which hold twice the gas in the second case; friction heats it by U² more.
   const auto table = run_sweep("gas/couette", small, parse_sweep("initial.rho=1,2", 2));
   const auto across = static_cast<std::size_t>(
       std::find(table.fluxes.begin(), table.fluxes.end(), "right_momentum_x") - table.fluxes.begin());
-  EXPECT_NEAR(table.rows[1].flux[across] / table.rows[0].flux[across], 2.0, 1e-4);
+  EXPECT_NEAR(table.rows[1].flux[across] / table.rows[0].flux[across], 2.0, 1e-3);
 }
 
 TEST(steady_sweep, goes_on_after_a_state_that_is_not_found) {
@@ -78,7 +78,8 @@ TEST(steady_sweep, refuses_an_invalid_value_before_the_first_run) {
   control.progress = [&](double, const std::string&) { ++iterations; };
   EXPECT_THROW(run_sweep("gas/couette", small, parse_sweep("space.cells=10,2", 2), control),
                apsis::input_error);
-  EXPECT_THROW(run_sweep("gas/couette", small, parse_sweep("no_such=1,2", 2), control), apsis::input_error);
+  EXPECT_THROW(run_sweep("gas/couette", small, parse_sweep("space.no_such=1,2", 2), control),
+               apsis::input_error);
   EXPECT_EQ(iterations, 0);
 }
 

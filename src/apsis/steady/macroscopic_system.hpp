@@ -26,7 +26,7 @@ class macroscopic_system {
   /// Right-hand sides and changes: [cells][moment_count].
   using moments = std::vector<double>;
 
-  /// What acts on the gas inside, beside that of the model.
+  /// Force and source inside the domain, beside those of the model.
   struct inside {
     std::optional<acceleration> force = {};  ///< of a gas
     std::optional<source_rate> source = {};  ///< of any model

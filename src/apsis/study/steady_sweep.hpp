@@ -48,12 +48,12 @@ sweep_table run_sweep(const std::string& case_name, const std::vector<std::strin
                       const varied_key& varied, const study_control& control = {});
 
 /// Returns the rows with columns KEY, iterations, cpu_s, residual, min_value, flux_FACE_INVARIANT; NaN where
-/// no state was found. A value that is no number is the number of its row.
+/// no state was found. A text as value is replaced by the number of its row.
 numeric_table to_table(const sweep_table& table);
 /// Returns the rows as an array of objects.
 nlohmann::ordered_json to_json(const sweep_table& table);
 /// Returns a panel of fluxes for every invariant that has one, and iterations, over the values; without
-/// panels if the values are no numbers.
+/// panels if a value is text.
 picture to_picture(const sweep_table& table);
 /// Returns the indices of the fluxes that matter: above 1e-8 of the largest.
 std::vector<std::size_t> visible_fluxes(const sweep_table& table);

@@ -144,6 +144,17 @@ TEST(steady_run, needs_no_table_of_time) {
   EXPECT_LE(run.step(), 60);
 }
 
+TEST(steady_run, is_not_finished_where_the_iterations_are_over) {
+  simulation run(apsis::load_case("gas/couette", {"space.cells=8", "steady.iterations=3"}));
+  EXPECT_THROW(
+      {
+        while (!run.finished()) run.advance();
+      },
+      apsis::numerical_error);
+  EXPECT_FALSE(run.finished());
+  EXPECT_EQ(run.step(), 3);
+}
+
 TEST(steady_run, says_that_the_iterations_are_over_or_lead_nowhere) {
   EXPECT_THAT(failure_of("gas/couette", {"steady.iterations=3"}),
               HasSubstr("no steady state in 3 iterations"));

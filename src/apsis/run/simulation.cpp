@@ -135,8 +135,9 @@ struct simulation::impl {
     totals.dt = 1.0;
     totals.min_value = last.min_value;
     totals.negative_values = last.negative_values;
-    totals.conservation_defect =
-        *std::max_element(last.conservation_defect.begin(), last.conservation_defect.end());
+    totals.conservation_defect = 0.0;
+    for (const double rate : last.conservation_defect)
+      totals.conservation_defect = std::max(totals.conservation_defect, rate);
     for (const double cut : last.cut) totals.largest_cut = cut;
     if (!found && march.done())
       throw numerical_error(fmt::format("no steady state in {} iterations (residual {:.2g}, change of the "

@@ -146,7 +146,7 @@ action define(CLI::App& command) {
 extern const command_entry command_sweep;
 const command_entry command_sweep = {.name = "sweep",
                                      .summary = "Find the steady states of a case for many values of a key",
-                                     .place = 15,
+                                     .place = 25,
                                      .completion = completed_from_list("cases"),
                                      .define = sweep_command::define};
 

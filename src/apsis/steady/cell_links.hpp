@@ -33,7 +33,7 @@ class cell_links {
   int next_or_image(int direction, bool upper, int cell) const {
     return image_[index(direction, upper)][at(cell)];
   }
-  /// Returns the end at the surface next to a cell; −1 where there is none.
+  /// Returns the number in ends() of the end next to a cell; −1 at a cell without one.
   int end_next_to(int direction, bool upper, int cell) const {
     return end_at_[index(direction, upper)][at(cell)];
   }

@@ -84,6 +84,10 @@ std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& config
   if (!config.time.method_reason.empty() && !config.steady_state.tolerance)
     log::info(fmt::format("{}: time.method = \"{}\" is {} ({})", config.source, automatic_method,
                           config.time.method, config.time.method_reason));
+  const bool gives_time = std::any_of(config.given.begin(), config.given.end(),
+                                      [](const std::string& key) { return key.starts_with("time."); });
+  if (config.steady_state.tolerance && gives_time)
+    log::info(fmt::format("{}: the table [time] is not used (the case has a table [steady])", config.source));
   std::unique_ptr<run_setup> setup;
   run_collectively(*options.processes, [&] {
     setup = std::make_unique<run_setup>(config, options.processes);

@@ -130,6 +130,16 @@ std::string shown(std::string_view text, std::size_t longest) {
   return text.size() > longest ? out + "..." : out;
 }
 
+const raw_value* case_text::find(const std::string& path) const {
+  const auto found = values.find(path);
+  return found == values.end() ? nullptr : &found->second;
+}
+
+source_place case_text::place_of_missing(const std::string& path, const std::string& file) const {
+  const auto found = tables.find(path.substr(0, path.find('.')));
+  return found != tables.end() ? found->second : source_place{file, 1, 1};
+}
+
 case_text read_case_text(std::string_view text, const std::string& file) {
   check_size(text, file);
   case_text out;

@@ -25,6 +25,11 @@ struct raw_value {
 struct case_text {
   std::map<std::string, raw_value> values;     ///< by path, "space.cells"
   std::map<std::string, source_place> tables;  ///< by dotted name, "space", "initial.region.1"
+
+  /// Returns the value of a key; nothing if the case does not give it.
+  const raw_value* find(const std::string& path) const;
+  /// Returns the place for a message about a missing key of `file`: the head of its table, or the first line.
+  source_place place_of_missing(const std::string& path, const std::string& file) const;
 };
 
 constexpr std::size_t longest_case_file = 1'000'000;  ///< bytes
